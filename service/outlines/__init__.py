@@ -1,6 +1,7 @@
-"""Closed outlines in drawings that others made, SVG and DXF, as polygons and circles of the plane with y upwards.
+"""Closed outlines in SVG and DXF drawings from other programs, as polygons and circles in a plane with y upwards.
 
-:mod:`service.outlines.reading` is the door. It brings the libraries that read drawings, so it is not imported here.
+:mod:`service.outlines.reading` is the entry point. It loads the libraries that read drawings, so it is
+not imported here.
 """
 
 from service.outlines.answer import DrawingUnit, Outline, Outlines

@@ -1,4 +1,4 @@
-"""Affine maps of the plane in complex numbers, and what SVG writes of them."""
+"""Affine maps of the plane in complex numbers, and the parser of SVG's ``transform`` attribute."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ _NUMBERS = re.compile(rf"[\s,]*+(?:{NUMBER}[\s,]*+)*+")
 _ARGUMENTS = {"matrix": (6,), "translate": (1, 2), "scale": (1, 2), "rotate": (1, 3), "skewX": (1,), "skewY": (1,)}
 
 CONFORMAL = 1e-9
-"""A map that stretches one way more than the other by less than this share keeps circles."""
+"""Relative difference of the two principal stretches up to which a map still takes circles to circles."""
 
 
 @dataclass(frozen=True)
@@ -27,11 +27,11 @@ class Affine:
     shift: complex = 0.0
 
     def __call__(self, points: Complex) -> Complex:
-        """Where points go, of any shape."""
+        """Return the mapped points, of any shape."""
         return np.asarray(self.turn * points + self.flip * np.conj(points) + self.shift)
 
     def __matmul__(self, first: Affine) -> Affine:
-        """This map after another."""
+        """Return the composition: ``first`` is applied first, then this map."""
         return Affine(
             self.turn * first.turn + self.flip * first.flip.conjugate(),
             self.turn * first.flip + self.flip * first.turn.conjugate(),
@@ -40,24 +40,26 @@ class Affine:
 
     @property
     def enlargement(self) -> float | None:
-        """By what factor circles grow; None where they do not stay circles."""
+        """Factor by which circles grow, or None if the map turns circles into ellipses."""
+        # Principal stretches are |turn| + |flip| and |turn| - |flip|: circles stay circles if one part vanishes.
         larger, smaller = sorted((abs(self.turn), abs(self.flip)), reverse=True)
         return larger if smaller <= CONFORMAL * larger else None
 
     @classmethod
     def of_matrix(cls, a: float, b: float, c: float, d: float, e: float, f: float) -> Affine:
-        """The map (x, y) ↦ (ax + cy + e, bx + dy + f)."""
+        """Return the map (x, y) ↦ (ax + cy + e, bx + dy + f)."""
+        # Images of the unit vectors x and y.
         along, across = complex(a, b), complex(c, d)
         return cls(0.5 * (along - 1j * across), 0.5 * (along + 1j * across), complex(e, f))
 
 
 def transform_of(text: str) -> Affine:
-    """What the attribute ``transform`` says.
+    """Parse the attribute ``transform``, a list of functions that apply from right to left.
 
     Raises
     ------
     ValueError
-        It is not a list of transforms.
+        The text is not a list of transforms.
     """
     whole, at = Affine(), 0
     text = text.strip()
@@ -68,6 +70,7 @@ def transform_of(text: str) -> Affine:
         numbers = [float(number) for number in re.findall(NUMBER, found[2])]
         if len(numbers) not in _ARGUMENTS[found[1]]:
             raise ValueError(f"its transform has {len(numbers)} numbers in {found[1]}(...)")
+        # Functions apply from right to left: the last one maps first.
         whole = whole @ _function(found[1], numbers)
         at = found.end()
         while at < len(text) and text[at] in ", \t\r\n":

@@ -1,4 +1,4 @@
-"""What was found in a drawing, as the API says it."""
+"""The outlines of a drawing as the API returns them."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ class Drawn(BaseModel):
 
 
 class DrawnCircle(BaseModel):
-    """A circle with what it encloses."""
+    """A circle, filled."""
 
     model_config = ConfigDict(title="Drawn circle")
 
@@ -36,21 +36,21 @@ class Outline(Drawn):
 
     polygon: list[tuple[float, float]] | None = Field(
         default=None,
-        description="Corners of a simple polygon, counter-clockwise; the first is not repeated. Null of a circle.",
+        description="Corners of a simple polygon, counter-clockwise; the first is not repeated. Null for a circle.",
     )
     circle: DrawnCircle | None = None
     area: float = Field(description="Enclosed area, in squares of the unit.")
     joined: int = Field(
-        description="How many open elements were joined to it at their ends; 1 where it is closed by itself."
+        description="Number of open elements joined at their ends; 1 if the element is closed by itself."
     )
 
 
 class LeftOut(Drawn):
-    """An element that gives no outline."""
+    """An element without an outline."""
 
     model_config = ConfigDict(title="Element left out")
 
-    reason: str = Field(description="Why, in a sentence.")
+    reason: str = Field(description="Reason, as a sentence.")
 
 
 class Outlines(BaseModel):
@@ -58,31 +58,31 @@ class Outlines(BaseModel):
 
     format: Literal["svg", "dxf"]
     millimetres_per_unit: float | None = Field(
-        description="Millimetres in a unit of the drawing; null where the file does not state it."
+        description="Millimetres in a unit of the drawing; null if the file does not give it."
     )
     length_unit: DrawingUnit | None = Field(
-        description="The unit of all numbers here; null: the drawing's own, "
-        "because no other was asked for or because the file states none."
+        description="Unit of all numbers here; null for the drawing's own, "
+        "because no other was requested or the file gives none."
     )
     scale: float = Field(description="Units of the numbers here in a unit of the drawing.")
-    tolerance: float = Field(description="Greatest distance of a curve from the polygon that stands for it.")
+    tolerance: float = Field(description="Maximum distance of a curve from its polygon.")
     outlines: list[Outline]
-    left_out: list[LeftOut] = Field(description=f"What gives no outline, {MOST_TOLD} elements at most.")
-    left_out_count: int = Field(description="How many elements give no outline.")
+    left_out: list[LeftOut] = Field(description=f"Elements without an outline, at most {MOST_TOLD}.")
+    left_out_count: int = Field(description="Number of elements without an outline.")
 
 
 def told(source: Source) -> dict[str, str | None]:
-    """What an answer says of where a curve comes from."""
+    """Return the fields of an element that the API reports."""
     return {name: short(getattr(source, name)) for name in ("element", "id", "name", "layer")}
 
 
 def told_left_out(left_out: Sequence[tuple[Source, str]]) -> list[LeftOut]:
-    """The first of the elements that were left out, with their reasons."""
+    """Return the first elements without an outline, at most ``MOST_TOLD``, with their reasons."""
     return [LeftOut(**told(source), reason=sentence(reason)) for source, reason in left_out[:MOST_TOLD]]
 
 
 def short(text: str | None) -> str | None:
-    """A text of the drawing, which may have anything in it, as one that can be told."""
+    """Return a text from the drawing as valid UTF-8, truncated to ``LONGEST_NAME`` characters."""
     if text is None:
         return None
     spelt = text.encode("utf-8", "replace").decode()
@@ -90,5 +90,5 @@ def short(text: str | None) -> str | None:
 
 
 def sentence(reason: str) -> str:
-    """A reason as a sentence of its own."""
+    """Return a reason as a sentence: capitalized, with a full stop."""
     return f"{reason[:1].upper()}{reason[1:]}."

@@ -1,6 +1,6 @@
-"""Curves of a drawing as cubic Béziers, and the polygons that stand for them.
+"""Curves of a drawing as cubic Béziers, and the polygons that approximate them.
 
-A point is a complex number x + iy. A line is the cubic whose control points part it in three.
+A point is a complex number x + iy. A line is the cubic whose control points divide it into three equal parts.
 """
 
 from __future__ import annotations
@@ -15,7 +15,9 @@ from service.outlines.limits import FARTHEST
 Complex = NDArray[np.complex128]
 
 STRAIGHT = 1e-12
-"""A cubic with control points this share of its length from where a line has them is one: a transform rounds."""
+"""A cubic counts as a line if its control points deviate by less than this share of its length from those of a line;
+transforms round.
+"""
 
 
 @dataclass(frozen=True)
@@ -30,7 +32,7 @@ class Source:
 
 @dataclass(frozen=True)
 class Circle:
-    """A whole circle."""
+    """A full circle."""
 
     centre: complex
     radius: float
@@ -38,7 +40,10 @@ class Circle:
 
 @dataclass(frozen=True)
 class Curve:
-    """A connected curve: ``pieces`` are its cubics one after the other, shape (n, 4); of a circle there are none."""
+    """A connected curve.
+
+    ``pieces`` are its consecutive cubics, shape (n, 4); empty for a circle.
+    """
 
     source: Source
     pieces: Complex
@@ -47,24 +52,24 @@ class Curve:
 
     @property
     def start(self) -> complex:
-        """Its first point."""
+        """First point of the curve."""
         return complex(self.pieces[0, 0])
 
     @property
     def end(self) -> complex:
-        """Its last point."""
+        """Last point of the curve."""
         return complex(self.pieces[-1, 3])
 
     @property
     def finite(self) -> bool:
-        """Whether every number of it can be meant."""
+        """Whether every coordinate is a number within ``FARTHEST``."""
         if self.circle is not None:
             return abs(self.circle.centre) + self.circle.radius <= FARTHEST
         return bool(np.all(np.abs(self.pieces) <= FARTHEST))
 
     @property
     def corners(self) -> tuple[complex, complex]:
-        """Lower left and upper right corner of a box that holds it."""
+        """Lower left and upper right corner of a box that contains the curve."""
         if self.circle is not None:
             reach = complex(self.circle.radius, self.circle.radius)
             return self.circle.centre - reach, self.circle.centre + reach
@@ -72,13 +77,13 @@ class Curve:
         return complex(x.min(), y.min()), complex(x.max(), y.max())
 
     def scaled(self, factor: float) -> Curve:
-        """The same curve in another unit."""
+        """Return the curve scaled by a factor, for a change of unit."""
         circle = self.circle and Circle(self.circle.centre * factor, self.circle.radius * factor)
         return replace(self, pieces=self.pieces * factor, circle=circle)
 
 
 def backwards(curve: Curve) -> Curve:
-    """The same curve, run through the other way."""
+    """Return the curve traversed in the opposite direction."""
     return replace(curve, pieces=np.ascontiguousarray(curve.pieces[::-1, ::-1]))
 
 
@@ -86,28 +91,28 @@ NONE: Complex = np.empty((0, 4), np.complex128)
 
 
 def bezier(start: complex, first: complex, second: complex, end: complex) -> Complex:
-    """A cubic, shape (1, 4)."""
+    """Build a cubic from its four control points, shape (1, 4)."""
     return np.array([[start, first, second, end]])
 
 
 def line(start: complex, end: complex) -> Complex:
-    """A line as a cubic, shape (1, 4)."""
+    """Build a line as a cubic, shape (1, 4)."""
     return bezier(start, start + (end - start) / 3.0, end + (start - end) / 3.0, end)
 
 
 def quadratic(start: complex, control: complex, end: complex) -> Complex:
-    """A quadratic Bézier as a cubic, shape (1, 4)."""
+    """Build a quadratic Bézier as a cubic (degree elevation), shape (1, 4)."""
     return bezier(start, start + 2.0 / 3.0 * (control - start), end + 2.0 / 3.0 * (control - end), end)
 
 
 def polyline(points: Complex) -> Complex:
-    """Lines through points, as cubics; shape (n - 1, 4)."""
+    """Build lines through consecutive points as cubics, shape (n - 1, 4)."""
     start, end = points[:-1], points[1:]
     return np.stack([start, start + (end - start) / 3.0, end + (start - end) / 3.0, end], axis=1)
 
 
 def steps(pieces: Complex, tolerance: float) -> NDArray[np.int64]:
-    """How many chords each cubic takes, so that none is farther from its curve than the tolerance; shape (n,).
+    """Count the chords for each cubic that keep every chord within the tolerance of its curve, shape (n,).
 
     The distance of a cubic from a chord over 1/n of its parameter is at most M/(8n²), where M = 6 max|Δ²| bounds its
     second derivative by the second differences of its control points; Wang, Journal of Shanghai Jiaotong University
@@ -115,13 +120,15 @@ def steps(pieces: Complex, tolerance: float) -> NDArray[np.int64]:
     """
     bends = np.abs(pieces[:, :-2] - 2.0 * pieces[:, 1:-1] + pieces[:, 2:]).max(axis=1)
     length = np.abs(np.diff(pieces, axis=1)).sum(axis=1)
+    # Rounded transforms leave tiny second differences on straight lines; one chord is enough there.
     bends = np.where(bends <= STRAIGHT * length, 0.0, bends)
     counts = np.sqrt(6.0 * bends / (8.0 * tolerance))
+    # The cap keeps absurd coordinates from overflowing the integer type.
     return np.maximum(np.ceil(np.minimum(counts, 1e9)), 1.0).astype(np.int64)
 
 
 def flattened(pieces: Complex, tolerance: float) -> Complex:
-    """Points along a curve, its first and its last among them, with chords within the tolerance; shape (m,)."""
+    """Sample points along a curve, both ends included, so that the chords stay within the tolerance; shape (m,)."""
     counts = steps(pieces, tolerance)
     owner = np.repeat(np.arange(len(pieces)), counts)
     t = (np.arange(len(owner)) - np.repeat(np.cumsum(counts) - counts, counts)) / counts[owner]

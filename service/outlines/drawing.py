@@ -1,4 +1,4 @@
-"""What a drawing holds, whatever its format."""
+"""The content of a drawing, independent of its file format."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from service.outlines.curves import Curve, Source
 
 @dataclass(frozen=True)
 class Drawing:
-    """Curves in the units of the drawing, y upwards; elements that are none, with the reason; millimetres in a unit."""
+    """Curves in drawing units with y upwards, elements that are no curves with the reason, and millimetres per unit."""
 
     format: Literal["svg", "dxf"]
     curves: list[Curve]

@@ -1,4 +1,4 @@
-"""The curves of a DXF drawing, as seen from above."""
+"""The curves of a DXF drawing in top view."""
 
 from __future__ import annotations
 
@@ -25,17 +25,17 @@ from service.outlines.path_data import ARC_SEGMENTS
 from service.outlines.splines import cubics
 
 PATHS = {"LINE", "ARC", "CIRCLE", "ELLIPSE", "LWPOLYLINE", "POLYLINE", "SOLID", "TRACE"}
-"""Types of entities that are curves."""
+"""Entity types that are read as curves."""
 
 TEXTS = {"TEXT", "MTEXT", "ATTRIB", "ATTDEF"}
 
 MOST_FIT_POINTS = 500
-"""Of a spline that is stated by the points that it passes; its control points are the solution of linear equations."""
+"""Limit for splines given by fit points: their control points follow from a system of linear equations of that size."""
 
 FLAT = 1e-6
-"""What leaves its plane by less than this share of its extent lies flat."""
+"""An entity counts as flat if its heights differ by less than this share of its extent."""
 
-# What is wrong with a file is told to whoever sent it.
+# Faults of a file are reported to the client by this module, not in the server's log.
 logging.getLogger("ezdxf").setLevel(logging.CRITICAL)
 
 _GUESSED = {AuditError.INVALID_INTEGER_VALUE, AuditError.INVALID_FLOATING_POINT_VALUE}
@@ -43,7 +43,7 @@ _LINE = re.compile(r"near line (\d+)")
 
 
 class DxfReader:
-    """Goes through the entities of a drawing."""
+    """Walks through the entities of a drawing and collects its curves."""
 
     def __init__(self, layers: dict[str, bool]) -> None:
         self.hidden = {name for name, shown in layers.items() if not shown}
@@ -52,12 +52,13 @@ class DxfReader:
         self.visited = self.pieces = 0
 
     def visit(self, entity: DXFEntity, above: Source, depth: int) -> None:
-        """Read an entity; ``above`` is the insert that it comes from, if any."""
+        """Read an entity; ``above`` is the insert that contains it, or an empty source."""
         self.visited += 1
         if self.visited > MOST_ELEMENTS:
-            raise Unsuitable(f"The drawing has more than {MOST_ELEMENTS} entities, those of blocks counted each time.")
+            raise Unsuitable(f"The drawing has more than {MOST_ELEMENTS} entities, counting each insertion of a block.")
         type_ = entity.dxftype()
         layer, handle, invisible = (_attribute(entity, name) for name in ("layer", "handle", "invisible"))
+        # Entities on layer 0 of a block take the layer of the insert (AutoCAD's rule).
         if layer in (None, "0") and above.layer:
             layer = above.layer
         if str(layer).lower() in self.hidden or invisible:
@@ -77,13 +78,13 @@ class DxfReader:
         except ValueError as error:
             self.left_out.append((source, str(error)))
         except (DXFError, TypeError, AttributeError, ArithmeticError, LookupError):
-            # What the library makes of an entity that lacks what its type has is any of these.
+            # ezdxf raises any of these for an entity that lacks attributes of its type.
             self.left_out.append((source, "it lacks what an entity of its type has"))
 
     def insert(self, entity: Any, source: Source, depth: int) -> None:
-        """Read the entities of a block where it is inserted."""
+        """Read the entities of a block at every place where it is inserted."""
         if depth >= MOST_DEPTH:
-            raise Unsuitable(f"The drawing has blocks more than {MOST_DEPTH} deep in one another.")
+            raise Unsuitable(f"The drawing nests blocks more than {MOST_DEPTH} deep.")
         rows, columns = (max(int(entity.dxf.get(name, 1)), 1) for name in ("row_count", "column_count"))
         if rows * columns > MOST_ELEMENTS:
             raise Unsuitable(f"A block is inserted {rows} × {columns} times, more than {MOST_ELEMENTS}.")
@@ -94,7 +95,7 @@ class DxfReader:
                 self.visit(inner, source, depth + 1)
 
     def add(self, curve: Curve) -> None:
-        """A curve of the drawing."""
+        """Append a curve; refuse the drawing if it has too many pieces."""
         self.pieces += max(len(curve.pieces), 1)
         if self.pieces > MOST_PIECES:
             raise Unsuitable(f"The drawing has more than {MOST_PIECES} lines and curves.")
@@ -102,19 +103,20 @@ class DxfReader:
 
 
 def curves_of(content: bytes) -> Drawing:
-    """The curves of the model space.
+    """Read the curves of the model space.
 
     Raises
     ------
     Malformed
-        It is no DXF.
+        The content is not DXF.
     Unsuitable
-        It is larger than is read here.
+        The drawing exceeds the limits.
     """
     if b"\0" in content:
-        raise Malformed("The drawing holds NUL characters, which no text form of DXF does.")
+        raise Malformed("The drawing contains NUL characters, which text DXF never does.")
     if not content.rstrip().endswith(b"EOF"):
-        raise Malformed("The drawing does not end with EOF; is it whole?")
+        raise Malformed("The drawing does not end with EOF; it may be truncated.")
+    # The recovery reader accepts files of sloppy writers; wrong numbers are refused below.
     try:
         document, auditor = recover.read(io.BytesIO(content))
         entities = list(document.modelspace())
@@ -130,12 +132,12 @@ def curves_of(content: bytes) -> Drawing:
 
 
 def _attribute(entity: DXFEntity, name: str) -> Any:
-    """An attribute of an entity; None where it has none, or none of this name."""
+    """Return an attribute of an entity, or None if the entity lacks it or its type has no such attribute."""
     return entity.dxf.get(name) if entity.dxf.is_supported(name) else None
 
 
 def _refuse_guesses(auditor: Auditor) -> None:
-    """The library makes a number of anything, `i.5` among them; a drawing of such numbers was made by nobody."""
+    """Refuse a file in which ezdxf replaced unreadable numbers, such as `i.5`, by guesses."""
     for fault in auditor.errors:
         if fault.code in _GUESSED:
             line = _LINE.search(fault.message)
@@ -143,7 +145,7 @@ def _refuse_guesses(auditor: Auditor) -> None:
 
 
 def _millimetres(unit: int) -> float | None:
-    """Millimetres in a unit of the drawing, by the header's $INSUNITS; None of none."""
+    """Return the millimetres in a drawing unit according to the header's $INSUNITS; None if unitless."""
     try:
         return float(units.conversion_factor(InsertUnits(unit), InsertUnits.Millimeters))
     except (TypeError, ValueError, LookupError):
@@ -153,6 +155,7 @@ def _millimetres(unit: int) -> float | None:
 def _curve(entity: Any, source: Source) -> Curve:
     if entity.dxftype() == "CIRCLE" and abs(entity.dxf.extrusion.normalize().z) > 1.0 - 1e-9:
         centre = entity.ocs().to_wcs(entity.dxf.center)
+        # Circles seen from above or below stay exact circles.
         if not 0.0 < entity.dxf.radius <= FARTHEST:
             raise ValueError("its radius is not positive, or too large")
         return Curve(source, NONE, True, Circle(complex(centre.x, centre.y), float(entity.dxf.radius)))
@@ -178,11 +181,12 @@ def _curve(entity: Any, source: Source) -> Curve:
 
 
 def _segments(entity: Any) -> int:
-    """What the library is asked for: it takes a third of it for a bulge."""
+    """Return the segment count to request from ezdxf, which uses a third of it for a bulge."""
     return 3 * ARC_SEGMENTS if entity.dxftype() in ("LWPOLYLINE", "POLYLINE") else ARC_SEGMENTS
 
 
 def _spline(entity: Any) -> Complex:
+    # Control points, if present, make solving the linear system unnecessary.
     if entity.fit_point_count() > MOST_FIT_POINTS and not entity.control_point_count():
         raise ValueError(f"it passes through more than {MOST_FIT_POINTS} points")
     tool = entity.construction_tool()

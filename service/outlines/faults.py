@@ -1,4 +1,4 @@
-"""Why a drawing gives no outlines."""
+"""Reasons why a drawing gives no outlines."""
 
 from __future__ import annotations
 
@@ -6,23 +6,23 @@ from collections.abc import Sequence
 
 
 class DrawingError(ValueError):
-    """Anything of a drawing that keeps its outlines from being read; the message is a sentence."""
+    """Base of all errors that prevent reading outlines; the message is a sentence for the client."""
 
 
 class ForeignFormat(DrawingError):
-    """It is neither SVG nor the text form of DXF."""
+    """The content is neither SVG nor text DXF."""
 
 
 class Malformed(DrawingError):
-    """It is not what its format is."""
+    """The content violates the rules of its format."""
 
 
 class Unsuitable(DrawingError):
-    """It is a drawing, but larger than is read here, or with numbers that cannot be meant."""
+    """The drawing is too large, or its coordinates are out of range."""
 
 
 class NoOutline(DrawingError):
-    """It has no closed outline; ``reasons`` are pairs of the element's id and what keeps it from being one."""
+    """The drawing has no closed outline; ``reasons`` pairs each element's id with the obstacle."""
 
     def __init__(self, message: str, reasons: Sequence[tuple[str, str]]) -> None:
         super().__init__(message)

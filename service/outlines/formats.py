@@ -1,4 +1,4 @@
-"""What a body of bytes is as a drawing, and its curves in the unit that is asked for."""
+"""Detects the format of a drawing and converts its curves to the requested unit."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ _COMPRESSED = (b"\x1f\x8b", b"PK\x03\x04")
 
 
 class Placed(NamedTuple):
-    """The curves of a drawing in the unit of an answer, ``scale`` of it in a unit of the drawing."""
+    """The curves of a drawing in the unit of the answer; ``scale`` is the number of those units in a drawing unit."""
 
     curves: list[Curve]
     left_out: list[tuple[Source, str]]
@@ -31,12 +31,12 @@ class Placed(NamedTuple):
 
 
 def drawing_of(content: bytes) -> Drawing | None:
-    """What an SVG or DXF file draws; None where the content begins as neither.
+    """Read an SVG or DXF file; return None if the content begins like neither.
 
     Raises
     ------
     DrawingError
-        It cannot be read as what it begins as, or is of a sort that is known and not read.
+        The content is invalid in the format of its first bytes, or that format is not supported.
     """
     if content.startswith(b"AutoCAD Binary DXF"):
         raise ForeignFormat("The body is a binary DXF file; save it as text (ASCII) DXF.")
@@ -44,6 +44,7 @@ def drawing_of(content: bytes) -> Drawing | None:
         raise ForeignFormat("The body is a DWG file; save it as text (ASCII) DXF.")
     if content.startswith(_COMPRESSED):
         raise ForeignFormat("The body is compressed; send the drawing itself.")
+    # Editors on Windows write a byte-order mark before UTF-8.
     bare = content.removeprefix(b"\xef\xbb\xbf")
     if bare.lstrip()[:1] == b"<" or content[:4] in (b"\xff\xfe<\0", b"\xfe\xff\0<"):
         return svg.curves_of(content)
@@ -53,7 +54,7 @@ def drawing_of(content: bytes) -> Drawing | None:
 
 
 def placed(drawing: Drawing, length_unit: DrawingUnit | None) -> Placed:
-    """The curves in a unit, where the drawing states its own; what lies too far out is left out."""
+    """Convert the curves to a unit, if the drawing gives its own; leave out curves with coordinates out of range."""
     scale, unit = 1.0, None
     if length_unit is not None and drawing.millimetres is not None:
         scale, unit = drawing.millimetres / MILLIMETRES[length_unit], length_unit
@@ -69,7 +70,7 @@ def placed(drawing: Drawing, length_unit: DrawingUnit | None) -> Placed:
 
 
 def extent(curves: Sequence[Curve]) -> float:
-    """The greater side of the box around all curves."""
+    """Return the larger side of the box around all curves."""
     if not curves:
         return 0.0
     low, high = np.array([one.corners for one in curves]).T

@@ -12,12 +12,13 @@ from scipy.spatial import cKDTree
 from service.outlines.curves import Complex, Curve, backwards
 
 FREE, BRANCH = -1, -2
-"""Instead of the end that an end meets: it meets none, or more than one."""
+"""Markers in place of a partner: the end meets no other end, or more than one."""
 
 
 @dataclass(frozen=True)
 class Chain:
-    """Open curves in a row: each begins where the one before it ends, and the first where the last ends if ``closed``.
+    """Open curves in a row, each starting where the previous one ends; if ``closed``, the first starts where the last
+    ends.
 
     ``branching``: it ends where more than two ends meet, or such a place keeps it from being closed.
     """
@@ -28,11 +29,11 @@ class Chain:
 
 
 def chains(curves: Sequence[Curve], reach: float) -> list[Chain]:
-    """Open curves joined at their ends: where the ends of two of them, and of no third one, lie within ``reach``."""
+    """Chain open curves whose ends lie within ``reach`` of exactly one other end."""
     partner = _partners(curves, reach)
     seen: set[int] = set()
     found = []
-    # From their free ends first: what is left then are rings.
+    # Start at free ends: the curves that remain afterwards form rings.
     for begin in sorted(range(2 * len(curves)), key=lambda end: partner[end] >= 0):
         if begin // 2 in seen:
             continue
@@ -41,7 +42,9 @@ def chains(curves: Sequence[Curve], reach: float) -> list[Chain]:
         while end >= 0 and end // 2 not in seen:
             seen.add(end // 2)
             one = curves[end // 2]
+            # Entering a curve at its end means traversing it backwards.
             members.append(one if end % 2 == 0 else backwards(one))
+            # end ^ 1 is the other end of the same curve.
             end = int(partner[end ^ 1])
         closed = bool(partner[begin] >= 0)
         found.append(Chain(members, closed, branching=not closed and BRANCH in (partner[begin], end)))
@@ -49,7 +52,7 @@ def chains(curves: Sequence[Curve], reach: float) -> list[Chain]:
 
 
 def joined(curves: Sequence[Curve], reach: float) -> tuple[list[list[Curve]], list[tuple[Curve, str]]]:
-    """The closed chains of open curves, and the curves that are in none with the reason."""
+    """Return the closed chains of open curves, and the remaining curves with the reason."""
     rings, alone = [], []
     for chain in chains(curves, reach):
         if chain.closed:
@@ -60,7 +63,7 @@ def joined(curves: Sequence[Curve], reach: float) -> tuple[list[list[Curve]], li
 
 
 def _partners(curves: Sequence[Curve], reach: float) -> NDArray[np.int64]:
-    """The end that each end meets, by number; or FREE, or BRANCH."""
+    """Return for each end the number of the end that it meets, or FREE, or BRANCH."""
     if not curves:
         return np.empty(0, np.int64)
     places = np.array([place for one in curves for place in (one.start, one.end)])
@@ -78,9 +81,9 @@ def _partners(curves: Sequence[Curve], reach: float) -> NDArray[np.int64]:
 
 
 def _thrice_at_most(places: Complex) -> NDArray[np.int64]:
-    """The numbers of the places without the fourth and further ones at one and the same: those branch in any case.
+    """Return the indices of the points without the fourth and later copies of equal points, which are branches anyway.
 
-    A tree that holds thousands of equal points looks at all of them for each.
+    A k-d tree with thousands of equal points would visit all of them for each query.
     """
     _, place = np.unique(places, return_inverse=True)
     order = np.argsort(place, kind="stable")

@@ -1,37 +1,37 @@
-"""How large a drawing may be that is read within a second or two."""
+"""Limits on the size of a drawing, so that it is read within about two seconds."""
 
 from synthesis.model.statement import ABSURD
 from synthesis.model.zones import MOST_VERTICES
 
 MOST_ELEMENTS = 20_000
-"""Elements of an SVG drawing, or entities of a DXF drawing, each as often as it is used."""
+"""Maximum number of elements (SVG) or entities (DXF), counting every use."""
 
 MOST_DEPTH = 32
-"""Groups, uses or blocks within one another."""
+"""Maximum nesting depth of groups, uses or blocks."""
 
 MOST_PIECES = 100_000
-"""Lines and curves in all of a drawing."""
+"""Maximum number of lines and curves in a drawing."""
 
 MOST_POINTS = 100_000
-"""Vertices of all polygons of a drawing."""
+"""Maximum number of vertices of all polygons of a drawing."""
 
 MOST_OUTLINES = 1_000
-"""Closed outlines of a drawing."""
+"""Maximum number of closed outlines of a drawing."""
 
 MOST_TOLD = 50
-"""Elements that were left out, of which the answer speaks one by one."""
+"""Maximum number of left-out elements that the answer lists."""
 
 MOST_CORNERS = MOST_VERTICES
-"""Vertices of a polygon: as many as a zone or an obstacle may have."""
+"""Maximum number of vertices of a polygon, the limit for zones and obstacles."""
 
 FARTHEST = ABSURD
-"""Greatest coordinate, as in statements."""
+"""Largest absolute coordinate, as in problem statements."""
 
 LONGEST_NAME = 100
-"""Characters of a name, a layer or an id that are told."""
+"""Maximum number of characters of a reported name, layer or id."""
 
 DEFAULT_TOLERANCE = 5e-4
-"""Flattening tolerance as a share of the greater side of the box around all that is drawn: half a pixel of a screen."""
+"""Default flattening tolerance as a share of the larger side of the drawing's box: half a pixel of a screen."""
 
 JOINED = 0.1
-"""Ends are joined that lie within this share of the tolerance."""
+"""Largest gap between ends that are joined, as a share of the flattening tolerance."""

@@ -1,7 +1,7 @@
 """The data of an SVG path, read strictly and turned into cubic Béziers.
 
-The commands are followed by fontTools. It passes over characters that it does not know, which would be a drawing that
-nobody made; so the numbers are read here first, by the grammar of SVG 2 (section 9.3.9), and given to it one by one.
+fontTools interprets the commands. It skips unknown characters, which would silently change the drawing; so the numbers
+are parsed here first, by the grammar of SVG 2 (section 9.3.9), and passed to it one by one.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ from service.outlines.faults import Unsuitable
 from service.outlines.limits import FARTHEST, MOST_PIECES
 
 ARC_SEGMENTS = 16
-"""Cubics for a full turn: the farthest that they are from the circle is 7e-8 of the radius."""
+"""Number of cubics for a full turn; their largest deviation from the circle is 7e-8 of the radius."""
 
 _NUMBER = re.compile(r"[\s,]*([+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)")
 _FLAG = re.compile(r"[\s,]*([01])")
@@ -26,11 +26,11 @@ _COMMAND = re.compile(r"[\s,]*([A-Za-z])")
 _REST = re.compile(r"[\s,]*")
 _COUNTS = {"M": 2, "L": 2, "H": 1, "V": 1, "C": 6, "S": 4, "Q": 4, "T": 2, "A": 7, "Z": 0}
 _FLAGS = (3, 4)
-"""Places among the arguments of an arc where a single digit stands, which need not be parted from what follows."""
+"""Positions of the single-digit flags among the arguments of an arc; no separator needs to follow them."""
 
 
 class Subpath:
-    """One part of a path, in user units: ``pieces`` of shape (n, 4), from its first point to its last."""
+    """A subpath in user units; ``pieces`` has shape (n, 4)."""
 
     def __init__(self, start: complex) -> None:
         self.start = self.end = start
@@ -38,13 +38,13 @@ class Subpath:
         self.closed = False
 
     def add(self, pieces: Complex) -> None:
-        """Go on along cubics, shape (k, 4)."""
+        """Append cubics of shape (k, 4)."""
         self.pieces.append(pieces)
         self.end = complex(pieces[-1, 3])
 
 
 class _Pen:
-    """What fontTools draws with."""
+    """Collects what fontTools draws; its method names are fontTools' pen protocol."""
 
     def __init__(self) -> None:
         self.subpaths: list[Subpath] = []
@@ -72,21 +72,22 @@ class _Pen:
         self.subpaths[-1].closed = True
 
     def endPath(self) -> None:
-        """What follows begins elsewhere."""
+        """Do nothing: an open subpath needs no closing piece."""
 
 
 def subpaths_of(data: str) -> list[Subpath]:
-    """The parts of a path.
+    """Parse SVG path data into subpaths.
 
     Raises
     ------
     ValueError
-        The data is not that of a path; the message says where.
+        The data is invalid; the message gives the position.
     Unsuitable
-        It has more pieces than a drawing may have.
+        The path has more pieces than a drawing may have.
     """
     pen = _Pen()
     tokens = list(_tokens(data))
+    # The longest command, an arc, has one letter and seven numbers.
     if len(tokens) > 8 * MOST_PIECES:
         raise Unsuitable(f"A path has more than {MOST_PIECES} pieces.")
     parse_path(" ".join(tokens), pen)
@@ -107,6 +108,7 @@ def _tokens(data: str) -> Iterator[str]:
         elif not command or command in "Zz":
             raise ValueError(f"a command is missing at character {at}")
         for k in range(_COUNTS[command.upper()]):
+            # A flag is a single digit and may touch the following number.
             pattern = _FLAG if command in "Aa" and k in _FLAGS else _NUMBER
             found = pattern.match(data, at)
             if found is None:
@@ -128,7 +130,7 @@ def _spelt(number: str) -> str:
 
 
 def arc(start: complex, radii: complex, rotation: float, large: bool, sweep: bool, end: complex) -> Complex:
-    """An elliptical arc between two points as cubics, shape (k, 4); SVG 2, appendix B.2."""
+    """Build an elliptical arc between two points as cubics, shape (k, 4); SVG 2, appendix B.2."""
     rx, ry = abs(radii.real), abs(radii.imag)
     if start == end or rx == 0.0 or ry == 0.0:
         return line(start, end)
@@ -159,7 +161,7 @@ def arc(start: complex, radii: complex, rotation: float, large: bool, sweep: boo
 
 
 def unit_arc(start: float, swept: float) -> Complex:
-    """An arc of the unit circle as cubics, shape (k, 4); angles in radians, ``swept`` of either sign."""
+    """Build an arc of the unit circle as cubics, shape (k, 4); angles in radians, ``swept`` of either sign."""
     count = max(int(np.ceil(abs(swept) / (2.0 * np.pi) * ARC_SEGMENTS)), 1)
     # The library goes counter-clockwise; the mirror image goes the other way.
     way = 1.0 if swept >= 0.0 else -1.0

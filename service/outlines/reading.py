@@ -1,4 +1,4 @@
-"""From a drawing in any format to its closed outlines."""
+"""Extracts the closed outlines from a drawing of any supported format."""
 
 from __future__ import annotations
 
@@ -23,34 +23,37 @@ from service.outlines.limits import (
 )
 
 FLAT = 1e-9
-"""Area of a polygon, as a share of the square of its extent, that is none; as in statements."""
+"""Polygons with less than this share of the square of their extent have no area; same value as in problem statements.
+"""
 
 SAME = 1e-12
-"""Points this share of the greatest coordinate apart are one, which rounding has made two."""
+"""Relative distance up to which consecutive points are merged: rounding separated them."""
 
 ROUND = 5e-4
-"""A closed curve is a circle where it lies this near to one, as a share of the radius: four cubics do."""
+"""Largest deviation from a circle, as a share of its radius, of a closed curve that is read as one; four cubics satisfy
+it.
+"""
 
 
 def outlines_of(content: bytes, *, tolerance: float | None = None, length_unit: DrawingUnit | None = None) -> Outlines:
-    """The closed outlines of a drawing.
+    """Read the closed outlines of a drawing.
 
     Parameters
     ----------
     content : bytes
         SVG, or the text form of DXF.
     tolerance : float, optional
-        Greatest distance of a curve from its polygon, in the unit of the answer; a share of the drawing's extent if it
-        is left out.
+        Maximum distance of a curve from its polygon, in the unit of the answer; by default a share of the drawing's
+        extent.
     length_unit : optional
-        The unit of the answer, where the drawing states its own; otherwise, and by default, it is the drawing's.
+        Unit of the answer, if the drawing gives its own; otherwise, and by default, the drawing's unit.
 
     Raises
     ------
     DrawingError
-        One of its kinds says why there are no outlines.
+        The drawing has no outlines; the subclass gives the reason.
     """
-    # Numbers that overflow are looked for where they come out.
+    # Overflow is detected in the results (`Curve.finite`), so warnings would be noise.
     with np.errstate(all="ignore"):
         drawing = drawing_of(content)
         if drawing is None:
@@ -92,11 +95,12 @@ def _found(drawing: Drawing, tolerance: float | None, length_unit: DrawingUnit |
 
 
 def _closed(curves: Sequence[Curve], reach: float) -> tuple[list[list[Curve]], list[tuple[Source, str]]]:
-    """What is closed by itself or by joining, in the order of the drawing; and the sources of what stays open."""
+    """Return curves closed alone or by joining, in drawing order, and the sources of those that stay open."""
     closed = [[one] for one in curves if one.closed]
-    # What is shorter than that reach lies in the gap between two others.
+    # Elements shorter than the reach lie in gaps between others.
     open_ = [one for one in curves if not one.closed and extent([one]) > reach]
     chains, alone = joined(open_, reach)
+    # Joined outlines take the place of their first element.
     place = {id(one): k for k, one in enumerate(curves)}
     first = {id(one.source): place[id(one)] for one in reversed(curves)}
     found = sorted(closed + chains, key=lambda members: first[id(members[0].source)])
@@ -108,7 +112,7 @@ def _vertices(members: Sequence[Curve], tolerance: float) -> int:
 
 
 def _outline(members: Sequence[Curve], tolerance: float) -> Outline:
-    """Raises ValueError with what keeps the curves from being an outline."""
+    """Build the outline of closed curves; raise ValueError with the obstacle if they form none."""
     named: dict[str, Any] = {**told(members[0].source), "joined": len(members)}
     circle = members[0].circle or _circle(np.concatenate([one.pieces for one in members]), tolerance)
     if circle is not None:
@@ -119,6 +123,7 @@ def _outline(members: Sequence[Curve], tolerance: float) -> Outline:
             **named, circle=DrawnCircle(center=centre, radius=circle.radius), area=float(np.pi * circle.radius**2)
         )
     shape = _polygon(members, tolerance)
+    # Too many corners: spend half the tolerance on flattening and half on simplification.
     if len(shape.exterior.coords) > MOST_CORNERS + 1:
         shape = _polygon(members, 0.5 * tolerance).simplify(0.5 * tolerance)
     corners = np.array(shapely.geometry.polygon.orient(shape).exterior.coords)[:-1]
@@ -141,9 +146,10 @@ def _polygon(members: Sequence[Curve], tolerance: float) -> shapely.Polygon:
 
 
 def _circle(pieces: Complex, tolerance: float) -> Circle | None:
-    """The circle that a closed curve is, if it is one: of two bulges, of arcs, of four cubics."""
+    """Return the circle that a closed curve traces (two bulges, arcs or four cubics), or None."""
     chord = pieces[:, 3] - pieces[:, 0]
     bent = np.abs(pieces[:, 1] - pieces[:, 0] - chord / 3.0)
+    # A circle has at least two pieces, and no straight one.
     if len(pieces) < 2 or np.any(bent <= 1e-6 * np.abs(chord)):
         return None
     t = np.linspace(0.0, 1.0, 8, endpoint=False)
@@ -155,6 +161,7 @@ def _circle(pieces: Complex, tolerance: float) -> Circle | None:
     rows = np.stack([2.0 * z.real, 2.0 * z.imag, np.ones(len(z))], axis=1)
     (x, y, rest), *_ = np.linalg.lstsq(rows, np.abs(z) ** 2, rcond=None)
     radius = float(np.sqrt(max(rest + x**2 + y**2, 0.0)))
+    # The fit must match in radius and go around exactly once.
     away = np.abs(np.abs(z - complex(x, y)) - radius).max()
     if not away <= min(ROUND * radius, tolerance) or abs(abs(_turns(z - complex(x, y))) - 1.0) > 1e-6:
         return None
@@ -162,7 +169,7 @@ def _circle(pieces: Complex, tolerance: float) -> Circle | None:
 
 
 def _turns(points: Complex) -> float:
-    """How often a ring of points goes around the origin."""
+    """Return the winding number of a ring of points about the origin."""
     return float(np.angle(np.roll(points, -1) / points).sum() / (2.0 * np.pi))
 
 

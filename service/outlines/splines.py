@@ -1,4 +1,4 @@
-"""B-splines, rational ones too, as cubic Béziers."""
+"""Conversion of B-splines, including rational ones, to cubic Béziers."""
 
 from __future__ import annotations
 
@@ -11,17 +11,17 @@ from scipy.interpolate import BSpline
 from service.outlines.curves import Complex
 
 HIGHEST_DEGREE = 15
-"""Of a spline that is read; drawings have 3, seldom 5."""
+"""Highest degree that is read; drawings use 3, seldom 5."""
 
 MOST_CUBICS = 64
-"""For one span between knots."""
+"""Maximum number of cubics for one knot span."""
 
 TRUE = 1e-6
-"""How far the cubics may lie from the spline, as a share of its extent: far less than any flattening tolerance."""
+"""Largest deviation of the cubics from the spline as a share of its extent; far below any flattening tolerance."""
 
 
 def cubics(degree: int, knots: Sequence[float], points: Complex, weights: Sequence[float]) -> Complex:
-    """A B-spline as cubics that have its points and its tangents at their ends, shape (n, 4).
+    """Convert a B-spline to cubics with its points and tangents at their ends, shape (n, 4).
 
     Each span between knots takes as many as keep to the spline in their middles; splines of the third degree that are
     not rational are met exactly.
@@ -32,12 +32,12 @@ def cubics(degree: int, knots: Sequence[float], points: Complex, weights: Sequen
         Control points.
     knots : sequence of m + degree + 1 floats
     weights : sequence of m floats
-        Ones where the spline is not rational.
+        All ones if the spline is not rational.
 
     Raises
     ------
     ValueError
-        The numbers are no spline's, or it bends too sharply.
+        The numbers do not define a spline, or it bends too sharply.
     """
     t, w = np.array(knots, float), np.array(weights, float)
     if not 1 <= degree <= HIGHEST_DEGREE or len(points) <= degree or len(t) != len(points) + degree + 1:
@@ -55,7 +55,7 @@ def cubics(degree: int, knots: Sequence[float], points: Complex, weights: Sequen
     while count <= MOST_CUBICS:
         ends = np.unique(spans[:-1, None] + np.diff(spans)[:, None] * np.linspace(0.0, 1.0, count + 1))
         low, high = ends[:-1], ends[1:]
-        # The tangent at a knot belongs to the span that it is asked for.
+        # At a knot the tangent may jump: evaluate it slightly inside the span.
         inside = 1e-9 * (high - low)
         start, end = _at(curve, low), _at(curve, high)
         first = _slope(curve, slope, low + inside) * (high - low) / 3.0
@@ -64,6 +64,7 @@ def cubics(degree: int, knots: Sequence[float], points: Complex, weights: Sequen
         middle = found @ np.array([1.0, 3.0, 3.0, 1.0]) / 8.0
         if np.abs(middle - _at(curve, 0.5 * (low + high))).max() <= TRUE * extent:
             return np.asarray(found)
+        # Not accurate enough: double the cubics in every span.
         count *= 2
     raise ValueError("it bends too sharply to be followed")
 

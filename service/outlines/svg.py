@@ -1,4 +1,4 @@
-"""The curves of an SVG drawing, with y upwards from the lower edge of its page."""
+"""The curves of an SVG drawing, with y upwards from the lower edge of the page."""
 
 from __future__ import annotations
 
@@ -21,27 +21,27 @@ INKSCAPE = "http://www.inkscape.org/namespaces/inkscape"
 XLINK = "http://www.w3.org/1999/xlink"
 
 MILLIMETRES = {"mm": 1.0, "cm": 10.0, "in": 25.4, "pt": 25.4 / 72.0, "pc": 25.4 / 6.0, "Q": 0.25}
-"""Of the absolute units. A pixel is one too by the letter; but it is what a drawing has that has no unit at all."""
+"""Millimetres in an absolute unit. Pixels are omitted: they are the unit of drawings that have no physical size."""
 
 PIXELS = {"px": 1.0, "": 1.0, **{unit: length * 96.0 / 25.4 for unit, length in MILLIMETRES.items()}}
-"""User units of a length."""
+"""User units in each length unit."""
 
 _LENGTH = re.compile(rf"\s*({NUMBER})\s*([A-Za-z%]*)\s*")
 _NUMBERS = re.compile(rf"[\s,]*+(?:{NUMBER}[\s,]*+)*+")
 _HIDDEN = re.compile(r"(?:^|;)\s*display\s*:\s*none\b")
 
 _SHARES = {"xMin": 0.0, "YMin": 0.0, "xMax": 1.0, "YMax": 1.0}
-"""What of the room that is left over lies before a view box; where the middle is asked for, or nothing, a half."""
+"""Share of the free space before a view box, by the alignment keyword; centred (0.5) by default."""
 
 GROUPS = {"svg", "g", "a", "switch"}
 UNSEEN = {"defs", "symbol", "clipPath", "mask", "marker", "pattern", "style", "script", "title", "desc", "metadata"}
-"""What draws nothing where it stands. Gradients, filters and the like have no shapes below them."""
+"""Elements that draw nothing in place. Gradients, filters and the like contain no shapes."""
 
 OPAQUE = {"text": "it is text; turn it into paths", "image": "it is a picture", "foreignObject": "it is no shape"}
 
 
 class SvgReader:
-    """Goes through the elements of a drawing."""
+    """Walks through the elements of a drawing and collects its curves."""
 
     def __init__(self, root: Node) -> None:
         self.root = root
@@ -49,20 +49,22 @@ class SvgReader:
         self.left_out: list[tuple[Source, str]] = []
         self.visited = self.pieces = 0
         self.by_id: dict[str, Node] = {}
+        # An explicit stack: the depth of the file must not exhaust Python's recursion.
         pending = [root]
         while pending:
             node = pending.pop()
             if "id" in node.attributes:
+                # Browsers resolve duplicate ids to the first element, too.
                 self.by_id.setdefault(node.attributes["id"], node)
             pending += node.children
 
     def visit(self, node: Node, above: Affine, layer: str | None, depth: int) -> None:
-        """Read an element and what it holds; ``above`` is where its parent's coordinates lie in the drawing."""
+        """Read an element and its children; ``above`` maps the coordinates of its parent to the drawing."""
         self.visited += 1
         if self.visited > MOST_ELEMENTS:
-            raise Unsuitable(f"The drawing has more than {MOST_ELEMENTS} elements, used ones counted each time.")
+            raise Unsuitable(f"The drawing has more than {MOST_ELEMENTS} elements, counting every use.")
         if depth > MOST_DEPTH:
-            raise Unsuitable(f"The drawing has groups or uses more than {MOST_DEPTH} deep in one another.")
+            raise Unsuitable(f"The drawing nests groups or uses more than {MOST_DEPTH} deep.")
         space, _, name = node.name.rpartition(" ")
         if space not in (SVG, "") or name in UNSEEN or _hidden(node):
             return
@@ -88,7 +90,7 @@ class SvgReader:
             self.left_out.append((source, str(error)))
 
     def use(self, node: Node, place: Affine, layer: str | None, depth: int) -> None:
-        """Read the element that is used here."""
+        """Read the element that a ``use`` refers to."""
         link = node.attributes.get("href", node.attributes.get(f"{XLINK} href", ""))
         used = self.by_id.get(link[1:]) if link.startswith("#") else None
         if used is None:
@@ -102,10 +104,11 @@ class SvgReader:
         return None
 
     def add(self, curve: Curve, place: Affine) -> None:
-        """A curve in the coordinates of its element."""
+        """Append a curve given in the coordinates of its element; ``place`` maps them to the drawing."""
         self.pieces += max(len(curve.pieces), 1)
         if self.pieces > MOST_PIECES:
             raise Unsuitable(f"The drawing has more than {MOST_PIECES} lines and curves.")
+        # A circle stays an exact circle under similarities; otherwise it becomes cubics.
         if curve.circle is not None:
             centre, radius = curve.circle.centre, curve.circle.radius
             if (larger := place.enlargement) is not None:
@@ -116,18 +119,18 @@ class SvgReader:
 
 
 def curves_of(content: bytes) -> Drawing:
-    """The curves of a drawing.
+    """Read the curves of the drawing.
 
     Raises
     ------
     Malformed
-        It is no SVG.
+        The content is not SVG.
     Unsuitable
-        It is larger than is read here.
+        The drawing exceeds the limits.
     """
     root = parsed(content)
     if root.name not in (f"{SVG} svg", "svg"):
-        raise Malformed("The drawing is XML, but its root is no <svg>.")
+        raise Malformed("The drawing is XML, but its root element is not <svg>.")
     place, unit = _page(root)
     reader = SvgReader(root)
     reader.visit(root, place, None, 0)
@@ -135,7 +138,7 @@ def curves_of(content: bytes) -> Drawing:
 
 
 def _page(root: Node) -> tuple[Affine, float | None]:
-    """Where user units lie in the drawing, and how many millimetres one is, where that is stated.
+    """Return the map from user units to the drawing, and the millimetres in a user unit (None if unknown).
 
     The drawing keeps user units, and has its origin at the lower left corner of the page. Where the page is stretched
     one way more than the other, the smaller stretch is the unit.
@@ -147,25 +150,27 @@ def _page(root: Node) -> tuple[Affine, float | None]:
     tall = box[3] if box else height[0] * PIXELS[height[1]] if height else 0.0
     left, top = box[:2] if box else (0.0, 0.0)
     if not box:
-        # Then a user unit is a pixel, and that is stated by nobody.
+        # Without a view box a user unit is a pixel; its physical size is unknown.
         return Affine.of_matrix(1.0, 0.0, 0.0, -1.0, 0.0, tall), None
     spans = ((width, box[2]), (height, box[3]))
     scales = [stated[0] * PIXELS[stated[1]] / span if stated else None for stated, span in spans]
     known = [scale for scale in scales if scale]
     least = min(known, default=1.0)
     across, up = 1.0, 1.0
+    # Only "none" stretches the view box; otherwise the smaller scale applies to both directions.
     if len(known) == 2 and root.attributes.get("preserveAspectRatio", "").split()[:1] == ["none"]:
         across, up = known[0] / least, known[1] / least
     absolute = [stated for stated in (width, height) if stated and stated[1] in MILLIMETRES]
+    # CSS defines 96 px per inch.
     unit = least * 25.4 / 96.0 if absolute else None
     return Affine.of_matrix(across, 0.0, 0.0, -up, -across * left, up * (top + tall)), unit
 
 
 def _inner(node: Node, *sized: Node) -> Affine:
-    """Where what stands in a drawing within the drawing, or in a symbol, lies in the coordinates around it.
+    """Return the map from a nested drawing or a symbol to the coordinates around it.
 
-    Its view box is fitted into a rectangle as wide and high as the first of ``sized`` says that says it (SVG 2, section
-    8.2). What reaches out of the rectangle is not cut off.
+    Its view box is fitted into a rectangle with the first width and the first height that ``sized`` give (SVG 2,
+    section 8.2). Content outside the rectangle is not clipped.
     """
     corner = Affine(shift=complex(_length(node, "x"), _length(node, "y")))
     box = _numbers(node.attributes.get("viewBox", ""), "its view box")
@@ -188,7 +193,7 @@ def _inner(node: Node, *sized: Node) -> Affine:
 
 
 def _stated(text: str) -> tuple[float, str] | None:
-    """A length with its unit; None where there is none, or one of the window it is shown in."""
+    """Parse a length with its unit; return None if it is missing or relative to the window."""
     found = _LENGTH.fullmatch(text)
     if not found or found[2] not in PIXELS or not 0.0 < float(found[1]) < float("inf"):
         return None
@@ -196,7 +201,7 @@ def _stated(text: str) -> tuple[float, str] | None:
 
 
 def _length(node: Node, name: str, default: float = 0.0) -> float:
-    """An attribute in user units."""
+    """Return an attribute in user units."""
     if name not in node.attributes:
         return default
     found = _LENGTH.fullmatch(node.attributes[name])
@@ -226,7 +231,7 @@ def _name_of(node: Node) -> str | None:
 
 
 def _layer_of(node: Node) -> str | None:
-    """A group that is named is the layer of what it holds."""
+    """Return the layer name of a group: its own name or id."""
     return _name_of(node) or node.attributes.get("id")
 
 

@@ -1,4 +1,4 @@
-"""XML that anybody may have written, as a tree: no entity is expanded, nothing is fetched, and its size is bounded."""
+"""Parser for untrusted XML: it expands no entities, fetches nothing, and bounds the size of the tree."""
 
 from __future__ import annotations
 
@@ -9,15 +9,15 @@ from service.outlines.faults import Malformed, Unsuitable
 from service.outlines.limits import MOST_DEPTH, MOST_ELEMENTS
 
 DEEPEST = 4 * MOST_DEPTH
-"""Elements within one another, of all sorts."""
+"""Maximum nesting depth of elements of all kinds."""
 
 MOST_ATTRIBUTES = 64
-"""Attributes of an element."""
+"""Maximum number of attributes of an element."""
 
 
 @dataclass(frozen=True)
 class Node:
-    """An element: its name is ``namespace name``, with a space between; likewise its attributes'."""
+    """An element; its name and those of its attributes are ``namespace name``, separated by a space."""
 
     name: str
     attributes: dict[str, str]
@@ -26,17 +26,19 @@ class Node:
 
 
 def parsed(content: bytes) -> Node:
-    """The root of a document.
+    """Parse a document and return its root.
 
     Raises
     ------
     Malformed
-        It is not well-formed, or declares entities.
+        The document is not well-formed, or declares entities.
     Unsuitable
-        It has more elements, or more of them within one another, than a drawing here.
+        The document has too many elements, or nests them too deeply.
     """
     parser = expat.ParserCreate(namespace_separator=" ")
+    # Without buffering, text arrives in arbitrary pieces.
     parser.buffer_text = True
+    # Entity expansion can grow exponentially and read local files.
     parser.SetParamEntityParsing(expat.XML_PARAM_ENTITY_PARSING_NEVER)
     open_: list[Node] = []
     roots: list[Node] = []

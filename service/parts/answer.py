@@ -1,7 +1,7 @@
-"""What an assembly is told as to those who show it in three dimensions: shapes, and where they are at inputs.
+"""The schema of an assembly for three-dimensional viewers: shapes, and their positions at inputs.
 
-All lengths are in millimetres, and heights go upwards along the shafts, with 0 on the upper face of the base. Outlines
-are as exact as the parts: arcs are told as arcs, and whoever draws them divides them as finely as needed.
+All lengths are in millimetres; heights point upwards along the shafts, with 0 at the upper face of the base. Outlines
+are exact: arcs remain arcs, and viewers divide them as finely as needed.
 """
 
 from __future__ import annotations
@@ -32,12 +32,13 @@ class CornersEdge(BaseModel):
     model_config = ConfigDict(title="Outline of a part")
 
     form: Literal["corners"] = "corners"
-    corners: list[Point] = Field(description="Counter-clockwise.")
+    corners: list[Point] = Field(description="Corners, counter-clockwise.")
     bulges: list[float] = Field(
-        description="Of the edge from each corner to the next: 0 of a line; of an arc the tangent of a quarter of its "
-        "angle, positive where it turns to the left, as in DXF."
+        description="Bulge of the edge from each corner to the next: 0 for a line; for an arc the tangent of a "
+        "quarter of "
+        "its angle, positive for a left turn, as in DXF."
     )
-    smooth: bool = Field(description="Whether the corners are points of a smooth curve, and no corners of the part.")
+    smooth: bool = Field(description="Whether the corners are points of a smooth curve instead of corners of the part.")
 
 
 Edge = Annotated[CircleEdge | CornersEdge, Field(discriminator="form")]
@@ -61,13 +62,13 @@ class PrismShape(Upright):
 
 
 class TwistedShape(Upright):
-    """The same, turning evenly as it goes up, as helical teeth do."""
+    """A prism that rotates evenly with height, as helical teeth do."""
 
     model_config = ConfigDict(title="Twisted prism of a part")
 
     form: Literal["twisted"] = "twisted"
-    twist: float = Field(description="How far the outline at `high` is turned against that at `low`, degrees.")
-    centre: Point = Field(description="About which it turns.")
+    twist: float = Field(description="Rotation of the outline at `high` relative to that at `low`, degrees.")
+    centre: Point = Field(description="Centre of the rotation.")
 
 
 class TurnedShape(BaseModel):
@@ -81,14 +82,14 @@ class TurnedShape(BaseModel):
 
 
 class MeshShape(BaseModel):
-    """A body by its surface."""
+    """A body given by its surface."""
 
     model_config = ConfigDict(title="Mesh of a part")
 
     form: Literal["mesh"] = "mesh"
     corners: list[Place]
     triangles: list[tuple[int, int, int]] = Field(
-        description="Numbers of corners, counted from 0, counter-clockwise as seen from outside."
+        description="Indices of corners, from 0, counter-clockwise as seen from outside."
     )
 
 
@@ -100,70 +101,73 @@ class ViewedPart(BaseModel):
 
     model_config = ConfigDict(title="Part of an assembly")
 
-    name: str = Field(description="Unique in the assembly.")
-    described: str = Field(description="What it is, in words.")
-    sort: str = Field(description="`base`, `link`, `block`, `pin`, `ring`, `washer`, `spacer`, or what else it is.")
+    name: str = Field(description="Name, unique in the assembly.")
+    described: str = Field(description="Description in words.")
+    sort: str = Field(
+        description="Kind of part: `base`, `link`, `block`, `pin`, `ring`, `washer`, `spacer` or another."
+    )
     material: str
-    colour: str = Field(description="As `#rrggbb`.")
-    standard: str = Field(description="What it is bought as; empty where it is made.")
-    planes: tuple[int, int] = Field(description="The lowest and the highest plane in which it is; the base is in 0.")
-    lift: float = Field(
-        description="How far up it goes where the planes are drawn apart; along the normal of a `frame`."
+    colour: str = Field(description="Colour as `#rrggbb`.")
+    standard: str = Field(description="Designation of a bought part; empty if it is made.")
+    planes: tuple[int, int] = Field(
+        description="The lowest and the highest plane that it occupies; the base is in plane 0."
     )
-    carrier: int = Field(description="Which of `carriers` it moves with, counted from 0.")
-    shapes: list[Shape] = Field(description="What it is made of: it is the union of these.")
-    item: str = Field(description="Name of its files and in the bill; parts that are made alike have one.")
-    files: list[PartFile] = Field(
-        description="Which files there are of it at `/v1/jobs/{id}/designs/{n}/parts/{item}.{file}`."
-    )
+    lift: float = Field(description="Lift in the exploded view, along the normal of a `frame` if there is one.")
+    carrier: int = Field(description="Index of its carrier in `carriers`, from 0.")
+    shapes: list[Shape] = Field(description="Shapes whose union is the part.")
+    item: str = Field(description="Item name in files and in the bill of materials; identical parts share it.")
+    files: list[PartFile] = Field(description="Available files, at `/v1/jobs/{id}/designs/{n}/parts/{item}.{file}`.")
 
 
 class Standing(BaseModel):
-    """The plane in which something moves whose axis is not parallel to the others.
+    """The plane in which a carrier moves whose axis is not parallel to the others.
 
-    A point that is at x, y and height z there is at origin + x along + y (normal × along) + z normal. Each list has one
-    entry, or one for each input where the plane moves itself.
+    A point with coordinates x, y and height z in it is at origin + x along + y (normal × along) + z normal. Each list
+    has one entry, or one per input if the plane itself moves.
     """
 
     model_config = ConfigDict(title="Plane of a carrier")
 
     origins: list[Place]
-    along: list[Place] = Field(description="Directions of length 1.")
-    normals: list[Place] = Field(description="Directions of length 1, at right angles to those.")
+    along: list[Place] = Field(description="Unit vectors.")
+    normals: list[Place] = Field(description="Unit vectors, normal to those.")
 
 
 class Carried(BaseModel):
-    """What parts move with, and where it is at each input.
+    """A body that parts move with, and its position at each input.
 
-    A point q of the reference configuration goes to `places[k]` + R(`angles[k]`) (q − `pivot`) at input k, where R
-    turns counter-clockwise in the plane; heights stay.
+    A point q of the reference configuration moves to `places[k]` + R(`angles[k]`) (q − `pivot`) at input k, where R is
+    a counter-clockwise rotation in the plane; heights are constant.
     """
 
     model_config = ConfigDict(title="Carrier of parts")
 
     link: str
-    joint: str | None = Field(description="What it goes with where that is a joint of the link, and not all of it.")
+    joint: str | None = Field(
+        description="Joint of the link with which it translates; null if it moves with the whole link."
+    )
     pivot: Point
-    angles: list[float] = Field(description="Degrees, from the reference configuration on, without jumps.")
-    places: list[Point] = Field(description="Where the pivot is.")
-    frame: Standing | None = Field(description="The plane in which all this is; null where it is that of the assembly.")
+    angles: list[float] = Field(description="Rotation from the reference configuration, degrees, without jumps.")
+    places: list[Point] = Field(description="Places of the pivot.")
+    frame: Standing | None = Field(description="Plane of these quantities; null for that of the assembly.")
 
 
 class Driven(BaseModel):
-    """The inputs at which the carriers are told."""
+    """The inputs at which positions are given."""
 
     model_config = ConfigDict(title="Inputs of an assembly")
 
-    quantity: Literal["angle", "place"] = Field(description="Whether a link turns, or a slide drives.")
+    quantity: Literal["angle", "place"] = Field(description="Whether the input is an angle, or the place of a slide.")
     reference: float = Field(description="The input of the reference configuration.")
-    low: float = Field(description="Where the range begins that the parts were made for.")
-    high: float = Field(description="Where it ends.")
-    closed: bool = Field(description="Whether it is one whole cycle, after which the parts are where they were.")
+    low: float = Field(description="Start of the range for which the parts were made.")
+    high: float = Field(description="End of that range.")
+    closed: bool = Field(description="Whether the range is one full cycle, after which all parts are back in place.")
     endless: bool = Field(
-        description="Whether it goes on beyond its range: every carrier turns and goes round at a constant rate."
+        description="Whether the motion continues beyond the range: every carrier turns and revolves at a constant "
+        "rate."
     )
     values: list[float] = Field(
-        description="Degrees; or, where a slide drives, its place in the unit of the design, however large it is built."
+        description="Degrees, or the place of a driving slide in the unit of the design at its original size."
     )
 
 
@@ -173,16 +177,17 @@ class AssemblyView(BaseModel):
     model_config = ConfigDict(title="Assembly")
 
     length_unit: Literal["mm"] = "mm"
-    unit: float = Field(description="Millimetres to a length unit of the design, as large as it is built.")
-    scale: float = Field(description="How much larger than the design it is built.")
+    unit: float = Field(description="Millimetres per length unit of the design, at the built size.")
+    scale: float = Field(description="Ratio of the built size to that of the design.")
     planes: int = Field(
-        description="How many have moving links; the base is plane 0, and a second one lies above them, or amid them "
-        "where a link is two plates on either side of it."
+        description="Number of planes with moving links. The base is plane 0; a second base lies above them, or "
+        "between "
+        "them if a link is divided into two plates on either side of it."
     )
-    bases: int = Field(description="1, or 2 where the shafts stand between two.")
-    low: float = Field(description="Height of the lowest face, of parts whose plane is that of the assembly.")
-    high: float = Field(description="Height of their uppermost face.")
-    notes: list[str] = Field(description="What else there is to say to who puts it together.")
+    bases: int = Field(description="1, or 2 if the shafts are held by two bases.")
+    low: float = Field(description="Height of the lowest face of the parts in the assembly's plane.")
+    high: float = Field(description="Height of their highest face.")
+    notes: list[str] = Field(description="Notes for assembly.")
     input: Driven
     carriers: list[Carried]
     parts: list[ViewedPart]

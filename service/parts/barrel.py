@@ -1,11 +1,11 @@
 """Barrel cams as parts: the barrel with its true groove, the follower that slides along its axis, and the base.
 
-From below: the base, in a slot of which the follower's runner goes; the follower; its roller, which stands in the
-groove of the barrel above. The barrel turns on a shaft along x, in two uprights whose feet stand in the base. What the
-shaft carries, and the uprights, are told in the plane across it, the first direction of which leads down to the roller.
+From below: the base with a slot for the follower's runner; the follower; its roller, which runs in the groove of the
+barrel above. The barrel turns on a shaft along x, in two uprights whose feet are in the base. The uprights and the
+parts on the shaft are described in the plane normal to it, whose first direction points down to the roller.
 
-What moves across another plane is kept apart by its sizes: uprights and shaft are beside the follower's way, and the
-groove is the envelope of the roller with its clearance.
+Parts that move in different planes are separated by their sizes: uprights and shaft are outside the follower's path,
+and the groove is the envelope of the roller with its clearance.
 """
 
 from __future__ import annotations
@@ -34,22 +34,22 @@ from service.parts.stack import STUB, Stack
 
 ON_BARREL, ON_FOLLOWER = Carrier(CAM, None), Carrier(FOLLOWER, None)
 UPRIGHT = Carrier(GROUND, "upright")
-"""What carries the uprights: they stand still, in the plane across the shaft."""
+"""Carrier of the uprights: at rest, in the plane normal to the shaft."""
 
 EDGE = 1.0
-"""What a barrel has beyond its groove at least, in diameters of the shaft."""
+"""Minimum width of a barrel beyond its groove, in shaft diameters."""
 
 FOOT = 2.0
-"""Width of the feet of an upright, in thicknesses of it."""
+"""Width of the feet of an upright, in its thicknesses."""
 
 SAG, SAG_OF_CLEARANCE = 0.01, 0.1
-"""How far facets may be from the groove: millimetres, and share of the clearance of the roller."""
+"""Maximum distance of facets from the groove: millimetres, and share of the roller's clearance."""
 
 LOOKS = 72
-"""Inputs at which the finished assembly is looked at once more, with what lies across each other at every third."""
+"""Number of inputs of the final interference check; parts with crossing axes are compared at every third."""
 
 DRAWN = 720
-"""Places around the barrel at which its development has the walls."""
+"""Number of points of each wall in the barrel's development."""
 
 
 @dataclass(frozen=True)
@@ -61,9 +61,9 @@ class BarrelMotion(Turning):
     displacement : Displacement
         Millimetres.
     sense : float
-        1 where the barrel turns counter-clockwise, seen against x.
+        1 if the barrel turns counter-clockwise, seen against x, else −1.
     frame : Frame
-        The plane across the shaft.
+        The plane normal to the shaft.
     """
 
     displacement: Displacement
@@ -71,7 +71,7 @@ class BarrelMotion(Turning):
     frame: Frame
 
     def placed(self, carrier: Carrier, state: Real) -> Placed:
-        """How what a carrier carries has moved from the cam angle 0."""
+        """Return the displacement of a carrier from cam angle 0."""
         if carrier == UPRIGHT:
             return still(state)._replace(frame=self.frame)
         if carrier.link == GROUND:
@@ -83,7 +83,7 @@ class BarrelMotion(Turning):
 
 
 def barrel_parts(design: Any, problem: Any, query: PartsQuery) -> Assembly:
-    """The parts of a barrel cam.
+    """Make the parts of a barrel cam.
 
     Parameters
     ----------
@@ -95,7 +95,7 @@ def barrel_parts(design: Any, problem: Any, query: PartsQuery) -> Assembly:
     Raises
     ------
     NotMade
-        Where the roller leaves no such groove, or there is no room for such parts.
+        The roller cannot cut the groove, or the parts do not fit.
     """
     return _Barrels(design.mechanism, query, MILLIMETRES[problem.length_unit]).assembly()
 
@@ -107,38 +107,39 @@ class _Barrels(Fitting):
         self._mechanism = mechanism
         lift = max(mechanism.program.s) - min(mechanism.program.s)
         super().__init__(query, unit, max(2.0 * mechanism.cylinder_radius, lift) + lift)
+        # A step larger than the radius between two table angles is a jump, not a steep move.
         if max(abs(jump) for jump in np.diff(mechanism.program.s)) > mechanism.cylinder_radius:
-            raise NotMade("The displacement jumps, and no groove has a step.")
+            raise NotMade("The displacement jumps, but a groove cannot have a step.")
 
     @property
     def most(self) -> float:
-        """A share of the roller."""
+        """Thickest default pin, as a share of the roller."""
         return PIN_OF_ROLLER * float(self._mechanism.follower.roller_radius)
 
     def opening(self, sizes: Sizes) -> tuple[float, str]:
-        """The base has a slot for the runner."""
+        """Return the widest opening: the base has a slot for the runner."""
         return sizes.block[1] + 2.0 * sizes.clearance, "a runner on pins"
 
     def tried(self, sizes: Sizes, scale: float) -> Trial:
-        """The assembly in these sizes."""
+        """Build the assembly in these sizes."""
         builder = _Builder(self._mechanism, sizes, self._unit * scale)
         if not 0.5 * sizes.collar < builder.roller:
-            return Trial(None, "the roller is no wider than what holds its pin")
+            return Trial(None, "the roller is not wider than the fastener of its pin")
         if builder.groove.floor < keyway_reach(sizes) + WALL * sizes.pin:
-            return Trial(None, "the groove is as deep as the roller is thick, and leaves too little around the shaft")
+            return Trial(None, "the groove, as deep as the roller is thick, leaves too thin a wall around the shaft")
         if not builder.groove.sound():
-            return Trial(None, "the floor of the groove is so near to the axis that the roller cuts its own wall away")
+            return Trial(None, "the groove's floor is so close to the axis that the roller would cut away its own wall")
         assembly = builder.assembled(scale)
         fault = fault_of(assembly, sizes, across=False)
         return Trial(None, fault) if fault else Trial(assembly, "")
 
     def assembly(self) -> Assembly:
-        """The assembly of the request; what lies across each other is compared once, as it takes the longest."""
+        """Return the assembly of the request; crossing axes are compared only once, for speed."""
         made = super().assembly()
         meeting = overlaps(made, LOOKS)
         if meeting:
             one, other = (named(part) for part in meeting[0].parts)
-            raise NotMade(f"There is no room: {one} and {other} meet.")
+            raise NotMade(f"The parts do not fit: {one} and {other} collide.")
         return made
 
 
@@ -161,7 +162,7 @@ class _Builder:
         )
         self._first = float(self._displacement(np.zeros(1))[0])
         self._least, self._most = self._displacement.extremes
-        # The shaft is above the roller, whose middle is that of its plane.
+        # The shaft is above the roller, whose middle is at that of its plane.
         self._axis = sum(self._stack.level(2)) * 0.5 + self._middle
         self._key = key_for(sizes.pin)
         wide = self.groove.half + EDGE * sizes.pin
@@ -173,12 +174,13 @@ class _Builder:
         )
 
     def _course(self, at: Real) -> tuple[Real, Real]:
-        """The groove over angles of the barrel, which comes by under the roller against the way it turns."""
+        """Return the groove over angles of the barrel, which passes under the roller against its rotation."""
         theta = -self._sense * at
         return self._displacement(theta), -self._sense * self._displacement.slope(theta)
 
     def assembled(self, scale: float) -> Assembly:
-        """All parts."""
+        """Build the assembly of all parts."""
+        # First direction down to the roller, third along the shaft.
         axes = np.column_stack([(0.0, 0.0, -1.0), (0.0, 1.0, 0.0), (1.0, 0.0, 0.0)])
         frame = Frame(np.array([0.0, 0.0, self._axis]), axes)
         motion = BarrelMotion(self._size(), self._displacement, self._sense, frame)
@@ -186,7 +188,7 @@ class _Builder:
         notes = (
             "The groove is milled with a cutter as wide as the roller with its clearance, or printed; the drawing of "
             "the barrel is its development, seen from outside.",
-            "Feet of the uprights are glued or pressed into the base.",
+            "Glue or press the feet of the uprights into the base.",
         )
         return Assembly(parts, motion, 2, 1, self._factor, scale, notes)
 
@@ -218,11 +220,12 @@ class _Builder:
             parts += stack.between(f"guide_{n}", ON_FOLLOWER, z, [(0, 1)])
         return parts
 
-    # What turns
+    # Rotating parts
 
     def _turning(self) -> list[Part]:
         sizes, pin = self._sizes, self._sizes.pin
         low, high = self._barrel
+        # Circumscribed polygon: the meshed bore must not be tighter than the true one.
         bore = ring_of(keyed_bore(0j, pin, self._key, sizes.clearance), beyond=True)
         mesh = self.groove.barrel(low, high, bore, min(SAG, SAG_OF_CLEARANCE * sizes.clearance))
         material = MATERIALS["print" if sizes.process == "print" else "mill"][0]
@@ -243,7 +246,7 @@ class _Builder:
         return parts
 
     def _development(self) -> Development:
-        """The barrel's surface unrolled, seen from outside: x around it, y along the axis."""
+        """Return the barrel's unrolled surface, seen from outside: x around it, y along the axis."""
         groove, (low, high) = self.groove, self._barrel
         at = np.linspace(0.0, 2.0 * math.pi, DRAWN + 1)
         lines = []
@@ -254,7 +257,7 @@ class _Builder:
         lines.append(("ROLLER", tuple(middle.tolist())))
         return Development(2.0 * math.pi * groove.surface, high - low, tuple(lines))
 
-    # What stands
+    # Fixed parts
 
     def _standing(self) -> list[Part]:
         sizes, stack = self._sizes, self._stack
@@ -262,7 +265,7 @@ class _Builder:
         inner = notch + WALL * sizes.pin + sizes.clearance
         outer = inner + FOOT * sizes.thickness
         half = max(outer + 0.5 * sizes.thickness, 0.5 * sizes.width)
-        # How far below the shaft.
+        # Coordinates of an upright: distance below the shaft + i · sideways.
         top, floor, foot = -0.5 * sizes.width, self._axis, self._axis + sizes.thickness
         above = floor - stack.level(2)[0]
         right = [

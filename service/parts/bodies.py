@@ -1,14 +1,14 @@
-"""What parts are made of, each upright along its axis: prisms, bodies of revolution, twisted prisms, cones and meshes.
+"""Solids of parts, each upright along its axis: prisms, bodies of revolution, twisted prisms, cones and meshes.
 
-Bodies of revolution from which something is cut are :mod:`service.parts.carved`.
+Bodies of revolution with cuts are in :mod:`service.parts.carved`.
 
-Every body says what it encloses, from which height to which it reaches, its *shadow* (the region that it covers, seen
-along the axis), and what of the plane it takes between two heights. The last is what two parts are compared by:
+Every body has a volume, a lowest and a highest point, its *shadow* (the region that it covers, seen along the axis),
+and a cross section between two heights. Two parts are compared by the latter:
 
-* of a prism its region, which is exact;
-* of a body of revolution the ring of its widest and its narrowest radius there, which is never too little;
-* of all others the section half-way between, which is exact at that height. The heights are taken in :data:`SLICES`
-  steps, and teeth that are twisted against each other look at one height as they do at another a little later.
+* for a prism its region, which is exact;
+* for a body of revolution the ring between its minimum and maximum radius there, which is never too small;
+* for all others the section half-way between, which is exact at that height. The heights are divided into
+  :data:`SLICES` steps; for teeth twisted against each other, one height soon shows the same relation as another.
 """
 
 from __future__ import annotations
@@ -31,22 +31,22 @@ Real = NDArray[np.float64]
 Complex = NDArray[np.complex128]
 
 SLICES = 5
-"""Steps in which two bodies are compared along the height that they share, where one of them is no prism."""
+"""Number of height steps in which two bodies are compared if one of them is no prism."""
 
 
 GAUSS = 12
-"""Heights between two corners of a profile at which sections are added up."""
+"""Number of Gauss nodes between two corners of a profile in the integration of sections."""
 
 SAG = 5e-4
-"""How far polygons of sections are from arcs, millimetres."""
+"""Maximum distance of section polygons from arcs, millimetres."""
 
 
 SHOWN = 0.02
-"""The same where a body is shown."""
+"""Maximum distance of displayed polygons from arcs, millimetres."""
 
 
 class Prism(NamedTuple):
-    """A region from one height to another."""
+    """A region extruded from one height to another."""
 
     region: Region
     low: float
@@ -54,11 +54,11 @@ class Prism(NamedTuple):
 
     @property
     def volume(self) -> float:
-        """Cubic millimetres."""
+        """Volume, cubic millimetres."""
         return _net(self.region) * (self.high - self.low)
 
     def within(self, low: float, high: float) -> tuple[Region, ...]:
-        """What of the plane it takes between two heights."""
+        """Return the cross section between two heights."""
         return (self.region,)
 
 
@@ -73,17 +73,17 @@ class Turned(NamedTuple):
 
     @property
     def low(self) -> float:
-        """Height of its lowest point."""
+        """Height of the lowest point."""
         return min(z.imag for z in self.profile)
 
     @property
     def high(self) -> float:
-        """Height of its uppermost point."""
+        """Height of the highest point."""
         return max(z.imag for z in self.profile)
 
     @property
     def region(self) -> Region:
-        """Its shadow."""
+        """Shadow of the body."""
         return self.within(self.low, self.high)[0]
 
     @property
@@ -95,16 +95,17 @@ class Turned(NamedTuple):
         )
 
     def within(self, low: float, high: float) -> tuple[Region, ...]:
-        """The ring of its radii between two heights; none where it is not there."""
+        """Return the ring of the radii between two heights; an empty tuple outside the body."""
+        # Coordinates of the half section are radius and height.
         section = shapely.Polygon([(z.real, z.imag) for z in self.profile])
         least, _, most, _ = shapely.clip_by_rect(section, -1.0, low, section.bounds[2] + 1.0, high).bounds
         return (ring(self.centre, float(most), float(least)),) if most > 0.0 else ()
 
 
 class Twisted(NamedTuple):
-    """A prism whose outline turns evenly about an upright axis as it goes up, as helical teeth do; holes go straight.
+    """A prism whose outline rotates evenly about an upright axis with height, as helical teeth do; holes are straight.
 
-    ``section`` is the region at ``low``, ``twist`` how far the outline at ``high`` is turned against it, radians.
+    ``section`` is the region at ``low``; ``twist`` is the rotation of the outline at ``high`` against it, radians.
     """
 
     section: Region
@@ -115,36 +116,38 @@ class Twisted(NamedTuple):
 
     @property
     def region(self) -> Region:
-        """Its shadow: a disc with its holes."""
+        """Shadow of the body: a disc with its holes."""
         outer = ring_of(self.section.outer, beyond=False)
         return Region(Disc(self.centre, float(np.abs(outer - self.centre).max())), self.section.holes)
 
     @property
     def volume(self) -> float:
-        """Cubic millimetres: that of the prism."""
+        """Volume, cubic millimetres: that of the prism."""
         return _net(self.section) * (self.high - self.low)
 
     def within(self, low: float, high: float) -> tuple[Region, ...]:
-        """Its section half-way between two heights."""
+        """Return the section half-way between two heights."""
+        # The twist grows linearly with height.
         turn = cmath.rect(1.0, self.twist * (0.5 * (low + high) - self.low) / (self.high - self.low))
         return (Region(turned(self.section.outer, turn, self.centre), self.section.holes),)
 
 
 class Tapered(NamedTuple):
-    """What straight lines to an apex leave of a body of revolution, as bevel teeth do; holes go straight.
+    """Intersection of a body of revolution with a cone of straight lines to an apex, such as bevel teeth; holes are
+    straight.
 
     Attributes
     ----------
     section : Region
-        The cone of these lines at the height ``at``, a loop, and one hole around the axis, within the planes of both
+        The cone's section at the height ``at``, a loop, with one hole around the axis, within the planes of both
         ends.
     profile : tuple of complex
-        Six corners of the half section of the body of revolution, radius + i · height: on the axis, where the teeth end
-        inwards, where they end outwards; and the same at the upper end, from there back to the axis.
+        Six corners of the half section of the body of revolution, radius + i · height: on the axis, at the inner end of
+        the teeth, at their outer end; then the same at the upper end, from there back to the axis.
     apex, at : float
-        Heights; nothing of the body is as high as the apex.
+        Heights; the body lies below the apex.
     teeth : int
-        How many times the same corners and edges come, one after the other, around the loop.
+        Number of repetitions of the same corners and edges around the loop.
     centre : complex
     """
 
@@ -157,22 +160,22 @@ class Tapered(NamedTuple):
 
     @property
     def low(self) -> float:
-        """Height of its lowest point."""
+        """Height of the lowest point."""
         return min(z.imag for z in self.profile)
 
     @property
     def high(self) -> float:
-        """Height of its uppermost point."""
+        """Height of the highest point."""
         return max(z.imag for z in self.profile)
 
     @property
     def region(self) -> Region:
-        """Its shadow: a disc with its holes."""
+        """Shadow of the body: a disc with its holes."""
         return Region(Disc(self.centre, max(z.real for z in self.profile)), self.section.holes)
 
     @property
     def volume(self) -> float:
-        """Sections added up between the corners of the profile by Gauss's rule, cubic millimetres."""
+        """Volume: sections integrated between the corners of the profile by Gauss's rule, cubic millimetres."""
         places, weights = np.polynomial.legendre.leggauss(GAUSS)
         heights = np.unique([z.imag for z in self.profile])
         return math.fsum(
@@ -182,25 +185,28 @@ class Tapered(NamedTuple):
         )
 
     def ends(self, places: Complex) -> tuple[Complex, Complex]:
-        """Where lines to the apex through places of the plane ``at`` meet lower and upper end: radius + i · height.
+        """Return where lines to the apex through points of the plane ``at`` meet lower and upper end: radius + i ·
+        height.
 
         Parameters
         ----------
         places : Complex
-            Of the outline, shape (n,).
+            Points of the outline, shape (n,).
         """
         _, inner, outer, upper_outer, upper_inner, _ = self.profile
+        # Slope of each line to the apex: radius per height.
         slope = np.abs(places - self.centre) / (self.at - self.apex)
         found = []
         for a, b in ((inner, outer), (upper_inner, upper_outer)):
             before, after = (z.real - slope * (z.imag - self.apex) for z in (a, b))
+            # Intersection of the line with the edge of the half section.
             share = np.clip(before / (before - after), 0.0, 1.0)
             found.append(np.asarray(a + share * (b - a), np.complex128))
         return found[0], found[1]
 
     @property
     def mesh(self) -> Mesh:
-        """Its surface in triangles, arcs as polygons within :data:`SHOWN`."""
+        """Surface as triangles, arcs as polygons within :data:`SHOWN`."""
         _, inner, *_, upper, _ = self.profile
         places = ring_of(self.section.outer, beyond=False, sag=SHOWN)
         turns = (places - self.centre) / np.abs(places - self.centre)
@@ -222,11 +228,11 @@ class Tapered(NamedTuple):
         return Mesh(np.concatenate([*around, *bores]), np.concatenate(faces))
 
     def scale(self, height: Real) -> Real:
-        """How much larger the section is at heights, shape (n,)."""
+        """Return the scale of the section at heights, shape (n,), relative to ``at``."""
         return (height - self.apex) / (self.at - self.apex)
 
     def within(self, low: float, high: float) -> tuple[Region, ...]:
-        """Its section half-way between two heights."""
+        """Return the section half-way between two heights."""
         faces = shapely.get_parts(self._section(0.5 * (low + high)))
         return tuple(_region_of(face) for face in faces if isinstance(face, shapely.Polygon))
 
@@ -234,6 +240,7 @@ class Tapered(NamedTuple):
         outer = _polygon_of(self.section.outer, self.centre, float(self.scale(np.array(height))))
         half = shapely.Polygon([(z.real, z.imag) for z in self.profile])
         cut = shapely.intersection(half, shapely.LineString([(0.0, height), (2.0 * half.bounds[2], height)]))
+        # Inner and outer radius of the body of revolution at that height.
         least, _, most, _ = cut.bounds if not cut.is_empty else (0.0,) * 4
         whole = shapely.intersection(outer, _polygon_of(Disc(self.centre, most), 0j, 1.0))
         inner = (Disc(self.centre, least),) if least > 0.0 else ()
@@ -243,14 +250,14 @@ class Tapered(NamedTuple):
 
 @dataclass(frozen=True, eq=False)
 class Mesh:
-    """A body by its surface: triangles, their corners counter-clockwise as seen from outside.
+    """A body by its surface: triangles, corners counter-clockwise as seen from outside.
 
     Attributes
     ----------
     corners : Real
         Shape (n, 3): x, y and height, millimetres.
     triangles : NDArray[np.int64]
-        Shape (m, 3): numbers of corners; every edge is in two triangles, once in each direction.
+        Shape (m, 3): indices of corners; every edge belongs to two triangles, once in each direction.
     """
 
     corners: Real
@@ -258,40 +265,42 @@ class Mesh:
 
     @property
     def low(self) -> float:
-        """Height of its lowest point."""
+        """Height of the lowest point."""
         return float(self.corners[:, 2].min())
 
     @property
     def high(self) -> float:
-        """Height of its uppermost point."""
+        """Height of the highest point."""
         return float(self.corners[:, 2].max())
 
     @cached_property
     def region(self) -> Region:
-        """The hull of its shadow."""
+        """Convex hull of the shadow."""
         points = shapely.convex_hull(shapely.MultiPoint(self.corners[:, :2]))
         around = hull([complex(x, y) for x, y in shapely.get_coordinates(points)])
         return Region(Loop(tuple(around), (0.0,) * len(around)))
 
     @property
     def volume(self) -> float:
-        """By the divergence theorem, cubic millimetres."""
+        """Volume by the divergence theorem, cubic millimetres."""
         a, b, c = (self.corners[self.triangles[:, k]] for k in range(3))
         return float(np.einsum("ij,ij->", a, np.cross(b, c)) / 6.0)
 
     def within(self, low: float, high: float) -> tuple[Region, ...]:
-        """Its section half-way between two heights."""
+        """Return the section half-way between two heights."""
         heights = np.unique(self.corners[:, 2])
         at = 0.5 * (low + high)
+        # A corner in the plane would make the section ambiguous: move the plane to between that height and the next.
         if (heights == at).any():  # no corner may lie in the plane
             at = 0.5 * (at + float(heights[heights > at].min(initial=high)))
         above = self.corners[:, 2] > at
         cut = self.triangles[above[self.triangles].any(axis=1) & ~above[self.triangles].all(axis=1)]
         ends = []
         for one, other in ((0, 1), (1, 2), (2, 0)):
-            # Each edge is cut in one order of its corners, so that two triangles have one point of it.
+            # Cut each edge with its corners in one order, so that both its triangles get the identical point.
             edge = np.sort(cut[:, [one, other]], axis=1)
             a, b = self.corners[edge[:, 0]], self.corners[edge[:, 1]]
+            # Two of the three edges of a cut triangle cross the plane.
             crossed = above[edge[:, 0]] != above[edge[:, 1]]
             share = (at - a[:, 2]) / np.where(crossed, b[:, 2] - a[:, 2], np.inf)
             ends.append(np.where(crossed[:, None], a[:, :2] + share[:, None] * (b[:, :2] - a[:, :2]), np.nan))
@@ -305,10 +314,11 @@ Body = Prism | Turned | Twisted | Tapered | Carved | Mesh
 
 
 def slices(first: Body, second: Body, rounding: float) -> list[tuple[float, float]]:
-    """The heights between which two bodies are compared; none where they share no more height than rounding."""
+    """Return the height intervals in which two bodies are compared; an empty list if they share no height."""
     low, high = max(first.low, second.low), min(first.high, second.high)
     if high - low <= rounding:
         return []
+    # Prisms have the same section at every height.
     count = 1 if isinstance(first, Prism) and isinstance(second, Prism) else SLICES
     return list(pairwise(np.linspace(low, high, count + 1).tolist()))
 
@@ -318,7 +328,7 @@ def _xyz(places: Complex, heights: Real) -> tuple[Real, Real, Real]:
 
 
 def _band(lower: int, upper: int, count: int) -> NDArray[np.int64]:
-    """Triangles between two rings of so many points, outside where they go counter-clockwise."""
+    """Return triangles between two rings of ``count`` points, facing outwards if the rings are counter-clockwise."""
     at = np.arange(count)
     ahead = (at + 1) % count
     return np.concatenate([
@@ -328,13 +338,14 @@ def _band(lower: int, upper: int, count: int) -> NDArray[np.int64]:
 
 
 def _annulus(outer: Real, first: int, inner: Real, second: int) -> NDArray[np.int64]:
-    """Triangles between two rings about one point by the angles of their points, from above counter-clockwise."""
+    """Return triangles between two rings about one point by their points' angles, counter-clockwise from above."""
     angles, numbers = [], []
     for ring_angles, start in ((outer, first), (inner, second)):
         least = int(np.argmin(ring_angles % (2.0 * math.pi)))
         angles.append(np.roll(ring_angles % (2.0 * math.pi), -least))
         numbers.append(start + np.roll(np.arange(len(ring_angles)), -least))
     found, at = [], [0, 0]
+    # Advance on the ring whose next point has the smaller angle.
     while at[0] < len(angles[0]) or at[1] < len(angles[1]):
         here = [int(numbers[k][at[k] % len(numbers[k])]) for k in (0, 1)]
         ahead = [float(angles[k][at[k] + 1]) if at[k] + 1 < len(angles[k])
@@ -347,7 +358,7 @@ def _annulus(outer: Real, first: int, inner: Real, second: int) -> NDArray[np.in
 
 
 def _polygon_of(outline: Outline, about: complex, scale: float) -> shapely.Polygon:
-    """An outline made larger about a point, as a polygon within :data:`SAG` of it."""
+    """Return an outline scaled about a point as a polygon within :data:`SAG`."""
     places = about + scale * (ring_of(outline, beyond=False, sag=SAG) - about)
     return shapely.Polygon(np.column_stack([places.real, places.imag]))
 

@@ -11,25 +11,27 @@ from service.parts.shapes import Disc, Loop, Outline, extent
 from service.render.page.table import table
 
 SLOT_CORNERS = 4
-"""Of a slot with round ends, and of a bore with a keyway."""
+"""Number of corners of a slot with round ends, and of a bore with a keyway."""
 
 HEADER = ("part", "quantity", "material", "length", "width", "thickness", "holes", "plane", "standard", "mass")
 
 
 def bill(listed: Sequence[Item]) -> str:
-    """The items with lengths in millimetres; of what is round the length is along its axis, the width its diameter.
+    """Write the items as a table with lengths in millimetres; for round items the length is axial, the width the
+    diameter.
 
-    The mass of one is told where the answer states the density, in the answer's unit of mass.
+    The mass of one item is given if the answer contains the density, in the answer's unit of mass.
     """
     return table(HEADER, [row(item) for item in listed])
 
 
 def row(item: Item) -> list[str]:
-    """What the bill says of an item, in the order of :data:`HEADER`."""
+    """Return the table row of an item, in the order of :data:`HEADER`."""
     part = item.part
     length, width = part.length_and_width
     sizes = (length, width, part.high - part.low)
     if part.sort == "pin":
+        # Pins are measured along their axis.
         sizes = (part.high - part.low, width, width)
     told = [millimetres(size) for size in sizes]
     mass = "" if part.mass is None else f"{part.mass:.9g}"
@@ -37,7 +39,7 @@ def row(item: Item) -> list[str]:
 
 
 def holes(part: Part) -> str:
-    """The holes of a part by their diameters, its slots by width and length, and other shapes by their extents."""
+    """List the holes of a part: diameters, width and length of slots, and extents of other shapes."""
     round_ones = Counter(millimetres(2.0 * hole.radius) for hole in part.region.holes if isinstance(hole, Disc))
     told = [f"{count} x {diameter}" for diameter, count in round_ones.items()]
     shaped = Counter(_shaped(hole) for hole in part.region.holes if not isinstance(hole, Disc))
@@ -46,16 +48,17 @@ def holes(part: Part) -> str:
 
 
 def millimetres(value: float) -> str:
-    """A length to a thousandth."""
+    """Format a length to a thousandth of a millimetre."""
     return f"{value:.3f}".rstrip("0").rstrip(".")
 
 
 def _shaped(outline: Outline) -> str:
     along, what = 1.0 + 0.0j, "contour"
+    # A keyed bore has one arc, a slot two.
     arcs = sum(1 for _, _, bulge in outline.edges() if bulge) if isinstance(outline, Loop) else 0
     if isinstance(outline, Loop) and len(outline.corners) == SLOT_CORNERS and arcs == 1:
         what = "bore with keyway"
-        # The bore goes round from one side of the keyway to the other: across is from there back.
+        # The arc of the bore runs from one side of the keyway to the other; the chord back gives the direction.
         start, end, _ = next(edge for edge in outline.edges() if edge[2])
         along = (start - end) / abs(start - end) / 1j
     elif isinstance(outline, Loop) and len(outline.corners) == SLOT_CORNERS and min(outline.bulges) >= 0.0:

@@ -1,9 +1,9 @@
-"""From a mechanism whose planes are known to its assembly.
+"""Builds the assembly of a mechanism from the planes of its links.
 
-Plane k, a plate thick, lies from k pitches less a thickness to k pitches; the base is plane 0. On a pin lie, from
-below: its head or a retaining ring, the plates that it joins with washers or a spacer in every gap between them, and a
-cap or another ring. The second base, where there is one, is above all planes, or amid them where a link is divided: its
-two plates, and the input that is then between the bases, are keyed to their shafts.
+The upper face of plane k is at k pitches, its lower face one thickness below; the base is plane 0. A pin carries, from
+below: its head or a retaining ring, the plates that it joins with washers or a spacer in every gap, and a cap or
+another ring. A second base, if any, is above all planes, or between them if a link is divided: the two plates of that
+link, and the input between the bases, are keyed to their shafts.
 """
 
 from __future__ import annotations
@@ -30,25 +30,25 @@ from service.parts.sizes import WALL, Sizes
 from service.parts.stack import STUB
 
 ONE_PLACE = 1e-9
-"""Distance as a share of the mechanism's size below which joints of one link lie on each other."""
+"""Distance, as a share of the mechanism's size, below which joints of one link coincide."""
 
 CORNER_INPUTS = 361
-"""Inputs at which it is seen how far the links reach, for posts beyond."""
+"""Number of inputs at which the reach of the links is measured, to place posts outside it."""
 
 
 class Planes(NamedTuple):
-    """Where plates and pins lie.
+    """Planes of plates and pins.
 
     Attributes
     ----------
     plates : mapping of str to int
-        Planes of links, of the two plates of a divided one, and of gears, from 1.
+        Planes of links, of the two plates of a divided link, and of gears, from 1.
     pins : mapping of str to pair of int
-        The lowest and the highest plane of each pin by its joint.
+        The lowest and the highest plane of each pin, by joint.
     bases : tuple of int
-        Plane 0, and that of the second base.
+        Plane 0, and that of the second base if there is one.
     division : Division, optional
-        Of a link that is two plates on either side of the second base.
+        Division of a link into two plates on either side of the second base.
     """
 
     plates: Mapping[str, int]
@@ -58,19 +58,19 @@ class Planes(NamedTuple):
 
     @property
     def moving(self) -> int:
-        """How many planes have moving links."""
+        """Number of planes with moving links."""
         return len({*self.plates.values()})
 
 
 class Cut(NamedTuple):
-    """A hole in a plate: of a pin, or the slot of a slide."""
+    """A hole in a plate: for a pin, or the slot of a slide."""
 
     outline: Outline
     name: str
 
 
 class Slot(NamedTuple):
-    """A slot of a link: the block's joint, the direction of the line, and the ends of the joint's travel on it."""
+    """A slot of a link: the block's joint, the direction of its line, and the ends of the joint's travel."""
 
     joint: str
     link: str
@@ -82,20 +82,20 @@ def assembled(
     motion: LinkageMotion, planes: Planes, slots: Sequence[Slot], wheels: Sequence[PairWheel], sizes: Sizes,
     unit: float, scale: float,
 ) -> Assembly:  # fmt: skip
-    """The assembly of a mechanism.
+    """Build the assembly of a mechanism.
 
     Parameters
     ----------
     motion : LinkageMotion
-        In millimetres.
+        Motion in millimetres.
     planes : Planes
     slots : sequence of Slot
-        Of each slide.
+        Slot of each slide.
     wheels : sequence of PairWheel
-        Gears, and an idler between them.
+        Gears, and possibly an idler between them.
     sizes : Sizes
     unit, scale : float
-        As the assembly tells them.
+        Fields of the assembly.
     """
     builder = _Builder(motion.mechanism, planes, slots, wheels, sizes)
     parts = (
@@ -110,13 +110,13 @@ def _notes(wheels: Sequence[PairWheel]) -> tuple[str, ...]:
         return ()
     teeth = ", ".join(f"{round(wheel.gear.teeth)} of the {wheel.name}" for wheel in wheels)
     return (
-        f"Teeth: {teeth}; module {wheels[0].gear.module:.6g} mm, which the distance of the fixed pivots asks for.",
-        "Keys join the gears and their links to one shaft; how they stand to each other is the phase of the linkage.",
+        f"Teeth: {teeth}; module {wheels[0].gear.module:.6g} mm, as the distance of the fixed pivots requires.",
+        "The gears and their links are keyed to one shaft; their relative angle is the phase of the linkage.",
     )
 
 
 def keyway_reach(sizes: Sizes) -> float:
-    """From the axis of a keyed hole to the corners of its keyway."""
+    """Return the distance from the axis of a keyed hole to the corners of its keyway."""
     key = key_for(sizes.pin)
     return math.hypot(0.5 * sizes.pin + key.in_hub + sizes.clearance, 0.5 * key.width + sizes.clearance)
 
@@ -144,7 +144,7 @@ class _Builder:
             self._shafts[self._driven] = mechanism.input
 
     def _input_shaft(self) -> str | None:
-        """The joint of the input's shaft, where the input is out of reach between two bases and alone on it."""
+        """Return the joint of the input's shaft, if the input is alone on it and inaccessible between bases."""
         division, mechanism = self._planes.division, self._mechanism
         if division is None or mechanism.input not in division.inside:
             return None
@@ -157,26 +157,27 @@ class _Builder:
         return next((joint for joint in alone if self._planes.pins[joint][0] == 0), None)
 
     def notes(self) -> list[str]:
-        """What is to be said of a divided link, and of how it is driven."""
+        """Return the assembly notes of a divided link and its drive."""
         division = self._planes.division
         if division is None:
             return []
         told = [
-            f"Link {division.link} is two plates, one on either side of the second base. Keys join both to the shaft "
-            f"{division.pivot}, which turns in that base, so that they move as one; the lower plate is put on the "
-            "shaft before that base is laid over it."
+            f"Link {division.link} consists of two plates, one on either side of the second base. Both are keyed to "
+            f"the shaft {division.pivot}, which turns in that base, so that they move as one. Put the lower plate on "
+            "the shaft before laying that base over it."
         ]
         if self._driven is not None:
             told.append(
-                f"A key joins the input to the shaft {self._driven}, which is put in from above and stands out below "
-                "the base, to be driven."
+                f"The input is keyed to the shaft {self._driven}, which is inserted from above and protrudes below "
+                "the base for the drive."
             )
         return told
 
     def _place(self, joint: str) -> set[str]:
-        """The joints that have one pin with this: of one link, and in one place."""
+        """Return the joints that share one pin with this joint: joints of one link in the same place."""
         found, grown = {joint}, True
         while grown:
+            # Coincidence is transitive over links: repeat until no joint is added.
             more = {
                 other
                 for listed in self._mechanism.links.values()
@@ -195,8 +196,9 @@ class _Builder:
     # Plates
 
     def plates(self) -> list[Part]:
-        """The moving links, the input first."""
+        """Make the moving links, the input first."""
         moving = [link for link in self._mechanism.links if link != GROUND]
+        # The input comes first and gets the first colour.
         moving.sort(key=lambda link: link != self._mechanism.input)
         colours = {link: LINK_COLOURS[n % len(LINK_COLOURS)] for n, link in enumerate(moving)}
         ordered = sorted(self._pieces, key=lambda piece: moving.index(piece.link))
@@ -211,6 +213,7 @@ class _Builder:
             points += self._slot_ends(slot)
         outer = widened(points, 0.5 * self._sizes.width)
         region = Region(outer, tuple(cut.outline for cut in self.cuts(piece)))
+        # The length of a plate is measured towards its farthest joint.
         direction = max((z - points[0] for z in reached or points), key=abs)
         plane = self._planes.plates[piece.name]
         return Part(
@@ -226,7 +229,7 @@ class _Builder:
         )
 
     def cuts(self, piece: Piece) -> list[Cut]:
-        """Holes of the pins of a plate, of points of it that no pin holds, and its slots."""
+        """Return the holes of a plate for pins and for free points, and its slots."""
         radius = 0.5 * self._sizes.hole
         own = {joint for joint in self._mechanism.links[piece.link] if joint in piece.joints}
         cuts = [
@@ -239,6 +242,7 @@ class _Builder:
                 wide = 0.5 * self._sizes.block[1] + self._sizes.clearance
                 cuts.append(Cut(widened(self._slot_ends(slot), wide), slot.joint))
         pinned = {joint for group in self._groups.values() for joint in group}
+        # Free points get a hole only where enough wall remains.
         spare = radius + WALL * self._sizes.pin
         for joint in self._mechanism.links[piece.link]:
             if joint in own and joint not in pinned:
@@ -248,17 +252,17 @@ class _Builder:
         return cuts
 
     def _hole(self, place: complex, keyed: bool) -> Outline:
-        """Of a pin; of a shaft that a key holds with its keyway."""
+        """Return the hole for a pin, or the bore with keyway for a keyed shaft."""
         if keyed:
             return keyed_bore(place, self._sizes.pin, self._key, self._sizes.clearance)
         return Disc(place, 0.5 * self._sizes.hole)
 
     def _keyed(self, joint: str) -> str | None:
-        """The link that is keyed to the pin at a joint: with a gear on its shaft, divided, or driven by it."""
+        """Return the link keyed to the pin at a joint: next to a gear, divided, or driven by it; None without a key."""
         return next((self._shafts[one] for one in self._groups[joint] if one in self._shafts), None)
 
     def gears(self) -> list[Part]:
-        """The gears of links, and an idler that turns on a pin of its own."""
+        """Make the gears of links, and an idler on its own pin."""
         found = []
         for n, wheel in enumerate(self._wheels, len(self._mechanism.links) - 1):
             teeth = toothed(wheel.gear, wheel.centre, wheel.tooth_at, play=0.5 * self._sizes.clearance)
@@ -281,13 +285,14 @@ class _Builder:
         return found
 
     def _slot_ends(self, slot: Slot) -> list[complex]:
-        """Centres of the round ends of a slot."""
+        """Return the centres of a slot's round ends."""
         length, width = self._sizes.block
         beyond = 0.5 * (length - width) * slot.direction
+        # The block's round ends reach beyond its joint.
         return [slot.ends[0] - beyond, slot.ends[1] + beyond]
 
     def blocks(self) -> list[Part]:
-        """The blocks that run in slots."""
+        """Make the blocks that run in slots."""
         length, width = self._sizes.block
         found = []
         placed = [(slot, plane) for slot in self._slots for plane in self._block_planes(slot)]
@@ -311,7 +316,7 @@ class _Builder:
         return found
 
     def _block_planes(self, slot: Slot) -> list[int]:
-        """The planes in which a joint has a block: that of the link with the slot, or those of the bases it reaches."""
+        """Return the planes with a block at a joint: that of the slotted link, or those of the bases in reach."""
         if slot.link != GROUND:
             return [
                 self._planes.plates[piece.name]
@@ -324,16 +329,16 @@ class _Builder:
     # Bases
 
     def bases(self, motion: LinkageMotion) -> list[Part]:
-        """The base, and the second one with the posts between."""
+        """Make the base, and the second one with posts."""
         if len(self._planes.bases) == 2:
             self._posts = self._corners(motion)
         names = dict(zip(self._planes.bases, ("base", "second_base"), strict=False))
         return [self._base(name, plane) for plane, name in names.items()]
 
     def _corners(self, motion: LinkageMotion) -> dict[str, complex]:
-        """Places of four posts beyond everything that moves between the bases.
+        """Return positions of four posts outside everything that moves between the bases.
 
-        They stand in the direction of a slot of a second base that something is above, on either side of it.
+        They are aligned with a slot of the second base that is used from above, on either side of it.
         """
         driven = motion.at(motion.inputs(CORNER_INPUTS))
         second = self._planes.bases[1]
@@ -354,7 +359,7 @@ class _Builder:
                 self._across = slot.direction
         places = np.concatenate([*swept, np.array(still)]) / self._across
         places = places[np.isfinite(places)]
-        # Half a plate, half a post, a block where it reaches beyond its plate, and as much again as parts keep apart.
+        # Half a plate, half a post, a block that protrudes from its plate, and twice the minimum distance of parts.
         room = 0.5 * (self._sizes.width + self._sizes.collar) + self._sizes.block[0] + 2.0 * self._sizes.apart
         left, right = float(places.real.min()) - room, float(places.real.max()) + room
         low, high = float(places.imag.min()) - room, float(places.imag.max()) + room
@@ -365,7 +370,7 @@ class _Builder:
         return any(slot.link == GROUND and slot.joint in self._groups[joint] for slot in self._slots)
 
     def _held(self, plane: int) -> list[complex]:
-        """Places of the holes in a base."""
+        """Return the centres of the holes in a base."""
         shafts = [
             self._at[joint]
             for joint, (low, high) in self._planes.pins.items()
@@ -398,7 +403,9 @@ class _Builder:
         )
 
     def _bosses(self, plane: int, low: float, high: float) -> list[Prism]:
-        """What a printed base has around its shafts, up to the nearest plate; or down to it where none is above."""
+        """Return the bosses of a printed base around its shafts: up to the nearest plate, or down to it for an upper
+        base.
+        """
         prisms = []
         for joint in self._planes.pins:
             levels = self._levels(joint)
@@ -413,14 +420,14 @@ class _Builder:
         return prisms
 
     def _bossed(self, lower: int, upper: int) -> bool:
-        """Whether a boss of a printed base fills the gap between two planes: on one side of each base."""
+        """Return whether a boss of a printed base fills the gap between two planes, on one side of each base."""
         hanging = upper in self._planes.bases and upper > max(self._planes.plates.values())
         return lower in self._planes.bases or hanging
 
-    # What stands on pins
+    # Parts on pins
 
     def _levels(self, joint: str) -> list[int]:
-        """The planes of what a pin joins, bases and blocks among them, from below."""
+        """Return the planes that a pin joins, including bases and blocks, from below."""
         group = self._groups[joint]
         low, high = self._planes.pins[joint]
         levels = {self._planes.plates[piece.name] for piece in self._pieces if piece.joints & group}
@@ -429,18 +436,18 @@ class _Builder:
         return sorted(levels)
 
     def _on_shaft(self, joint: str) -> set[int]:
-        """Planes of gears on the pin at a joint."""
+        """Return the planes of gears on the pin at a joint."""
         group = self._groups[joint]
         return {self._planes.plates[wheel.name] for wheel in self._wheels if (wheel.joint or wheel.name) in group}
 
     def on_pins(self) -> list[Part]:
-        """Pins, and what holds and parts the plates on them."""
+        """Make pins with their fasteners and distance pieces."""
         parts: list[Part] = []
         for joint in self._planes.pins:
             levels = self._levels(joint)
             spans = list(pairwise(levels))
             if self._sizes.process == "print" and not self._slides_on_ground(joint):
-                # A printed base has bosses there.
+                # A printed base has bosses in these gaps.
                 spans = [span for span in spans if not self._bossed(*span)]
             link = self._keyed(joint)
             if link is None:
@@ -463,9 +470,10 @@ class _Builder:
         self, name: str, described: str, carrier: Carrier, place: complex, levels: Sequence[int],
         spans: Sequence[tuple[int, int]], keyed: Sequence[int] = (), *, driven: bool = False,
     ) -> list[Part]:  # fmt: skip
-        """A pin through its planes, with what fills the gaps between them, and keys in those that turn with it."""
+        """Make a pin through its planes, distance pieces in the gaps, and keys in the planes that rotate with it."""
         ends = self._level(levels[0])[0], self._level(levels[-1])[1]
         section = Region(keyed_shaft(place, self._sizes.pin, self._key))
+        # The shaft has a keyway at every plate that rotates with it.
         seats = [Prism(section, *self._level(plane)) for plane in keyed]
         parts = held_pin(
             name, described, carrier, place, ends, (levels[0], levels[-1]), self._sizes, seats=seats,
@@ -487,19 +495,20 @@ class _Builder:
 
 
 def _distance(place: complex, outline: Outline) -> float:
-    """How far a point lies from an outline that it is not in, about."""
+    """Estimate the distance of a point from an outline that does not contain it."""
     if isinstance(outline, Disc):
         return abs(place - outline.centre) - outline.radius
     assert isinstance(outline, Loop)
     least = math.inf
     for start, end, _ in outline.edges():
         along = end - start
+        # Foot of the perpendicular, limited to the edge.
         share = min(max(((place - start) * along.conjugate()).real / abs(along) ** 2, 0.0), 1.0)
         least = min(least, abs(place - start - share * along))
     return least
 
 
 def _longest(points: Sequence[complex]) -> complex:
-    """The direction in which points lie farthest apart."""
+    """Return the direction of the largest distance between points."""
     away = max((b - a for a, b in combinations(points, 2)), key=abs, default=1.0 + 0.0j)
     return away / abs(away) if abs(away) > 0.0 else 1.0 + 0.0j

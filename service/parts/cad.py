@@ -1,10 +1,9 @@
 """The assembly as solids: STEP (AP242), STL, 3MF and glTF, by build123d on Open CASCADE, and lib3mf.
 
-This is the only module that needs the extra ``cad``; :mod:`service.parts.extra` says whether it is there. STL and 3MF
-have one triangulation, which Open CASCADE keeps with the solid.
-Arcs stay arcs, holes cylinders and curves B-splines; the mesh formats have them as polygons no farther than
-:data:`DEFLECTION` off. A twisted prism is swept along its axis, with a helix beside it; a carved body is cut by
-the kernel; a mesh stays one of triangles.
+Only this module needs the extra ``cad``; :mod:`service.parts.extra` tests whether it is installed. STL and 3MF share
+one triangulation, which Open CASCADE keeps with the solid. Arcs stay arcs, holes cylinders and curves B-splines; the
+mesh formats approximate them by polygons within :data:`DEFLECTION`. A twisted prism is swept along its axis with an
+auxiliary helix; bodies with cuts are cut by the kernel; a mesh remains triangles.
 """
 
 from __future__ import annotations
@@ -30,29 +29,29 @@ from service.parts.model import Assembly, Frame, Part
 from service.parts.shapes import Disc, Loop, Outline, Region, larger, middle_of
 
 DEFLECTION, TURN = 0.02, 0.1
-"""Greatest distance of a mesh from the part, millimetres, and angle between neighbouring facets, radians."""
+"""Maximum distance of a mesh from the part, millimetres, and angle between neighbouring facets, radians."""
 
 BEYOND = 0.05
-"""How far a cone to an apex goes beyond the body that it is intersected with, as a share of its height."""
+"""Extension of a cone to an apex beyond the body that it is intersected with, as a share of its height."""
 
 ONE_CORNER = 1e-6
-"""Millimetres within which corners of neighbouring faces are one."""
+"""Distance within which corners of neighbouring faces are merged, millimetres."""
 
 SQUARE = 1e-7
-"""Cosine up to which two directions are at a right angle."""
+"""Cosine up to which two directions count as perpendicular."""
 
 MADE_AT = "2000-01-01T00:00:00"
-"""Stands in STEP files as the time of their making, which a design does not have."""
+"""Fixed creation time in STEP files: a design has none, and files must be reproducible."""
 
 AP242, SCHEMA = 5, b"AP242_MANAGED_MODEL_BASED_3D_ENGINEERING_MIM_LF { 1 0 10303 442 1 1 4 }"
-"""The number by which the library knows the schema, and its name in a file."""
+"""Number of the schema in the library, and its name in a file."""
 
 Solid = Any
-"""A shape of build123d, which this module alone knows."""
+"""A shape of build123d, which only this module uses."""
 
 
 def solid(part: Part) -> Solid:
-    """A part at its place in the reference configuration, one solid without seams between its bodies."""
+    """Return a part at its place in the reference configuration, as one solid without seams between its bodies."""
     import build123d as b3d
 
     pieces = [_piece(body) for body in part.bodies]
@@ -65,12 +64,12 @@ def solid(part: Part) -> Solid:
 
 @lru_cache(maxsize=1)
 def solids_of(assembly: Assembly) -> tuple[Solid, ...]:
-    """The solids of all parts; those of the last assembly are kept, for its other files."""
+    """Return the solids of all parts; those of the last assembly are cached for its other files."""
     return tuple(solid(part) for part in assembly.parts)
 
 
 def placed(assembly: Assembly, solids: Sequence[Solid], input_: float) -> list[Solid]:
-    """The solids of all parts where they are at an input; they were made in the reference configuration."""
+    """Move the solids of all parts from the reference configuration to their places at an input."""
     import build123d as b3d
 
     state = assembly.motion.at(np.array([input_]))
@@ -86,31 +85,32 @@ def placed(assembly: Assembly, solids: Sequence[Solid], input_: float) -> list[S
 
 
 def step(solids: Sequence[Solid], name: str) -> bytes:
-    """Solids as one STEP assembly with their names and colours."""
+    """Write solids as one STEP assembly with their names and colours."""
     import build123d as b3d
     from OCP.Interface import Interface_Static
     from OCP.STEPCAFControl import STEPCAFControl_Controller
 
     STEPCAFControl_Controller.Init_s()
+    # The writer's controller must be initialized before this setting.
     Interface_Static.SetIVal_s("write.step.schema", AP242)
     whole = b3d.Compound(children=list(solids), label=name)
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder) / "assembly.step"
         b3d.export_step(whole, path, timestamp=MADE_AT)
         written = path.read_bytes()
-    # build123d makes the header before it knows the schema.
+    # build123d writes the header before it knows the schema.
     return re.sub(rb"FILE_SCHEMA\(\(.*?\)\);", b"FILE_SCHEMA(('" + SCHEMA + b"'));", written, count=1, flags=re.DOTALL)
 
 
 class Surface(NamedTuple):
-    """The triangles of a solid: corners, shape (n, 3), and their numbers, shape (m, 3), counter-clockwise outside."""
+    """The triangles of a solid: corners, shape (n, 3), and their indices, shape (m, 3), facing outwards."""
 
     corners: NDArray[np.float64]
     triangles: NDArray[np.int64]
 
 
 def surface(shape: Solid) -> Surface:
-    """The closed surface of a solid; faces that meet have their corners in common."""
+    """Return the closed surface of a solid; adjacent faces share their corners."""
     from OCP.BRep import BRep_Tool
     from OCP.BRepMesh import BRepMesh_IncrementalMesh
     from OCP.TopAbs import TopAbs_Orientation
@@ -128,6 +128,7 @@ def surface(shape: Solid) -> Surface:
         for k in range(1, facets.NbNodes() + 1):
             node = facets.Node(k).Transformed(to)
             corners.append((node.X(), node.Y(), node.Z()))
+        # Triangles of reversed faces are oriented inwards.
         turned = face.wrapped.Orientation() == TopAbs_Orientation.TopAbs_REVERSED
         for k in range(1, facets.NbTriangles() + 1):
             one, two, three = facets.Triangle(k).Get()
@@ -137,7 +138,8 @@ def surface(shape: Solid) -> Surface:
 
 
 def _welded(corners: NDArray[np.float64], triangles: NDArray[np.int64]) -> Surface:
-    """With corners in one place taken for one, and without triangles that are none then."""
+    """Merge coincident corners, and drop triangles that degenerate."""
+    # Merging is transitive: corners connected by short distances become one.
     near = cKDTree(corners).query_pairs(ONE_CORNER, output_type="ndarray")
     joined = coo_array((np.ones(len(near), bool), (near[:, 0], near[:, 1])), shape=(len(corners), len(corners)))
     _, labels = connected_components(joined, directed=False)
@@ -148,7 +150,7 @@ def _welded(corners: NDArray[np.float64], triangles: NDArray[np.int64]) -> Surfa
 
 
 def stl(mesh: Surface) -> bytes:
-    """A surface as a binary STL file."""
+    """Write a surface as a binary STL file."""
     at = mesh.corners[mesh.triangles]
     normals = np.cross(at[:, 1] - at[:, 0], at[:, 2] - at[:, 0])
     lengths = np.linalg.norm(normals, axis=1, keepdims=True)
@@ -158,7 +160,7 @@ def stl(mesh: Surface) -> bytes:
 
 
 def three_mf(mesh: Surface, name: str) -> bytes:
-    """A surface as a 3MF file."""
+    """Write a surface as a 3MF file."""
     library, lib3mf = _lib3mf()
     model = library.CreateModel()
     model.SetUnit(lib3mf.ModelUnit.MilliMeter)
@@ -180,14 +182,14 @@ def three_mf(mesh: Surface, name: str) -> bytes:
 
 @cache
 def _lib3mf() -> tuple[Any, Any]:
-    """The library, loaded once, and its names."""
+    """Load the library once; return it and its names."""
     from lib3mf import Lib3MF
 
     return Lib3MF.Wrapper(str(Path(Lib3MF.__file__).with_name("lib3mf"))), Lib3MF
 
 
 def glb(solids: Sequence[Solid], name: str) -> bytes:
-    """Solids as one binary glTF file: metres, and y upwards, along the shafts."""
+    """Write solids as one binary glTF file: metres, with y upwards along the shafts."""
     import build123d as b3d
 
     whole = b3d.Compound(children=list(solids), label=name)
@@ -198,7 +200,7 @@ def glb(solids: Sequence[Solid], name: str) -> bytes:
 
 
 def lying(shape: Solid, part: Part) -> Solid:
-    """The solid of a part as it is printed: along x, on the plate, its lowest face down."""
+    """Return the solid of a part in printing position: along x, on the plate, its lowest face down."""
     import build123d as b3d
 
     back = float(np.degrees(np.angle(part.along.conjugate())))
@@ -208,7 +210,7 @@ def lying(shape: Solid, part: Part) -> Solid:
 
 
 def _moved(shape: Solid, place: Any) -> Solid:
-    """A solid somewhere else, of the same faces; what build123d moves it first copies, with all that it stands with."""
+    """Return a solid in another place with the same faces; build123d's own move would copy it with its whole tree."""
     import build123d as b3d
 
     moved = b3d.Solid(shape.wrapped.Moved(place.wrapped))
@@ -217,7 +219,7 @@ def _moved(shape: Solid, place: Any) -> Solid:
 
 
 def _standing(frame: Frame) -> Any:
-    """Where a frame is at the first input."""
+    """Return the location of a frame at the first input."""
     import build123d as b3d
 
     origin, axes = frame.origin.reshape(-1, 3)[0], frame.axes.reshape(-1, 3, 3)[0]
@@ -225,7 +227,7 @@ def _standing(frame: Frame) -> Any:
 
 
 def _piece(body: Body) -> Any:
-    """A body at its height."""
+    """Return a body at its height."""
     import build123d as b3d
 
     if isinstance(body, Prism):
@@ -250,9 +252,10 @@ def _piece(body: Body) -> Any:
 
 
 def _tapered(body: Tapered) -> Any:
-    """One pitch of the teeth, its faces copied around the axis, and discs at both ends with a tube where the bore is.
+    """Build one pitch of the teeth, copy its faces around the axis, and close the ends with discs and a tube at the
+    bore.
 
-    The shell is sewn of these and made of as few faces as it can be.
+    The shell is sewn of these and simplified to as few faces as possible.
     """
     import build123d as b3d
     from OCP.BRepBuilderAPI import BRepBuilderAPI_MakeSolid, BRepBuilderAPI_Sewing
@@ -285,17 +288,17 @@ def _tapered(body: Tapered) -> Any:
 
 
 def _pitch(body: Tapered) -> list[Any]:
-    """The faces of one pitch about the origin, without those of its ends: of a sector of the body of revolution within
-    a sector of the cone to the apex."""
+    """Return the faces of one pitch about the origin, without those of its ends: a sector of the body of revolution
+    intersected with a sector of the cone to the apex."""
     import build123d as b3d
 
     outline = body.section.outer
     assert isinstance(outline, Loop)
     count = len(outline.corners) // body.teeth
-    # From the beginning of the first pitch to that of the second, and to the axis.
+    # From the start of the first pitch to that of the second, and to the axis.
     corners = (*(z - body.centre for z in outline.corners[: count + 1]), 0j)
     sector = Loop(corners, (*outline.bulges[:count], 0.0, 0.0))
-    # A little beyond both ends, so that no face of the cone lies in one of the body's.
+    # Extend slightly beyond both ends, so that no face of the cone coincides with one of the body's.
     beyond = BEYOND * (body.high - body.low)
     wires = []
     for height in (body.low - beyond, body.high + beyond):
@@ -303,11 +306,12 @@ def _pitch(body: Tapered) -> list[Any]:
     half_section = b3d.Face(b3d.Wire.make_polygon([(z.real, 0.0, z.imag) for z in body.profile]))
     turned = b3d.Solid.revolve(half_section, 360.0 / body.teeth, b3d.Axis.Z)
     turned = turned.moved(b3d.Location((0.0, 0.0, 0.0), (0.0, 0.0, _starts_at(body))))
+    # Exactly one solid results; unpacking fails loudly otherwise.
     (whole,) = turned.intersect(b3d.Solid.make_loft(wires, ruled=True)).solids()
     ends = [np.exp(1j * (np.radians(_starts_at(body)) + k * 2.0 * np.pi / body.teeth)) for k in (0, 1)]
 
     def cut(face: Any) -> bool:
-        """Whether it lies across the axis, or goes from there to one of the ends of the pitch."""
+        """Return whether it is normal to the axis, or lies in one of the two planes that bound the pitch."""
         if not face.is_planar:
             return False
         away = face.normal_at()
@@ -320,14 +324,14 @@ def _pitch(body: Tapered) -> list[Any]:
 
 
 def _starts_at(body: Tapered) -> float:
-    """Where the first pitch begins, degrees."""
+    """Return where the first pitch begins, degrees."""
     outline = body.section.outer
     assert isinstance(outline, Loop)
     return float(np.degrees(np.angle(outline.corners[0] - body.centre)))
 
 
 def _carved(body: Carved) -> Any:
-    """The half section, turned about its axis, and all tools of the cuts taken from it at once."""
+    """Revolve the half section, and subtract all tools of the cuts at once."""
     import build123d as b3d
 
     upright = b3d.Location(b3d.Plane((0.0, 0.0, 0.0), x_dir=(1.0, 0.0, 0.0), z_dir=(0.0, -1.0, 0.0)))
@@ -337,7 +341,7 @@ def _carved(body: Carved) -> Any:
 
 
 def _tool(cut: Cut, far: float) -> Any:
-    """What a cut takes away, up to a distance from the origin."""
+    """Return the solid that a cut removes, up to a distance from the origin."""
     import build123d as b3d
 
     if isinstance(cut, Bored):
@@ -345,6 +349,7 @@ def _tool(cut: Cut, far: float) -> Any:
     if isinstance(cut, Slotted):
         across, _, along = cut.axes.tolist()
         section: Outline = Disc(0j, cut.half)
+        # An open slot extends the cylinder downwards by a rectangle.
         if cut.open:
             corners = complex(cut.half, -far), complex(cut.half), complex(-cut.half), complex(-cut.half, -far)
             section = Loop(corners, (0.0, 1.0, 0.0, 0.0))
@@ -360,7 +365,7 @@ def _tool(cut: Cut, far: float) -> Any:
 
 
 def _sewn(body: Mesh) -> Any:
-    """The solid that the triangles of a mesh enclose, which have their edges in common."""
+    """Return the solid enclosed by the triangles of a mesh, with shared edges."""
     import build123d as b3d
     from OCP.BRep import BRep_Builder
     from OCP.BRepBuilderAPI import BRepBuilderAPI_MakeEdge, BRepBuilderAPI_MakeFace, BRepBuilderAPI_MakeVertex
@@ -376,6 +381,7 @@ def _sewn(body: Mesh) -> Any:
         wire = TopoDS_Wire()
         builder.MakeWire(wire)
         for one, other in pairwise((*three, three[0])):
+            # Each edge is shared by two faces, in opposite directions.
             if (other, one) in edges:
                 builder.Add(wire, edges[other, one].Reversed())
             else:
@@ -421,7 +427,7 @@ def _wire(outline: Outline) -> Any:
 
 
 def _spline(outline: Curve) -> Any:
-    """A smooth outline as the B-spline that it is."""
+    """Return a smooth outline as its B-spline."""
     import build123d as b3d
 
     clamped = outline.clamped

@@ -1,8 +1,8 @@
-"""How a cam, its follower and what they carry move: the follower by the program of the answer, not by the contour.
+"""Motion of a cam, its follower and the parts on them; the follower moves by the program, not by the contour.
 
-The cam turns about the origin by its angle θ, the way its rotation says. The follower's displacement s(θ) is read from
-the answer's table of the program, between whose angles a cubic runs with the table's own velocities; at 720 steps of a
-turn that is some 1e-9 of the lift away from the motion law.
+The cam rotates about the origin by its angle θ in the given direction. The follower's displacement s(θ) is interpolated
+in the program's table of the answer by cubics with the table's velocities; at 720 steps per turn the error is some 1e-9
+of the lift.
 """
 
 from __future__ import annotations
@@ -21,66 +21,66 @@ from service.parts.model import Carrier, InputField, Placed, Real
 TURN = 2.0 * math.pi
 
 CAM, FOLLOWER = "cam", "follower"
-"""Names of what moves."""
+"""Names of the moving bodies."""
 
 
 @dataclass(frozen=True)
 class Turning:
-    """Something that is driven by a shaft which turns on and on: its input is the shaft's angle.
+    """A mechanism driven by a continuously rotating shaft; the input is the shaft's angle.
 
     Attributes
     ----------
     size : float
-        How large it is, millimetres.
+        Size, millimetres.
     """
 
     size: float
 
     @property
     def low(self) -> float:
-        """Where a turn begins."""
+        """Start of a turn."""
         return 0.0
 
     @property
     def high(self) -> float:
-        """Where it ends."""
+        """End of a turn."""
         return TURN
 
     @property
     def closed(self) -> bool:
-        """One turn is a cycle of what is looked at."""
+        """One turn is a cycle."""
         return True
 
     @property
     def reference(self) -> float:
-        """The parts are drawn where a turn begins."""
+        """The parts are drawn at the start of a turn."""
         return 0.0
 
     @property
     def input_field(self) -> InputField:
-        """A shaft drives."""
+        """The input is an angle."""
         return "input_angle"
 
     def stated(self, value: float, scale: float) -> float:
-        """The input that a request states in degrees, without whole turns."""
+        """Convert an input from a request in degrees, modulo a full turn."""
         return math.radians(value % 360.0)
 
     def inputs(self, count: int) -> Real:
-        """So many inputs, spread evenly over a turn."""
+        """Return inputs spread evenly over a turn."""
         return TURN / count * np.arange(count, dtype=np.float64)
 
     def at(self, inputs: Real) -> Real:
-        """The inputs themselves say all."""
+        """Return the inputs themselves, which are the complete state."""
         return inputs
 
 
 def still(inputs: Real) -> Placed:
-    """Where the base is."""
+    """Return the displacement of the base: none."""
     return Placed(np.ones(inputs.shape, np.complex128), np.zeros(inputs.shape, np.complex128))
 
 
 def turned(angle: Real, about: complex = 0j) -> Placed:
-    """What has turned by angles about a point."""
+    """Return the displacement by rotations about a point."""
     turn = np.exp(1j * angle)
     return Placed(turn, about * (1.0 - turn))
 
@@ -103,41 +103,43 @@ class Displacement:
 
     @classmethod
     def of(cls, program: Any, unit: float) -> Displacement:
-        """That of a program's table.
+        """Build the displacement of a program's table.
 
         Parameters
         ----------
         program : ProgramTable
         unit : float
-            By which its displacements are multiplied. Those of an arm become radians, as its velocities are.
+            Factor of its displacements. Those of an arm become radians, like its velocities.
         """
         s, v = np.array(program.s), np.array(program.v)
+        # Velocities of an arm are already in radians.
         return cls(np.radians(program.angle), unit * s, v if unit == math.radians(1.0) else unit * v)
 
     @cached_property
     def _curve(self) -> CubicHermiteSpline:
+        # Close the curve over a full turn.
         at = np.concatenate([self.angle, [self.angle[0] + TURN]])
         return CubicHermiteSpline(at, np.append(self.s, self.s[0]), np.append(self.v, self.v[0]))
 
     def __call__(self, angle: Real) -> Real:
-        """The displacement at any cam angles."""
+        """Return the displacement at any cam angles."""
         start = self.angle[0]
         return np.asarray(self._curve(start + np.mod(angle - start, TURN)))
 
     def slope(self, angle: Real) -> Real:
-        """Its derivative by the cam's angle."""
+        """Return its derivative by the cam's angle."""
         start = self.angle[0]
         return np.asarray(self._curve(start + np.mod(angle - start, TURN), 1))
 
     @property
     def extremes(self) -> tuple[float, float]:
-        """The least and the greatest in the table."""
+        """Minimum and maximum displacement in the table."""
         return float(self.s.min()), float(self.s.max())
 
 
 @dataclass(frozen=True)
 class CamMotion(Turning):
-    """A cam and a follower that slides along a direction, or swings about a pivot.
+    """A cam with a follower that slides along a direction, or swings about a pivot.
 
     Attributes
     ----------
@@ -146,9 +148,9 @@ class CamMotion(Turning):
     sense : float
         1 for a cam that turns counter-clockwise, −1 for clockwise.
     direction : complex
-        In which the follower slides for a displacement that grows; or 1 or −1, the way it swings.
+        Direction of increasing displacement; for a swinging follower 1 or −1, its sense.
     pivot : complex, optional
-        Of a follower that swings.
+        Pivot of a swinging follower.
     """
 
     displacement: Displacement
@@ -157,11 +159,12 @@ class CamMotion(Turning):
     pivot: complex | None = None
 
     def placed(self, carrier: Carrier, state: Real) -> Placed:
-        """How what a carrier carries has moved from the cam angle 0."""
+        """Return the displacement of a carrier from cam angle 0."""
         if carrier.link == GROUND:
             return still(state)
         if carrier.link == CAM:
             return turned(self.sense * state)
+        # Parts are drawn at cam angle 0, so displacements are relative to it.
         gone = self.displacement(state) - self.displacement(np.zeros(1))
         if self.pivot is None:
             return Placed(np.ones(state.shape, np.complex128), np.asarray(self.direction * gone, np.complex128))

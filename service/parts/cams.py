@@ -1,8 +1,8 @@
 """Radial cams as parts: the cam on its shaft, the follower with its guide or pivot, rollers, and the base.
 
-From below: the base; the cam, and over it what carries the roller, or beside it what has the flat face. The roller
-hangs in the plane of the cam. A groove is two walls over a back. Of conjugate cams one is below the follower and one
-above. An arm whose pivot would stand in the cam's way lies below the cam, whose shaft then passes it.
+From below: the base; the cam; above it the carrier of the roller, or next to it the flat face. The roller hangs in the
+plane of the cam. A groove consists of two walls on a back. One of two conjugate cams is below the follower and the
+other above. If the pivot of an arm would be in the cam's way, the arm lies below the cam, whose shaft then passes it.
 """
 
 from __future__ import annotations
@@ -41,23 +41,23 @@ FOLLOWER_COLOUR, ROLLER_COLOUR = LINK_COLOURS[0], LINK_COLOURS[2]
 ON_CAM, ON_FOLLOWER = Carrier(CAM, None), Carrier(FOLLOWER, None)
 
 PIN_OF_ROLLER, PIN_OF_BASE = 0.8, 0.25
-"""The thickest pin that is tried where none is stated: shares of the radii of roller and base circle."""
+"""Thickest default pin as a share of the radii of roller and base circle."""
 
 GUIDE = 4.0
-"""Distance of the two pins of a slide's runner, in diameters of a pin."""
+"""Distance of the two pins of a slide's runner, in pin diameters."""
 
 RIM = 0.25
-"""What a cam with a groove has beyond its outer wall, beside a collar, in diameters of a pin."""
+"""Rim of a cam with a groove outside its outer wall, in addition to a collar, in pin diameters."""
 
 WIDEST = math.radians(170.0)
-"""Angle between the two arms of a follower of conjugate cams, from which they are no plate with an inner corner."""
+"""Maximum angle between the two arms of a follower of conjugate cams; beyond it the plate has no inner corner."""
 
 DOWELS = 3
-"""Pins that hold the outer wall of a groove that is cut from sheets."""
+"""Number of pins that hold the outer wall of a groove cut from sheets."""
 
 
 class Planes(NamedTuple):
-    """In which planes a cam and its follower lie; ``back`` is that of a groove, ``second`` that of a second cam."""
+    """Planes of a cam and its follower; ``back`` is that of a groove, ``second`` that of a second cam."""
 
     cam: int
     follower: int
@@ -66,12 +66,12 @@ class Planes(NamedTuple):
 
     @property
     def highest(self) -> int:
-        """The highest of them."""
+        """The highest plane."""
         return max(plane for plane in self if plane is not None)
 
 
 def cam_parts(design: Any, problem: Any, query: PartsQuery) -> Assembly:
-    """The parts of a radial cam.
+    """Make the parts of a radial cam.
 
     Parameters
     ----------
@@ -83,7 +83,7 @@ def cam_parts(design: Any, problem: Any, query: PartsQuery) -> Assembly:
     Raises
     ------
     NotMade
-        Where the contour is not one that is cut, or leaves no room for such parts.
+        The contour cannot be cut, or the parts do not fit.
     """
     return _Cams(design.mechanism, query, MILLIMETRES[problem.length_unit]).assembly()
 
@@ -94,28 +94,30 @@ class _Cams(Fitting):
     def __init__(self, mechanism: CamMechanism, query: PartsQuery, unit: float) -> None:
         self._mechanism = mechanism
         self._core = core_follower(mechanism)
+        # The size covers the cam and, for arms, twice the pivot distance.
         far = max(float(np.abs(points_of(curve)).max()) for curve in (mechanism.profile, mechanism.pitch_curve))
         super().__init__(query, unit, 2.0 * max(far, getattr(self._core, "pivot_distance", 0.0)))
 
     @property
     def most(self) -> float:
-        """A share of the roller, or of the base circle that a face touches; and of that which is left of a cam."""
+        """Thickest default pin, as a share of the roller or base circle and of the remaining cam."""
         mechanism = self._mechanism
         if mechanism.base_radius is not None:
             return PIN_OF_BASE * mechanism.base_radius
         assert mechanism.prime_radius is not None
         radius = mechanism.follower.roller_radius
         assert radius is not None
+        # The pin must fit the roller, and the shaft the base circle of the cam.
         return min(PIN_OF_ROLLER * radius, PIN_OF_BASE * 2.0 * (mechanism.prime_radius - radius))
 
     def opening(self, sizes: Sizes) -> tuple[float, str]:
-        """The base has a slot for the runner of a slide."""
+        """Return the widest opening: the base has a slot for the runner of a slide."""
         if isinstance(self._core, TranslatingRoller | TranslatingFlat):
             return sizes.block[1] + 2.0 * sizes.clearance, "a runner on pins"
         return sizes.hole, "pins"
 
     def tried(self, sizes: Sizes, scale: float) -> Trial:
-        """The assembly in the first arrangement that has room."""
+        """Build the assembly in the first arrangement that fits."""
         reasons = []
         for planes in arrangements(self._mechanism):
             assembly = CamBuilder(self._mechanism, sizes, self._unit * scale, planes).assembled(scale)
@@ -123,11 +125,11 @@ class _Cams(Fitting):
             if not reason:
                 return Trial(assembly, "")
             reasons.append(reason)
-        return Trial(None, "; and with the follower below the cam ".join(reasons))
+        return Trial(None, "; with the follower below the cam: ".join(reasons))
 
 
 def arrangements(mechanism: CamMechanism) -> Iterator[Planes]:
-    """The planes that are tried, the first choice first."""
+    """Yield the planes to be tried, in order of preference."""
     if mechanism.follower.type.endswith("flat"):
         yield Planes(1, 1)
         return
@@ -151,15 +153,15 @@ class _Roller:
 
 
 class CamBuilder:
-    """Makes the assembly of a cam in given sizes.
+    """Builds the assembly of a cam in given sizes.
 
     Parameters
     ----------
     mechanism : CamMechanism
-        Of an answer.
+        Mechanism of a design.
     sizes : Sizes
     factor : float
-        Millimetres to a unit of length of the design, as large as it is built.
+        Millimetres per length unit of the design, at the built size.
     planes : Planes
     """
 
@@ -176,11 +178,11 @@ class CamBuilder:
         self._way = 0.0
         if isinstance(self._core, OscillatingRoller | OscillatingFlat):
             self._pivot = complex(factor * self._core.pivot_distance)
-            # The arm lies above the line of centres where the cam turns clockwise and it swings outward with it.
+            # The arm lies above the line of centres if the cam turns clockwise and the arm swings outward with it.
             self._way = -self._sense * self._core.sense
 
     def assembled(self, scale: float) -> Assembly:
-        """All parts."""
+        """Build the assembly of all parts."""
         rollers = self._rollers()
         contours = [self._contour(self._mechanism.profile, self._inward)]
         if self._mechanism.second is not None:
@@ -207,7 +209,7 @@ class CamBuilder:
 
     @property
     def _inward(self) -> float:
-        """By how much the inner wall of a groove is off its profile."""
+        """Offset of the inner wall of a groove from its profile."""
         return -self._sizes.clearance if self._mechanism.outer_wall is not None else 0.0
 
     @property
@@ -240,8 +242,10 @@ class CamBuilder:
         wall = self._contour(self._mechanism.outer_wall, self._sizes.clearance)
         rim = self._sizes.collar + RIM * self._sizes.pin
         disc = Disc(0j, max(_radii(wall)) + rim)
+        # Milling and printing make the groove in one piece; sheets need a back and two walls.
         if self._sizes.process != "laser":
             return [self._milled(contours[0], wall, disc)]
+        # Dowels are evenly spaced in the rim outside the groove.
         places = [cmath.rect(disc.radius - 0.5 * rim, 2.0 * math.pi * n / DOWELS) for n in range(DOWELS)]
         dowels = [Disc(z, 0.5 * self._sizes.hole) for z in places]
         levels = min(planes.back, planes.cam), max(planes.back, planes.cam)
@@ -260,7 +264,7 @@ class CamBuilder:
         ]  # fmt: skip
 
     def _milled(self, inner: Curve, wall: Curve, disc: Disc) -> Part:
-        """A cam with its groove in one piece."""
+        """Make a cam with its groove in one piece."""
         planes, hole = self._planes, (self._bore(),)
         assert planes.back is not None
         (low, high), (bottom, top) = self._stack.level(planes.back), self._stack.level(planes.cam)
@@ -276,6 +280,7 @@ class CamBuilder:
 
     def _shaft(self) -> list[Part]:
         planes = self._planes
+        # All plates of the cam rotate with the shaft.
         keyed = sorted(plane for plane in (planes.cam, planes.back, planes.second) if plane is not None)
         parts = self._stack.pin("cam", "camshaft", ON_CAM, 0j, (0, keyed[-1]), keyed=keyed, stub=-1)
         spans = [(0, keyed[0])] if self._sizes.process != "print" else []
@@ -288,6 +293,7 @@ class CamBuilder:
     def _rollers(self) -> list[_Roller]:
         core, factor, second = self._core, self._factor, self._mechanism.second
         if isinstance(core, TranslatingRoller):
+            # The slide moves along x; its line is offset sideways.
             centre = complex(factor * core.height + self._first, -self._sense * factor * core.offset)
         elif isinstance(core, OscillatingRoller):
             assert self._pivot is not None
@@ -312,7 +318,7 @@ class CamBuilder:
         return found
 
     def _follower(self, rollers: list[_Roller]) -> tuple[list[Part], list[Outline], list[complex]]:
-        """Its parts, what is cut into the base for them, and points that the base reaches to."""
+        """Make the follower's parts; return them, cuts in the base, and points that the base must reach."""
         core = self._core
         if isinstance(core, TranslatingRoller | TranslatingFlat):
             return self._slide(core, rollers)
@@ -325,9 +331,10 @@ class CamBuilder:
             shape = widened([self._pivot, rollers[0].centre], radius)
         else:
             arms = [roller.centre - self._pivot for roller in rollers][:: 1 if self._way > 0.0 else -1]
+            # A bell crank needs an inner corner between its arms.
             apart = cmath.phase(arms[1] / arms[0])
             if not 0.0 < apart < WIDEST or radius / math.tan(0.5 * apart) > min(abs(arm) for arm in arms):
-                raise NotMade("The two arms of the follower stand too wide or too near for a plate of one piece.")
+                raise NotMade("The angle between the follower's two arms does not permit a one-piece plate.")
             crank = bell_crank(arms[0], arms[1], radius)
             shape = Loop(tuple(self._pivot + z for z in crank.corners), crank.bulges)
         holes = [Disc(z, 0.5 * self._sizes.hole) for z in (self._pivot, *(roller.centre for roller in rollers))]
@@ -346,12 +353,13 @@ class CamBuilder:
         along = 1j * self._way * complex(np.exp(1j * self._way * (0.5 * math.pi - core.start_angle - self._first)))
         corners, bulges = shape.corners, shape.bulges
         if self._way < 0.0:
+            # Mirroring reverses the orientation: reverse the order as well.
             corners = tuple(z.conjugate() for z in (corners[0], *corners[:0:-1]))
             bulges = bulges[::-1]
         return Loop(tuple(self._pivot + along * z for z in corners), bulges)
 
     def _state(self) -> CamState:
-        """The program's table as the core has motions, in radians or the design's unit."""
+        """Return the program's table as a motion of the core, in radians or the design's unit."""
         program, unit = self._mechanism.program, self._unit if self._pivot is not None else 1.0
         return CamState(unit * np.array(program.s), *(np.array(x) for x in (program.v, program.a, program.j)))
 
@@ -366,19 +374,20 @@ class CamBuilder:
             begin = self._factor * core.base_radius + self._first
             guide = begin + 2.0 * sizes.width
         else:
-            # Its pins pass the plane of the cam, beyond all that turns there.
+            # Its pins pass the plane of the cam, outside everything that rotates there.
             begin = rollers[0].centre.real
             guide = max(begin + sizes.width + sizes.collar, self._reach + 0.5 * sizes.collar + sizes.apart - least)
         ends = [complex(guide, line), complex(guide + GUIDE * sizes.pin, line)]
         holes: list[Outline] = [Disc(z, 0.5 * sizes.hole) for z in (*ends, *(roller.centre for roller in rollers))]
         if isinstance(core, TranslatingFlat):
+            # The contact of a flat face is displaced by the velocity ds/dθ.
             contact = -self._sense * self._factor * np.array(self._mechanism.program.v)
             shape: Outline = faced_slide(
                 begin, line, (float(contact.min()), float(contact.max())), sizes.width, ends[1].real
             )
         else:
             if len(rollers) > 1:
-                # The shaft passes the yoke.
+                # The shaft passes through the yoke.
                 around = 0.5 * sizes.collar + sizes.clearance
                 holes.append(widened([complex(-most), complex(-least)], around))
                 half = max(half, abs(line) + around + 0.5 * sizes.pin)
@@ -394,6 +403,7 @@ class CamBuilder:
         for n, z in enumerate(ends, 1):
             parts += stack.pin(f"guide_{n}", f"pin guide {n}", ON_FOLLOWER, z, (0, plane))
             parts += stack.between(f"guide_{n}", ON_FOLLOWER, z, [(0, plane)])
+        # The runner's slot covers the whole stroke.
         way = [ends[0] + least, ends[1] + most]
         return parts, [widened(way, wide + sizes.clearance)], way
 
@@ -411,7 +421,7 @@ class CamBuilder:
     # The whole
 
     def _touching(self, rollers: list[_Roller]) -> Iterator[frozenset[str]]:
-        """Parts that touch each other all the time."""
+        """Yield pairs of parts in permanent contact."""
         if isinstance(self._core, Flat):
             yield frozenset(("cam", "follower"))
         elif len(rollers) > 1:
@@ -420,18 +430,18 @@ class CamBuilder:
             yield frozenset(("cam", "roller"))
 
     def _size(self, points: list[complex]) -> float:
-        """From the far side of the cam to the far end of the base."""
+        """Return the distance from the far side of the cam to the far end of the base."""
         return self._reach + max(abs(z) for z in points)
 
     def _notes(self) -> tuple[str, ...]:
-        notes = ["The camshaft stands out below the base, where it is driven; keys join it to what turns with it."]
+        notes = ["The camshaft protrudes below the base for the drive; all parts that rotate with it are keyed to it."]
         if self._planes.back is None and self._planes.second is None:
-            notes.append("A spring or a weight holds the follower to the cam; it is not among the parts.")
+            notes.append("A spring or a weight must hold the follower to the cam; it is not included.")
         return tuple(notes)
 
 
 def _radii(outer: Outline) -> tuple[float, float]:
-    """The least and the greatest distance from the origin of an outline about it."""
+    """Return the minimum and maximum distance of an outline from the origin that it encloses."""
     if isinstance(outer, Curve):
         far = np.abs(outer.ring(beyond=True))
         return float(far.min()), float(far.max())

@@ -1,10 +1,10 @@
-"""Bodies of revolution from which cylinders, slots, cones and half-spaces are cut, as a lathe and a mill leave them.
+"""Bodies of revolution with cuts by cylinders, slots, cones and half-spaces, as a lathe and a mill produce them.
 
-A cut says how deep points lie in it, what of the plane it takes at a height, and of what surface its walls are. The
-body is then what lies deep in its half section and in no cut. Its sections are exact at their heights but for the
-polygons that stand for arcs; its surface is cut out of the surfaces of revolution and the walls, triangle by triangle.
+A cut defines the depth of points in it, its section at a height, and the surfaces of its walls. The body is the set of
+points inside its half section and in no cut. Its sections are exact at their heights except for polygons that replace
+arcs; its surface is cut out of the surfaces of revolution and the walls, triangle by triangle.
 
-Directions are told by azimuth and elevation: the angle about the axis, and that above the plane at right angles to it.
+Directions are given by azimuth (the angle about the axis) and elevation (above the plane normal to the axis).
 """
 
 from __future__ import annotations
@@ -27,31 +27,31 @@ Real = NDArray[np.float64]
 Truth = NDArray[np.bool_]
 
 Depth = Callable[[Real], Real]
-"""How deep points, shape (..., 3), lie in something."""
+"""Function of the depth of points, shape (..., 3), in a set; negative outside."""
 
 SAG = 5e-4
-"""How far polygons are from arcs, millimetres."""
+"""Maximum distance of polygons from arcs, millimetres."""
 
 AROUND, ALONG = 144, 48
-"""Steps of triangles about the axis and along it, over the size of the body."""
+"""Number of triangle steps about the axis, and along it over the size of the body."""
 
 FINE, FINE_IN_HOLE = 60.0, 4.0
-"""Edges of triangles where a cut passes, as shares of the body's size and of the radius of a cut cylinder: one over."""
+"""Maximum triangle edge near a cut: one over these shares of the body's size and of the radius of a cut cylinder."""
 
 FAR_SHARE = 0.1
-"""How far from a polygon's box, as a share of its size, the box stands for it."""
+"""Distance from a polygon's box, as a share of its size, beyond which the box replaces it."""
 
 HEIGHTS, GAUSS = 48, 6
-"""Parts in which sections are added up, and heights of each."""
+"""Number of intervals in which sections are integrated, and of Gauss nodes in each."""
 
 CURVE = 241
-"""Points of a section of a cone."""
+"""Number of points of a section of a cone."""
 
 
 class Slotted(NamedTuple):
-    """A cylinder about a direction from the origin; where it is ``open``, all that is as wide below it too.
+    """A cylinder about a direction from the origin; if ``open``, with all points of its width below it.
 
-    It is the way of a round cutter, whose axis points to the origin, from below up to the direction.
+    It is the path of a round cutter, whose axis points to the origin, from below up to the direction.
     """
 
     azimuth: float
@@ -61,30 +61,32 @@ class Slotted(NamedTuple):
 
     @property
     def axes(self) -> Real:
-        """Across, upwards in the plane of the axis, and along, as rows."""
+        """Unit vectors as rows: across, upwards in the plane of the axis, and along the axis."""
         (c, s), (a, b) = _unit(self.azimuth), _unit(self.elevation)
         return np.array([(-s, c, 0.0), (-b * c, -b * s, a), (a * c, a * s, b)])
 
     def depth(self, points: Real) -> Real:
-        """How deep points, shape (..., 3), lie in it; negative outside."""
+        """Return the depth of points, shape (..., 3); negative outside."""
         across, up, along = np.moveaxis(points @ self.axes.T, -1, 0)
+        # Below the axis an open slot has straight walls: only the distance sideways counts.
         away = np.hypot(across, np.maximum(up, 0.0) if self.open else up)
         return np.asarray(np.minimum(self.half - away, along))
 
     def section(self, height: float, far: float) -> shapely.Geometry:
-        """What it takes at a height above 0, up to a distance."""
+        """Return its section at a height above 0, up to a distance."""
         slope = math.tan(self.elevation)
         ellipse = shapely.Polygon(_pairs(ring_of(Disc(0j, self.half), beyond=False, sag=SAG)))
+        # A horizontal section of an inclined cylinder is an ellipse.
         ellipse = affinity.scale(ellipse, 1.0 / math.sin(self.elevation), 1.0, origin=(0.0, 0.0))
         found = affinity.translate(ellipse, height / slope)
         if self.open:
             found = shapely.union(found, shapely.box(height / slope, -self.half, far, self.half))
-        # Nothing lies behind the origin.
+        # The cutter ends at the origin.
         found = shapely.intersection(found, shapely.box(-height * slope, -far, 3.0 * far, far))
         return affinity.rotate(found, self.azimuth, origin=(0.0, 0.0), use_radians=True)
 
     def walls(self, far: float) -> list[Real]:
-        """Grids of its walls, shapes (n, m, 3)."""
+        """Return grids of its walls, shapes (n, m, 3)."""
         turn = np.linspace(0.0, math.pi if self.open else 2.0 * math.pi, ALONG + 1)
         lines = [np.column_stack([self.half * np.cos(turn), self.half * np.sin(turn)])]
         if self.open:
@@ -96,28 +98,29 @@ class Slotted(NamedTuple):
 
 
 class Hollow(NamedTuple):
-    """A cone about a level direction, its apex at the origin."""
+    """A cone about a horizontal direction, its apex at the origin."""
 
     azimuth: float
     angle: float
 
     def depth(self, points: Real) -> Real:
-        """How deep points lie in it."""
+        """Return the depth of points; negative outside."""
         c, s = _unit(self.azimuth)
         along = points[..., 0] * c + points[..., 1] * s
         across = np.hypot(points[..., 1] * c - points[..., 0] * s, points[..., 2])
         return np.asarray(along * math.sin(self.angle) - across * math.cos(self.angle))
 
     def section(self, height: float, far: float) -> shapely.Geometry:
-        """Beyond a hyperbola."""
+        """Return its section, bounded by a hyperbola."""
         y = np.linspace(-far, far, CURVE)
+        # Hyperbola: section of the cone at that height.
         x = np.hypot(y, height) / math.tan(self.angle)
         curve = np.column_stack([np.minimum(x, 2.0 * far), y])
         found = shapely.Polygon([*curve, (3.0 * far, far), (3.0 * far, -far)])
         return affinity.rotate(found, self.azimuth, origin=(0.0, 0.0), use_radians=True)
 
     def walls(self, far: float) -> list[Real]:
-        """The cone."""
+        """Return the grid of the cone."""
         turn, out = np.linspace(0.0, 2.0 * math.pi, 2 * ALONG + 1)[:, None], np.linspace(0.0, far, ALONG + 1)
         c, s = _unit(self.azimuth)
         x, y = math.cos(self.angle) * out, math.sin(self.angle) * np.cos(turn) * out
@@ -126,23 +129,23 @@ class Hollow(NamedTuple):
 
 
 class Beside(NamedTuple):
-    """All that does not lie so far from the axis in a direction."""
+    """The half-space of points closer to the axis, in a direction, than a distance."""
 
     azimuth: float
     distance: float
 
     def depth(self, points: Real) -> Real:
-        """How deep points lie in it."""
+        """Return the depth of points; negative outside."""
         c, s = _unit(self.azimuth)
         return np.asarray(self.distance - points[..., 0] * c - points[..., 1] * s)
 
     def section(self, height: float, far: float) -> shapely.Geometry:
-        """A half-plane."""
+        """Return its section, a half-plane."""
         found = shapely.box(-2.0 * far, -2.0 * far, self.distance, 2.0 * far)
         return affinity.rotate(found, self.azimuth, origin=(0.0, 0.0), use_radians=True)
 
     def walls(self, far: float) -> list[Real]:
-        """The plane."""
+        """Return the grid of the plane."""
         c, s = _unit(self.azimuth)
         y, z = np.linspace(-far, far, 2 * ALONG + 1)[:, None], np.linspace(0.0, far, ALONG + 1)
         x, y, z = np.broadcast_arrays(self.distance, y, z)
@@ -155,15 +158,15 @@ class Bored(NamedTuple):
     outline: Outline
 
     def depth(self, points: Real) -> Real:
-        """How deep points lie in it."""
+        """Return the depth of points; negative outside."""
         return _inside(_polygon(self.outline), points[..., 0], points[..., 1])
 
     def section(self, height: float, far: float) -> shapely.Geometry:
-        """Its outline."""
+        """Return its outline."""
         return _polygon(self.outline)
 
     def walls(self, far: float) -> list[Real]:
-        """Its walls."""
+        """Return the grid of its walls."""
         line = ring_of(self.outline, beyond=False)
         line = np.append(line, line[:1])[:, None]
         x, y, z = np.broadcast_arrays(line.real, line.imag, np.linspace(0.0, far, ALONG + 1))
@@ -175,12 +178,12 @@ Cut = Slotted | Hollow | Beside | Bored
 
 @dataclass(frozen=True, eq=False)
 class Carved:
-    """A body of revolution about the axis of heights through the origin, above height 0, and what is cut from it.
+    """A body of revolution about the vertical axis through the origin, above height 0, with cuts.
 
     Attributes
     ----------
     profile : Loop
-        Its half section, counter-clockwise, with arcs: radius + i · height.
+        The half section, counter-clockwise, with arcs: radius + i · height.
     cuts : tuple of Cut
     """
 
@@ -189,29 +192,29 @@ class Carved:
 
     @cached_property
     def half(self) -> shapely.Polygon:
-        """Its half section as a polygon."""
+        """Half section as a polygon."""
         found = _polygon(self.profile)
         shapely.prepare(found)
         return found
 
     @property
     def low(self) -> float:
-        """Height of its lowest point."""
+        """Height of the lowest point."""
         return float(self.half.bounds[1])
 
     @property
     def high(self) -> float:
-        """Height of its uppermost point."""
+        """Height of the highest point."""
         return float(self.half.bounds[3])
 
     @property
     def far(self) -> float:
-        """Farther than which nothing of it is from the origin, with some room."""
+        """Distance from the origin beyond which the body has no points, with a margin."""
         return 1.2 * math.hypot(self.half.bounds[2], self.half.bounds[3])
 
     @cached_property
     def region(self) -> Region:
-        """The shadow of its sections."""
+        """Shadow of the body, from its sections."""
         heights = np.linspace(self.low, self.high, HEIGHTS + 2)[1:-1]
         whole = shapely.union_all([self._section(height) for height in heights.tolist()])
         faces = [face for face in shapely.get_parts(whole) if isinstance(face, shapely.Polygon)]
@@ -219,7 +222,7 @@ class Carved:
 
     @property
     def volume(self) -> float:
-        """Sections added up between the corners of the half section by Gauss's rule, cubic millimetres."""
+        """Volume: sections integrated between the corners of the half section by Gauss's rule, cubic millimetres."""
         places, weights = np.polynomial.legendre.leggauss(GAUSS)
         corners = [z.imag for z in self.profile.corners]
         heights = np.unique(np.round([*corners, *np.linspace(self.low, self.high, HEIGHTS + 1)], 9)).tolist()
@@ -230,24 +233,25 @@ class Carved:
         )
 
     def within(self, low: float, high: float) -> tuple[Region, ...]:
-        """Its section half-way between two heights."""
+        """Return the section half-way between two heights."""
         faces = shapely.get_parts(self._section(0.5 * (low + high)))
         return tuple(_region(face) for face in faces if isinstance(face, shapely.Polygon))
 
     def holds(self, points: Real, deep: float) -> Truth:
-        """Which of the points, shape (n, 3), lie in it deeper than rounding."""
+        """Return which of the points, shape (n, 3), lie inside deeper than rounding."""
         radii = np.hypot(points[:, 0], points[:, 1])
         found = np.asarray(shapely.contains_xy(self.half, radii, points[:, 2]))
         for cut in self.cuts:
+            # Test only points that previous cuts left.
             found[found] = cut.depth(points[found]) < -deep
-        # What is on the axis is inside too.
+        # Points on the axis are inside, too.
         beside = np.flatnonzero(found & (radii > 2.0 * deep))
         found[beside] = _inside(self.half, radii[beside], points[beside, 2]) > deep
         return found
 
     @cached_property
     def facets(self) -> Real:
-        """Triangles of its surface, counter-clockwise as seen from outside, shape (m, 3, 3); some edges do not meet."""
+        """Triangles of the surface, counter-clockwise from outside, shape (m, 3, 3); some edges do not match."""
         found = []
         for grid in self._turned():
             triangles = self._facing(_triangles(grid), self._depth)
@@ -267,27 +271,28 @@ class Carved:
 
     @property
     def _fine(self) -> float:
-        """How long edges of triangles are at most where a cut passes: a share of body and of narrowest hole."""
+        """Maximum triangle edge near a cut: a share of the body and of the narrowest hole."""
         return min([self.far / FINE, *(cut.half / FINE_IN_HOLE for cut in self.cuts if isinstance(cut, Slotted))])
 
     def _about(self, triangles: Real) -> Real:
-        """Those that are as far from the origin as the body is."""
+        """Return the triangles that are at least as far from the origin as the body."""
         away = np.linalg.norm(triangles, axis=2)
         least = shapely.distance(self.half, shapely.Point(0.0, 0.0))
         return np.asarray(triangles[away.max(axis=1) > least])
 
     def _facing(self, triangles: Real, depth: Depth) -> Real:
-        """Triangles turned so that they face where the depth falls."""
+        """Orient triangles so that they face the direction of decreasing depth."""
         normals = np.cross(triangles[:, 1] - triangles[:, 0], triangles[:, 2] - triangles[:, 0])
         length = np.linalg.norm(normals, axis=1)
         triangles, normals = triangles[length > 0.0], normals[length > 0.0] / length[length > 0.0, None]
+        # Probe the depth on both sides of each triangle.
         middle, step = triangles.mean(axis=1), 1e-3 * self.far
         rising = depth(middle + step * normals) > depth(middle - step * normals)
         triangles[rising] = triangles[rising, ::-1]
         return triangles
 
     def _turned(self) -> list[Real]:
-        """Grids of the surfaces of revolution, one of each edge of the half section."""
+        """Return grids of the surfaces of revolution, one per edge of the half section."""
         turns = np.linspace(0.0, 2.0 * math.pi, AROUND + 1)
         line = ring_of(self.profile, beyond=False)
         step = self.far / ALONG
@@ -317,10 +322,11 @@ def _outside(cut: Cut) -> Depth:
 
 
 def _kept(triangles: Real, depth: Depth, fine: float) -> Real:
-    """What of triangles, shape (m, 3, 3), lies where a depth is positive; they are divided where it is near 0."""
+    """Clip triangles, shape (m, 3, 3), to positive depth; triangles near depth 0 are divided first."""
     done = []
     while len(triangles):
         longest = np.linalg.norm(triangles - np.roll(triangles, 1, axis=1), axis=2).max(axis=1)
+        # Only triangles that may cross the boundary are divided.
         coarse = (longest > fine) & (np.abs(depth(triangles.mean(axis=1))) < longest)
         done.append(triangles[~coarse])
         triangles = _quartered(triangles[coarse])
@@ -333,13 +339,15 @@ def _kept(triangles: Real, depth: Depth, fine: float) -> Real:
         some = np.flatnonzero(count == number)
         if not some.size:
             continue
-        # The corner that differs from both others first.
+        # Rotate the corners so that the one whose sign differs comes first.
         first = np.argmax(positive[some] == one_alone, axis=1)
         order = (first[:, None] + np.arange(3)) % 3
         corners = np.take_along_axis(triangles[some], order[:, :, None], axis=1)
         at = np.take_along_axis(value[some], order, axis=1)
         a, b, c = (corners[:, k] for k in range(3))
+        # Linear interpolation of the depth along both edges of the differing corner.
         ab, ac = (a + (at[:, 0] / (at[:, 0] - at[:, k]))[:, None] * (other - a) for k, other in ((1, b), (2, c)))
+        # One corner inside leaves a triangle, two leave a quadrilateral.
         if one_alone:
             found.append(np.stack([a, ab, ac], axis=1))
         else:
@@ -361,8 +369,9 @@ def _triangles(grid: Real) -> Real:
 
 
 def _inside(polygon: shapely.Polygon, x: Real, y: Real) -> Real:
-    """How deep places lie in a polygon; negative outside, and far from it no less than they are away from its box."""
+    """Return the depth of points in a polygon; negative outside. Far away, the distance from its box replaces it."""
     left, low, right, high = polygon.bounds
+    # Distance from the bounding box: exact zero inside it.
     away = -np.hypot(np.maximum(0.0, np.maximum(left - x, x - right)), np.maximum(0.0, np.maximum(low - y, y - high)))
     near = away > -FAR_SHARE * max(right - left, high - low)
     u, v = x[near], y[near]

@@ -1,8 +1,8 @@
-"""Colours of parts, by what they are."""
+"""Colours of parts by kind."""
 
 from __future__ import annotations
 
 LINK_COLOURS = ("#b8600b", "#1f5a9e", "#22734a", "#5b3a8c", "#a3195b", "#1b7f86", "#8a6d1a", "#6b4b3a")
-"""The first is that of the input, as on the stage of the studio."""
+"""Link colours; the first is that of the input, as in the studio."""
 
 BASE_COLOUR, BLOCK_COLOUR = "#76818c", "#c2a14a"

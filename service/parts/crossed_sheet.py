@@ -1,7 +1,7 @@
-"""An assembly of crossing shafts on one sheet: from above and from the front, what is to be known of it, and the bill.
+"""An assembly of crossing shafts on one sheet: from above and from the front, notes, and the bill of materials.
 
-A body seen along its axis is its region, and at right angles to it its height and what it is wide; seen from elsewhere
-it is the hull of its ends. What is nearer to the viewer is drawn later.
+Along its axis a body shows its region; at right angles to it a rectangle or its profile; in other directions the hull
+of its ends. Bodies closer to the viewer are drawn later.
 """
 
 from __future__ import annotations
@@ -29,26 +29,26 @@ Real = NDArray[np.float64]
 Complex = NDArray[np.complex128]
 
 HEIGHT, MARGIN = 380.0, 30.0
-"""Height of a view, and what is left free in it, pixels."""
+"""Height of a view and its margin, pixels."""
 
 LETTERS, LEADING, SMALL = 140, 16.0, 11.5
-"""Of a line of what is to be known, its height and that of its letters, pixels."""
+"""Characters per line of the notes, line height and font size, pixels."""
 
 ENDS = (0.0, 0.25, 0.34, 0.42, 0.50, 0.58, 0.75, 0.86, 1.0)
-"""Where the names of the bill begin, and the right ends of its other columns, shares of the width."""
+"""Left end of the bill's names, and right ends of its other columns, shares of the width."""
 
 SQUARE = 1e-9
 """Cosine below which an axis is at right angles to the view."""
 
 BEYOND = 0.04
-"""By how much the line of an axis is longer than what is on it, as a share of the assembly's size."""
+"""Extension of an axis line beyond its parts, as a share of the assembly's size."""
 
 LEVEL = Frame(np.zeros(3), np.eye(3))
 """The plane of the assembly."""
 
 
 class View(NamedTuple):
-    """A direction of view: what is to the right, what is upwards, and what points to the viewer, of length 1."""
+    """A direction of view: unit vectors to the right, upwards, and towards the viewer."""
 
     words: str
     right: Real
@@ -56,7 +56,7 @@ class View(NamedTuple):
     toward: Real
 
     def seen(self, points: Real) -> Complex:
-        """Places of the picture of points in space, shape (n, 3)."""
+        """Project points in space, shape (n, 3), to the picture."""
         return np.asarray(points @ self.right + 1j * (points @ self.up))
 
 
@@ -65,18 +65,18 @@ VIEWS = (View("From above", X, Y, Z), View("From the front", X, Z, -Y))
 
 
 def crossed_sheet(assembly: Assembly, listed: Sequence[Item], title: str) -> str:
-    """The sheet as an SVG document.
+    """Draw the sheet as an SVG document.
 
     Parameters
     ----------
     assembly : Assembly
-        In which not all axes are parallel.
+        An assembly with non-parallel axes.
     listed : sequence of Item
-        Its items.
+        Items of the assembly.
     title : str
-        Without characters that XML forbids.
+        Title without characters that XML forbids.
     """
-    words = f"{len(listed)} items, {len(assembly.parts)} parts on shafts that are not parallel; lengths in millimetres"
+    words = f"{len(listed)} items, {len(assembly.parts)} parts on non-parallel shafts; lengths in millimetres"
     if assembly.scale != 1.0:
         words += f"; {assembly.scale:g} times the design"
     drawn, y = [], TOP
@@ -91,7 +91,7 @@ def crossed_sheet(assembly: Assembly, listed: Sequence[Item], title: str) -> str
     bill, y = table("Bill of materials", [*HEADER], [Line(row(item)) for item in listed], ENDS, worded=0)(
         EDGE, y + 14.0, FULL
     )
-    described = f"Views from above and from the front of an assembly of {len(assembly.parts)} parts, and their bill."
+    described = f"Views from above and from the front of an assembly of {len(assembly.parts)} parts; bill of materials."
     return sheet(title, words, described, [*drawn, bill], y)
 
 
@@ -103,6 +103,7 @@ def _view(assembly: Assembly, view: View, top: float) -> tuple[list[Element], fl
     (left, low), (right, high) = bounds[:, :2].min(axis=0), bounds[:, 2:].max(axis=0)
     port = Viewport.fit(Box(left, low, right, high), panel, MARGIN, 16.0)
     shapes: list[Element] = []
+    # Painter's algorithm: the nearest part is drawn last.
     for part in sorted(assembly.parts, key=lambda part: _nearest(part, frames[part.name], view)):
         whole = shapely.union_all(seen[part.name])
         d = "".join(_path(ring, port) for face in shapely.get_parts(whole) for ring in (face.exterior, *face.interiors))
@@ -121,7 +122,7 @@ def _view(assembly: Assembly, view: View, top: float) -> tuple[list[Element], fl
 
 
 def _axes(assembly: Assembly, view: View, port: Viewport) -> list[Element]:
-    """Lines along the shafts, where they are not seen from their ends."""
+    """Draw lines along the shafts, unless they are seen end-on."""
     lines = []
     for pin in (part for part in assembly.parts if part.sort == "pin"):
         frame = assembly.frames.get(pin.name, LEVEL)
@@ -134,13 +135,14 @@ def _axes(assembly: Assembly, view: View, port: Viewport) -> list[Element]:
 
 
 def _shadow(body: Body, frame: Frame, view: View) -> shapely.Geometry:
-    """What a body covers of the picture."""
+    """Return the area of the picture that a body covers."""
     normal, region = frame.axes[:, 2], body.region
     if abs(float(normal @ view.toward)) > 1.0 - SQUARE:
         outer, *holes = (_placed(ring_of(outline, beyond=True), 0.0, frame, view)
                          for outline in (region.outer, *region.holes))  # fmt: skip
         return shapely.Polygon(outer, holes)
     if abs(float(normal @ view.toward)) < SQUARE:
+        # Direction in the picture at right angles to the axis.
         across = np.cross(view.toward, normal)
         direction = complex(across @ frame.axes[:, 0], across @ frame.axes[:, 1])
         if isinstance(body, Turned | Tapered | Carved):
@@ -166,14 +168,14 @@ def _shadow(body: Body, frame: Frame, view: View) -> shapely.Geometry:
 
 
 def _placed(places: Complex, heights: float | Real, frame: Frame, view: View) -> Real:
-    """Places of a plane at heights as the view has them, shape (n, 2)."""
+    """Project points of a plane at heights to the view, shape (n, 2)."""
     local = np.stack([places.real, places.imag, np.broadcast_to(heights, places.shape)], axis=-1)
     seen = view.seen(frame.origin + local @ frame.axes.T)
     return np.column_stack([seen.real, seen.imag])
 
 
 def _nearest(part: Part, frame: Frame, view: View) -> float:
-    """How near to the viewer a part comes."""
+    """Return how close to the viewer a part comes."""
     outer = ring_of(part.region.outer, beyond=True)
     near = []
     for height in (part.low, part.high):

@@ -1,9 +1,9 @@
-"""Whether parts meet whose axes are not parallel: points on the surface of each are looked for inside of the other.
+"""Interference of parts with non-parallel axes: surface points of each part are tested for being inside the other.
 
-Bodies of crossing axes share no planes in which their sections could be intersected. So the surface of each is covered
-with points, a *step* apart along edges and over faces, the outlines of teeth with all corners of their polygons, and
-every point that lies in the other body, deeper than rounding, is counted. Both are asked of each other, so that what is
-missed is a wedge between neighbouring points: less than half a step deep.
+Bodies of crossing axes have no common planes in which their sections could be intersected. So the surface of each is
+covered with points one *step* apart along edges and over faces, the outlines of teeth with all corners of their
+polygons. Every point inside the other body, deeper than rounding, is counted. Both bodies are tested against each
+other, so that only a wedge between neighbouring points can be missed: less than half a step deep.
 """
 
 from __future__ import annotations
@@ -26,33 +26,33 @@ Real = NDArray[np.float64]
 Truth = NDArray[np.bool_]
 
 STEPS = 160.0
-"""Steps to the size of an assembly."""
+"""Number of steps in the size of an assembly."""
 
 HEAP = 8.0
-"""Edge of the cubes in which points are looked at together, steps."""
+"""Edge of the cubes into which points are grouped, in steps."""
 
 DEEP = 4e-3
-"""How deep a point is to lie in a body to be counted, millimetres: more than polygons are away from arcs."""
+"""Minimum depth of a counted point in a body, millimetres; more than the distance of polygons from arcs."""
 
 LEVELS = 160
-"""Sections of a mesh, between which it is taken as both of its neighbours have it."""
+"""Number of sections of a mesh; between two sections a point must lie in both."""
 
 PLACES = 6
-"""Decimal places within which points are one, millimetres."""
+"""Decimals of a millimetre to which points are merged."""
 
 SAG = 2e-3
-"""How far polygons are from arcs, millimetres."""
+"""Maximum distance of polygons from arcs, millimetres."""
 
 
 _TURNS = np.arange(90) * math.pi * (3.0 - math.sqrt(5.0))
 _HEIGHTS = 1.0 - (2.0 * np.arange(90) + 1.0) / 90.0
 _RADII = np.sqrt(1.0 - _HEIGHTS**2)
 DIRECTIONS = np.column_stack([_RADII * np.cos(_TURNS), _RADII * np.sin(_TURNS), _HEIGHTS])
-"""Spread evenly over the sphere, as the seeds of a sunflower are."""
+"""Evenly distributed unit vectors (Fibonacci sphere)."""
 
 
 class Heaps(NamedTuple):
-    """Points in heaps, none farther from the middle of its heap, shape (m, 3), than a radius."""
+    """Groups of points, each within a radius of its group's middle, shape (m, 3)."""
 
     points: list[Real]
     middles: Real
@@ -60,7 +60,7 @@ class Heaps(NamedTuple):
 
 
 class Surface:
-    """A body that is asked for points of its surface, and which points lie in it, in the coordinates of its plane."""
+    """A body with its surface points and a test for points inside, in the coordinates of its plane."""
 
     def __init__(self, body: Body, step: float) -> None:
         self._body, self._step = body, step
@@ -68,14 +68,14 @@ class Surface:
 
     @cached_property
     def points(self) -> Real:
-        """Shape (n, 3): x, y and height."""
+        """Surface points, shape (n, 3): x, y and height."""
         body = self._body
         if isinstance(body, Turned):
             return self._turned(body)
         if isinstance(body, Tapered):
             return self._tapered(body)
         if isinstance(body, Carved):
-            # Its triangles are about a step wide, and have most corners in common.
+            # Its triangles are about one step wide and share most corners.
             return np.unique(np.round(body.facets.reshape(-1, 3), PLACES), axis=0)
         if isinstance(body, Mesh):
             return _spread(body.corners[body.triangles], self._step)
@@ -97,7 +97,7 @@ class Surface:
 
     @cached_property
     def outermost(self) -> Real:
-        """The points that lie farthest in each of many directions."""
+        """The extreme points in each of many directions."""
         body = self._body
         points = body.corners if isinstance(body, Mesh) else self.points
         farthest = [int(np.argmax(points @ direction)) for direction in DIRECTIONS]
@@ -105,15 +105,15 @@ class Surface:
 
     @cached_property
     def bounds(self) -> tuple[Real, Real]:
-        """Lowest and highest corner of a box around it."""
+        """Lowest and highest corner of the bounding box."""
         return self.points.min(axis=0), self.points.max(axis=0)
 
     @cached_property
     def heaps(self) -> Heaps:
-        """The points by the cubes in which they lie, so that most need not be looked at one by one."""
+        """Points grouped by cubes, so that most groups are rejected as a whole."""
         edge = HEAP * self._step
         cells = np.floor((self.points - self.bounds[0]) / edge).astype(np.int64)
-        # By one number of each cube: rows are sorted a hundred times slower.
+        # Encode each cube as one number: sorting rows is a hundred times slower.
         _, cube = np.unique(cells @ np.cumprod([1, *(cells.max(axis=0)[:2] + 1)]), return_inverse=True)
         order = np.argsort(cube, kind="stable")
         ends = np.cumsum(np.bincount(cube))[:-1]
@@ -123,7 +123,7 @@ class Surface:
         return Heaps(np.split(ordered, ends), middles, 0.5 * math.sqrt(3.0) * edge)
 
     def within(self, points: Real) -> Truth:
-        """Which of the points, shape (n, 3), lie inside."""
+        """Return which of the points, shape (n, 3), lie inside."""
         body = self._body
         if isinstance(body, Carved):
             return body.holds(points, DEEP)
@@ -137,10 +137,12 @@ class Surface:
             return found
         if isinstance(body, Turned):
             radii = np.hypot(x - body.centre.real, y - body.centre.imag)
+            # The half section is tested in radius and height.
             found[deep] = shapely.contains_xy(self._section, radii, z)
             return found
         if isinstance(body, Tapered):
             share = body.scale(z)
+            # Project the point along the line to the apex onto the reference plane.
             place = body.centre + (x + 1j * y - body.centre) / share
             radii = np.hypot(x - body.centre.real, y - body.centre.imag)
             inside = shapely.contains_xy(self._section, place.real, place.imag)
@@ -148,6 +150,7 @@ class Surface:
             found[deep] = inside & ~shapely.contains_xy(self._holes, x, y)
             return found
         if isinstance(body, Twisted):
+            # Undo the twist, then test in the reference section.
             back = np.exp(-1j * body.twist * (z - body.low) / (body.high - body.low))
             turned = body.centre + back * (x + 1j * y - body.centre)
             inside = shapely.contains_xy(self._section, turned.real, turned.imag)
@@ -157,7 +160,7 @@ class Surface:
         return found
 
     def _in_sections(self, body: Mesh, points: Real) -> Truth:
-        """Which points lie in the section below and in the section above, of those that a mesh has at equal steps."""
+        """Return which points lie in both neighbouring sections of a mesh, taken at equal steps."""
         step = (body.high - body.low) / LEVELS
         level = np.floor((points[:, 2] - body.low) / step).astype(int)
         inside = np.zeros(len(points), np.bool_)
@@ -171,6 +174,7 @@ class Surface:
 
     def _at(self, body: Mesh, number: int) -> shapely.Geometry:
         if number not in self._sections:
+            # Avoid the end faces, where sections degenerate.
             height = body.low + (body.high - body.low) * min(max(number, 0.01), LEVELS - 0.01) / LEVELS
             faces = [
                 shapely.difference(_polygon(region.outer), shapely.union_all([_polygon(hole) for hole in region.holes]))
@@ -188,6 +192,7 @@ class Surface:
         else:
             region = body.section if isinstance(body, Twisted | Tapered) else body.region
             outer = _polygon(region.outer)
+        # Only points deeper than the polygon error count.
         inner = shapely.buffer(outer, -DEEP)
         shapely.prepare(inner)
         return inner
@@ -204,13 +209,13 @@ class Surface:
     def _profile(self) -> shapely.Geometry:
         assert isinstance(self._body, Tapered)
         inner = shapely.buffer(shapely.Polygon([(z.real, z.imag) for z in self._body.profile]), -DEEP)
-        # What is on the axis is inside too.
+        # Points on the axis are inside, too.
         inner = shapely.union(inner, shapely.box(0.0, self._body.low + DEEP, 2.0 * DEEP, self._body.high - DEEP))
         shapely.prepare(inner)
         return inner
 
     def _tapered(self, body: Tapered) -> Real:
-        """Points along the lines of the flanks, and from there in to where the teeth end."""
+        """Return points along the lines of the flanks, and from there inwards to the ends of the teeth."""
         around = _dense(body.section.outer, self._step / float(body.scale(np.array([body.low, body.high])).max()))
         low, high = body.ends(around)
         _, inner, *_, upper, _ = body.profile
@@ -241,7 +246,7 @@ class Surface:
         return np.stack([around.real, around.imag, heights], axis=-1).reshape(-1, 3)
 
     def _faces(self, region: Region, body: Prism | Twisted) -> list[Real]:
-        """Points over the lower and the upper face."""
+        """Return points over the lower and the upper face."""
         outer = _polygon(region.outer)
         holes = shapely.union_all([_polygon(hole) for hole in region.holes])
         left, low, right, high = outer.bounds
@@ -259,7 +264,7 @@ class Surface:
 
 
 class Crossing:
-    """The parts of an assembly at inputs, shape (n,), of which pairs in different planes are compared."""
+    """The parts of an assembly at inputs, shape (n,); compares pairs in different planes."""
 
     def __init__(self, assembly: Assembly, inputs: Real) -> None:
         state, carriers = assembly.motion.at(inputs), dict.fromkeys(part.carrier for part in assembly.parts)
@@ -271,10 +276,11 @@ class Crossing:
         self._boxes: dict[tuple[str, int], tuple[Real, Real]] = {}
 
     def shared(self, one: Part, other: Part) -> Real:
-        """About what area of their surfaces lies in each other at each input, shape (n,)."""
+        """Estimate the surface area of two parts inside each other at each input, shape (n,)."""
         most = np.zeros(self._count)
         for (n, first), (m, second) in product(enumerate(self._bodies(one)), enumerate(self._bodies(other))):
             (low, high), (bottom, top) = self._box(one, n), self._box(other, m)
+            # Bounding boxes in space reject most inputs.
             near = np.flatnonzero(((low < top) & (bottom < high)).all(axis=1))
             if not self._moves(one) and not self._moves(other):
                 near = near[:1]
@@ -282,6 +288,7 @@ class Crossing:
                 found = self._inside(one, first, other, second, int(k)) + self._inside(
                     other, second, one, first, int(k)
                 )
+                # Each point represents a square of one step.
                 most[k] += found * self._step**2
         return most
 
@@ -295,7 +302,7 @@ class Crossing:
         return bool(np.ptp(np.abs(placed.turn - placed.turn[0])) > 0.0 or np.ptp(np.abs(placed.shift)) > 0.0)
 
     def _place(self, carrier: Carrier) -> tuple[Real, Real]:
-        """Rotation and place in space at each input, shapes (count, 3, 3) and (count, 3)."""
+        """Return rotation and position in space at each input, shapes (count, 3, 3) and (count, 3)."""
         if carrier not in self._places:
             placed = self._placed[carrier]
             turn, shift = (np.broadcast_to(values, self._count) for values in (placed.turn, placed.shift))
@@ -311,20 +318,22 @@ class Crossing:
         return self._places[carrier]
 
     def _box(self, part: Part, number: int) -> tuple[Real, Real]:
-        """Lowest and highest corner of a body in space at each input."""
+        """Return lowest and highest corner of a body in space at each input."""
         if (part.name, number) not in self._boxes:
             rotation, place = self._place(part.carrier)
             points = np.einsum("kij,nj->kni", rotation, self._bodies(part)[number].outermost) + place[:, None]
-            # Between two of the directions a body may reach a little farther.
+            # Between two of the directions a body may extend slightly farther: add one step.
             self._boxes[part.name, number] = points.min(axis=1) - self._step, points.max(axis=1) + self._step
         return self._boxes[part.name, number]
 
     def _inside(self, one: Part, first: Surface, other: Part, second: Surface, k: int) -> int:
-        """How many points of the first lie in the second at an input."""
+        """Count the points of the first body inside the second at an input."""
         (turn, place), (turned, moved) = self._place(one.carrier), self._place(other.carrier)
+        # Transform points of the first body into the frame of the second.
         rotation, shift = turned[k].T @ turn[k], turned[k].T @ (place[k] - moved[k])
         low, high = second.bounds
         heaps = first.heaps
+        # Test groups first; only groups near the other body are expanded.
         middles = heaps.middles @ rotation.T + shift
         reached = ((middles > low - heaps.radius) & (middles < high + heaps.radius)).all(axis=1)
         if not reached.any():
@@ -336,7 +345,7 @@ class Crossing:
 
 
 def _spread(triangles: Real, step: float) -> Real:
-    """The corners of triangles, shape (m, 3, 3), and points over those that are larger than a step."""
+    """Return the corners of triangles, shape (m, 3, 3), and points on those larger than a step."""
     a, b, c = (triangles[:, k] for k in range(3))
     one, other = (np.ceil(np.linalg.norm(edge, axis=1) / step).astype(int) + 1 for edge in (b - a, c - a))
     found = [triangles.reshape(-1, 3)]
@@ -353,7 +362,7 @@ def _polygon(outline: Outline) -> shapely.Polygon:
 
 
 def _dense(outline: Outline, step: float) -> NDArray[np.complex128]:
-    """The corners of an outline's polygon, and points between those that are farther apart than a step."""
+    """Return the corners of an outline's polygon, and points between corners more than a step from each other."""
     corners = ring_of(outline, beyond=False, sag=SAG)
     pieces = [
         start + (end - start) * np.arange(count) / count

@@ -1,10 +1,10 @@
-"""The outline of a flat part with its holes as a DXF drawing in millimetres, as a laser cutter or a router takes it.
+"""The outline of a flat part with its holes as a DXF drawing in millimetres, for a laser cutter or a router.
 
 Everything is on the layer CUT: outlines and slots are closed polylines whose round ends are true arcs, holes are
 circles, smooth contours splines. The part lies along x, with its lowest and leftmost points on the axes.
 
-Of what is cut into a round bar it is the development, seen from outside: the outline on CUT, and lines on layers of
-their own as splines.
+For a part cut into a round bar the drawing is its development, seen from outside: the outline on CUT, and lines as
+splines on layers of their own.
 """
 
 from __future__ import annotations
@@ -20,16 +20,17 @@ from service.render.page import dxf
 LAYERS = {"CUT": (7, "CONTINUOUS")}
 
 COLOURS = (1, 5, 3)
-"""Of the layers of a development."""
+"""Colours of the layers of a development."""
 
 
 def cutting(part: Part, title: str) -> str:
-    """The drawing of one part as a DXF document (R2010)."""
+    """Write the drawing of one part as a DXF document (R2010)."""
     if part.unrolled is not None:
         return _development(part.unrolled, title)
     document = dxf.new_drawing(title, "mm", LAYERS)
     space = document.modelspace()
     outer, along = part.region.outer, part.along
+    # Shift the lowest and leftmost points to the axes.
     corner = complex(extent(outer, along)[0], extent(outer, 1j * along)[0])
     for outline in (outer, *part.region.holes):
         _add(space, outline, along, corner)
@@ -49,7 +50,7 @@ def _development(unrolled: Development, title: str) -> str:
 
 
 def _add(space: Modelspace, outline: Outline, along: complex, corner: complex) -> None:
-    """An outline turned so that ``along`` lies along x, and shifted by ``corner``."""
+    """Add an outline, rotated so that ``along`` lies along x, and shifted by ``corner``."""
     back = along.conjugate()
     if isinstance(outline, Disc):
         dxf.add_circle(space, outline.centre * back - corner, outline.radius, "CUT")

@@ -1,4 +1,4 @@
-"""An assembly drawn apart: how far each part is lifted, so that nothing hides what it stands on."""
+"""The exploded view of an assembly: the lift of each part, such that no part hides those below it."""
 
 from __future__ import annotations
 
@@ -6,23 +6,23 @@ from service.parts.model import Assembly, Part
 from service.parts.sheet import layers
 
 SPREAD = 1.2
-"""What all spaces between layers are together, as a share of the size of the mechanism, or of its largest part."""
+"""Sum of all spaces between layers, as a share of the size of the mechanism, or of its largest part."""
 
 COVERED = 0.4
-"""Space below a second base besides, which covers what is between the two, as a share of the size."""
+"""Additional space below a second base, which would cover the parts between, as a share of the size."""
 
 ALONG = 0.08
-"""Between two parts on one of crossing shafts, as a share of the size of the mechanism."""
+"""Space between two parts on one of crossing shafts, as a share of the size of the mechanism."""
 
 LEAST = 1.2
-"""One of them in heights of the layer below it at least, which may be posts between two bases."""
+"""Minimum space in heights of the layer below, which may be posts between two bases."""
 
 
 def lifts(assembly: Assembly) -> dict[str, float]:
-    """Millimetres by which each part goes up, by its name, where the assembly is all apart.
+    """Return the lift of each part in the exploded view, millimetres, by name.
 
-    Layers of plates and of what lies between them keep their order. Pins stand free above them all; one with its
-    head below hangs free beneath, as it is put in from there. Where axes cross, each part goes along its own.
+    Layers of plates and of the parts between them keep their order. Pins are above them all; a pin with its head below
+    hangs beneath, because it is inserted from there. If axes cross, each part moves along its own.
     """
     if not assembly.parallel:
         return _along_their_shafts(assembly)
@@ -35,6 +35,7 @@ def lifts(assembly: Assembly) -> dict[str, float]:
         if n > 0 and any(part.sort == "base" and part.planes[0] > 0 for part in layer.parts):
             lift += COVERED * size
         found.update(dict.fromkeys((part.name for part in layer.parts), lift))
+        # Thick layers need more space to be seen from above.
         lift += max(space, LEAST * layer.height)
     raised = [part for part in assembly.parts if part.name in found]
     low = min(part.low + found[part.name] for part in raised)
@@ -46,7 +47,7 @@ def lifts(assembly: Assembly) -> dict[str, float]:
 
 
 def _along_their_shafts(assembly: Assembly) -> dict[str, float]:
-    """What is on a shaft goes away from its wheel, and the shaft out to the side on which it is longer."""
+    """Move the parts on a shaft away from its wheel, and the shaft out to the side on which it is longer."""
     found = dict.fromkeys((part.name for part in assembly.parts), 0.0)
     space = ALONG * assembly.size
     wheels = [part for part in assembly.parts if part.sort in ("gear", "cam") and part.name in assembly.frames]
@@ -59,12 +60,14 @@ def _along_their_shafts(assembly: Assembly) -> dict[str, float]:
             found.update({part.name: side * space * n for n, part in enumerate(away, 1)})
         for part in beside:
             if part.sort == "pin":
+                # The shaft leaves on the side on which it is longer.
                 out = 1.0 if part.low + part.high > wheel.low + wheel.high else -1.0
                 found[part.name] = out * (space * (len(beside) // 2 + 1) + part.high - part.low)
+    # The base moves down, away from the shafts.
     found["base"] = -2.0 * space
     return found
 
 
 def _beyond(part: Part, wheel: Part, side: float) -> float:
-    """How far the middle of a part is beyond that of the wheel on a side."""
+    """Return the distance of a part's middle from that of the wheel towards a side."""
     return 0.5 * side * (part.low + part.high - wheel.low - wheel.high)

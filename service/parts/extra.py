@@ -1,4 +1,4 @@
-"""Whether the libraries of the extra ``cad`` are there."""
+"""Test for the libraries of the extra ``cad``."""
 
 from __future__ import annotations
 
@@ -8,5 +8,5 @@ from importlib.util import find_spec
 
 @cache
 def installed() -> bool:
-    """Whether solids can be made; nothing is imported."""
+    """Return whether solids can be made; this imports nothing."""
     return find_spec("build123d") is not None and find_spec("OCP") is not None

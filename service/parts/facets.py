@@ -1,6 +1,6 @@
-"""Bodies as triangles, for pictures and for looking at parts whose axes are not parallel.
+"""Triangulation of bodies, for pictures and for interference checks of parts with non-parallel axes.
 
-Arcs are divided so that what is drawn stays within a sag of them; flat ends are triangulated with their holes.
+Arcs are divided to stay within a sag; flat ends are triangulated with their holes.
 """
 
 from __future__ import annotations
@@ -19,14 +19,14 @@ Real = NDArray[np.float64]
 Complex = NDArray[np.complex128]
 
 AROUND = 48
-"""Facets around a body of revolution."""
+"""Number of facets around a body of revolution."""
 
 LEAST_TWISTED = 4
-"""Layers of a twisted prism at least; no layer turns by more than a tenth of a radian."""
+"""Minimum number of layers of a twisted prism; a layer rotates by at most a tenth of a radian."""
 
 
 def facets(body: Body, sag: float) -> Real:
-    """Triangles of a body's surface, counter-clockwise as seen from outside, shape (m, 3, 3)."""
+    """Return triangles of a body's surface, counter-clockwise as seen from outside, shape (m, 3, 3)."""
     if isinstance(body, Tapered):
         body = body.mesh
     if isinstance(body, Carved):
@@ -48,6 +48,7 @@ def _prism(body: Prism, sag: float) -> Real:
 
 def _twisted(body: Twisted, sag: float) -> Real:
     outer, holes = _rings(body.section, sag)
+    # Flat facets of a twisted wall deviate with the square of their twist.
     count = max(LEAST_TWISTED, int(np.ceil(abs(body.twist) / 0.1)))
     shares = np.linspace(0.0, 1.0, count + 1)
     lines = [body.centre + (outer - body.centre) * np.exp(1j * body.twist * share) for share in shares]
@@ -68,6 +69,7 @@ def _turned(body: Turned) -> Real:
         found.append(_wall(low, high, a.imag, b.imag))
     triangles = np.concatenate(found)
     sides = np.linalg.norm(triangles - np.roll(triangles, 1, axis=1), axis=2)
+    # Edges on the axis give degenerate triangles.
     return np.asarray(triangles[sides.min(axis=1) > 0.0])
 
 
@@ -79,7 +81,7 @@ def _rings(region: Region, sag: float) -> tuple[Complex, list[Complex]]:
 
 
 def _wall(one: Complex, other: Complex, low: float, high: float) -> Real:
-    """Between a closed line and another above it, solid at their left."""
+    """Return triangles between a closed line and another above it, with the solid at their left."""
     a, b = _at(one, low), _at(other, high)
     a_ahead, b_ahead = np.roll(a, -1, axis=0), np.roll(b, -1, axis=0)
     return np.concatenate([np.stack([a, a_ahead, b_ahead], axis=1), np.stack([a, b_ahead, b], axis=1)])
@@ -87,6 +89,7 @@ def _wall(one: Complex, other: Complex, low: float, high: float) -> Real:
 
 def _ends(outer: Complex, holes: list[Complex], upper: Complex, low: float, high: float) -> list[Real]:
     below = _flat(outer, holes, low)
+    # The lower face looks downwards: reverse its triangles.
     return [below[:, ::-1], _flat(upper, holes, high)]
 
 
@@ -95,6 +98,7 @@ def _flat(outer: Complex, holes: list[Complex], height: float) -> Real:
     pieces = shapely.get_parts(shapely.constrained_delaunay_triangles(face))
     corners = shapely.get_coordinates(pieces).reshape(-1, 4, 2)[:, :3]
     a, b, c = (corners[:, k] @ (1.0, 1j) for k in range(3))
+    # The triangulation does not guarantee an orientation.
     clockwise = ((b - a).conjugate() * (c - a)).imag < 0.0
     corners[clockwise] = corners[clockwise, ::-1]
     return np.concatenate([corners, np.full((*corners.shape[:2], 1), height)], axis=2)

@@ -1,4 +1,4 @@
-"""Pins and shafts with what holds and parts the plates on them: heads and caps, retaining rings, washers, spacers."""
+"""Pins and shafts with their fasteners and distance pieces: heads and caps, retaining rings, washers, spacers."""
 
 from __future__ import annotations
 
@@ -17,10 +17,10 @@ MATERIALS: dict[Process, tuple[str, str]] = {
     "laser": ("sheet", "steel"),
     "mill": ("aluminium", "steel"),
 }
-"""Of plates and of pins."""
+"""Materials of plates and of pins."""
 
 Stack = list[tuple[float, float, float, float]]
-"""Rings over one another: outer and inner radius, and the heights of their faces."""
+"""Rings on top of one another: outer and inner radius, and the heights of their faces."""
 
 
 def held_pin(
@@ -36,18 +36,18 @@ def held_pin(
     stub: float = 0.0,
     upside_down: bool = False,
 ) -> list[Part]:
-    """A pin with its head and its cap, or with a retaining ring at either end.
+    """Make a pin with its head and its cap, or with a retaining ring at either end.
 
     Parameters
     ----------
     ends : pair of float
-        Heights of the lowest and of the uppermost face that it holds together.
+        Heights of the lowest and the highest face that it holds together.
     seats : sequence of Prism
-        What the shank is there instead of a cylinder, in the order of heights.
+        Sections of the shank that are not cylindrical, in order of height.
     stub : float
-        By how much it stands out farther, beyond its cap or upper ring.
+        Length of the pin beyond its cap or upper ring.
     upside_down : bool
-        Whether head and cap, and the stub, change ends.
+        Whether head, cap and stub are at opposite ends.
     """
     low, high = ends
     shank, top = 0.5 * sizes.pin, high + sizes.play
@@ -57,10 +57,12 @@ def held_pin(
         found: list[Prism] = []
         for outer, inner, z, end in stack:
             if upside_down:
+                # Mirror about the middle of the pin.
                 z, end = low + high - end, low + high - z
             region = ring(place, outer, inner)
             if outer == shank and inner == 0.0:
                 for seat in cut:
+                    # Replace the cylinder by the keyed section at each seat.
                     if z <= seat.low and seat.high <= end:
                         found += [Prism(region, z, seat.low), seat]
                         z = seat.high
@@ -116,7 +118,7 @@ def fillers(
     *,
     washers: bool = True,
 ) -> list[Part]:
-    """Washers in the gap between neighbouring planes, or a spacer through planes that are passed, or without any."""
+    """Make washers in the gap between neighbouring planes, otherwise a spacer."""
     floor, ceiling = gap
     washer = washer_for(sizes.pin, sizes.width)
     own = f"{name}_{planes[0]}_{planes[1]}"
@@ -127,6 +129,7 @@ def fillers(
             for n in range(sizes.washers)
         ]
     else:
+        # No standard washer, or a wider gap: one spacer.
         pieces = [(f"spacer_{own}", floor, ceiling - sizes.play, "")]
     parts = []
     region: Region = ring(place, 0.5 * sizes.collar, 0.5 * sizes.hole)

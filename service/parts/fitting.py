@@ -1,7 +1,7 @@
-"""Sizes with which a mechanism has room for its parts: those of the request, or the thickest pins that fit.
+"""Search for sizes at which the parts of a mechanism fit: those of the request, or the thickest pins that fit.
 
-What is built of a mechanism differs by its type; that sizes are stated or found, judged, tried and refused does not. A
-subclass of :class:`Fitting` says how an assembly is made in given sizes.
+The assembly depends on the type of mechanism; requesting, checking, trying and refusing sizes does not. A subclass of
+:class:`Fitting` builds an assembly in given sizes.
 """
 
 from __future__ import annotations
@@ -35,31 +35,31 @@ from service.parts.sizes import (
 from service.parts.standards import PINS
 
 LEAST_FACTOR, STEPS = 2.0**16, 7
-"""How much larger a mechanism is tried at most, and how finely the least factor is then found: steps of halving."""
+"""Maximum trial scale, and number of bisection steps that refine the minimum scale."""
 
 
 class Trial(NamedTuple):
-    """An assembly, or why there is none."""
+    """An assembly, or the reason why there is none."""
 
     assembly: Assembly | None
     reason: str
 
 
 class Fitting(ABC):
-    """One request: a mechanism, and what is asked of its parts.
+    """One request: a mechanism, and the options of its parts.
 
     Parameters
     ----------
     query : PartsQuery
     unit : float
-        Millimetres to a unit of length of the design.
+        Millimetres per length unit of the design.
     size : float
-        Of the mechanism, in that unit.
+        Size of the mechanism, in that unit.
 
     Raises
     ------
     NotMade
-        Where it is larger than parts are made.
+        The mechanism exceeds the maximum size of parts.
     """
 
     def __init__(self, query: PartsQuery, unit: float, size: float) -> None:
@@ -67,18 +67,18 @@ class Fitting(ABC):
         largest, most = size * unit * query.scale, LARGEST_ASSEMBLY / (size * unit)
         if largest > LARGEST_ASSEMBLY:
             raise NotMade(
-                f"The mechanism is {largest / 1000.0:.4g} m large at this scale, and parts are made up to "
-                f"{LARGEST_ASSEMBLY / 1000.0:g} m; scale {rounded_down(most):g} is the greatest that works.",
+                f"The mechanism is {largest / 1000.0:.4g} m large at this scale, but parts are made up to "
+                f"{LARGEST_ASSEMBLY / 1000.0:g} m; use at most scale {rounded_down(most):g}.",
                 "/query/scale",
             )
 
     def assembly(self) -> Assembly:
-        """The assembly of the request.
+        """Return the assembly of the request.
 
         Raises
         ------
         NotMade
-            Where there is no room for it.
+            The parts do not fit.
         """
         if self._query.width is None and self._query.pin is None:
             return self.by_default()
@@ -88,29 +88,29 @@ class Fitting(ABC):
             raise self.refusal(sizes, trial.reason)
         return trial.assembly
 
-    # What a type of mechanism says
+    # Methods that depend on the type of mechanism
 
     @abstractmethod
     def tried(self, sizes: Sizes, scale: float) -> Trial:
-        """The assembly in these sizes."""
+        """Build the assembly in these sizes."""
 
     @property
     @abstractmethod
     def most(self) -> float:
-        """The thickest pin that is tried where none is stated, in units of the design."""
+        """Thickest default pin that is tried, in units of the design."""
 
     def opening(self, sizes: Sizes) -> tuple[float, str]:
-        """The widest of what links are cut out for, and what it is for."""
+        """Return the widest opening in the links, and its purpose."""
         return sizes.hole, "pins"
 
     def of_the_problem(self) -> Iterator[Sizes]:
-        """Sizes that the problem states."""
+        """Yield the sizes that the problem contains."""
         yield from ()
 
     # Sizes
 
     def stated(self) -> Sizes:
-        """The sizes of a request that states the width or the pin; the other follows."""
+        """Return the sizes of a request that gives the width or the pin; the other one follows."""
         query, unit = self._query, self._unit
         width = None if query.width is None else query.width * unit
         pin = None if query.pin is None else query.pin * unit
@@ -122,12 +122,12 @@ class Fitting(ABC):
             path = "/query/pin"
         if not THINNEST_PIN <= pin <= WIDEST_PIN:
             raise NotMade(
-                f"Pins of {pin / unit:.6g} {self._words} are none that are made; from {THINNEST_PIN / unit:g} to "
-                f"{WIDEST_PIN / unit:g} {self._words} they are.", path,
+                f"Pins of {pin / unit:.6g} {self._words} are not available; use {THINNEST_PIN / unit:g} to "
+                f"{WIDEST_PIN / unit:g} {self._words}.", path,
             )  # fmt: skip
         if width is not None and width > LARGEST_ASSEMBLY:
             raise NotMade(
-                f"Parts are made up to {LARGEST_ASSEMBLY / unit:g} {self._words}, and links are narrower than that.",
+                f"Links must be narrower than {LARGEST_ASSEMBLY / unit:g} {self._words}, the maximum size of parts.",
                 "/query/width",
             )
         sizes = self._with(WIDTH * pin if width is None else width, pin)
@@ -139,29 +139,31 @@ class Fitting(ABC):
         return {value: name for name, value in MILLIMETRES.items()}[self._unit]
 
     def _with(self, width: float, pin: float) -> Sizes:
-        """Sizes with what the request states of thickness and clearance."""
+        """Return sizes with the thickness and clearance of the request."""
         query, unit = self._query, self._unit
         clearance = CLEARANCES[query.process] if query.clearance is None else query.clearance * unit
         if query.clearance is None:
+            # The process's default is adapted to very thin and very thick pins.
             clearance = min(max(clearance, 2.0 * TIGHTEST * pin), 0.5 * LOOSEST * pin)
         thickness = sheet_for(pin) if query.thickness is None else query.thickness * unit
         return Sizes(query.process, width, pin, thickness, clearance)
 
     def _judged(self, sizes: Sizes) -> None:
-        """Refuse sizes that contradict one another, whatever the mechanism is."""
+        """Refuse sizes that contradict one another for any mechanism."""
         unit, words = self._unit, self._words
         judged(sizes, unit)
         hole, what = self.opening(sizes)
+        # One wall on each side of the hole.
         least = hole + 2.0 * WALL * sizes.pin
         if sizes.width < least * (1.0 - 1e-9):
             raise NotMade(
-                f"Links with {what} of {sizes.pin / unit:.6g} {words} are to be {rounded_up(least / unit):g} {words} "
-                "wide at least, which leaves a wall of a quarter of the pin.",
+                f"Links with {what} of {sizes.pin / unit:.6g} {words} must be at least {rounded_up(least / unit):g} "
+                f"{words} wide, which leaves a wall of a quarter of the pin.",
                 "/query/pin" if self._query.width is None else "/query/width",
             )
 
     def by_default(self) -> Assembly:
-        """The assembly with the thickest pins that leave room, those of the problem's block first."""
+        """Return the assembly with the thickest pins that fit; sizes in the problem come first."""
         scale = self._query.scale
         for sizes in self.of_the_problem():
             trial = self.tried(sizes, scale)
@@ -169,10 +171,11 @@ class Fitting(ABC):
                 return trial.assembly
         most = self.most * self._unit * scale
         offered = [self._with(WIDTH * pin, pin) for pin in PINS if pin <= most]
+        # Try at least the thinnest pin, for a meaningful error.
         offered = offered or [self._with(WIDTH * THINNEST_PIN, THINNEST_PIN)]
         last = ""
         found = None
-        # What fits is nearly always a matter of size: the thickest, or else the thinnest, and then between them.
+        # Fit is almost monotonic in size: try the thickest pin, then the thinnest, then bisect between them.
         low, high, at = 0, len(offered), len(offered) - 1
         while low < high:
             self._judged(offered[at])
@@ -181,6 +184,7 @@ class Fitting(ABC):
                 found, low = trial.assembly, at + 1
             else:
                 last, high = trial.reason, at
+            # After the first failure try the thinnest, to detect impossible mechanisms early.
             at = (low + high) // 2 if found else 0
             if found is None and high == 0:
                 break
@@ -191,31 +195,33 @@ class Fitting(ABC):
     # Refusals
 
     def refusal(self, sizes: Sizes, reason: str, path: str = "") -> NotMade:
-        """What is said where parts find no room: the least scale at which they do, and the greatest width at this."""
+        """Return the error for parts that do not fit, with the minimum scale at which they do and the maximum width at
+        this one.
+        """
         scale, unit = self._query.scale, self._unit
         path = path or ("/query/pin" if self._query.width is None else "/query/width")
-        known = f"There is no room for links {sizes.width / unit:.4g} {self._words} wide: {reason}."
+        known = f"Links {sizes.width / unit:.4g} {self._words} wide do not fit: {reason}."
         least = self._least_scale(sizes, scale)
         if least is None:
             largest = rounded_down(LARGEST_ASSEMBLY / (self._size * unit))
             if self.tried(self._with(WIDTH * THINNEST_PIN, THINNEST_PIN), largest).assembly is not None:
-                words = f"{known} Narrower ones fit, but these at no scale up to {largest:g}, the greatest."
+                words = f"{known} Narrower links fit, but these fit at no permitted scale (up to {largest:g})."
                 return NotMade(words, path)
-            return NotMade(f"{known} Nor is there for narrower ones: the mechanism cannot be built in planes.")
-        words = f"{known} These sizes fit from scale {least:.4g} on"
+            return NotMade(f"{known} Narrower links do not fit either: the mechanism cannot be built in planes.")
+        words = f"{known} These sizes fit at scale {least:.4g} or more"
         widest, thinner = sizes.width * scale / least, sizes.pin * scale / least
         if thinner >= THINNEST_PIN:
             words += (
-                f"; at scale {scale:g} a width of {rounded_down(widest / unit):g} {self._words} does, with pin, "
+                f"; at scale {scale:g} a width of {rounded_down(widest / unit):g} {self._words} fits, with pin, "
                 "thickness and clearance in proportion"
             )
         return NotMade(f"{words}.", path)
 
     def _least_scale(self, sizes: Sizes, scale: float) -> float | None:
-        """The least scale, up to a few hundredths, at which these sizes fit."""
+        """Find the minimum scale, to a few hundredths, at which these sizes fit."""
         too_small, fits = scale, None
         size, factor = self._size * self._unit * scale, 2.0
-        # No mechanism has room for a pin that is twice as thick as all of it is large.
+        # Skip scales at which a single pin would be twice as thick as the whole mechanism is large.
         while 2.0 * size * factor < sizes.pin:
             too_small, factor = scale * factor, 2.0 * factor
         most = LEAST_FACTOR * factor / 2.0
@@ -227,32 +233,34 @@ class Fitting(ABC):
         if fits is None:
             return None
         for _ in range(STEPS):
+            # Bisect on a logarithmic scale.
             middle = math.sqrt(too_small * fits)
             if self.tried(sizes, middle).assembly is not None:
                 fits = middle
             else:
                 too_small = middle
+        # Prefer a round scale, if it works.
         rounded = rounded_up(fits)
         return rounded if self.tried(sizes, rounded).assembly is not None else fits
 
 
 def fault_of(assembly: Assembly, sizes: Sizes, *, across: bool = True) -> str:
-    """Why an assembly cannot be made: too little is left around a hole, or two parts meet; empty where it can.
+    """Return the reason why an assembly cannot be made (thin walls or interference), or an empty string.
 
-    Parts whose axes are not parallel are compared where ``across`` says so.
+    Parts with non-parallel axes are compared only if ``across`` is true.
     """
     thin = too_thin(assembly, 0.99 * WALL * sizes.pin)
     if thin:
-        return f"{named(thin[0].part)} has too little left around its holes"
+        return f"{named(thin[0].part)} has too thin walls around its holes"
     meeting = overlaps(assembly, across=across)
     if not meeting:
         return ""
     (one, other), at = (named(name) for name in meeting[0].parts), meeting[0].at
     if assembly.motion.input_field == "input_place":
-        return f"{one} and {other} meet at the input's place {at / assembly.unit:.4g}"
-    return f"{one} and {other} meet at an input angle of {math.degrees(at):.1f}°"
+        return f"{one} and {other} collide at the input's place {at / assembly.unit:.4g}"
+    return f"{one} and {other} collide at an input angle of {math.degrees(at):.1f}°"
 
 
 def named(part: str) -> str:
-    """A part in a sentence."""
+    """Return the name of a part for use in a sentence."""
     return "the " + part.replace("_", " ")

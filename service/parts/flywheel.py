@@ -1,8 +1,8 @@
 """Parts of a flywheel: the wheel on its keyed shaft between two plates.
 
-The wheel is one plate, as thick as the answer says. A disc has a bore with a keyway, which the answer's full disc has
-not; shaft and key fill it and turn with it. A rim has arms and a hub beside, which the answer's ring has not. The bill
-has the mass of the wheel as it is made, and the README how that differs from the answer's.
+The wheel is one plate of the answer's thickness. A disc has a bore with a keyway, in contrast to the answer's solid
+disc; shaft and key fill it and rotate with it. A rim also has arms and a hub, in contrast to the answer's ring. The
+bill of materials has the mass of the wheel as made, and the README the difference from the answer's.
 """
 
 from __future__ import annotations
@@ -38,22 +38,22 @@ from service.parts.sizes import (
 )
 
 BORE = 0.2
-"""The thickest shaft where none is stated, as a share of the wheel's radius."""
+"""Thickest default shaft, as a share of the wheel's radius."""
 
 HUB, ARMS, ARM = 1.0, 5, 0.4
-"""Radius of a hub, how many arms a rim has, and their width; lengths in diameters of the shaft."""
+"""Radius of a hub in shaft diameters, number of arms of a rim, and their width in shaft diameters."""
 
 MOST_OF_WALL = 3.5
-"""The thickest shaft where none is stated, in walls of a rim."""
+"""Thickest default shaft, in walls of a rim."""
 
 WINDOW = 0.5
-"""Least width of the windows between hub and rim, in diameters of the shaft; narrower ones are not cut."""
+"""Minimum width of the windows between hub and rim, in shaft diameters; narrower ones are not cut."""
 
 ON_SHAFT = Carrier("flywheel_shaft", None)
 
 
 def flywheel_parts(design: Any, problem: Any, query: PartsQuery) -> Assembly:
-    """The parts of a flywheel.
+    """Make the parts of a flywheel.
 
     Parameters
     ----------
@@ -65,21 +65,21 @@ def flywheel_parts(design: Any, problem: Any, query: PartsQuery) -> Assembly:
     Raises
     ------
     NotMade
-        Where the wheel has no room for such a shaft.
+        The shaft does not fit the wheel.
     """
     sizing = GearSizing(query, problem.length_unit)
     wheel = design.mechanism
     sizing.judge_size(2.0 * wheel.radius * sizing.factor, "flywheel")
     outer, inner, thick = (sizing.factor * length for length in (wheel.radius, wheel.inner_radius, wheel.thickness))
     density = f"{wheel.density:.6g} kg/m³" if problem.units == "si" else f"density {wheel.density:.6g}"
-    # In the answer's unit of mass: problem.scale is the length unit in that of the density.
+    # Mass unit of the answer: problem.scale is the length unit in that of the density.
     to_cubic_millimetre = (problem.scale / sizing.unit) ** 3
     made = _Wheel(outer, inner, thick, _sizes(outer, inner, sizing), wheel.density * to_cubic_millimetre)
     return made.assembly(sizing, density, "kg" if problem.units == "si" else "units of mass")
 
 
 def _sizes(outer: float, inner: float, sizing: GearSizing) -> Sizes:
-    """Sizes with the bore that is stated, or the thickest that the wheel has room for."""
+    """Return sizes with the requested bore, or with the thickest that fits the wheel."""
     query, unit = sizing.query, sizing.unit
     room = inner or outer
     most = min(BORE * outer, room / (HUB + WINDOW))
@@ -88,14 +88,14 @@ def _sizes(outer: float, inner: float, sizing: GearSizing) -> Sizes:
     bore = pin_below(min(most, WIDEST_PIN)) if query.bore is None else query.bore * unit
     if not THINNEST_PIN <= bore <= WIDEST_PIN:
         raise NotMade(
-            f"Shafts of {bore / unit:.6g} {sizing.words} are none that are made; from {THINNEST_PIN / unit:g} to "
-            f"{WIDEST_PIN / unit:g} {sizing.words} they are.", sizing.path,
+            f"Shafts of {bore / unit:.6g} {sizing.words} are not available; use {THINNEST_PIN / unit:g} to "
+            f"{WIDEST_PIN / unit:g} {sizing.words}.", sizing.path,
         )  # fmt: skip
     if HUB * bore > room:
         where = "within the rim" if inner else "in the disc"
         raise NotMade(
-            f"A bore of {bore / unit:.6g} {sizing.words} leaves no room for a hub {where}; up to "
-            f"{rounded_down(room / HUB / unit):g} {sizing.words} do.", "/query/bore",
+            f"A bore of {bore / unit:.6g} {sizing.words} leaves no space for a hub {where}; use at most "
+            f"{rounded_down(room / HUB / unit):g} {sizing.words}.", "/query/bore",
         )  # fmt: skip
     usual = min(max(CLEARANCES[query.process], 2.0 * TIGHTEST * bore), 0.5 * LOOSEST * bore)
     clearance = usual if query.clearance is None else query.clearance * unit
@@ -107,7 +107,7 @@ def _sizes(outer: float, inner: float, sizing: GearSizing) -> Sizes:
 
 @dataclass(frozen=True)
 class _Wheel:
-    """A flywheel in millimetres; ``inner`` is 0 of a disc, ``density`` a mass to a cubic millimetre."""
+    """A flywheel in millimetres; ``inner`` is 0 for a disc, ``density`` is mass per cubic millimetre."""
 
     outer: float
     inner: float
@@ -116,7 +116,7 @@ class _Wheel:
     density: float
 
     def assembly(self, sizing: GearSizing, density: str, mass_unit: str) -> Assembly:
-        """The wheel on its shaft, if it has room there."""
+        """Return the wheel on its shaft, after an interference check."""
         sizes = self.sizes
         levels = stacked([sizes.thickness, self.thick, sizes.thickness], sizes)
         bore = keyed_bore(0j, sizes.pin, key_for(sizes.pin), sizes.clearance)
@@ -135,8 +135,9 @@ class _Wheel:
         return looked_at(Assembly(parts, motion, 1, 2, sizing.factor, sizing.query.scale, notes), sizes, sizing)
 
     def _windows(self) -> tuple[Loop, ...]:
-        """What is cut out between the hub, the arms and the rim."""
+        """Return the cut-outs between the hub, the arms and the rim."""
         hub, half = HUB * self.sizes.pin, 0.5 * ARM * self.sizes.pin
+        # Without enough space the plate inside the rim stays solid.
         if self.inner < hub + WINDOW * self.sizes.pin:
             return ()
         far, near = (math.asin(half / radius) for radius in (self.inner, hub))
@@ -151,19 +152,21 @@ class _Wheel:
         return tuple(Loop(tuple(turn * z for z in corners), bulges) for turn in turns)
 
     def _notes(self, wheel: Part, bore: Loop, windows: tuple[Loop, ...], mass_unit: str) -> tuple[str, ...]:
-        """How mass and moment of inertia differ from the answer's."""
+        """Describe the difference of mass and moment of inertia from the answer's."""
         assert wheel.mass is not None
         stated = self.density * self.thick * math.pi * (self.outer**2 - self.inner**2)
         if not self.inner:
             lost = self.density * self.thick * area(bore)
+            # The bore is treated as a disc of the shaft's radius.
             share = 0.5 * lost * (0.5 * self.sizes.pin) ** 2 / (0.5 * stated * self.outer**2)
             return (
-                f"The answer's disc of {stated:.6g} {mass_unit} is full: bore and keyway take {lost:.4g} {mass_unit} "
-                f"of it and {share:.2g} of its moment of inertia; the shaft and the key that fill them turn with it.",
+                f"The answer's disc of {stated:.6g} {mass_unit} is solid: bore and keyway remove {lost:.4g} "
+                f"{mass_unit} "
+                f"of it and {share:.2g} of its moment of inertia; the shaft and the key that fill them rotate with it.",
             )
         more = wheel.mass - stated
         arms = f"hub and {ARMS} arms" if windows else "plate within it"
         return (
-            f"The rim alone has the mass of the answer, {stated:.6g} {mass_unit}, and its moment of inertia; the "
-            f"{arms} add {more:.4g} {mass_unit}, so that the speed varies by less than is allowed.",
+            f"The rim alone has the answer's mass, {stated:.6g} {mass_unit}, and its moment of inertia; the "
+            f"{arms} add {more:.4g} {mass_unit}, so that the speed varies less than permitted.",
         )

@@ -1,4 +1,4 @@
-"""Outlines of what touches a cam: the plate with a flat face on a slide, and the arm with a flat face on a pivot."""
+"""Outlines of flat-faced followers: the plate on a slide, and the arm on a pivot."""
 
 from __future__ import annotations
 
@@ -8,27 +8,28 @@ import math
 from service.parts.shapes import Loop
 
 FACE = 0.6
-"""Thickness of the plate behind a face on a slide, in widths of a link."""
+"""Thickness of the plate behind a face on a slide, in link widths."""
 
 BEYOND = 0.25
-"""By how much a face reaches beyond its contact, in widths of a link."""
+"""Extension of a face beyond its contact, in link widths."""
 
 
 def faced_slide(face: float, stem: float, reach: tuple[float, float], width: float, end: float) -> Loop:
-    """A face square to x, with a stem along x that ends round.
+    """Return a face normal to x, with a stem along x that has a round end.
 
     Parameters
     ----------
     face, stem : float
         x of the face and y of the stem's axis.
     reach : pair of float
-        Least and greatest y of the contact.
+        Minimum and maximum y of the contact.
     width : float
-        Of the stem.
+        Width of the stem.
     end : float
         x of the centre of its round end.
     """
     beyond, half = BEYOND * width, 0.5 * width
+    # The face covers all contacts and at least the stem.
     low, high = min(reach[0], stem - half) - beyond, max(reach[1], stem + half) + beyond
     back = face + FACE * width
     corners = (
@@ -39,22 +40,23 @@ def faced_slide(face: float, stem: float, reach: tuple[float, float], width: flo
 
 
 def faced_arm(offset: float, reach: tuple[float, float], width: float) -> Loop:
-    """An arm about a pivot at the origin with a face along x, on the side +y.
+    """Return an arm about a pivot at the origin with a face along x, on the side +y.
 
     Parameters
     ----------
     offset : float
         y of the face.
     reach : pair of float
-        Least and greatest x of the contact.
+        Minimum and maximum x of the contact.
     width : float
-        Of the arm, and of the round end about its pivot.
+        Width of the arm, and of the round end about its pivot.
     """
     radius = 0.5 * width
     tip = reach[1] + BEYOND * width
     top, bottom = complex(tip, offset), complex(tip, offset - 0.8 * width)
-    # From the tip along the face; then round the pivot, and back along a tangent.
+    # From the tip along the face, then around the pivot, and back along a tangent.
     last = cmath.phase(bottom) - math.acos(min(1.0, radius / abs(bottom)))
+    # The face passes above the round end, crosses it, or passes below it.
     if offset >= radius:
         start = complex(max(0.0, reach[0] - BEYOND * width), offset)
         first = cmath.phase(start) + math.acos(min(1.0, radius / abs(start)))
@@ -66,7 +68,7 @@ def faced_arm(offset: float, reach: tuple[float, float], width: float) -> Loop:
         first = 0.0
         before = [top, complex(radius, offset)]
     turn = (last - first) % (2.0 * math.pi)
-    # Two arcs, neither of which is more than half a turn.
+    # Two arcs, neither of which exceeds half a turn.
     around = [radius * cmath.exp(1j * (first + share * turn)) for share in (0.0, 0.5, 1.0)]
     corners, bulge = [*before, *around, bottom], math.tan(0.125 * turn)
     bulges = [0.0] * len(before) + [bulge, bulge, 0.0, 0.0]
@@ -74,7 +76,8 @@ def faced_arm(offset: float, reach: tuple[float, float], width: float) -> Loop:
 
 
 def bell_crank(first: complex, second: complex, radius: float) -> Loop:
-    """Two bars with round ends from a pivot at the origin, the second counter-clockwise of the first by less than π.
+    """Return two bars with round ends from a pivot at the origin, the second counter-clockwise of the first by less
+    than π.
 
     Parameters
     ----------
@@ -85,7 +88,7 @@ def bell_crank(first: complex, second: complex, radius: float) -> Loop:
     """
     angle = cmath.phase(second / first)
     across = [-1j * radius * z / abs(z) for z in (first, second)]
-    # Where the inner sides of the two bars meet.
+    # Intersection of the inner sides of the two bars.
     inner = cmath.rect(radius / math.sin(0.5 * angle), cmath.phase(first) + 0.5 * angle)
     corners = (across[0], first + across[0], first - across[0], inner, second + across[1], second - across[1],
                -across[1])  # fmt: skip

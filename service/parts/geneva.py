@@ -1,11 +1,12 @@
-"""Geneva drives in the plane as parts: wheel, crank with rollers, locking disc, shafts and bases.
+"""Planar Geneva drives as parts: wheel, crank with rollers, locking disc, shafts and bases.
 
-An external wheel lies beside the locking disc in the first plane; the crank turns above both, and its rollers hang into
-the slots. An internal wheel is a ring on a plate that turns on a shaft of the base. Its crank hangs from a second base,
-with the rollers and the locking crescent below it, because nothing can stand on the first one inside of the ring.
+An external wheel lies next to the locking disc in the first plane; the crank turns above both, and its rollers hang
+into the slots. An internal wheel is a ring on a plate that turns on a shaft of the base. Its crank hangs from a second
+base, with the rollers and the locking crescent below it, because nothing inside the ring can be supported by the first
+base.
 
-Between roller and slot, and between disc and locking arc, the answer may leave nothing. Here slots are as wide as the
-roller with the clearance on each side, and the disc stays off the arcs by the clearance, where the answer leaves less.
+The answer may have no clearance between roller and slot, or between disc and locking arc. Here slots are at least as
+wide as the roller with the clearance on each side, and the disc stays off the arcs by at least the clearance.
 """
 
 from __future__ import annotations
@@ -36,10 +37,10 @@ ON_WHEEL, ON_CRANK = Carrier(WHEEL, None), Carrier(CRANK, None)
 WHEEL_COLOUR, CRANK_COLOUR, DISC_COLOUR, ROLLER_COLOUR = LINK_COLOURS[1], LINK_COLOURS[0], LINK_COLOURS[5], BLOCK_COLOUR
 
 PIN_OF_ROLLER = 0.4
-"""The thickest pin that is tried where none is stated, in diameters of the roller."""
+"""Thickest default pin, in roller diameters."""
 
 ON_ARC = 1e-9
-"""Share of the disc's radius within which a corner of it lies on its locking arc."""
+"""Share of the disc's radius within which a corner counts as lying on its locking arc."""
 
 
 @dataclass(frozen=True)
@@ -51,9 +52,9 @@ class GenevaMotion(Turning):
     course : Course
     rollers : int
     axis : complex
-        Of the crank; the wheel's is the origin.
+        Axis of the crank; the wheel's is the origin.
     sense : float
-        1 where the wheel turns as the crank does, −1 where against it.
+        1 if the wheel turns in the crank's direction, −1 if against it.
     """
 
     course: Course
@@ -62,7 +63,7 @@ class GenevaMotion(Turning):
     sense: float
 
     def placed(self, carrier: Carrier, state: Real) -> Placed:
-        """How what a carrier carries has moved since the roller entered."""
+        """Return the displacement of a carrier since the roller entered."""
         if carrier.link == GROUND:
             return still(state)
         if carrier.link == CRANK:
@@ -71,7 +72,7 @@ class GenevaMotion(Turning):
 
 
 def geneva_parts(design: Any, problem: Any, query: PartsQuery) -> Assembly:
-    """The parts of a Geneva drive in the plane.
+    """Make the parts of a planar Geneva drive.
 
     Parameters
     ----------
@@ -83,12 +84,12 @@ def geneva_parts(design: Any, problem: Any, query: PartsQuery) -> Assembly:
     Raises
     ------
     NotMade
-        Where a drag link is before the crank, or there is no room for such parts.
+        A drag link drives the crank, or the parts do not fit.
     """
     if design.mechanism.drag_link is not None:
         raise NotMade(
-            "Parts are made of Geneva drives whose crank is the input; the coupler of this drag link would pass the "
-            "shafts on both sides."
+            "Parts are only available for Geneva drives whose crank is the input; the coupler of this drag link would "
+            "collide with the shafts on both sides."
         )
     return _Geneva(design.mechanism, problem, query).assembly()
 
@@ -103,20 +104,20 @@ class _Geneva(Fitting):
 
     @property
     def most(self) -> float:
-        """A share of the roller."""
+        """Thickest default pin, as a share of the roller."""
         return PIN_OF_ROLLER * self._mechanism.roller_diameter
 
     def tried(self, sizes: Sizes, scale: float) -> Trial:
-        """The assembly in these sizes."""
+        """Build the assembly in these sizes."""
         builder = _Builder(self._mechanism, self._problem, sizes, self._unit * scale)
         if builder.wheel.land <= 0.0 or not builder.wheel.web > 0.0:
-            return Trial(None, "the wheel has no room for slots with this clearance")
+            return Trial(None, "slots with this clearance do not fit into the wheel")
         least, needed = builder.about_shaft()
         if least < needed:
             return Trial(None, (
-                f"where the wheel passes the locking disc reaches {least / self._unit:.4g} {self._words} from its "
-                f"axis, and the bore for the crankshaft with its key needs {needed / self._unit:.4g}; a thinner "
-                "crankshaft or a larger center distance leaves more"
+                f"the locking disc reaches {least / self._unit:.4g} {self._words} from its axis where the wheel passes "
+                f"it, but the bore for the crankshaft with its key needs {needed / self._unit:.4g}; use a thinner "
+                "crankshaft or a larger center distance"
             ))  # fmt: skip
         assembly = builder.assembled(scale)
         fault = fault_of(assembly, sizes)
@@ -136,17 +137,20 @@ class _Builder:
             mechanism.stations,
             factor * mechanism.center_distance,
             factor * mechanism.wheel_radius,
+            # Slots are at least a clearance wider than the roller on each side.
             max(0.5 * factor * mechanism.slot_width, self._roller + sizes.clearance),
             factor * mechanism.slot_end_radius,
             factor * mechanism.locking_arc_radius,
         )
+        # The locking gap and the relief are at least the clearance.
         self._gap = max(factor * (mechanism.locking_arc_radius - mechanism.locking_radius), sizes.clearance)
         self._relief = max(factor * problem.relief, sizes.clearance)
         self._axis = complex(self.wheel.center_distance)
         self._wheel_shaft = factor * mechanism.bore or sizes.pin
         self._crank_shaft = factor * problem.crank_shaft_diameter or sizes.pin
         self._stack = Stack(sizes, (self._wheel_shaft, self._crank_shaft))
-        # As a roller enters: the crank's own direction, and the wheel, of which a slot then lies along x in its frame.
+        # State as a roller enters: direction of the crank, and rotation of the wheel, one slot of which is along x in
+        # its frame.
         sense = -1.0 if self._internal else 1.0
         self._way = -sense * cmath.exp(-1j * self._course.geneva.half)
         self._wheel_turn = cmath.exp(1j * sense * self.wheel.step)
@@ -155,13 +159,13 @@ class _Builder:
         self._rollers = [self._axis + self._way * crank * turn for turn in turns]
 
     def assembled(self, scale: float) -> Assembly:
-        """All parts."""
+        """Build the assembly of all parts."""
         parts, planes = (self._ring(), 3) if self._internal else (self._wheel_beside(), 2)
         motion = GenevaMotion(
             self._size(), self._course, self._mechanism.rollers, self._axis, 1.0 if self._internal else -1.0
         )
-        notes = ("The input is the crank; an input angle of 0 is where a roller enters a slot.",
-                 "Keys join the shafts to what turns with them; they stand out beyond the bases.")  # fmt: skip
+        notes = ("The input is the crank; at an input angle of 0 a roller enters a slot.",
+                 "All rotating parts are keyed to their shafts, which protrude beyond the bases.")  # fmt: skip
         return Assembly(tuple(parts), motion, planes, 2 if self._internal else 1, self._factor, scale, notes)
 
     def _size(self) -> float:
@@ -169,7 +173,7 @@ class _Builder:
         return max(self.wheel.center_distance + self._factor * self._mechanism.crank_radius, 2.0 * ring_radius)
 
     def about_shaft(self) -> tuple[float, float]:
-        """How far the locking disc reaches from its axis at least, and how far it is cut out with a wall around."""
+        """Return the minimum reach of the locking disc from its axis, and the radius of its bore plus a wall."""
         if self._internal:
             return math.inf, 0.0
         return float(self._locking().outer.min()), self._stack.hub(self._crank_shaft) + WALL * self._sizes.pin
@@ -178,7 +182,7 @@ class _Builder:
         return self._stack.bore(place, diameter)
 
     def _crank(self, plane: int) -> Part:
-        """The arm of the crank; a plate of several corners for several rollers."""
+        """Make the arm of the crank; a plate with several corners for several rollers."""
         half = 0.5 * max(self._sizes.width, self._of_shaft(self._crank_shaft))
         shape = widened([self._axis, *self._rollers], half)
         holes = [self._hub(self._axis, self._crank_shaft), *(Disc(z, 0.5 * self._sizes.hole) for z in self._rollers)]
@@ -189,11 +193,11 @@ class _Builder:
                                  self._way)  # fmt: skip
 
     def _of_shaft(self, diameter: float) -> float:
-        """Width of a plate around a shaft."""
+        """Return the width of a plate around a shaft."""
         return self._sizes.width if diameter == self._sizes.pin else WIDTH * diameter
 
     def _on_rollers(self, plane: int, crank: int) -> list[Part]:
-        """Rollers and their pins."""
+        """Make the rollers and their pins."""
         parts, stack = [], self._stack
         for n, z in enumerate(self._rollers, 1):
             name = "roller" if len(self._rollers) == 1 else f"roller_{n}"
@@ -203,7 +207,7 @@ class _Builder:
             parts += stack.between(name, ON_CRANK, z, [(plane, crank)])
         return parts
 
-    # A wheel beside the crank
+    # A wheel next to the crank
 
     def _wheel_beside(self) -> list[Part]:
         stack, sizes = self._stack, self._sizes
@@ -260,8 +264,9 @@ class _Builder:
         return parts + self._bases(outside.radius)
 
     def _bases(self, radius: float) -> list[Part]:
-        """Two of them, and posts around the ring."""
+        """Make both bases, and posts around the ring."""
         stack, sizes = self._stack, self._sizes
+        # Posts stay outside the ring at all positions.
         far = radius + 0.5 * sizes.collar + 2.0 * sizes.apart
         posts = [far * cmath.exp(0.25j * math.pi * (2 * n + 1)) for n in range(4)]
         parts: list[Part] = []
@@ -279,17 +284,19 @@ class _Builder:
         ]
 
     def _dowels(self, outside: float) -> list[complex]:
-        """Places of what holds the ring to its plate: beyond locking arcs, up to four of them."""
+        """Return the places of the pins that hold the ring to its plate: outside the locking arcs, at most four."""
         n = self._mechanism.stations
         middle = 0.5 * (self.wheel.center_distance + self.wheel.lock + outside)
+        # Four dowels suffice for any number of stations.
         chosen = range(n) if n <= 4 else [round(k * n / 4) for k in range(4)]
         return [middle * self._wheel_turn * cmath.exp(1j * self.wheel.step * (2 * k + 1)) for k in chosen]
 
     def _crescent_pins(self) -> list[complex]:
-        """Places of what holds the crescent below the crank."""
+        """Return the places of the pins that hold the crescent below the crank."""
         if not self._internal:
             return []
         found = self._locking()
+        # Pins are placed midway between the two edges of the crescent.
         middle = 0.5 * (found.outer + found.inner)
         return [
             self._axis + self._way * complex(middle[k] * np.exp(1j * found.angle[k]))
@@ -299,14 +306,16 @@ class _Builder:
     # Outlines
 
     def _outline(self) -> Loop:
-        """The wheel, or what a ring is cut out for, by its true lines and arcs, as a roller enters."""
+        """Return the wheel, or the cut-out of a ring, by its true lines and arcs, as a roller enters."""
         wheel, side = self.wheel, -1.0 if not self._internal else 1.0
         mouth = cmath.rect(wheel.reach, wheel.mouth)
         corner = cmath.rect(wheel.reach, wheel.step - wheel.lock_half)
         end = complex(wheel.slot_end, wheel.half_slot)
         centre = cmath.rect(wheel.center_distance, wheel.step)
+        # Corner of the next sector, where the locking arc ends.
         following = corner.conjugate() * cmath.exp(2j * wheel.step)
         swept = cmath.phase((following - centre) / (corner - centre)) % (2.0 * math.pi)
+        # The locking arc is concave on an external wheel and convex in a ring.
         arc = math.tan(0.25 * swept) if self._internal else -math.tan(0.25 * (2.0 * math.pi - swept))
         land = math.tan(0.25 * wheel.land)
         sector = (corner.conjugate(), mouth.conjugate(), end.conjugate(), end, mouth, corner)
@@ -318,16 +327,16 @@ class _Builder:
         return Loop(tuple(corners), tuple(bulges))
 
     def _locking(self) -> Any:
-        """The disc or crescent in the crank's frame."""
+        """Return the disc or crescent in the crank's frame."""
         return disc(self.wheel, self._course.geneva, self._mechanism.rollers, self._gap, self._relief)
 
     def _disc(self) -> Loop:
-        """The locking disc: true arcs, and between them what the passing wheel leaves, ray by ray."""
+        """Return the locking disc: true arcs, and between them the curve that the passing wheel leaves, as chords."""
         found = self._locking()
         return self._traced(found.angle, found.outer, closed=True)
 
     def _crescent(self) -> Loop:
-        """The crescent: its arc, and within it what the passing horns leave."""
+        """Return the crescent: its arc, and inside the curve that the passing horns leave."""
         found = self._locking()
         arc = self._traced(found.angle, found.outer, closed=False)
         inner = self._axis + self._way * found.inner * np.exp(1j * found.angle)
@@ -335,7 +344,7 @@ class _Builder:
         return Loop((*arc.corners, *back), (*arc.bulges, *([0.0] * len(back))))
 
     def _traced(self, angle: Real, radius: Real, *, closed: bool) -> Loop:
-        """Corners about the crank's axis; those on the greatest radius are joined by one arc, others by lines."""
+        """Return corners about the crank's axis; those on the maximum radius are joined by one arc, others by lines."""
         arc = float(radius.max())
         on = radius >= arc * (1.0 - ON_ARC)
         count = len(angle)
@@ -347,7 +356,7 @@ class _Builder:
             while on[k] and last + 1 < count and on[last + 1]:
                 last += 1
             z = self._axis + self._way * cmath.rect(float(radius[k]), float(angle[k]))
-            # A run along the arc is divided, so that no arc is longer than half a turn.
+            # Divide a run along the arc, so that no arc exceeds half a turn.
             pieces = max(1, math.ceil((angle[last] - angle[k]) / (0.5 * math.pi))) if last > k else 0
             step = (angle[last] - angle[k]) / pieces if pieces else 0.0
             corners.append(z)

@@ -1,13 +1,13 @@
-"""The groove of a barrel cam as a solid has it: the envelope of the roller, at every radius of the barrel.
+"""The groove of a barrel cam as a solid: the envelope of the roller, at every radius of the barrel.
 
 In the barrel's frame the roller's axis is a radius at the angle ψ and the height s(ψ) along the barrel's axis. A point
-of the roller at the distance ρ along its own axis, in the direction β about it, moves against the barrel by
-ρ e_ψ + s′ e_y for each radian. Where that lies in its surface, cos β ρ + sin β s′ = 0, it touches the wall:
+of the roller at the distance ρ along its axis, in the direction β about it, moves relative to the barrel by ρ e_ψ + s′
+e_y per radian. If that is tangent to its surface, cos β ρ + sin β s′ = 0, the point touches the wall:
 
     p(ψ, ρ) = ρ e_r + s e_y ± g (−s′ e_ψ + ρ e_y) / √(ρ² + s′²),
 
-g the radius of the roller with its clearance. A point of it is √(ρ² + g² s′²/(ρ² + s′²)) away from the barrel's axis,
-which gives the ρ at which a wall meets a cylinder about the axis.
+where g is the radius of the roller with its clearance. The distance of such a point from the barrel's axis is
+√(ρ² + g² s′²/(ρ² + s′²)), which determines the ρ at which a wall meets a cylinder about the axis.
 """
 
 from __future__ import annotations
@@ -24,16 +24,16 @@ from service.parts.bodies import Mesh
 Real = NDArray[np.float64]
 
 COLUMNS, MOST_COLUMNS = 180, 1440
-"""Places around the barrel at which the groove is taken: as few as keep its chords near it."""
+"""Minimum and maximum number of places around the barrel at which the groove is sampled."""
 
 STEPS = 2
-"""Facets of a wall from the floor to the barrel's surface, and of each half of the floor across."""
+"""Number of facets of a wall from the floor to the barrel's surface, and of each half of the floor."""
 
 TURN = 2.0 * np.pi
 
 
 class Wall(NamedTuple):
-    """Where a wall meets a cylinder: angles about the axis, and heights along it."""
+    """Intersection of a wall with a cylinder: angles about the axis, and heights along it."""
 
     angle: Real
     height: Real
@@ -59,21 +59,22 @@ class Groove:
     surface: float
 
     def wall(self, at: Real, radius: float, side: int) -> Wall:
-        """The upper (1) or the lower (−1) wall on a cylinder of a radius about the axis."""
+        """Compute the upper (1) or lower (−1) wall on a cylinder of a radius about the axis."""
         s, v = self.course(at)
         whole = radius**2
+        # Positive root of the quadratic equation for ρ².
         square = 0.5 * (whole - v**2 + np.sqrt((whole + v**2) ** 2 - 4.0 * (self.half * v) ** 2))
         rho, length = np.sqrt(square), np.sqrt(square + v**2)
         return Wall(at + np.arctan2(-side * self.half * v / length, rho), s + side * self.half * rho / length)
 
     def sound(self, columns: int = MOST_COLUMNS) -> bool:
-        """Whether no part of a wall is cut away again by the roller elsewhere: neither of them turns back."""
+        """Return whether the roller cuts away no part of a wall elsewhere: the walls' angles increase monotonically."""
         at = np.linspace(0.0, TURN, columns, endpoint=False)
         walls = (self.wall(at, radius, side) for radius in (self.floor, self.surface) for side in (-1, 1))
         return all(bool((np.diff(wall.angle, append=wall.angle[0] + TURN) > 0.0).all()) for wall in walls)
 
     def columns(self, off: float) -> int:
-        """How many places around the barrel keep the chords of both walls so near to them."""
+        """Return the number of places around the barrel for chords of both walls that deviate by at most ``off``."""
         count = COLUMNS
         while count < MOST_COLUMNS:
             at = np.linspace(0.0, TURN, 2 * count + 1)
@@ -89,14 +90,14 @@ class Groove:
         return count
 
     def barrel(self, low: float, high: float, bore: NDArray[np.complex128], off: float) -> Mesh:
-        """The barrel from one height to another, bored through.
+        """Make the barrel from one height to another, with its bore.
 
         Parameters
         ----------
         bore : complex array
-            Corners of the bore, counter-clockwise about the axis, which it is seen all of from there.
+            Corners of the bore, counter-clockwise and star-shaped about the axis.
         off : float
-            How far chords may be from the groove.
+            Maximum distance of chords from the groove.
         """
         at = np.linspace(0.0, TURN, self.columns(off), endpoint=False)
         radii = np.linspace(self.floor, self.surface, STEPS + 1)
@@ -115,9 +116,11 @@ class Groove:
         rings = [_placed(radius, wall) for radius, wall in (ends[0], *lines, ends[1])]
         holes = [np.column_stack([bore.real, bore.imag, np.full(len(bore), z)]) for z in (high, low)]
         around = [*rings, *holes]
+        # Index of each line's first corner in the mesh.
         starts = np.cumsum([0, *(len(line) for line in around)])
         triangles = []
         for one in range(len(around)):
+            # Consecutive lines close the surface from the bore around the groove and back.
             other = (one + 1) % len(around)
             triangles.append(_strip(around[one], around[other], int(starts[one]), int(starts[other])))
         return Mesh(np.concatenate(around), np.concatenate(triangles))
@@ -128,14 +131,14 @@ def _placed(radius: float, wall: Wall) -> Real:
 
 
 def _strip(one: Real, other: Real, first: int, second: int) -> NDArray[np.int64]:
-    """Triangles between two closed lines around the axis, each in the order of its angles."""
+    """Return triangles between two closed lines around the axis, each in the order of its angles."""
     if len(one) == len(other):
         k = np.arange(len(one))
         ahead = (k + 1) % len(one)
         a, b, c, d = first + k, first + ahead, second + ahead, second + k
         return np.concatenate([np.column_stack([a, b, c]), np.column_stack([a, c, d])])
     angles = [np.unwrap(np.arctan2(line[:, 1], line[:, 0])) for line in (one, other)]
-    # Both begin at the corner with the least angle.
+    # Both start at the corner with the smallest angle.
     begin = [int(np.argmin(np.mod(each, TURN))) for each in angles]
     turned = [np.mod(np.roll(each, -k), TURN) for each, k in zip(angles, begin, strict=True)]
     i = j = 0
@@ -145,6 +148,7 @@ def _strip(one: Real, other: Real, first: int, second: int) -> NDArray[np.int64]
         here, there = first + (begin[0] + i) % n, second + (begin[1] + j) % m
         ahead_one = turned[0][i + 1] if i + 1 < n else TURN + turned[0][0] if i < n else np.inf
         ahead_other = turned[1][j + 1] if j + 1 < m else TURN + turned[1][0] if j < m else np.inf
+        # Advance on the line whose next corner has the smaller angle.
         if ahead_one <= ahead_other:
             found.append((here, first + (begin[0] + i + 1) % n, there))
             i += 1

@@ -1,9 +1,9 @@
-"""A picture of an assembly in isometric projection, as it is built and with its planes drawn apart.
+"""A picture of an assembly in isometric projection, assembled and exploded.
 
-Everything is made of prisms upright on one plane, so that no general removal of hidden lines is needed. All prisms are
-cut at all heights at which one of them begins or ends. What lies in a lower slab never hides what lies in a higher one;
-within a slab the walls of holes are drawn first, then the outer walls from back to front, and at last the upper faces,
-which do not hide one another. Circles and arcs become arcs of ellipses, whose axes are level, as their planes are.
+All bodies are upright prisms on one plane, so that no general hidden-line removal is needed. All prisms are cut at all
+heights at which one of them starts or ends. Bodies of a lower slab never hide those of a higher one. Within a slab the
+walls of holes are drawn first, then the outer walls from back to front, and finally the upper faces, which do not hide
+one another. Circles and arcs become arcs of ellipses with horizontal axes, because their planes are horizontal.
 
 Glossary:
 
@@ -34,44 +34,44 @@ from service.render.page.svg import Box, Element, Viewport, element, line, text,
 from service.render.page.symbols import GREY, INK, scale_bar
 
 ALONG = cmath.exp(0.25j * math.pi)
-"""The horizontal direction that goes to the right in the view."""
+"""The horizontal direction that points to the right in the view."""
 
 TOWARD = -1j * ALONG
 SINE, COSINE = math.sqrt(1.0 / 3.0), math.sqrt(2.0 / 3.0)
-"""Of the elevation at which all three axes are shortened alike."""
+"""Sine and cosine of the elevation at which all three axes are shortened equally."""
 
 LIGHT = cmath.exp(math.radians(-38.0) * 1j)
-"""Where the light comes from, seen from above, as a turn from the direction to the viewer."""
+"""Direction of the light, seen from above, relative to the direction to the viewer."""
 
 BANDS = ((20.0, math.radians(15.0)), (7.0, math.radians(30.0)), (0.0, math.radians(45.0)))
-"""Turn of the normal within one band, of arcs whose radius in pixels is larger than so much."""
+"""Angle of the normal within one band, by minimum radius of the arc in pixels."""
 
 MANY, FINEST = 60, 0.5
-"""Outlines with so many corners are drawn without those that change them by less than so many pixels."""
+"""Outlines with at least this many corners lose those that change them by less than this many pixels."""
 
 LEAST = 0.5
-"""Height of a slab at least, pixels, where no piece is as thin."""
+"""Minimum height of a slab, pixels, unless a piece is thinner."""
 
 THROUGH = 0.3
-"""Opacity of a second base, where what is below it is to be seen."""
+"""Opacity of a second base, so that the parts below it remain visible."""
 
 SHADES = 16
-"""Of a wall."""
+"""Number of shades of a wall."""
 
 CREASE = math.radians(50.0)
-"""Turn of the normal from which on an edge is drawn."""
+"""Minimum angle between normals at which an edge is drawn."""
 
 FULL_OF = 0.8
-"""Radius of what fills a hole, as a share of the hole's."""
+"""Minimum radius of a part that fills a hole, as a share of the hole's."""
 
 SECTIONS = 8
-"""Prisms that stand for a body that is none."""
+"""Number of prisms that approximate a body of another kind."""
 
 HEIGHT, SHARE, MARGIN = 470.0, 0.46, 22.0
-"""Height of the picture, share of its width that shows the assembly as built, and what is left free; pixels."""
+"""Height of the picture, share of its width for the assembled view, and margin; pixels."""
 
 SMALL, LEADING = 10.5, 14.0
-"""Size of the names beside the plates, and between two of them at least, pixels."""
+"""Font size of the names next to the plates, and their minimum line spacing, pixels."""
 
 THIN: dict[str, str | float] = {
     "stroke": INK,
@@ -82,9 +82,10 @@ THIN: dict[str, str | float] = {
 
 
 class Piece(NamedTuple):
-    """What a part has of a slab: a placed region from one height to another; ``ends`` where it goes no higher.
+    """The piece of a part within a slab: a placed region from one height to another; ``ends`` if it is the top.
 
-    Of bodies that are no prisms only the first section ``begins`` and the last ``ends``: there are no lines between.
+    For bodies other than prisms only the first section ``begins`` and the last ``ends``, so that no lines appear
+    between.
     """
 
     part: Part
@@ -96,7 +97,7 @@ class Piece(NamedTuple):
 
 
 class Stretch(NamedTuple):
-    """A part of an outline from ``start`` to ``end`` in one band: ``bulge`` of an arc, ``normal`` of its wall there."""
+    """A piece of an outline from ``start`` to ``end`` in one band: ``bulge`` of the arc, ``normal`` of its wall."""
 
     start: complex
     end: complex
@@ -110,13 +111,13 @@ class Stretch(NamedTuple):
 
 
 def isometric_sheet(assembly: Assembly, title: str, at: float) -> str:
-    """The picture as an SVG document.
+    """Draw the picture as an SVG document.
 
     Parameters
     ----------
     assembly : Assembly
     title : str
-        Without characters that XML forbids.
+        Title without characters that XML forbids.
     at : float
         Input at which it is shown, radians or millimetres along the slide.
     """
@@ -125,13 +126,13 @@ def isometric_sheet(assembly: Assembly, title: str, at: float) -> str:
     apart = Box(EDGE + width + 12.0, TOP, EDGE + FULL, TOP + HEIGHT)
     lifted = lifts(assembly)
     parts = [
-        *_panel(assembly, at, dict.fromkeys(lifted, 0.0), together, "As it is built", named=False),
-        *_panel(assembly, at, lifted, apart, "Its planes apart", named=True),
+        *_panel(assembly, at, dict.fromkeys(lifted, 0.0), together, "Assembled", named=False),
+        *_panel(assembly, at, lifted, apart, "Exploded", named=True),
     ]
     words = f"{len(assembly.parts)} parts, isometric; lengths in millimetres"
     if assembly.scale != 1.0:
         words += f"; {assembly.scale:g} times the design"
-    described = f"An assembly of {len(assembly.parts)} parts from above at an angle, as it is built and drawn apart."
+    described = f"An assembly of {len(assembly.parts)} parts from above at an angle, assembled and exploded."
     return sheet(title, words, described, parts, TOP + HEIGHT)
 
 
@@ -151,13 +152,13 @@ def _panel(
     return [framed(panel, "isometric"), caption(panel, words), drawn, *labels, bar]
 
 
-# What is drawn
+# Content
 
 
 def placed_pieces(assembly: Assembly, at: float, lifted: dict[str, float]) -> list[Piece]:
-    """All bodies of an assembly where they are at an input, each part lifted by so much.
+    """Return all bodies of an assembly in place at an input, each part lifted by a height.
 
-    What is no prism is a stack of its sections.
+    A body other than a prism is approximated by a stack of its sections.
     """
     state = assembly.motion.at(np.array([at]))
     found = []
@@ -176,7 +177,7 @@ def placed_pieces(assembly: Assembly, at: float, lifted: dict[str, float]) -> li
 
 
 def _coarse(region: Region, finest: float) -> Region:
-    """A region without the corners that cannot be told apart: teeth and contours have hundreds."""
+    """Return a region without corners too close to be distinguished; teeth and contours have hundreds."""
     return Region(_coarse_outline(region.outer, finest), tuple(_coarse_outline(hole, finest) for hole in region.holes))
 
 
@@ -184,6 +185,7 @@ def _coarse_outline(outline: Outline, finest: float) -> Outline:
     if not isinstance(outline, Loop) or len(outline.corners) < MANY:
         return outline
     ring = ring_of(outline, beyond=False)
+    # Arcs become chords here, which is invisible at this size.
     kept = shapely.Polygon(np.column_stack([ring.real, ring.imag])).simplify(finest).exterior.coords[:-1]
     corners = tuple(complex(x, y) for x, y in kept)
     return Loop(corners, (0.0,) * len(corners))
@@ -200,15 +202,16 @@ def _moved(outline: Outline, placed: Placed) -> Outline:
 
 
 def slabs(pieces: Sequence[Piece], least: float) -> Iterator[list[Piece]]:
-    """The pieces cut at all heights at which one begins or ends, from below.
+    """Yield the pieces cut at all heights at which one starts or ends, from below.
 
-    Heights that are less than ``least`` apart are one, where no piece is as thin as that.
+    Heights closer than ``least`` are merged, unless a piece is thinner than that.
     """
     size = max(piece.high for piece in pieces) - min(piece.low for piece in pieces)
     near = 1e-6 * size
     ends_of_thin = {height for piece in pieces if piece.high - piece.low <= least for height in (piece.low, piece.high)}
     heights: list[float] = []
     for height in sorted(z for piece in pieces for z in (piece.low, piece.high)):
+        # Very thin pieces keep their own heights; others are merged.
         if not heights or height - heights[-1] > (near if height in ends_of_thin else least):
             heights.append(height)
     levels = np.array(heights)
@@ -228,16 +231,16 @@ def _cut(piece: Piece, low: float, high: float) -> Piece:
 
 
 def view(place: complex, height: float) -> complex:
-    """Where a point appears in the view."""
+    """Project a point to the view."""
     across = place * ALONG.conjugate()
     return complex(across.real, SINE * across.imag + COSINE * height)
 
 
 @lru_cache(maxsize=256)
 def stretches(outline: Outline, *, hole: bool = False, scale: float = 0.0) -> tuple[Stretch, ...]:
-    """An outline in bands, counter-clockwise; normals lead out of what is solid, as turns from :data:`TOWARD`.
+    """Divide an outline into bands, counter-clockwise; normals point out of the solid, relative to :data:`TOWARD`.
 
-    Each slab that a part goes through asks for the same.
+    The result is cached, because each slab of a part needs the same.
     """
     found = []
     for start, end, bulge in _edges(outline):
@@ -248,9 +251,11 @@ def stretches(outline: Outline, *, hole: bool = False, scale: float = 0.0) -> tu
             found.append(Stretch(start, end, 0.0, first))
             continue
         centre, _ = arc(start, end, bulge)
+        # Large arcs need finer shading than small ones.
         band = next(turn for least, turn in BANDS if scale * abs(start - centre) >= least)
         low, high = sorted((first, first + turned))
         crossed = [k * band for k in range(math.ceil(low / band), math.floor(high / band) + 1)]
+        # Divide the arc where its normal crosses a band's limit.
         shares = sorted({0.0, 1.0, *((angle - first) / turned for angle in crossed)})
         for one, other in pairwise(share for share in shares if 0.0 <= share <= 1.0):
             if other - one < 1e-9:
@@ -271,25 +276,27 @@ def _edges(outline: Outline) -> Iterator[tuple[complex, complex, float]]:
 
 
 def _outline_points(piece: Piece) -> Complex:
-    """Where the outer corners of a piece appear in the view, below and above."""
+    """Return the outer corners of a piece in the view, below and above."""
     rim = _rim(piece)
     return np.concatenate([rim.real + 1j * (SINE * rim.imag + COSINE * height) for height in (piece.low, piece.high)])
 
 
 def behind_first(pieces: Sequence[Piece]) -> list[Piece]:
-    """Pieces of one slab in the order in which their outer walls are drawn.
+    """Sort the pieces of one slab in the drawing order of their outer walls.
 
-    Two that share a vertical of the view are compared in the middle of what they share: what stands in another's hole
-    has its nearest point farther away than that, and comes first.
+    Two pieces that share a vertical of the view are compared in the middle of their common range. A piece inside
+    another's hole has its nearest point farther away there, and comes first.
     """
     rims = [_rim(piece) for piece in pieces]
     spans = [(float(rim.real.min()), float(rim.real.max())) for rim in rims]
     before: dict[int, set[int]] = {k: set() for k in range(len(pieces))}
     for i, j in combinations(range(len(pieces)), 2):
+        # Common range of verticals.
         low, high = max(spans[i][0], spans[j][0]), min(spans[i][1], spans[j][1])
         if high <= low:
             continue
         middle = 0.5 * (low + high)
+        # The farther wall must be drawn first.
         if _nearest(rims[i], middle) < _nearest(rims[j], middle):
             before[j].add(i)
         else:
@@ -297,7 +304,7 @@ def behind_first(pieces: Sequence[Piece]) -> list[Piece]:
     left = sorted(before, key=lambda k: _nearest(rims[k], 0.5 * sum(spans[k])))
     order: list[int] = []
     while left:
-        # Where three hide one another in a circle, the farthest is drawn.
+        # If pieces hide one another cyclically, draw the farthest.
         at = next((k for k in left if not before[k] & set(left)), left[0])
         left.remove(at)
         order.append(at)
@@ -305,23 +312,23 @@ def behind_first(pieces: Sequence[Piece]) -> list[Piece]:
 
 
 def _rim(piece: Piece) -> Complex:
-    """The outer corners of a piece: how far to the right of the view, and how far from the viewer."""
+    """Return the outer corners of a piece: distance to the right in the view + i · distance from the viewer."""
     return np.array([stretch.start for stretch in stretches(piece.region.outer)]) * ALONG.conjugate()
 
 
 def _nearest(rim: Complex, across: float) -> float:
-    """How near to the viewer a rim comes on a vertical of the view."""
+    """Return how close to the viewer a rim comes on a vertical of the view."""
     a, b = rim, np.roll(rim, -1)
     met = (np.minimum(a.real, b.real) <= across) & (across <= np.maximum(a.real, b.real)) & (a.real != b.real)
     a, b = a[met], b[met]
     return float(np.max(-(a.imag + (across - a.real) / (b.real - a.real) * (b.imag - a.imag)), initial=-math.inf))
 
 
-# How it is drawn
+# Drawing
 
 
 def _filled(slab: Sequence[Piece]) -> Iterator[tuple[Outline, Piece]]:
-    """Round holes with the pieces that fill them, so that neither has a wall that can be seen."""
+    """Yield round holes with the pieces that fill them, because neither has a visible wall."""
     for hole in (hole for piece in slab for hole in piece.region.holes if isinstance(hole, Disc)):
         for piece in slab:
             outer = piece.region.outer
@@ -336,7 +343,7 @@ class _Scene:
         self._shown, self._see_through = shown, see_through
 
     def drawn(self, slab: Sequence[Piece]) -> list[Element]:
-        """The pieces of a slab."""
+        """Draw the pieces of a slab."""
         filled = {hole for hole, _ in _filled(slab)}
         within = {piece for _, piece in _filled(slab)}
         found: list[Element] = []
@@ -350,7 +357,7 @@ class _Scene:
         return found
 
     def _glassy(self, piece: Piece) -> bool:
-        """Whether it is the second base, and what it holds is looked at."""
+        """Return whether a piece is the second base, drawn transparent to show the parts below."""
         return self._see_through and piece.part.sort == "base" and piece.part.planes[0] > 0
 
     def _at(self, place: complex, height: float) -> str:
@@ -358,12 +365,13 @@ class _Scene:
         return f"{z.real:.1f} {z.imag:.1f}"
 
     def _to(self, stretch: Stretch, height: float, *, back: bool = False) -> str:
-        """The command that draws a stretch from where the pen is."""
+        """Return the path command that draws a stretch from the current point."""
         end = stretch.start if back else stretch.end
         if stretch.bulge == 0.0:
             return f"L{self._at(end, height)}"
         centre, turned = arc(stretch.start, stretch.end, stretch.bulge)
         radius = self._shown.scale * abs(stretch.start - centre)
+        # The sheet's y axis points down, which reverses the sense of arcs.
         sweep = int((turned < 0.0) != back)
         return f"A{radius:.1f} {SINE * radius:.1f} 0 0 {sweep} {self._at(end, height)}"
 
@@ -402,7 +410,7 @@ class _Scene:
 
 
 def _runs(own: Sequence[Stretch], colour: str, lit: float) -> Iterator[tuple[str, list[Stretch]]]:
-    """The stretches that are seen, those together that follow one another in one shade."""
+    """Yield the visible stretches, grouped by consecutive ones of one shade."""
 
     def shade(stretch: Stretch) -> str:
         if not stretch.seen:
@@ -416,13 +424,13 @@ def _runs(own: Sequence[Stretch], colour: str, lit: float) -> Iterator[tuple[str
 
 
 def shaded(colour: str, lit: float) -> str:
-    """A colour in so much light: 1 of an upper face, which is a little paler than the part."""
+    """Return a colour under light: 1 for an upper face, which is slightly paler than the part."""
     channels = [int(colour[k : k + 2], 16) for k in (1, 3, 5)]
     return "#" + "".join(f"{round(min(255.0, lit * (channel + 0.22 * (255 - channel)))):02x}" for channel in channels)
 
 
 def _names(pieces: Sequence[Piece], named: Sequence[Part], shown: Viewport, left: float) -> list[Element]:
-    """The names of plates at the right, each with a line to its plate."""
+    """Draw the names of plates at the right, each with a line to its plate."""
     anchors = []
     for part in named:
         ends = [
@@ -436,6 +444,7 @@ def _names(pieces: Sequence[Piece], named: Sequence[Part], shown: Viewport, left
     found: list[Element] = []
     y = -math.inf
     for end, part in anchors:
+        # Move a name down if it would touch the previous one.
         y = max(end.imag, y + LEADING)
         beside = complex(left, y)
         found.append(line(end + 3.0, beside - 4.0, stroke=GREY, stroke_width=0.6))

@@ -1,4 +1,4 @@
-"""Parts that are alike are made once: the items of an assembly, each with the parts that it stands for."""
+"""Items of an assembly: identical parts are made once, and each item lists the parts that it represents."""
 
 from __future__ import annotations
 
@@ -9,29 +9,29 @@ from service.parts.model import FLAT, Assembly, Part, plain
 from service.parts.shapes import Disc
 
 DIGITS = 6
-"""Decimals of a millimetre to which alike parts agree."""
+"""Decimals of a millimetre to which identical parts agree."""
 
 
 class Item(NamedTuple):
-    """What is made or bought, and how often; ``name`` is that of its files."""
+    """An item to be made or bought with its parts; ``name`` is that of its files."""
 
     name: str
     parts: tuple[Part, ...]
 
     @property
     def part(self) -> Part:
-        """One of them."""
+        """A representative part."""
         return self.parts[0]
 
     @property
     def planes(self) -> str:
-        """The planes in which they lie, or which they reach from and to."""
+        """Planes of the parts, or the spans of planes that they occupy."""
         spans = sorted({part.planes for part in self.parts})
         return "; ".join(f"{low}" if low == high else f"{low}-{high}" for low, high in spans)
 
 
 def items(assembly: Assembly) -> list[Item]:
-    """The items of an assembly: plates first, then pins and what stands on them."""
+    """Return the items of an assembly: plates first, then pins and the parts on them."""
     alike: dict[Hashable, list[Part]] = {}
     for part in assembly.parts:
         alike.setdefault(_likeness(part), []).append(part)
@@ -40,6 +40,7 @@ def items(assembly: Assembly) -> list[Item]:
     found = []
     for kind, parts in zip(kinds, alike.values(), strict=True):
         numbers[kind] += 1
+        # Number the items only if several share a kind.
         name = kind if kinds.count(kind) == 1 and len(parts) > 1 else f"{kind}_{numbers[kind]}"
         found.append(Item(parts[0].name if len(parts) == 1 else name, tuple(parts)))
     order = ("base", "link", "block", "gear", "cam", "wheel", "pin", "key", "ring", "washer", "spacer")
@@ -51,11 +52,12 @@ def _kind(part: Part) -> str:
 
 
 def _likeness(part: Part) -> Hashable:
-    """What parts that are made alike have in common."""
+    """Return a key that identical parts have in common."""
     if part.like:
         return part.sort, part.like
     if part.sort == "key":
         return part.sort, part.standard, tuple(round(x, DIGITS) for x in (*part.length_and_width, part.high - part.low))
+    # Plates are never merged by shape: each has its own name.
     if part.sort in FLAT or not part.round:
         return part.name
     stack = []

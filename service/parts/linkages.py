@@ -1,11 +1,11 @@
-"""From a design of a linkage to the assembly of its parts: planes for these sizes, and all parts looked at in motion.
+"""Assembly of a linkage design: planes for given sizes, and a check of all parts in motion.
 
-The planes of :mod:`kinematics.linkage.layout` are found with everything that stands on a pin as wide as its collar, so
-that washers, heads and rings have their room too. What comes of it is then looked at by :mod:`service.parts.overlaps`,
-which knows nothing of planes; an assembly that it finds fault with is not given.
+The planes of :mod:`kinematics.linkage.layout` are assigned with all parts on a pin taken as wide as its collar, so that
+washers, heads and rings fit, too. The result is then checked by :mod:`service.parts.overlaps`, which does not know the
+planes; an assembly with interference is rejected.
 
-A mechanism that no planes can part, however thin its links are, has one of them divided: two plates on one shaft, on
-either side of a base.
+If no planes can separate the parts of a mechanism, however thin its links are, one link is divided: two plates on one
+shaft, on either side of a base.
 """
 
 from __future__ import annotations
@@ -33,36 +33,37 @@ from synthesis.analyses.cycle import branch_of, cycle_along
 from synthesis.proof.rebuilt import rebuilt
 
 DRIVEN = 181
-"""Inputs at which it is seen whether the mechanism can be driven through the motion at all."""
+"""Number of inputs at which the mechanism is tested for driving through the motion."""
 
 TRAVELLED = 2881
-"""Inputs at which it is seen how far blocks go in their slots."""
+"""Number of inputs at which the travel of blocks in their slots is measured."""
 
 PIN_SHARE, PIN_OF_LINK = 0.04, 0.35
-"""The thickest pin that is tried where none is stated: shares of the mechanism's size and of its shortest link."""
+"""Thickest default pin as a share of the mechanism's size, and of its shortest link."""
 
 THINNEST = 1e-4
-"""Width of links that are as thin as any, as a share of the mechanism's size: those on the thinnest pins in the
-largest assembly are hardly thinner."""
+"""Width of practically infinitely thin links, as a share of the mechanism's size: links on the thinnest pins in the
+largest assembly are hardly thinner.
+"""
 
 Shafts = Literal["one_side", "both_sides"]
 
 
 def linkage_parts(design: Any, problem: Any, query: PartsQuery) -> Assembly:
-    """The parts of a linkage that is made of pins and slides.
+    """Make the parts of a linkage of pins and slides.
 
     Parameters
     ----------
     design : LinkageDesign
     problem : LinkageProblem
-        Its block ``layout`` says what the request leaves out.
+        Its block ``layout`` provides values that the request omits.
     query : PartsQuery
         Lengths in the unit of the problem.
 
     Raises
     ------
     NotMade
-        Where the mechanism cannot be driven, no gears have its ratio, or there is no room for such parts.
+        The mechanism cannot be driven, no gears have its ratio, or the parts do not fit.
     """
     linkage = _Linkage(design, problem, query)
     ways = linkage.divisions()
@@ -71,21 +72,22 @@ def linkage_parts(design: Any, problem: Any, query: PartsQuery) -> Assembly:
     if query.shafts is not None:
         link = ways[0].link
         raise NotMade(
-            "The mechanism cannot be built in planes on one base, nor between two. Where this is left out, its link "
-            f"{link} is two plates on one shaft, on either side of the second base.", "/query/shafts",
+            "The mechanism cannot be built in planes with shafts on one base, nor between two. Omit `shafts`: then "
+            "its link "
+            f"{link} is divided into two plates on one shaft, on either side of the second base.", "/query/shafts",
         )  # fmt: skip
     return _Divided(design, problem, query, ways).assembly()
 
 
 class _Linkage(Fitting):
-    """One request: a mechanism, and what it says of its parts."""
+    """One request: a mechanism, and the options of its parts."""
 
     def __init__(self, design: Any, problem: Any, query: PartsQuery) -> None:
         mechanism = rebuilt(design.mechanism, from_skeleton=True)
         if mechanism is None:
-            raise NotMade("The design is of a size that is not built.")
+            raise NotMade("The dimensions of this design do not assemble to a mechanism.")
         if len(mechanism.gears) > 1 or any(gear.first != mechanism.input for gear in mechanism.gears):
-            raise NotMade("Parts are made of linkages with one pair of gears, driven by the input.")
+            raise NotMade("Parts are available for linkages with at most one gear pair, which the input must drive.")
         self._mechanism = mechanism
         self._block = getattr(problem, "layout", None)
         over = query.over or getattr(self._block, "over", None)
@@ -95,10 +97,11 @@ class _Linkage(Fitting):
         super().__init__(query, MILLIMETRES[problem.length_unit], size)
 
     def divisions(self) -> list[Division]:
-        """The ways to divide a link with which it can be built, where it cannot be with all of them whole."""
+        """Return the divisions of a link with which the mechanism can be built, if it cannot be built undivided."""
         ways = divisions(self._mechanism)
         if not ways:
             return []
+        # Practically infinitely thin links show whether any arrangement exists.
         width = THINNEST * self._size
         pin, gap = 0.5 * width, 0.1 * width
         mechanism, low, high = self._mechanism, self._low, self._high
@@ -121,18 +124,18 @@ class _Linkage(Fitting):
 
     @property
     def most(self) -> float:
-        """Shares of the mechanism's size and of its shortest link."""
+        """Thickest default pin, from shares of the mechanism's size and of its shortest link."""
         return min(PIN_SHARE * self._size, PIN_OF_LINK * self._shortest([*self._mechanism.links]))
 
     def _shortest(self, links: Sequence[str]) -> float:
-        """The least distance of two joints of a link."""
+        """Return the minimum distance of two joints of a link."""
         at = {name: complex(z) for name, z in self._mechanism.joints.items()}
         pairs = (pair for link in links for pair in combinations(self._mechanism.links[link], 2))
         lengths = (abs(at[one] - at[other]) for one, other in pairs)
         return min((length for length in lengths if length > 1e-9 * self._size), default=self._size)
 
     def opening(self, sizes: Sizes) -> tuple[float, str]:
-        """Slots of slides are wider than holes."""
+        """Return the widest opening: slots are wider than holes."""
         if self._mechanism.slides:
             return sizes.block[1] + 2.0 * sizes.clearance, "blocks on pins"
         if self._mechanism.gears:
@@ -140,7 +143,7 @@ class _Linkage(Fitting):
         return sizes.hole, "pins"
 
     def of_the_problem(self) -> Iterator[Sizes]:
-        """Those of its block, where they contradict nothing."""
+        """Yield the sizes of the problem's block, if they are consistent."""
         block, factor = self._block, self._unit
         if block is not None:
             pin, width = block.pin_diameter * factor, block.link_width * factor
@@ -158,13 +161,13 @@ class _Linkage(Fitting):
     # Assemblies
 
     def tried(self, sizes: Sizes, scale: float) -> Trial:
-        """The assembly in these sizes, on the first choice of bases that can be built."""
+        """Build the assembly in these sizes, with the first choice of bases that works."""
         reason = ""
         for shafts in self._shafts():
             trial = self._tried(sizes, scale, shafts)
             if trial.assembly is not None:
                 return trial
-            reason = "; and between two bases ".join(filter(None, (reason, trial.reason)))
+            reason = "; with two bases: ".join(filter(None, (reason, trial.reason)))
         return Trial(None, reason)
 
     def _shafts(self) -> tuple[Shafts, ...]:
@@ -178,7 +181,7 @@ class _Linkage(Fitting):
         wheels = [wheel for pair in mechanism.gears for wheel in pair_wheels(mechanism, pair)]
         module = max((wheel.gear.module for wheel in wheels), default=0.0)
         if wheels and sizes.clearance > MOST_PLAY * module:
-            return Trial(None, f"the clearance is the play of teeth too, and wider than {MOST_PLAY:g} of their module")
+            return Trial(None, f"the clearance, also the play of the teeth, exceeds {MOST_PLAY:g} of their module")
         idlers = {wheel.name: (wheel.centre, wheel.speed) for wheel in wheels if wheel.joint is None}
         motion = LinkageMotion(mechanism, larger * self._low, larger * self._high, self._closed, idlers)
         length, width = sizes.block
@@ -200,6 +203,7 @@ class _Linkage(Fitting):
             return Trial(None, str(error))
         if layout.clashes:
             return Trial(None, self._clashing(layout.clashes[0].parts, layout.clashes[0].at))
+        # A second base lies above all planes, if any pin reaches that high.
         above = max(layout.planes.values()) + 1
         bases = (0, above) if any(high == above for _, high in layout.pins.values()) else (0,)
         planes = Planes(layout.planes, layout.pins, bases)
@@ -208,7 +212,7 @@ class _Linkage(Fitting):
 
     def _clashing(self, parts: tuple[str, str], at: float) -> str:
         one, other = parts
-        return f"no planes keep {one} and {other} apart at {self._input(at)}"
+        return f"no arrangement in planes separates {one} and {other} at {self._input(at)}"
 
     def _input(self, at: float) -> str:
         if self._mechanism.driven_by_slide:
@@ -217,7 +221,7 @@ class _Linkage(Fitting):
 
 
 class _Divided(_Linkage):
-    """A linkage of which one link is two plates on either side of a base, in one of some ways."""
+    """A linkage with one link divided into two plates on either side of a base, in one of several ways."""
 
     def __init__(self, design: Any, problem: Any, query: PartsQuery, ways: Sequence[Division]) -> None:
         super().__init__(design, problem, query)
@@ -225,16 +229,16 @@ class _Divided(_Linkage):
 
     @property
     def most(self) -> float:
-        """The same of moving links: fixed pivots that are near each other are not in one base."""
+        """Thickest default pin; only moving links count, because close fixed pivots are not in one base."""
         moving = [link for link in self._mechanism.links if link != GROUND]
         return min(PIN_SHARE * self._size, PIN_OF_LINK * self._shortest(moving))
 
     def opening(self, sizes: Sizes) -> tuple[float, str]:
-        """Slots of slides, and keyways."""
+        """Return the widest opening: slots of slides, or keyways."""
         return max(super().opening(sizes), (2.0 * keyway_reach(sizes), "keyed shafts"))
 
     def tried(self, sizes: Sizes, scale: float) -> Trial:
-        """The assembly in these sizes, in the first way that can be built."""
+        """Build the assembly in these sizes, in the first way that works."""
         trials = []
         for way in self._ways:
             trial = self._in(way, sizes, scale)
@@ -269,18 +273,18 @@ class _Divided(_Linkage):
 
 
 def _looked_at(assembly: Assembly, sizes: Sizes) -> Trial:
-    """The assembly, or what is wrong with it."""
+    """Return the assembly, or the reason why it cannot be made."""
     fault = fault_of(assembly, sizes)
     return Trial(None, fault) if fault else Trial(assembly, "")
 
 
 def _range(mechanism: Mechanism, design: Any, over: str | None) -> tuple[float, float, bool]:
-    """The range of the input that the parts are for, and whether it is a whole cycle.
+    """Return the range of the input for which the parts are made, and whether it is a full cycle.
 
     Raises
     ------
     NotMade
-        Where no motion leads through it.
+        The mechanism cannot move through the range.
     """
     slides = mechanism.driven_by_slide
     branch = branch_of(mechanism)
@@ -292,8 +296,9 @@ def _range(mechanism: Mechanism, design: Any, over: str | None) -> tuple[float, 
     if over == "cycle" or (over is None and (turns or used is None)):
         used = cycle_along(mechanism, branch)
     if used is None:
-        raise NotMade("No motion leads through the used range of this design.", "/query/over")
+        raise NotMade("The mechanism cannot move through the used range of this design.", "/query/over")
     low, high = sorted(used)
+    # The ends may be toggles: test the interior only.
     inputs = np.linspace(low, high, DRIVEN + 2)[1:-1] if high > low else np.array([low])
     motion = LinkageMotion(mechanism, low, high, False)
     try:
@@ -301,7 +306,7 @@ def _range(mechanism: Mechanism, design: Any, over: str | None) -> tuple[float, 
     except MechanismError as error:
         raise NotMade(f"The mechanism cannot be driven: {error}.") from None
     if not valid:
-        raise NotMade("The mechanism cannot be assembled all over the motion.", "/query/over")
+        raise NotMade("The mechanism cannot be assembled over the whole motion.", "/query/over")
     turn = math.inf if slides else cycle_from_reference(mechanism)
     return low, high, abs(high - low - turn) <= 1e-9 * turn
 
@@ -318,15 +323,16 @@ def _scaled(mechanism: Mechanism, factor: float) -> Mechanism:
 
 
 def _slots(motion: LinkageMotion) -> list[Slot]:
-    """Where blocks run, from one end of their travel to the other."""
+    """Return the slots of blocks, from one end of their travel to the other."""
     mechanism = motion.mechanism
     if not mechanism.slides:
         return []
     driven = motion.at(motion.inputs(TRAVELLED))
     found = []
     for slide, name in zip(mechanism.slides, mechanism.slide_names, strict=True):
+        # Positions of the block along its slide.
         places = driven.slides[name][0]
-        # Between two inputs it goes farther by less than an eighth of the second difference.
+        # Between two inputs a block goes beyond the samples by less than an eighth of the second difference.
         more = 0.25 * float(np.abs(np.diff(places, 2)).max()) if len(places) > 2 else 0.0
         direction = complex(np.exp(1j * slide.angle))
         point = complex(slide.point)

@@ -1,8 +1,8 @@
-"""The door: from a design to the assembly of its parts, by the maker of its type of mechanism.
+"""Entry point: from a design to the assembly of its parts, by the maker of its mechanism type.
 
-A maker takes a design, its problem and a query, and gives an assembly that :mod:`service.parts.overlaps` has found
-nothing wrong with, or raises :class:`~service.parts.sizes.NotMade`. It says which fields of the query it reads; others
-are refused, so that none is stated in vain. Makers are imported when one is first asked.
+A maker takes a design, its problem and a query, and returns an assembly that :mod:`service.parts.overlaps` has checked,
+or raises :class:`~service.parts.sizes.NotMade`. It declares the fields of the query that it reads; others are refused,
+so that no option is ignored silently. Makers are imported on first use.
 """
 
 from __future__ import annotations
@@ -20,11 +20,11 @@ __all__ = ["NotMade", "made"]
 Make = Callable[[Any, Any, PartsQuery], "Assembly"]
 
 LINKAGE = "linkage"
-"""The maker of every mechanism that has a skeleton."""
+"""Key of the maker of every mechanism with a skeleton."""
 
 
 class Maker(NamedTuple):
-    """What makes the parts of a type of mechanism: how it is loaded, and the fields of the query that it reads."""
+    """A maker of parts for a type of mechanism: its loader, and the fields of the query that it reads."""
 
     load: Callable[[], Make]
     fields: frozenset[str]
@@ -79,7 +79,7 @@ def _ratchets() -> Make:
 
 
 ONE_CYCLE = frozenset({"process", "width", "pin", "thickness", "clearance", "scale"})
-"""What is stated of parts on shafts of one base that turn on and on."""
+"""Fields for parts on shafts of one base that rotate continuously."""
 
 
 def _series() -> Make:
@@ -107,7 +107,7 @@ def _flywheels() -> Make:
 
 
 OF_GEARS = frozenset({"process", "thickness", "clearance", "bore", "face_width", "scale"})
-"""What is asked of trains of gears."""
+"""Fields for trains of gears."""
 
 MAKERS: dict[str, Maker] = {
     LINKAGE: Maker(
@@ -126,41 +126,42 @@ MAKERS: dict[str, Maker] = {
     "geneva_spherical": Maker(_sphericals, ONE_CYCLE),
     "ratchet": Maker(_ratchets, ONE_CYCLE),
 }
-"""By type of mechanism."""
+"""Makers by type of mechanism."""
 
 
 NOT_BUILT = {
-    "rotor": "a rotor's answer states masses, radii and angles to correct a rotor with, and no shape of it; ask for "
-    "`designs/{n}.csv` or `.dxf`, which have these, and correct the rotor that you have",
-    "engine": "an engine's answer states crank angles, a firing order and masses that balance it, and no diameter or "
-    "width of a bore, journal or web; ask for `designs/{n}.csv` or `.dxf`, which have these, or for the parts of one "
-    "cylinder as a slider-crank of `kind` `motion`",
+    "rotor": "a rotor's answer contains masses, radii and angles to correct a rotor with, but no shape of it; use "
+    "`designs/{n}.csv` or `.dxf`, which contain these, to correct the existing rotor",
+    "engine": "an engine's answer contains crank angles, a firing order and balancing masses, but no diameter or "
+    "width of a bore, journal or web; use `designs/{n}.csv` or `.dxf`, which contain these, or request the parts of "
+    "one cylinder as a slider-crank of `kind` `motion`",
 }
-"""Types of mechanism that have no parts, why, and what to ask for instead."""
+"""Types of mechanism without parts, with the reason and an alternative."""
 
 
 def made(design: Any, problem: Any, query: PartsQuery) -> Assembly:
-    """The parts of a design.
+    """Make the parts of a design.
 
     Parameters
     ----------
     design, problem
-        As the kind of problem has them.
+        Design and problem of the kind.
     query : PartsQuery
         Lengths in the unit of the problem.
 
     Raises
     ------
     NotMade
-        Where the mechanism has no maker, the query states what means nothing to it, or there is no room.
+        The mechanism has no maker, the query has a field without meaning for it, or the parts do not fit.
     """
     mechanism = design.mechanism
     maker = _maker(hasattr(mechanism, "skeleton"), mechanism.type)
     if maker is None:
-        raise NotMade(f"There are no parts of this type of mechanism: {NOT_BUILT[mechanism.type]}.")
+        raise NotMade(f"Parts of this type of mechanism are not available: {NOT_BUILT[mechanism.type]}.")
     for field in PartsQuery.model_fields:
+        # Defaults are not errors: only fields that the client set count.
         if field in query.model_fields_set and getattr(query, field) is not None and field not in maker.fields:
-            raise NotMade(f"Parts of this type of mechanism have no {field}.", f"/query/{field}")
+            raise NotMade(f"Parts of this type of mechanism have no `{field}`; leave it out.", f"/query/{field}")
     return maker.load()(design, problem, query)
 
 

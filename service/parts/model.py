@@ -1,4 +1,4 @@
-"""What an assembly is: parts as stacks of bodies, what each of them moves with, and how that moves."""
+"""The model of an assembly: parts as stacks of bodies, their carriers, and the motion of these."""
 
 from __future__ import annotations
 
@@ -18,24 +18,24 @@ Complex = NDArray[np.complex128]
 Real = NDArray[np.float64]
 
 Sort = Literal["base", "link", "block", "gear", "cam", "wheel", "pin", "ring", "washer", "spacer", "key"]
-"""What a part is; shafts are pins."""
+"""Kind of a part; shafts are pins."""
 
 FLAT: tuple[Sort, ...] = ("base", "link", "block", "gear", "cam", "wheel")
-"""Parts that are cut from a sheet, where they are prisms; all others are turned or bought."""
+"""Kinds cut from a sheet, if they are prisms; all others are turned or bought."""
 
 InputField = Literal["input_angle", "input_place"]
-"""By which field a request says where an assembly is shown."""
+"""Request field that sets the position in which an assembly is shown."""
 
 
 class Development(NamedTuple):
-    """The surface of a round part unrolled, seen from outside: x around it, y along its axis, millimetres.
+    """The unrolled surface of a round part, seen from outside: x around it, y along its axis, millimetres.
 
     Attributes
     ----------
     width, height : float
-        The circumference, and the length along the axis.
+        Circumference, and length along the axis.
     lines : tuple of (str, tuple of complex)
-        Layer and points of each open line on it.
+        Layer and points of each open line on the surface.
     """
 
     width: float
@@ -44,9 +44,9 @@ class Development(NamedTuple):
 
 
 class Carrier(NamedTuple):
-    """What a part moves with: it turns as a link does, and goes where a joint goes; the base goes nowhere.
+    """The body that a part moves with: it rotates with a link and translates with a joint; the base is at rest.
 
-    A motion that has no joints, such as that of a train, names its bodies as links, and no joint.
+    A motion without joints, such as that of a train, names its bodies as links, and no joint.
     """
 
     link: str
@@ -54,12 +54,12 @@ class Carrier(NamedTuple):
 
 
 class Frame(NamedTuple):
-    """A plane in space in which parts are drawn and move, and its normal, along which their heights are.
+    """A plane in space in which parts are drawn and move; heights are measured along its normal.
 
     Attributes
     ----------
     origin : Real
-        Shape (3,), or (n, 3) where it moves.
+        Shape (3,), or (n, 3) if it moves.
     axes : Real
         Shape (3, 3) or (n, 3, 3): x, y and the normal as columns, a rotation.
     """
@@ -69,9 +69,9 @@ class Frame(NamedTuple):
 
 
 class Placed(NamedTuple):
-    """Where parts are at n inputs: z ↦ ``turn`` · z + ``shift``, shapes (n,).
+    """Displacement of parts at n inputs: z ↦ ``turn`` · z + ``shift``, shapes (n,).
 
-    That is in the plane of the assembly, or in that of ``frame`` where the axis is not parallel to all others.
+    It is in the plane of the assembly, or in that of ``frame`` if the axis is not parallel to all others.
     """
 
     turn: Complex
@@ -80,49 +80,49 @@ class Placed(NamedTuple):
 
 
 class Motion(Protocol):
-    """How what carries parts moves, in millimetres and radians, over the range of inputs that they were made for."""
+    """Motion of the carriers, in millimetres and radians, over the range of inputs for which the parts were made."""
 
     @property
     def low(self) -> float:
-        """The lowest input."""
+        """Minimum input."""
 
     @property
     def high(self) -> float:
-        """The highest input."""
+        """Maximum input."""
 
     @property
     def closed(self) -> bool:
-        """Whether the range is one whole cycle."""
+        """Whether the range is one full cycle."""
 
     @property
     def reference(self) -> float:
-        """The input of the reference configuration, in which the parts are drawn."""
+        """Input of the reference configuration, in which the parts are drawn."""
 
     @property
     def size(self) -> float:
-        """How large the mechanism is."""
+        """Size of the mechanism."""
 
     @property
     def input_field(self) -> InputField:
-        """By which field of a request its input is stated."""
+        """Request field that sets the input."""
 
     def inputs(self, count: int) -> Real:
-        """So many inputs over the range, shape (count,), at which parts are looked at."""
+        """Return inputs over the range, shape (count,), for interference checks."""
 
     def stated(self, value: float, scale: float) -> float:
-        """The input that a request states, in degrees, or in lengths of a design that is built so much larger.
+        """Convert an input from a request: degrees, or lengths of a design built at ``scale``.
 
         Raises
         ------
         NotMade
-            Where it is not in the range.
+            The input is outside the range.
         """
 
     def at(self, inputs: Real) -> Any:
-        """The state at inputs, shape (n,), for :meth:`placed` alone."""
+        """Compute the state at inputs, shape (n,), for use with :meth:`placed`."""
 
     def placed(self, carrier: Carrier, state: Any) -> Placed:
-        """How what a carrier carries has moved from the reference configuration."""
+        """Return the displacement of a carrier from the reference configuration."""
 
 
 @dataclass(frozen=True)
@@ -134,23 +134,23 @@ class Part:
     name : str
         Unique in its assembly, of lower-case letters, digits and underscores.
     described : str
-        What it is, in words.
+        Description in words.
     bodies : tuple of Body
-        That stand on one another, or beside one another without meeting.
+        Bodies on top of one another, or side by side without touching.
     along : complex
-        The direction in which its length is measured, of length 1.
+        Unit direction in which its length is measured.
     planes : pair of int
-        The lowest and the highest plane in which it is.
+        The lowest and the highest plane that it occupies.
     standard : str
-        What it is bought as; empty where it is made.
+        Designation of a bought part; empty if it is made.
     round : bool
         Whether it is a stack of rings about its joint.
     like : str
-        What parts that are made alike have in common, where that is not to be seen from their bodies; or empty.
+        Key shared by identical parts if their bodies do not show it; or empty.
     unrolled : Development, optional
-        What is drawn of one that is cut into a round bar.
+        Drawing of the surface of a part that is cut into a round bar.
     mass : float, optional
-        Where the answer states the density, in the answer's unit of mass.
+        Mass in the answer's unit, if the answer contains the density.
     """
 
     name: str
@@ -170,23 +170,25 @@ class Part:
 
     @property
     def low(self) -> float:
-        """Height of its lowest face."""
+        """Height of the lowest face."""
         return min(body.low for body in self.bodies)
 
     @property
     def high(self) -> float:
-        """Height of its uppermost face."""
+        """Height of the highest face."""
         return max(body.high for body in self.bodies)
 
     @property
     def headed(self) -> bool:
-        """Whether it is a pin whose lowest end is wider than its shank: it is put in from below."""
+        """Whether it is a pin with a head at its lower end, so that it is inserted from below."""
+        # Compare the lowest body with the thinnest one.
         first, *_ = areas = [area(body.region.outer) for body in sorted(self.bodies, key=lambda body: body.low)]
         return self.sort == "pin" and first > 1.2 * min(areas)
 
     @property
     def region(self) -> Region:
-        """What is cut from the sheet: its widest prism."""
+        """Region cut from the sheet: that of the widest prism."""
+        # The widest prism is the plate itself; bosses are smaller.
         return max((body.region for body in self.bodies), key=lambda region: area(region.outer))
 
     @cached_property
@@ -198,28 +200,28 @@ class Part:
 
     @cached_property
     def volume(self) -> float:
-        """Cubic millimetres."""
+        """Volume, cubic millimetres."""
         return math.fsum(body.volume for body in self.bodies)
 
 
 @dataclass(frozen=True, eq=False)
 class Assembly:
-    """The parts of a design, in millimetres; one is equal to itself alone.
+    """The parts of a design, in millimetres; compared by identity.
 
     Attributes
     ----------
     planes : int
-        How many have moving links; the base is plane 0, and a second one is above them all, or amid them.
+        Number of planes with moving links. The base is plane 0; a second base is above them all, or between them.
     sides : 1 or 2
-        Bases that hold the shafts.
+        Number of bases that hold the shafts.
     unit : float
-        Millimetres to a length unit of the design, as large as it is built.
+        Millimetres per length unit of the design, at the built size.
     scale : float
-        How much larger than the design that is.
+        Ratio of the built size to that of the design.
     notes : tuple of str
-        What else its maker has to say to who puts it together.
+        Notes for assembly.
     touching : frozenset of frozenset of str
-        Pairs of parts, by name, that slide or roll on each other: a cam and its roller.
+        Pairs of parts, by name, that slide or roll on each other, such as a cam and its roller.
     """
 
     parts: tuple[Part, ...]
@@ -233,12 +235,12 @@ class Assembly:
 
     @property
     def size(self) -> float:
-        """How large the mechanism is."""
+        """Size of the mechanism."""
         return self.motion.size
 
     @cached_property
     def frames(self) -> dict[str, Frame]:
-        """The planes of parts by their names, of those that do not lie in that of the assembly."""
+        """Planes of those parts that do not lie in the plane of the assembly, by name."""
         state = self.motion.at(np.array([self.motion.reference]))
         placed = {part.name: self.motion.placed(part.carrier, state).frame for part in self.parts}
         return {
@@ -248,7 +250,7 @@ class Assembly:
         }
 
     def plane_name(self, plane: int) -> str:
-        """What a plane is called: a base, or by its number."""
+        """Return the name of a plane: a base, or its number."""
         if plane == 0:
             return "base"
         based = any(part.sort == "base" and part.planes[0] == plane for part in self.parts)
@@ -261,5 +263,5 @@ class Assembly:
 
 
 def plain(name: str) -> str:
-    """A name as files and CAD programs take it."""
+    """Return a name in the form that files and CAD programs accept."""
     return re.sub(r"[^a-z0-9]+", "_", name.lower()).strip("_") or "part"

@@ -1,4 +1,4 @@
-"""What the process that makes parts is asked for: files of a design of a stored result."""
+"""Requests to the process that makes parts: files of a design of a stored result."""
 
 from __future__ import annotations
 
@@ -22,11 +22,11 @@ from service.stated import read
 from synthesis.registry import KINDS
 
 KEPT = 4
-"""Assemblies that are kept: whoever looks at one asks for its parts next."""
+"""Number of cached assemblies: viewers of an assembly usually request its parts next."""
 
 
 class Order(BaseModel):
-    """A design of a job, as it is stored, and what its parts are to be."""
+    """A design of a stored job, and the options of its parts."""
 
     kind: str
     problem: str
@@ -37,12 +37,12 @@ class Order(BaseModel):
 
 
 def filled(order: dict[str, Any], file: File) -> bytes | Refused:
-    """A file of a design, as the process gives it back.
+    """Make a file of a design; return its bytes, or the reason why it does not exist.
 
     Parameters
     ----------
     order : dict
-        Of an :class:`Order`, whose query is that of the file.
+        Fields of an :class:`Order` with the query of the file.
     file : {"zip", "step", "glb", "json", "svg"}
     """
     asked = Order.model_validate(order)
@@ -68,14 +68,14 @@ def _file(order: Order, file: File) -> bytes:
 
 
 def part_filled(order: dict[str, Any], name: str, form: PartFile) -> bytes | Refused:
-    """A file of one kind of part of a design.
+    """Make a file of one item of a design.
 
     Parameters
     ----------
     order : dict
-        Of an :class:`Order`, whose query is a :class:`PartsQuery`.
+        Fields of an :class:`Order` whose query is a :class:`PartsQuery`.
     name : str
-        Of the item.
+        Name of the item.
     form : {"dxf", "stl", "step", "3mf"}
     """
     asked = Order.model_validate(order)
@@ -85,9 +85,11 @@ def part_filled(order: dict[str, Any], name: str, form: PartFile) -> bytes | Ref
         return Refused(str(error), error.path)
     item = next((item for item in listed if item.name == name), None)
     if item is None:
-        return Refused(f"There is no such part; there are {', '.join(item.name for item in listed)}.", "", known=False)
+        return Refused(
+            f"Unknown part. Parts of this design: {', '.join(item.name for item in listed)}.", "", known=False
+        )
     if form not in files_of(item.part):
-        return Refused(f"There is no {form} file of {name}.", "", known=False)
+        return Refused(f"{name} has no {form} file.", "", known=False)
     return part_file(item, form, _title(asked))
 
 
@@ -100,7 +102,7 @@ def _process(order: Order) -> Process:
 
 
 def _sizes(order: Order) -> dict[str, Any]:
-    """What the query says of the parts themselves, and not of how they are shown."""
+    """Return the options of the parts themselves, without those of their display."""
     return {name: value for name, value in order.query.items() if name in PartsQuery.model_fields}
 
 
@@ -115,11 +117,12 @@ def _made(kind: str, problem: str, result: str, number: int, query: tuple[tuple[
 
 
 def _input(assembly: Assembly, asked: AssemblyQuery) -> float:
-    """The input at which the assembly is shown, in the range that its parts were made for."""
+    """Return the input at which the assembly is shown, within the range for which its parts were made."""
     motion = assembly.motion
+    # The mechanism determines whether the input is an angle or a place.
     name = motion.input_field
     other: InputField = "input_angle" if name == "input_place" else "input_place"
     if getattr(asked, other) is not None:
-        raise NotMade(f"The input of this mechanism is stated by {name}.", f"/query/{other}")
+        raise NotMade(f"The input of this mechanism is given by `{name}`.", f"/query/{other}")
     stated = getattr(asked, name)
     return motion.reference if stated is None else motion.stated(stated, assembly.unit)

@@ -1,11 +1,11 @@
-"""Whether the parts of an assembly want one place at once, and whether enough is left of the plates around their holes.
+"""Interference of the parts of an assembly, and minimum walls of plates around their holes.
 
-This knows the parts alone, not the planes that were found for them: it moves every part, takes all pairs of bodies that
-share some height, and intersects what they take of the plane there (:mod:`service.parts.bodies`) as polygons. A polygon
-of what is solid lies outside of its arcs, one of a hole inside, so that prisms that are free of overlaps here are so in
-truth at the inputs looked at. Rings about one axis that go together are compared by their radii.
+This module knows only the parts, not the planes assigned to them. It moves every part, takes all pairs of bodies with
+common heights, and intersects their cross sections there (:mod:`service.parts.bodies`) as polygons. Polygons of solids
+are circumscribed about their arcs, those of holes inscribed, so that prisms found free of interference are truly free
+at the inputs examined. Rings about a common axis that move together are compared by their radii.
 
-Parts whose axes are not parallel move in planes of different frames: :mod:`service.parts.crossing` compares them.
+Parts with non-parallel axes move in planes of different frames: :mod:`service.parts.crossing` compares them.
 """
 
 from __future__ import annotations
@@ -24,28 +24,28 @@ from service.parts.model import FLAT, Assembly, Carrier, Part
 from service.parts.shapes import Disc, Outline, Region, ring_of
 
 POSITIONS = 144
-"""Inputs at which parts are looked at."""
+"""Number of inputs at which parts are compared."""
 
 CROSSED = 3
-"""Every so many inputs parts of crossing axes are looked at."""
+"""Parts with crossing axes are compared at every n-th input."""
 
 ROUNDING = 1e-9
-"""Share of the assembly's size by which faces that touch may seem to overlap."""
+"""Apparent overlap of touching faces due to rounding, as a share of the assembly's size."""
 
 SAG = 5e-3
-"""How far polygons are from the arcs that they stand for, millimetres: less than the clearances of large bores."""
+"""Maximum distance of polygons from arcs, millimetres; less than the clearances of large bores."""
 
 TOUCH = 2e-3
-"""How deep two parts may seem to be in each other that touch, such as a roller and its cam, millimetres."""
+"""Apparent penetration of touching parts, such as a roller and its cam, that is tolerated, millimetres."""
 
 TOUCH_SHARE = 2e-5
-"""The same as a share of the assembly's size, where that is more."""
+"""The same as a share of the assembly's size; the larger of both applies."""
 
 
 class Overlap(NamedTuple):
-    """Two parts that want one place, and the input at which they want the most of it.
+    """Two interfering parts, and the input at which their overlap is largest.
 
-    The area is what sections of the two share, or what of their surfaces lies in each other where their axes cross.
+    The area is that shared by sections of the two, or that of surfaces inside each other if their axes cross.
     """
 
     parts: tuple[str, str]
@@ -54,22 +54,22 @@ class Overlap(NamedTuple):
 
 
 class Thin(NamedTuple):
-    """A place of a plate at which less is left than must be, and how much is."""
+    """A plate with a wall below the minimum, and its thickness."""
 
     part: str
     left: float
 
 
 def overlaps(assembly: Assembly, count: int = POSITIONS, *, across: bool = True) -> list[Overlap]:
-    """The pairs of parts that overlap at some of ``count`` inputs of the motion.
+    """Find the pairs of parts that interfere at some of ``count`` inputs of the motion.
 
     Parameters
     ----------
     assembly : Assembly
     count : int
-        Inputs, spread over the whole motion.
+        Number of inputs, spread over the whole motion.
     across : bool
-        Whether parts are compared whose axes are not parallel, which takes the longest.
+        Whether to compare parts with non-parallel axes, which takes longest.
     """
     inputs = assembly.motion.inputs(count)
     size = assembly.size
@@ -95,23 +95,25 @@ def overlaps(assembly: Assembly, count: int = POSITIONS, *, across: bool = True)
                 touch = frozenset((one.name, other.name)) in assembly.touching
                 most = np.maximum(most, moved.shared((one.carrier, first), (other.carrier, second), touch=touch))
         worst = int(np.argmax(most))
+        # Touching faces overlap by rounding errors only.
         if most[worst] > (ROUNDING * size) ** 2:
             found.append(Overlap((one.name, other.name), float(inputs[worst]), float(most[worst])))
     return found
 
 
 def too_thin(assembly: Assembly, wall: float) -> list[Thin]:
-    """Plates of which less than ``wall`` is left between a hole and the edge or another hole."""
+    """Find plates with a wall thinner than ``wall`` between a hole and the edge or another hole."""
     found = []
     for part in assembly.parts:
         if part.sort not in FLAT:
             continue
-        # Bosses of a base are rings about their holes; of a cam in one piece each wall is looked at.
+        # Bosses of a base are rings around its holes; for a one-piece cam every wall is checked.
         for region in (body.region for body in (part.bodies if part.sort == "cam" else part.bodies[:1])):
             holes = [shapely.Polygon(_pairs(ring_of(hole, beyond=True))) for hole in region.holes]
             edge = shapely.LinearRing(_pairs(ring_of(region.outer, beyond=False)))
             inside = shapely.Polygon(edge)
             left = [edge.distance(hole) if inside.contains(hole) else 0.0 for hole in holes]
+            # Walls between holes count like walls to the edge.
             left += [one.distance(other) for one, other in combinations(holes, 2)]
             if left and min(left) < wall:
                 found.append(Thin(part.name, min(left)))
@@ -119,7 +121,8 @@ def too_thin(assembly: Assembly, wall: float) -> list[Thin]:
 
 
 def _meeting(one: Part, other: Part, rounding: float) -> Iterator[tuple[Region, Region]]:
-    """Regions that bodies of two parts take between the same heights."""
+    """Yield the cross sections of two parts at common heights."""
+    # No common height: no interference.
     if min(one.high, other.high) - max(one.low, other.low) <= rounding:
         return
     for first, second in product(one.bodies, other.bodies):
@@ -134,7 +137,7 @@ def _about_one_axis(first: Region, second: Region) -> bool:
 
 
 def _on_one_pin(first: Region, second: Region, rounding: float) -> float:
-    """The area that two rings about one centre share, by their radii."""
+    """Return the common area of two concentric rings, from their radii."""
     (low, high), (inner, outer) = _radii(first), _radii(second)
     least, most = max(low, inner), min(high, outer)
     return float(np.pi * (most**2 - least**2)) if most - least > rounding else 0.0
@@ -149,11 +152,11 @@ def _radii(region: Region) -> tuple[float, float]:
 ALL = slice(None)
 
 Carried = tuple[Carrier, Region]
-"""A region and what it moves with."""
+"""A region and its carrier."""
 
 
 class _Moved:
-    """The regions of an assembly at all inputs, each made once."""
+    """The regions of an assembly at all inputs, each computed once."""
 
     def __init__(self, assembly: Assembly, inputs: NDArray[np.float64]) -> None:
         state = assembly.motion.at(inputs)
@@ -164,16 +167,17 @@ class _Moved:
         self._polygons: dict[tuple[Carried, bool, bool], NDArray[np.object_]] = {}
 
     def in_one_frame(self, one: Carrier, other: Carrier) -> bool:
-        """Whether what two carriers carry moves in parallel planes."""
+        """Return whether the parts of two carriers move in parallel planes."""
         return self._placed[one].frame is self._placed[other].frame
 
     def shared(self, first: Carried, second: Carried, *, touch: bool) -> NDArray[np.float64]:
-        """The area that two regions share at each input, of those that touch each other what is beyond rounding."""
+        """Return the common area of two regions at each input; for touching parts only what exceeds the tolerance."""
         a, b = self._box(first), self._box(second)
+        # Bounding boxes reject most inputs cheaply.
         near = np.asarray(np.concatenate([a[:, :2] < b[:, 2:], b[:, :2] < a[:, 2:]], axis=1).all(axis=1))
         still = first[0] == second[0]
         if still:
-            # They do not move against each other.
+            # They are at rest relative to each other: one input suffices.
             near[1:] = False
         areas = np.zeros(len(near))
         if near.any():
@@ -182,31 +186,32 @@ class _Moved:
                 for carried in (first, second)
             )
             if touch:
+                # Shrink one of two touching parts by the permitted penetration.
                 one = shapely.buffer(one, -self._touch)
-            # Most do not meet, which is seen sooner than what they share.
+            # Most pairs do not intersect, and that test is faster than the intersection.
             meets = shapely.intersects(one, other)
             areas[np.flatnonzero(near)[meets]] = shapely.area(shapely.intersection(one[meets], other[meets]))
         return areas
 
     def _ring(self, carried: Carried, outline: Outline, *, beyond: bool, still: bool = False) -> NDArray[np.float64]:
-        """An outline at each input, shape (n, m, 2), or at the first alone."""
+        """Return an outline at each input, shape (n, m, 2), or only at the first."""
         return self._turned(carried[0], ring_of(outline, beyond=beyond, sag=SAG), slice(1 if still else None))
 
     def _turned(self, carrier: Carrier, places: NDArray[np.complex128], some: slice = ALL) -> NDArray[np.float64]:
-        """Places of a plane at some of the inputs, shape (n, m, 2)."""
+        """Return points of a plane at some of the inputs, shape (n, m, 2)."""
         placed = self._placed[carrier]
         moved = placed.turn[some, None] * places + placed.shift[some, None]
         return np.stack([moved.real, moved.imag], axis=-1)
 
     def _box(self, carried: Carried) -> NDArray[np.float64]:
-        """Left, low, right and high of a region at each input, shape (n, 4)."""
+        """Return left, low, right and high of a region at each input, shape (n, 4)."""
         if carried not in self._boxes:
             outer = self._turned(carried[0], _hull(ring_of(carried[1].outer, beyond=True, sag=SAG)))
             self._boxes[carried] = np.concatenate([outer.min(axis=1), outer.max(axis=1)], axis=1)
         return self._boxes[carried]
 
     def _solid(self, carried: Carried, *, beyond: bool, still: bool) -> NDArray[np.object_]:
-        """A region as a polygon at each input, or at the first alone; outside of it (``beyond``), or inside."""
+        """Return a region as a polygon at each input, or only at the first; circumscribed (``beyond``) or inscribed."""
         key = carried, beyond, still
         if key not in self._polygons:
             region = carried[1]
@@ -220,7 +225,7 @@ class _Moved:
 
 
 def _hull(ring: NDArray[np.complex128]) -> NDArray[np.complex128]:
-    """The corners of a polygon that can be the outermost in some direction."""
+    """Return the corners of a polygon's convex hull, the only ones that can be extreme."""
     return np.asarray(shapely.get_coordinates(shapely.convex_hull(shapely.MultiPoint(_pairs(ring)))) @ (1.0, 1j))
 
 

@@ -1,18 +1,18 @@
 """All files of an assembly in one zip.
 
 ================  =======================================================  =========================
-file              what it is                                               for which process
+file              content                                                  process
 ================  =======================================================  =========================
-README.txt        what is in it, and how it is put together                all
-bom.csv           what is made and bought                                  all
+README.txt        list of contents and assembly instructions               all
+bom.csv           items to make and to buy                                 all
 assembly.svg      the planes as an exploded side view, to scale;           all
-                  views from above and from the front where shafts cross
-isometric.svg     a picture of it, as built and with its planes apart;     all
-                  from two sides where shafts cross
+                  views from above and from the front for crossing shafts
+isometric.svg     a picture, assembled and exploded;                       all
+                  from two sides for crossing shafts
 dxf/NAME.dxf      outlines of plates and blocks, with their holes          all
-assembly.step     all parts at their places, with names and colours        all, where CAD is installed
+assembly.step     all parts at their places, with names and colours        all, if CAD is installed
 step/NAME.step    each item that is not bought                             mill
-stl/, 3mf/        each item, lying as it is printed                        print
+stl/, 3mf/        each item, in printing position                          print
 ================  =======================================================  =========================
 """
 
@@ -35,21 +35,21 @@ from service.parts.sizes import PartFile, Process
 from service.parts.viewed import files_of
 
 MADE_AT = (2000, 1, 1, 0, 0, 0)
-"""Stands in the zip as the time of its making: what is in it depends on the design alone."""
+"""Fixed creation time in the zip, so that it depends on the design alone."""
 
 
 def package(assembly: Assembly, process: Process, title: str, at: float) -> bytes:
-    """The zip of an assembly's parts.
+    """Write the zip of an assembly's parts.
 
     Parameters
     ----------
     assembly : Assembly
     process : {"print", "laser", "mill"}
-        For which it was made.
+        Process of the parts.
     title : str
-        Without characters that XML forbids.
+        Title without characters that XML forbids.
     at : float
-        Input at which its picture shows it, radians or millimetres along the slide.
+        Input shown in the picture, radians or millimetres along the slide.
     """
     listed = items(assembly)
     files: dict[str, bytes] = {
@@ -62,12 +62,15 @@ def package(assembly: Assembly, process: Process, title: str, at: float) -> byte
             files[f"dxf/{item.name}.dxf"] = part_file(item, "dxf", title)
     if installed():
         files |= _solids(assembly, listed, process)
+    # The README lists all files and comes first in the zip.
     files = {"README.txt": _read_me(assembly, listed, process, title, files).encode()} | files
     return zipped(files)
 
 
 def part_file(item: Item, form: PartFile, title: str) -> bytes:
-    """A file of one item: the outline that is cut, or the solid as it is printed; all but ``dxf`` need the extra."""
+    """Write a file of one item: its cutting outline, or its solid in printing position; only ``dxf`` works without the
+    extra.
+    """
     if form == "dxf":
         return cutting(item.part, f"{title}: {item.name}").encode()
     lying = cad.lying(cad.solid(item.part), item.part)
@@ -78,7 +81,7 @@ def part_file(item: Item, form: PartFile, title: str) -> bytes:
 
 
 def zipped(files: dict[str, bytes]) -> bytes:
-    """Files by their names as a zip."""
+    """Pack files by name into a zip."""
     buffer = io.BytesIO()
     with zipfile.ZipFile(buffer, "w", zipfile.ZIP_DEFLATED) as archive:
         for name, content in files.items():
@@ -95,6 +98,7 @@ def _solids(assembly: Assembly, listed: list[Item], process: Process) -> dict[st
         files |= {
             f"step/{item.name}.step": cad.step([lying[item.name]], item.name)
             for item in listed
+            # Pins are cut from standard bars, so they need a file.
             if not item.part.standard or item.part.sort == "pin"
         }
     if process == "print":
@@ -105,9 +109,9 @@ def _solids(assembly: Assembly, listed: list[Item], process: Process) -> dict[st
 
 
 _HOLDING: dict[Process, str] = {
-    "print": "A pin is put in from below, head first on the base's side, and its cap is pressed or glued on above.",
-    "laser": "A pin is held by a retaining ring in the groove at either end.",
-    "mill": "A pin is held by a retaining ring in the groove at either end.",
+    "print": "Insert each pin from below, with its head on the base's side, and press or glue its cap on above.",
+    "laser": "Each pin is held by retaining rings in the grooves at both ends.",
+    "mill": "Each pin is held by retaining rings in the grooves at both ends.",
 }
 
 
@@ -119,7 +123,7 @@ def _read_me(assembly: Assembly, listed: list[Item], process: Process, title: st
     lines = [
         title,
         "",
-        f"{len(assembly.parts)} parts of {len(listed)} kinds (bom.csv), all lengths in millimetres.",
+        f"{len(assembly.parts)} parts, {len(listed)} different items (bom.csv); all lengths in millimetres.",
         *_order(assembly, plates),
         _HOLDING[process],
         *assembly.notes,
@@ -128,24 +132,24 @@ def _read_me(assembly: Assembly, listed: list[Item], process: Process, title: st
         *(f"  {name}" for name in sorted(files)),
     ]
     if "assembly.step" not in files:
-        lines += ["", "There are no solids: the service runs without its extra `cad`."]
+        lines += ["", "Solids are not included: the service runs without its extra `cad`."]
     return "\n".join(lines) + "\n"
 
 
 def _order(assembly: Assembly, plates: dict[int, list[str]]) -> list[str]:
-    """How it is put together."""
+    """Return the assembly instructions."""
     if not assembly.parallel:
         told = [f"  {', '.join(names)}" for _, names in sorted(plates.items())]
-        return ["Put together shaft by shaft, then set into the base:", *told,
-                "Spacers fill the gaps on the shafts; assembly.svg shows where they lie."]  # fmt: skip
+        return ["Assemble each shaft, then set the shafts into the base:", *told,
+                "Spacers fill the gaps on the shafts; assembly.svg shows their positions."]  # fmt: skip
     return [
-        f"Put together from below{_thickness(assembly)}:",
+        f"Assemble from below{_thickness(assembly)}:",
         *(f"  {assembly.plane_name(plane)}: {', '.join(names)}" for plane, names in sorted(plates.items())),
-        "Washers and spacers fill the gaps between the planes; assembly.svg shows where they lie.",
+        "Washers and spacers fill the gaps between the planes; assembly.svg shows their positions.",
     ]
 
 
 def _thickness(assembly: Assembly) -> str:
-    """What plates have in common, where they do."""
+    """Return the common thickness of all plates as words, if they have one."""
     found = {millimetres(part.bodies[0].high - part.bodies[0].low) for part in assembly.parts if part.sort in FLAT}
     return f", a plate of {found.pop()} mm in each plane" if len(found) == 1 else ""

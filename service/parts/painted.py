@@ -1,8 +1,8 @@
-"""A picture of an assembly with axes in several directions: triangles with hidden surfaces removed pixel by pixel.
+"""A picture of an assembly with non-parallel axes: triangles with hidden surfaces removed pixel by pixel.
 
-It is drawn as the isometric one is, from above at an angle, and once more from the opposite side. Every triangle that
-faces the viewer is filled into a buffer of depths, and lines are drawn where neighbouring pixels show other parts or
-faces that are bent against each other. The picture stands in the sheet as an image.
+It has the same view as the isometric picture, from above at an angle, and a second one from the opposite side. Every
+triangle that faces the viewer is rendered into a depth buffer. Lines are drawn where neighbouring pixels show different
+parts, or faces with different normals. The picture is embedded in the sheet as an image.
 """
 
 from __future__ import annotations
@@ -25,44 +25,44 @@ from service.render.page.symbols import scale_bar
 Real = NDArray[np.float64]
 
 HEIGHT, MARGIN, SAG = 430.0, 24.0, 0.02
-"""Height of a panel and what is left free in it, pixels; how far facets may be from arcs, millimetres."""
+"""Height of a panel and its margin, pixels; maximum distance of facets from arcs, millimetres."""
 
 FINE = 2
-"""Samples of a pixel of the sheet in each direction."""
+"""Number of samples per pixel of the sheet in each direction."""
 
 LIGHT = np.array([0.35, 0.75, 0.9])
-"""Where the light comes from: to the right in the view, upwards in it, and towards the viewer."""
+"""Direction of the light: to the right in the view, upwards in it, and towards the viewer."""
 
 DARKEST = 0.45
-"""Light of a face that is turned away from it."""
+"""Brightness of a face turned away from the light."""
 
 BENT = 0.75
-"""Cosine of the angle between two faces from which on the edge between them is drawn."""
+"""Cosine of the angle between two faces below which the edge between them is drawn."""
 
 ROWS = 1 << 16
-"""Rows of triangles that are filled at once."""
+"""Number of triangle rows that are rendered at once."""
 
 ROUNDING = 1e-9
-"""How far from a triangle a sample may be that lies on its edge, samples."""
+"""Distance from a triangle's edge, in samples, at which a sample counts as inside."""
 
 INK = np.array([38.0, 44.0, 51.0])
 
 
 class Shot(NamedTuple):
-    """A picture: the bytes of a PNG, and what it shows as a map of the view to the panel."""
+    """A picture: the bytes of a PNG, and the map from the view to the panel."""
 
     image: bytes
     shown: Viewport
 
 
 def painted_sheet(assembly: Assembly, title: str, at: float) -> str:
-    """The picture as an SVG document.
+    """Draw the picture as an SVG document.
 
     Parameters
     ----------
     assembly : Assembly
     title : str
-        Without characters that XML forbids.
+        Title without characters that XML forbids.
     at : float
         Input at which it is shown, radians or millimetres along the slide.
     """
@@ -84,9 +84,10 @@ def painted_sheet(assembly: Assembly, title: str, at: float) -> str:
 
 
 def _seen(assembly: Assembly, triangles: Real, number: NDArray[np.int64], panel: Box, *, behind: bool) -> Shot:
-    """The triangles of the parts of an assembly, as large as a panel has room for."""
+    """Render the triangles of an assembly as large as a panel permits."""
     turn = -1.0 if behind else 1.0
     right, toward = turn * ALONG, turn * TOWARD
+    # Rows: right, up and towards the viewer.
     axes = np.array(
         [
             (right.real, right.imag, 0.0),
@@ -102,7 +103,7 @@ def _seen(assembly: Assembly, triangles: Real, number: NDArray[np.int64], panel:
 
 
 def _standing(assembly: Assembly, at: float) -> tuple[Real, NDArray[np.int64]]:
-    """Triangles of all parts where they are at an input, shape (m, 3, 3), and the number of each one's part."""
+    """Return triangles of all parts in place at an input, shape (m, 3, 3), and the part index of each."""
     state = assembly.motion.at(np.array([at]))
     solids = []
     for part in assembly.parts:
@@ -112,7 +113,7 @@ def _standing(assembly: Assembly, at: float) -> tuple[Real, NDArray[np.int64]]:
 
 
 def _moved(triangles: Real, placed: Placed) -> Real:
-    """Triangles of a part where it is."""
+    """Return the triangles of a part in place."""
     turn, shift = (complex(np.ravel(values)[0]) for values in (placed.turn, placed.shift))
     plane = turn * (triangles[:, :, 0] + 1j * triangles[:, :, 1]) + shift
     moved = np.stack([plane.real, plane.imag, triangles[:, :, 2]], axis=-1)
@@ -122,11 +123,12 @@ def _moved(triangles: Real, placed: Placed) -> Real:
 
 
 def _filled(triangles: Real, number: NDArray[np.int64], colours: Real, shown: Viewport) -> NDArray[np.uint8]:
-    """The pixels of the panel."""
+    """Render the pixels of the panel."""
     panel = shown.panel
     width, height = FINE * round(panel.width), FINE * round(panel.height)
     normals = np.cross(triangles[:, 1] - triangles[:, 0], triangles[:, 2] - triangles[:, 0])
     length = np.linalg.norm(normals, axis=1)
+    # Back faces and faces seen edge-on are invisible.
     seen = normals[:, 2] > 1e-9 * length
     triangles, number, normals = triangles[seen], number[seen], normals[seen] / length[seen, None]
     points = shown.points(triangles[:, :, 0] + 1j * triangles[:, :, 1]) - complex(panel.left, panel.low)
@@ -137,25 +139,28 @@ def _filled(triangles: Real, number: NDArray[np.int64], colours: Real, shown: Vi
                        np.full(3, 255.0)])  # fmt: skip
     picture = paint[owner]
     picture[_lines(owner, np.append(number, -1), np.vstack([normals, np.zeros(3)]))] = INK
+    # Averaging the samples smooths the edges.
     picture = picture.reshape(height // FINE, FINE, width // FINE, FINE, 3)
     return np.asarray(np.round(picture.mean(axis=(1, 3))), np.uint8)
 
 
 def nearest(corners: Real, width: int, height: int) -> NDArray[np.int64]:
-    """Which triangle is the nearest at each sample, -1 where none is; shape (height, width).
+    """Return the index of the nearest triangle at each sample, -1 for none; shape (height, width).
 
     Parameters
     ----------
     corners : ndarray, shape (m, 3, 3)
-        Column, row and how near, of triangles that are no lines.
+        Column, row and closeness to the viewer of non-degenerate triangles.
     """
     depth, owner = np.full(height * width, -np.inf), np.full(height * width, -1)
     x, y, z = np.moveaxis(corners, -1, 0)
     (ax, bx, cx), (ay, by, cy), (az, bz, cz) = x.T, y.T, z.T
     whole = (bx - ax) * (cy - ay) - (cx - ax) * (by - ay)
     whole = np.where(whole == 0.0, np.inf, whole)  # a sliver is level
+    # Gradient of the depth over columns and rows.
     along = ((bz - az) * (cy - ay) - (cz - az) * (by - ay)) / whole
     down = ((cz - az) * (bx - ax) - (bz - az) * (cx - ax)) / whole
+    # Rows of samples that each triangle covers, within the picture.
     first = np.maximum(np.ceil(y.min(axis=1)), 0.0).astype(int)
     last = np.minimum(np.floor(y.max(axis=1)), height - 1.0).astype(int)
     number, row = _counted(first, last)
@@ -168,23 +173,26 @@ def nearest(corners: Real, width: int, height: int) -> NDArray[np.int64]:
         k, at = k[n], at[n]
         near = az[k] + along[k] * (column - ax[k]) + down[k] * (at - ay[k])
         place = at * width + column
+        # Discard samples behind earlier triangles.
         nearer = near > depth[place]
         k, near, place = k[nearer], near[nearer], place[nearer]
+        # Several triangles may hit one pixel: keep the nearest one.
         np.maximum.at(depth, place, near)
         nearest = near == depth[place]
+        # Reversed, so that the first of equally near triangles wins.
         owner[place[nearest][::-1]] = k[nearest][::-1]
     return owner.reshape(height, width)
 
 
 def _counted(first: NDArray[np.int64], last: NDArray[np.int64]) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
-    """All whole numbers of ranges, both ends among them, and before them the range that each is of."""
+    """Return all integers of ranges, ends included, and the index of the range of each."""
     counts = np.maximum(last - first + 1, 0)
     of = np.repeat(np.arange(len(counts)), counts)
     return of, np.arange(len(of)) - np.repeat(np.cumsum(counts) - counts - first, counts)
 
 
 def _span(x: Real, y: Real, row: NDArray[np.int64]) -> tuple[Real, Real]:
-    """From where to where rows lie in their triangles, whose corners have shape (n, 3)."""
+    """Return the left and right ends of rows within their triangles, whose corners have shape (n, 3)."""
     ahead_x, ahead_y = np.roll(x, -1, axis=1), np.roll(y, -1, axis=1)
     rise = ahead_y - y
     share = (row[:, None] - y) / np.where(rise == 0.0, 1.0, rise)
@@ -194,7 +202,7 @@ def _span(x: Real, y: Real, row: NDArray[np.int64]) -> tuple[Real, Real]:
 
 
 def _lines(owner: NDArray[np.int64], part: NDArray[np.int64], normals: Real) -> NDArray[np.bool_]:
-    """Where a pixel's neighbour shows another part, or a face that is bent against its own."""
+    """Return where a pixel's neighbour shows another part, or a face with a different normal."""
     found = np.zeros(owner.shape, bool)
     for axis in (0, 1):
         ahead = np.roll(owner, -1, axis)
@@ -206,8 +214,9 @@ def _lines(owner: NDArray[np.int64], part: NDArray[np.int64], normals: Real) -> 
 
 
 def _png(pixels: NDArray[np.uint8]) -> bytes:
-    """The file of a picture of shape (rows, columns, 3)."""
+    """Encode a picture of shape (rows, columns, 3) as PNG."""
     height, width, _ = pixels.shape
+    # Every row of a PNG starts with its filter type, here none.
     rows = np.concatenate([np.zeros((height, 1), np.uint8), pixels.reshape(height, 3 * width)], axis=1)
 
     def chunk(name: bytes, content: bytes) -> bytes:

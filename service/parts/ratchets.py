@@ -1,7 +1,7 @@
-"""Ratchets as parts: the toothed wheel on its shaft, pawls on their pivots beside it, and the base.
+"""Ratchets as parts: the toothed wheel on its shaft, pawls on their pivots next to it, and the base.
 
-Wheel and pawls lie in one plane. A pawl has a nose between the face that it holds and a line that stays clear of the
-tooth behind, whatever the lift; its body stays outside of the circle of the tips.
+Wheel and pawls lie in one plane. The nose of a pawl lies between the face that it holds and a line that clears the
+tooth behind at every lift; its body stays outside the tip circle.
 """
 
 from __future__ import annotations
@@ -30,30 +30,30 @@ ON_WHEEL = Carrier(WHEEL, None)
 WHEEL_COLOUR, PAWL_COLOUR = LINK_COLOURS[1], LINK_COLOURS[0]
 
 PIN_OF_WHEEL = 0.15
-"""The thickest pin that is tried where none is stated, in radii of the wheel."""
+"""Thickest default pin, in radii of the wheel."""
 
 NOSE = 1.5
-"""Length of a pawl's face, in lengths of a tooth's."""
+"""Length of a pawl's face, in tooth face lengths."""
 
 SLACK, SHARPEST = 2.0, 8.0
-"""Between the nose and the tooth behind where they come nearest, and of the sharpest nose, degrees."""
+"""Minimum angle between the nose and the tooth behind, and minimum nose angle, degrees."""
 
 LOOKED_AT = 721
-"""Positions of a pitch in which it is seen how far a pawl turns against the wheel."""
+"""Number of positions of a pitch at which the rotation of a pawl relative to the wheel is measured."""
 
 
 @dataclass(frozen=True)
 class RatchetMotion(Turning):
-    """Wheel and pawls over a turn of the wheel, from where the first pawl holds it.
+    """Wheel and pawls over a turn of the wheel, starting where the first pawl holds it.
 
     Attributes
     ----------
     ratchet : Ratchet
-        In millimetres.
+        Dimensions in millimetres.
     pivots : tuple of complex
-        Of the pawls.
+        Pivots of the pawls.
     stops : tuple of float
-        By how much the wheel is beyond its first stop where each pawl holds it, radians.
+        Angle of the wheel from its first stop to the stop of each pawl, radians.
     """
 
     ratchet: Ratchet
@@ -61,11 +61,11 @@ class RatchetMotion(Turning):
     stops: tuple[float, ...]
 
     def inputs(self, count: int) -> Real:
-        """So many inputs over a turn and a pitch, so that they are spread over a pitch too."""
+        """Return inputs over a turn plus a pitch, so that they sample all phases of a pitch."""
         return (TURN + self.ratchet.pitch) / count * np.arange(count, dtype=np.float64)
 
     def placed(self, carrier: Carrier, state: Real) -> Placed:
-        """How what a carrier carries has moved since the first pawl held the wheel."""
+        """Return the displacement of a carrier since the first pawl held the wheel."""
         if carrier.link == GROUND:
             return still(state)
         if carrier.link == WHEEL:
@@ -74,12 +74,12 @@ class RatchetMotion(Turning):
         return turned(self.lift(number, np.zeros(1)) - self.lift(number, state), self.pivots[number])
 
     def lift(self, number: int, state: Real) -> Real:
-        """By how much a pawl is lifted, radians."""
+        """Return the lift of a pawl, radians."""
         return self.ratchet.lifted(state - self.stops[number])
 
 
 def ratchet_parts(design: Any, problem: Any, query: PartsQuery) -> Assembly:
-    """The parts of a ratchet.
+    """Make the parts of a ratchet.
 
     Parameters
     ----------
@@ -91,7 +91,7 @@ def ratchet_parts(design: Any, problem: Any, query: PartsQuery) -> Assembly:
     Raises
     ------
     NotMade
-        Where the teeth leave no room for a nose, or there is none for such parts.
+        A nose does not fit between the teeth, or the parts do not fit.
     """
     return _Ratchet(design.mechanism, query, MILLIMETRES[problem.length_unit]).assembly()
 
@@ -106,16 +106,17 @@ class _Ratchet(Fitting):
 
     @property
     def most(self) -> float:
-        """A share of the wheel."""
+        """Thickest default pin, as a share of the wheel."""
         return PIN_OF_WHEEL * self._mechanism.wheel_radius
 
     def tried(self, sizes: Sizes, scale: float) -> Trial:
-        """The assembly in these sizes."""
+        """Build the assembly in these sizes."""
         assembly = _Builder(self._mechanism, sizes, self._unit * scale).assembled(scale, self._size)
         pawl = next(part for part in assembly.parts if part.carrier.link.startswith(PAWL))
+        # An outline that crosses itself is no part.
         around = ring_of(pawl.region.outer, beyond=True)
         if not shapely.Polygon(np.column_stack([around.real, around.imag])).is_valid:
-            return Trial(None, "the round end of a pawl about its pivot would reach over its nose")
+            return Trial(None, "the round end of a pawl about its pivot would overlap its nose")
         fault = fault_of(assembly, sizes)
         return Trial(None, fault) if fault else Trial(assembly, "")
 
@@ -138,7 +139,7 @@ class _Builder:
         self._pivots = tuple(factor * complex(*pawl.pivot) for pawl in mechanism.pawls)
 
     def assembled(self, scale: float, size: float) -> Assembly:
-        """All parts."""
+        """Build the assembly of all parts."""
         stops = tuple(math.radians(pawl.stop) for pawl in self._pawls)
         motion = RatchetMotion(self._factor * size, self._ratchet, self._pivots, stops)
         stack, sizes = self._stack, self._sizes
@@ -157,15 +158,15 @@ class _Builder:
         holes = [Disc(0j, 0.5 * stack.of(self._shaft).hole), *(Disc(z, 0.5 * sizes.hole) for z in self._pivots)]
         bosses = [(0j, self._shaft, 1), *((z, sizes.pin, 1) for z in self._pivots)]
         parts.append(stack.base("base", widened([0j, *self._pivots], half), holes, bosses))
-        notes = ("The input is the wheel's angle, counter-clockwise, from where the first pawl holds it.",
-                 "Springs or weights lay the pawls on the teeth; they are not among the parts.",
-                 "A key joins the wheel to its shaft, which stands out below the base.")  # fmt: skip
+        notes = ("The input is the wheel's angle, counter-clockwise, from the stop of the first pawl.",
+                 "Springs or weights must press the pawls on the teeth; they are not included.",
+                 "The wheel is keyed to its shaft, which protrudes below the base.")  # fmt: skip
         touching = frozenset(frozenset(("wheel", name)) for name in names)
         return Assembly(tuple(parts), motion, 1, 1, self._factor, scale, notes, touching)
 
     def _pawl(self, name: str, number: int, lift: float) -> list[Part]:
         stack, pivot = self._stack, self._pivots[number]
-        # From the first pawl, as it holds the wheel, to this one where it is then.
+        # Rotation from the first pawl, while it holds the wheel, to this one at that moment.
         turn = pivot / self._ratchet.pivot * cmath.exp(-1j * lift)
         shape = self._outline()
         corners = tuple(pivot + turn * (z - self._ratchet.pivot) for z in shape.corners)
@@ -179,20 +180,23 @@ class _Builder:
         return parts
 
     def _outline(self) -> Loop:
-        """The first pawl, as it holds the wheel: its nose, and round its pivot."""
+        """Return the first pawl while it holds the wheel: its nose, and the round end about its pivot."""
         ratchet, radius = self._ratchet, 0.5 * self._sizes.width
         foot, pivot = ratchet.foot, ratchet.pivot
         face = (ratchet.tip - foot) / abs(ratchet.tip - foot)
         back = ratchet.tip * cmath.exp(-1j * ratchet.pitch) - foot
-        # By how much the pawl turns against the wheel, towards the tooth behind, until it falls in again.
+        # Maximum rotation of the pawl relative to the wheel, towards the tooth behind, until it drops in again.
         wheel = np.linspace(0.0, ratchet.pitch + ratchet.overtravel, LOOKED_AT)[:-1]
         closing = float((wheel + ratchet.lifted(wheel)).max()) + math.radians(SLACK)
         inner = back / abs(back) * cmath.exp(1j * closing)
         if cmath.phase(face / inner) < math.radians(SHARPEST):
-            raise NotMade("The teeth are too few for a pawl of one piece: its nose would meet the tooth behind.")
-        # Out of the circle of the tips, and on to the pivot.
+            raise NotMade(
+                "The wheel has too few teeth for a one-piece pawl: its nose would collide with the tooth behind."
+            )
+        # From the foot out of the tip circle, and on to the pivot.
         out = ratchet.radius + self._sizes.apart
         along = (foot * inner.conjugate()).real
+        # Intersection of the inner line with the circle outside the tips.
         beyond = foot + inner * (-along + math.sqrt(along**2 + out**2 - abs(foot) ** 2))
         end = foot + NOSE * abs(ratchet.tip - foot) * face
         if abs(end) < out:
@@ -201,10 +205,11 @@ class _Builder:
         tangent = -1j * beyond / abs(beyond)
         first = _tangent(beyond - pivot, radius, 1.0)
         if ((pivot + cmath.rect(radius, first) - beyond) * beyond.conjugate()).real < 0.0:
-            # Straight to the pivot's round end it would come back into the circle.
+            # A straight line to the pivot's round end would re-enter the tip circle.
             inside.append(beyond + tangent * max(((pivot - beyond) * tangent.conjugate()).real - radius, 0.0))
             first = _tangent(inside[1] - pivot, radius, 1.0)
         last = _tangent(end - pivot, radius, -1.0)
+        # The round end runs counter-clockwise between the two tangents.
         turn = (last - first) % (2.0 * math.pi)
         around = [pivot + radius * cmath.exp(1j * (first + share * turn)) for share in (0.0, 0.5, 1.0)]
         bulge = math.tan(0.125 * turn)
@@ -212,5 +217,5 @@ class _Builder:
 
 
 def _tangent(point: complex, radius: float, side: float) -> float:
-    """Direction, from the origin, of the place where a tangent from a point touches a circle about it."""
+    """Return the direction, from the origin, of the tangent point on a circle about it for a tangent from a point."""
     return cmath.phase(point) + side * math.acos(min(1.0, radius / abs(point)))

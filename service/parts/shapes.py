@@ -1,7 +1,7 @@
 """Regions of the plane: outlines of straight lines and arcs, or of a smooth curve, with holes.
 
-An outline is a :class:`Disc`, or a :class:`Loop`: corners counter-clockwise, from each to the next a line, or an arc of
-which the *bulge* is the tangent of a quarter of its angle (as DXF has it), positive where it turns to the left; or a
+An outline is a :class:`Disc`, or a :class:`Loop`: corners counter-clockwise, joined by lines or arcs. The *bulge* of an
+arc is the tangent of a quarter of its angle (as in DXF), positive for a turn to the left. Or it is a
 :class:`~service.parts.curves.Curve`.
 """
 
@@ -20,11 +20,11 @@ from service.parts.curves import Curve
 Complex = NDArray[np.complex128]
 
 SEGMENTS = 96
-"""Edges of the polygon that stands for a whole circle."""
+"""Number of edges of the polygon that approximates a full circle."""
 
 
 class Disc(NamedTuple):
-    """A circle and what it encloses."""
+    """A circle, filled."""
 
     centre: complex
     radius: float
@@ -37,7 +37,7 @@ class Loop(NamedTuple):
     bulges: tuple[float, ...]
 
     def edges(self) -> Iterator[tuple[complex, complex, float]]:
-        """Start, end and bulge of each edge."""
+        """Yield start, end and bulge of each edge."""
         yield from zip(self.corners, (*self.corners[1:], self.corners[0]), self.bulges, strict=True)
 
 
@@ -45,14 +45,14 @@ Outline = Disc | Loop | Curve
 
 
 class Region(NamedTuple):
-    """An outline and the holes in it."""
+    """An outline with holes."""
 
     outer: Outline
     holes: tuple[Outline, ...] = ()
 
 
 def turned(outline: Outline, turn: complex, about: complex) -> Outline:
-    """An outline turned about a point by a direction of length 1."""
+    """Rotate an outline about a point by a unit complex number."""
     if isinstance(outline, Disc):
         return Disc(about + turn * (outline.centre - about), outline.radius)
     if isinstance(outline, Curve):
@@ -61,7 +61,7 @@ def turned(outline: Outline, turn: complex, about: complex) -> Outline:
 
 
 def larger(outline: Outline, scale: float, about: complex) -> Outline:
-    """An outline made larger about a point."""
+    """Scale an outline about a point."""
     if isinstance(outline, Disc):
         return Disc(about + scale * (outline.centre - about), scale * outline.radius)
     if isinstance(outline, Curve):
@@ -70,12 +70,12 @@ def larger(outline: Outline, scale: float, about: complex) -> Outline:
 
 
 def ring(centre: complex, outer: float, inner: float = 0.0) -> Region:
-    """A ring, or a disc without a hole, by its radii."""
+    """Return a ring by its radii, or a disc if the inner radius is 0."""
     return Region(Disc(centre, outer), (Disc(centre, inner),) if inner > 0.0 else ())
 
 
 def widened(points: Sequence[complex], radius: float) -> Outline:
-    """The convex hull of circles of one radius about points.
+    """Return the convex hull of circles of one radius about points.
 
     Examples
     --------
@@ -95,6 +95,7 @@ def widened(points: Sequence[complex], radius: float) -> Outline:
     ]
     for k in range(count):
         ahead = (k + 1) % count
+        # The normals of a convex polygon turn counter-clockwise by less than π.
         turn = cmath.phase(outward[ahead] / outward[k]) % (2.0 * math.pi)
         corners += [around[k] + radius * outward[k], around[ahead] + radius * outward[k]]
         bulges += [0.0, math.tan(0.25 * turn)]
@@ -102,15 +103,16 @@ def widened(points: Sequence[complex], radius: float) -> Outline:
 
 
 def hull(points: Sequence[complex]) -> list[complex]:
-    """Corners of the convex hull, counter-clockwise: two of points on a line, and one of points in one place."""
+    """Return the corners of the convex hull, counter-clockwise: two for collinear points, one for coincident points."""
     size = max(abs(z - points[0]) for z in points)
     kept: list[complex] = []
     for z in points:
+        # Coincident points would make zero-length edges.
         if all(abs(z - w) > 1e-9 * size for w in kept):
             kept.append(z)
     if len(kept) < 2:
         return kept[:1]
-    # Gift wrapping from the lowest: each next corner has all others at its left; of those on one line the farthest.
+    # Gift wrapping from the lowest point: each next corner has all others at its left; of collinear ones the farthest.
     at = start = min(kept, key=lambda z: (z.imag, z.real))
     found = []
     while True:
@@ -128,17 +130,18 @@ def hull(points: Sequence[complex]) -> list[complex]:
 
 
 def ring_of(outline: Outline, *, beyond: bool, sag: float = math.inf) -> Complex:
-    """An outline as a polygon, whose arcs lie all outside of the true ones (``beyond``), or all inside.
+    """Approximate an outline by a polygon whose arcs are all circumscribed (``beyond``), or all inscribed.
 
     Parameters
     ----------
     sag : float
-        How far the polygon may be from arcs; :data:`SEGMENTS` edges stand for a whole circle at least.
+        Maximum distance of the polygon from arcs; a full circle has at least :data:`SEGMENTS` edges.
     """
     if isinstance(outline, Curve):
         return outline.ring(beyond=beyond)
     if isinstance(outline, Disc):
         edges = _edges(outline.radius, sag)
+        # Circumscribed polygons have their corners outside by 1/cos of half the step.
         half = math.pi / edges
         radius = outline.radius / math.cos(half) if beyond else outline.radius
         turns = np.exp(2j * half * np.arange(edges))
@@ -150,8 +153,8 @@ def ring_of(outline: Outline, *, beyond: bool, sag: float = math.inf) -> Complex
             continue
         centre, angle = arc(start, end, bulge)
         count = max(2, math.ceil(abs(angle) / (2.0 * math.pi) * _edges(abs(start - centre), sag)))
-        # Tangents from the middle of each step lie outside of the arc's circle, and its chords inside. What is enclosed
-        # is inside where the arc turns to the left.
+        # Tangents at the middle of each step lie outside the arc's circle, chords inside. The enclosed area is inside
+        # the circle if the arc turns to the left.
         tangent = beyond == (bulge > 0.0)
         grown = 1.0 / math.cos(0.5 * angle / count) if tangent else 1.0
         shares = (np.arange(count) + 0.5) if tangent else np.arange(1, count)
@@ -161,24 +164,24 @@ def ring_of(outline: Outline, *, beyond: bool, sag: float = math.inf) -> Complex
 
 
 def _edges(radius: float, sag: float) -> int:
-    """Of a polygon that stands for a circle."""
+    """Return the number of edges of a polygon that approximates a circle within a sag."""
     return max(SEGMENTS, math.ceil(math.pi / math.sqrt(2.0 * sag / radius)))
 
 
 def arc(start: complex, end: complex, bulge: float) -> tuple[complex, float]:
-    """Centre and signed angle of an arc."""
+    """Return centre and signed angle of an arc."""
     angle = 4.0 * math.atan(bulge)
     centre = 0.5 * (start + end) + 1j * (end - start) * (1.0 - bulge**2) / (4.0 * bulge)
     return centre, angle
 
 
 def middle_of(start: complex, end: complex, bulge: float) -> complex:
-    """The point of an arc half-way."""
+    """Return the midpoint of an arc."""
     return 0.5 * (start + end) - 0.5j * bulge * (end - start)
 
 
 def extent(outline: Outline, along: complex) -> tuple[float, float]:
-    """The least and the greatest place of an outline along a direction of length 1."""
+    """Return the minimum and maximum coordinate of an outline along a unit direction."""
     if isinstance(outline, Curve):
         return outline.extent(along)
     if isinstance(outline, Disc):
@@ -190,21 +193,23 @@ def extent(outline: Outline, along: complex) -> tuple[float, float]:
         if bulge:
             centre, angle = arc(start, end, bulge)
             radius, first = abs(start - centre), cmath.phase((start - centre) / along)
+            # An arc spans at most a full turn either way, so these multiples of π cover it.
             for k in range(-4, 5):
-                # Where the arc is farthest along the direction, or against it.
+                # Points of the arc with extreme coordinates along the direction.
                 if min(first, first + angle) <= k * math.pi <= max(first, first + angle):
                     places.append((centre * along.conjugate()).real + radius * (-1.0) ** k)
     return min(places), max(places)
 
 
 def area(outline: Outline) -> float:
-    """What an outline encloses."""
+    """Return the area enclosed by an outline."""
     if isinstance(outline, Curve):
         return outline.area
     if isinstance(outline, Disc):
         return math.pi * outline.radius**2
     total = 0.0
     for start, end, bulge in outline.edges():
+        # Shoelace formula for the chords, plus the segments between chord and arc.
         total += 0.5 * (start.conjugate() * end).imag
         if bulge:
             centre, angle = arc(start, end, bulge)

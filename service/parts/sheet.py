@@ -1,8 +1,8 @@
-"""The assembly on one sheet: its planes as an exploded side view to scale, the view from above, and the bill.
+"""The assembly on one sheet: its planes as an exploded side view to scale, the plan view, and the bill of materials.
 
-The side view looks along the base from where the pins stand farthest apart. Each plane and each gap between two planes
-is drawn at its true height and moved up by the same space as all others; the pins hang above, in their true lengths,
-on the axes that lead down through everything they hold.
+The side view looks along the base in the direction in which the pins are most widely spaced. Each plane and each gap
+between two planes is drawn at its true height, separated by equal spaces; the pins are above, in true length, on the
+axes through everything they hold.
 """
 
 from __future__ import annotations
@@ -27,28 +27,28 @@ from service.render.page.svg import Box, Element, Viewport, element, line, numbe
 from service.render.page.symbols import GREY, INK, scale_bar
 
 DIRECTIONS = 36
-"""Directions from which the side view may look."""
+"""Number of trial directions of the side view."""
 
 SPACE, LEADING = 20.0, 13.5
-"""Between two layers of the side view at least, and between two lines of their names, pixels."""
+"""Minimum space between two layers of the side view, and line spacing of their names, pixels."""
 
 SIDE = 0.56
-"""Width of what is drawn in the side view, beside which names stand, as a share of the sheet's."""
+"""Width of the drawn part of the side view, next to the names, as a share of the sheet's."""
 
 HIGHEST = 700.0
-"""What the layers and pins may take of the side view's height, without the space between them, pixels."""
+"""Maximum height of layers and pins in the side view, without the space between them, pixels."""
 
 ABOVE = 420.0
-"""Height of the view from above, pixels."""
+"""Height of the plan view, pixels."""
 
 MARGIN, SMALL = 26.0, 10.5
 
 ENDS = (0.0, 0.25, 0.34, 0.42, 0.50, 0.58, 0.75, 0.86, 1.0)
-"""Where the names of the bill begin, and the right ends of its other columns, shares of the width."""
+"""Left end of the bill's names, and right ends of its other columns, shares of the width."""
 
 
 class Layer(NamedTuple):
-    """A plane, or the gap above it: its parts, and the height at which it begins."""
+    """A plane, or the gap above it: its parts, and its lowest height."""
 
     name: str
     parts: tuple[Part, ...]
@@ -56,20 +56,20 @@ class Layer(NamedTuple):
 
     @property
     def height(self) -> float:
-        """To its highest part."""
+        """Height up to the highest part."""
         return max(part.high for part in self.parts) - self.low
 
 
 def assembly_sheet(assembly: Assembly, listed: Sequence[Item], title: str) -> str:
-    """The sheet as an SVG document.
+    """Draw the sheet as an SVG document.
 
     Parameters
     ----------
     assembly : Assembly
     listed : sequence of Item
-        Its items.
+        Items of the assembly.
     title : str
-        Without characters that XML forbids.
+        Title without characters that XML forbids.
     """
     count = f"{assembly.planes} {'plane' if assembly.planes == 1 else 'planes'}"
     held = "one base" if assembly.sides == 1 else "two bases"
@@ -79,7 +79,7 @@ def assembly_sheet(assembly: Assembly, listed: Sequence[Item], title: str) -> st
     side, y = _side_view(assembly, TOP)
     plan, y = _plan(assembly, y + 16.0)
     bill, y = _bill(listed, y + 10.0)
-    described = f"Exploded side view and view from above of an assembly of {len(assembly.parts)} parts, and their bill."
+    described = f"Exploded side view and plan view of an assembly of {len(assembly.parts)} parts; bill of materials."
     return sheet(title, words, described, [*side, *plan, bill], y)
 
 
@@ -93,7 +93,7 @@ def _bill(listed: Sequence[Item], top: float) -> tuple[Element, float]:
 
 
 def layers(assembly: Assembly) -> list[Layer]:
-    """All parts but the pins by planes and gaps, from below."""
+    """Group all parts except pins by planes and gaps, from below."""
     found: dict[tuple[int, int], list[Part]] = {}
     for part in assembly.parts:
         if part.sort == "pin":
@@ -102,7 +102,7 @@ def layers(assembly: Assembly) -> list[Layer]:
         if part.sort in FLAT or part.sort == "key":
             gap = 0
         elif part.sort == "ring":
-            # Above the highest plane of its pin, or below the lowest.
+            # Rings are above the highest plane of their pin, or below the lowest.
             above = part.name.startswith(("ring_above", "cap")) and not part.name.startswith("cap_below")
             plane = part.planes[1] if above else part.planes[0] - 1
         found.setdefault((plane, gap), []).append(part)
@@ -114,7 +114,7 @@ def layers(assembly: Assembly) -> list[Layer]:
 
 
 def direction_of_view(assembly: Assembly) -> complex:
-    """The horizontal of the side view: along it the pins stand farthest apart."""
+    """Return the horizontal direction of the side view in which the pins are most widely spaced."""
     places = sorted({_centre(part) for part in assembly.parts if part.sort == "pin"}, key=lambda z: (z.real, z.imag))
     if len(places) < 2:
         return 1.0 + 0.0j
@@ -123,7 +123,9 @@ def direction_of_view(assembly: Assembly) -> complex:
         along = [(z * direction.conjugate()).real for z in places]
         return min(abs(a - b) for a, b in combinations(along, 2))
 
+    # Half a turn covers all directions of a side view.
     turns = [cmath.exp(1j * math.pi * (k - DIRECTIONS // 2) / DIRECTIONS) for k in range(DIRECTIONS)]
+    # Sorting prefers directions near x among equally good ones.
     return max(sorted(turns, key=lambda turn: abs(cmath.phase(turn))), key=parted)
 
 
@@ -140,6 +142,7 @@ def _side_view(assembly: Assembly, top: float) -> tuple[list[Element], float]:
     stacked, pins = layers(assembly), _in_rows([part for part in assembly.parts if part.sort == "pin"], direction)
     rows = [max(part.high - part.low for part in pins_row) for pins_row in pins]
     heights = sum(layer.height for layer in stacked) + sum(rows)
+    # Limited by the width and by the height of the sheet.
     scale = min((SIDE * FULL - 2.0 * MARGIN) / (right - left), HIGHEST / heights)
     x0 = EDGE + MARGIN + 0.5 * (SIDE * FULL - 2.0 * MARGIN - scale * (right - left)) - scale * left
     names = EDGE + SIDE * FULL + 8.0
@@ -191,7 +194,7 @@ def _side_view(assembly: Assembly, top: float) -> tuple[list[Element], float]:
 
 
 def _in_rows(pins: Sequence[Part], direction: complex) -> list[list[Part]]:
-    """Pins that would hide one another from the side, one above the other; the longest row last."""
+    """Arrange pins that would hide one another from the side in rows; the longest row is last."""
     rows: list[list[Part]] = []
     for pin in sorted(pins, key=lambda pin: pin.low - pin.high):
         low, high = extent(pin.region.outer, direction)
@@ -205,7 +208,7 @@ def _in_rows(pins: Sequence[Part], direction: complex) -> list[list[Part]]:
 
 
 def _pin(pin: Part, x: float, base: float, scale: float) -> list[Element]:
-    """A pin upright on a base line, from its bodies."""
+    """Draw a pin upright on a base line, from its bodies."""
     shapes = []
     for body in pin.bodies:
         region, low, high = body.region, body.low, body.high
@@ -220,7 +223,7 @@ def _pin(pin: Part, x: float, base: float, scale: float) -> list[Element]:
 def _from_the_side(
     part: Part, layer: Layer, direction: complex, x0: float, bottom: float, scale: float
 ) -> list[Element]:
-    """A part as rectangles, with the hidden edges of its holes."""
+    """Draw a part as rectangles, with the hidden edges of its holes."""
     shapes = []
     for body in part.bodies:
         region, low, high = body.region, body.low, body.high
@@ -240,7 +243,7 @@ def _rectangle(x: float, y: float, width: float, height: float, fill: str) -> El
 
 
 def _told(layer: Layer) -> list[tuple[str, str]]:
-    """What stands beside a layer: lines of words, and their weights."""
+    """Return the lines of text next to a layer, with their font weights."""
     plates = [part for part in layer.parts if part.sort in FLAT]
     if plates:
         told = []
@@ -261,11 +264,11 @@ def _told(layer: Layer) -> list[tuple[str, str]]:
 
 
 def _bought(part: Part) -> tuple[str, str]:
-    """What a part on a pin is called, and its standard or its height."""
+    """Return the name of a part on a pin, and its standard or its height."""
     return part.name.split("_")[0], part.standard or f"{millimetres(part.high - part.low)} high"
 
 
-# From above
+# Plan view
 
 
 def _plan(assembly: Assembly, top: float) -> tuple[list[Element], float]:
@@ -275,7 +278,7 @@ def _plan(assembly: Assembly, top: float) -> tuple[list[Element], float]:
     shapes = []
     for part in sorted(assembly.parts, key=lambda part: part.high):
         d = "".join(_path(outline, view) for outline in (part.region.outer, *part.region.holes))
-        # What is above all else is seen through.
+        # A second base, above all else, is transparent.
         opacity = 0.0 if part.sort == "base" and part.planes[0] else 0.82 if part.sort in FLAT else 1.0
         shapes.append(
             element("path", d=d, fill=part.colour, fill_opacity=opacity, fill_rule="evenodd", stroke=INK,
@@ -298,7 +301,7 @@ def _plan(assembly: Assembly, top: float) -> tuple[list[Element], float]:
     bar, _ = scale_bar(view, "mm")
     return [
         framed(panel, "above"),
-        caption(panel, "From above, as the design states it"),
+        caption(panel, "From above, in the reference configuration"),
         *shapes,
         *names,
         bar,
@@ -306,13 +309,13 @@ def _plan(assembly: Assembly, top: float) -> tuple[list[Element], float]:
 
 
 def _called(pin: Part) -> str:
-    """A pin or shaft by its joint where it has one: a shaft of something has none."""
+    """Return the name of a pin or shaft: that of its joint if it has one."""
     named = pin.described.startswith(("pin ", "shaft ")) and not pin.described.startswith("shaft of ")
     return pin.described.partition(" ")[2] if named else pin.described
 
 
 def _beside(at: complex, radius: float, width: float, taken: Sequence[Box]) -> Box:
-    """Where a name stands beside a pin: above it on the right, or at the next corner that is free."""
+    """Return the box of a name next to a pin: above right, or at the next free corner."""
     beyond = radius + 4.0
     corners = [
         Box(left, low, left + width + 4.0, low + 13.0)
@@ -321,6 +324,7 @@ def _beside(at: complex, radius: float, width: float, taken: Sequence[Box]) -> B
             (at.real - beyond - width - 4.0, at.imag + beyond - 3.0), (at.real + beyond, at.imag + beyond - 3.0),
         )
     ]  # fmt: skip
+    # Take the first free corner, or overlap at the preferred one.
     free = (box for box in corners if not any(_share(box, other) for other in taken))
     return next(free, corners[0])
 

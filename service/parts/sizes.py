@@ -1,4 +1,4 @@
-"""How thick and wide the parts are: what a request states, and what follows from it, all in millimetres."""
+"""Thickness and width of the parts: the options of a request and derived sizes, all in millimetres."""
 
 from __future__ import annotations
 
@@ -13,117 +13,117 @@ from service.parts.standards import PINS, SHEETS, RetainingRing, retaining_ring_
 Process = Literal["print", "laser", "mill"]
 
 File = Literal["zip", "step", "glb", "json", "svg"]
-"""What a design's parts are had as: ``json`` is what shows them in three dimensions, ``svg`` a picture of them."""
+"""File formats of an assembly: ``json`` is the three-dimensional model for the viewer, ``svg`` a picture."""
 
 PartFile = Literal["dxf", "stl", "step", "3mf"]
-"""What one part is had as."""
+"""File formats of a single part."""
 
 SOLID: tuple[File | PartFile, ...] = ("step", "glb", "stl", "3mf")
-"""Files that need the extra ``cad`` whatever the process is."""
+"""Files that need the extra ``cad`` for every process."""
 
 NEEDS_CAD: tuple[Process, ...] = ("print", "mill")
 """Processes whose files are solids."""
 
 LARGEST = 1e6
-"""The greatest length that a request may state, in the unit of the problem."""
+"""Maximum length in a request, in the unit of the problem."""
 
 SMALLEST_SCALE, LARGEST_SCALE = 1e-6, 1e6
-"""Between which a design is built: squares of smaller lengths are nothing, and of larger ones infinite."""
+"""Minimum and maximum scale: squares of smaller lengths underflow, those of larger ones overflow."""
 
 LARGEST_ASSEMBLY = 20_000.0
-"""What is made at most, millimetres."""
+"""Maximum size of an assembly, millimetres."""
 
 MILLIMETRES = {"mm": 1.0, "cm": 10.0, "m": 1000.0, "in": 25.4}
 
 MOST_SPEEDS = 1000
-"""Of a gearbox that a request may name."""
+"""Maximum number of a gearbox speed in a request."""
 
 MOST_POSITIONS = 720
-"""At which an assembly is shown."""
+"""Maximum number of positions in which an assembly is shown."""
 
 CLEARANCES: dict[Process, float] = {"print": 0.2, "laser": 0.1, "mill": 0.05}
-"""By which a hole is wider than its pin on each side, where nothing is stated, millimetres."""
+"""Default clearance between hole and pin on each side, millimetres."""
 
 WIDTH, THICKNESS = 2.5, 0.7
-"""Width and greatest thickness of a plate, in diameters of its pins, where neither is stated."""
+"""Default width and maximum default thickness of a plate, in pin diameters."""
 
 WALL = 0.25
-"""What is left of a plate beside a hole at least, in diameters of its pins."""
+"""Minimum wall between a hole and the edge of a plate, in pin diameters."""
 
 BLOCK = 1.5
-"""Width of a block in diameters of its pin, beside the clearance of its hole, and its length in widths."""
+"""Width of a block in pin diameters, without the clearance of its hole, and its length in widths."""
 
 TIGHTEST, LOOSEST = 1.0 / 400.0, 0.1
-"""Clearances in diameters of the pin: parts nearer than that do not turn, and a wider slot lets go of its block."""
+"""Minimum and maximum clearance in pin diameters: tighter parts jam, and a wider slot releases its block."""
 
 THINNEST_PIN, WIDEST_PIN = 0.5, 200.0
-"""Pins that are made, millimetres."""
+"""Minimum and maximum pin diameter, millimetres."""
 
 
 class PartsQuery(BaseModel):
-    """What the parts are made of; lengths in the unit of the problem. What is left out follows from the mechanism."""
+    """Sizes and process of the parts; lengths in the unit of the problem. Omitted sizes follow from the mechanism."""
 
     model_config = ConfigDict(extra="forbid")
 
     process: Process = Field(
         default="laser",
-        description="How the plates are made: it decides about fasteners and files, and the clearance where none is "
-        "stated (0.2 mm printed, 0.1 mm cut, 0.05 mm milled).",
+        description="Process by which the plates are made. It determines fasteners, files and the default clearance "
+        "(0.2 mm printed, 0.1 mm cut, 0.05 mm milled).",
     )
     width: Annotated[float, Field(gt=0.0, le=LARGEST)] | None = Field(
-        default=None, description="Of a link between its round ends; 2.5 diameters of its pins if left out."
+        default=None, description="Width of a link between its round ends. Default: 2.5 pin diameters."
     )
     pin: Annotated[float, Field(gt=0.0, le=LARGEST)] | None = Field(
         default=None, description="Diameter of all pins and shafts."
     )
     thickness: Annotated[float, Field(gt=0.0, le=LARGEST)] | None = Field(
         default=None,
-        description="Of all plates; that of a sheet up to 0.7 diameters of the pins if left out.",
+        description="Thickness of all plates. Default: the thickest sheet up to 0.7 pin diameters.",
     )
     clearance: Annotated[float, Field(gt=0.0, le=LARGEST)] | None = Field(
-        default=None, description="By which a hole is wider than its pin, and a slot than its block, on each side."
+        default=None, description="Clearance on each side between a hole and its pin, and between a slot and its block."
     )
     shafts: Literal["one_side", "both_sides"] | None = Field(
         default=None,
-        description="Whether shafts stand on one base, or between two; if left out as the problem states, or on one "
-        "where that can be built. Where neither can be, and this is left out, one link is two plates on a shaft "
+        description="Whether shafts are held by one base or two. Default: as in the problem, or by one base if that "
+        "can be built. If neither can be built with the default, one link is divided into two plates on a shaft "
         "through the second base.",
     )
     over: Literal["cycle", "used"] | None = Field(
         default=None,
-        description="The motion that nothing may be in the way of: the used range or all of the cycle; if left out as "
-        "the problem states, or the cycle of an input that turns fully.",
+        description="The motion that must be free of interference: the used range or the full cycle. Default: as in "
+        "the problem, or the cycle of an input that turns fully.",
     )
     bore: Annotated[float, Field(gt=0.0, le=LARGEST)] | None = Field(
         default=None,
-        description="Of gears: the diameter of their shafts; if left out the thickest that the smallest has room for.",
+        description="Shaft diameter of gears. Default: the largest that fits the smallest gear.",
     )
     face_width: Annotated[float, Field(gt=0.0, le=LARGEST)] | None = Field(
-        default=None, description="Of gears; if left out as the answer has it, or six modules."
+        default=None, description="Face width of gears. Default: that of the answer, or six modules."
     )
     speed: Annotated[int, Field(ge=1, le=MOST_SPEEDS)] | None = Field(
         default=None,
-        description="Of a gearbox of sliding gears: which of its speeds is engaged, from 1, in the order of "
-        "`metrics.speeds`; 1 if left out.",
+        description="Engaged speed of a gearbox with sliding gears, from 1, in the order of `metrics.speeds`. "
+        "Default: 1.",
     )
     scale: Annotated[float, Field(ge=SMALLEST_SCALE, le=LARGEST_SCALE)] = Field(
-        default=1.0, description="How much larger than the design it is built, as for a mechanism of unit size."
+        default=1.0, description="Built size relative to the design, for example for a mechanism of unit size."
     )
 
 
 class AssemblyQuery(PartsQuery):
-    """The same, and the position in which the assembly is shown."""
+    """The options of the parts, and the position in which the assembly is shown."""
 
     input_angle: Annotated[float, Field(ge=-1e6, le=1e6)] | None = Field(
-        default=None, description="Input angle, degrees; that of the design's reference if left out."
+        default=None, description="Input angle, degrees. Default: that of the design's reference."
     )
     input_place: Annotated[float, Field(ge=-1e9, le=1e9)] | None = Field(
-        default=None, description="The same where a slide drives: its place along the slide."
+        default=None, description="Place of a sliding input along its slide. Default: that of the design's reference."
     )
 
 
 class NotMade(ValueError):
-    """There are no such parts; ``path`` is the field of the request whose fault it is, empty where it is none's."""
+    """The parts cannot be made; ``path`` is the field of the request that prevents it, or empty."""
 
     def __init__(self, detail: str, path: str = "") -> None:
         super().__init__(detail)
@@ -131,25 +131,25 @@ class NotMade(ValueError):
 
 
 class ViewQuery(PartsQuery):
-    """The same, and at how many inputs the assembly is shown."""
+    """The options of the parts, and the number of inputs at which the assembly is shown."""
 
     positions: Annotated[int, Field(ge=1, le=MOST_POSITIONS)] = Field(
-        default=72, description="Inputs, spread evenly over the motion that the parts were made for."
+        default=72, description="Number of inputs, evenly spaced over the motion for which the parts were made."
     )
 
 
 class Refused(NamedTuple):
-    """Why there is no such file; ``path`` is the field whose fault it is, empty where it is none's."""
+    """The reason why a file does not exist; ``path`` is the field responsible, or empty."""
 
     detail: str
     path: str
     known: bool = True
-    """Whether there is a part of this name, and a file of this form of it."""
+    """Whether a part of this name, and a file of it in this format, exist."""
 
 
 @dataclass(frozen=True)
 class Sizes:
-    """What the parts are made of, in millimetres."""
+    """Sizes of the parts, in millimetres."""
 
     process: Process
     width: float
@@ -159,8 +159,9 @@ class Sizes:
 
     @property
     def collar(self) -> float:
-        """The widest diameter that stands on a pin beside a plate."""
+        """Largest diameter of the parts on a pin next to a plate."""
         washer = washer_for(self.pin, self.width)
+        # Without a standard washer spacers are twice as wide as the pin.
         return min(2.0 * self.pin, self.width) if washer is None else washer.diameter
 
     @property
@@ -170,12 +171,12 @@ class Sizes:
 
     @property
     def play(self) -> float:
-        """What the parts on a pin may move along it, in each gap between two planes."""
+        """Axial play of the parts on a pin, in each gap between two planes."""
         return self.clearance
 
     @property
     def ring(self) -> RetainingRing:
-        """What holds a pin that is not printed."""
+        """Retaining ring of a pin that is not printed."""
         return retaining_ring_for(self.pin, self.collar)
 
     @property
@@ -185,21 +186,21 @@ class Sizes:
 
     @property
     def end(self) -> float:
-        """By how much a pin stands out of its uppermost plate; of its lowest by less the play."""
+        """Length of a pin beyond its uppermost plate; beyond its lowest one it is less by the play."""
         if self.process == "print":
             return self.play + self.cap
         return self.play + self.ring.width + self.ring.beyond
 
     @property
     def washers(self) -> int:
-        """How many standard washers fill the gap between two planes; 0 where there are none."""
+        """Number of standard washers that fill the gap between two planes; 0 without standard washers."""
         washer = None if self.process == "print" else washer_for(self.pin, self.width)
-        # Two pins may end in one gap, one over the other, and pass each other.
+        # Two pins may end in one gap, one above the other, and pass each other.
         return 0 if washer is None else math.ceil(2.0 * self.end / washer.thickness - 1e-9)
 
     @property
     def gap(self) -> float:
-        """Between two planes."""
+        """Gap between two planes."""
         washer = washer_for(self.pin, self.width)
         filled = 2.0 * self.end
         if self.washers and washer is not None:
@@ -208,7 +209,7 @@ class Sizes:
 
     @property
     def pitch(self) -> float:
-        """From one plane to the next."""
+        """Distance from one plane to the next."""
         return self.thickness + self.gap
 
     @property
@@ -219,11 +220,11 @@ class Sizes:
 
     @property
     def apart(self) -> float:
-        """What two parts in one plane keep apart."""
+        """Minimum distance of two parts in one plane."""
         return self.clearance + 0.02 * self.width
 
     def scaled(self, factor: float) -> Sizes:
-        """All lengths larger by a factor."""
+        """Return the sizes multiplied by a factor."""
         return replace(
             self,
             width=factor * self.width,
@@ -234,44 +235,44 @@ class Sizes:
 
 
 def sheet_for(pin: float) -> float:
-    """Thickness of the plates on pins of a diameter."""
+    """Return the default thickness of plates on pins of a diameter."""
     return max((one for one in SHEETS if one <= THICKNESS * pin), default=THICKNESS * pin)
 
 
 def pin_below(most: float) -> float:
-    """The thickest pin that is sold and not thicker than ``most``; as thick where there is none so thin."""
+    """Return the thickest standard pin up to ``most``; ``most`` itself if all standard pins are thicker."""
     return max((one for one in PINS if one <= most * (1.0 + 1e-9)), default=most)
 
 
 def judged(sizes: Sizes, unit: float) -> None:
-    """Refuse a clearance or a thickness that does not go with the pins.
+    """Refuse a clearance or a thickness that does not suit the pins.
 
     Parameters
     ----------
     unit : float
-        Millimetres to a length unit of the problem, in which the refusal is told.
+        Millimetres per length unit of the problem; the error message uses that unit.
     """
     words = {value: name for name, value in MILLIMETRES.items()}[unit]
     tight, loose = TIGHTEST * sizes.pin, LOOSEST * sizes.pin
     if not tight <= sizes.clearance <= loose:
         raise NotMade(
-            f"The clearance is to be from {tight / unit:.4g} to {loose / unit:.4g} {words} for pins of "
+            f"The clearance must be from {tight / unit:.4g} to {loose / unit:.4g} {words} for pins of "
             f"{sizes.pin / unit:.6g} {words}.", "/query/clearance",
         )  # fmt: skip
     if not 0.1 * sizes.pin <= sizes.thickness <= 20.0 * sizes.pin:
         raise NotMade(
-            f"The thickness is to be from {0.1 * sizes.pin / unit:.4g} to {20.0 * sizes.pin / unit:.4g} {words} "
+            f"The thickness must be from {0.1 * sizes.pin / unit:.4g} to {20.0 * sizes.pin / unit:.4g} {words} "
             f"for pins of {sizes.pin / unit:.6g} {words}.", "/query/thickness",
         )  # fmt: skip
 
 
 def rounded_up(value: float) -> float:
-    """Upwards to three digits."""
+    """Round up to three significant digits."""
     step = 10.0 ** (math.floor(math.log10(value)) - 2)
     return float(f"{math.ceil(value / step - 1e-9) * step:.3g}")
 
 
 def rounded_down(value: float) -> float:
-    """Downwards to three digits."""
+    """Round down to three significant digits."""
     step = 10.0 ** (math.floor(math.log10(value)) - 2)
     return float(f"{math.floor(value / step + 1e-9) * step:.3g}")

@@ -1,10 +1,10 @@
-"""Spherical Geneva drives as parts: a wheel that is half a spherical shell, and a crank with a roller to its centre.
+"""Spherical Geneva drives as parts: a hemispherical shell as the wheel, and a crank with a roller aimed at its centre.
 
 The sphere's centre is the origin. The crankshaft lies along x and the wheel's shaft along y, each in two bearing plates
-over one base (:mod:`service.parts.gears.upright`); distances along a shaft are counted from the centre. The wheel is
-turned, its slots and hollows are milled with tools whose axes point to the centre, so that both are as true at the
-inside of the shell as at the sphere of the answer, which is its outside. The crank is a disc beyond the sphere, in one
-piece with its locking cap; the roller's pin is set into an inclined hole of it, and reaches through the shell.
+over one base (:mod:`service.parts.gears.upright`); distances along a shaft are measured from the centre. The wheel is
+turned; its slots and hollows are milled with tools whose axes point to the centre, so that both are as accurate at the
+inside of the shell as at its outside, which is the sphere of the answer. The crank is a disc outside the sphere, in one
+piece with its locking cap; the roller's pin is fixed in an inclined hole of the disc, and passes through the shell.
 """
 
 from __future__ import annotations
@@ -36,25 +36,25 @@ from synthesis.kinds.indexing.design import SphericalGenevaMechanism
 from synthesis.mechanisms.geneva import course_of
 
 CRANK, WHEEL = "shaft_1", "shaft_2"
-"""What turns with either shaft, by the names that axles have."""
+"""Bodies that rotate with either shaft, by the names of the axles."""
 
 ON_ROLLER = Carrier(CRANK, "roller")
-"""What is about the roller's axis, which goes round with the crank."""
+"""Carrier of the parts about the roller's axis, which revolves with the crank."""
 
 PIN_OF_ROLLER = 0.4
-"""The thickest pin that is tried where none is stated, in diameters of the roller."""
+"""Thickest default pin, in roller diameters."""
 
 BORED, SPAN, WALL_OF_HUB = 1.2, 2.5, 0.4
-"""Least length of a bore, what is between two bearing plates, and thickness of a hub, in diameters of the shaft."""
+"""Minimum length of a bore, distance between two bearing plates, and wall of a hub, in shaft diameters."""
 
 HELD, BESIDE = 1.5, 0.2
-"""Thickness of the crank's disc, and least length of the spacer between it and the roller, in diameters of the pin."""
+"""Thickness of the crank's disc, and minimum length of the spacer between disc and roller, in pin diameters."""
 
 LOOKS = 216
-"""Inputs at which the finished assembly is looked at once more, what lies across each other at every third."""
+"""Number of inputs of the final interference check; parts with crossing axes are compared at every third."""
 
 DRAWN = 33
-"""Points of half an edge in the development of the wheel."""
+"""Number of points of half an edge in the development of the wheel."""
 
 
 @dataclass(frozen=True)
@@ -65,9 +65,9 @@ class SphericalMotion(Turning):
     ----------
     course : Course
     cone : float
-        Of the roller's axis from the crank's, radians.
+        Angle of the roller's axis from the crank's, radians.
     frames : pair of Frame
-        The planes across crankshaft and wheel shaft.
+        The planes normal to crankshaft and wheel shaft.
     """
 
     course: Course
@@ -75,7 +75,7 @@ class SphericalMotion(Turning):
     frames: tuple[Frame, Frame]
 
     def placed(self, carrier: Carrier, state: Real) -> Placed:
-        """How what a carrier carries has moved since the roller entered."""
+        """Return the displacement of a carrier since the roller entered."""
         if carrier.link == GROUND:
             return still(state)
         if carrier == ON_ROLLER:
@@ -88,7 +88,7 @@ class SphericalMotion(Turning):
         return still(state)._replace(frame=frame)
 
     def _roller(self, state: Real) -> Frame:
-        """The plane across the roller's axis, which begins straight below the crank's."""
+        """Return the plane normal to the roller's axis, which starts directly below the crank's."""
         theta, zero = state - 0.5 * math.pi, np.zeros(state.shape)
         sine, cosine = math.sin(self.cone), np.full(state.shape, math.cos(self.cone))
         along = np.stack([sine * np.cos(theta), sine * np.sin(theta), cosine], axis=-1)
@@ -98,7 +98,7 @@ class SphericalMotion(Turning):
 
 
 def spherical_parts(design: Any, problem: Any, query: PartsQuery) -> Assembly:
-    """The parts of a spherical Geneva drive.
+    """Make the parts of a spherical Geneva drive.
 
     Parameters
     ----------
@@ -110,7 +110,7 @@ def spherical_parts(design: Any, problem: Any, query: PartsQuery) -> Assembly:
     Raises
     ------
     NotMade
-        Where there is no room for such parts.
+        The parts do not fit.
     """
     return _Sphericals(design.mechanism, problem, query).assembly()
 
@@ -125,11 +125,11 @@ class _Sphericals(Fitting):
 
     @property
     def most(self) -> float:
-        """A share of the roller."""
+        """Thickest default pin, as a share of the roller."""
         return PIN_OF_ROLLER * self._mechanism.roller_diameter
 
     def tried(self, sizes: Sizes, scale: float) -> Trial:
-        """The assembly in these sizes."""
+        """Build the assembly in these sizes."""
         builder = _Builder(self._mechanism, self._problem, sizes, self._unit * scale)
         fault = builder.fault()
         if fault:
@@ -139,13 +139,14 @@ class _Sphericals(Fitting):
         return Trial(None, fault) if fault else Trial(assembly, "")
 
     def assembly(self) -> Assembly:
-        """The assembly of the request; what lies across each other is compared once, as it takes the longest."""
+        """Return the assembly of the request; crossing axes are compared only once, for speed."""
         made = super().assembly()
         meeting = overlaps(made, LOOKS)
         if meeting:
             one, other = (named(part) for part in meeting[0].parts)
             raise NotMade(
-                f"There is no room: {one} and {other} meet at an input angle of {math.degrees(meeting[0].at):.1f}°."
+                f"The parts do not fit: {one} and {other} collide at an input angle of "
+                f"{math.degrees(meeting[0].at):.1f}°."
             )
         return made
 
@@ -160,9 +161,10 @@ class _Builder:
         self._outside = factor * mechanism.sphere_radius
         self._inside = self._outside - sizes.thickness
         self._roller = 0.5 * factor * mechanism.roller_diameter
+        # At least a clearance on both sides of the roller.
         self._half_slot = max(0.5 * factor * mechanism.slot_width, self._roller + clearance)
         self._lock = math.radians(mechanism.locking_arc_angle)
-        # Angles are clearances that are least at the inside of the shell.
+        # A clearance as an angle is smallest at the inside of the shell.
         apart = clearance / max(self._inside, clearance)
         self._slot_end = max(math.radians(mechanism.slot_end_angle), self._cone + apart)
         self._cap = min(math.radians(mechanism.cap_angle), self._lock - apart)
@@ -177,7 +179,7 @@ class _Builder:
         self._flat = 0.5 * wheel.collar + wheel.apart
         self._pocket = 0.5 * crank.collar + crank.apart
         self._cap_begins = self._inside * math.cos(self._lock) - sizes.apart
-        # Along the roller's axis: where it begins and ends. The end of the crankshaft stays outside of the sphere.
+        # Start and end along the roller's axis. The end of the crankshaft stays outside the sphere.
         self._reach = (math.sqrt(max(self._inside**2 - self._half_slot**2, 0.0)) - clearance, self._outside + clearance)
         slope = 0.5 * sizes.collar * math.sin(self._cone)
         past = self._reach[1] + sizes.play + BESIDE * sizes.pin
@@ -185,31 +187,31 @@ class _Builder:
         self._disc = low, low + max(sizes.thickness, HELD * sizes.pin, BORED * crank.pin)
 
     def _of(self, diameter: float) -> Sizes:
-        """The sizes of what stands on a shaft of a diameter."""
+        """Return the sizes of parts on a shaft of a diameter."""
         sizes = self._sizes
         if diameter == sizes.pin:
             return sizes
         return Sizes(sizes.process, WIDTH * diameter, diameter, sizes.thickness, sizes.clearance)
 
     def fault(self) -> str:
-        """What has no room in the wheel or on the crank; empty where all has."""
+        """Return what does not fit in the wheel or on the crank, or an empty string."""
         wall, inside, end = WALL * self._sizes.pin, self._inside, self._slot_end
         if not 0.5 * self._sizes.collar < self._roller:
-            return "the roller is no wider than what holds its pin"
+            return "the roller is not wider than the fastener of its pin"
         if inside * math.sin(self._step - self._lock) - self._half_slot < wall:
-            return "the shell is so thick that too little is left between slot and locking hollow at its inside"
+            return "the shell is so thick that the wall between slot and locking hollow is too thin at its inside"
         if 2.0 * (inside * math.cos(end) * math.sin(self._step) - self._half_slot) < wall:
-            return "the shell is so thick that too little is left between its slots at its inside"
+            return "the shell is so thick that the wall between its slots is too thin at its inside"
         if not self._flat < inside or not self._hub < self._outside:
             return "the wheel's shaft is thicker than the wheel"
         places = (self._hub, math.sqrt(self._outside**2 - self._hub**2)), (self._flat, self._floor)
         if min(height * math.cos(end) - radius * math.sin(end) for radius, height in places) < self._half_slot + wall:
-            return "the wheel has no room for its hub and shaft between the ends of the slots"
+            return "the hub and shaft of the wheel do not fit between the ends of the slots"
         cap = self._cap_begins * math.tan(max(self._cap, 0.0))
         if cap < max(self._pocket + wall, self._cap_offset):
-            return "the locking cap has no room around the end of the crankshaft"
+            return "the locking cap does not fit around the end of the crankshaft"
         if self._disc[0] * math.tan(self._cone) - 0.5 * self._sizes.hole / math.cos(self._cone) < self._pocket + wall:
-            return "the roller's pin has no room in the crank beside the crankshaft"
+            return "the roller's pin does not fit in the crank next to the crankshaft"
         return ""
 
     @property
@@ -224,9 +226,10 @@ class _Builder:
         return hole + 2.0 * WALL * self._sizes.pin
 
     def assembled(self, scale: float) -> Assembly:
-        """All parts."""
+        """Build the assembly of all parts."""
         axles = self._axles()
         sizes = self._sizes
+        # The base lies below everything that rotates.
         lowest = max(self._rim, self._outside, *(0.5 * max(each.width, each.collar) for each in self._shafts))
         below = lowest + sizes.apart + FREE * sizes.pin
         parts = (self._wheel(), self._crank(), *self._about_roller(), *Upright(sizes, axles, -below).parts())
@@ -239,7 +242,7 @@ class _Builder:
         return Assembly(parts, motion, FIRST + 1, 1, self._factor, scale, self._notes())
 
     def _axles(self) -> tuple[Axle, Axle]:
-        """Crankshaft and wheel shaft, each with its wheel next to the centre."""
+        """Make crankshaft and wheel shaft, each with its wheel next to the centre."""
         top = max(self._floor + BORED * self._shafts[1].pin, self._outside + self._sizes.apart)
         levels, found = (self._disc, (self._floor, top)), []
         for number, (name, sizes) in enumerate(zip(("crankshaft", "wheel shaft"), self._shafts, strict=True)):
@@ -253,7 +256,7 @@ class _Builder:
         return found[0], found[1]
 
     def _wheel(self) -> Part:
-        """The shell with its hub, slots and hollows; a slot is where the roller enters."""
+        """Make the shell with its hub, slots and hollows, in the position in which the roller enters a slot."""
         outside, inside, hub, flat = self._outside, self._inside, self._hub, self._flat
         shoulder, floor = math.sqrt(outside**2 - hub**2), self._floor
         top = max(floor + BORED * self._shafts[1].pin, outside + self._sizes.apart)
@@ -266,6 +269,7 @@ class _Builder:
         pin = self._shafts[1].pin
         cuts: list[Cut] = [Bored(keyed_bore(0j, pin, key_for(pin), self._sizes.clearance))]
         for k in range(self._stations):
+            # As the roller enters, the line of centres lies midway between two slots.
             at = math.pi + (2 * k + 1) * self._step
             cuts.append(Slotted(at, self._slot_end, self._half_slot, open=True))
             cuts.append(Hollow(at + self._step, self._lock))
@@ -274,7 +278,7 @@ class _Builder:
                           self._development())  # fmt: skip
 
     def _crank(self) -> Part:
-        """The disc with its inclined hole, and the cap opposite the roller."""
+        """Make the disc with its inclined hole, and the cap opposite the roller."""
         low, high = self._disc
         pin, hole = self._shafts[0].pin, 0.5 * self._sizes.hole
         disc = (complex(0.0, low), complex(self._rim, low), complex(self._rim, high), complex(0.0, high))
@@ -304,11 +308,11 @@ class _Builder:
                     unrolled=unrolled)  # fmt: skip
 
     def _about_roller(self) -> list[Part]:
-        """Roller, its pin, what holds it within the shell, and the spacer before the crank's disc."""
+        """Make the roller, its pin, the fastener inside the shell, and the spacer to the crank's disc."""
         sizes, (low, high), plane = self._sizes, self._reach, (FIRST, FIRST)
         shank, collar, hole = 0.5 * sizes.pin, 0.5 * sizes.collar, 0.5 * sizes.hole
         sine, cosine = math.sin(self._cone), math.cos(self._cone)
-        # Neither the spacer nor the end of the pin reaches through a face of the disc.
+        # Neither the spacer nor the end of the pin protrudes from a face of the disc.
         spacer = high + sizes.play, (self._disc[0] - collar * sine) / cosine
         end = (self._disc[1] - shank * sine) / cosine
         steel = MATERIALS[sizes.process][1]
@@ -338,7 +342,7 @@ class _Builder:
         return [*found, part("pin_roller", "pin roller", "pin", bodies, PIN_COLOUR, sold)]
 
     def _development(self) -> Development:
-        """The outside of the wheel: azimuth and latitude, both times the radius."""
+        """Return the outside of the wheel: azimuth and latitude, both times the radius."""
         radius, half, end = self._outside, self._half_slot, self._slot_end
         up = np.linspace(0.0, end, DRAWN)
         side = np.column_stack([np.sqrt(np.maximum((radius * np.cos(up)) ** 2 - half**2, 0.0)),
@@ -350,7 +354,7 @@ class _Builder:
             half * np.cos(turn),
             out * math.sin(end) + half * np.sin(turn) * math.cos(end),
         ])  # fmt: skip
-        # The sides end where the round end begins.
+        # The straight sides end where the round end starts.
         side = side[side[:, 2] < out * math.sin(end)]
         slot = np.concatenate([side, tip, side[::-1] * (1.0, -1.0, 1.0)])
         around = np.linspace(0.0, math.pi, DRAWN)
@@ -359,7 +363,7 @@ class _Builder:
             math.sin(self._lock) * np.cos(around),
             math.sin(self._lock) * np.sin(around),
         ])  # fmt: skip
-        # It begins in the middle of a land.
+        # Start in the middle of a land.
         first = 0.5 * (math.asin(half / radius) + self._step - self._lock)
         lines = []
         for k in range(self._stations):
@@ -374,11 +378,11 @@ class _Builder:
             f"The wheel is a shell from {2.0 * self._inside:.6g} to {2.0 * self._outside:.6g} mm in diameter; slots "
             f"{2.0 * self._half_slot:.6g} mm wide, up to {math.degrees(self._slot_end):.5g}° above the rim, and "
             f"hollows of {math.degrees(self._lock):.5g}° are milled with tools that point to its centre.",
-            f"The roller's pin is pressed or glued into the hole of the crank, {math.degrees(self._cone):.6g}° from "
+            f"Press or glue the roller's pin into the hole of the crank, {math.degrees(self._cone):.6g}° from "
             f"its axis; it points to the centre. The locking cap has {math.degrees(self._cap):.5g}°, and ends "
             f"{self._cap_offset:.5g} mm from the axis.",
-            "The drawing of the wheel has its outside by azimuth and latitude, both times the radius: true along "
-            "meridians and at the rim.",
-            "The input is the crank; an input angle of 0 is where the roller enters a slot.",
-            "Bearing plates stand by their tabs in the slots of the base, and are glued or wedged there.",
+            "The drawing of the wheel shows its outside by azimuth and latitude, both times the radius: true to scale "
+            "along meridians and at the rim.",
+            "The input is the crank; at an input angle of 0 the roller enters a slot.",
+            "Glue or wedge the tabs of the bearing plates into the slots of the base.",
         )

@@ -1,7 +1,7 @@
-"""Plates in planes, and what stands on the pins and shafts that join them.
+"""Plates in planes, and the parts on the pins and shafts that join them.
 
-Plane k, a plate thick, lies from k pitches less a thickness to k pitches; the base is plane 0. A shaft turns with the
-plates that are keyed to it, and stands out below the base, where it is driven or drives.
+The upper face of plane k is at k pitches, its lower face one thickness below; the base is plane 0. A shaft rotates with
+the plates keyed to it, and protrudes below the base, where it is driven or drives.
 """
 
 from __future__ import annotations
@@ -18,13 +18,13 @@ from service.parts.shapes import Outline, Region, ring
 from service.parts.sizes import Sizes
 
 COLLAR = 1.4
-"""Diameter of rings and spacers on a shaft that is thicker or thinner than the pins, in its own."""
+"""Diameter of rings and spacers in shaft diameters, on shafts whose diameter differs from the pins'."""
 
 STUB = 1.5
-"""By how much a shaft stands out below what holds it, in its diameters."""
+"""Length of a shaft beyond its support, in shaft diameters."""
 
 STILL = Carrier("ground", None)
-"""What carries the base."""
+"""Carrier of the base."""
 
 
 class Stack:
@@ -33,9 +33,9 @@ class Stack:
     Parameters
     ----------
     sizes : Sizes
-        Of plates and pins.
+        Sizes of plates and pins.
     shafts : sequence of float
-        Diameters of shafts, where they differ from the pins.
+        Diameters of shafts that differ from the pins.
     """
 
     def __init__(self, sizes: Sizes, shafts: Sequence[float]) -> None:
@@ -43,13 +43,13 @@ class Stack:
         self._gap = max([sizes.gap, *(self.of(diameter).gap for diameter in shafts)])
 
     def of(self, diameter: float) -> Sizes:
-        """The sizes of what stands on a pin or shaft of a diameter."""
+        """Return the sizes of parts on a pin or shaft of a diameter."""
         if diameter == self.sizes.pin:
             return self.sizes
         return replace(self.sizes, pin=diameter, width=COLLAR * diameter)
 
     def level(self, plane: int) -> tuple[float, float]:
-        """The heights between which a plane lies."""
+        """Return the heights of a plane's lower and upper face."""
         top = plane * (self.sizes.thickness + self._gap)
         return top - self.sizes.thickness, top
 
@@ -57,7 +57,7 @@ class Stack:
         self, name: str, described: str, sort: Sort, carrier: Carrier, region: Region, plane: int, colour: str,
         along: complex = 1.0 + 0.0j,
     ) -> Part:  # fmt: skip
-        """A plate in a plane."""
+        """Make a plate in a plane."""
         material = MATERIALS[self.sizes.process][0]
         body = Prism(region, *self.level(plane))
         return Part(name, described, sort, carrier, (body,), along, (plane, plane), material, colour)
@@ -66,13 +66,14 @@ class Stack:
         self, name: str, outer: Outline, cuts: Sequence[Outline], bosses: Sequence[tuple[complex, float, int]],
         plane: int = 0, along: complex = 1.0 + 0.0j,
     ) -> Part:  # fmt: skip
-        """A base; a printed one has bosses around its shafts, given by place, diameter and the nearest plane."""
+        """Make a base; a printed one has bosses around its shafts, given by place, diameter and nearest plane."""
         low, high = self.level(plane)
         bodies = [Prism(Region(outer, tuple(cuts)), low, high)]
         if self.sizes.process == "print":
             for place, diameter, nearest in bosses:
                 sizes = self.of(diameter)
                 region = ring(place, 0.5 * sizes.collar, 0.5 * sizes.hole)
+                # Bosses replace spacers; a play remains to the next plate.
                 if nearest > plane:
                     bodies.append(Prism(region, high, self.level(nearest)[0] - sizes.play))
                 else:
@@ -86,19 +87,20 @@ class Stack:
         self, name: str, described: str, carrier: Carrier, place: complex, levels: Sequence[int], *,
         diameter: float | None = None, keyed: Sequence[int] = (), stub: int = 0,
     ) -> list[Part]:  # fmt: skip
-        """A pin with what holds it at either end; a shaft with its keys.
+        """Make a pin with its fasteners at both ends; for a shaft also its keys.
 
         Parameters
         ----------
         levels : sequence of int
-            The lowest and the highest plane of what it holds.
+            The lowest and the highest plane that it holds.
         keyed : sequence of int
-            Planes of the plates that a key joins to it.
+            Planes of the plates that are keyed to it.
         stub : {-1, 0, 1}
-            Whether it stands out below or above, to be driven.
+            Whether it protrudes below (-1) or above (1) for the drive.
         """
         sizes = self.of(self.sizes.pin if diameter is None else diameter)
         key = key_for(sizes.pin)
+        # From the lower face of the lowest plate to the upper face of the highest.
         ends = self.level(min(levels))[0], self.level(max(levels))[1]
         section = Region(keyed_shaft(place, sizes.pin, key))
         seats = [Prism(section, *self.level(plane)) for plane in sorted(keyed)]
@@ -119,7 +121,7 @@ class Stack:
         self, name: str, carrier: Carrier, place: complex, spans: Sequence[tuple[int, int]],
         diameter: float | None = None,
     ) -> list[Part]:  # fmt: skip
-        """Washers in the gaps between neighbouring planes, and spacers through planes that are passed."""
+        """Make washers in the gaps between neighbouring planes, and spacers through planes that are passed."""
         sizes, parts = self.of(self.sizes.pin if diameter is None else diameter), []
         for lower, upper in spans:
             gap = self.level(lower)[1], self.level(upper)[0]
@@ -127,10 +129,10 @@ class Stack:
         return parts
 
     def bore(self, place: complex, diameter: float | None = None) -> Outline:
-        """What a plate is cut out for, that a key holds on a shaft."""
+        """Return the bore of a plate that is keyed to a shaft."""
         pin = self.sizes.pin if diameter is None else diameter
         return keyed_bore(place, pin, key_for(pin), self.sizes.clearance)
 
     def hub(self, diameter: float) -> float:
-        """How far from its axis a plate is cut out for a shaft and its key."""
+        """Return the distance from the axis that the bore for a shaft and its key reaches."""
         return 0.5 * diameter + key_for(diameter).in_hub + self.sizes.clearance

@@ -1,8 +1,8 @@
-"""Standard parts by their nominal diameter, in millimetres, and the sizes of those that have no standard.
+"""Standard parts by nominal diameter, in millimetres, and proportional sizes for diameters without a standard.
 
-Plain washers are those of ISO 7089 (product grade A), retaining rings those of DIN 471: for a shaft of the diameter d₁
-a ring of the thickness s in a groove of the diameter d₂ and the width m, with n of the shaft left beyond; 2 a more than
-d₁ is the room that its ends need.
+Plain washers follow ISO 7089 (product grade A), retaining rings DIN 471: for a shaft of diameter d₁ a ring of
+thickness s in a groove of diameter d₂ and width m, with n of the shaft left beyond; its ends need a diameter of
+d₁ + 2 a.
 """
 
 from __future__ import annotations
@@ -12,7 +12,7 @@ from typing import NamedTuple
 
 
 class Washer(NamedTuple):
-    """Outer diameter and thickness."""
+    """Outer diameter and thickness of a plain washer."""
 
     diameter: float
     thickness: float
@@ -20,7 +20,7 @@ class Washer(NamedTuple):
 
 
 class RetainingRing(NamedTuple):
-    """Thickness, diameter and width of the groove, what is left beyond it, and the diameter that the ring needs."""
+    """Thickness, diameter and width of the groove, shaft length beyond it, and diameter that the ring needs."""
 
     thickness: float
     groove: float
@@ -41,7 +41,7 @@ WASHERS = {
     16.0: (30.0, 3.0),
     20.0: (37.0, 3.0),
 }
-"""ISO 7089: outer diameter and thickness, by the diameter of the bolt."""
+"""ISO 7089: outer diameter and thickness, by bolt diameter."""
 
 RINGS = {
     3.0: (0.4, 2.8, 0.5, 0.3, 1.9),
@@ -54,25 +54,25 @@ RINGS = {
     16.0: (1.0, 15.2, 1.1, 1.2, 3.7),
     20.0: (1.2, 19.0, 1.3, 1.5, 4.0),
 }
-"""DIN 471: s, d₂, m, n and a, by the diameter of the shaft."""
+"""DIN 471: s, d₂, m, n and a, by shaft diameter."""
 
 PINS = (0.5, 0.6, 0.8, 1.0, 1.2, 1.5, 2.0, 2.5, 3.0, 4.0, 5.0, 6.0, 8.0, 10.0, 12.0, 16.0, 20.0, 25.0, 30.0, 40.0, 50.0)
 """Nominal diameters of round bars, ISO 2338 and EN 10278."""
 
 SHEETS = (0.3, 0.4, 0.5, 0.6, 0.8, 1.0, 1.5, 2.0, 3.0, 4.0, 5.0, 6.0, 8.0, 10.0, 12.0, 15.0, 20.0, 25.0, 30.0)
-"""Thicknesses of sheets that are sold."""
+"""Thicknesses of sheets on sale."""
 
 SAME = 1e-6
-"""Share by which a diameter may differ from a nominal one: a stated length may come from another unit."""
+"""Relative tolerance for matching a nominal diameter: a given length may be converted from another unit."""
 
 
 def nominal(diameter: float, known: tuple[float, ...]) -> float | None:
-    """The nominal diameter that a diameter is."""
+    """Return the nominal diameter that matches, or None."""
     return next((one for one in known if math.isclose(one, diameter, rel_tol=SAME)), None)
 
 
 def washer_for(diameter: float, widest: float) -> Washer | None:
-    """The plain washer of a pin, where there is one that is not wider than ``widest``."""
+    """Return the plain washer of a pin, or None if there is none up to the width ``widest``."""
     size = nominal(diameter, tuple(WASHERS))
     if size is None or WASHERS[size][0] > widest * (1.0 + SAME):
         return None
@@ -80,10 +80,12 @@ def washer_for(diameter: float, widest: float) -> Washer | None:
 
 
 def retaining_ring_for(diameter: float, widest: float) -> RetainingRing:
-    """The retaining ring of a pin: that of the standard where it is no wider than ``widest``, or one in proportion."""
+    """Return the retaining ring of a pin: the standard one if it is no wider than ``widest``, else one in
+    proportion."""
     size = nominal(diameter, tuple(RINGS))
     if size is not None:
         s, groove, width, beyond, room = RINGS[size]
+        # The ring's ears must fit within the permitted diameter.
         if size + 2.0 * room <= widest * (1.0 + SAME):
             return RetainingRing(s, groove, width, beyond, size + 2.0 * room, f"DIN 471 - {size:g} x {s:g}")
     d = diameter
@@ -91,6 +93,6 @@ def retaining_ring_for(diameter: float, widest: float) -> RetainingRing:
 
 
 def bar(diameter: float) -> str:
-    """The bright bar that a pin is cut from; empty where none is of that diameter."""
+    """Return the designation of the bright bar for a pin; an empty string if that diameter is not sold."""
     size = nominal(diameter, PINS)
     return "" if size is None else f"EN 10278 - {size:g} h9"

@@ -1,4 +1,4 @@
-"""An assembly as it is told to those who show it: :mod:`service.parts.answer` says how."""
+"""The viewer model of an assembly, as defined in :mod:`service.parts.answer`."""
 
 from __future__ import annotations
 
@@ -34,23 +34,23 @@ from service.parts.shapes import Disc, Outline
 from service.parts.sizes import NotMade, PartFile
 
 ROUNDED = 6
-"""Decimal places within which corners of triangles that are shown are one, millimetres."""
+"""Decimals of a millimetre to which corners of displayed triangles are merged."""
 
 FINE = 2880
-"""Inputs at least between which an angle is followed, so that it is known how often something has turned."""
+"""Minimum number of inputs in the tracking of angles, so that full turns are counted correctly."""
 
 BEYOND = 2000.0
-"""Degrees beyond a range at which it is asked whether the motion goes on."""
+"""Degrees beyond the range at which the motion is tested for continuing."""
 
 
 def viewed(assembly: Assembly, positions: int) -> AssemblyView:
-    """The assembly at so many inputs.
+    """Return the view of the assembly at a number of inputs.
 
     Parameters
     ----------
     assembly : Assembly
     positions : int
-        At least 1.
+        Number of inputs, at least 1.
     """
     carriers = list(dict.fromkeys(part.carrier for part in assembly.parts))
     names = {part.name: item.name for item in items(assembly) for part in item.parts}
@@ -73,7 +73,7 @@ def viewed(assembly: Assembly, positions: int) -> AssemblyView:
 
 
 def files_of(part: Part) -> list[PartFile]:
-    """The files that there are of a part here: outlines of what is cut, solids where they can be made."""
+    """Return the formats available for a part: outlines of cut parts, and solids if CAD is installed."""
     flat = part.unrolled is not None or (part.sort in FLAT and all(isinstance(body, Prism) for body in part.bodies))
     cut: list[PartFile] = ["dxf"] if flat else []
     return cut + (["stl", "step", "3mf"] if installed() else [])
@@ -95,26 +95,27 @@ def _driven(assembly: Assembly, positions: int) -> Driven:
 
 
 def _spread(motion: Motion, positions: int) -> NDArray[np.float64]:
-    """Inputs at equal steps over a whole cycle, or between the ends of the range and short of them."""
+    """Return inputs at equal steps over a full cycle, or over the interior of the range."""
     if motion.closed:
         return np.linspace(motion.low, motion.high, positions, endpoint=False)
     return np.linspace(motion.low, motion.high, positions + 2)[1:-1]
 
 
 def _endless(motion: Motion) -> bool:
-    """Whether any input is one of its own, and none the same as another."""
+    """Return whether the motion continues without limit and without repetition."""
     beyond = math.degrees(motion.high) + BEYOND
     try:
         stated = motion.stated(beyond, 1.0)
     except NotMade:
         return False
+    # Endless motions accept any angle unchanged; cyclic ones reduce it.
     return not motion.closed and math.isclose(stated, math.radians(beyond))
 
 
 def _carried(assembly: Assembly, carriers: list[Carrier], positions: int) -> list[Carried]:
     motion = assembly.motion
     inputs = _spread(motion, positions)
-    # An angle is followed through as many inputs as are needed, and told at those that are asked for.
+    # Track angles through as many inputs as needed, and return them at the requested ones.
     steps = max(1, math.ceil(FINE / positions))
     between = inputs
     if positions > 1:
@@ -141,12 +142,13 @@ def _carried(assembly: Assembly, carriers: list[Carrier], positions: int) -> lis
 
 
 def _pivot(turn: NDArray[np.complex128], shift: NDArray[np.complex128]) -> complex:
-    """The point that goes about the least, so that what lies between two inputs is well told by both.
+    """Return the point that moves least, so that interpolation between two inputs is accurate.
 
-    It is the p for which turn · p + shift varies least, by least squares about the mean.
+    It is the p that minimizes the variation of turn · p + shift, by least squares about the mean.
     """
     turned, moved = turn - turn.mean(), shift - shift.mean()
     spread = float(np.vdot(turned, turned).real)
+    # Without rotation every point moves alike.
     return 0j if spread < 1e-12 * turn.size else complex(-np.vdot(turned, moved) / spread)
 
 

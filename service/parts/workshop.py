@@ -1,4 +1,4 @@
-"""Parts are made in a process of their own, one request after the other, with the limits of jobs."""
+"""Parts are made in a separate process, one request after the other, with the limits of jobs."""
 
 from __future__ import annotations
 
@@ -15,26 +15,26 @@ from service.logs import Format
 from service.parts.extra import installed
 
 MAX_PARTS_S = 60.0
-"""How long parts may be made; no longer than a job."""
+"""Maximum time for making parts; a job's limit also applies."""
 
 KEPT_BYTES = 64 << 20
-"""Files that are kept for those who ask for the same again."""
+"""Maximum size of cached files for repeated requests."""
 
 CAD_MB = 800
-"""What the libraries of solids take beside what a job is allowed."""
+"""Memory for the CAD libraries in addition to a job's limit, MiB."""
 
 
 class Workshop:
-    """Has parts made, and keeps their files. To be used on one event loop only.
+    """Makes parts in a worker process, and caches their files. Use it on one event loop only.
 
     Parameters
     ----------
     memory_mb : int
-        What one request may take beyond the idle process, MiB.
+        Memory limit of one request in addition to the idle process, MiB.
     timeout_s : float
-        How long a job may take.
+        Time limit of a job, seconds.
     log_level, log_format : str
-        Of the process.
+        Logging options of the process.
     """
 
     def __init__(self, memory_mb: int, timeout_s: float, log_level: str = "info", log_format: Format = "text") -> None:
@@ -43,12 +43,12 @@ class Workshop:
         self._kept: OrderedDict[bytes, bytes] = OrderedDict()
 
     async def made(self, gone: Callable[[], Awaitable[bool]], work: Callable[..., Any], *args: Any) -> Any:
-        """What a function of a module makes, or has made of the same; files are kept, other answers are not.
+        """Return the result of a function of a module, or the cached file of an identical call; only files are cached.
 
         Raises
         ------
         Busy, GivenUp, Gone, Lost
-            As :meth:`service.jobs.errands.Errands.call`.
+            See :meth:`service.jobs.errands.Errands.call`.
         """
         key = digest(work, args)
         if key in self._kept:
@@ -57,17 +57,18 @@ class Workshop:
         made = await self._errands.call(gone, work, *args)
         if isinstance(made, bytes):
             self._kept[key] = made
+            # Evict the least recently used files.
             while sum(map(len, self._kept.values())) > KEPT_BYTES:
                 self._kept.popitem(last=False)
         return made
 
     def stop(self) -> None:
-        """End the process."""
+        """Stop the process."""
         self._errands.stop()
 
 
 def _prepare(server_pid: int, log_level: str, log_format: Format, memory_mb: int) -> None:
-    """Prepare the process: its end, its limits, its libraries."""
+    """Prepare the process: termination with the server, limits, libraries."""
     confine(server_pid, log_level, log_format)
     import_module("service.parts.orders")
     if installed():
@@ -76,14 +77,14 @@ def _prepare(server_pid: int, log_level: str, log_format: Format, memory_mb: int
 
 
 def filled(*args: Any) -> Any:
-    """:func:`service.parts.orders.filled`, which is imported in the process alone."""
+    """Call :func:`service.parts.orders.filled`, which is imported only in the worker process."""
     from service.parts import orders
 
     return orders.filled(*args)
 
 
 def part_filled(*args: Any) -> Any:
-    """:func:`service.parts.orders.part_filled`, likewise."""
+    """Call :func:`service.parts.orders.part_filled`, which is imported only in the worker process."""
     from service.parts import orders
 
     return orders.part_filled(*args)

@@ -1,4 +1,4 @@
-"""Files of designs: labelled SVG sheets, animations, DXF drawings and tables, by type of mechanism."""
+"""Files of designs by type of mechanism: labelled SVG sheets, animations, DXF drawings and CSV tables."""
 
 from __future__ import annotations
 
@@ -13,13 +13,14 @@ __all__ = ["Form", "NoSuchExport", "NotBuilt", "exported", "forms", "heading"]
 Form = Literal["svg", "gif", "dxf", "csv"]
 
 Maker = Callable[[Any, Any, str], str | bytes]
-"""Makes a file of a design, its problem and a title."""
+"""Makes a file from a design, its problem and a title."""
 
 LINKAGE = "linkage"
-"""The makers that serve every linkage; what its kind shows is in :mod:`service.render.linkage.kind_tables`."""
+"""Key of the makers that serve every linkage; :mod:`service.render.linkage.kind_tables` adds the content of each kind.
+"""
 
 GENEVA = ("geneva_external", "geneva_internal", "geneva_spherical")
-"""The Geneva drives, whose files have one maker."""
+"""Types of Geneva drives, which share their makers."""
 
 FILES: dict[str, tuple[Form, ...]] = {
     "cam": ("svg", "gif", "dxf", "csv"),
@@ -35,15 +36,15 @@ FILES: dict[str, tuple[Form, ...]] = {
     **dict.fromkeys(GENEVA, ("svg", "gif", "dxf", "csv")),
     "ratchet": ("svg", "dxf", "csv"),
 }
-"""The forms of files of the types of mechanism that are not linkages; linkages have all forms."""
+"""File formats by type of mechanism; linkages are not listed and have all formats."""
 
 
 class NoSuchExport(LookupError):
-    """This type of mechanism has no file of this form."""
+    """This type of mechanism has no file of this format."""
 
 
 class NotBuilt(ValueError):
-    """The design cannot be rebuilt: its lengths are at the limits of what a statement may hold."""
+    """The design cannot be rebuilt: its lengths are at the numeric limits of a statement."""
 
 
 # The makers of a form are imported when one is first used, so that a starting server loads no drawing library.
@@ -168,58 +169,59 @@ _MAKERS: dict[Form, Callable[[], dict[str, Maker]]] = {
     "dxf": _drawings,
     "csv": _tables,
 }
-"""The makers of each form, by type of mechanism or by kind of problem."""
+"""Loaders of the makers of each format, by type of mechanism or kind of problem."""
 
 
 def heading(problem: Any, label: str | None, number: int) -> str:
-    """What stands above the drawings of a design: the label of its job, or the name of its kind, and its number.
+    """Return the heading of a design's drawings: the label of its job or the name of its kind, and its number.
 
     Parameters
     ----------
     problem : pydantic model
     label : str or None
     number : int
-        The design's index in the answer; people count designs from 1.
+        The design's index in the answer, from 0; the heading counts from 1.
     """
     return f"{label or problem.model_config.get('title') or problem.kind}, design {number + 1}"
 
 
 def forms(mechanism: str) -> list[Form]:
-    """The forms of files of a type of mechanism."""
+    """Return the file formats available for a type of mechanism."""
     return list(FILES.get(mechanism, get_args(Form)))
 
 
 def exported(design: Any, problem: Any, title: str, form: Form) -> str | bytes:
-    """A design as the text of a file, or its bytes where it is an animation.
+    """Write a design as a file: text, or bytes for an animation.
 
     Parameters
     ----------
     design : LinkageDesign or the design of another kind
-        What is drawn; a design that failed a check is drawn as it is.
+        The design to draw; failed checks make no difference.
     problem : StatedProblem
-        The problem that it answers.
+        The problem that the design solves.
     title : str
-        Heading; any text, characters that the form forbids are left out.
-    form : {"svg", "gif", "dxf", "csv"}
-        An SVG has a title and a description, and no scripts, style sheets, element ids or references, so that it can
-        stand in a page beside others.
+        Heading; free text, from which forbidden characters are removed.
+    form : {"svg", "gif", "dxf", "csv"} An SVG has a title and a description. It has no scripts, style sheets, element
+        ids or references, so that several can be embedded in one page.
 
     Returns
     -------
     str or bytes
-        The same arguments give the same file.
+        Deterministic: the same arguments give the same file.
 
     Raises
     ------
     NoSuchExport
-        Where there is no such file of this type of mechanism.
+        This type of mechanism has no file of this format.
     NotBuilt
-        Where the design cannot be built.
+        The mechanism cannot be rebuilt from the design.
     """
     mechanism = design.mechanism.type
     if form not in forms(mechanism):
         raise NoSuchExport(mechanism, form)
+    # Only one thread of the server imports libraries on demand at a time.
     with IMPORTS:
         makers = _MAKERS[form]()
+    # Look up by type first: a kind, such as functions, may have makers of its own for linkages.
     make = makers.get(mechanism) or makers.get(problem.kind) or makers[LINKAGE]
     return make(design, problem, clean(title))

@@ -1,4 +1,4 @@
-"""The checks of a design: value and limit with the unit of what they measure, and in words how many checks fail."""
+"""The checks of a design with values, limits and units, and the number of failed checks in words."""
 
 from __future__ import annotations
 
@@ -14,20 +14,21 @@ from synthesis.model.dimension import Dimension
 from synthesis.model.statement import StatedProblem
 
 DIGITS, MAX_DIGITS = 6, 17
-"""Significant digits of a number, and those that tell any two numbers of double precision apart."""
+"""Significant digits of a number, and those that distinguish any two double-precision numbers."""
 
 RESIDUAL = 1e-3
-"""A value below this share of its limit is far within it; a limit of a pure number below it is a tolerance."""
+"""Ratio of value to limit below which two digits suffice; a dimensionless limit below it is a numerical tolerance."""
 
 
 def compared(check: Check, units: Mapping[Dimension, str]) -> tuple[str, str]:
-    """Value and limit of a check with their unit; empty where the check has none.
+    """Return value and limit of a check with their unit; empty strings if the check has none.
 
-    Where the check fails although both would read the same, they have as many digits as tell them apart.
+    If the check fails although both would print the same, digits are added until they differ.
     """
     unit = "" if check.dimension is None else units[check.dimension]
     digits = DIGITS
     value, limit = _read(check, digits)
+    # A failed check whose value reads like its limit would confuse readers.
     while not check.passed and value == limit and check.value != check.limit and digits < MAX_DIGITS:
         digits += 1
         value, limit = _read(check, digits)
@@ -39,30 +40,30 @@ def _read(check: Check, digits: int) -> list[str]:
 
 
 def checks(verification: Verification, problem: StatedProblem) -> blocks.Block:
-    """Every check of a design, in the units of its problem."""
+    """Return the block of all checks of a design, in the units of its problem."""
     units = symbols(problem)
     listed = []
     for check in verification.checks:
         value, limit = compared(check, units)
         if check.value is not None and check.limit is not None:
-            # Two digits suffice for a rounding error or a tolerance, and leave room for the check's name.
+            # Two digits suffice for a rounding error or a tolerance, and leave space for the check's name.
             unit = "" if check.dimension is None else units[check.dimension]
             tolerance = check.passed and not unit and abs(check.limit) < RESIDUAL
             if tolerance or abs(check.value) < RESIDUAL * abs(check.limit):
                 value = with_unit(small(check.value), unit)
             if tolerance:
                 limit = small(check.limit)
-        # A limit alone is no measurement; the name of such a check says what is demanded.
+        # A limit without a value is no measurement; the name of such a check contains the requirement.
         listed.append(blocks.CheckRow(check.name, check.passed, value, limit if value else ""))
     return blocks.checks(listed)
 
 
 def verdict(verification: Verification) -> str:
-    """In words, how many checks fail."""
+    """Return the number of failed checks in words."""
     return sheet.verdict([check.passed for check in verification.checks])
 
 
 def outcome(verification: Verification) -> str:
-    """In a sentence, which checks fail."""
+    """Return a sentence that lists the failed checks."""
     failed = [clean(check.name.replace("_", " ")) for check in verification.checks if not check.passed]
     return f"Failed checks: {', '.join(failed)}." if failed else "All checks passed."

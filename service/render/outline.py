@@ -1,9 +1,9 @@
-"""A model in tables: every value of a statement or an answer with its name, its unit and what it means.
+"""A model as tables: every value of a statement or an answer with its name, unit and meaning.
 
 Glossary:
 
 row     one value of a model: name, value, unit, meaning;
-list    the members of a list, or the columns of a table of numbers, below one another; long ones are thinned.
+list    the members of a list, or the columns of a table of numbers, as rows; long ones are thinned.
 """
 
 from __future__ import annotations
@@ -25,17 +25,17 @@ from synthesis.model.dimension import Dimension, dimensions
 from synthesis.model.statement import StatedProblem
 
 MOST_ROWS = 40
-"""Rows of a list at most; longer lists are thinned to this number, evenly, keeping both ends."""
+"""Maximum number of rows of a list; longer lists are thinned evenly to this number, keeping both ends."""
 
 MOST_NUMBERS = 16
-"""Numbers that stand in one row at most."""
+"""Maximum number of numbers in one row."""
 
 COLUMNS = 9
-"""Columns of a list at most: more are no table on paper."""
+"""Maximum number of columns of a list that fit on paper."""
 
 
 _ABSENT = re.compile("null|left out|none (where|of)", re.IGNORECASE)
-"""What a clause has that speaks of a value that is not there."""
+"""Words in a clause of a description that speaks of a missing value."""
 
 
 @dataclass(frozen=True)
@@ -50,7 +50,7 @@ class Row:
 
 @dataclass(frozen=True)
 class List:
-    """Members of a list; ``omitted`` says in words what of it is not shown."""
+    """Members of a list; ``omitted`` describes in words the part that is not shown."""
 
     title: str
     heads: list[tuple[str, str]]
@@ -60,22 +60,23 @@ class List:
 
 @dataclass
 class Outline:
-    """All of a model: its rows, and its lists after them."""
+    """A complete model: its rows, then its lists."""
 
     rows: list[Row] = field(default_factory=list)
     lists: list[List] = field(default_factory=list)
 
 
 def words(name: str) -> str:
-    """``min_transmission_angle`` as words."""
+    """Return a name such as ``min_transmission_angle`` as words."""
     text = name.replace("_", " ").strip()
     return text[:1].upper() + text[1:]
 
 
 def written(value: Any) -> str:
-    """A value for reading: six digits, open coordinates as such, points in parentheses."""
+    """Format a value for reading: numbers to six digits, null coordinates as "open", points in parentheses."""
     if value is None:
         return "–"
+    # Test bool before int, of which it is a subclass.
     if isinstance(value, bool):
         return "yes" if value else "no"
     if isinstance(value, int):
@@ -95,7 +96,7 @@ def written(value: Any) -> str:
 
 
 def with_unit(text: str, unit: str) -> str:
-    """A number with its unit after a blank; signs of degrees stand close to it; nothing where there is none."""
+    """Append a unit to a number: after a space, but degree signs directly; an empty string stays empty."""
     if not text:
         return ""
     return f"{text}{unit}" if unit in ("", "°") else f"{text} {unit}"
@@ -107,7 +108,7 @@ def entries(
     leave_out: Iterable[str] = (),
     titles: Mapping[str, str] = MappingProxyType({}),
 ) -> list[tuple[str, str]]:
-    """The rows of a model as a sheet writes them: names in lower case, or as ``titles`` has them, values with units."""
+    """Return the rows of a model for a sheet: names in lower case, or as given in ``titles``, and values with units."""
     rows = []
     for row in outline(model, symbols(problem), leave_out).rows:
         name = row.name[:1].lower() + row.name[1:]
@@ -118,13 +119,14 @@ def entries(
 def outline(
     model: BaseModel, units: Mapping[Dimension, str], leave_out: Iterable[str] = (), last: Iterable[str] = ()
 ) -> Outline:
-    """A model as rows and lists; what is null is left out, and so are the fields of ``leave_out``.
+    """Return a model as rows and lists, without null values and the fields of ``leave_out``.
 
     The fields of ``last`` come after the others.
     """
     collected = Outline()
     names = list(type(model).model_fields)
     late = frozenset(last)
+    # Two passes: the late fields follow all others.
     _collect(collected, model, units, "", frozenset(leave_out) | late)
     _collect(collected, model, units, "", frozenset(names) - late)
     return collected
@@ -135,6 +137,7 @@ def _collect(
 ) -> None:
     columns = _columns(model)
     if columns:
+        # Lists of numbers of equal length, such as a sampled curve, are columns of one table.
         collected.lists.append(_table_of_columns(model, columns, units, prefix))
     for name, about in type(model).model_fields.items():
         value = getattr(model, name)
@@ -154,6 +157,7 @@ def _collect(
                     collected.rows.append(
                         Row(f"{title}: {clean(str(key).replace('_', ' '))}", written(entry), unit, meaning)
                     )
+                    # The meaning is the same for all entries: give it once.
                     meaning = ""
         elif isinstance(value, list) and value and all(isinstance(entry, BaseModel) for entry in value):
             collected.lists.append(_table_of_members(title, value, units))
@@ -168,7 +172,7 @@ def _collect(
 
 
 def _meaning(description: str) -> str:
-    """What a description says of a value that is there: not what it would be if it were left out."""
+    """Return the part of a description that applies to a present value; clauses about null are dropped."""
     clauses = re.split(r"(?<=[.;:]) ", description.replace("`", ""))
     kept = " ".join(clause for clause in clauses if not _ABSENT.search(clause))
     return f"{kept.rstrip(';:.,')}." if kept else ""
@@ -181,7 +185,7 @@ def _numeric(value: Any) -> bool:
 
 
 def _columns(model: BaseModel) -> list[str]:
-    """The fields of a model that are columns of one table: two and more lists of numbers, long and equally so."""
+    """Return the fields that form one table: at least two lists of numbers, long and of equal length."""
     lists = {name: value for name, value in model if isinstance(value, list) and len(value) > MOST_NUMBERS}
     lengths = {len(value) for value in lists.values()}
     numeric = all(_numeric(value) for value in lists.values())
@@ -207,6 +211,7 @@ def _table_of_members(title: str, members: Sequence[BaseModel], units: Mapping[D
     for row in cells:
         heads.extend(head for head in row if head not in heads)
     shown = heads[:COLUMNS]
+    # Name the dropped columns, so that readers know where to find them.
     if len(heads) > COLUMNS:
         left = ", ".join(name.lower() for name, _ in heads[COLUMNS:])
         omitted = f"{omitted} In the JSON only: {left}.".strip()
@@ -214,7 +219,7 @@ def _table_of_members(title: str, members: Sequence[BaseModel], units: Mapping[D
 
 
 def _cells(model: BaseModel, units: Mapping[Dimension, str], prefix: str) -> dict[tuple[str, str], str]:
-    """The values of a member of a list; those of a model within it stand among them."""
+    """Return the values of a list member; those of nested models are included with prefixed names."""
     cells = {}
     for name, value in model:
         if value is None or (isinstance(value, list) and not value):
@@ -230,5 +235,6 @@ def _cells(model: BaseModel, units: Mapping[Dimension, str], prefix: str) -> dic
 def _thinned(count: int) -> tuple[list[int], str]:
     if count <= MOST_ROWS:
         return list(range(count)), ""
+    # Round evenly spaced indices; the first and last rows are always included.
     places = sorted({round(k * (count - 1) / (MOST_ROWS - 1)) for k in range(MOST_ROWS)})
     return places, f"{len(places)} of {count} are shown; all are in the JSON of the result."

@@ -1,7 +1,7 @@
-"""The report of a job: one self-contained page of the problem, the answer, the designs and what is proven of them.
+"""The report of a job: one self-contained page with the problem, the answer, the designs and their verification.
 
-It is made for paper: light, without scripts, with its one style sheet inside, which is named by its hash in the
-:data:`POLICY` under which the page is served and which it repeats for itself, so that it holds for a saved file too.
+It is designed for print: light, without scripts, with one style sheet inside. The style sheet's hash is part of the
+:data:`POLICY` under which the page is served; the page repeats that policy, so that it applies to a saved file, too.
 """
 
 from __future__ import annotations
@@ -34,10 +34,11 @@ _HASH = base64.b64encode(hashlib.sha256(_STYLE.encode()).digest()).decode()
 _OWN_POLICY = f"default-src 'none'; style-src 'sha256-{_HASH}'; base-uri 'none'; form-action 'none'"
 
 POLICY = f"{_OWN_POLICY}; frame-ancestors 'none'"
-"""Nothing but the page's own style sheet; a page cannot state the last part for itself."""
+"""Content security policy that permits only the page's own style sheet; a page cannot declare `frame-ancestors` itself.
+"""
 
 RANKED_BY = 4
-"""Quantities in a row of the table of all designs: more do not fit a page's width."""
+"""Maximum number of quantities in a row of the table of all designs, limited by the page width."""
 
 _ENVIRONMENT = Environment(autoescape=True, undefined=StrictUndefined, trim_blocks=True, lstrip_blocks=True)
 _PAGE = _ENVIRONMENT.from_string(_HERE.joinpath("report.html").read_text(encoding="utf-8"))
@@ -45,7 +46,7 @@ _PAGE = _ENVIRONMENT.from_string(_HERE.joinpath("report.html").read_text(encodin
 
 @dataclass(frozen=True)
 class Occasion:
-    """Which job is reported: what is not in its problem and its result."""
+    """The reported job: data that its problem and result do not contain."""
 
     job: str
     kind: str
@@ -55,7 +56,7 @@ class Occasion:
     version: str
 
     def line(self) -> str:
-        """The job in a line, its times to the second."""
+        """Describe the job on one line, with times to the second."""
         times = [f"accepted {_readable(self.accepted)}"]
         if self.finished is not None:
             times.append(f"finished {_readable(self.finished)}")
@@ -68,7 +69,7 @@ def _readable(time: str) -> str:
 
 @dataclass(frozen=True)
 class Checked:
-    """A check in words."""
+    """A check as words."""
 
     name: str
     passed: bool
@@ -78,7 +79,9 @@ class Checked:
 
 @dataclass(frozen=True)
 class Sheet:
-    """A design in full: its drawing, its assembly or why there is none, its checks, and its numbers by heading."""
+    """A design in full: its drawing, its assembly or the reason why it has none, its checks, and its numbers by
+    heading.
+    """
 
     number: int
     name: str
@@ -93,26 +96,27 @@ class Sheet:
 def report(
     problem: StatedProblem, result: Result[Any], occasion: Occasion, most: int, assemblies: Mapping[int, str] = {}
 ) -> str:
-    """The page.
+    """Write the report as a page.
 
     Parameters
     ----------
     problem, result
-        What was asked and what was answered.
+        The problem and its answer.
     occasion : Occasion
         The job.
     most : int
-        Designs that are shown in full, the best first; all are listed.
+        Maximum number of designs that are shown in full, best first; the table lists all.
     assemblies : mapping of int to str
-        By number of a design, the SVG of its parts put together, or a sentence that says why there is none.
+        By index of a design, the SVG of its assembled parts, or a sentence with the reason why there is none.
 
     Returns
     -------
     str
-        HTML; the same arguments give the same text.
+        HTML. Deterministic: the same arguments give the same text.
     """
     units = symbols(problem)
     title = problem.model_config.get("title") or words(occasion.kind)
+    # Labels are client text: remove control characters.
     heading = clean(occasion.label or "") or title
     sheets = [
         _sheet(design, n, problem, f"{heading}, design {n + 1}", units, assemblies.get(n, ""))
@@ -142,19 +146,20 @@ def _sheet(
     try:
         drawing = exported(design, problem, title, "svg")
         assert isinstance(drawing, str)
+    # The report lists the design even without a drawing.
     except (NoSuchExport, NotBuilt):
         drawing = ""
     own = outline(design.mechanism, units, leave_out={"type", "skeleton"})
     parts = [
         ("Dimensions", own),
         ("Quantities", outline(design.metrics, units)),
-        ("As it was driven", outline(design, units, leave_out={"mechanism", "metrics", "verification"})),
+        ("Verified motion", outline(design, units, leave_out={"mechanism", "metrics", "verification"})),
     ]
     skeleton = getattr(design.mechanism, "skeleton", None)
     if skeleton is not None:
-        # A linkage that was stated has its skeleton for dimensions; a designed one is drawn at its first target.
+        # A linkage given by the client has only its skeleton; a designed one is drawn at its first target.
         beside = own.rows or own.lists
-        name = "Skeleton: the joints at the first target" if beside else "Dimensions: the joints as stated"
+        name = "Skeleton: the joints at the first target" if beside else "Dimensions: the joints as given"
         parts.append((f"{name}, and the rigid links", outline(skeleton, units)))
     return Sheet(
         number=n + 1,
@@ -169,7 +174,7 @@ def _sheet(
 
 
 def _inside(drawing: str) -> str:
-    """A drawing inside the page, without the declaration before it: who writes drawings escapes what they are given."""
+    """Return a drawing for embedding, without its XML declaration; makers of drawings escape all text."""
     return Markup(drawing[drawing.index("<svg") :])
 
 
@@ -178,7 +183,7 @@ def _checked(check: Check, units: dict[Dimension, str]) -> Checked:
 
 
 def _ranking(result: Result[Any], units: dict[Dimension, str]) -> list[tuple[int, str, bool, list[tuple[str, str]]]]:
-    """All designs with the first of their quantities."""
+    """Return all designs with the first of their quantities, preferred ones first."""
     ranked = []
     for n, design in enumerate(result.designs):
         metrics: BaseModel = design.metrics
@@ -188,6 +193,7 @@ def _ranking(result: Result[Any], units: dict[Dimension, str]) -> list[tuple[int
             for name, value in metrics
             if isinstance(value, float) or (isinstance(value, int) and not isinstance(value, bool))
         ]
+        # A stable sort: preferred quantities first, field order otherwise.
         plain.sort(key=lambda quantity: quantity[0] not in _COMPARED_BY)
         figures = []
         for name, value in plain[:RANKED_BY]:
@@ -212,32 +218,32 @@ _COMPARED_BY = {
     "jitter",
     "deviation",
 }
-"""Quantities by which designs are compared, where they have them."""
+"""Quantities by which designs are preferably compared."""
 
 
 def _proven(result: Result[Any]) -> list[str]:
-    """What is known, in sentences."""
+    """Return the facts that are proven, as sentences."""
     search: Search = result.search
     passed = sum(design.verification.passed for design in result.designs)
     count = len(result.designs)
     known = []
     if search.complete:
         known.append(
-            "The search is complete: it has left out nothing that the problem allows; the best designs are shown."
+            "The search is complete: it covers everything that the problem allows. The best designs are shown."
             if count
-            else "The search is complete: no design exists that does what is demanded."
+            else "The search is complete: no design satisfies all constraints."
         )
     else:
         known.append(
-            "The search is not complete: there may be other designs, and better ones."
+            "The search is not complete: other designs, even better ones, may exist."
             if count
-            else "None was found; that is no proof that none exists."
+            else "No design was found; this does not prove that none exists."
         )
     if count:
         known.append(
-            f"Verified by driving the finished mechanism, from its dimensions alone: {passed} of {count} designs pass "
+            f"Verified by driving the finished mechanism from its dimensions alone: {passed} of {count} designs pass "
             "every check."
         )
     if getattr(search, "sizing_proven", False):
-        known.append("No smaller cam carries this program within the limits.")
+        known.append("No smaller cam produces this motion within the limits.")
     return known

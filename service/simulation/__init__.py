@@ -1,6 +1,6 @@
-"""Designs for programs that simulate them: MuJoCo, Gazebo and other readers of URDF, Modelica (docs/simulation.md).
+"""Export of designs to simulation programs: MuJoCo, Gazebo and other readers of URDF, Modelica (docs/simulation.md).
 
-:mod:`~service.simulation.model` says what is simulated, :mod:`~service.simulation.linkage` and
-:mod:`~service.simulation.trains` make it of a design, and one module writes each form. Text alone: none of these
-programs is asked here.
+:mod:`~service.simulation.model` defines the simulated machine, :mod:`~service.simulation.linkage` and
+:mod:`~service.simulation.trains` build it from a design, and one module writes each format. The output is text; none
+of these programs is run here.
 """

@@ -1,4 +1,4 @@
-"""The motion of a design that is simulated: a whole turn of an input that turns through, else as it was verified."""
+"""The simulated motion of a design: a full turn of a continuously rotating input, otherwise the verified range."""
 
 from __future__ import annotations
 
@@ -16,38 +16,41 @@ from synthesis.model.dynamics import DynamicsBlock, WeighedLinkage
 from synthesis.outcome.forces import shaped
 
 SAMPLES = 360
-"""Steps of the motion at whose ends joint angles are compared."""
+"""Number of steps of the motion; joint angles are compared at their ends."""
 
 USUAL_RPM = 60.0
-"""Speed of an input that turns, where none is stated."""
+"""Default speed of a rotating input, in rev/min."""
 
 
 class Course(NamedTuple):
-    """Inputs (radians or length units, shape (n + 1,)), and the speed along them, signed."""
+    """Inputs (radians or length units, shape (n + 1,)), and the signed speed along them."""
 
     inputs: Real
     speed: float
 
 
 def block_of(problem: Any, design: Any, mechanism: Mechanism) -> WeighedLinkage | None:
-    """What the links of a design weigh and carry by its own block ``dynamics`` or its problem's; None without any."""
+    """Return the weights and loads of the links from the design's or else the problem's `dynamics`; None without
+    either.
+    """
+    # A design may have its own masses, for example counterweights added by balancing.
     own = getattr(design, "dynamics", None)
     if own:
         try:
             return DynamicsBlock.model_validate(own)
         except ValidationError as error:
-            raise NotSimulated(f"The design's `dynamics` cannot be read: {error.errors()[0]['msg']}.") from None
+            raise NotSimulated(f"The design's `dynamics` is invalid: {error.errors()[0]['msg']}.") from None
     stated = getattr(problem, "dynamics", None)
     return None if stated is None else shaped(stated, mechanism.links)
 
 
 def course_of(problem: Any, design: Any, mechanism: Mechanism, query: SimulationQuery) -> Course:
-    """The motion of a design and its speed.
+    """Return the motion of a design and its speed.
 
     Raises
     ------
     NotSimulated
-        Where there is none, or a speed is stated that does not fit its input.
+        The design has no motion, or the query gives a speed that does not fit its input.
     """
     slides = mechanism.driven_by_slide
     unused(query, "an input that slides" if slides else "an input that turns", "speed_rpm" if slides else "speed")
@@ -57,14 +60,16 @@ def course_of(problem: Any, design: Any, mechanism: Mechanism, query: Simulation
         speed = _stated_speed(problem, slides) or (abs(high - low) if slides else USUAL_RPM)
     rate = speed if slides else speed * math.tau / 60.0
     inputs = np.linspace(low, high, SAMPLES + 1)
+    # A negative speed reverses the motion; a full turn starts at the same angle either way.
     if rate * (high - low) < 0.0:
         turn = abs(high - low - math.tau) <= 1e-9 and not slides
+        # The analysis covers low to high; a partial range is traversed from its other end.
         inputs = np.linspace(low, low - math.tau, SAMPLES + 1) if turn else inputs[::-1]
     return Course(inputs, rate)
 
 
 def _stated_speed(problem: Any, slides: bool) -> float | None:
-    """That of the problem's dynamics, or of its motion; None where there is none, or it is 0."""
+    """Return the speed from the problem's dynamics, else from its motion; None if missing or 0."""
     for stated in (getattr(problem, "dynamics", None), getattr(problem, "motion", None)):
         found = getattr(stated, "speed" if slides else "speed_rpm", None)
         if found:
@@ -79,13 +84,15 @@ def _ends(problem: Any, design: Any, mechanism: Mechanism) -> tuple[float, float
         return start, start + math.tau
     ends = getattr(metrics, "used_stroke" if slides else "used_range", None)
     motion = getattr(problem, "motion", None)
+    # Kinds without a verified range use the motion of the problem.
     if ends is None and motion is not None:
         ends = motion.start, motion.end
         if None in ends:
             return cycle_of(mechanism)
     if ends is None:
-        raise NotSimulated("There is no motion that this design was verified along.")
+        raise NotSimulated("This design was not verified over a motion, so there is nothing to simulate.")
     low, high = (float(end) if slides else math.radians(float(end)) for end in ends)
+    # A single position has no motion to compare with.
     if low == high:
-        raise NotSimulated("The input of this design stands still in the motion that it was verified along.")
+        raise NotSimulated("The input of this design does not move in its verified motion.")
     return low, high

@@ -1,4 +1,4 @@
-"""Simulations of designs as text: MuJoCo models and scripts, URDF, Modelica."""
+"""Export of designs as simulation text: MuJoCo models and scripts, URDF, Modelica."""
 
 from __future__ import annotations
 
@@ -28,16 +28,16 @@ from synthesis.model.dynamics import METRES
 from synthesis.proof.rebuilt import rebuilt
 
 LEAST = 1e-14
-"""MuJoCo refuses bodies whose mass or inertia is below 1e-15."""
+"""Minimum mass (kg) and inertia (kg m²) of a body. MuJoCo refuses values below 1e-15."""
 
 MOST = 1e9
-"""MuJoCo begins anew where a coordinate, its rate or its acceleration is above 1e10."""
+"""Maximum coordinate, rate or acceleration. MuJoCo resets the simulation above 1e10."""
 
 WRITERS: dict[Form, Callable[[Multibody], str]] = {"mjcf": mjcf, "urdf": urdf, "mo": modelica, "sim.py": script}
 
 
 def simulation(design: Any, problem: Any, title: str, form: Form, query: SimulationQuery) -> str:
-    """A design as a simulation.
+    """Write a design as a simulation.
 
     Parameters
     ----------
@@ -45,35 +45,38 @@ def simulation(design: Any, problem: Any, title: str, form: Form, query: Simulat
     problem : StatedProblem
         The problem that it answers.
     title : str
-        Any text.
+        Free text.
     form : {"mjcf", "urdf", "mo", "sim.py"}
     query : SimulationQuery
 
     Raises
     ------
     NoSimulation
-        For a type of mechanism of which there are none.
+        The type of mechanism is not supported.
     NotSimulated
-        For a design that none can be made of.
+        The design cannot be simulated.
     """
     return WRITERS[form](machine_of_design(design, problem, title, form, query))
 
 
 def machine_of_design(design: Any, problem: Any, title: str, form: Form, query: SimulationQuery) -> Multibody:
-    """What is simulated of a design; raises as :func:`simulation` does."""
+    """Build the machine that is simulated; raises as :func:`simulation` does."""
     machine = _made(design, problem, title, form, query)
+    # The other formats have no such limit.
     if form in ("mjcf", "sim.py") and _greatest(machine) > MOST:
-        raise NotSimulated("Coordinates of this design, or their rates, are beyond what MuJoCo takes, above 1e9.")
+        raise NotSimulated("Coordinates of this design, or their rates, exceed 1e9, the limit for MuJoCo.")
+    # MuJoCo's limits are absolute, so very small designs need a larger build.
     lightest = _lightest(machine)
     if lightest >= LEAST:
         return machine
     if query.scale is None:
-        # The inertia of plates goes with the fifth power of their size.
+        # The inertia of plates grows with the fifth power of their size.
         larger = 10.0 ** math.ceil(0.2 * math.log10(LEAST / lightest))
+        # A larger build may violate other limits; then report the original problem.
         with contextlib.suppress(NotSimulated):
             machine = _made(design, problem, title, form, query.model_copy(update={"scale": larger}))
             if _lightest(machine) >= LEAST:
-                told = f"Built {larger:g} times larger than the design, whose bodies would be too light for MuJoCo."
+                told = f"Built {larger:g} times larger than the design: its bodies would be too light for MuJoCo."
                 return replace(machine, remarks=(*machine.remarks, told))
     raise NotSimulated(
         f"The bodies of this design are too light for MuJoCo: {lightest:.2g} kg or kg m2, less than {LEAST:g}.",
@@ -82,7 +85,7 @@ def machine_of_design(design: Any, problem: Any, title: str, form: Form, query: 
 
 
 def opened_in_pmks(design: Any, problem: Any) -> Model:
-    """The address at which PMKS+ opens a design; raises as :func:`simulation` does."""
+    """Return the address at which PMKS+ opens a design; raises as :func:`simulation` does."""
     if not hasattr(design.mechanism, "skeleton"):
         raise NoSimulation(design.mechanism.type)
     stated = getattr(getattr(problem, "dynamics", None), "speed_rpm", None)
@@ -92,12 +95,12 @@ def opened_in_pmks(design: Any, problem: Any) -> Model:
 def _rebuilt(design: Any) -> Mechanism:
     mechanism = rebuilt(design.mechanism, from_skeleton=True)
     if mechanism is None:
-        raise NotSimulated("No mechanism can be built from the dimensions of this design.")
+        raise NotSimulated("The dimensions of this design do not assemble to a mechanism.")
     return mechanism
 
 
 def _greatest(machine: Multibody) -> float:
-    """The greatest joint coordinate, rate or acceleration in the motion, about."""
+    """Estimate the largest joint coordinate, rate or acceleration of the motion by finite differences."""
     step, found = float(machine.times[1]), 0.0
     for course in machine.motion.values():
         rate = np.gradient(course, step)
@@ -126,7 +129,8 @@ def _linkage(design: Any, problem: Any, title: str, form: Form, query: Simulatio
     mechanism = _rebuilt(design)
     if form == "mo" and mechanism.redundant:
         raise NotSimulated(
-            "Its constraints are redundant: Modelica's equations would be singular. MuJoCo takes it as .mjcf."
+            "The constraints of this design are redundant: Modelica's equations would be singular. "
+            "Use .mjcf with MuJoCo instead."
         )
     inputs, speed = course_of(problem, design, mechanism, query)
     block = block_of(problem, design, mechanism)

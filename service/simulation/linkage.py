@@ -1,8 +1,8 @@
-"""A linkage as a tree of bodies and the pins that close its loops.
+"""A linkage as a tree of bodies, and the pins that close its loops.
 
-The tree is grown from the ground, breadth first. At each pin the first body that is reached is the *hub*: bodies that
-nothing has reached yet hang from it by hinges, all others are closed to it. A joint on a slide is a block, a body of
-its own that slides in its link and turns about the joint's pin; it is reached with its link, so that slides are joints
+The tree is grown from the ground, breadth first. At each pin the body that is reached first is the *hub*: bodies not
+yet in the tree hang from it by hinges, all others are closed to it. A joint on a slide is a block, a body of its own
+that slides in its link and turns about the joint's pin. It is reached together with its link, so that slides are joints
 of the tree and every closure is a pin.
 """
 
@@ -52,35 +52,37 @@ def linkage(
     scale: float,
     title: str,
 ) -> Multibody:
-    """A linkage that is driven along inputs.
+    """Build a linkage driven along given inputs.
 
     Parameters
     ----------
     mechanism : Mechanism
         One design, in length units.
     inputs : float, shape (n + 1,)
-        Evenly from the start to the end of the motion: radians, or length units along the input slide.
+        Evenly spaced from the start to the end of the motion: radians, or length units along the input slide.
     speed : float
-        Of the input, in its unit a second, with the sense of the inputs.
+        Speed of the input in its unit per second, with the sign of the inputs' direction.
     weights : Weights
-        Masses of pins are carried by the block there, or else by the first link.
+        The mass of a pin belongs to the block there, or else to the first link.
     scale : float
-        Metres to a length unit.
+        Metres in a length unit.
 
     Raises
     ------
     NotSimulated
-        Where the mechanism cannot be assembled all along the inputs.
+        The mechanism cannot be assembled at some of the inputs.
     """
+    # Order 1: the joint rates at the start are needed, too.
     driven = drive(mechanism, inputs, speed=speed, order=1)
     if not driven.smooth.all():
-        raise NotSimulated("The design cannot be driven all along its motion: a toggle lies in it.")
+        raise NotSimulated("The design cannot be driven through its whole motion: it contains a toggle.")
     return _Tree(mechanism, driven, scale).grown(inputs, speed, weights, title)
 
 
 class _Tree:
     def __init__(self, mechanism: Mechanism, driven: MechanismMotion, scale: float) -> None:
         self._mechanism, self._driven, self._scale = mechanism, driven, scale
+        # Links and blocks share one set of identifiers.
         names = Names()
         self._links: dict[str, str] = {}
         self._nodes: dict[str, _Node] = {}
@@ -92,22 +94,24 @@ class _Tree:
             label = f"block at {slide.joint}"
             name = names.of("block", mechanism.slide_names[number])
             self._nodes[name] = _Node(name, label, (slide.joint,), slide=number)
+        # Pins are a separate kind of element in all formats.
         self._pins = Names()
         self._order: list[str] = []
         self._closures: list[Closure] = []
 
     def grown(self, inputs: Real, speed: float, weights: Weights, title: str) -> Multibody:
-        """The machine."""
+        """Grow the tree and return the machine."""
         mechanism, remarks, gravity = self._mechanism, weights.remarks, weights.gravity
         self._grow()
         self._load(weights)
         if not any(float(part.mass) > 0.0 for node in self._nodes.values() for part in node.weights):
-            raise NotSimulated("Nothing that moves has any mass.")
+            raise NotSimulated("No moving link has mass.")
+        # Size in metres; it scales the minimum inertias.
         size = self._scale * float(mechanism.frame[1])
         bodies, given = weighty(tuple(self._body(self._nodes[name], weights.width) for name in self._order), size)
         if given:
             told = ", ".join(given)
-            remarks = (*remarks, f"Without mass or inertia of their own, and given a millionth: {told}.")
+            remarks = (*remarks, f"Bodies without mass or inertia, given a millionth of the heaviest one's: {told}.")
         led = self._input_body()
         coordinates = {name: self._coordinate(self._nodes[name]) for name in self._order}
         led_speed = float(coordinates[led][1][0])
@@ -130,22 +134,25 @@ class _Tree:
 
     def _grow(self) -> None:
         reached = {GROUND}
+        # Breadth first: every body gets the shortest chain of joints to the ground.
         waiting = deque([GROUND])
         opened: set[str] = set()
 
         def reach(node: _Node, parent: str, sort: Literal["hinge", "slide"], at: str, along: int | None) -> None:
             node.parent, node.sort, node.at, node.along = parent, sort, at, along
             reached.add(node.name)
+            # Parents precede their children, as all formats require.
             self._order.append(node.name)
             waiting.append(node.name)
             slid(node)
 
         def slid(node: _Node) -> None:
-            """Reach what slides in a body, or what a block slides in."""
+            """Reach the blocks that slide in a body, or the link in which a block slides."""
             for number, slide in enumerate(self._mechanism.slides):
                 owner = self._nodes[self._links[slide.link]]
                 block = next(other for other in self._nodes.values() if other.slide == number)
                 if owner is node and block.name not in reached:
+                    # The block moves in its link: its coordinate is the slide's. Below, the link moves on its block.
                     block.carried = 1
                     reach(block, owner.name, "slide", slide.joint, number)
                 elif block is node and owner.name not in reached:
@@ -162,20 +169,23 @@ class _Tree:
                 for node in self._nodes.values():
                     if node is hub or joint not in node.joints:
                         continue
+                    # A body that is already in the tree closes a loop here; a new one hangs from the hub.
                     if node.name in reached:
                         name = self._pins.of("pin", f"{joint} {hub.label} {node.label}")
                         self._closures.append(Closure(name, hub.name, node.name, self._start(joint)))
                     else:
                         reach(node, hub.name, "hinge", joint, None)
 
-    # Where bodies are, and what they weigh
+    # Positions and masses
 
     def _start(self, joint: str) -> Vector:
         place = self._scale * complex(self._driven.joints[joint][0, 0])
         return place.real, place.imag, 0.0
 
     def _turned(self, link: str) -> complex:
-        """By how much a link has turned from the reference to the start."""
+        """Return the rotation of a link from the reference position to the start of the motion, as a unit complex
+        number.
+        """
         if link == GROUND:
             return 1.0 + 0.0j
         return cmath.exp(1j * (float(self._driven.angles[link][0, 0]) - float(self._mechanism.link_angle(link))))
@@ -187,6 +197,7 @@ class _Tree:
                 node.weights.append(weight(weights.block[0], complex(x, y), weights.block[1]))
         for link, part in weights.links.items():
             base = self._mechanism.link_line(link)[0]
+            # Arm from the link's base joint to its centre of mass, in the reference position.
             away = complex(part.cg) - self._scale * complex(self._mechanism.joints[base])
             centre = self._scale * complex(self._driven.joints[base][0, 0]) + away * self._turned(link)
             moved = weight(float(part.mass), centre, float(part.inertia))
@@ -194,6 +205,7 @@ class _Tree:
         for joint, mass in weights.pins.items():
             carriers = [node for node in self._nodes.values() if joint in node.joints and node.name != GROUND]
             if carriers:
+                # Blocks carry the pin's mass before links do: max picks the first candidate with a slide.
                 carrier = max(carriers, key=lambda node: node.slide is not None)
                 x, y, _ = self._start(joint)
                 carrier.weights.append(weight(float(mass), complex(x, y)))
@@ -224,18 +236,19 @@ class _Tree:
     # How they move
 
     def _rotation(self, node: _Node) -> Real:
-        """Angle of a body and its rate; a block turns with its link."""
+        """Return the angle and angular rate of a body; a block rotates with the link in which it slides."""
         link = node.label if node.slide is None else self._mechanism.slides[node.slide].link
         if link == GROUND:
             return np.zeros((2, self._driven.input.shape[-1]))
         return np.asarray(self._driven.angles[link][:2])
 
     def _coordinate(self, node: _Node) -> Real:
-        """The joint coordinate of a body and its rate, shape (2, n + 1)."""
+        """Return the joint coordinate of a body and its rate, shape (2, n + 1)."""
         if node.along is not None:
             name = self._mechanism.slide_names[node.along]
             return np.asarray(node.carried * self._scale * self._driven.slides[name][:2])
         relative = self._rotation(node) - self._rotation(self._nodes[node.parent])
+        # Joint coordinates must be continuous over full turns.
         return np.stack([np.unwrap(relative[0]), relative[1]])
 
     def _input_body(self) -> str:
@@ -251,15 +264,19 @@ class _Tree:
         )
 
     def _relation(self, number: int) -> Relation:
-        """A gear pair: the second link's turn less the ratio times the first one's, both against the ground."""
+        """Return the constraint of a gear pair: angle of the second link minus ratio times that of the first, both to
+        ground.
+        """
         gear = self._mechanism.gears[number]
         terms: dict[str, float] = {}
         for link, weighed in ((gear.second, 1.0), (gear.first, -gear.ratio)):
             name = self._links[link]
+            # The absolute angle of a link is the sum of the hinge coordinates on its path to the ground.
             while name != GROUND:
                 node = self._nodes[name]
                 if node.sort == "hinge":
                     terms[name] = terms.get(name, 0.0) + weighed
                 name = node.parent
+        # Coordinates on the common path of both links cancel.
         kept = tuple((name, value) for name, value in terms.items() if value != 0.0)
         return Relation(f"gears_{number + 1}", kept)

@@ -1,11 +1,11 @@
 """The MuJoCo model of a machine (MJCF).
 
-The tree of bodies as it is; a closure is an equality ``connect``, a relation an equality of two joints, or of a fixed
-tendon where it has more terms. Constraints of MuJoCo are soft: their time constant is two steps, and a step a fixed
-share of the motion's time, so that joint angles hold whatever the speed. The drive is a *lead*: a body of so much
-inertia that nothing changes its speed, to whose joint the input's is coupled; the force of that constraint is the
-drive's. The solver goes on as long as it gains anything (tolerance 0): beside the lead's inertia any gain looks small.
-The keyframe ``start`` has all coordinates and rates at the start of the motion.
+The tree of bodies is written unchanged. A closure is an equality ``connect``; a relation is an equality of two joints,
+or of a fixed tendon if it has more terms. MuJoCo's constraints are soft: their time constant is two steps, and a step
+is a fixed share of the motion's time, so that joint angles are accurate at any speed. The drive is a *lead*: a body
+whose inertia is so large that its speed stays constant, coupled to the input's joint; the force of that constraint is
+the drive force. The solver's tolerance is 0, because relative to the lead's inertia every improvement looks small.
+The keyframe ``start`` holds all coordinates and rates at the start of the motion.
 """
 
 from __future__ import annotations
@@ -19,33 +19,35 @@ from service.simulation.model import GROUND, Body, Multibody, Vector
 from service.simulation.naming import attribute, comment, number, numbers
 
 STEPS = 56
-"""Steps between two samples of the motion, where gravity does not ask for more."""
+"""Steps between two samples of the motion, unless gravity requires more."""
 
 FALL = 0.05
-"""Longest step, in times √(size/g). A weight draws a constraint apart by what it would fall within its time constant,
-which is long in slow motions."""
+"""Longest step as a multiple of √(size/g). A weight pulls a soft constraint open by its fall within the time constant,
+which is long in slow motions.
+"""
 
 MOST_STEPS = 5600
-"""Steps between two samples at most."""
+"""Maximum number of steps between two samples."""
 
 STIFFNESS = 2.0
-"""Time constant of the constraints in steps: the least that MuJoCo takes."""
+"""Time constant of the constraints in steps, the smallest that MuJoCo permits."""
 
 IMPEDANCE = "0.9999 0.9999 0.001 0.5 2"
 
 LEAD = "lead"
-"""The body that leads the drive."""
+"""Name of the body that leads the drive."""
 
 COLOURS = ("0.30 0.47 0.66 1", "0.95 0.56 0.17 1", "0.35 0.63 0.31 1", "0.88 0.34 0.35 1", "0.46 0.72 0.70 1")
 
 
 def mjcf(machine: Multibody) -> str:
-    """The model, as text."""
+    """Write the model as text."""
     return "\n".join(_lines(machine)) + "\n"
 
 
 def steps_between(machine: Multibody) -> int:
-    """Steps from one sample of the motion to the next."""
+    """Return the number of integration steps from one sample of the motion to the next."""
+    # Gravity is the only load that may require a shorter step.
     pull, step = math.hypot(*machine.gravity), float(machine.times[1]) / STEPS
     longest = FALL * math.sqrt(machine.size / pull) if pull > 0.0 else math.inf
     return min(math.ceil(STEPS * max(1.0, step / longest)), MOST_STEPS)
@@ -81,7 +83,7 @@ def _lines(machine: Multibody) -> Iterator[str]:
     driven = machine.by_name[machine.driven]
     lead = machine.lead
     yield f'    <body name="{LEAD}">'
-    # A hinge knows its inertia alone, and a slide its mass: the other may be anything.
+    # Only the inertia of a hinge or the mass of a slide has an effect; the other one is arbitrary.
     yield f'      <inertial pos="0 0 0" mass="{number(lead)}" diaginertia="{numbers(lead, lead, lead)}"/>'
     yield f'      <joint name="{LEAD}" type="{driven.sort}" axis="{numbers(*driven.axis)}"/>'
     yield "    </body>"
@@ -93,6 +95,7 @@ def _lines(machine: Multibody) -> Iterator[str]:
         yield f'    <jointpos name="{body.joint}" joint="{body.joint}"/>'
     yield "  </sensor>"
     yield "  <keyframe>"
+    # All joint coordinates, and the lead's, are 0 at the start.
     zero = numbers(*(0.0 for _ in joints), 0.0)
     rates = numbers(*(machine.rates[name] for name in joints), machine.speed)
     yield f'    <key name="start" qpos="{zero}" qvel="{rates}"/>'
@@ -130,9 +133,10 @@ def _body(
 
 
 def inertias(body: Body) -> Vector:
-    """Moments about the three axes: of a flat plate in the plane of motion; about any other axis all the same."""
+    """Return the moments about the three axes: those of a flat plate in the plane of motion, else all equal."""
     if body.axis[:2] == (0.0, 0.0) or body.sort == "slide":
         return 0.5 * body.inertia, 0.5 * body.inertia, body.inertia
+    # Bodies on axes in the plane: only the inertia about the joint axis matters.
     return body.inertia, body.inertia, body.inertia
 
 
@@ -156,6 +160,7 @@ def _geoms(body: Body) -> Iterator[str]:
 
 
 def _constraints(machine: Multibody) -> Iterator[str]:
+    # A joint equality couples exactly two joints; longer sums need a fixed tendon.
     long = [relation for relation in machine.relations if len(relation.terms) != 2]
     names = machine.by_name
     if long:
@@ -177,6 +182,7 @@ def _constraints(machine: Multibody) -> Iterator[str]:
             yield f'    <tendon name="{relation.name}" tendon1="{relation.name}"/>'
         else:
             (one, weight), (other, by) = relation.terms
+            # MuJoCo expresses joint1 as a polynomial of joint2.
             ratio = number(-by / weight)
             yield (
                 f'    <joint name="{relation.name}" joint1="{names[one].joint}" joint2="{names[other].joint}" '

@@ -1,11 +1,11 @@
-"""What is simulated: bodies on hinges and slides, the loops that close them, and the motion that they are held against.
+"""The simulated machine: bodies on hinges and slides, closures of loops, and the analysed motion for comparison.
 
 Glossary, in SI units (metres, kilograms, radians, seconds), at the *start* of the motion:
 
 body      moves against its parent, or the ground, by one joint: a hinge or a slide;
 closure   a pin between two bodies of the tree, which closes a loop;
 relation  a weighted sum of joint coordinates that stays 0: gears that mesh;
-drive     the body whose joint is led at constant speed.
+drive     the body whose joint moves at constant speed.
 
 All frames are parallel to the ground's at the start, where every joint coordinate is 0.
 """
@@ -22,37 +22,38 @@ Real = NDArray[np.float64]
 Vector = tuple[float, float, float]
 
 LEAST_SHARE = 1e-6
-"""Least mass of a body as a share of the heaviest one's, and least inertia as a share of that mass times size²: every
-body of a simulation needs some, and this much changes no force by more than a few millionths."""
+"""Minimum mass of a body as a share of the heaviest one's, and minimum inertia as a share of that mass times size².
+Simulators need positive values; these change forces by a few millionths at most.
+"""
 
 GROUND = "ground"
 
 
 @dataclass(frozen=True)
 class Body:
-    """A rigid body and the joint that it moves by.
+    """A rigid body and the joint by which it moves.
 
     Attributes
     ----------
     name : str
-        Of letters, digits and underscores, unique.
+        Letters, digits and underscores; unique.
     label : str
-        As the design calls it.
+        The design's name for it.
     parent : str
-        A body, or :data:`GROUND`.
+        Name of a body, or :data:`GROUND`.
     sort : {"hinge", "slide"}
     place : (x, y, z)
-        Where its frame stands at the start, on the hinge's axis.
+        Origin of its frame at the start, on the hinge's axis.
     axis : (x, y, z)
-        Of the hinge or slide, of length 1.
+        Unit vector of the hinge or slide.
     mass, inertia : float
-        The inertia about the axis through the centre that is square to the plane of motion.
+        The inertia is about the axis through the centre of mass, normal to the plane of motion.
     centre : (x, y, z)
         Centre of mass.
     marks : tuple of (x, y, z)
-        Its joints, between which it is drawn.
+        Positions of its joints; bars are drawn between them.
     radius, width : float
-        Of what is drawn: of a disc where it has a radius, else half the thickness of bars.
+        Of the picture: of a disc if the radius is positive, else half the thickness of the bars.
     """
 
     name: str
@@ -70,17 +71,17 @@ class Body:
 
     @property
     def joint(self) -> str:
-        """The name of its joint."""
+        """Name of the body's joint."""
         return f"{'turn' if self.sort == 'hinge' else 'travel'}_{self.name}"
 
     @property
     def unit(self) -> str:
-        """Of its joint's coordinate."""
+        """Unit of the joint's coordinate."""
         return "rad" if self.sort == "hinge" else "m"
 
 
 class Closure(NamedTuple):
-    """A pin between two bodies at a place of the start."""
+    """A pin between two bodies, at its place at the start."""
 
     name: str
     first: str
@@ -89,7 +90,7 @@ class Closure(NamedTuple):
 
 
 class Relation(NamedTuple):
-    """Bodies and weights: the weighted sum of their joint coordinates stays 0."""
+    """A constraint: the weighted sum of joint coordinates stays 0."""
 
     name: str
     terms: tuple[tuple[str, float], ...]
@@ -102,24 +103,24 @@ class Multibody:
     Attributes
     ----------
     title : str
-        Of any characters.
+        Free text.
     bodies : tuple of Body
         Parents before their children.
     gravity : (x, y, z)
     driven : str
-        The body whose joint is led.
+        The body whose joint is driven.
     speed : float
-        Of the drive, rad/s or m/s.
+        Speed of the drive, rad/s or m/s.
     times : float, shape (n + 1,)
-        From 0 on, evenly.
+        Evenly spaced from 0, seconds.
     motion : dict of str to float, shape (n + 1,)
-        Joint coordinate of each body at the times, by the analysis.
+        Joint coordinate of each body at the times, from the kinematic analysis.
     rates : dict of str to float
         Rate of each joint coordinate at the start.
     size : float
-        Of the machine.
+        Size of the machine, metres.
     remarks : tuple of str
-        What was assumed and what is left out; whole sentences.
+        Assumptions and omissions, as sentences.
     """
 
     title: str
@@ -137,17 +138,18 @@ class Multibody:
 
     @property
     def by_name(self) -> dict[str, Body]:
-        """Its bodies."""
+        """Bodies by name."""
         return {body.name: body for body in self.bodies}
 
     @property
     def duration(self) -> float:
-        """How long the motion takes, seconds."""
+        """Duration of the motion, seconds."""
         return float(self.times[-1])
 
     @property
     def lead(self) -> float:
-        """Inertia (mass) of the flywheel (carriage) that leads the drive: its speed changes by a billionth."""
+        """Inertia (mass) of the flywheel (carriage) that leads the drive; its speed changes by at most a billionth."""
+        # Energy scale of gravity per unit mass.
         weight = float(np.linalg.norm(self.gravity)) * self.size
         heaviest = max(body.mass for body in self.bodies)
         arm = self.size**2 if self.by_name[self.driven].sort == "hinge" else 1.0
@@ -156,7 +158,7 @@ class Multibody:
 
 
 def weighty(bodies: tuple[Body, ...], size: float) -> tuple[tuple[Body, ...], tuple[str, ...]]:
-    """Bodies of which each has some mass and inertia, and the labels of those that were given any."""
+    """Give every body the minimum mass and inertia; return the bodies and the labels of those that were changed."""
     heaviest = max(body.mass for body in bodies)
     mass, inertia = LEAST_SHARE * heaviest, LEAST_SHARE * heaviest * size**2
     given = tuple(body.label for body in bodies if body.mass < mass or body.inertia < inertia)

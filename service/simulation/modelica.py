@@ -1,8 +1,8 @@
-"""The Modelica model of a machine, of the components of Modelica.Mechanics.MultiBody 4.
+"""The Modelica model of a machine, built from components of Modelica.Mechanics.MultiBody 4.
 
-The tree of bodies stands as it is. In a planar loop the equations of one revolute joint would be dependent, so that
-each closure is a ``RevolutePlanarLoopConstraint``. Relations tie the flanges of joints by a model of their own, which
-stands in the file; the drive leads the flange of the input's joint at constant speed.
+The tree of bodies is written unchanged. In a planar loop the equations of one revolute joint would be dependent, so
+each closure is a ``RevolutePlanarLoopConstraint``. Relations couple the flanges of joints by a model that the file
+defines; the drive moves the flange of the input's joint at constant speed.
 """
 
 from __future__ import annotations
@@ -23,10 +23,10 @@ ROTATIONAL = "Modelica.Mechanics.Rotational"
 TRANSLATIONAL = "Modelica.Mechanics.Translational"
 
 RELATION = f"""\
-  model Relation "Gears in mesh: the weighted sum of the turns of some shafts stays 0"
-    parameter Real weights[:] "Of the turns";
+  model Relation "Gears in mesh: the weighted sum of the shaft angles stays 0"
+    parameter Real weights[:] "Weights of the shaft angles";
     {ROTATIONAL}.Interfaces.Flange_a flange[size(weights, 1)];
-    Modelica.Units.SI.Torque effort "That the mesh passes on, for a weight of 1";
+    Modelica.Units.SI.Torque effort "Torque transmitted by the mesh for a weight of 1";
   equation
     weights * flange.phi = 0;
     flange.tau = weights * effort;
@@ -35,7 +35,7 @@ RELATION = f"""\
 
 
 def modelica(machine: Multibody) -> str:
-    """The model, as text."""
+    """Write the model as text."""
     return "\n".join(_lines(machine)) + "\n"
 
 
@@ -48,6 +48,7 @@ def _lines(machine: Multibody) -> Iterator[str]:
     if machine.relations:
         yield RELATION
     pull = float(np.linalg.norm(machine.gravity))
+    # World needs a unit direction even without gravity.
     down = tuple(part / pull for part in machine.gravity) if pull > 0.0 else (0.0, -1.0, 0.0)
     yield f"  inner Modelica.Mechanics.MultiBody.World world(g = {number(pull)}, n = {_vector(down)});"
     for body in machine.bodies:
@@ -86,7 +87,7 @@ def _lines(machine: Multibody) -> Iterator[str]:
 
 
 def _flanged(machine: Multibody) -> set[str]:
-    """The bodies whose joints have an axis flange."""
+    """Return the bodies whose joints have an axis flange."""
     return {machine.driven, *(name for relation in machine.relations for name, _ in relation.terms)}
 
 
@@ -110,7 +111,7 @@ def _place(machine: Multibody, name: str) -> Vector:
 
 
 def _frame(machine: Multibody, name: str) -> str:
-    """The frame at a body's place."""
+    """Return the frame at a body's place."""
     return "world.frame_b" if name == GROUND else f"{machine.by_name[name].joint}.frame_b"
 
 
@@ -123,6 +124,6 @@ def _vector(vector: tuple[float, ...]) -> str:
 
 
 def _text(text: str) -> str:
-    """Text as a string of Modelica."""
+    """Return text as a Modelica string literal."""
     plain = one_line(text).replace("\\", "\\\\").replace('"', '\\"')
     return f'"{plain}"'

@@ -1,4 +1,4 @@
-"""Names that every format takes, and text of clients' as each format writes it."""
+"""Identifiers that every format accepts, and escaping of client text for each format."""
 
 from __future__ import annotations
 
@@ -7,15 +7,16 @@ from xml.sax.saxutils import escape
 
 
 class Names:
-    """Names of letters, digits and underscores, each given once."""
+    """Registry of unique identifiers made of letters, digits and underscores."""
 
     def __init__(self) -> None:
         self._given: set[str] = set()
 
     def of(self, sort: str, label: str) -> str:
-        """A name for what a design calls ``label``; it begins with its sort, so that it is no word of a language.
+        """Return a unique identifier for ``label``. It begins with its sort, so that it is no keyword of a language.
 
-        No two underscores stand together in it, so that what is added after two of them is no other name.
+        It has no two underscores in a row, so that an identifier extended by two underscores and a suffix is unique,
+        too.
 
         Examples
         --------
@@ -26,6 +27,7 @@ class Names:
         plain = re.sub(r"[^A-Za-z0-9]+", "_", label).strip("_")
         name = own = f"{sort}_{plain}" if plain else sort
         number = 1
+        # Compare in lower case: some readers ignore case.
         while name.lower() in self._given:
             number += 1
             name = f"{own}_{number}"
@@ -34,32 +36,34 @@ class Names:
 
 
 def one_line(text: str) -> str:
-    """Text without line breaks and control characters."""
+    """Return text without line breaks and control characters."""
     return re.sub(r"\s+", " ", "".join(c if c.isprintable() else " " for c in text)).strip()
 
 
 def attribute(text: str) -> str:
-    """Text as the value of an attribute of XML, between double quotes."""
+    """Return text as an XML attribute value for use between double quotes."""
     return escape(one_line(text), {'"': "&quot;"})
 
 
 def comment(text: str) -> str:
-    """Text as it may stand in a comment of XML."""
+    """Return text that is safe inside an XML comment."""
+    # XML comments must not contain "--" or end with "-".
     return re.sub(r"-(?=-)|-$", "- ", escape(one_line(text)))
 
 
 def number(value: float) -> str:
-    """A number with all its digits.
+    """Format a number with all its digits.
 
     Examples
     --------
     >>> number(0.1), number(-0.0), number(3.0)
     ('0.1', '0', '3')
     """
+    # Adding 0 turns -0.0 into 0.0.
     text = repr(float(value) + 0.0)
     return text.removesuffix(".0")
 
 
 def numbers(*values: float) -> str:
-    """Numbers with blanks between."""
+    """Format numbers separated by spaces."""
     return " ".join(number(value) for value in values)

@@ -1,13 +1,13 @@
-"""The address at which PMKS+ opens a linkage: its model is in the query.
+"""The address at which PMKS+ opens a linkage; the query contains the model.
 
-PMKS+ (Worcester Polytechnic Institute, https://app.pmksplus.com) writes a model as sections with points between them:
-settings, joints, links, forces, what is selected, and a character that tells the length of it all; so its public
-sources have it, ``src/app/services/transcoding`` of ``PMKS-Web/PMKSWeb``. Numbers are whole thousandths to the base of
-64, with a 0 before negative ones; flags are bits of such a number.
+PMKS+ (Worcester Polytechnic Institute, https://app.pmksplus.com) writes a model as sections separated by points:
+settings, joints, links, forces, the selection, and a character that encodes the total length; see
+``src/app/services/transcoding`` of its public sources ``PMKS-Web/PMKSWeb``. Numbers are whole thousandths to base 64,
+with a 0 before negative ones; flags are bits of such a number.
 
-A joint is ``flags id,name,x,y,angle``, and where it slides in a link the link and two of its joints follow. A sliding
-joint stands beside the pin that it carries, and a link of the sort P, the block, joins both. A link is
-``Y sort id,name,mass,inertia,x,y,colour,joints,,``, its mass and inertia 1 as PMKS+ has them of new links.
+A joint is ``flags id,name,x,y,angle``; a joint that slides in a link adds that link and two of its joints. A sliding
+joint coincides with the pin that it carries, and a link of the sort P, the block, joins both. A link is ``Y sort
+id,name,mass,inertia,x,y,colour,joints,,``; mass and inertia are 1, PMKS+'s values for new links.
 """
 
 from __future__ import annotations
@@ -24,16 +24,18 @@ ADDRESS = "https://app.pmksplus.com/?"
 
 DIGITS = "0123456789ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz_-"
 LENGTHS = DIGITS[:62]
-"""Of which the last character is one: the length of the model to the base of 62."""
+"""Digits to base 62; the last character of a model is its length modulo 62."""
 
 LETTERS = "ABCDEFGHIJKLMNOPQRSTUVWXYZ"
 
 THOUSANDTHS = 1000
 LARGE = 50.0
-"""Size of a model is up to this and a tenth of it at least, in PMKS+'s units: thousandths are then 1/5000 or less."""
+"""Upper limit for the size of a model in PMKS+'s units; the lower limit is a tenth. Thousandths are then at most
+1/5000.
+"""
 
 SLOT = 2.5
-"""Half of what is shown of a slot, in PMKS+'s units."""
+"""Half the drawn length of a slot, in PMKS+'s units."""
 
 SLIDES, INPUT, GROUNDED, CURVE = 1, 2, 4, 16
 
@@ -41,37 +43,37 @@ COLOURS = ("c5cae9", "303e9f", "0d125a", "B2DFDB", "26A69A", "00695C")
 
 CLOCKWISE = 1
 SETTINGS = 8 + 16 + 128
-"""Bits of the settings: grids and forces, as in PMKS+'s own templates."""
+"""Bits of the settings: grids and forces on, as in PMKS+'s own templates."""
 
 
 class Model(NamedTuple):
-    """An address, and how many of PMKS+'s length units are one of the design's."""
+    """An address, and the number of PMKS+ length units in one of the design's."""
 
     url: str
     scale: float
 
 
 def pmks(mechanism: Mechanism, rpm: float) -> Model:
-    """A linkage as PMKS+ opens it.
+    """Write a linkage as a PMKS+ address.
 
     Parameters
     ----------
     mechanism : Mechanism
     rpm : float
-        Speed of an input that turns.
+        Speed of a rotating input, rev/min.
 
     Raises
     ------
     NotSimulated
-        For gears, for more joints than there are letters, and for links whose names would be the same.
+        The mechanism has gears, more joints than there are letters, or links with equal names.
     """
     if mechanism.gears:
-        raise NotSimulated("PMKS+ has no gears.")
+        raise NotSimulated("PMKS+ does not support gears.")
     return _Writer(mechanism).model(rpm)
 
 
 def integer(value: int) -> str:
-    """A whole number to the base of 64.
+    """Format a whole number to base 64.
 
     Examples
     --------
@@ -86,7 +88,7 @@ def integer(value: int) -> str:
 
 
 def decimal(value: float) -> str:
-    """A number in thousandths."""
+    """Format a number in thousandths."""
     return integer(round(value * THOUSANDTHS))
 
 
@@ -95,6 +97,7 @@ class _Writer:
         self._mechanism = mechanism
         places = [complex(z) for z in mechanism.joints.values()]
         size = max(abs(a - b) for a in places for b in places)
+        # A power of ten keeps the numbers on screen comparable with the design's.
         self._scale = 10.0 ** math.floor(math.log10(LARGE / size))
         self._origin = places[0]
         letters = iter(LETTERS)
@@ -120,8 +123,10 @@ class _Writer:
                 self._link("R", self._members[link], self._middle(link))
         for pin, slot in blocks:
             self._link("P", (pin, slot), None)
+        # PMKS+ names a link by the letters of its joints, so two links with the same joints would collide.
         if len({link.split(",")[0][2:] for link in self._links}) < len(self._links):
             raise NotSimulated("Two links of this design have the same joints; PMKS+ names links by them.")
+        # Whole speeds from 1 to 1000 rev/min; the direction is one of the settings.
         speed = min(max(round(abs(rpm)), 1), 1000)
         settings = integer(SETTINGS + CLOCKWISE * (rpm < 0.0)).rjust(2, "0")
         head = (settings, f"{decimal(0.7)},{decimal(5.0)}", f"{integer(speed)},0", "1011")
@@ -133,7 +138,7 @@ class _Writer:
     def _next(letters: Iterator[str]) -> str:
         for letter in letters:
             return letter
-        raise NotSimulated(f"This design has more joints than {len(LETTERS)}, by whose letters PMKS+ names them.")
+        raise NotSimulated(f"This design has more than {len(LETTERS)} joints; PMKS+ names joints by single letters.")
 
     def _xy(self, place: complex) -> str:
         moved = self._scale * (place - self._origin)
@@ -143,7 +148,9 @@ class _Writer:
         self._records.append(f"{integer(flags)}{letter},{letter},{self._xy(place)},{decimal(angle)}{slot}")
 
     def _slot(self, slide: Slide) -> tuple[str, ...]:
-        """Add the points through which a slot of a moving link lies, as joints of the link; none on the ground."""
+        """Add two points of a slot in a moving link as joints of that link; return an empty tuple for slots in the
+        ground.
+        """
         if slide.link == GROUND:
             return ()
         ends = []
@@ -156,12 +163,13 @@ class _Writer:
         return tuple(ends)
 
     def _block(self, slide: Slide, ends: tuple[str, ...]) -> tuple[str, str]:
-        """Add a block on a slide; the pin that it carries, and its own joint."""
+        """Add a block on a slide; return the letters of its pin and of its own joint."""
         pin, place = self._letters[slide.joint], complex(self._mechanism.joints[slide.joint])
         own = self._next(self._free)
         drives = self._mechanism.driven_by_slide and self._mechanism.input == slide.joint and slide.link == GROUND
         flags = SLIDES + CURVE + INPUT * drives
         if slide.link == GROUND:
+            # Slots are undirected: PMKS+ expects angles from -90 to 90 degrees.
             turned = (float(slide.angle) + math.pi / 2.0) % math.pi - math.pi / 2.0
             self._joint(flags + GROUNDED, own, place, turned)
         else:

@@ -1,4 +1,4 @@
-"""What a simulation is asked for."""
+"""The options of a simulation request."""
 
 from __future__ import annotations
 
@@ -9,19 +9,19 @@ from pydantic import BaseModel, ConfigDict, Field
 from synthesis.model.bodies import Material
 
 Form = Literal["mjcf", "urdf", "mo", "sim.py"]
-"""What a design's simulation is had as."""
+"""Output formats of a simulation."""
 
 FORMS: tuple[Form, ...] = get_args(Form)
 
 TRAINS = ("gear_train", "planetary_train", "train_series", "gearbox", "layshaft_gearbox")
-"""Types of mechanisms that are simulated beside the linkages."""
+"""Types of mechanisms other than linkages that can be simulated."""
 
 SMALLEST, LARGEST = 1e-9, 1e9
-"""Of what a query may state."""
+"""Bounds of the values in a query."""
 
 
 class SimulationQuery(BaseModel):
-    """What the bodies are made of where the problem does not say what they weigh, and how the input is driven.
+    """Material of the bodies, if the problem gives no masses, and the speed of the input.
 
     Lengths are in the unit of the problem.
     """
@@ -30,47 +30,47 @@ class SimulationQuery(BaseModel):
 
     material: Material | None = Field(
         default=None,
-        description="Of all bodies; steel if left out. What links weigh by the problem's `dynamics` comes before it.",
+        description="Material of all bodies; steel by default. Masses in the problem's `dynamics` take precedence.",
     )
     width: Annotated[float, Field(ge=SMALLEST, le=LARGEST)] | None = Field(
         default=None,
-        description="Of links between their round ends; that of the problem's `layout`, or a tenth of the mechanism's "
-        "size, and not more than 0.875 of its shortest link, if left out.",
+        description="Width of links between their round ends. Default: that of the problem's `layout`, or a tenth of "
+        "the mechanism's size, but at most 0.875 of its shortest link.",
     )
     thickness: Annotated[float, Field(ge=SMALLEST, le=LARGEST)] | None = Field(
         default=None,
-        description="Of links; that of the `layout` or 0.28 of their width if left out. Of gears: the face width of "
-        "those that have none of their own; 10 modules if left out.",
+        description="Thickness of links. Default: that of the `layout`, or 0.28 of their width. For gears: the face "
+        "width of those that have none of their own, 10 modules by default.",
     )
     speed_rpm: Annotated[float, Field(ge=-1e6, le=1e6)] | None = Field(
         default=None,
-        description="Of an input that turns; that of the problem's `dynamics`, or 60, if left out. Not 0.",
+        description="Speed of a rotating input. Default: that of the problem's `dynamics`, or 60. Not 0.",
     )
     speed: Annotated[float, Field(ge=-LARGEST, le=LARGEST)] | None = Field(
         default=None,
-        description="Of an input that slides, length units a second; that of the problem's `dynamics`, or the whole "
-        "way in a second, if left out. Not 0.",
+        description="Speed of a sliding input, length units per second. Default: that of the problem's `dynamics`, or "
+        "the whole stroke in one second. Not 0.",
     )
     scale: Annotated[float, Field(ge=SMALLEST, le=LARGEST)] | None = Field(
         default=None,
-        description="How much larger than the design it is built; `width` and `thickness` are as built. 1 if left out, "
-        "or the power of ten that makes a mechanism of unit size as heavy as MuJoCo needs. Not where the problem's "
-        "`dynamics` says what links weigh.",
+        description="Built size relative to the design; `width` and `thickness` are as built. Default: 1, or the "
+        "power of ten that makes a mechanism of unit size heavy enough for MuJoCo. Not available if the problem's "
+        "`dynamics` gives masses.",
     )
     gear: Annotated[int, Field(ge=1, le=100)] | None = Field(
         default=None,
-        description="Of a gearbox: which of its speeds is engaged, from 1, in the order of `metrics.speeds`; of a "
-        "layshaft gearbox the gear, and reverse after the last. 1 if left out.",
+        description="Engaged speed of a gearbox, from 1, in the order of `metrics.speeds`. For a layshaft gearbox: the "
+        "engaged gear; reverse comes after the last. Default: 1.",
     )
 
     @property
     def built(self) -> float:
-        """How much larger than the design it is built."""
+        """Ratio of the built size to that of the design."""
         return 1.0 if self.scale is None else self.scale
 
 
 class NotSimulated(ValueError):
-    """A design that no simulation is made of; ``path`` is the field of the query that is against it, if one is."""
+    """A design that cannot be simulated; ``path`` is the field of the query that prevents it, if any."""
 
     def __init__(self, detail: str, path: str = "") -> None:
         self.path = path
@@ -78,31 +78,31 @@ class NotSimulated(ValueError):
 
 
 class NoSimulation(LookupError):
-    """A type of mechanism of which no simulations are made."""
+    """A type of mechanism for which no simulation exists."""
 
 
 def unused(query: SimulationQuery, of: str, *fields: str) -> None:
-    """Refuse fields that say nothing of a mechanism.
+    """Refuse fields that have no meaning for a mechanism.
 
     Raises
     ------
     NotSimulated
-        For the first that is stated.
+        A field is given.
     """
     for field in fields:
         value: Any = getattr(query, field)
         if value is not None:
-            raise NotSimulated(f"This says nothing of {of}; leave it out.", f"/query/{field}")
+            raise NotSimulated(f"This has no meaning for {of}; leave it out.", f"/query/{field}")
 
 
 def nonzero(value: float | None, field: str) -> float | None:
-    """A stated speed.
+    """Return a speed, if it is not 0.
 
     Raises
     ------
     NotSimulated
-        Where it is 0, or next to it.
+        The speed is 0, or below the minimum in size.
     """
     if value is not None and abs(value) < SMALLEST:
-        raise NotSimulated(f"A simulation needs a speed of {SMALLEST:g} at least, either way.", f"/query/{field}")
+        raise NotSimulated(f"A simulation needs a speed of at least {SMALLEST:g} in size.", f"/query/{field}")
     return value

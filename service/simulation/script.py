@@ -1,4 +1,4 @@
-"""A script of Python that runs a machine in MuJoCo and holds its joint angles against those of the analysis."""
+"""A Python script that simulates a machine in MuJoCo and compares its joint angles with those of the analysis."""
 
 from __future__ import annotations
 
@@ -26,17 +26,17 @@ def simulated():
             mujoco.mj_step(model, data, STEPS)
 
 
-def apart(one, other):
-    """How far two numbers are apart: infinitely, where one is none."""
+def difference(one, other):
+    """Return the distance of two numbers; infinity if one is NaN."""
     between = abs(one - other)
     return between if between == between else float("inf")
 
 
 def run(path):
-    """Compare the motion, write it to a table where ``path`` says so, and return the largest difference."""
+    """Compare the motion, write it to the table ``path`` if given, and return the largest difference."""
     worst, peak, table = [0.0] * len(JOINTS), 0.0, []
     for expected, (time, found, force) in zip(MOTION, simulated(), strict=True):
-        worst = [max(most, apart(one, other)) for most, one, other in zip(worst, found, expected, strict=True)]
+        worst = [max(most, difference(one, other)) for most, one, other in zip(worst, found, expected, strict=True)]
         peak = max(peak, abs(force))
         table.append([time, *found, force])
     if path:
@@ -46,13 +46,13 @@ def run(path):
             rows.writerows(table)
     print("largest difference from the analysis:")
     for joint, unit, most, far in zip(JOINTS, UNITS, worst, FARTHEST):
-        print(f"  {joint}: {most:.2e} {unit}, where it goes as far as {far:.4g} {unit}")
+        print(f"  {joint}: {most:.2e} {unit} of at most {far:.4g} {unit}")
     print(f"greatest drive: {peak:.6g} {FORCE}")
     return max(most if unit == "rad" else most / SIZE for most, unit in zip(worst, UNITS))
 
 
 def view():
-    """Show the motion over and over."""
+    """Show the motion in a loop."""
     import mujoco.viewer
 
     model = mujoco.MjModel.from_xml_string(MODEL)
@@ -65,27 +65,27 @@ def view():
             if data.time >= DURATION:
                 mujoco.mj_resetDataKeyframe(model, data, 0)
             window.sync()
-            # The window shows fifty pictures a second, as fast as the machine runs.
+            # Show fifty frames a second, in real time.
             clock.sleep(max(0.0, 0.02 - (clock.time() - begun)))
 
 
 def main():
-    """Run or show the motion; the status is 1 where joints miss the analysis by more than the tolerance."""
+    """Run or show the motion; return 1 if joints deviate from the analysis by more than the tolerance."""
     parser = argparse.ArgumentParser(description=TITLE.replace("%", "%%"))
     parser.add_argument("--view", action="store_true", help="show the motion in MuJoCo's viewer")
     parser.add_argument("--csv", help="write the motion and the drive to this file")
     parser.add_argument("--tolerance", type=float, default=1e-4, help="radians, or shares of the size (1e-4)")
-    # A title may have letters that this console has not.
+    # A title may contain letters that the console cannot print.
     if hasattr(sys.stdout, "reconfigure"):
         sys.stdout.reconfigure(errors="replace")
-    stated = parser.parse_args()
+    options = parser.parse_args()
     print(TITLE)
     for remark in REMARKS:
         print(remark)
-    if stated.view:
+    if options.view:
         view()
         return 0
-    return 0 if run(stated.csv) <= stated.tolerance else 1
+    return 0 if run(options.csv) <= options.tolerance else 1
 
 
 if __name__ == "__main__":
@@ -94,7 +94,7 @@ if __name__ == "__main__":
 
 
 def script(machine: Multibody) -> str:
-    """The script, as text; it needs the package ``mujoco`` alone."""
+    """Write the script as text; it needs only the package ``mujoco``."""
     return "\n".join(_head(machine)) + PROGRAM
 
 
@@ -122,13 +122,14 @@ def _head(machine: Multibody) -> Iterator[str]:
     farthest = [max(abs(float(q)) for q in machine.motion[body.name]) for body in machine.bodies]
     yield f"FARTHEST = [{', '.join(f'{far:.9g}' for far in farthest)}]"
     yield ""
-    yield "# The model, as .mjcf has it."
+    yield "# The model, identical to the .mjcf file."
     yield "MODEL = ("
+    # ASCII literals keep the script independent of the platform's encoding.
     for line in mjcf(machine).splitlines():
         yield f"    {line + chr(10)!a}"
     yield ")"
     yield ""
-    yield "# Joint coordinates by the analysis, evenly over the motion."
+    yield "# Joint coordinates from the analysis, evenly spaced over the motion."
     yield "MOTION = ["
     for row in zip(*(machine.motion[body.name] for body in machine.bodies), strict=True):
         yield f"    [{', '.join(f'{float(q):.12g}' for q in row)}],"
@@ -136,5 +137,5 @@ def _head(machine: Multibody) -> Iterator[str]:
 
 
 def _text(text: str) -> str:
-    """Text as a literal of Python, of ASCII characters."""
+    """Return text as an ASCII Python literal."""
     return ascii(one_line(text))

@@ -1,7 +1,7 @@
-"""Gear trains as shafts on hinges whose turns are tied by the teeth in mesh.
+"""Gear trains as shafts on hinges, coupled by the teeth in mesh.
 
-What turns as one piece is one body: a shaft with its gears, a ring, a carrier; each copy of a planet hangs from its
-carrier. A mesh is a relation of its teeth; the motion that it is held against has the exact speeds of the analysis.
+All parts that rotate as one piece are one body: a shaft with its gears, a ring, a carrier. Each copy of a planet hangs
+from its carrier. A mesh is a relation of its teeth. The motion for comparison has the exact speeds of the analysis.
 Relations that follow from others, such as those of further planets, are left out, so that none is redundant.
 """
 
@@ -31,20 +31,20 @@ from synthesis.model.bodies import DENSITIES
 from synthesis.model.dynamics import METRES
 
 FACE = 10.0
-"""Face width of gears that state none, modules."""
+"""Default face width of gears, modules."""
 
 RIM = 4.0
-"""Width of a ring beyond its pitch circle, modules."""
+"""Width of a ring gear outside its pitch circle, modules."""
 
 ARM = 0.25
-"""Width of a carrier's plate and radius of its bosses, as shares of the distance of its pins."""
+"""Width of a carrier's arms as a share of the distance of its pins from the axis."""
 
 Z: Vector = (0.0, 0.0, 1.0)
 
 
 @dataclass
 class _Shaft:
-    """What turns as one piece; lengths in metres."""
+    """Parts that rotate as one piece; lengths in metres."""
 
     label: str
     speed: float
@@ -59,7 +59,7 @@ class _Shaft:
 
 
 class _Train:
-    """Shafts and meshes of a train, by the names that they are given here."""
+    """Shafts and meshes of a train by name."""
 
     def __init__(self, unit: Any, query: SimulationQuery) -> None:
         self.scale = METRES[unit] * query.built
@@ -69,13 +69,13 @@ class _Train:
         self._face = None if query.thickness is None else METRES[unit] * query.thickness
 
     def shaft(self, name: str, speed: float, place: complex, axis: Vector = Z, parent: str = GROUND) -> str:
-        """Add a shaft, at a place in length units; ``speed`` is over the input's, against the parent."""
+        """Add a shaft at a place in length units; ``speed`` is relative to the parent, as a multiple of the input's."""
         if name not in self.shafts:
             self.shafts[name] = _Shaft(name, speed, self.scale * place, axis, parent)
         return name
 
     def gear(self, shaft: str, gear: Gear, face: float | None) -> None:
-        """Put a gear on a shaft: a disc of its pitch circle, or a ring beyond it."""
+        """Add a gear to a shaft: a disc of its pitch radius, or a ring outside it."""
         one = self.shafts[shaft]
         width = self._face or FACE * self.scale * gear.module
         if face is not None:
@@ -86,11 +86,12 @@ class _Train:
         mass = DENSITIES[self.material] * math.pi * (outer**2 - inner**2) * width
         one.mass += mass
         one.inertia += 0.5 * mass * (outer**2 + inner**2)
+        # The largest gear represents the shaft in the picture.
         if outer > one.radius:
             one.radius, one.width = outer, width
 
     def carrier(self, shaft: str, pins: Iterable[complex]) -> None:
-        """Make a shaft a carrier of pins (length units) by bars of its material from the axis."""
+        """Make a shaft a carrier: add an arm from the axis to each pin (length units)."""
         one = self.shafts[shaft]
         for pin in pins:
             length = abs(self.scale * pin)
@@ -102,7 +103,7 @@ class _Train:
             one.width = one.width or width
 
     def mesh(self, *terms: tuple[str, float]) -> None:
-        """Tie turns together: their weighted sum stays 0. What follows from others is left out."""
+        """Couple shafts: the weighted sum of their angles stays 0. A relation that follows from others is left out."""
         known = list(self.shafts)
         kept: dict[str, float] = {}
         for name, weight in terms:
@@ -110,30 +111,33 @@ class _Train:
                 kept[name] = kept.get(name, 0.0) + weight
         rows = [*self.relations, tuple((name, weight) for name, weight in kept.items() if weight != 0.0)]
         matrix = np.array([[dict(row).get(name, 0.0) for name in known] for row in rows])
+        # Scale rows to their largest weight: tooth numbers would bias the rank tolerance.
         matrix /= np.abs(matrix).max(axis=1, keepdims=True)
+        # Keep the relation only if it is independent of the previous ones.
         if np.linalg.matrix_rank(matrix) == len(rows):
             self.relations = rows
 
     def machine(self, title: str, driven: str, query: SimulationQuery, remarks: Iterable[str] = ()) -> Multibody:
-        """The machine, its driven shaft turning once."""
+        """Return the machine over one turn of its driven shaft."""
         unused(query, "gears", "width", "speed")
         if driven not in self.shafts:
-            raise NotSimulated("The input of this train is held.")
+            raise NotSimulated("The input of this train is fixed, so there is no motion to simulate.")
         speed = nonzero(query.speed_rpm, "speed_rpm") or USUAL_RPM
         rate = speed * math.tau / 60.0
         names = Names()
         called = {name: names.of("gear", name) for name in self.shafts} | {GROUND: GROUND}
         bodies, given = weighty(tuple(self._body(called, shaft) for shaft in self.shafts.values()), self._size())
         times = np.linspace(0.0, math.tau / abs(rate), SAMPLES + 1)
+        # Speeds are normalized to the driven shaft.
         share = self.shafts[driven].speed
         rates = {called[name]: rate * shaft.speed / share for name, shaft in self.shafts.items()}
         told = [
-            f"Gears are discs of {self.material} ({DENSITIES[self.material]:g} kg/m3) as large as their pitch circles.",
+            f"Gears are {self.material} discs ({DENSITIES[self.material]:g} kg/m3) of their pitch diameters.",
             *remarks,
             "There is no gravity.",
         ]
         if given:
-            told.append(f"Without mass or inertia of their own, and given a millionth: {', '.join(given)}.")
+            told.append(f"Bodies without mass or inertia, given a millionth of the heaviest one's: {', '.join(given)}.")
         return Multibody(
             title=title,
             bodies=bodies,
@@ -175,7 +179,7 @@ class _Train:
 
 
 def gear_train(design: Any, problem: Any, title: str, query: SimulationQuery) -> Multibody:
-    """An ordinary train."""
+    """Build the machine of an ordinary train."""
     unused(query, "a gear train", "gear")
     train = _Train(problem.length_unit, query)
     first, _, remarks = _ordinary(train, design.mechanism, problem.reverted, "", 1.0, None)
@@ -185,11 +189,12 @@ def gear_train(design: Any, problem: Any, title: str, query: SimulationQuery) ->
 def _ordinary(
     train: _Train, mechanism: GearTrainMechanism, reverted: bool, prefix: str, share: float, before: str | None
 ) -> tuple[str, str, list[str]]:
-    """Add the shafts of an ordinary train; the first, the last, and what is to be said of it."""
+    """Add the shafts of an ordinary train; return the first shaft, the last one, and remarks."""
     built = driven_train(mechanism)
     placed = placed_gears(mechanism, reverted)
     axes: list[Vector] = [(float(x), float(y), float(z)) for x, y, z in built.axes]
     first = before or train.shaft(f"{prefix}shaft 1", share, placed[0].centre, axes[0])
+    # A train in a series starts on the previous train's output shaft, so all centres shift by this offset.
     aside = train.shafts[first].place / train.scale - placed[0].centre
     at = first
     for number, stage in enumerate(built.stages):
@@ -201,16 +206,16 @@ def _ordinary(
             label = f"{prefix}shaft {number + 2}" if last else f"{prefix}idler {number + 1}.{n}"
             train.shaft(label, share * float(gear.speed), gear.centre + aside, axes[number + last])
             train.gear(label, gear.gear, face)
-            # Teeth pass the mesh alike on both gears; the sense is that about the axes of the shafts.
+            # Both gears of a mesh pass the same number of teeth; the sign follows the directions of the shaft axes.
             train.mesh((label, float(gear.count)), (at, -float(stage.sense) * gears[n - 1].count))
             at = label
     crossed = not all(stage.is_parallel for stage in built.stages)
-    remarks = ["Shafts that are not parallel stand side by side, as in the drawing."] if crossed else []
+    remarks = ["Non-parallel shafts are placed side by side, as in the drawing."] if crossed else []
     return first, at, remarks
 
 
 def planetary_train(design: Any, problem: Any, title: str, query: SimulationQuery) -> Multibody:
-    """A planetary train."""
+    """Build the machine of a planetary train."""
     unused(query, "a gear train", "gear")
     train = _Train(problem.length_unit, query)
     mechanism = design.mechanism
@@ -222,11 +227,14 @@ def _planetary(
     train: _Train, mechanism: PlanetaryMechanism, metrics: Any, prefix: str, share: float, axis: complex,
     joined: Mapping[str, str],
 ) -> dict[str, str]:  # fmt: skip
-    """Add the bodies of a planetary train about an axis; the names of its members, those ``joined`` as they are."""
+    """Add the bodies of a planetary train about an axis; return their names by member. ``joined`` maps members to
+    existing bodies.
+    """
     arrangement, speeds = ARRANGEMENTS[mechanism.arrangement], metrics.speeds
     placed = placed_planetary_gears(mechanism)
     if not placed:
-        raise NotSimulated("The gears of this train have no places.")
+        raise NotSimulated("The gears of this train do not fit together, so they have no positions.")
+    # The fixed member is the ground; members joined to another train are its shafts.
     bodies = {mechanism.fixed: GROUND, **joined}
     for member in arrangement.members:
         if member not in bodies:
@@ -239,8 +247,10 @@ def _planetary(
         face = faces[plane] if plane < len(faces) else None
         name = bodies.get(gear.body, "")
         if carrier is not None:
+            # Every copy of a planet is a body of its own.
             name = f"{prefix}{gear.body.replace('_', ' ')} {gear.copy + 1}"
             centre = gear.centre
+            # Bevel planets turn about their arm, all others about the train's axis.
             own: Vector = Z
             if arrangement.bevel:
                 ahead = gear.centre / abs(gear.centre)
@@ -263,7 +273,7 @@ def _planetary(
 def _planet_mesh(
     train: _Train, mesh: Mesh, bodies: Mapping[str, str], copies: Mapping[str, Mapping[int, str]], copy: int
 ) -> None:
-    """A mesh of one copy of the planets: turns of planets are counted from their carrier."""
+    """Add the mesh of one copy of the planets; planet angles are relative to their carrier."""
     terms = []
     for body, weight in ((mesh.first, mesh.first_teeth), (mesh.second, -mesh.sense * mesh.second_teeth)):
         if body in copies:
@@ -274,7 +284,7 @@ def _planet_mesh(
 
 
 def train_series(design: Any, problem: Any, title: str, query: SimulationQuery) -> Multibody:
-    """Trains in series: the output of each is the input of the next, about one axis."""
+    """Build the machine of trains in series: the output of each is the input of the next, about one axis."""
     unused(query, "a gear train", "gear")
     train = _Train(problem.length_unit, query)
     mechanism, metrics = design.mechanism, design.metrics
@@ -285,6 +295,7 @@ def train_series(design: Any, problem: Any, title: str, query: SimulationQuery) 
         prefix, share = f"unit {number + 1} ", metrics.speeds[number]
         if isinstance(unit, PlanetaryMechanism):
             held = {} if joined is None else {unit.input: joined}
+            # Each unit continues on the output shaft of the previous one.
             axis = 0j if joined is None else train.shafts[joined].place / train.scale
             bodies = _planetary(train, unit, metrics.units[number], prefix, share, axis, held)
             start, joined = bodies[unit.input], bodies[unit.output]
@@ -296,7 +307,7 @@ def train_series(design: Any, problem: Any, title: str, query: SimulationQuery) 
 
 
 def gearbox(design: Any, problem: Any, title: str, query: SimulationQuery) -> Multibody:
-    """A machine-tool gearbox with the pairs of one speed engaged."""
+    """Build the machine of a machine-tool gearbox with the gear pairs of one speed engaged."""
     engaged_speed = _engaged(query, len(design.metrics.speeds))
     found = design.metrics.speeds[engaged_speed - 1]
     train = _Train(problem.length_unit, query)
@@ -315,16 +326,17 @@ def gearbox(design: Any, problem: Any, title: str, query: SimulationQuery) -> Mu
         train.mesh((other, float(teeth.driven)), (one, float(teeth.driver)))
     if query.speed_rpm is None:
         query = query.model_copy(update={"speed_rpm": mechanism.input_speed})
-    return train.machine(title, "input", query, [f"Engaged is speed {engaged_speed} of {len(design.metrics.speeds)}."])
+    return train.machine(title, "input", query, [f"Speed {engaged_speed} of {len(design.metrics.speeds)} is engaged."])
 
 
 def layshaft_gearbox(design: Any, problem: Any, title: str, query: SimulationQuery) -> Multibody:
-    """A layshaft gearbox with one gear engaged; reverse comes after the last."""
+    """Build the machine of a layshaft gearbox with one gear engaged; reverse comes after the last gear."""
     mechanism = design.mechanism
     count = len(mechanism.gears) + (mechanism.reverse is not None)
     number = _engaged(query, count)
     train = _Train(problem.length_unit, query)
     layout, head = layshaft_layout(mechanism), mechanism.head
+    # External meshes reverse the direction of rotation.
     on_layshaft = -head.driver / head.driven
     back = mechanism.reverse
     pair = None if number > len(mechanism.gears) else mechanism.gears[number - 1]
@@ -353,18 +365,19 @@ def layshaft_gearbox(design: Any, problem: Any, title: str, query: SimulationQue
     else:
         train.mesh(("main shaft", float(pair.mainshaft)), ("layshaft", float(pair.layshaft)))
     name = "reverse" if pair is None else f"gear {number}"
-    remarks = [f"Engaged is {name}; the gears that turn loose on the main shaft count as parts of it."]
+    remarks = [f"Engaged: {name}. The gears that run free on the main shaft count as parts of it."]
     return train.machine(title, "input", query, remarks)
 
 
 def _engaged(query: SimulationQuery, count: int) -> int:
+    # Without a choice the first gear is engaged.
     number = 1 if query.gear is None else query.gear
     if number > count:
-        raise NotSimulated(f"This gearbox has {count}, counted from 1.", "/query/gear")
+        raise NotSimulated(f"This gearbox has the gears 1 to {count}.", "/query/gear")
     return number
 
 
 MAKERS: dict[str, Callable[[Any, Any, str, SimulationQuery], Multibody]] = dict(
     zip(TRAINS, (gear_train, planetary_train, train_series, gearbox, layshaft_gearbox), strict=True)
 )
-"""The makers of trains, by the type of the mechanism."""
+"""Machine builders of trains, by type of mechanism."""

@@ -1,9 +1,9 @@
 """The URDF of a machine.
 
-URDF knows trees alone. Its root is called :data:`ROOT`, which readers hold fast: Gazebo takes a root of another name
-for a body that may move, and leaves it out where it has no mass, with all that hangs from it. The tree stands as it is;
-the pins that close its loops are in a block ``<gazebo>`` as joints of SDF, which Gazebo adds to the model, and in
-comments for everything else. Gears between two joints of the ground are ``mimic``; other relations are comments.
+URDF describes trees only. Its root is called :data:`ROOT`, the name that readers fix to the ground: Gazebo takes a root
+of another name for a moving body, and drops it with everything attached if it has no mass. The tree is written
+unchanged; the pins that close its loops are joints of SDF in a ``<gazebo>`` block, which Gazebo adds to the model, and
+comments for all other readers. Gears between two joints of the ground are ``mimic``; other relations are comments.
 """
 
 from __future__ import annotations
@@ -15,11 +15,11 @@ from service.simulation.model import GROUND, Body, Multibody, Vector
 from service.simulation.naming import attribute, comment, number, numbers
 
 ROOT = "world"
-"""The ground, by the name that readers of URDF hold fast."""
+"""Name of the ground that URDF readers fix."""
 
 
 def urdf(machine: Multibody) -> str:
-    """The model, as text."""
+    """Write the model as text."""
     return "\n".join(_lines(machine)) + "\n"
 
 
@@ -30,11 +30,11 @@ def _lines(machine: Multibody) -> Iterator[str]:
         yield f"<!-- {comment(remark)} -->"
     if machine.closures or machine.relations:
         yield (
-            "<!-- A tree, as URDF has it: loops are closed in the gazebo block below, as joints of SDF. Programs that "
-            "do not read it have to add these pins themselves; the MJCF file of this design has all of them. -->"
+            "<!-- URDF is a tree: loops are closed in the gazebo block below, as joints of SDF. Programs that do not "
+            "read it must add these pins themselves; the MJCF file of this design has all of them. -->"
         )
     yield f'<robot name="{attribute(machine.title)}">'
-    yield "  <!-- The world has the design's coordinates in metres; at the start of the motion joints are at 0. -->"
+    yield "  <!-- The world frame is the design's, in metres; all joints are 0 at the start of the motion. -->"
     yield f'  <link name="{ROOT}"/>'
     origins: dict[str, Vector] = {GROUND: (0.0, 0.0, 0.0)}
     mimics, told = _mimics(machine)
@@ -67,7 +67,7 @@ def _joint(machine: Multibody, body: Body, origin: Vector, mimic: str) -> Iterat
     yield f'    <origin xyz="{numbers(*_from(origin, body.place))}" rpy="0 0 0"/>'
     yield f'    <axis xyz="{numbers(*body.axis)}"/>'
     if body.sort == "slide":
-        # A tenth of the machine's size more than the motion takes: a limit must not be in its way.
+        # A tenth of the machine's size beyond the motion, so that the limit does not interfere.
         travelled = machine.motion[body.name]
         room = 0.1 * machine.size
         low, high = float(travelled.min()) - room, float(travelled.max()) + room
@@ -78,10 +78,11 @@ def _joint(machine: Multibody, body: Body, origin: Vector, mimic: str) -> Iterat
 
 
 def _mimics(machine: Multibody) -> tuple[dict[str, str], list[str]]:
-    """What follows another joint, by its body, and the relations that no ``mimic`` can say."""
+    """Return the ``mimic`` element of each following body, and the relations that ``mimic`` cannot express."""
     names, mimics, told = machine.by_name, {}, []
     for relation in machine.relations:
         terms = relation.terms
+        # A joint may mimic one other joint only, and the driven joint leads.
         follower = next((name for name, _ in terms if name != machine.driven and name not in mimics), "")
         if len(terms) == 2 and follower:
             weight = dict(terms)[follower]

@@ -1,4 +1,4 @@
-"""What the links of a design weigh: as its block ``dynamics`` says, or as plates of a material do."""
+"""Masses of the links of a design: from its ``dynamics`` block, or those of plates of a material."""
 
 from __future__ import annotations
 
@@ -16,20 +16,20 @@ from synthesis.model.bodies import DENSITIES, Material
 from synthesis.model.dynamics import METRES, WeighedLinkage
 
 PIN_OF_SIZE, PIN_OF_LINK = 0.04, 0.35
-"""Diameter of the pins of a mechanism as a share of its size and of its shortest link at most, as parts have it."""
+"""Maximum pin diameter as a share of the mechanism's size, and of its shortest link; as in service.parts."""
 
 WIDTH, THICKNESS = 2.5, 0.7
-"""Width and thickness of a plate in diameters of its pins, where neither is stated."""
+"""Default width and thickness of a plate in pin diameters."""
 
 BLOCK_WIDTH, BLOCK_LENGTH = 0.6, 0.9
-"""Of a block in its slot, in widths of a link."""
+"""Width and length of a block in its slot, in link widths."""
 
 
 SCALE = "/query/scale"
 
 
 class Weights(NamedTuple):
-    """Bodies of the links in the reference, masses of pins, of each block by its mass and inertia; SI."""
+    """Bodies of the links in the reference position, masses of pins, mass and inertia of every block; SI units."""
 
     links: Mapping[str, Body]
     pins: Mapping[str, float]
@@ -42,35 +42,35 @@ class Weights(NamedTuple):
 def weights_of(
     mechanism: Mechanism, block: WeighedLinkage | None, layout: Any, unit: Any, query: SimulationQuery
 ) -> Weights:
-    """What a linkage weighs.
+    """Return the masses of a linkage.
 
     Parameters
     ----------
     mechanism : Mechanism
         In length units.
     block : WeighedLinkage or None
-        What the problem states of this mechanism's links.
+        Masses of this mechanism's links in the problem.
     layout : LayoutSizes or None
-        Of the problem.
+        Sizes in the problem.
     unit : str
-        Of length.
+        Length unit.
 
     Raises
     ------
     NotSimulated
-        For a block in units of its own, or one that does not fit the mechanism.
+        The block has its own units, or does not fit the mechanism.
     """
     scale = METRES[unit] * query.built
     width, thickness = _sizes(mechanism, layout, METRES[unit], query)
     if block is not None and block.units != "si":
         raise NotSimulated(
-            "The problem's `dynamics` is in units of its own, and simulations are in SI units; state it with "
-            "`units: si`."
+            "The problem's `dynamics` has its own units, but simulations are in SI units; give it with `units: si`."
         )
     remarks: list[str] = []
     gravity, pins = 0j, {}
     if block is not None:
         faults = weight_faults(block, mechanism)
+        # Report only the first contradiction.
         if faults:
             raise NotSimulated(f"The problem's `dynamics` does not fit this design: {faults[0][0]}: {faults[0][1]}.")
         try:
@@ -79,12 +79,14 @@ def weights_of(
             raise NotSimulated(f"The problem's `dynamics` does not fit this design: {error}.") from None
         gravity = machine.gravity
         pins = {joint: float(mass) for joint, mass in machine.pin_masses.items()}
+        # These blocks have no counterpart in the exported formats.
         left = [name for name in ("loads", "springs", "friction") if getattr(block, name)]
         if left:
-            remarks.append(f"Not in this file: {', '.join(left)} of the problem's dynamics.")
+            remarks.append(f"Not included: {', '.join(left)} of the problem's dynamics.")
+        # With masses in the problem, plates would count twice; only the masses are used then.
         if any(float(part.mass) > 0.0 for part in machine.bodies.values()) or any(pins.values()):
             if query.built != 1.0:
-                raise NotSimulated("The problem's `dynamics` says what links weigh; they are not built larger.", SCALE)
+                raise NotSimulated("The problem's `dynamics` gives the masses of the links: leave out `scale`.", SCALE)
             remarks.append("Masses and gravity are those of the problem's dynamics.")
             return Weights(machine.bodies, pins, (0.0, 0.0), gravity, width, tuple(remarks))
     material: Material = query.material or "steel"
@@ -96,10 +98,11 @@ def weights_of(
         for link, joints in mechanism.links.items()
         if link != GROUND
     }
+    # Blocks have round ends about two points.
     half = 0.5 * (BLOCK_LENGTH - BLOCK_WIDTH) * width
     made = shapes.widened_hull([complex(-half), complex(half)], BLOCK_WIDTH * width).body(density, thickness)
     remarks.append(
-        f"Links are plates of {material} ({density:g} kg/m3), {width:.6g} m wide with round ends and {thickness:.6g} "
+        f"Links are {material} plates ({density:g} kg/m3), {width:.6g} m wide with round ends and {thickness:.6g} "
         "m thick; their holes are filled by pins."
     )
     remarks.append("Gravity is that of the problem's dynamics." if block is not None else "There is no gravity.")
@@ -107,7 +110,7 @@ def weights_of(
 
 
 def _sizes(mechanism: Mechanism, layout: Any, unit: float, query: SimulationQuery) -> tuple[float, float]:
-    """Width and thickness of links, metres."""
+    """Return width and thickness of the links, metres."""
     width = query.width or getattr(layout, "link_width", None)
     thickness = query.thickness or getattr(layout, "thickness", None)
     built = unit * width if width else unit * query.built * _width(mechanism)
@@ -115,8 +118,9 @@ def _sizes(mechanism: Mechanism, layout: Any, unit: float, query: SimulationQuer
 
 
 def _width(mechanism: Mechanism) -> float:
-    """As wide as parts make links where no sizes are stated, length units."""
+    """Return the default link width of parts, length units."""
     places = [complex(z) for z in mechanism.joints.values()]
+    # Same default as in service.parts: pins limited by size and by the shortest link.
     size = max(abs(a - b) for a, b in combinations(places, 2))
     shortest = min(
         abs(complex(mechanism.joints[a] - mechanism.joints[b]))

@@ -3,13 +3,13 @@
 Glossary:
 
 wheel    a gear at its place: its teeth, its shaft, its level and its face;
-level    a height in which wheels lie, counted from below; the lower plate is level 0, the upper one above them all;
-reach    the lowest and the highest level that a shaft passes through, plates among them;
+level    a height range of wheels, counted from below; the lower plate is level 0, the upper one above them all;
+reach    the lowest and the highest level that a shaft passes, including plates;
 web      the disc that holds a ring on its shaft, in a level of its own;
-play     by how much a tooth is made thinner so that teeth do not bind;
+play     reduction of tooth thickness that prevents binding;
 cluster  gears of a shaft that slide together on a feather key, in a range of levels.
 
-:mod:`teeth` and :mod:`keys` are what wheels are cut to, :mod:`stand` finds where the shafts of a train stand so that
-nothing is in the way, :mod:`housing` makes plates, posts and shafts with what is on them, and :mod:`motion` is how they
-turn. The makers are :mod:`ordinary` and those beside it.
+:mod:`teeth` and :mod:`keys` define how wheels are cut, :mod:`stand` arranges the shafts of a train without
+interference, :mod:`housing` makes plates, posts and shafts with the parts on them, and :mod:`motion` describes the
+rotations. The makers are :mod:`ordinary` and its siblings.
 """

@@ -1,8 +1,8 @@
-"""Parts of two straight bevel gears: a train of one stage whose shafts meet.
+"""Parts of two straight bevel gears: a single-stage train whose shafts intersect.
 
-Each gear is overhung: from the apex outwards lie its teeth, its hub and two bearing plates. Its teeth go in straight
-lines to the apex, with the profile that the back cone shows (:func:`~service.parts.gears.teeth.bevel_toothed`), and end
-on the back cones of the large and the small end. Distances d are counted along a shaft from the apex.
+Each gear is overhung: from the apex outwards follow its teeth, its hub and two bearing plates. Its teeth run in
+straight lines to the apex, with the profile on the back cone (:func:`~service.parts.gears.teeth.bevel_toothed`), and
+end on the back cones of the large and the small end. Distances d are measured along a shaft from the apex.
 """
 
 from __future__ import annotations
@@ -31,55 +31,59 @@ from service.parts.shapes import Disc, Region
 from service.parts.sizes import NotMade, Sizes, rounded_down
 
 NARROW, WIDEST = 1.0 / 3.0, 0.5
-"""Greatest face width, as a share of the cone distance: of one that is not stated, and of any."""
+"""Maximum face width as a share of the cone distance: by default, and in any case."""
 
 ADDENDUM, DEDENDUM = 1.0, 1.25
-"""Of the teeth at the large end, modules."""
+"""Addendum and dedendum at the large end, modules."""
 
 BELOW_LARGE, BELOW_SMALL = 0.5, 0.25
-"""How far the back cones of the large and the small end go on inwards below the roots, modules of that end."""
+"""Extension of the back cones of large and small end below the roots, modules of that end."""
 
 BORED, HUB, SPAN = 1.2, 0.5, 2.5
-"""Least length of a bore, least length of a hub, and what is between two bearing plates, in diameters of the shaft."""
+"""Minimum length of a bore, minimum length of a hub, and distance of two bearing plates, in shaft diameters."""
 
 WALL_OF_HUB = 0.4
-"""Thickness of a hub about its shaft, in diameters of the shaft."""
+"""Wall of a hub around its shaft, in shaft diameters."""
 
 
 def bevel_parts(train: OrdinaryTrain, backlash: float, face_width: float | None, sizing: GearSizing) -> Assembly:
-    """The parts of two bevel gears.
+    """Make the parts of two bevel gears.
 
     Parameters
     ----------
     train : OrdinaryTrain
-        Of one stage, in millimetres.
+        A single-stage train, in millimetres.
     backlash : float
-        The least of the answer, in its own unit.
+        Minimum backlash of the answer, in its unit.
     face_width : float or None
-        That of the answer, in its own unit.
+        Face width of the answer, in its unit.
     sizing : GearSizing
 
     Raises
     ------
     NotMade
-        Where there is no room.
+        The parts do not fit.
     """
     (stage,) = train.stages
     cones = stage.cones(train.pressure_angle)
     sizing.judge_size(2.0 * cones.cone_distance)
     wide = sizing.face_width(stage.module, face_width)
     if sizing.query.face_width is None and face_width is None:
+        # Long bevel teeth would become too thin at the small end.
         wide = min(FACE * stage.module, NARROW * cones.cone_distance)
     if wide > WIDEST * cones.cone_distance:
         most = rounded_down(WIDEST * cones.cone_distance / sizing.unit)
         raise NotMade(
-            f"Bevel teeth are made up to half of the cone distance wide, {most:g} {sizing.words}.", "/query/face_width"
+            f"The face width of bevel gears is limited to half the cone distance, {most:g} {sizing.words}.",
+            "/query/face_width",
         )
     blanks = [
         Blank(teeth, stage.module, cone, cones.cone_distance, wide)
         for teeth, cone in zip((stage.driver, stage.driven), cones.cones, strict=True)
     ]
+    # The smaller uncut core limits the shaft.
     core = min(blank.core for blank in blanks)
+    # A spur gear with the same root radius stands for the core.
     smallest = Gear(2.0 * (core / stage.module + DEDENDUM), stage.module, train.pressure_angle)
     refused = None
     for sizes in sizing.offered(smallest):
@@ -89,6 +93,7 @@ def bevel_parts(train: OrdinaryTrain, backlash: float, face_width: float | None,
         except DimensionError as error:
             raise NotMade(f"The gears cannot be cut: {error}.") from None
         except NotMade as error:
+            # Try the next thinner shaft; report the last refusal if none works.
             refused = error
     assert refused is not None
     raise refused
@@ -96,17 +101,17 @@ def bevel_parts(train: OrdinaryTrain, backlash: float, face_width: float | None,
 
 @dataclass(frozen=True)
 class Blank:
-    """A bevel gear before its teeth are cut: radii and distances d, as complex numbers, radius + i d.
+    """A bevel gear before its teeth are cut: radii and distances d as complex numbers, radius + i d.
 
     Attributes
     ----------
     teeth : int
     module : float
-        At the large end, millimetres.
+        Module at the large end, millimetres.
     cone : float
         Pitch cone angle, radians.
     distance, face_width : float
-        From the apex to the large end, and what of it the teeth take.
+        Cone distance of the large end, and the length of the teeth along it.
     """
 
     teeth: int
@@ -116,13 +121,13 @@ class Blank:
     face_width: float
 
     def on_back_cone(self, height: float) -> complex:
-        """A point of the back cone of the large end, so many modules above the pitch cone."""
+        """Return a point of the back cone of the large end, ``height`` modules above the pitch cone."""
         pitch = self.distance * complex(math.sin(self.cone), math.cos(self.cone))
         return pitch + height * self.module * complex(math.cos(self.cone), -math.sin(self.cone))
 
     @property
     def share(self) -> float:
-        """Size of the small end over that of the large one."""
+        """Ratio of the small end's size to that of the large end."""
         return 1.0 - self.face_width / self.distance
 
     @property
@@ -137,23 +142,23 @@ class Blank:
 
     @property
     def core(self) -> float:
-        """The greatest radius about which nothing is cut."""
+        """Maximum radius that remains uncut."""
         return self.corners[0].real
 
     @property
     def cones(self) -> tuple[float, float]:
-        """Angles of the cones of the tips and of the roots, radians."""
+        """Angles of the tip cone and the root cone, radians."""
         tip, root = (math.atan(height * self.module / self.distance) for height in (ADDENDUM, DEDENDUM))
         return self.cone + tip, self.cone - root
 
     def virtual(self, pressure_angle: float) -> Gear:
-        """The spur gear of the back cone."""
+        """Return the spur gear of the back cone."""
         return Gear(self.teeth / math.cos(self.cone), self.module, pressure_angle, ADDENDUM, DEDENDUM)
 
 
 @dataclass(frozen=True)
 class _Pair:
-    """Two gears whose shafts meet at 0, in millimetres."""
+    """Two gears whose shafts intersect at 0, in millimetres."""
 
     stage: TrainStage
     pressure_angle: float
@@ -163,7 +168,7 @@ class _Pair:
     sizing: GearSizing
 
     def made(self) -> Assembly:
-        """The assembly, if no two parts of it meet."""
+        """Build the assembly and check it for interference."""
         sizes = self.sizes
         tips = [blank.corners[2] for blank in self.blanks]
         below = max(*(tip.real for tip in tips), 0.5 * sizes.width, 0.5 * sizes.collar) + sizes.apart + FREE * sizes.pin
@@ -177,8 +182,9 @@ class _Pair:
         return looked_at(assembly, sizes, self.sizing)
 
     def _hub(self, number: int) -> tuple[float, float, float]:
-        """Distances at which a gear begins and its hub does, and where that ends."""
+        """Return the distances of a gear's start, of its hub's start, and of its hub's end."""
         front, *_, back = (corner.imag for corner in self.blanks[number].corners)
+        # The bore through teeth and hub needs a minimum length.
         length = max(HUB * self.sizes.pin, BORED * self.sizes.pin - (back - front))
         return front, back, back + length
 
@@ -196,6 +202,7 @@ class _Pair:
             levels = tuple(Level(*pair) for pair in outwards)
             if number == 0:
                 along = np.array([1.0, 0.0, 0.0])
+                # The driver points towards the apex: its heights are negative.
                 levels = tuple(Level(-high, -low) for low, high in reversed(outwards))
             speed = 1.0 if number == 0 else self.stage.driver / self.stage.driven
             frame = frame_along(along, np.zeros(3))
@@ -205,15 +212,17 @@ class _Pair:
     def _gear(self, number: int) -> Part:
         blank, sizes, axle = self.blanks[number], self.sizes, self.axles[number]
         _, back, end = self._hub(number)
-        # Heights are distances; those of the driver are negative.
+        # Heights are signed distances; those of the driver are negative.
         way = 1.0 if number else -1.0
         at = way * blank.corners[2].imag
+        # A space of the driven gear faces a tooth of the driver.
         tooth_at = math.pi / blank.teeth if number else 0.0
         teeth = bevel_toothed(blank.virtual(self.pressure_angle), blank.teeth, blank.cone, abs(at), tooth_at, self.play)
         bore = keyed_bore(0j, sizes.pin, key_for(sizes.pin), sizes.clearance)
         inner, tip, large, rim = blank.corners
         outline = [complex(0.0, inner.imag), inner, tip, large, rim, complex(0.0, rim.imag)]
         if number == 0:
+            # Mirroring reverses the orientation: reverse the order as well.
             outline = [z.conjugate() for z in reversed(outline)]
         hub = Region(Disc(0j, min(rim.real, (0.5 + WALL_OF_HUB) * sizes.pin + key_for(sizes.pin).in_hub)), (bore,))
         low, high = sorted((way * back, way * end))
@@ -239,5 +248,5 @@ class _Pair:
                 f"cone {root:.4f}°, outside diameter {2.0 * blank.corners[2].real:.6g} mm; mounting distance from the "
                 f"apex to the end of the hub {self._hub(number)[2]:.6g} mm."
             )
-        told.append("Bearing plates stand by their tabs in the slots of the base, and are glued or wedged there.")
+        told.append("Glue or wedge the tabs of the bearing plates into the slots of the base.")
         return tuple(told)

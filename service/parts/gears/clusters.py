@@ -1,6 +1,6 @@
-"""Sliding gears: which gears of a stage are shifted together, and which levels along the shafts that takes.
+"""Sliding gears: the gears of a stage that are shifted together, and the levels along the shafts that they need.
 
-All pairs of a stage are dealt out to clusters of two at most, in the order of the answer. The drivers slide and the
+All pairs of a stage are divided into clusters of at most two, in the order of the answer. The drivers slide and the
 driven gears are fixed::
 
     level of the range     0    1    2    3
@@ -9,8 +9,8 @@ driven gears are fixed::
     neutral                     a    b
     sliding, B in mesh               a    b
 
-So no sliding gear passes a fixed one, whatever their teeth, and one pair is out before the other is in. A cluster of
-one gear takes two levels, in mesh and beside. The pair of a fixed stage is always in mesh and takes one.
+So no sliding gear passes a fixed one, whatever their teeth, and one pair leaves mesh before the other enters. A cluster
+of one gear needs two levels, in mesh and next to it. The pair of a fixed stage is always in mesh and needs one level.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ from collections.abc import Sequence
 from typing import NamedTuple
 
 PLACES = {1: 2, 2: 4}
-"""Levels of the range of a cluster of so many gears."""
+"""Number of levels of a cluster's range, by its number of gears."""
 
 
 class Cluster(NamedTuple):
@@ -28,13 +28,13 @@ class Cluster(NamedTuple):
     Attributes
     ----------
     stage : int
-        From 0.
+        Index of the stage, from 0.
     pairs : tuple of int
-        Numbers of its pairs in the stage, from 0: one or two.
+        Indices of its pairs in the stage, from 0: one or two.
     low : int
-        The lowest level of its range.
+        Lowest level of its range.
     slides : bool
-        Whether it is shifted at all.
+        Whether it can be shifted.
     """
 
     stage: int
@@ -44,38 +44,40 @@ class Cluster(NamedTuple):
 
     @property
     def top(self) -> int:
-        """The highest level of its range."""
+        """Highest level of its range."""
         return self.low + (PLACES[len(self.pairs)] - 1 if self.slides else 0)
 
     def fixed(self, place: int) -> int:
-        """The level of the gear that its gear number ``place``, from 0, meshes with."""
+        """Return the level of the gear that meshes with its gear number ``place``, from 0."""
         return self.top if place else self.low
 
     def shift(self, engaged: int) -> int:
-        """How many levels it stands above its lowest place where a pair of its stage is engaged."""
+        """Return the number of levels above its lowest place while a pair of its stage is engaged."""
         if not self.slides:
             return 0
+        # Another cluster is engaged: this one is in neutral.
         if engaged not in self.pairs:
             return 1
+        # Lower gear in mesh at 0, upper gear in mesh at 2.
         return 2 * self.pairs.index(engaged)
 
     def at(self, place: int, engaged: int) -> int:
-        """The level of its gear number ``place`` where a pair of its stage is engaged."""
+        """Return the level of its gear number ``place`` while a pair of its stage is engaged."""
         return self.low + place + self.shift(engaged)
 
     def visited(self, place: int) -> tuple[int, ...]:
-        """All levels that its gear number ``place`` comes to."""
+        """Return all levels that its gear number ``place`` can occupy."""
         most = self.top - len(self.pairs) + 1 - self.low
         return tuple(self.low + place + shift for shift in range(most + 1))
 
 
 def clusters(counts: Sequence[int]) -> tuple[Cluster, ...]:
-    """The clusters of all stages over one another, from level 1 on.
+    """Return the clusters of all stages on top of one another, from level 1.
 
     Parameters
     ----------
     counts : sequence of int
-        Pairs of each stage.
+        Number of pairs of each stage.
     """
     found: list[Cluster] = []
     for stage, count in enumerate(counts):

@@ -1,7 +1,7 @@
-"""Two plates with posts between them, and the shafts that they hold, with all that stands on these.
+"""Two plates with posts between them, and the shafts that they hold with all parts on them.
 
-On a shaft lie, from below: a plate, wheels with keys, washers or spacers in every gap, and the other plate; a shaft
-that reaches one plate alone ends beyond its farthest wheel. Its ends are held as pins are (:mod:`fasteners`).
+A shaft carries, from below: a plate, wheels with keys, washers or spacers in every gap, and the other plate. A shaft
+that reaches only one plate ends beyond its farthest wheel. Its ends have the same fasteners as pins (:mod:`fasteners`).
 """
 
 from __future__ import annotations
@@ -20,12 +20,12 @@ from service.parts.shapes import Disc, Outline, Region, widened
 from service.parts.sizes import Sizes
 
 STUB = 1.5
-"""Length of the ends of input and output shafts beyond their plates, in diameters."""
+"""Length of input and output shafts beyond their plates, in diameters."""
 
 
 @dataclass(frozen=True)
 class Level:
-    """Heights between which wheels or a plate lie."""
+    """Height range of wheels or of a plate."""
 
     low: float
     high: float
@@ -33,7 +33,7 @@ class Level:
 
 @dataclass(frozen=True)
 class Shaft:
-    """A shaft, or an axle that does not turn.
+    """A shaft, or an axle that does not rotate.
 
     Attributes
     ----------
@@ -41,21 +41,21 @@ class Shaft:
     carrier : Carrier
     axis : complex
     reach : pair of int
-        The lowest and the highest level that it passes.
+        Lowest and highest level that it passes.
     keyed : tuple of int
-        Levels of what turns with it.
+        Levels of wheels that rotate with it.
     free : tuple of int
-        Levels of what turns on it.
+        Levels of wheels that rotate freely on it.
     spanned : tuple of int
-        Levels from which a wheel goes on to the next, so that nothing stands between these on the shaft.
+        Levels from which a wheel extends to the next one, so that no spacer fits between.
     sliding : tuple of pair of int
-        The lowest and the highest level of each range in which wheels slide on a feather key, as long as the range.
+        Lowest and highest level of each range in which wheels slide on a feather key of the same length.
     ends : bool
-        Whether one end stands out of its plate, to be turned, or to turn something.
+        Whether one end protrudes from its plate, as input or output.
     below : bool
-        Whether that is the lower end, where it reaches both plates.
+        Whether that is the lower end, if it reaches both plates.
     towards : complex
-        Where its keys point.
+        Direction of its keys.
     """
 
     name: str
@@ -73,20 +73,20 @@ class Shaft:
 
 @dataclass(frozen=True)
 class Housing:
-    """Plates at levels 0 and ``len(levels) - 1``, and what they hold.
+    """Plates at levels 0 and ``len(levels) - 1``, and the shafts and posts that they hold.
 
     Attributes
     ----------
     sizes : Sizes
-        Of plates, shafts and posts.
+        Sizes of plates, shafts and posts.
     levels : tuple of Level
     shafts : tuple of Shaft
     around : tuple of (complex, float)
-        Centres and radii of all that turns, which the posts stand beyond.
+        Centres and radii of all rotating parts; the posts are outside.
     posts : tuple of complex
-        Where they are to stand; in the corners around everything if empty.
+        Places of the posts; if empty, the corners around everything.
     standing : tuple of int
-        Levels of what stands on the posts.
+        Levels of parts held by the posts.
     """
 
     sizes: Sizes
@@ -98,11 +98,11 @@ class Housing:
 
     @property
     def top(self) -> int:
-        """The level of the upper plate."""
+        """Level of the upper plate."""
         return len(self.levels) - 1
 
     def parts(self) -> list[Part]:
-        """Plates, shafts with keys and what parts their wheels, and posts."""
+        """Make plates, shafts with keys and distance pieces, and posts."""
         places = self.posts or self.corners()
         found = [
             self._plate("base", 0, places),
@@ -116,7 +116,7 @@ class Housing:
         return found
 
     def corners(self) -> tuple[complex, ...]:
-        """Of the rectangle around all that turns, as far beyond as posts need."""
+        """Return the corners of the rectangle around all rotating parts, with the margin that posts need."""
         room = 0.5 * self.sizes.collar + self.sizes.apart
         low = min(z.real - r for z, r in self.around) - room, min(z.imag - r for z, r in self.around) - room
         high = max(z.real + r for z, r in self.around) + room, max(z.imag + r for z, r in self.around) + room
@@ -126,6 +126,7 @@ class Housing:
         radius = 0.5 * self.sizes.hole
         held = [shaft.axis for shaft in self.shafts if level in shaft.reach and level not in shaft.keyed]
         cuts: list[Outline] = [Disc(place, radius) for place in (*held, *posts)]
+        # A shaft that is keyed to a plate is fixed to the housing.
         cuts += [
             keyed_bore(shaft.axis, self.sizes.pin, key_for(self.sizes.pin), self.sizes.clearance)
             for shaft in self.shafts
@@ -145,7 +146,7 @@ class Housing:
         )
 
     def _on(self, shaft: Shaft) -> list[Part]:
-        """A shaft with its keys, and what parts its wheels."""
+        """Make a shaft with its keys and distance pieces."""
         sizes, name = self.sizes, plain(shaft.name)
         seated = [
             seat(shaft.name, str(level), shaft.carrier, shaft.axis, self.levels[level], level, sizes, shaft.towards)
@@ -158,13 +159,16 @@ class Housing:
             )
             for low, high in shaft.sliding
         ]  # fmt: skip
+        # The shank is built from below.
         seated.sort(key=lambda one: one[0].low)
         seats, keys = [prism for prism, _ in seated], [key for _, key in seated]
         inside = {level for level in (0, self.top) if level in shaft.reach}
+        # A sliding range is kept free of spacers.
         slid = {level for low, high in shaft.sliding for level in range(low, high + 1)}
         levels = sorted({*shaft.keyed, *shaft.free, *slid, *inside})
         spanned = (*shaft.spanned, *(level for low, high in shaft.sliding for level in range(low, high)))
         stub = STUB * sizes.pin if shaft.ends else 0.0
+        # The stub protrudes from the plate that the shaft reaches.
         down = shaft.reach[1] < self.top or shaft.below
         return [
             *self._stack(name, shaft.name, shaft.carrier, shaft.axis, shaft.reach, levels, seats, stub, down, spanned),
@@ -201,13 +205,14 @@ def seat(
     shaft: str, number: str, carrier: Carrier, axis: complex, level: Level, plane: int, sizes: Sizes,
     towards: complex = 1.0 + 0.0j, *, top: int | None = None,
 ) -> tuple[Prism, Part]:  # fmt: skip
-    """What a shaft is where it has a wheel on it, and the key there.
+    """Return the section of a shaft at a wheel, and the key there.
 
     Parameters
     ----------
     top : int or None
-        The highest plane of a feather key, along which wheels slide from ``plane`` on.
+        Highest plane of a feather key, along which wheels slide from ``plane``.
     """
+    # Keys are shorter than their wheel, so that they do not rub on neighbours.
     key, low, high = key_for(sizes.pin), level.low + sizes.play, level.high - sizes.play
     part = Part(
         name=f"key_{plain(shaft)}_{number}",
@@ -225,7 +230,7 @@ def seat(
 
 
 def stacked(heights: Sequence[float], sizes: Sizes) -> tuple[Level, ...]:
-    """Levels over one another, a gap between each two; the first has its upper face at height 0."""
+    """Stack levels with a gap between each two; the upper face of the first is at height 0."""
     low = -heights[0]
     levels = []
     for height in heights:

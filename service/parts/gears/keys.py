@@ -1,6 +1,6 @@
-"""Parallel keys by DIN 6885-1, and bores and shafts with their seats; lengths in millimetres.
+"""Parallel keys of DIN 6885-1, and bores and shafts with their seats; lengths in millimetres.
 
-A key has the width b and the height h; its seat in the shaft is t₁ deep, the keyway in the hub t₂.
+A key has width b and height h; its seat in the shaft is t₁ deep, the keyway in the hub t₂.
 """
 
 from __future__ import annotations
@@ -12,7 +12,7 @@ from service.parts.shapes import Loop
 
 
 class Key(NamedTuple):
-    """Width, height, depths in shaft and hub, and what the key is bought as; empty where the table has none."""
+    """Width, height, depths in shaft and hub, and the designation of the key; empty if the table has none."""
 
     width: float
     height: float
@@ -42,17 +42,18 @@ KEYS = (
     (150.0, 40.0, 22.0, 13.0, 9.4),
     (170.0, 45.0, 25.0, 15.0, 10.4),
 )
-"""DIN 6885-1: the diameter above which the row counts, up to the next row's; b, h, t₁ and t₂."""
+"""DIN 6885-1: the diameter above which the row applies, up to the next row's; b, h, t₁ and t₂."""
 
 THICKEST = 200.0
-"""The greatest diameter that the table has a key for."""
+"""Maximum diameter in the table."""
 
 IN_PROPORTION = (0.3, 0.3, 0.18, 0.14)
-"""b, h, t₁ and t₂ as shares of a diameter that the table leaves out."""
+"""b, h, t₁ and t₂ as shares of a diameter outside the table."""
 
 
 def key_for(diameter: float) -> Key:
-    """The key of a shaft: that of the standard, or one in proportion."""
+    """Return the key of a shaft: the standard one, or one in proportion."""
+    # The last row below the diameter applies.
     rows = [row for row in KEYS if row[0] < diameter <= THICKEST]
     if not rows:
         b, h, t1, t2 = (share * diameter for share in IN_PROPORTION)
@@ -62,7 +63,7 @@ def key_for(diameter: float) -> Key:
 
 
 def keyed_bore(centre: complex, diameter: float, key: Key, clearance: float, towards: complex = 1.0) -> Loop:
-    """The hole of a hub, wider than shaft and key by a clearance on each side; ``towards`` the keyway points."""
+    """Return the bore of a hub, with a clearance around shaft and key; the keyway points ``towards``."""
     radius, half = 0.5 * diameter + clearance, 0.5 * key.width + clearance
     far = 0.5 * diameter + key.in_hub + clearance
     a = math.asin(half / radius)
@@ -72,7 +73,7 @@ def keyed_bore(centre: complex, diameter: float, key: Key, clearance: float, tow
 
 
 def keyed_shaft(centre: complex, diameter: float, key: Key, towards: complex = 1.0) -> Loop:
-    """The section of a shaft through the seat of its key."""
+    """Return the section of a shaft through the seat of its key."""
     radius, half = 0.5 * diameter, 0.5 * key.width
     a = math.asin(half / radius)
     near, floor = math.sqrt(radius**2 - half**2), radius - key.in_shaft
@@ -81,7 +82,7 @@ def keyed_shaft(centre: complex, diameter: float, key: Key, towards: complex = 1
 
 
 def key_section(centre: complex, diameter: float, key: Key, towards: complex = 1.0) -> Loop:
-    """The key as it lies in its seat, seen along the shaft."""
+    """Return the section of a key in its seat, seen along the shaft."""
     half, floor = 0.5 * key.width, 0.5 * diameter - key.in_shaft
     top = floor + key.height
     corners = (floor - 1j * half, top - 1j * half, top + 1j * half, floor + 1j * half)

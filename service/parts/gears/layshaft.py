@@ -1,7 +1,7 @@
 """Parts of a layshaft gearbox: all pairs in mesh, the first gear keyed to the main shaft, the others free on it.
 
-Input and main shaft are coaxial, one in the lower plate and one in the upper; the layshaft and the axle
-of the reverse idler stand beside. What engages one gear or another is not made.
+Input and main shaft are coaxial, one in the lower plate and one in the upper; the layshaft and the axle of the reverse
+idler are next to them. The mechanism that engages the gears is not included.
 """
 
 from __future__ import annotations
@@ -29,7 +29,7 @@ ENGAGED = "GEAR_1"
 
 
 def layshaft_parts(design: Any, problem: Any, query: PartsQuery) -> Assembly:
-    """The parts of a layshaft gearbox.
+    """Make the parts of a layshaft gearbox.
 
     Parameters
     ----------
@@ -41,7 +41,7 @@ def layshaft_parts(design: Any, problem: Any, query: PartsQuery) -> Assembly:
     Raises
     ------
     NotMade
-        Where its first gear is direct drive, or there is no room for such shafts.
+        The first gear is direct drive, or the shafts do not fit.
     """
     sizing = GearSizing(query, problem.length_unit)
     mechanism = design.mechanism.model_copy(
@@ -51,7 +51,7 @@ def layshaft_parts(design: Any, problem: Any, query: PartsQuery) -> Assembly:
         }
     )
     if mechanism.gears[0].layshaft is None:
-        raise NotMade("Parts are made with the first gear engaged, and that of this box is direct drive.")
+        raise NotMade("Parts are made with the first gear engaged, but the first gear of this gearbox is direct drive.")
     gears = layshaft_layout(mechanism).gears
     sizing.judge_size(4.0 * mechanism.centre_distance)
     smallest = min((gear.gear for gear in gears), key=lambda gear: gear.root_radius)
@@ -64,8 +64,8 @@ def layshaft_parts(design: Any, problem: Any, query: PartsQuery) -> Assembly:
             except DimensionError as error:
                 raise NotMade(f"The gears cannot be cut: {error}.") from None
     raise NotMade(
-        "There is no room for the shafts: one of them, or what is on it, would pass through a gear. Thinner ones may "
-        "do, or another scale.", sizing.path,
+        "The shafts do not fit: one of them, or a part on it, would pass through a gear. Try thinner shafts or "
+        "another scale.", sizing.path,
     )  # fmt: skip
 
 
@@ -77,7 +77,7 @@ class _Task:
 
     @cached_property
     def speeds(self) -> list[float]:
-        """Of each gear over the input's, from mesh to mesh."""
+        """Speed of each gear relative to the input's, from mesh to mesh."""
         found: list[float] = []
         layshaft = 1.0
         for gear, before in zip(self.gears, [None, *self.gears[:-1]], strict=True):
@@ -86,7 +86,9 @@ class _Task:
             elif before is None or before.pair != gear.pair:
                 speed = layshaft
             else:
+                # Consecutive gears of a pair mesh externally.
                 speed = -found[-1] * before.gear.teeth / gear.gear.teeth
+            # All further pairs start at the layshaft's speed.
             if gear.pair == "HEAD" and gear.shaft == LAYSHAFT:
                 layshaft = speed
             found.append(speed)
@@ -94,7 +96,7 @@ class _Task:
 
     @cached_property
     def wheels(self) -> list[Wheel]:
-        """All gears, a level for each pair."""
+        """All gears, with one level per pair."""
         wheels = []
         for number, (gear, speed) in enumerate(zip(self.gears, self.speeds, strict=True)):
             pair = gear.pair.lower()
@@ -111,23 +113,23 @@ class _Task:
 
     @property
     def highest(self) -> int:
-        """The uppermost pair's level."""
+        """Level of the uppermost pair."""
         return max(wheel.level for wheel in self.wheels)
 
     def reaches(self) -> tuple[Reach, ...] | None:
-        """How far the shafts go, if nothing is in their way."""
+        """Return the reach of the shafts, or None if one is obstructed."""
         room = Room(0.5 * self.sizes.pin, 0.5 * self.sizes.collar, self.sizes.apart)
         return reached(self.wheels, self.highest, room)
 
     def _free(self, gear: BoxGear) -> bool:
-        """Whether a gear turns on the main shaft, and not with it."""
+        """Return whether a gear rotates freely on the main shaft."""
         return gear.shaft == MAIN and gear.pair != ENGAGED
 
     def _carrier(self, gear: BoxGear) -> str:
         return f"main_{gear.pair.lower()}" if self._free(gear) else f"shaft_{gear.shaft + 1}"
 
     def made(self, reaches: tuple[Reach, ...]) -> Assembly:
-        """The assembly, if no two parts of it meet."""
+        """Build the assembly and check it for interference."""
         levels = self._levels()
         shafts = []
         for number, axis in enumerate(axes_of(self.wheels)):
@@ -147,13 +149,14 @@ class _Task:
             carrier = self._carrier(gear)
             bodies[carrier] = Turning(wheel.centre, wheel.speed)
             parts += wheel_parts(wheel, Carrier(carrier, None), levels, self.sizes, free=self._free(gear))
+        # Turn the input until the slowest mesh has advanced by a tooth.
         slowest = min(abs(wheel.speed) * wheel.gear.teeth for wheel in self.wheels)
         size = max(abs(a.centre - b.centre) + a.outer + b.outer for a in self.wheels for b in self.wheels)
         motion = TrainMotion(bodies, size, min(math.ceil(1.0 / slowest), MOST_TURNS))
         assembly = Assembly(
             (*parts, *housing.parts()), motion, self.highest, 2, self.sizing.factor, self.sizing.query.scale,
-            ("The first gear is engaged: it is keyed to the main shaft, on which the others turn freely.",
-             "What engages another gear, or couples input and main shaft for direct drive, is not among the parts."),
+            ("The first gear is engaged: it is keyed to the main shaft; the others turn freely on it.",
+             "The mechanism that engages other gears, or couples input and main shaft, is not included."),
         )  # fmt: skip
         return looked_at(assembly, self.sizes, self.sizing)
 

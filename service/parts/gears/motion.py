@@ -1,4 +1,4 @@
-"""How the bodies of a train turn: each about an axis of its own, planets with their axes about another."""
+"""Rotation of the bodies of a train: each about its own axis, planets with their axes about another."""
 
 from __future__ import annotations
 
@@ -13,13 +13,13 @@ from kinematics.linkage.planar.mechanism import GROUND
 from service.parts.model import Carrier, Frame, InputField, Placed, Real
 
 GOLDEN = 0.5 * (math.sqrt(5.0) - 1.0)
-"""The ratio that no number of teeth divides: steps of it see every mesh in all its phases."""
+"""Golden ratio: its multiples sample every mesh in all its phases."""
 
 
 class Turning(NamedTuple):
-    """A body: its axis, its speed, and the speed of its axis about another; speeds over the input's, about z.
+    """A body: its axis, its speed, and the speed of its axis about another one; relative to the input's, about z.
 
-    ``frame`` is the plane in which it turns where that is not the assembly's.
+    ``frame`` is the plane in which it rotates, if that is not the assembly's.
     """
 
     centre: complex
@@ -31,16 +31,16 @@ class Turning(NamedTuple):
 
 @dataclass(frozen=True)
 class TrainMotion:
-    """Bodies that turn at constant ratios.
+    """Bodies that rotate at constant ratios.
 
     Attributes
     ----------
     bodies : mapping of str to Turning
-        By the names that carriers have as their links.
+        Bodies by the link names of their carriers.
     size : float
-        How large the train is, millimetres.
+        Size of the train, millimetres.
     turns : int
-        Of the input, over which the train is looked at: enough for every mesh to go from tooth to tooth.
+        Turns of the input in the interference check, enough to advance every mesh by a tooth.
     """
 
     bodies: Mapping[str, Turning]
@@ -53,26 +53,27 @@ class TrainMotion:
 
     @property
     def high(self) -> float:
-        """After all turns."""
+        """Input after all turns."""
         return 2.0 * math.pi * self.turns
 
     def inputs(self, count: int) -> Real:
-        """So many inputs, nearly evenly spread and at different phases of every mesh; the first is the reference."""
+        """Return nearly evenly spaced inputs at different phases of every mesh; the first is the reference."""
         return np.sort(np.arange(count) * GOLDEN % 1.0) * self.high
 
     def stated(self, value: float, scale: float) -> float:
-        """Any angle is one of the train's; a whole turn of the input is none of the output."""
+        """Convert an input in degrees. The motion has no limits, and one input turn is not its period."""
         return math.radians(value)
 
     def at(self, inputs: Real) -> Real:
-        """The inputs say all."""
+        """Return the inputs themselves, which are the complete state."""
         return inputs
 
     def placed(self, carrier: Carrier, state: Real) -> Placed:
-        """How what a body carries has moved."""
+        """Return the displacement of a body."""
         if carrier.link == GROUND:
             return Placed(np.ones(len(state), np.complex128), np.zeros(len(state), np.complex128))
         body = self.bodies[carrier.link]
         turn = np.exp(1j * body.speed * state)
+        # Planets revolve about the carrier's axis.
         centre = body.about + (body.centre - body.about) * np.exp(1j * body.orbit * state)
         return Placed(turn, centre - turn * body.centre, body.frame)

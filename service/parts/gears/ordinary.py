@@ -24,11 +24,11 @@ from synthesis.kinds.gear_train.verification import driven_train
 from synthesis.model.gear_answer import MeshGeometry
 
 MOST_TURNS = 400
-"""Turns of the input over which a train is looked at."""
+"""Maximum number of input turns in the interference check."""
 
 
 def train_parts(design: Any, problem: Any, query: PartsQuery) -> Assembly:
-    """The parts of an ordinary train.
+    """Make the parts of an ordinary train.
 
     Parameters
     ----------
@@ -40,7 +40,7 @@ def train_parts(design: Any, problem: Any, query: PartsQuery) -> Assembly:
     Raises
     ------
     NotMade
-        Where its shafts are not parallel, or there is no room for such shafts.
+        Such a train with non-parallel shafts is not available, or the shafts do not fit.
     """
     stages = driven_train(design.mechanism).stages
     plays = backlash_of(stages, design.metrics.meshes)
@@ -52,19 +52,20 @@ def train_parts(design: Any, problem: Any, query: PartsQuery) -> Assembly:
 
 
 def backlash_of(stages: Sequence[TrainStage], meshes: Sequence[MeshGeometry]) -> list[float]:
-    """The least backlash of each stage's meshes, 0 where none is told."""
+    """Return the minimum backlash of each stage's meshes; 0 if unknown."""
     left = [mesh.backlash or 0.0 for mesh in meshes]
     found: list[float] = []
     for stage in stages:
         count = len(stage.gears) - 1
         found.append(min(left[:count]))
+        # Meshes are listed stage by stage.
         left = left[count:]
     return found
 
 
 @dataclass(frozen=True)
 class OrdinaryParts:
-    """A train that parts are asked of.
+    """A train whose parts are requested.
 
     Attributes
     ----------
@@ -72,11 +73,11 @@ class OrdinaryParts:
     pressure_angle : float
         Radians.
     backlash : sequence of float
-        Of each stage, 0 where its teeth have none.
+        Backlash of each stage, 0 without.
     face_widths : sequence of float or None
-        Of each stage.
+        Face width of each stage.
     reverted : bool
-        Whether the output is on the input's axis.
+        Whether the output is coaxial with the input.
     length_unit : str
     """
 
@@ -88,7 +89,7 @@ class OrdinaryParts:
     length_unit: str
 
     def assembly(self, query: PartsQuery) -> Assembly:
-        """The parts, looked at in motion."""
+        """Return the parts, after an interference check."""
         sizing = GearSizing(query, self.length_unit)
         train = self._scaled(sizing.factor)
         if not train.is_parallel:
@@ -102,16 +103,16 @@ class OrdinaryParts:
             if stand is not None:
                 return task.made(stand)
         raise NotMade(
-            "There is no room for the shafts: in every stand one of them, or what is on it, would pass through a gear. "
-            "Thinner ones may do, or another scale.", sizing.path,
+            "The shafts do not fit: in every arrangement one of them, or a part on it, would pass through a gear. "
+            "Try thinner shafts or another scale.", sizing.path,
         )  # fmt: skip
 
     def _crossing(self, train: OrdinaryTrain, sizing: GearSizing) -> Assembly:
-        """The parts of a train whose shafts are not parallel."""
+        """Return the parts of a train with non-parallel shafts."""
         if len(train.stages) > 1:
             raise NotMade(
-                "Bevel gears and worms are made as trains of one stage: with other stages there would be boxes of "
-                "plates that stand across one another."
+                "Parts of bevel gears and worms are only available for single-stage trains: further stages would need "
+                "housings at right angles to one another."
             )
         make = worm_parts if train.stages[0].kind == "worm" else bevel_parts
         return make(train, self.backlash[0], self.face_widths[0], sizing)
@@ -127,7 +128,7 @@ class OrdinaryParts:
 
 @dataclass(frozen=True)
 class _Task:
-    """A train in millimetres and the sizes of what carries it."""
+    """A train in millimetres, and the sizes of its shafts and plates."""
 
     asked: OrdinaryParts
     train: OrdinaryTrain
@@ -136,13 +137,14 @@ class _Task:
 
     @cached_property
     def levels_of(self) -> list[tuple[int, int | None]]:
-        """The level of each stage, and that of its ring's web: on the side of the ring's shaft."""
+        """Level of each stage, and of its ring's web, which is on the side of the ring's shaft."""
         found: list[tuple[int, int | None]] = []
         level = 0
         for stage in self.train.stages:
             level += 1
             web = None
             if stage.kind == "internal":
+                # The web lies on the side of the ring's shaft, so that the pinion's shaft does not pass it.
                 if stage.driver > stage.driven:
                     web, level = level, level + 1
                     found.append((level, web))
@@ -155,21 +157,21 @@ class _Task:
 
     @property
     def highest(self) -> int:
-        """The highest level of a wheel."""
+        """Highest level of a wheel."""
         return max(max(level, web or 0) for level, web in self.levels_of)
 
     def stand(self) -> Stand | None:
-        """Where everything stands, if it can."""
+        """Return the arrangement of all wheels and shafts, or None."""
         room = Room(0.5 * self.sizes.pin, 0.5 * self.sizes.collar, self.sizes.apart)
         return stood(self._stage, len(self.train.stages), self.highest, room, self.asked.reverted)
 
     def _stage(self, number: int, axis: complex, ahead: complex) -> list[Wheel]:
-        """The wheels of a stage; shafts of idlers come after those of the train."""
+        """Return the wheels of a stage; shafts of idlers are numbered after those of the train."""
         level, web = self.levels_of[number]
         before = sum(len(one.idlers) for one in self.train.stages[:number])
         wheels = []
         idler = len(self.train.stages) + 1 + before
-        # The answer's own backlash counts, and is made up to the clearance.
+        # The answer's backlash is increased to the clearance if it is smaller.
         play = 0.5 * max(self.sizes.clearance - self.sizing.factor * self.asked.backlash[number], 0.0)
         for gear in in_line(self.train, number, axis, ahead):
             shaft = number + (gear.role == "driven")
@@ -180,6 +182,7 @@ class _Task:
                 idler += 1
             ring = gear.gear.internal
             outer = rim_radius(gear.gear, self.sizes) if ring else gear.gear.tip_radius
+            # Gears in external mesh have opposite hands.
             helix = gear.helix_angle * (1.0 if gear.role == "driver" else -1.0)
             what = "ring" if ring else "gear"
             words = f"{what} of stage {number + 1}, {role.replace('_', ' ')}, {gear.count} teeth"
@@ -192,7 +195,7 @@ class _Task:
         return wheels
 
     def made(self, stand: Stand) -> Assembly:
-        """The assembly on a stand, if no two parts of it meet."""
+        """Build the assembly of an arrangement and check it for interference."""
         levels = self._heights()
         shafts = [self._shaft(number, stand) for number in range(len(stand.axes))]
         housing = Housing(
@@ -216,6 +219,7 @@ class _Task:
         name = self._body(number).replace("_", " ")
         if number in (0, count - 1):
             name = "input shaft" if number == 0 else "output shaft"
+        # A ring is keyed by its web.
         keyed = [wheel.level if wheel.web is None else wheel.web for wheel in stand.wheels if wheel.shaft == number]
         return Shaft(
             name, Carrier(self._body(number), None), stand.axes[number], stand.reaches[number], tuple(keyed),
@@ -237,9 +241,9 @@ class _Task:
         return TrainMotion(bodies, size, min(math.ceil(1.0 / min(passing)), MOST_TURNS))
 
     def _notes(self, stand: Stand) -> tuple[str, ...]:
-        told = ["Wheels are held on their shafts by keys; the ends that stand out of the plates are input and output."]
+        told = ["Wheels are keyed to their shafts; the ends that protrude from the plates are input and output."]
         for number, reach in enumerate(stand.reaches):
             if reach != (0, self.highest + 1):
                 plate = "lower" if reach[0] == 0 else "upper"
-                told.append(f"The {self._shaft(number, stand).name} stands in the {plate} plate alone.")
+                told.append(f"The {self._shaft(number, stand).name} is held only by the {plate} plate.")
         return tuple(told)

@@ -31,11 +31,11 @@ from service.parts.sizes import WALL, NotMade, PartsQuery, Sizes
 from service.render.gears.planetary_layout import PlanetaryGear, placed_planetary_gears
 
 POSTS = 4
-"""Posts of a train whose ring stands on them."""
+"""Number of posts of a train whose ring is held by them."""
 
 
 def planetary_parts(design: Any, problem: Any, query: PartsQuery) -> Assembly:
-    """The parts of a planetary train.
+    """Make the parts of a planetary train.
 
     Parameters
     ----------
@@ -47,15 +47,16 @@ def planetary_parts(design: Any, problem: Any, query: PartsQuery) -> Assembly:
     Raises
     ------
     NotMade
-        Where it has bevel gears or several carriers, cannot be built between two plates, or leaves no room.
+        The train has bevel gears or several carriers, cannot be built between two plates, or does not fit.
     """
     mechanism = design.mechanism
     arrangement = ARRANGEMENTS[mechanism.arrangement]
+    # Only one carrier fits between the two central shafts.
     if arrangement.bevel or len(set(arrangement.carriers.values())) > 1:
-        raise NotMade("Parts are made of planetary trains of spur gears with one carrier.")
+        raise NotMade("Parts are only available for planetary trains of spur gears with one carrier.")
     build = build_of(arrangement, (mechanism.input, mechanism.output, mechanism.fixed))
     if build is None:
-        raise NotMade("No way was found to get at the input and the output of this train from between two plates.")
+        raise NotMade("The input and the output of this train cannot both be reached from two plates.")
     sizing = GearSizing(query, problem.length_unit)
     module = mechanism.module * sizing.factor
     sizing.judge_size(design.metrics.size * sizing.factor)
@@ -68,7 +69,7 @@ def planetary_parts(design: Any, problem: Any, query: PartsQuery) -> Assembly:
         except DimensionError as error:
             raise NotMade(f"The gears cannot be cut: {error}.") from None
         except NotMade as error:
-            if error.path == "/query/clearance":  # teeth meet on whatever shafts
+            if error.path == "/query/clearance":  # teeth collide on any shafts
                 raise
             refused = error
     assert refused is not None
@@ -76,7 +77,9 @@ def planetary_parts(design: Any, problem: Any, query: PartsQuery) -> Assembly:
 
 
 def _least_room(gears: Sequence[PlanetaryGear], arrangement: Arrangement, build: Build) -> tuple[float, str]:
-    """How near the axis of a planet comes to a gear that its axle passes, and which these are; infinite if none."""
+    """Return the minimum distance from a planet's axis to a gear that its axle passes, and their names; infinity if
+    none.
+    """
     near = [(math.inf, "")]
     plate = 0 if build.carrier is None else build.carrier
     for planet in (gear for gear in gears if gear.body in arrangement.carriers):
@@ -92,13 +95,14 @@ def _least_room(gears: Sequence[PlanetaryGear], arrangement: Arrangement, build:
                 continue
             away = abs(planet.centre - other.centre) - other.gear.tip_radius
             words = f"axle of the {planet.name.replace('_', ' ')} passes the {other.name.replace('_', ' ')}"
+            # Radial space between the axle and the gear that it passes.
             near.append((away, words))
     return min(near)
 
 
 @dataclass(frozen=True)
 class _Task:
-    """A train in millimetres, how it is built, and the sizes of what carries it."""
+    """A train in millimetres, its build, and the sizes of its shafts and plates."""
 
     mechanism: Any
     arrangement: Arrangement
@@ -110,12 +114,12 @@ class _Task:
 
     @property
     def carrier(self) -> str:
-        """The carrier's name."""
+        """Name of the carrier."""
         return next(iter(self.arrangement.carriers.values()))
 
     @cached_property
     def levels(self) -> tuple[Level, ...]:
-        """Of plates, webs and gears."""
+        """Levels of plates, webs and gears."""
         heights = [self.sizes.thickness] * (self.build.highest + 2)
         widths = self.mechanism.face_widths or [None] * len(self.build.planes)
         for plane, level in self.build.planes.items():
@@ -123,21 +127,23 @@ class _Task:
         return stacked(heights, self.sizes)
 
     def body(self, gear: PlanetaryGear) -> str:
-        """What carries a gear, as the motion names it."""
+        """Return the body of a gear, as the motion names it."""
         if gear.body == self.mechanism.fixed:
             return GROUND
         return f"{gear.body}_{gear.copy + 1}" if gear.body in self.arrangement.carriers else gear.body
 
     def carried(self, member: str) -> Carrier:
-        """What carries a member about the axis."""
+        """Return the carrier of a member that rotates about the axis."""
         return Carrier(GROUND if member == self.mechanism.fixed else member, None)
 
     def made(self) -> Assembly:
-        """The assembly, if no two parts of it meet."""
+        """Build the assembly and check it for interference."""
         wheels = [self._wheel(gear, number) for number, gear in enumerate(self.gears)]
         posts = self._posts(wheels)
         around = [(gear.centre, wheel.outer) for gear, wheel in zip(self.gears, wheels, strict=True)]
+        # The carrier's plate sweeps a circle beyond its pins.
         around += [(0j, abs(pin) + 0.5 * self.sizes.width) for pin in self._pins().values()]
+        # Rings without a web are fixed to the posts.
         standing = tuple(wheel.level for wheel in wheels if wheel.gear.internal and wheel.web is None)
         housing = Housing(self.sizes, self.levels, tuple(self._shafts()), tuple(around), posts, standing)
         parts: list[Part] = []
@@ -179,7 +185,7 @@ class _Task:
         )  # fmt: skip
 
     def _held_ring(self, wheel: Wheel, posts: Sequence[complex]) -> Part:
-        """A ring that the posts go through."""
+        """Make a ring that is held by the posts."""
         outer = Disc(0j, abs(posts[0]) + 0.5 * self.sizes.hole + ROOM * WALL * self.sizes.pin)
         teeth = toothed(wheel.gear, wheel.centre, wheel.tooth_at, 0.0, wheel.play)
         holes = [Disc(post, 0.5 * self.sizes.hole) for post in posts]
@@ -191,22 +197,22 @@ class _Task:
         )  # fmt: skip
 
     def _stepped(self, planet: str) -> bool:
-        """Whether a planet has several gears, which are keyed to one pin."""
+        """Return whether a planet has several gears, which are keyed to one pin."""
         return sum(gear.body == planet for gear in self.arrangement.gears) > 1
 
     def _towards(self, gear: PlanetaryGear) -> complex:
-        """Where the keyways of a planet point: copies are turned as their gears are."""
+        """Return the direction of a planet's keyways: copies are rotated like their gears."""
         first = next(one for one in self.gears if one.name == gear.name and one.copy == 0)
         return cmath.exp(1j * (gear.tooth_at - first.tooth_at))
 
-    # What carries them
+    # Carriers and shafts
 
     def _pins(self) -> dict[str, complex]:
-        """Planets and their copies by the names of their bodies."""
+        """Return the centres of planets and their copies by body name."""
         return {self.body(gear): gear.centre for gear in self.gears if gear.body in self.arrangement.carriers}
 
     def _posts(self, wheels: Sequence[Wheel]) -> tuple[complex, ...]:
-        """Posts that hold a ring, beyond all that turns."""
+        """Return the posts that hold a ring, outside all rotating parts."""
         held = [wheel for wheel in wheels if wheel.gear.internal and wheel.web is None]
         if not held:
             return ()
@@ -214,6 +220,7 @@ class _Task:
         away = max(wheel.gear.root_radius for wheel in held) + room
         moving = [abs(wheel.centre) + wheel.outer for wheel in wheels if wheel not in held]
         moving += [abs(pin) + 0.5 * self.sizes.width for pin in self._pins().values()]
+        # Posts stay outside everything that rotates.
         away = max(away, max(moving) + 0.5 * self.sizes.collar + self.sizes.apart)
         return tuple(cmath.rect(away, math.pi * (k + 0.5) / (0.5 * POSTS)) for k in range(POSTS))
 
@@ -231,6 +238,7 @@ class _Task:
             assert low is not None
             assert high is not None
             body = next(body for body, access in build.access.items() if access == side)
+            # Members without a shaft run freely on this one.
             loose = [level for one, level in hubs.items() if build.access[one] == "loose" and low <= level <= high]
             held = body == self.mechanism.fixed
             plate = 0 if side == "low" else top
@@ -246,7 +254,7 @@ class _Task:
         return found
 
     def _pin(self, name: str, centre: complex) -> Shaft:
-        """A pin of a planet: it stands in the carrier, and turns with a stepped planet."""
+        """Make the pin of a planet: it is held by the carrier, and rotates with a stepped planet."""
         own = [gear for gear in self.gears if self.body(gear) == name]
         plate = 0 if self.build.carrier is None else self.build.carrier
         levels = sorted({self.build.planes[plane] for gear in own for plane in gear.planes})
@@ -269,6 +277,7 @@ class _Task:
         outer = widened([0j, *pins], 0.5 * sizes.width)
         if len(pins) > 1:
             around = Disc(0j, max(abs(pin) for pin in pins) + 0.5 * sizes.width)
+            # Few or uneven pins: use a disc, so that the hub is inside.
             outer = around if _hub_uncovered(pins, sizes) else outer
         holes = (hub, *(Disc(pin, 0.5 * sizes.hole) for pin in pins))
         return Part(
@@ -278,7 +287,7 @@ class _Task:
         )  # fmt: skip
 
     def _alike(self, part: Part) -> Part:
-        """Pins of the copies of one planet are alike, keyed ones too."""
+        """Mark pins of a planet's copies as identical, including keyed ones."""
         if part.sort == "pin" and part.described.startswith("axle of planet") and not part.round:
             return replace(part, like="axle of a planet")
         return part
@@ -292,28 +301,29 @@ class _Task:
         for gear in self.gears:
             if gear.body in self.arrangement.carriers:
                 bodies[self.body(gear)] = Turning(gear.centre, self.speeds[gear.body], carrier)
+        # Teeth pass at speeds relative to the carrier.
         passing = [abs(wheel.speed - carrier) * wheel.gear.teeth for wheel in wheels]
         size = 2.0 * max(abs(wheel.centre) + wheel.outer for wheel in wheels)
         slowest = min((one for one in passing if one > 0.0), default=1.0)
         return TrainMotion(bodies, size, min(math.ceil(1.0 / slowest), 400))
 
     def _notes(self) -> tuple[str, ...]:
-        told = ["Gears are held on their shafts by keys; planets turn on their pins, and stepped ones with them."]
-        fixed = f"The {self.mechanism.fixed.replace('_', ' ')} is held"
+        told = ["Gears are keyed to their shafts; planets turn on their pins, stepped planets together with them."]
+        fixed = f"The {self.mechanism.fixed.replace('_', ' ')} is fixed"
         if self.build.access[self.mechanism.fixed] == "held":
-            what = "is the lower plate" if self.mechanism.fixed == self.carrier else "stands on the posts"
+            what = "is the lower plate" if self.mechanism.fixed == self.carrier else "is held by the posts"
             told.append(f"{fixed}: it {what}.")
         else:
             told.append(f"{fixed} by a key between its shaft and the plate.")
         for role, body in (("input", self.mechanism.input), ("output", self.mechanism.output)):
             if self.build.access[body] == "loose":
                 own = f"The {body.replace('_', ' ')} is the {role}"
-                told.append(f"{own}, and has no shaft of its own: it is got at by its rim.")
+                told.append(f"{own}, and has no shaft of its own: connect to its rim.")
         return tuple(told)
 
 
 def _hub_uncovered(pins: Sequence[complex], sizes: Sizes) -> bool:
-    """Whether the hull of the pins is too narrow about the axis for a keyway with its walls."""
+    """Return whether the hull of the pins is too narrow about the axis for a keyway with its walls."""
     turned = np.sort(np.angle(pins))
     widest = float(np.diff(turned, append=turned[0] + 2.0 * math.pi).max())
     return min(abs(pin) for pin in pins) * math.cos(min(0.5 * widest, 0.5 * math.pi)) < 0.5 * sizes.pin

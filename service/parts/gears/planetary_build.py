@@ -1,10 +1,10 @@
-"""How a planetary train can be built between two plates: what lies over what, and how each member is got at.
+"""Builds of a planetary train between two plates: the order of its levels, and the connection of each member.
 
-From below lie: the lower plate; a carrier's plate or a ring's web; the planes of the gears; a web or a carrier's plate;
-the upper plate. A shaft stands in the lower plate and one in the upper, on the axis of the train, and a member is keyed
-to one of them, or runs freely on what passes through it. A held ring stands on the posts between the plates, the pins
-of a held carrier in the lower plate, and a held sun on a shaft that is keyed to its plate. All ways are gone through;
-the best leaves no driven or driving member without a shaft.
+From below follow: the lower plate; a carrier's plate or a ring's web; the planes of the gears; a web or a carrier's
+plate; the upper plate. One shaft is held by the lower plate and one by the upper, on the axis of the train. A member is
+keyed to one of them, or runs freely on the shaft that passes through it. A fixed ring is held by the posts between the
+plates, the pins of a fixed carrier by the lower plate, and a fixed sun by a shaft that is keyed to its plate. All
+builds are enumerated; the best one leaves no driving or driven member without a shaft.
 """
 
 from __future__ import annotations
@@ -16,28 +16,28 @@ from typing import Literal, NamedTuple
 from kinematics.gear.arrangements import Arrangement
 
 Access = Literal["low", "high", "loose", "held"]
-"""On the lower or the upper shaft, free on one of them, or held by the housing itself."""
+"""Connection of a member: to the lower or the upper shaft, free on one of them, or fixed by the housing itself."""
 
 CARRIER_FIRST: tuple[Literal["below", "above"], ...] = ("above", "below")
 
 
 class Build(NamedTuple):
-    """A way to build a train with one carrier.
+    """A build of a train with one carrier.
 
     Attributes
     ----------
     planes : mapping of int to int
-        The level of each plane of the arrangement.
+        Level of each plane of the arrangement.
     webs : mapping of str to int
-        The levels of the webs of rings that turn, by body.
+        Levels of the webs of rotating rings, by body.
     carrier : int or None
-        The level of the carrier's plate; None where the lower plate is the carrier.
+        Level of the carrier's plate; None if the lower plate is the carrier.
     access : mapping of str to Access
-        How each member is got at.
+        Connection of each member.
     low, high : int or None
-        The highest level that the lower shaft reaches, and the lowest that the upper one does.
+        Highest level that the lower shaft reaches, and lowest level that the upper one reaches.
     highest : int
-        The highest level between the plates.
+        Highest level between the plates.
     """
 
     planes: Mapping[int, int]
@@ -50,32 +50,33 @@ class Build(NamedTuple):
 
 
 def build_of(arrangement: Arrangement, roles: tuple[str, str, str]) -> Build | None:
-    """The best way to build an arrangement; None where there is none.
+    """Return the best build of an arrangement, or None.
 
     Parameters
     ----------
     roles : tuple of str
-        The members that drive, are driven and are held.
+        The driving, the driven and the fixed member.
     """
     ways = list(_ways(arrangement, roles))
     return min(ways, key=lambda way: sum(way.access[body] == "loose" for body in roles[:2])) if ways else None
 
 
 def _ways(arrangement: Arrangement, roles: tuple[str, str, str]) -> Iterator[Build]:
-    """All ways, those in the order of the arrangement first."""
+    """Yield all builds, those in the order of the arrangement first."""
     held = roles[2]
     (carrier,) = set(arrangement.carriers.values())
     central = [gear for gear in arrangement.gears if gear.body not in arrangement.carriers]
     rings = [gear for gear in central if gear.internal]
     turning = [ring.body for ring in rings if ring.body != held]
     planes = sorted({plane for gear in arrangement.gears for plane in gear.planes})
+    # The stack of planes may be built upside down.
     for order in (planes, planes[::-1]):
         for plate in (None,) if carrier == held else CARRIER_FIRST:
             for sides in product(("above", "below"), repeat=len(turning)):
                 below = [body for body, side in zip(turning, sides, strict=True) if side == "below"]
                 above = [body for body, side in zip(turning, sides, strict=True) if side == "above"]
                 ends = {ring.body: ring.planes[0] for ring in rings}
-                # A web lies next to its ring, and nothing passes through it but the shaft.
+                # A web is next to its ring, and only the shaft passes through it.
                 if len(below) > 1 or len(above) > 1:
                     continue
                 if below and (ends[below[0]] != order[0] or plate in ("below", None)):
@@ -88,6 +89,7 @@ def _ways(arrangement: Arrangement, roles: tuple[str, str, str]) -> Iterator[Bui
                 webs = dict.fromkeys(below, first - 1) | dict.fromkeys(above, last + 1)
                 at = {"below": 1, "above": last + 1}.get(plate or "")
                 highest = last + len(above) + (plate == "above")
+                # Level at which each member connects to a shaft.
                 hubs = {gear.body: webs.get(gear.body, levels[gear.planes[0]]) for gear in central}
                 if at is not None:
                     hubs[carrier] = at
@@ -105,7 +107,7 @@ def _got_at(
     highest: int,
     members: list[str],
 ) -> Iterator[Build]:
-    """All ways to bring hubs on two shafts that do not meet."""
+    """Yield all assignments of hubs to two shafts that do not overlap."""
     bodies = list(hubs)
     choices: list[tuple[Access, ...]] = [
         ("low", "high") if body == roles[2] else ("low", "high", "loose") for body in bodies
@@ -113,6 +115,7 @@ def _got_at(
     for chosen in product(*choices):
         low = [hubs[body] for body, access in zip(bodies, chosen, strict=True) if access == "low"]
         high = [hubs[body] for body, access in zip(bodies, chosen, strict=True) if access == "high"]
+        # Each shaft carries at most one keyed member.
         if len(low) > 1 or len(high) > 1:
             continue
         top, bottom = max(low, default=None), min(high, default=None)
@@ -125,8 +128,10 @@ def _got_at(
             elif bottom is not None:
                 bottom = level
             else:
+                # No shaft passes through this free member.
                 break
         else:
+            # The two shafts would overlap.
             if top is not None and bottom is not None and top >= bottom:
                 continue
             access_of: dict[str, Access] = dict.fromkeys(members, "held")

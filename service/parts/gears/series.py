@@ -1,4 +1,4 @@
-"""Parts of ordinary trains in series: all stages between two plates, each train driven by the one before."""
+"""Parts of ordinary trains in series: all stages between two plates, each train driven by the previous one."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from synthesis.kinds.gear_train.verification import driven_train
 
 
 def series_parts(design: Any, problem: Any, query: PartsQuery) -> Assembly:
-    """The parts of a series of ordinary trains.
+    """Make the parts of a series of ordinary trains.
 
     Parameters
     ----------
@@ -25,21 +25,21 @@ def series_parts(design: Any, problem: Any, query: PartsQuery) -> Assembly:
     Raises
     ------
     NotMade
-        Where a train is a planetary or a reverted one, or there is no room.
+        A train is planetary or reverted, or the parts do not fit.
     """
     units = design.mechanism.units
     if not all(isinstance(unit, GearTrainMechanism) for unit in units):
         raise NotMade(
-            "Parts are made of series of ordinary trains; this one has a planetary train, whose shafts end where its "
-            "carrier and its ring stand. Each of its trains has parts where it is asked for by itself."
+            "Parts are only available for series of ordinary trains; this one has a planetary train, whose shafts end "
+            "at its carrier and its ring. Request the parts of each train separately."
         )
     if any(unit.reverted for unit in problem.units):
         raise NotMade(
-            "Parts are made of series of trains that are not reverted: stages in a row leave no two shafts in line. A "
-            "reverted train has parts where it is asked for by itself."
+            "Parts are only available for series of trains that are not reverted: stages in a row have no two coaxial "
+            "shafts. Request the parts of a reverted train separately."
         )
     if len({unit.pressure_angle for unit in units}) > 1:
-        raise NotMade("Parts are made of trains of one pressure angle.")
+        raise NotMade("Parts are only available for trains with one pressure angle.")
     stages = [stage for unit in units for stage in driven_train(unit).stages]
     plays = [
         play

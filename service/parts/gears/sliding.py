@@ -1,8 +1,8 @@
-"""Parts of a gearbox of sliding gears, in one of its speeds.
+"""Parts of a gearbox with sliding gears, in one of its speeds.
 
-Shafts stand so that they are held in every speed: a sliding gear is looked at in all levels that it comes to. Every
-gear has a tooth at its keyway, and whole shafts are turned so that the engaged pairs mesh; the parts of all speeds are
-thus the same, and only where they stand differs.
+The shafts are arranged for all speeds: a sliding gear is checked in all levels that it can occupy. Every gear has a
+tooth at its keyway, and whole shafts are rotated so that the engaged pairs mesh. Thus the parts of all speeds are
+identical, and only their positions differ.
 """
 
 from __future__ import annotations
@@ -33,11 +33,11 @@ from service.parts.sizes import WALL, NotMade, PartsQuery, Sizes
 from service.render.gears.placed import facing
 
 Teeth = tuple[tuple[tuple[int, int], ...], ...]
-"""Driver and driven by stage and pair."""
+"""Driver and driven teeth by stage and pair."""
 
 
 def sliding_parts(design: Any, problem: Any, query: PartsQuery) -> Assembly:
-    """The parts of a gearbox, in the speed that is asked for.
+    """Make the parts of a gearbox in the requested speed.
 
     Parameters
     ----------
@@ -49,7 +49,7 @@ def sliding_parts(design: Any, problem: Any, query: PartsQuery) -> Assembly:
     Raises
     ------
     NotMade
-        Where it has no such speed, or there is no room for such shafts.
+        The gearbox has no such speed, or the shafts do not fit.
     """
     speeds = design.metrics.speeds
     number = 1 if query.speed is None else query.speed
@@ -71,14 +71,14 @@ def sliding_parts(design: Any, problem: Any, query: PartsQuery) -> Assembly:
             except DimensionError as error:
                 raise NotMade(f"The gears cannot be cut: {error}.") from None
     raise NotMade(
-        "There is no room for the shafts: in every stand one of them, or what is on it, would pass through a gear in "
-        "some speed. Thinner ones may do, or another scale.", sizing.path,
+        "The shafts do not fit: in every arrangement one of them, or a part on it, would pass through a gear in "
+        "some speed. Try thinner shafts or another scale.", sizing.path,
     )  # fmt: skip
 
 
 @dataclass(frozen=True)
 class _Task:
-    """A gearbox in millimetres, which pair of each stage is engaged, and the sizes of what carries it."""
+    """A gearbox in millimetres, the engaged pair of each stage, and the sizes of its shafts and plates."""
 
     teeth: Teeth
     gears: dict[int, Gear]
@@ -89,35 +89,37 @@ class _Task:
 
     @cached_property
     def clusters(self) -> tuple[Cluster, ...]:
-        """All of them, from below."""
+        """All clusters, from below."""
         return clusters([len(pairs) for pairs in self.teeth])
 
     @property
     def highest(self) -> int:
-        """The highest level of a wheel."""
+        """Highest level of a wheel."""
         return self.clusters[-1].top
 
     @cached_property
     def speeds(self) -> tuple[Fraction, ...]:
-        """Of each shaft over the input's; every mesh turns the direction round."""
+        """Speed of each shaft relative to the input's; every mesh reverses the direction."""
         found = [Fraction(1)]
         for pairs, engaged in zip(self.teeth, self.engaged, strict=True):
+            # Exact fractions avoid drift of the phase.
             found.append(-found[-1] * Fraction(*pairs[engaged]))
         return tuple(found)
 
     def stand(self) -> Stand | None:
-        """Where the shafts stand, with each sliding gear in every level that it comes to."""
+        """Return the arrangement of the shafts, with each sliding gear in every level that it can occupy, or None."""
         room = Room(0.5 * self.sizes.pin, 0.5 * self.sizes.collar, self.sizes.apart)
         return stood(self._stage, len(self.teeth), self.highest, room, polygon=False)
 
     def _stage(self, number: int, axis: complex, ahead: complex) -> list[Wheel]:
-        """All gears of a stage in all their levels; the last is on the next shaft."""
+        """Return all gears of a stage in all their levels; the last one is on the next shaft."""
         found: list[Wheel] = []
         one, other = self.teeth[number][0]
         beyond = axis + (self.gears[one].pitch_radius + self.gears[other].pitch_radius) * ahead
         for cluster in (cluster for cluster in self.clusters if cluster.stage == number):
             for place, pair in enumerate(cluster.pairs):
                 driver, driven = self.teeth[number][pair]
+                # A sliding gear must be unobstructed in every level.
                 for level in cluster.visited(place):
                     found.append(self._wheel(number, pair, "driver", driver, level, axis))
                 found.append(self._wheel(number, pair, "driven", driven, cluster.fixed(place), beyond))
@@ -132,16 +134,17 @@ class _Task:
         )  # fmt: skip
 
     def towards(self, axes: tuple[complex, ...]) -> list[complex]:
-        """Where the keys of each shaft point, so that the engaged pairs mesh."""
+        """Return the direction of each shaft's keys with which the engaged pairs mesh."""
         angles = [0.0]
         for stage, (pairs, engaged) in enumerate(zip(self.teeth, self.engaged, strict=True)):
             driver, driven = (self.gears[count] for count in pairs[engaged])
             ahead = cmath.phase(axes[stage + 1] - axes[stage])
+            # Each shaft is rotated so that its engaged gear meshes with the previous shaft's.
             angles.append(facing(driver, angles[-1], driven, ahead))
         return [cmath.rect(1.0, angle) for angle in angles]
 
     def made(self, stand: Stand) -> Assembly:
-        """The assembly on a stand, if no two parts of it meet."""
+        """Build the assembly of an arrangement and check it for interference."""
         face = self.sizing.face_width(next(iter(self.gears.values())).module, None)
         levels = stacked([self.sizes.thickness, *[face] * self.highest, self.sizes.thickness], self.sizes)
         towards = self.towards(stand.axes)
@@ -164,6 +167,7 @@ class _Task:
                         wheel, _carrier(wheel.shaft), levels, self.sizes, towards=towards[wheel.shaft]
                     )
                 ]
+                # Only the sliding gears of a cluster form one piece.
                 joined = role == "driver" and len(own) > 1
                 parts += self._joined(cluster, own, made, levels, towards[own[0].shaft]) if joined else made
         size = max(abs(a.centre - b.centre) + a.outer + b.outer for a in wheels.values() for b in wheels.values())
@@ -181,7 +185,7 @@ class _Task:
     def _joined(
         self, cluster: Cluster, wheels: list[Wheel], made: list[Part], levels: tuple[Level, ...], towards: complex
     ) -> list[Part]:
-        """Two gears that slide together, with a hub between them: one piece, or three where they are cut of sheets."""
+        """Make two gears that slide together, with a hub between them: one piece, or three if cut from sheets."""
         sizes, (lower, upper) = self.sizes, wheels
         name = f"{cluster.stage + 1}_{cluster.pairs[0] + 1}"
         words = f"stage {cluster.stage + 1}, pairs {cluster.pairs[0] + 1} and {cluster.pairs[1] + 1}"
@@ -190,6 +194,7 @@ class _Task:
         hub = Prism(region, levels[lower.level].high, levels[upper.level].low)
         colour, carrier = LINK_COLOURS[lower.tint % len(LINK_COLOURS)], _carrier(lower.shaft)
         material, planes = MATERIALS[sizes.process][0], (lower.level, upper.level)
+        # Sheets cannot form one piece: the hub is a separate part.
         if sizes.process == "laser":
             between = Part(
                 f"hub_{name}", f"hub between the gears of {words}", "wheel", carrier, (hub,), towards,
@@ -227,30 +232,32 @@ class _Task:
         if any(cluster.slides for cluster in self.clusters):
             step = levels[2].low - levels[1].low
             told += [
-                "All speeds have the same parts, which only stand elsewhere: choose another speed to see where.",
-                f"A cluster of two gears has three places, {step:.4g} mm apart along its feather key: its lower gear "
-                "in mesh, neutral, its upper gear in mesh. A single sliding gear is in mesh in its lower place and "
-                "neutral in the upper. Every other cluster of the stage is brought to neutral first, and at rest: the "
-                "shafts are turned until teeth face spaces.",
-                "The ends of the feather keys hold what stands on the shaft beside them: put on spacers, keys and "
-                "gears in the order in which they lie. Forks, levers and detents that shift the gears are not among "
-                "the parts.",
+                "All speeds have the same parts in different positions: request another speed to see them.",
+                f"A cluster of two gears has three positions, {step:.4g} mm from each other along its feather key: "
+                "lower gear "
+                "in mesh, neutral, upper gear in mesh. A single sliding gear is in mesh in its lower position and "
+                "neutral "
+                "in the upper one. First move every other cluster of the stage to neutral, at rest: turn the "
+                "shafts until teeth face spaces.",
+                "The ends of the feather keys retain the neighbouring parts on the shaft: put on spacers, keys and "
+                "gears in the order of their positions. Forks, levers and detents that shift the gears are not "
+                "included.",
             ]
             doubles = any(cluster.slides and len(cluster.pairs) > 1 for cluster in self.clusters)
             if doubles and self.sizes.process == "laser":
                 told.append(
-                    "The gears of a cluster of two and the hub between them are bonded or screwed to one another; each "
-                    "is on the key, so that no torque goes through the joint. A fork reaches between the gears."
+                    "The gears of a two-gear cluster and the hub between them are bonded or screwed together; each "
+                    "gear is keyed, so that the joint transmits no torque. A fork fits between the gears."
                 )
             elif doubles:
                 told.append(
-                    "A cluster of two gears is one piece with the hub between them, which a fork reaches round; its "
-                    "DXF file has the outline of the larger gear alone."
+                    "A two-gear cluster is one piece with the hub between them, around which a fork fits; its "
+                    "DXF file contains only the outline of the larger gear."
                 )
         for shaft in shafts:
             if shaft.reach != (0, self.highest + 1):
                 plate = "lower" if shaft.reach[0] == 0 else "upper"
-                told.append(f"The {shaft.name} stands in the {plate} plate alone.")
+                told.append(f"The {shaft.name} is held only by the {plate} plate.")
         return tuple(told)
 
 

@@ -1,8 +1,8 @@
-"""Where the shafts of a train stand between two plates, so that no wheel is in the way of another shaft.
+"""Arrangement of the shafts of a train between two plates, in which no wheel obstructs another shaft.
 
-A shaft reaches from plate to plate where it can, and otherwise from one plate to its farthest wheel. Stages stand as
-they are drawn, one ahead of the other, where that can be built, and otherwise turned by the least angles with which it
-can; of a reverted train the stages go round a polygon, so that the output comes back to the input's axis.
+A shaft reaches from plate to plate if possible, otherwise from one plate to its farthest wheel. Stages are in a
+straight line if that can be built, otherwise rotated by the smallest possible angles. The stages of a reverted train go
+round a polygon, so that the output returns to the input's axis.
 """
 
 from __future__ import annotations
@@ -16,13 +16,13 @@ from typing import NamedTuple
 from kinematics.gear.teeth import Gear
 
 STEP = math.radians(15.0)
-"""By which a stage is turned against the one before, where it cannot stand as it is drawn."""
+"""Step of the rotation of a stage relative to the previous one, if a straight line is impossible."""
 
 MOST_TRIED = 4000
-"""Stands that are looked at."""
+"""Maximum number of arrangements that are tried."""
 
 ONE_AXIS = 1e-9
-"""Share of a bore below which two shafts have one axis."""
+"""Share of a bore below which two shafts are coaxial."""
 
 Reach = tuple[int, int]
 
@@ -34,25 +34,25 @@ class Wheel(NamedTuple):
     ----------
     name, described : str
     gear : Gear
-        In millimetres, in the plane of rotation.
+        Gear in millimetres, in the plane of rotation.
     shaft : int
-        Number of the shaft that it is on.
+        Index of its shaft.
     level : int
     centre : complex
     tooth_at, helix_angle : float
-        Radians; the helix is positive for a right-handed one.
+        Radians; the helix angle is positive for a right-handed gear.
     outer : float
-        Radius of all of it, the rim of a ring included.
+        Outer radius, including the rim of a ring.
     speed : float
-        Over the input's.
+        Speed relative to the input's.
     tint : int
-        Which colour it has.
+        Index of its colour.
     web : int or None
-        The level of the disc that holds a ring.
+        Level of the disc that holds a ring.
     play : float
-        By which a tooth is thinner on the pitch circle.
+        Reduction of tooth thickness on the pitch circle, millimetres.
     top : int or None
-        The uppermost level of one that goes through several.
+        Highest level of a gear that extends over several.
     """
 
     name: str
@@ -72,12 +72,12 @@ class Wheel(NamedTuple):
 
     @property
     def levels(self) -> tuple[int, ...]:
-        """Those in which something of it is."""
+        """Levels that the wheel occupies."""
         return (self.level,) if self.web is None else (self.level, self.web)
 
 
 class Room(NamedTuple):
-    """What must be left: radii of shafts and of what stands on them between wheels, and what parts keep apart."""
+    """Required clearances: radii of shafts and of parts on them between wheels, and minimum distance of parts."""
 
     shaft: float
     collar: float
@@ -85,7 +85,7 @@ class Room(NamedTuple):
 
 
 class Stand(NamedTuple):
-    """The wheels at their places, and the axis and the reach of each shaft."""
+    """The placed wheels, and the axis and the reach of each shaft."""
 
     wheels: tuple[Wheel, ...]
     axes: tuple[complex, ...]
@@ -93,21 +93,21 @@ class Stand(NamedTuple):
 
 
 Stage = Callable[[int, complex, complex], Sequence[Wheel]]
-"""The wheels of a stage by its number, from the axis of its first shaft on in a direction."""
+"""Returns the wheels of a stage by its index, from the axis of its first shaft in a direction."""
 
 
 def stood(stage: Stage, stages: int, highest: int, room: Room, polygon: bool) -> Stand | None:
-    """A stand in which nothing is in the way; None where none was found.
+    """Find an arrangement without obstruction; return None if none was found.
 
     Parameters
     ----------
     stage : callable
     stages : int
     highest : int
-        The highest level of a wheel.
+        Highest level of a wheel.
     room : Room
     polygon : bool
-        Whether the stages go round, back to the first axis.
+        Whether the stages return to the first axis along a polygon.
     """
     if polygon:
         ways = [cmath.exp(2j * math.pi * k / stages) for k in range(stages)]
@@ -123,9 +123,10 @@ def stood(stage: Stage, stages: int, highest: int, room: Room, polygon: bool) ->
 
 
 def _ways(stages: int, suits: Callable[[list[complex]], bool]) -> Iterator[list[complex]]:
-    """Directions of all stages, straight on first; stages that do not suit by themselves are not gone on with."""
+    """Yield directions of all stages, straight ahead first; unsuitable beginnings are not continued."""
     turns = [0.0]
     for k in range(1, round(math.pi / STEP) + 1):
+        # Try small deviations from the straight line first.
         turns += [k * STEP, -k * STEP]
     tried = 0
 
@@ -155,19 +156,21 @@ def _along(stage: Stage, ways: Sequence[complex]) -> list[Wheel]:
 
 
 def axes_of(wheels: Sequence[Wheel]) -> tuple[complex, ...]:
-    """The axis of each shaft."""
+    """Return the axis of each shaft."""
     found = {wheel.shaft: wheel.centre for wheel in wheels}
     return tuple(found[shaft] for shaft in sorted(found))
 
 
 def reached(wheels: Sequence[Wheel], highest: int, room: Room) -> tuple[Reach, ...] | None:
-    """From where to where each shaft goes, from plate to plate where that is free; None where some cannot be held."""
+    """Return the reach of each shaft, from plate to plate if unobstructed; None if a shaft cannot be held."""
+    # Overlapping wheels cannot be fixed by shorter shafts.
     if any(_in_the_way(one, other, room) for one, other in combinations(wheels, 2)):
         return None
     axes = axes_of(wheels)
     choices: list[list[Reach]] = []
     for shaft, axis in enumerate(axes):
         own = [level for wheel in wheels if wheel.shaft == shaft for level in wheel.levels]
+        # Both plates, only the lower, or only the upper.
         offered = [(0, highest + 1), (0, max(own)), (min(own), highest + 1)]
         free = [reach for reach in offered if all(_passes(axis, shaft, own, reach, wheel, room) for wheel in wheels)]
         if not free:
@@ -176,6 +179,7 @@ def reached(wheels: Sequence[Wheel], highest: int, room: Room) -> tuple[Reach, .
     near = [
         (one, other)
         for one, other in combinations(range(len(axes)), 2)
+        # Close or coaxial shafts must not share levels.
         if abs(axes[one] - axes[other]) < 2.0 * room.collar + room.apart
     ]
     for reaches in product(*choices):
@@ -185,14 +189,16 @@ def reached(wheels: Sequence[Wheel], highest: int, room: Room) -> tuple[Reach, .
 
 
 def _passes(axis: complex, shaft: int, own: Sequence[int], reach: Reach, wheel: Wheel, room: Room) -> bool:
-    """Whether a shaft goes by a wheel of another."""
+    """Return whether a shaft passes a wheel of another shaft freely."""
     if wheel.shaft == shaft:
         return True
     away = abs(axis - wheel.centre)
     for level in wheel.levels:
         if not reach[0] <= level <= reach[1]:
             continue
+        # Next to its own wheel a shaft has no spacer.
         needed = (room.shaft if level in own else room.collar) + room.apart
+        # A shaft may pass inside a ring.
         inside = wheel.gear.internal and level == wheel.level and away + needed <= wheel.gear.tip_radius
         if not inside and away < wheel.outer + needed:
             return False
@@ -200,7 +206,7 @@ def _passes(axis: complex, shaft: int, own: Sequence[int], reach: Reach, wheel: 
 
 
 def _in_the_way(one: Wheel, other: Wheel, room: Room) -> bool:
-    """Whether two wheels of one level stand in one another, beyond what teeth in mesh do."""
+    """Return whether two wheels of one level overlap, apart from the engagement of teeth in mesh."""
     if one.shaft == other.shaft or not set(one.levels) & set(other.levels):
         return False
     away = abs(one.centre - other.centre)
@@ -208,6 +214,7 @@ def _in_the_way(one: Wheel, other: Wheel, room: Room) -> bool:
         deep = max(one.gear.whole_depth, other.gear.whole_depth)
         if one.gear.internal != other.gear.internal:
             ring, pinion = (one, other) if one.gear.internal else (other, one)
+            # A pinion inside its ring may reach the ring's teeth, not beyond.
             return away + pinion.outer > ring.gear.tip_radius + deep
         return away < one.outer + other.outer + room.apart and abs(away - one.outer - other.outer) > deep
     return away < one.outer + other.outer + room.apart

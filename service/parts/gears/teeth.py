@@ -1,7 +1,7 @@
-"""True profiles of teeth as outlines of arcs: the involute and the fillet of :mod:`kinematics.gear.profile`.
+"""True tooth profiles as outlines of arcs: the involute and the fillet of :mod:`kinematics.gear.profile`.
 
-Every tooth is made thinner by a play, as a tool does that is moved sideways: both flanks are turned about the axis, so
-that they stay the same involutes.
+Every tooth is made thinner by a play, as by a tool that is shifted sideways: both flanks are rotated about the axis and
+remain the same involutes.
 """
 
 from __future__ import annotations
@@ -23,34 +23,34 @@ NEAR_AXIS = 1e-6
 
 
 def toothed(gear: Gear, centre: complex, tooth_at: float, helix_angle: float = 0.0, play: float = 0.0) -> Loop:
-    """The outline of all teeth, counter-clockwise; of an internal gear that of the hole.
+    """Return the outline of all teeth, counter-clockwise; for an internal gear that of the hole.
 
     Parameters
     ----------
     gear : Gear
-        In millimetres, in the plane of rotation.
+        Gear in millimetres, in the plane of rotation.
     centre : complex
     tooth_at : float
         Angle of a tooth's middle, radians.
     helix_angle : float
-        Radians.
+        Helix angle, radians.
     play : float
-        By which a tooth is thinner on the pitch circle, millimetres.
+        Reduction of tooth thickness on the pitch circle, millimetres.
 
     Raises
     ------
     DimensionError
-        Where the cutter would come to a point.
+        The cutter would come to a point.
     """
     half = fitted(_half(gear, helix_angle, play))
     return _around(half, round(gear.teeth), centre, tooth_at, gear.pitch_radius)
 
 
 def bevel_toothed(virtual: Gear, teeth: int, cone: float, at: float, tooth_at: float, play: float = 0.0) -> Loop:
-    """The outline of bevel teeth in a plane at right angles to the axis, about 0: the same corners in every pitch.
+    """Return the outline of bevel teeth in a plane normal to the axis, about 0, with the same corners in every pitch.
 
-    Tredgold's approximation: the profile of the spur gear that the developed back cone shows is laid back on the cone,
-    and goes from there in straight lines to the apex (Norton, Design of Machinery, Sec. 9.5).
+    Tredgold's approximation: the profile of the spur gear on the developed back cone is wrapped back on the cone, and
+    extended in straight lines to the apex (Norton, Design of Machinery, Sec. 9.5).
 
     Parameters
     ----------
@@ -64,12 +64,12 @@ def bevel_toothed(virtual: Gear, teeth: int, cone: float, at: float, tooth_at: f
     tooth_at : float
         Angle of a tooth's middle, radians.
     play : float
-        By which a tooth is thinner on the pitch circle, millimetres.
+        Reduction of tooth thickness on the pitch circle, millimetres.
     """
     half = _half(virtual, 0.0, play)
     distance = virtual.pitch_radius / math.tan(cone)
     angles = cone + np.arctan((np.abs(half) - virtual.pitch_radius) / distance)
-    # As long on the pitch circle as on the back cone's.
+    # Arc length on the pitch circle equals that on the back cone's.
     turned = np.angle(half) / math.cos(cone)
     space = _space(fitted(at * np.tan(angles) * np.exp(1j * turned)), at * math.tan(cone))
     pitch = 2.0 * math.pi / teeth
@@ -78,38 +78,41 @@ def bevel_toothed(virtual: Gear, teeth: int, cone: float, at: float, tooth_at: f
 
 
 def _around(half: Chain, teeth: int, centre: complex, tooth_at: float, pitch_radius: float) -> Loop:
-    """All teeth from half of a space about 0, from its middle to that of a tip."""
+    """Return all teeth from half of a space about 0, from its middle to that of a tip."""
     space = _space(half, pitch_radius)
     pitch = 2.0 * math.pi / teeth
     around = Chain([space.corners[0]], [])
     for k in range(teeth):
         turned = space.turned(complex(np.exp(1j * k * pitch)))
-        # The corner in the middle of a tip goes.
+        # Merge the corner in the middle of a tip.
         at = len(around.corners) - 1
         around = around.then(turned)
         if k:
+            # The two halves of each tip arc become one arc.
             around = around.joined(at, 0j, NEAR_AXIS * pitch_radius)
     turn = complex(np.exp(1j * (tooth_at + 0.5 * pitch)))
     return Loop(tuple(centre + turn * z for z in around.corners[:-1]), tuple(around.bulges))
 
 
 def _space(half: Chain, pitch_radius: float) -> Chain:
-    """From the middle of a tooth through a space to the middle of the next."""
+    """Return the chain from the middle of a tooth through a space to the middle of the next."""
     space = half.reversed().mirrored().then(half)
     return space.joined(len(half.corners) - 1, 0j, NEAR_AXIS * pitch_radius)
 
 
 def _half(gear: Gear, helix_angle: float, play: float) -> Complex:
-    """Points from the middle of a space along root, fillet and flank to the middle of a tip."""
+    """Return points from the middle of a space along root, fillet and flank to the middle of a tip."""
     points = half_space(gear, helix_angle)
     if play > 0.0:
+        # Each flank gives half of the play.
         moved = points * np.exp(0.5j * play / gear.pitch_radius)
+        # The space widens: add its new middle at the root.
         points = np.concatenate([[abs(points[0])], moved])
     end = math.pi / gear.teeth
     angles = np.angle(points)
     beyond = int(np.searchsorted(angles > end, True))
     if beyond < len(points):
-        # Flanks that meet below the tip leave a pointed tooth.
+        # Flanks that intersect below the tip leave a pointed tooth.
         share = (end - angles[beyond - 1]) / (angles[beyond] - angles[beyond - 1])
         points = np.append(points[:beyond], points[beyond - 1] + share * (points[beyond] - points[beyond - 1]))
     return points

@@ -1,8 +1,8 @@
-"""Shafts whose axes cross, each in two bearing plates that stand by tabs in slots of one base.
+"""Shafts with crossing axes, each in two bearing plates whose tabs fit in slots of one base.
 
-Each shaft has a plane of its own (:class:`~service.parts.model.Frame`): heights along the shaft, the imaginary axis
-upwards, at right angles to the base. In it lie, by their heights, the shaft's bearing plates and its wheel, with
-spacers between; both ends are held as pins are (:mod:`service.parts.fasteners`).
+Each shaft has its own plane (:class:`~service.parts.model.Frame`): heights are along the shaft, the imaginary axis is
+upwards, normal to the base. It contains, by height, the shaft's bearing plates and its wheel, with spacers between;
+both ends have the same fasteners as pins (:mod:`service.parts.fasteners`).
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ from service.parts.shapes import Disc, Loop, Outline, Region
 from service.parts.sizes import Sizes
 
 FREE = 0.5
-"""What is left between the lowest part and the base, in diameters of the shafts."""
+"""Space between the lowest part and the base, in shaft diameters."""
 
 TAB = 0.5
 """Width of the tab of a bearing plate, as a share of the plate's."""
@@ -32,13 +32,13 @@ SPREAD = 0.3
 """Half the width of a bearing plate at its foot, as a share of its height."""
 
 BASE, BEARINGS, FIRST = 0, 1, 2
-"""What stands for planes: the base, the bearing plates, and one for each shaft with its wheel."""
+"""Plane numbers: the base, the bearing plates, and the first of one plane per shaft with its wheel."""
 
 UP = np.array([0.0, 0.0, 1.0])
 
 
 def frame_along(axis: Real, origin: Real) -> Frame:
-    """The plane at right angles to a level axis, its imaginary axis upwards."""
+    """Return the plane normal to a horizontal axis, its imaginary axis upwards."""
     return Frame(origin, np.column_stack([np.cross(UP, axis), UP, axis]))
 
 
@@ -50,18 +50,18 @@ class Axle:
     ----------
     name : str
     number : int
-        Counted from 0.
+        Index, from 0.
     frame : Frame
     levels : tuple of Level
-        Of the plates and of the wheel, by height.
+        Levels of the plates and of the wheel, by height.
     wheel : int
-        Which of them is the wheel's.
+        Index of the wheel's level.
     speed : float
-        Over the input's.
+        Speed relative to the input's.
     stub_below : bool
-        Whether its lower end is that which stands out.
+        Whether its lower end protrudes.
     sizes : Sizes, optional
-        Of the shaft and what stands on it, where it is not as thick as all others.
+        Sizes of the shaft and the parts on it, if it differs from the others.
     """
 
     name: str
@@ -75,34 +75,34 @@ class Axle:
 
     @property
     def carrier(self) -> Carrier:
-        """What turns with it."""
+        """Carrier of the parts that rotate with it."""
         return Carrier(f"shaft_{self.number + 1}", None)
 
     @property
     def stand(self) -> Carrier:
-        """What stands on the base in its plane."""
+        """Carrier of the fixed parts in its plane."""
         return Carrier(f"stand_{self.number + 1}", None)
 
     @property
     def plane(self) -> int:
-        """What stands for a plane."""
+        """Plane number of the shaft."""
         return FIRST + self.number
 
     @property
     def plates(self) -> tuple[Level, ...]:
-        """The levels of its bearing plates."""
+        """Levels of its bearing plates."""
         return tuple(level for number, level in enumerate(self.levels) if number != self.wheel)
 
     @property
     def bodies(self) -> dict[str, Turning]:
-        """How it turns, and that its plates do not."""
+        """Rotation of its parts; the plates are at rest."""
         return {
             self.carrier.link: Turning(0j, self.speed, frame=self.frame),
             self.stand.link: Turning(0j, 0.0, frame=self.frame),
         }
 
     def at(self, aside: float, height: float) -> complex:
-        """Where a place of its plane is, seen from above: so far aside, and so far along the shaft."""
+        """Return a point of its plane seen from above: at a distance sideways, and at a height along the shaft."""
         along, beside = self.frame.axes[:, 2], self.frame.axes[:, 0]
         x, y, _ = self.frame.origin + aside * beside + height * along
         return complex(x, y)
@@ -117,7 +117,7 @@ class Upright:
     sizes : Sizes
     axles : tuple of Axle
     below : float
-        Height of the base's upper face, negative.
+        Height of the base's upper face (negative).
     """
 
     sizes: Sizes
@@ -125,7 +125,7 @@ class Upright:
     below: float
 
     def parts(self) -> list[Part]:
-        """The base, the bearing plates, and all that is on the shafts but their wheels."""
+        """Make the base, the bearing plates, and all parts on the shafts except their wheels."""
         found = [self._base()]
         for axle in self.axles:
             found += [self._bearing(axle, number, level) for number, level in enumerate(axle.plates, 1)]
@@ -167,7 +167,8 @@ class Upright:
         )
 
     def _foot(self, axle: Axle) -> float:
-        """Half the width of a bearing plate where it stands: more than at its shaft, where that is high above."""
+        """Return half the foot width of a bearing plate: larger than at its shaft if that is high above the base."""
+        # High bearings need a wider foot.
         return max(0.5 * self._of(axle).width, SPREAD * (float(axle.frame.origin[2]) - self.below))
 
     def _base(self) -> Part:
@@ -183,6 +184,7 @@ class Upright:
         left, right = min(z.real for z in feet) - room, max(z.real for z in feet) + room
         low, high = min(z.imag for z in feet) - room, max(z.imag for z in feet) + room
         corners = (complex(left, low), complex(right, low), complex(right, high), complex(left, high))
+        # Screw holes in the corners of the base.
         inset = 0.5 * sizes.width * (1.0 + 1.0j)
         signs = (1.0 + 1.0j, -1.0 + 1.0j, -1.0 - 1.0j, 1.0 - 1.0j)
         holes: list[Outline] = [
@@ -203,11 +205,12 @@ class Upright:
         )
 
     def _slot(self, axle: Axle, level: Level) -> Loop:
-        """The slot of a tab, wider by the clearance on each side."""
+        """Return the slot of a tab, wider by the clearance on each side."""
         play = self.sizes.clearance
         tab = TAB * self._foot(axle) + play
         low, high = level.low - play, level.high + play
         around = (axle.at(-tab, low), axle.at(tab, low), axle.at(tab, high), axle.at(-tab, high))
+        # Orientation depends on the direction of the axle.
         turns = ((around[1] - around[0]).conjugate() * (around[2] - around[1])).imag
         return Loop(around if turns > 0.0 else around[::-1], (0.0,) * 4)
 

@@ -1,6 +1,6 @@
-"""Wheels as parts: teeth, bores, rings with their webs; and an assembly of them looked at.
+"""Wheels as parts: teeth, bores, rings with their webs; and the interference check of a train.
 
-A ring is one piece with its web where it is printed or milled. Cut from sheets they are two, with pins through the rim.
+A ring is one piece with its web if it is printed or milled. If cut from sheets they are two, joined by pins in the rim.
 """
 
 from __future__ import annotations
@@ -24,29 +24,30 @@ from service.parts.shapes import Disc, Outline, Region
 from service.parts.sizes import LOOSEST, TIGHTEST, WALL, WIDTH, NotMade, Sizes, pin_below
 
 JOINTS, JOINT = 6, 0.4
-"""How many pins join a ring to its web, and their greatest diameter in bores."""
+"""Number of pins that join a ring to its web, and their maximum diameter in bores."""
 
 ROOM = 1.05
-"""By how much more than the least wall is left beside them."""
+"""Wall next to these pins, as a multiple of the minimum wall."""
 
 
 def rim_radius(ring: Gear, sizes: Sizes) -> float:
-    """Outer radius of a ring: some modules beyond its roots, and with room for what joins it to its web."""
+    """Return the outer radius of a ring: its rim must hold the pins that join it to its web."""
     rim = RIM * ring.module
     if sizes.process == "laser":
+        # The rim must hold the pins to the web.
         rim = max(rim, 2.0 * _beyond(sizes))
     return ring.root_radius + rim
 
 
 def _joint(sizes: Sizes) -> Sizes:
-    """The pins that join a ring to its web."""
+    """Return the sizes of the pins that join a ring to its web."""
     pin = pin_below(JOINT * sizes.pin)
     clearance = min(max(sizes.clearance, TIGHTEST * pin), LOOSEST * pin)
     return Sizes(sizes.process, WIDTH * pin, pin, sizes.thickness, clearance)
 
 
 def _beyond(sizes: Sizes) -> float:
-    """From the roots of a ring to the middle of these pins at least."""
+    """Return the minimum distance from the roots of a ring to the centres of these pins."""
     return ROOM * WALL * sizes.pin + 0.5 * _joint(sizes).hole
 
 
@@ -54,23 +55,25 @@ def wheel_parts(
     wheel: Wheel, carrier: Carrier, levels: Sequence[Level], sizes: Sizes, *, free: bool = False,
     towards: complex = 1.0 + 0.0j, like: str = "",
 ) -> list[Part]:  # fmt: skip
-    """A wheel with what it consists of: its teeth, its bore with a keyway, or without where it turns on its shaft.
+    """Make a wheel: its teeth, and its bore, with a keyway unless it rotates freely on its shaft.
 
     Parameters
     ----------
     free : bool
-        Whether it turns on its shaft.
+        Whether it rotates freely on its shaft.
     towards : complex
-        Where its keyway points.
+        Direction of its keyway.
     like : str
-        What wheels that are made alike have in common.
+        Key shared by identical wheels.
     """
     key = key_for(sizes.pin)
     bore: Outline = Disc(wheel.centre, 0.5 * sizes.hole)
     if not free:
         bore = keyed_bore(wheel.centre, sizes.pin, key, sizes.clearance, towards)
     low, high = levels[wheel.level].low, levels[wheel.top or wheel.level].high
+    # Rotation of a helix along the face width.
     twist = (high - low) * math.tan(wheel.helix_angle) / wheel.gear.pitch_radius
+    # The middle of the face has the nominal tooth angle.
     teeth = toothed(wheel.gear, wheel.centre, wheel.tooth_at - 0.5 * twist, abs(wheel.helix_angle), wheel.play)
 
     def made(name: str, described: str, bodies: tuple[Body, ...], level: int) -> Part:
@@ -86,7 +89,7 @@ def wheel_parts(
         return [made(wheel.name, wheel.described, (body,), wheel.level)]
     web, disc = levels[wheel.web], Disc(wheel.centre, wheel.outer)
     if sizes.process != "laser":
-        # The ring stands on its web, through the gap between the two levels.
+        # The ring is on its web and extends through the gap between the two levels.
         ends = (low, web.low) if web.low > low else (web.high, high)
         bodies = (Prism(Region(disc, (teeth,)), *ends), Prism(Region(disc, (bore,)), web.low, web.high))
         return [made(wheel.name, wheel.described, bodies, wheel.level)]
@@ -112,27 +115,28 @@ def wheel_parts(
 
 
 def looked_at(assembly: Assembly, sizes: Sizes, sizing: GearSizing) -> Assembly:
-    """An assembly of which no two parts meet and enough is left around holes.
+    """Return the assembly, after a check for interference and thin walls.
 
     Raises
     ------
     NotMade
-        Otherwise.
+        Two parts collide, or a wall is too thin.
     """
     thin = too_thin(assembly, 0.99 * WALL * sizes.pin)
     if thin:
-        raise NotMade(f"The {thin[0].part.replace('_', ' ')} has too little left around its holes.", sizing.path)
+        raise NotMade(f"The {thin[0].part.replace('_', ' ')} has too thin walls around its holes.", sizing.path)
     meeting = overlaps(assembly)
     if meeting:
         one, other = (name.replace("_", " ") for name in meeting[0].parts)
+        # Colliding teeth are a matter of play, not of space.
         if all(part.sort == "gear" for part in assembly.parts if part.name in meeting[0].parts):
             raise NotMade(
-                f"Teeth of the {one} and the {other} meet at an input angle of {math.degrees(meeting[0].at):.1f}° with "
-                f"this play: a greater clearance than {sizes.clearance / sizing.unit:.4g} {sizing.words} may do.",
+                f"Teeth of the {one} and the {other} collide at an input angle of {math.degrees(meeting[0].at):.1f}° "
+                f"with this play; try a clearance above {sizes.clearance / sizing.unit:.4g} {sizing.words}.",
                 "/query/clearance",
             )
         raise NotMade(
-            f"There is no room: the {one} and the {other} meet at an input angle of "
+            f"The parts do not fit: the {one} and the {other} collide at an input angle of "
             f"{math.degrees(meeting[0].at):.1f}°.", sizing.path,
         )  # fmt: skip
     return assembly

@@ -1,8 +1,9 @@
-"""Parts of a worm with its gear: a train of one stage whose shafts cross.
+"""Parts of a worm with its gear: a single-stage train whose shafts cross.
 
-The worm is the involute helicoid that is a helical gear of so many threads, and its gear the helical gear of the same
-hand that meshes with it at a right angle: both have the rack of the same normal plane, so that they touch in a point
-and turn at the true ratio (F. L. Litvin & A. Fuentes, Gear Geometry and Applied Theory, 2004, ch. 16).
+The worm is the involute helicoid of a helical gear with as many teeth as the worm has threads. Its gear is the helical
+gear of the same hand that meshes with it at a right angle. Both have the rack of the same normal plane, so that they
+touch in a point and turn at the exact ratio (F. L. Litvin & A. Fuentes, Gear Geometry and Applied Theory, 2004, ch.
+16).
 """
 
 from __future__ import annotations
@@ -28,26 +29,26 @@ from service.parts.model import Assembly, Part
 from service.parts.sizes import NotMade, Sizes
 
 NARROW = 0.67
-"""Greatest face width of a worm gear that is not stated, in pitch diameters of the worm."""
+"""Maximum default face width of a worm gear, in pitch diameters of the worm."""
 
 
 def worm_parts(train: OrdinaryTrain, backlash: float, face_width: float | None, sizing: GearSizing) -> Assembly:
-    """The parts of a worm and its gear.
+    """Make the parts of a worm and its gear.
 
     Parameters
     ----------
     train : OrdinaryTrain
-        Of one stage, in millimetres.
+        A single-stage train, in millimetres.
     backlash : float
-        The least of the answer, in its own unit.
+        Minimum backlash of the answer, in its unit.
     face_width : float or None
-        That of the answer, in its own unit.
+        Face width of the answer, in its unit.
     sizing : GearSizing
 
     Raises
     ------
     NotMade
-        Where there is no room.
+        The parts do not fit.
     """
     (stage,) = train.stages
     drive = stage.worm(train.pressure_angle)
@@ -59,6 +60,7 @@ def worm_parts(train: OrdinaryTrain, backlash: float, face_width: float | None, 
         play = 0.5 * max(sizes.clearance - sizing.factor * backlash, 0.0)
         stated = sizing.query.face_width is not None or face_width is not None
         wide = sizing.face_width(stage.module, face_width)
+        # Wide worm gears do not touch the worm at their ends.
         if not stated:
             wide = min(FACE, NARROW * stage.quotient) * stage.module
         try:
@@ -84,13 +86,14 @@ class _WormSet:
 
     @property
     def hand(self) -> float:
-        """1 of a right-handed worm, −1 of a left-handed one."""
+        """1 for a right-handed worm, −1 for a left-handed one."""
         return -1.0 if self.stage.left_handed else 1.0
 
     def gears(self) -> tuple[Gear, Gear]:
-        """Worm and gear in their planes of rotation, tips and roots those of the axial module."""
+        """Return worm and gear in their planes of rotation, with tips and roots of the axial module."""
         lead = self.drive.lead_angle
         normal = self.stage.module * math.cos(lead)
+        # Addendum and dedendum are given in axial modules, the gears are in normal modules.
         deeper = 1.0 / math.cos(lead)
         worm, gear = (
             HelicalGear(teeth, normal, helix, self.drive.normal_pressure_angle).transverse_gear
@@ -102,13 +105,13 @@ class _WormSet:
         )
 
     def made(self) -> Assembly:
-        """The assembly, if no two parts of it meet."""
+        """Build the assembly and check it for interference."""
         worm, gear = self.gears()
         sizes, module, distance = self.sizes, self.stage.module, self.drive.centre_distance
         lead, apart, half = self.drive.lead_angle, self.sizes.apart, 0.5 * self.sizes.width
-        # The thread reaches as far as the tips of the gear are over its roots.
+        # The thread is as long as the chord of the gear's tip circle at the worm's root.
         length = 2.0 * math.sqrt(gear.tip_radius**2 - (gear.pitch_radius - module) ** 2) + 2.0 * module
-        # Bearing plates of the worm stand clear of the gear, those of the gear of the worm.
+        # The worm's bearing plates clear the gear, and the gear's clear the worm.
         beside = max(gear.tip_radius**2 - max(distance - half - apart, 0.0) ** 2, 0.0)
         axles = (
             self._axle(0, "worm shaft", length, max(0.5 * length + sizes.gap, math.sqrt(beside) + apart)),
@@ -125,6 +128,7 @@ class _WormSet:
                   play=self.play),
         )  # fmt: skip
         parts: list[Part] = []
+        # Dummy levels for the planes of base and bearings.
         levels = [Level(0.0, 0.0)] * FIRST + [axle.levels[axle.wheel] for axle in axles]
         for wheel, axle in zip(wheels, axles, strict=True):
             parts += [
@@ -139,7 +143,7 @@ class _WormSet:
         return looked_at(assembly, sizes, self.sizing)
 
     def _axle(self, number: int, name: str, wide: float, plate: float) -> Axle:
-        """A shaft with its wheel in the middle between two plates, the inner faces of these so far from there."""
+        """Return a shaft with its wheel midway between two plates whose inner faces are at the distance ``plate``."""
         thick = self.sizes.thickness
         levels = Level(-plate - thick, -plate), Level(-0.5 * wide, 0.5 * wide), Level(plate, plate + thick)
         along = np.array([1.0, 0.0, 0.0]) if number == 0 else np.array([0.0, 1.0, 0.0])
@@ -148,7 +152,7 @@ class _WormSet:
         return Axle(name, number, frame_along(along, origin), levels, 1, speed, stub_below=number == 0)
 
     def _material(self, axle: Axle) -> str:
-        """A steel worm in a bronze gear, where they are not printed."""
+        """Return the material: a steel worm and a bronze gear, unless they are printed."""
         if self.sizes.process == "print" or axle.number == 0:
             return MATERIALS[self.sizes.process][1]
         return "bronze"
@@ -158,7 +162,7 @@ class _WormSet:
             f"Centre distance of the crossing shafts {self.drive.centre_distance:.6g} mm; lead angle "
             f"{math.degrees(self.drive.lead_angle):.4g}°, {'left' if self.stage.left_handed else 'right'}-handed; "
             f"outside diameters {2.0 * worm.tip_radius:.6g} and {2.0 * gear.tip_radius:.6g} mm.",
-            "The gear is cylindrical, with helical teeth that touch the thread in a point: it turns truly, and carries "
-            "less than a gear that is hobbed to the worm.",
-            "Bearing plates stand by their tabs in the slots of the base, and are glued or wedged there.",
+            "The gear is cylindrical, with helical teeth that touch the thread in a point: it transmits the exact "
+            "ratio, but carries less load than a gear hobbed to the worm.",
+            "Glue or wedge the tabs of the bearing plates into the slots of the base.",
         )

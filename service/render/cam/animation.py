@@ -1,4 +1,4 @@
-"""A cam that turns under its follower, the roller rolling on it without slip; a barrel's groove passing its roller."""
+"""A cam turning under its follower, the roller rolling without slip; a barrel's groove passing its roller."""
 
 from __future__ import annotations
 
@@ -20,26 +20,26 @@ from synthesis.kinds.cam.problem import CamProblem
 CAM_FACE, ROLLER_FACE = "#e8eef6", "#f8eee2"
 
 SPOKES = 3
-"""Lines through a roller that show how it turns."""
+"""Number of lines through a roller that show its rotation."""
 
 MARK, HUB, PIVOT = 0.5, 0.05, 0.06
-"""Shares of the base radius: length of the line that shows how the cam turns, radii of its shaft and of a pivot."""
+"""Length of the line that shows the cam's rotation, radii of its shaft and of a pivot, as shares of the base radius."""
 
 HALF_FACE, BEYOND_CONTACT = 0.45, 1.1
-"""Least half length of a translating face, a share of the base radius; how far it reaches, distances of the contact."""
+"""Minimum half length of a translating face as a share of the base radius; its half length in contact distances."""
 
 BLANK = 1.06
-"""Radius of the disc with a groove, in greatest radii of the groove's outer wall."""
+"""Radius of the disc with a groove, in maximum radii of the groove's outer wall."""
 
 SPOKE = 0.85
 """Length of a roller's spokes, as a share of its radius."""
 
 STEPS_A_FRAME = 12
-"""Steps from frame to frame by which the roller's way along the profile is summed."""
+"""Steps per frame in summing the roller's path length along the profile."""
 
 
 def cam_animation(design: CamDesign, problem: CamProblem, title: str) -> bytes:
-    """A turn of the cam as GIF, in the ground's frame; it begins and ends at cam angle 0."""
+    """Draw a turn of the cam as GIF, in the ground's frame, from cam angle 0."""
     scene = CamScene(design.mechanism)
     theta = even_angles(FRAMES)
     contact = scene.contour.follow(scene.follower, theta, scene.mechanism.rotation)
@@ -48,7 +48,9 @@ def cam_animation(design: CamDesign, problem: CamProblem, title: str) -> bytes:
     normal = contact.normal * turns
     roller = scene.roller
     radius = roller.roller_radius if roller else 0.0
+    # The roller's centre lies on the normal at the contact.
     centre = touching + radius * normal
+    # A knife edge has no radius and does not roll.
     spin = _spin(scene, contact.point, np.unwrap(np.angle(-normal)), radius) if radius > 0.0 else np.zeros(FRAMES)
     far = float(np.abs(scene.profile if scene.outer_wall is None else scene.outer_wall).max())
     reach = STEM * scene.base_radius
@@ -89,7 +91,8 @@ def cam_animation(design: CamDesign, problem: CamProblem, title: str) -> bytes:
 
 
 def _spin(scene: CamScene, point: Points, toward: np.ndarray, radius: float) -> np.ndarray:
-    """How far the roller has turned: its contact has travelled along it as far as along the profile."""
+    """Return the roller's angle: its contact travels the same length along roller and profile."""
+    # Sum the path in small steps: chords are shorter than arcs.
     fine = even_angles(FRAMES * STEPS_A_FRAME)
     closed = scene.contour.follow(scene.follower, fine, scene.mechanism.rotation).point
     travelled = np.concatenate([[0.0], np.cumsum(np.abs(np.diff(closed)))])[::STEPS_A_FRAME]
@@ -105,7 +108,7 @@ def _roller(centre: complex, radius: float, turned: float) -> list[Stroke]:
 
 
 def _holder(scene: CamScene, touching: complex, centre: complex, reach: float) -> list[Stroke]:
-    """What carries the roller, or the face with what carries it."""
+    """Return the carrier of the roller, or the face with its carrier."""
     pivot = scene.pivot
     if pivot is not None:
         held = [(pivot, centre)] if scene.roller is not None else scene.swung_face(touching)
@@ -113,7 +116,9 @@ def _holder(scene: CamScene, touching: complex, centre: complex, reach: float) -
         return [*strokes, Stroke(ring(pivot, PIVOT * scene.base_radius), GROUND, 1.8, closed=True, fill="#ffffff")]
     if scene.roller is not None:
         return [Stroke(np.array([centre, centre + reach]), COUPLER, 3.0)]
+    # A face normal to the stem touches at the height of the contact.
     foot = complex(touching.real)
+    # The face always reaches beyond its contact.
     half = max(HALF_FACE * scene.base_radius, BEYOND_CONTACT * abs(touching.imag))
     face = np.array([foot - 1j * half, foot + 1j * half])
     stem = foot + 1j * scene.stem
@@ -121,7 +126,7 @@ def _holder(scene: CamScene, touching: complex, centre: complex, reach: float) -
 
 
 def barrel_animation(design: BarrelCamDesign, problem: CamProblem, title: str) -> bytes:
-    """A turn of a barrel cam as GIF: the unrolled groove passes, and the roller moves along the axis."""
+    """Draw a turn of a barrel cam as GIF: the unrolled groove passes, and the roller moves along the axis."""
     mechanism = design.mechanism
     radius, roller = mechanism.cylinder_radius, mechanism.follower.roller_radius
     turn = math.tau * radius
@@ -139,7 +144,7 @@ def barrel_animation(design: BarrelCamDesign, problem: CamProblem, title: str) -
                 strokes.append(Stroke(_passing(points, radius * theta, turn), colour, width))
             height = float(np.interp(theta, around, centre.imag, period=math.tau))
             strokes.append(Stroke(np.array([complex(0.0, floor), complex(0.0, ceiling)]), PALE, 1.0))
-            # The wall that pushes is the lower in a rise; between two walls the roller only slides and is not turned.
+            # In a rise the lower wall pushes. Between two walls the roller only slides; its rotation is not drawn.
             strokes.append(Stroke(ring(complex(0.0, height), roller), COUPLER, 2.4, closed=True, fill=ROLLER_FACE))
             yield strokes
 
@@ -147,6 +152,7 @@ def barrel_animation(design: BarrelCamDesign, problem: CamProblem, title: str) -
 
 
 def _passing(points: Points, moved: float, turn: float) -> Points:
-    """A wall over one turn around x = 0, moved back by a length."""
+    """Return a wall over one turn around x = 0, shifted back by a length."""
+    # Three copies cover one turn at any shift.
     several = np.concatenate([points + turn * k for k in (-1, 0, 1)]) - moved
     return np.asarray(several[np.abs(several.real) <= 0.5 * turn])

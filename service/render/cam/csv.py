@@ -1,8 +1,8 @@
 """Inspection tables of cams as CSV: program, contact and profile at each cam angle; a barrel cam's groove unrolled.
 
-Displacement and its derivatives are the program's; pressure angle and radius of curvature are measured on the profile
-by the analysis core. The polar columns are what a dial indicator on a rotary table shows. Columns name their units;
-lines that begin with ``#`` say what the table is of.
+Displacement and its derivatives are those of the program; pressure angle and radius of curvature are measured on the
+profile by the analysis core. The polar columns are the readings of a dial indicator on a rotary table. Column names
+contain units; lines that begin with ``#`` describe the table.
 """
 
 from __future__ import annotations
@@ -17,7 +17,9 @@ from synthesis.kinds.cam.problem import CamProblem
 
 
 def cam_table(design: CamDesign, problem: CamProblem, title: str) -> str:
-    """The inspection table of a cam design; numbers to twelve digits, cells empty where the follower has no contact."""
+    """Write the inspection table of a cam design; numbers to twelve digits, cells empty where the follower has no
+    contact.
+    """
     scene, unit = CamScene(design.mechanism), problem.length_unit
     contact = scene.contact
     pitch, profile = scene.pitch_curve, contact.point
@@ -30,6 +32,7 @@ def cam_table(design: CamDesign, problem: CamProblem, title: str) -> str:
         f"profile_radius [{unit}]": np.abs(profile),
         "profile_polar_angle [deg]": _polar(profile),
     }
+    # Curves with points of their own do not fit the table's rows.
     if scene.roller and len(pitch) == len(scene.angle):
         columns |= {
             f"roller_centre_x [{unit}]": pitch.real,
@@ -57,7 +60,7 @@ def cam_table(design: CamDesign, problem: CamProblem, title: str) -> str:
 
 
 def barrel_table(design: BarrelCamDesign, problem: CamProblem, title: str) -> str:
-    """The table of a barrel cam design; numbers to twelve digits."""
+    """Write the table of a barrel cam design; numbers to twelve digits."""
     mechanism, unit = design.mechanism, problem.length_unit
     program, radius = mechanism.program, mechanism.cylinder_radius
     columns = _program(program, unit, unit) | {
@@ -78,7 +81,7 @@ def barrel_table(design: BarrelCamDesign, problem: CamProblem, title: str) -> st
 
 
 def _program(program: ProgramTable, lift: str, rate: str) -> dict[str, ArrayLike]:
-    """The motion program, displacements in ``lift`` and derivatives in ``rate`` by the radian."""
+    """Return the motion program, displacements in ``lift`` and derivatives in ``rate`` per radian."""
     return {
         "cam_angle [deg]": program.angle,
         f"s [{lift}]": program.s,
@@ -96,5 +99,6 @@ def _radius(design: CamDesign) -> str:
 
 
 def _polar(points: NDArray[np.complex128]) -> NDArray[np.float64]:
-    """Degrees from 0 to 360; what is 0 but for rounding is 0."""
+    """Return polar angles from 0 to 360 degrees; rounding errors of 0 become 0."""
+    # Round before the modulus: -1e-12 would become 360.
     return np.asarray(np.mod(np.round(np.degrees(np.angle(points)), 9), 360.0))

@@ -1,10 +1,10 @@
 """A cam as DXF: profile and pitch curve as splines, the profile again as tangent arcs, circles and follower, by layers.
 
 =================  ==================================================================
-layer              what is on it
+layer              content
 =================  ==================================================================
 PROFILE            closed cubic spline through the profile's points, tangents kept
-PROFILE_ARCS       the same as a closed polyline of tangent arcs (biarcs); frozen
+PROFILE_ARCS       the profile as a closed polyline of tangent arcs (biarcs); frozen
 OUTER_WALL         spline through the points of a groove's outer wall, of form-closed cams
 PITCH_CURVE        spline of the roller's centres
 PRIME_CIRCLE       prime circle of a roller's cam
@@ -13,12 +13,12 @@ FOLLOWER           roller or face, arm and pivot at cam angle 0
 CENTRE             cross at the cam's centre, and the mark of cam angle 0
 =================  ==================================================================
 
-Coordinates are the cam's own frame in the problem's unit, which the header names.
+Coordinates are in the cam's own frame and the problem's unit, which the header contains.
 
 A barrel cam is drawn unrolled, x along the circumference on which the roller's middle runs and y along the axis:
 
 ============  ==================================================================
-layer         what is on it
+layer         content
 ============  ==================================================================
 WALLS         both walls of the groove over one turn, as splines
 PITCH_CURVE   spline of the roller's centres
@@ -58,7 +58,7 @@ LAYERS = {
 """Colour index and line type of each layer."""
 
 SECOND_LAYERS = {"SECOND_PROFILE": (3, "CONTINUOUS"), "SECOND_PITCH_CURVE": (3, "DASHED")}
-"""Those that a drawing of conjugate cams has besides."""
+"""Additional layers of a drawing of conjugate cams."""
 
 BARREL_LAYERS = {
     "WALLS": (5, "CONTINUOUS"),
@@ -66,23 +66,23 @@ BARREL_LAYERS = {
     "FOLLOWER": (30, "CONTINUOUS"),
     "BLANK": (8, "DASHDOT"),
 }
-"""The same of a barrel cam's drawing."""
+"""Layers of a barrel cam's drawing."""
 
 ARC_TOLERANCE = 1e-5
-"""Distance of the arcs from the points that they replace, as a share of the base radius: 0.4 µm for 40 mm."""
+"""Maximum distance of the arcs from the points they replace, as a share of the base radius: 0.4 µm at 40 mm."""
 
 ARM, PIVOT = 0.08, 0.04
 """Arm of the cross at the cam's centre, and radius of a pivot, as shares of the base radius."""
 
 LONGEST_RUN = 64
-"""Points that one pair of arcs replaces at most."""
+"""Maximum number of points that one pair of arcs replaces."""
 
 STRAIGHT = 1e-12
-"""Bulge below which a part is a line."""
+"""Bulge below which a piece is a line."""
 
 
 def cam_drawing(design: CamDesign, problem: CamProblem, title: str) -> str:
-    """The drawing of a cam design as a DXF document (R2010)."""
+    """Write a cam design as a DXF document (R2010)."""
     scene = CamScene(design.mechanism)
     layers = LAYERS if scene.second is None else LAYERS | SECOND_LAYERS
     document = dxf.new_drawing(title or "Cam", problem.length_unit, layers, frozen="PROFILE_ARCS")
@@ -110,7 +110,7 @@ def cam_drawing(design: CamDesign, problem: CamProblem, title: str) -> str:
 
 
 def _second(space: Modelspace, scene: CamScene, second: SecondScene) -> None:
-    """The other one of conjugate cams, its roller at cam angle 0 and what carries it."""
+    """Add the second of two conjugate cams, its roller at cam angle 0 and its carrier."""
     _closed(space, Contour(second.profile), "SECOND_PROFILE")
     _closed(space, Contour(second.pitch_curve), "SECOND_PITCH_CURVE")
     centre = complex(second.pitch_curve[0])
@@ -119,7 +119,7 @@ def _second(space: Modelspace, scene: CamScene, second: SecondScene) -> None:
 
 
 def barrel_drawing(design: BarrelCamDesign, problem: CamProblem, title: str) -> str:
-    """The drawing of a barrel cam design as a DXF document (R2010)."""
+    """Write a barrel cam design as a DXF document (R2010)."""
     mechanism = design.mechanism
     document = dxf.new_drawing(title or "Barrel cam", problem.length_unit, BARREL_LAYERS)
     space, turn = document.modelspace(), math.tau * mechanism.cylinder_radius
@@ -129,6 +129,7 @@ def barrel_drawing(design: BarrelCamDesign, problem: CamProblem, title: str) -> 
         (mechanism.pitch_curve, "PITCH_CURVE"),
     ):
         wall = UnrolledWall(points_of(curve), turn)
+        # The unrolled wall closes after one circumference.
         over = np.append(wall.points, wall.points[0] + turn), np.append(wall.tangents, wall.tangents[0])
         dxf.add_spline(space, *over, layer)
     dxf.add_circle(space, points_of(mechanism.pitch_curve)[0], mechanism.follower.roller_radius, "FOLLOWER")
@@ -138,7 +139,7 @@ def barrel_drawing(design: BarrelCamDesign, problem: CamProblem, title: str) -> 
 
 
 def _biarcs(contour: Contour, tolerance: float) -> list[tuple[float, float, float]]:
-    """Vertices with bulges: pairs of tangent arcs over runs of points as long as they stay within a tolerance."""
+    """Return vertices with bulges: pairs of tangent arcs over runs of points, as long as the tolerance permits."""
     points = np.append(contour.points, contour.points[0])
     tangents = np.append(contour.tangents, contour.tangents[0])
     vertices, k, last = [], 0, len(points) - 1
@@ -148,6 +149,7 @@ def _biarcs(contour: Contour, tolerance: float) -> list[tuple[float, float, floa
             pair = _biarc(
                 complex(points[k]), complex(tangents[k]), complex(points[k + run]), complex(tangents[k + run])
             )
+            # Accept the pair, or halve the run; a single step is always accepted.
             if run == 1 or _distance(points[k + 1 : k + run], pair) <= tolerance:
                 break
             run = max(1, run // 2)
@@ -157,14 +159,16 @@ def _biarcs(contour: Contour, tolerance: float) -> list[tuple[float, float, floa
 
 
 def _biarc(a: complex, ta: complex, b: complex, tb: complex) -> list[tuple[complex, complex, float]]:
-    """Two arcs, (start, end, bulge), with given ends and unit tangents and equal lengths of tangent.
+    """Compute two arcs, (start, end, bulge), from given ends and unit tangents, with tangents of equal length.
 
     With d the length of the tangents, the arcs meet at the middle of a + d ta and b − d tb, where
     |a + d ta − (b − d tb)| = 2 d (Bolton, Computer-Aided Design 7 (1975) 29).
     """
     v, t = b - a, ta + tb
+    # Coefficient of d² in the condition of equal tangent lengths.
     square = 2.0 * (1.0 - (ta * tb.conjugate()).real)
     along = (v * t.conjugate()).real
+    # Parallel tangents make the quadratic equation linear.
     if square > STRAIGHT:
         d = (-along + math.sqrt(along * along + square * abs(v) ** 2)) / square
     else:
@@ -174,35 +178,37 @@ def _biarc(a: complex, ta: complex, b: complex, tb: complex) -> list[tuple[compl
 
 
 def _bulge(start: complex, tangent: complex, end: complex) -> float:
-    """tan of a quarter of the arc's angle, positive to the left; the angle is twice that from tangent to chord."""
+    """Return tan of a quarter of the arc's angle, which is twice that from tangent to chord; positive to the left."""
     chord = (end - start) * tangent.conjugate()
     return math.tan(0.5 * math.atan2(chord.imag, chord.real))
 
 
 def _distance(points: Complex, pair: list[tuple[complex, complex, float]]) -> float:
-    """Greatest distance of points from the nearer of two arcs."""
+    """Return the maximum distance of points from the nearer of two arcs."""
     off = []
     for start, end, bulge in pair:
         if abs(bulge) < STRAIGHT:
             along = (end - start) / abs(end - start)
             off.append(np.abs(((points - start) * along.conjugate()).imag))
             continue
+        # Centre of the arc from its bulge.
         centre = start + (end - start) * complex(0.5, 0.25 * (1.0 / bulge - bulge))
         off.append(np.abs(np.abs(points - centre) - abs(start - centre)))
     middle = pair[0][1]
     chord = pair[1][1] - pair[0][0]
+    # Assign each point to the arc on its side of the joint.
     first = ((points - middle) * chord.conjugate()).real < 0.0
     return float(np.where(first, *off).max())
 
 
 def _closed(space: Modelspace, contour: Contour, layer: str) -> None:
-    """A closed curve with its own tangents at its points."""
+    """Add a closed curve with its own tangents at its points."""
     around = np.append(contour.points, contour.points[0])
     dxf.add_spline(space, around, np.append(contour.tangents, contour.tangents[0]), layer)
 
 
 def _follower(space: Modelspace, scene: CamScene) -> None:
-    """Roller or face at cam angle 0, with the arm and its pivot."""
+    """Add roller or face at cam angle 0, with the arm and its pivot."""
     for start, end in scene.held:
         dxf.add_line(space, start, end, "FOLLOWER")
     if scene.roller is not None:

@@ -1,4 +1,4 @@
-"""What a drawing of a cam shows, from the mechanism's dimensions and points: curves, follower, what contact gives."""
+"""Content of a cam's drawing, from the mechanism's dimensions and points: curves, follower, measured contact."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ Real = NDArray[np.float64]
 Complex = NDArray[np.complex128]
 
 FACE_SHARE = 0.35
-"""Half the length of a drawn face, as a share of the base radius."""
+"""Half the drawn length of a face, as a share of the base radius."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -33,7 +33,7 @@ class SecondScene:
 
     @cached_property
     def follower(self) -> TranslatingRoller | OscillatingRoller:
-        """Its follower, as the analysis core has it."""
+        """The follower in the analysis core."""
         found = follower_by_dimensions(self.cam.follower.type, self.cam.prime_radius, self.cam.follower)
         assert isinstance(found, TranslatingRoller | OscillatingRoller)
         return found
@@ -49,7 +49,7 @@ class SecondScene:
         return points_of(self.cam.pitch_curve)
 
     def centres(self, angle: Real) -> Complex:
-        """Centres of the roller at cam angles, where it touches the profile."""
+        """Return centres of the roller in contact with the profile, at cam angles."""
         own = turned(self.follower, self.profile)
         found = Contour(own).follow(self.follower, angle, self.rotation)
         return turned(self.follower, found.point + self.follower.roller_radius * found.normal)
@@ -63,7 +63,7 @@ class CamScene:
 
     @cached_property
     def follower(self) -> Follower:
-        """The follower as the analysis core has it."""
+        """The follower in the analysis core."""
         return core_follower(self.mechanism)
 
     @property
@@ -73,15 +73,16 @@ class CamScene:
 
     @property
     def base_radius(self) -> float:
-        """Of the circle under the profile."""
+        """Radius of the base circle, the largest circle within the profile about the cam's centre."""
         follower = self.follower
+        # Flat faces have a base circle of their own; rollers are reduced by their radius.
         if isinstance(follower, TranslatingFlat | OscillatingFlat):
             return follower.base_radius
         return follower.prime_radius - follower.roller_radius
 
     @property
     def roller(self) -> TranslatingRoller | OscillatingRoller | None:
-        """The follower where it has a roller."""
+        """The follower if it has a roller, else None."""
         return self.follower if isinstance(self.follower, TranslatingRoller | OscillatingRoller) else None
 
     @cached_property
@@ -102,13 +103,13 @@ class CamScene:
 
     @cached_property
     def second(self) -> SecondScene | None:
-        """The other one of conjugate cams; None of a cam alone."""
+        """The second of two conjugate cams; None for a single cam."""
         second = self.mechanism.second
         return None if second is None else SecondScene(second, self.mechanism.rotation)
 
     @cached_property
     def contour(self) -> Contour:
-        """The profile as the analysis core sees it."""
+        """The profile as a contour of the analysis core."""
         return Contour(self.profile)
 
     @cached_property
@@ -118,7 +119,7 @@ class CamScene:
 
     @cached_property
     def contact(self) -> ContactMotion:
-        """What the follower does on the profile, measured at the table's angles."""
+        """Motion of the follower on the profile, measured at the table's angles."""
         return self.contour.follow(self.follower, np.radians(self.angle), self.mechanism.rotation)
 
     @property
@@ -127,25 +128,26 @@ class CamScene:
         return isinstance(self.follower, OscillatingRoller | OscillatingFlat)
 
     def station(self, degrees: float) -> complex:
-        """Unit vector, in the cam's frame, of the ground's +x axis when the cam has turned by an angle."""
+        """Return the unit vector, in the cam's frame, of the ground's +x axis after a rotation of the cam."""
+        # In the cam's frame the ground turns backwards.
         turn = -self.sense * math.radians(degrees)
         return complex(math.cos(turn), math.sin(turn))
 
     @cached_property
     def pivot(self) -> complex | None:
-        """Of an oscillating follower, at cam angle 0."""
+        """Pivot of an oscillating follower at cam angle 0, else None."""
         follower = self.follower
         return complex(follower.pivot_distance) if isinstance(follower, OscillatingRoller | OscillatingFlat) else None
 
     @property
     def stem(self) -> float:
-        """Height of a face's stem over the cam's centre, at cam angle 0."""
+        """Height of a face's stem above the cam's centre at cam angle 0."""
         follower = self.follower
         return -self.sense * follower.offset if isinstance(follower, TranslatingFlat) else 0.0
 
     @cached_property
     def held(self) -> list[tuple[complex, complex]]:
-        """What carries the contact at cam angle 0, as lines: an arm, or a flat face and its arm; none for a stem."""
+        """Lines that carry the contact at cam angle 0: an arm, or a flat face and its arm; none for a stem."""
         if self.pivot is not None and self.roller is not None:
             return [(complex(self.pitch_curve[0]), self.pivot)]
         if self.roller is not None:
@@ -155,9 +157,9 @@ class CamScene:
         return self.swung_face(complex(self.contact.point[0]))
 
     def swung_face(self, point: complex) -> list[tuple[complex, complex]]:
-        """A flat face from the foot of its pivot to beyond its contact, and what holds it there, as lines.
+        """Return a flat face from the foot of its pivot to beyond its contact, and its arm, as lines.
 
-        The contact is a point of the ground's frame, in which the pivot stands still.
+        The contact is a point of the ground's frame, in which the pivot is fixed.
         """
         assert self.pivot is not None
         along = self.face_direction(point, 1.0 + 0j)
@@ -165,15 +167,16 @@ class CamScene:
         return [(foot, point + FACE_SHARE * self.base_radius * along), (foot, self.pivot)]
 
     def faces(self, every: int) -> list[tuple[complex, complex]]:
-        """A flat face around its contact, at every ``every``-th position of the table."""
+        """Return a flat face around its contact, at every ``every``-th position of the table."""
         faces = []
         for degrees, point in zip(self.angle[::every].tolist(), self.contact.point[::every].tolist(), strict=True):
+            # Faces of equal length in all positions.
             half = FACE_SHARE * self.base_radius * self.face_direction(point, self.station(degrees))
             faces.append((point - half, point + half))
         return faces
 
     def face_direction(self, point: complex, station: complex) -> complex:
-        """Unit vector along a flat face that touches the cam at a point; away from the pivot where there is one.
+        """Return the unit vector along a flat face that touches the cam at a point; away from its pivot, if it has one.
 
         ``station`` is the ground's +x axis in the frame of the point.
         """
@@ -181,5 +184,6 @@ class CamScene:
         if not isinstance(follower, OscillatingFlat):
             return station * 1j
         reach = point - follower.pivot_distance * station
+        # Distance along the face; rounding may make the square slightly negative.
         foot = math.sqrt(max(abs(reach) ** 2 - follower.face_offset**2, 0.0))
         return reach / complex(foot, -follower.face_offset * follower.sense * self.sense)

@@ -25,16 +25,16 @@ DRAWING_HEIGHT, DIAGRAM_HEIGHT, KEY_HEIGHT = 620.0, 172.0, 30.0
 """Heights of the drawing, of a diagram and of the key below the drawing, pixels."""
 
 BARREL_HEIGHTS = 240.0, 620.0
-"""Least and greatest height of the drawing of a groove, pixels."""
+"""Minimum and maximum height of the drawing of a groove, pixels."""
 
 APART = 12.0, 4.0, 8.0
 """Space above tables below a drawing, above the diagrams below these, and between diagrams, pixels."""
 
 SAMPLE, KEY_SIZE, KEY_GAP, KEY_MIDDLE = 20.0, 10.0, 9.0, 4.0
-"""Of the key: length of a sample, font size, space between entries, height of small letters' middle; pixels."""
+"""Dimensions of the key: length of a sample, font size, space between entries, half height of letters; pixels."""
 
 SEGMENT_COLUMNS = (0.06, 0.09, 0.58, 0.72, 0.86, 1.0)
-"""Right ends of the columns of the table of segments, shares of its width; the left end of the words."""
+"""Right ends of the columns of the table of segments, shares of its width; the left end for the column of words."""
 
 FOLLOWERS = {
     "translating_roller": "translating roller follower",
@@ -47,27 +47,28 @@ FOLLOWERS = {
 ROTATIONS = {"ccw": "counter-clockwise", "cw": "clockwise"}
 
 CURVES = {"profile", "outer_wall", "lower_wall", "upper_wall", "pitch_curve", "program"}
-"""Fields of a mechanism that are drawn, and not listed."""
+"""Fields of a mechanism that are drawn, not listed."""
 
 TITLES = {
-    "size": "greatest radius",
+    "size": "maximum radius",
     "max pressure angle rise": "pressure angle, rise",
     "max pressure angle fall": "pressure angle, fall",
-    "min convex radius": "least convex radius",
-    "min concave radius": "least hollow radius",
-    "min radius": "least radius of the pitch curve",
+    "min convex radius": "minimum convex radius",
+    "min concave radius": "minimum concave radius",
+    "min radius": "minimum radius of the pitch curve",
     "curvature ratio": "pitch curve : roller radius",
     "face width": "contact sweeps on the face",
     "groove width": "width of the groove",
     "length": "length along the axis",
     "frequency ratio": "natural frequency : speed",
 }
-"""What quantities are called where the name of the field does not say enough."""
+"""Titles of quantities whose field names are too terse."""
 
 
 def cam_sheet(design: CamDesign, problem: CamProblem, title: str) -> str:
-    """The drawing of a cam design as a complete SVG document."""
+    """Draw a cam design as a complete SVG document."""
     scene, unit = CamScene(design.mechanism), problem.length_unit
+    # Roller cams give the prime radius; derive the base radius.
     base = [] if design.mechanism.base_radius is not None else [("base radius", f"{length(scene.base_radius)} {unit}")]
     tables, y = stacked(
         [
@@ -77,7 +78,7 @@ def cam_sheet(design: CamDesign, problem: CamProblem, title: str) -> str:
             *_measured(design, problem),
         ]
     )
-    # With two cams the key is longer than the drawing is wide, and stands below the tables.
+    # With two cams the key is wider than the drawing, and is placed below the tables.
     height = max(DRAWING_HEIGHT, y - TOP - (KEY_HEIGHT if scene.second is None else 0.0))
     drawn = panel(scene, Box(EDGE, TOP, EDGE + beside(), TOP + height), unit)
     top = max(TOP + height + KEY_HEIGHT, y)
@@ -87,7 +88,7 @@ def cam_sheet(design: CamDesign, problem: CamProblem, title: str) -> str:
 
 
 def barrel_sheet(design: BarrelCamDesign, problem: CamProblem, title: str) -> str:
-    """The drawing of a barrel cam design as a complete SVG document."""
+    """Draw a barrel cam design as a complete SVG document."""
     mechanism, unit = design.mechanism, problem.length_unit
     shown, (least, greatest) = barrel_box(mechanism), BARREL_HEIGHTS
     needed = (FULL - 2.0 * MARGIN) / shown.width * shown.height + 2.0 * MARGIN + FOOT
@@ -141,7 +142,7 @@ def _dimensions(
     rows += derived
     rows += entries(follower, problem, {"type", "sense", "offset"})
     if isinstance(follower, CamFollower) and follower.offset is not None:
-        # An offset that was found may be zero but for rounding.
+        # An offset computed by the solver may be a rounding error of zero.
         size = max(mechanism.pitch_curve.x)
         rows.append(("offset", f"{length(follower.offset, size)} {problem.length_unit}"))
     if isinstance(follower, CamFollower) and follower.sense is not None:
@@ -155,7 +156,7 @@ def _dimensions(
 
 
 def _segments(design: CamDesign | BarrelCamDesign) -> Block:
-    """Every segment with its law, its place and its peaks."""
+    """Return the block of all segments with law, place and peaks."""
     lines = []
     for k, segment in enumerate(design.segments, 1):
         law = clean(segment.law.replace("_", " "))
@@ -174,14 +175,14 @@ def _segments(design: CamDesign | BarrelCamDesign) -> Block:
 
 
 def _measured(design: CamDesign | BarrelCamDesign, problem: CamProblem) -> list[Block]:
-    """What was measured, how near the best motion the program comes, and forces where the problem has a load."""
+    """Return the blocks of measured quantities, the gap to the best motion, and forces if the problem has a load."""
     metrics, optimality = design.metrics, design.optimality
     gap = NONE if optimality.gap is None else f"{100.0 * optimality.gap:.3g} %"
     rows = entries(metrics, problem, {"forces"}, TITLES)
     rows.append((f"{clean(optimality.criterion.replace('_', ' '))}, above its bound", gap))
     measured = [blocks.rows("Metrics", rows)]
     if metrics.forces is not None:
-        # The warning is a sentence, which no row holds; the report and the JSON have it.
+        # The warning is a sentence, too long for a row; the report and the JSON contain it.
         measured.append(blocks.rows("Forces", entries(metrics.forces, problem, {"warning"}, TITLES)))
     return measured
 
@@ -189,7 +190,7 @@ def _measured(design: CamDesign | BarrelCamDesign, problem: CamProblem) -> list[
 def _in_two_columns(
     shown: list[Diagram], top: float, design: CamDesign | BarrelCamDesign
 ) -> tuple[list[Element], float]:
-    """Diagrams side by side below each other, the joints of the segments marked, and the y below them."""
+    """Draw diagrams in two columns with the joints of the segments marked; return them and the y below."""
     joints = [segment.start for segment in design.segments]
     wide, step = 0.5 * (FULL - GUTTER), DIAGRAM_HEIGHT + APART[2]
     parts = []
@@ -200,13 +201,13 @@ def _in_two_columns(
 
 
 def _closed(values: object) -> np.ndarray:
-    """Values over a turn with the first again at its end."""
+    """Return values over a turn, with the first repeated at the end."""
     over_turn = np.asarray(values, dtype=np.float64)
     return np.append(over_turn, over_turn[0])
 
 
 def _motion_diagrams(table: ProgramTable, lift: str, rate: str) -> list[Diagram]:
-    """Displacement and its derivatives, as the program's table has them."""
+    """Return diagrams of displacement and its derivatives from the program's table."""
     degrees = np.append(np.asarray(table.angle), 360.0)
     return [
         Diagram(f"displacement s ({lift})", "s", degrees, _closed(table.s), INPUT),
@@ -217,17 +218,19 @@ def _motion_diagrams(table: ProgramTable, lift: str, rate: str) -> list[Diagram]
 
 
 def _diagrams(design: CamDesign, problem: CamProblem, scene: CamScene) -> list[Diagram]:
-    """Displacement and its derivatives, pressure angle and curvature, measured on the profile."""
+    """Return diagrams of displacement and derivatives, and of pressure angle and curvature measured on the profile."""
     table, unit = design.mechanism.program, problem.length_unit
     lift, rate = ("degrees", "rad") if scene.oscillating else (unit, unit)
     degrees = np.append(scene.angle, 360.0)
     shown = _motion_diagrams(table, lift, rate)
     contact = scene.contact
     pressure = np.degrees(contact.pressure_angle)
+    # The pressure angle of a central flat face is constant.
     if scene.roller or design.mechanism.follower.face_offset:
         limits = (problem.limits.pressure_angle,) if scene.roller else ()
         words = "pressure angle (degrees), measured on the profile"
         shown.append(Diagram(words, "pressure_angle", degrees, _closed(pressure), DEMANDED, limits))
+    # Straight pieces have infinite radius, thus zero curvature.
     with np.errstate(divide="ignore"):
         curvature = _closed(1.0 / contact.radius)
     words = f"curvature of the profile (1/{unit}), convex positive"
@@ -236,7 +239,7 @@ def _diagrams(design: CamDesign, problem: CamProblem, scene: CamScene) -> list[D
 
 
 def _key(scene: CamScene, y: float) -> Element:
-    """What the line styles mean."""
+    """Draw the key to the line styles."""
     group, x, middle = element("g", data_key="true"), EDGE, y - KEY_MIDDLE
     for name, style in STYLES.items():
         if scene.roller is None and name in ("pitch curve", "prime circle"):
@@ -244,7 +247,7 @@ def _key(scene: CamScene, y: float) -> Element:
         if name == "second cam" and scene.second is None:
             continue
         if name == "outer wall":
-            # Its line is the profile's.
+            # It has the same line style as the profile.
             continue
         group.add(line(complex(x, middle), complex(x + SAMPLE, middle), **style))
         group.add(text(x + SAMPLE + 4.0, y, name, KEY_SIZE, fill=GREY))

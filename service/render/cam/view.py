@@ -1,7 +1,7 @@
 """The panels of cam drawings: profile, pitch curve, prime and base circle, follower and its envelope, cam angles.
 
-Line styles carry the meaning without colours too: profile heavy, pitch curve dashed, prime circle dotted, base circle
-dash-dotted, follower bold, its other positions thin. Parts are marked ``data-part``.
+Line styles distinguish the parts without colours, too: profile heavy, pitch curve dashed, prime circle dotted, base
+circle dash-dotted, follower bold, its other positions thin. Parts are marked ``data-part``.
 """
 
 from __future__ import annotations
@@ -37,13 +37,13 @@ from synthesis.kinds.cam.mechanism import points_of
 Complex = NDArray[np.complex128]
 
 MARGIN, FOOT = 34.0, 24.0
-"""Room in the panel around what is shown, and more of it below for the scale bar, pixels."""
+"""Margins of the panel around the content, and additional space below for the scale bar, pixels."""
 
 ENVELOPE = 36
-"""Positions of the follower that are drawn around the cam."""
+"""Number of follower positions drawn around the cam."""
 
 STATIONS = 30
-"""Degrees between the cam angles that are written around the cam."""
+"""Interval of the cam angles written around the cam, degrees."""
 
 STATION, STATION_TEXT = 1.8, 9.5
 """Radius of the points at these cam angles, and font size of the angles, pixels."""
@@ -58,7 +58,7 @@ BEARING, AXIS = 0.8, 4.0
 """Size of the ground symbols at the cam's centre and at a pivot, and radius of their pins, pixels."""
 
 SMALLEST_ROLLER = 1.5
-"""Least radius of the drawn follower's roller, pixels: a knife edge is seen too."""
+"""Minimum drawn radius of the follower's roller, pixels, so that a knife edge is visible."""
 
 STYLES: dict[str, dict[str, str | float]] = {
     "profile": {"stroke": INPUT, "stroke_width": 2.6, "stroke_linejoin": "round"},
@@ -70,16 +70,17 @@ STYLES: dict[str, dict[str, str | float]] = {
     "follower": {"stroke": COUPLER, "stroke_width": 2.4},
     "other positions": {"stroke": PALE, "stroke_width": 0.7},
 }
-"""Line styles by what they show; the key of the sheet lists them."""
+"""Line styles by part; the key of the sheet lists them."""
 
 
 def shown_box(scene: CamScene) -> Box:
-    """What a panel must show."""
+    """Return the box that a panel must show."""
     roller = scene.roller
     reach = roller.roller_radius if roller else 0.0
     box = Box.around(np.concatenate([scene.pitch_curve, scene.profile])).grown(reach)
     if scene.second is not None:
         box = box.united(Box.around(scene.second.pitch_curve).grown(reach))
+    # A flat face sweeps beyond the cam.
     face = max((max(abs(a), abs(b)) for a, b in scene.faces(1)), default=0.0) if roller is None else 0.0
     box = box.united(Box.around(np.array([-face - 1j * face, face + 1j * face]))) if face else box
     if scene.pivot is not None:
@@ -89,7 +90,7 @@ def shown_box(scene: CamScene) -> Box:
 
 
 def panel(scene: CamScene, box: Box, unit: str) -> Element:
-    """The drawing in a box of the sheet."""
+    """Draw a cam in a box of the sheet."""
     viewport = Viewport.fit(shown_box(scene), box, MARGIN, FOOT)
     labels = Labels(box)
     group = element("g", framed(box, "cam"), fill="none")
@@ -118,7 +119,7 @@ def panel(scene: CamScene, box: Box, unit: str) -> Element:
 
 
 def _second(scene: CamScene, second: SecondScene, viewport: Viewport) -> list[Element | None]:
-    """The other one of conjugate cams, with its roller at cam angle 0 and what carries it."""
+    """Draw the second of two conjugate cams, with its roller at cam angle 0 and its carrier."""
     centre, radius = complex(second.pitch_curve[0]), second.follower.roller_radius
     carrier = complex(scene.pitch_curve[0]) if scene.pivot is None else scene.pivot
     held = element("g", data_part="second follower", **STYLES["follower"])
@@ -135,8 +136,9 @@ def _closed(points: Complex, viewport: Viewport, part: str) -> Element | None:
 
 
 def _envelope(scene: CamScene, viewport: Viewport) -> Element:
-    """The roller or the face in positions around the cam: the profile is their envelope."""
+    """Draw the roller or the face in positions around the cam; the profile is their envelope."""
     group = element("g", data_part="other positions", **STYLES["other positions"])
+    # Thin the table to the number of drawn positions.
     every = max(1, round(len(scene.angle) / ENVELOPE))
     roller = scene.roller
     if roller and roller.roller_radius > 0.0:
@@ -149,9 +151,9 @@ def _envelope(scene: CamScene, viewport: Viewport) -> Element:
 
 
 def _stations(curve: CamCurve, viewport: Viewport, labels: Labels, centre: complex | None) -> Element:
-    """Points on a curve where the follower stands at round cam angles, and those angles: away from the cam's centre.
+    """Draw points on a curve at round cam angles, and those angles away from the cam's centre.
 
-    Above the points where there is no centre, on a cam that is unrolled.
+    Without a centre, on an unrolled cam, the angles are above the points.
     """
     group = element("g", data_part="cam angles")
     for at, degrees in _at_stations(curve, viewport):
@@ -163,14 +165,15 @@ def _stations(curve: CamCurve, viewport: Viewport, labels: Labels, centre: compl
 
 
 def _at_stations(curve: CamCurve, viewport: Viewport) -> Iterator[tuple[complex, float]]:
-    """Points of a curve on the sheet at round cam angles, and these."""
+    """Yield points of a curve on the sheet at round cam angles, and these angles."""
     for degrees in range(0, 360, STATIONS):
+        # The nearest point of the curve's own angles.
         k = int(np.argmin(np.abs(np.array(curve.angle) - degrees)))
         yield viewport.point(complex(curve.x[k], curve.y[k])), float(degrees)
 
 
 def _follower(scene: CamScene, viewport: Viewport) -> Element:
-    """The follower at cam angle 0."""
+    """Draw the follower at cam angle 0."""
     group = element("g", data_part="follower", **STYLES["follower"])
     reach, roller = STEM * scene.base_radius, scene.roller
     group.add(*(line(viewport.point(start), viewport.point(end)) for start, end in scene.held))
@@ -178,6 +181,7 @@ def _follower(scene: CamScene, viewport: Viewport) -> Element:
         centre = complex(scene.pitch_curve[0])
         if scene.pivot is None:
             group.add(*_stem(viewport, centre, centre + roller.roller_radius + reach))
+        # A knife edge has no radius.
         radius = max(viewport.scale * roller.roller_radius, SMALLEST_ROLLER)
         group.add(circle(viewport.point(centre), radius, fill="#fff", fill_opacity=0.7))
         group.add(circle(viewport.point(centre), 2.5, fill=COUPLER))
@@ -191,7 +195,7 @@ def _follower(scene: CamScene, viewport: Viewport) -> Element:
 
 
 def _stem(viewport: Viewport, start: complex, end: complex) -> list[Element]:
-    """Stem of a translating follower, with hatched guides on both sides of its outer half."""
+    """Draw the stem of a translating follower, with hatched guides on both sides of its outer half."""
     a, b = viewport.point(start), viewport.point(end)
     along = (b - a) / abs(b - a)
     drawn = [line(a, b)]
@@ -206,10 +210,10 @@ def _stem(viewport: Viewport, start: complex, end: complex) -> list[Element]:
 
 
 def _rotation(scene: CamScene, viewport: Viewport) -> Element:
-    """An arc with an arrow in the sense in which the cam turns."""
+    """Draw an arc with an arrow in the cam's sense of rotation."""
     radius = ROTATION * scene.base_radius * viewport.scale
     centre = viewport.point(0j)
-    # On the sheet y points down, so that a counter-clockwise turn has falling angles.
+    # On the sheet y points down, so that a counter-clockwise rotation has decreasing angles.
     start, turn = math.radians(ROTATION_AT), -scene.sense * math.radians(ROTATION_ANGLE)
     start -= 0.5 * turn
     points = centre + radius * np.exp(1j * (start + turn * np.linspace(0.0, 1.0, 25)))
@@ -222,7 +226,7 @@ def _rotation(scene: CamScene, viewport: Viewport) -> Element:
 
 
 def barrel_panel(mechanism: BarrelCamMechanism, box: Box, unit: str) -> Element:
-    """The unrolled groove: walls heavy, pitch curve dashed, roller bold at cam angle 0 and thin at other stations."""
+    """Draw the unrolled groove: walls heavy, pitch curve dashed, roller bold at cam angle 0, thin at other stations."""
     shown, roller, turn = barrel_box(mechanism), mechanism.follower.roller_radius, math.tau * mechanism.cylinder_radius
     viewport = Viewport.fit(shown, box, MARGIN, FOOT)
     labels = Labels(box)
@@ -248,6 +252,6 @@ def barrel_panel(mechanism: BarrelCamMechanism, box: Box, unit: str) -> Element:
 
 
 def barrel_box(mechanism: BarrelCamMechanism) -> Box:
-    """What the panel of a barrel cam must show: one turn of the groove, with the roller at both ends."""
+    """Return the box of a barrel cam's panel: one turn of the groove, with the roller at both ends."""
     roller, turn = mechanism.follower.roller_radius, math.tau * mechanism.cylinder_radius
     return Box(-roller, min(mechanism.lower_wall.y), turn + roller, max(mechanism.upper_wall.y))

@@ -1,4 +1,4 @@
-"""Gear trains and gearboxes as tables: one row a gear or a speed, with the unit in the header."""
+"""Gear trains and gearboxes as tables: one row per gear or speed, with units in the header."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ from synthesis.kinds.train_series.problem import TrainSeriesProblem
 
 
 def gear_train_table(design: GearTrainDesign, problem: GearTrainProblem, title: str) -> str:
-    """Stage, role, teeth, module, circles, shaft centre and speed of every gear; of fitted ones the profile shift."""
+    """Write stage, role, teeth, module, circles, centre and speed of every gear; profile shifts of fitted gears."""
     fitted = ["profile_shift"] if problem.is_fitted else []
     typed = ["type", "helix_angle_deg"] if problem.stages is not None else []
     return table(
@@ -33,6 +33,7 @@ def gear_train_table(design: GearTrainDesign, problem: GearTrainProblem, title: 
                 placed.role,
                 placed.count,
                 *_train_sizes(placed, design),
+                # Exact speeds are written as fractions.
                 f"{placed.speed.numerator}/{placed.speed.denominator}",
                 *([placed.gear.shift / math.cos(placed.helix_angle)] if fitted else []),
                 *(_type_cells(placed, design) if typed else []),
@@ -43,7 +44,7 @@ def gear_train_table(design: GearTrainDesign, problem: GearTrainProblem, title: 
 
 
 def _train_sizes(placed: TrainGear, design: GearTrainDesign) -> list[Cell]:
-    """As :func:`_sizes`; the module as it is stated, and no base circle of what is cut along its axis."""
+    """Return :func:`_sizes` with the module as given, and without a base circle for gears drawn in axial section."""
     module, *diameters, x, y = _sizes(placed.gear, placed.centre)
     if placed.section is not None:
         return [module, *diameters[:-1], "", x, y]
@@ -51,14 +52,15 @@ def _train_sizes(placed: TrainGear, design: GearTrainDesign) -> list[Cell]:
 
 
 def _type_cells(placed: TrainGear, design: GearTrainDesign) -> list[Cell]:
-    """Type of the stage, and the helix angle of the gear, positive for a right-handed one."""
+    """Return the type of the stage, and the helix angle of the gear, positive for a right-handed one."""
     stage = design.mechanism.stages[placed.stage - 1]
     angle = 0.0 if stage.helix_angle is None else stage.helix_angle
+    # External helical gears have opposite hands; 0.0 - angle avoids -0.
     return [stage.type or "", angle if placed.role == "driver" else 0.0 - angle]
 
 
 def planetary_table(design: PlanetaryDesign, problem: PlanetaryProblem, title: str) -> str:
-    """Name, copy, teeth, circles, centre and speed of every gear, one row a gear and copy."""
+    """Write name, copy, teeth, circles, centre and speed of every gear, one row per gear and copy."""
     return table(
         ["gear", "body", "copy", "teeth", *_lengths("tip", problem.length_unit), "speed_over_input"],
         (
@@ -76,7 +78,7 @@ def planetary_table(design: PlanetaryDesign, problem: PlanetaryProblem, title: s
 
 
 def series_table(design: TrainSeriesDesign, problem: TrainSeriesProblem, title: str) -> str:
-    """Unit, name, copy, teeth, circles, profile shift, centre and speed of every gear, one row a gear and copy."""
+    """Write unit, name, copy, teeth, circles, shift, centre and speed of every gear, one row per gear and copy."""
     return table(
         ["unit", "gear", "copy", "teeth", *_lengths("tip", problem.length_unit), "profile_shift", "speed_over_input"],
         (
@@ -95,7 +97,7 @@ def series_table(design: TrainSeriesDesign, problem: TrainSeriesProblem, title: 
 
 
 def _lengths(outer: str, unit: str) -> list[str]:
-    """Heads of the columns of :func:`_sizes`; ``outer`` is what the kind calls the circle of the tips."""
+    """Return the column heads of :func:`_sizes`; ``outer`` is the kind's word for the tip circle."""
     names = ("module", "pitch_diameter", f"{outer}_diameter", "root_diameter", "base_diameter", "centre_x", "centre_y")
     return [f"{name}_{unit}" for name in names]
 
@@ -106,7 +108,7 @@ def _sizes(gear: Gear, centre: complex) -> list[float]:
 
 
 def gearbox_table(design: GearboxDesign, problem: GearboxProblem, title: str) -> str:
-    """Every spindle speed with its nominal value, deviation and the pairs that are engaged."""
+    """Write every spindle speed with its nominal value, deviation and engaged pairs."""
     stages = design.mechanism.stages
     rows: list[list[Cell]] = []
     for row in design.metrics.speeds:
@@ -118,10 +120,11 @@ def gearbox_table(design: GearboxDesign, problem: GearboxProblem, title: str) ->
 
 
 def layshaft_table(design: LayshaftDesign, problem: LayshaftProblem, title: str) -> str:
-    """Every gear with its teeth, its ratio and the error of it; the head pair comes first."""
+    """Write every gear with its teeth, its ratio and the ratio's error; the head pair comes first."""
     mechanism, errors = design.mechanism, design.metrics.errors
     rows: list[list[Cell]] = [["head", mechanism.head.driven, "", mechanism.head.driver, "", ""]]
     for k, (gear, error) in enumerate(zip(mechanism.gears, errors, strict=False), 1):
+        # Direct drive has no pair of its own.
         teeth = (gear.layshaft, gear.mainshaft) if gear.layshaft is not None else ("", "")
         rows.append([k, teeth[0], "", teeth[1], gear.ratio.value, error])
     if mechanism.reverse is not None:

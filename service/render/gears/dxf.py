@@ -1,7 +1,7 @@
-"""Gear trains as DXF: pitch circles and true involute outlines in mesh, each stage or plane on layers of its own.
+"""Gear trains as DXF: pitch circles and true involute outlines in mesh, each stage or plane on its own layers.
 
 =====================  ==============================================================
-layer                  what is on it (n: number of the stage; PLANE_n of a planetary train)
+layer                  content (n: number of the stage; PLANE_n of a planetary train)
 =====================  ==============================================================
 STAGE_n_PITCH          pitch circles; layers of trains in series begin with UNIT_n_
 STAGE_n_TEETH          closed outlines of all teeth: involutes, fillets, tips, roots
@@ -10,10 +10,9 @@ CENTRES                crosses at the shafts, axes of shafts that lie in the pla
 TEXT                   tooth numbers, modules and profile shifts, of ordinary trains
 =====================  ==============================================================
 
-Stages lie one above the other in the plane as their shafts do; the input shaft is at the origin, and so is the axis of
-a planetary train. Trains in series stand side by side, and so do the views of trains whose shafts are not parallel,
-with a line of text of what each shows. Bevel gears have pitch circles only. Lengths are in the unit of the problem,
-which the header names.
+Stages overlap in the plane as their shafts do. The input shaft is at the origin, and so is the axis of a planetary
+train. Trains in series are side by side, and so are the views of trains with non-parallel shafts, each with a caption.
+Bevel gears have pitch circles only. Lengths are in the unit of the problem, which the header contains.
 """
 
 from __future__ import annotations
@@ -45,16 +44,16 @@ LETTERS, CROSS = 0.02, 0.01
 """Height of letters, and half the size of a cross at a shaft, as shares of the drawing's diagonal."""
 
 LINE_STEP = 1.6
-"""Distance of lines of text below one another, in heights of letters."""
+"""Line spacing of text, in letter heights."""
 
 
 def gear_layers(name: str, colour: int) -> dict[str, tuple[int, str]]:
-    """The two layers of a gear: its pitch circle, and the outline of its teeth."""
+    """Return the two layers of a gear: its pitch circle, and the outline of its teeth."""
     return {f"{name}_PITCH": (colour, "DASHDOT"), f"{name}_TEETH": (colour, "CONTINUOUS")}
 
 
 def add_gear(space: Modelspace, placed: PlacedGear, names: Iterable[str], *, toothed: bool = True) -> None:
-    """Pitch circle and, where it is ``toothed``, outline of a gear on the layers of each name."""
+    """Add the pitch circle and, if ``toothed``, the outline of a gear on the layers of each name."""
     teeth = placed.teeth() if toothed else None
     for name in names:
         dxf.add_circle(space, placed.centre, placed.pitch_radius, f"{name}_PITCH")
@@ -63,7 +62,7 @@ def add_gear(space: Modelspace, placed: PlacedGear, names: Iterable[str], *, too
 
 
 def gear_train_drawing(design: GearTrainDesign, problem: GearTrainProblem, title: str) -> str:
-    """The drawing of a gear train as a DXF document (R2010)."""
+    """Write a gear train as a DXF document (R2010)."""
     gears = placed_gears(design.mechanism, problem.reverted)
     layers = {"CENTRES": (7, "CONTINUOUS"), "TEXT": (7, "CONTINUOUS")}
     for number in range(1, len(design.mechanism.stages) + 1):
@@ -77,7 +76,7 @@ def gear_train_drawing(design: GearTrainDesign, problem: GearTrainProblem, title
             dxf.add_cross(space, at, CROSS * size, "CENTRES")
         else:
             add_section(space, placed.section, at, f"STAGE_{placed.stage}")
-        # Gears on one shaft are written below one another.
+        # Labels of gears on one shaft are placed below one another.
         below = at - 1j * height * (1.5 + LINE_STEP * (2 * placed.stage + (placed.role == "driven")))
         module = design.mechanism.stages[placed.stage - 1].module
         words = f"stage {placed.stage} {placed.role}: z={placed.count} m={module:.6g}{_kind_words(design, placed)}"
@@ -93,21 +92,22 @@ def gear_train_drawing(design: GearTrainDesign, problem: GearTrainProblem, title
 
 
 def _normal_shift(placed: TrainGear) -> float:
-    """Profile shift in modules as they are stated, of helical teeth those of the normal plane."""
+    """Return the profile shift in the modules of the problem: for helical teeth, those of the normal plane."""
     return placed.gear.shift / math.cos(placed.helix_angle)
 
 
 def _kind_words(design: GearTrainDesign, placed: TrainGear) -> str:
-    """What tells the teeth of a typed stage from those of a spur gear."""
+    """Return the words that distinguish the teeth of a typed stage from those of a spur gear."""
     stage = design.mechanism.stages[placed.stage - 1]
     if stage.type == "helical" and stage.helix_angle is not None:
+        # The angle is that of the driver; its mate has the opposite hand.
         hand = "right" if (stage.helix_angle > 0) == (placed.role == "driver") else "left"
         return f" helical {abs(stage.helix_angle):.6g} deg {hand}"
     return f" {stage.type}" if stage.type not in (None, "external") else ""
 
 
 def add_section(space: Modelspace, section: Section, at: complex, name: str) -> None:
-    """A gear that is cut along its axis: its body with the teeth, its pitch lines, its axis."""
+    """Add a gear in axial section: its body with the teeth, its pitch lines, its axis."""
     dxf.add_outline(space, at + section.outline, f"{name}_TEETH")
     for start, end in section.pitch_lines:
         dxf.add_line(space, at + start, at + end, f"{name}_PITCH")
@@ -115,7 +115,7 @@ def add_section(space: Modelspace, section: Section, at: complex, name: str) -> 
 
 
 def planetary_drawing(design: PlanetaryDesign, problem: PlanetaryProblem, title: str) -> str:
-    """The drawing of a planetary train as a DXF document (R2010)."""
+    """Write a planetary train as a DXF document (R2010)."""
     mechanism = design.mechanism
     gears = placed_planetary_gears(mechanism)
     layers = {"CENTRES": (7, "CONTINUOUS")}
@@ -123,6 +123,7 @@ def planetary_drawing(design: PlanetaryDesign, problem: PlanetaryProblem, title:
         layers |= gear_layers(f"PLANE_{plane}", 1 + plane)
     document = dxf.new_drawing(title or "Planetary train", problem.length_unit, layers)
     space = document.modelspace()
+    # Bevel gears are drawn by their pitch circles only.
     bevel = ARRANGEMENTS[mechanism.arrangement].bevel
     for placed in gears:
         add_gear(space, placed, [f"PLANE_{plane}" for plane in placed.planes], toothed=not bevel)
@@ -131,7 +132,7 @@ def planetary_drawing(design: PlanetaryDesign, problem: PlanetaryProblem, title:
 
 
 def series_drawing(design: TrainSeriesDesign, problem: TrainSeriesProblem, title: str) -> str:
-    """The drawing of trains in series as a DXF document (R2010)."""
+    """Write trains in series as a DXF document (R2010)."""
     placed = series_layout(design, problem)
     layers = {"CENTRES": (7, "CONTINUOUS"), "TEXT": (7, "CONTINUOUS")}
     for gear in placed:
@@ -144,6 +145,7 @@ def series_drawing(design: TrainSeriesDesign, problem: TrainSeriesProblem, title
         add_gear(space, gear.placed, gear.layers, toothed=gear.toothed)
         at = gear.placed.centre
         space.add_point((at.real, at.imag), dxfattribs={"layer": "CENTRES"})
+        # Label each gear once, not every copy of a planet.
         if gear.copy == 0:
             dxf.add_words(
                 space, at - 1j * height * LINE_STEP * gear.line, f"{gear.name}: z={gear.placed.gear.teeth:g}", height

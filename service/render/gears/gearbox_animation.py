@@ -1,4 +1,4 @@
-"""Gearboxes that turn as GIF: every speed in turn, with the pairs that are engaged then, seen from the shafts' ends."""
+"""Gearboxes as GIF: every speed in turn with its engaged pairs, viewed from the shafts' ends."""
 
 from __future__ import annotations
 
@@ -18,11 +18,11 @@ from synthesis.kinds.layshaft_gearbox.design import LayshaftDesign
 from synthesis.kinds.layshaft_gearbox.problem import LayshaftProblem
 
 LEAST_FRAMES = 6
-"""Frames of a speed at least, however many speeds there are."""
+"""Minimum number of frames per speed."""
 
 
 def gearbox_animation(design: GearboxDesign, problem: GearboxProblem, title: str) -> bytes:
-    """All spindle speeds of a machine-tool gearbox one after the other, as GIF."""
+    """Draw all spindle speeds of a machine-tool gearbox one after the other, as GIF."""
     phases = [
         [f"STAGE_{stage}_PAIR_{pair + 1}" for stage, pair in enumerate(row.engaged, 1)] for row in design.metrics.speeds
     ]
@@ -30,7 +30,7 @@ def gearbox_animation(design: GearboxDesign, problem: GearboxProblem, title: str
 
 
 def layshaft_animation(design: LayshaftDesign, problem: LayshaftProblem, title: str) -> bytes:
-    """All gears of a layshaft gearbox in turn, reverse last, as GIF; in direct drive the head pair alone."""
+    """Draw all gears of a layshaft gearbox in turn, reverse last, as GIF; in direct drive only the head pair."""
     mechanism = design.mechanism
     phases = [
         ["HEAD"] if gear.layshaft is None else ["HEAD", f"GEAR_{number}"]
@@ -43,11 +43,13 @@ def layshaft_animation(design: LayshaftDesign, problem: LayshaftProblem, title: 
 
 def _animation(layout: BoxLayout, phases: Sequence[Sequence[str]]) -> bytes:
     outlines = [_outline(placed) for placed in layout.gears]
+    # All speeds share the frames of one cycle.
     count = max(FRAMES // len(phases), LEAST_FRAMES)
 
     def frames() -> Iterator[list[Stroke]]:
         for engaged in phases:
             speeds = gearbox_speeds(layout, engaged)
+            # The fastest mesh sets the pace, so that teeth do not seem to run backwards.
             passing = max(abs(speed) * placed.gear.teeth for placed, speed in _turning(layout, speeds))
             for k in range(count):
                 turned = math.tau * PITCHES / FRAMES / passing * k
@@ -82,13 +84,14 @@ def _outline(placed: BoxGear) -> Points:
 
 
 def gearbox_speeds(layout: BoxLayout, engaged: Sequence[str]) -> dict[tuple[str, int], float]:
-    """The speed of every engaged gear over the input's, by pair and shaft, followed along the power."""
+    """Return the speed of every engaged gear relative to the input's, by pair and shaft, following the power flow."""
     shafts = {0: 1.0}
     speeds: dict[tuple[str, int], float] = {}
     for pair in engaged:
         gears = [placed for placed in layout.gears if placed.pair == pair]
         teeth_passing = shafts[gears[0].shaft] * gears[0].gear.teeth
         for n, placed in enumerate(gears):
+            # The same number of teeth passes every gear of a chain; external meshes reverse.
             shafts[placed.shaft] = speeds[pair, placed.shaft] = (-1) ** n * teeth_passing / placed.gear.teeth
     return speeds
 

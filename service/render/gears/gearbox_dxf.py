@@ -1,18 +1,18 @@
-"""Gearboxes as DXF, in two views to scale: the shafts seen from their ends, and the developed view along them.
+"""Gearboxes as DXF, in two views to scale: the end view of the shafts, and the developed view along them.
 
 =====================  ==============================================================
-layer                  what is on it (NAME: STAGE_n_PAIR_k; HEAD, GEAR_n, REVERSE)
+layer                  content (NAME: STAGE_n_PAIR_k; HEAD, GEAR_n, REVERSE)
 =====================  ==============================================================
-NAME_PITCH             pitch circles, seen from the end
+NAME_PITCH             pitch circles in the end view
 NAME_TEETH             closed outlines of all teeth in mesh: involutes, fillets, tips
 NAME_DEVELOPED         outside diameters along the shafts, below the other view
 SHAFTS                 crosses at the shafts, and their axes in the developed view
 TEXT                   tooth numbers, names of the shafts
 =====================  ==============================================================
 
-All pairs of a stage lie over each other when seen from the end: freeze the layers of those that are not engaged. The
-developed view has the shafts in one plane, at their true distances; the idler of reverse is turned into it about the
-layshaft. Diameters and distances are true in both views. A design has no face widths: faces are drawn 8 modules wide.
+All pairs of a stage overlap in the end view: freeze the layers of those that are not engaged. The developed view has
+the shafts in one plane, at their true distances; the reverse idler is rotated into it about the layshaft. Diameters and
+distances are true in both views. A design has no face widths: faces are drawn 8 modules wide.
 """
 
 from __future__ import annotations
@@ -32,23 +32,23 @@ COLOURS = (5, 3, 30, 6, 4, 1, 2)
 """Colour indices, taken in turn."""
 
 FACE, ROOM, LETTERS = 8.0, 4.0, 2.0
-"""Width of a face, room beside it and height of letters, in modules."""
+"""Width of a face, space next to it and height of letters, in modules."""
 
 BEYOND = 0.4 * ROOM
-"""How far an axis goes on beyond its last face, in modules."""
+"""Extension of an axis beyond its last face, in modules."""
 
 NAMES, APART = 8.0, 6.0
-"""Room at the left for the names of the shafts, and between the two views, in heights of letters."""
+"""Space at the left for the names of the shafts, and between the two views, in letter heights."""
 
 
 def gearbox_drawing(design: GearboxDesign, problem: GearboxProblem, title: str) -> str:
-    """The drawing of a machine-tool gearbox as a DXF document (R2010)."""
+    """Write a machine-tool gearbox as a DXF document (R2010)."""
     layout = gearbox_layout(design.mechanism)
     return _drawn(title or "Gearbox", problem.length_unit, layout, design.mechanism.module)
 
 
 def layshaft_drawing(design: LayshaftDesign, problem: LayshaftProblem, title: str) -> str:
-    """The drawing of a layshaft gearbox as a DXF document (R2010)."""
+    """Write a layshaft gearbox as a DXF document (R2010)."""
     layout = layshaft_layout(design.mechanism)
     return _drawn(title or "Layshaft gearbox", problem.length_unit, layout, design.mechanism.module)
 
@@ -71,6 +71,7 @@ def _from_the_end(document: Drawing, layout: BoxLayout, module: float) -> None:
     top = box_around(layout.gears).high
     for k, shaft in enumerate(layout.shafts):
         dxf.add_cross(space, shaft.centre, LETTERS * module, "SHAFTS")
+        # Names of coaxial shafts are on separate lines.
         above = complex(shaft.centre.real, top + (2.0 + LINE_STEP * k) * LETTERS * module)
         dxf.add_words(space, above, shaft.name, LETTERS * module)
 
@@ -78,6 +79,7 @@ def _from_the_end(document: Drawing, layout: BoxLayout, module: float) -> None:
 def _developed(document: Drawing, layout: BoxLayout, module: float) -> None:
     space = document.modelspace()
     seen = box_around(layout.gears)
+    # Upper end of the developed view above its first shaft.
     highest = max(placed.gear.tip_radius - layout.shafts[placed.shaft].below for placed in layout.gears)
     left = seen.left + NAMES * LETTERS * module
     axis = seen.low - highest - APART * LETTERS * module
@@ -97,6 +99,7 @@ def _developed(document: Drawing, layout: BoxLayout, module: float) -> None:
         start = complex(left + shaft.slots[0] * step - BEYOND * module, axis - shaft.below)
         end = complex(left + shaft.slots[1] * step + face + BEYOND * module, axis - shaft.below)
         dxf.add_line(space, start, end, "SHAFTS")
+        # Names stand at the left end of shafts that start there, otherwise at the right end.
         if shaft.slots[0] == 0:
             dxf.add_words(space, start - 4.0 * LETTERS * module, shaft.name, LETTERS * module)
         else:

@@ -1,8 +1,8 @@
-"""Where the gears of a gearbox stand: shafts seen from their ends, and one beside the other along the shafts.
+"""Positions of the gears of a gearbox: shafts in the end view, and slots side by side along the shafts.
 
-Seen from the end the shafts of a machine-tool gearbox stand in one line, the first at 0. Input and main shaft of a
-layshaft gearbox are coaxial at 0, the layshaft stands at the shaft distance from them, and the idler of reverse where
-it reaches both of its mates. Each pair is turned so that its teeth mesh.
+In the end view the shafts of a machine-tool gearbox lie on one line, the first at 0. Input and main shaft of a layshaft
+gearbox are coaxial at 0, the layshaft is at the shaft distance from them, and the reverse idler meshes with both of its
+mates. Each pair is rotated so that its teeth mesh.
 """
 
 from __future__ import annotations
@@ -21,8 +21,8 @@ from synthesis.kinds.layshaft_gearbox.design import LayshaftMechanism
 class BoxGear(PlacedGear):
     """A gear of a gearbox.
 
-    ``pair`` names the pair, ``stage`` counts what is drawn in one colour, ``shaft`` is the place of its shaft, and
-    ``slot`` counts the pairs along the shafts.
+    ``pair`` names the pair, ``stage`` numbers the colours, ``shaft`` is the index of its shaft, and ``slot`` numbers
+    the pairs along the shafts.
     """
 
     pair: str
@@ -33,7 +33,7 @@ class BoxGear(PlacedGear):
 
 @dataclass(frozen=True)
 class Shaft:
-    """A shaft: its place seen from the end, how far below the first it is drawn in the developed view, its slots."""
+    """A shaft: its place in the end view, its distance below the first one in the developed view, its slots."""
 
     name: str
     centre: complex
@@ -43,18 +43,19 @@ class Shaft:
 
 @dataclass(frozen=True)
 class BoxLayout:
-    """All gears, two or three of each pair in the order of the power, and all shafts."""
+    """All gears, two or three of each pair in the order of the power flow, and all shafts."""
 
     gears: list[BoxGear]
     shafts: list[Shaft]
 
 
 def gearbox_layout(mechanism: GearboxMechanism) -> BoxLayout:
-    """A machine-tool gearbox; the stages lie one behind the other along the shafts."""
+    """Arrange a machine-tool gearbox; the stages follow one another along the shafts."""
     gears: list[BoxGear] = []
     at = [0.0]
     first = [0]
     for number, stage in enumerate(mechanism.stages):
+        # All shafts lie on one line.
         at.append(at[-1] + stage.centre_distance)
         first.append(first[-1] + len(stage.pairs))
         for k, pair in enumerate(stage.pairs):
@@ -72,13 +73,14 @@ def gearbox_layout(mechanism: GearboxMechanism) -> BoxLayout:
 
 
 def layshaft_layout(mechanism: LayshaftMechanism) -> BoxLayout:
-    """A layshaft gearbox: the head pair, then the forward gears from the last to the first, then reverse."""
+    """Arrange a layshaft gearbox: the head pair, then the forward gears from last to first, then reverse."""
     distance = mechanism.centre_distance
     input_shaft, layshaft, main = 0, 1, 2
     beside = complex(distance)
     head = mechanism.head
     gears = _in_mesh(mechanism, "HEAD", 0, 0, (head.driver, input_shaft, 0j), (head.driven, layshaft, beside))
     slot = 1
+    # Descending, so that the first gear is at the output end.
     for number in range(len(mechanism.gears), 0, -1):
         pair = mechanism.gears[number - 1]
         if pair.layshaft is not None and pair.mainshaft is not None:
@@ -92,6 +94,7 @@ def layshaft_layout(mechanism: LayshaftMechanism) -> BoxLayout:
     ]
     if mechanism.reverse is not None:
         back = mechanism.reverse
+        # The idler lies on the intersection of two circles: both of its centre distances are known.
         near, far = (0.5 * mechanism.module * (back.idler + z) for z in (back.layshaft, back.mainshaft))
         x = 0.5 * (distance**2 + far**2 - near**2) / distance
         centre = complex(x, math.sqrt(max(far**2 - x**2, 0.0)))
@@ -109,12 +112,13 @@ def _in_mesh(
     slot: int,
     *placed: tuple[int, int, complex],
 ) -> list[BoxGear]:
-    """Gears that mesh one after the other, from teeth, shaft and centre of each."""
+    """Return gears that mesh in sequence, from teeth, shaft and centre of each."""
     gears: list[BoxGear] = []
     for teeth, shaft, centre in placed:
         gear, turned = Gear(teeth, mechanism.module, math.radians(mechanism.pressure_angle)), 0.0
         if gears:
             mate = gears[-1]
+            # Rotate the gear so that it meshes with its predecessor.
             turned = facing(mate.gear, mate.tooth_at, gear, cmath.phase(centre - mate.centre))
         gears.append(BoxGear(gear, centre, turned, pair, stage, shaft, slot))
     return gears

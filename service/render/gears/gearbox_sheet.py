@@ -1,7 +1,7 @@
-"""The sheets of gearboxes: the ray diagram with the tooth numbers beside it.
+"""The sheets of gearboxes: the ray diagram with a table of tooth numbers.
 
-The ray diagram (Rao, Sec. 8.5) has a line for each shaft and the logarithm of the speed upwards; a ray for each pair of
-gears goes from every speed of its driving shaft to the speed that it gives the next.
+The ray diagram (Rao, Sec. 8.5) has a vertical line for each shaft and the logarithm of speed as ordinate. A ray for
+each gear pair leads from every speed of its driving shaft to the resulting speed of the next shaft.
 """
 
 from __future__ import annotations
@@ -26,17 +26,17 @@ COLUMN, HEIGHT = 400.0, 620.0
 """Width of the tables, and height of the diagram, pixels."""
 
 LEFT, RIGHT, HEAD, FOOT = 70.0, 100.0, 50.0, 30.0
-"""Room around the rays: for the speeds at both sides, for the names of the shafts above, and below; pixels."""
+"""Margins around the rays: for the speeds at both sides, for the names of the shafts above, and below; pixels."""
 
 SHAFT_NAME, SPEED = 11.5, 10.5
 """Font sizes of the names of the shafts, and of speeds and teeth, pixels."""
 
 RAY_LABEL = 0.72
-"""Share of a ray's length at which its teeth stand, towards the end, where the rays have parted."""
+"""Position of a ray's tooth numbers as a share of its length, near the end, where the rays have separated."""
 
 
 class _Ray(NamedTuple):
-    """From a speed of one shaft to a speed of the next, by a pair of gears; ``words`` stand on one of equal rays."""
+    """A ray from a speed of one shaft to a speed of the next; among rays of one pair only one has ``words``."""
 
     shaft: int
     start: float
@@ -45,12 +45,13 @@ class _Ray(NamedTuple):
 
 
 def gearbox_sheet(design: GearboxDesign, problem: GearboxProblem, title: str) -> str:
-    """The ray diagram and tooth numbers of a machine-tool gearbox as a complete SVG document."""
+    """Draw the ray diagram and tooth numbers of a machine-tool gearbox as a complete SVG document."""
     mechanism, metrics = design.mechanism, design.metrics
     rays = []
     for k, stage in enumerate(mechanism.stages):
         for speed in metrics.shafts[k].speeds:
             for pair in stage.pairs:
+                # Parallel rays of a pair are labelled once, at the highest speed.
                 words = f"{pair.driver}/{pair.driven}" if speed == metrics.shafts[k].speeds[-1] else ""
                 rays.append(_Ray(k, speed, speed * pair.driver / pair.driven, words))
     shafts = [shaft.speeds for shaft in metrics.shafts]
@@ -73,7 +74,7 @@ def gearbox_sheet(design: GearboxDesign, problem: GearboxProblem, title: str) ->
 
 
 def layshaft_sheet(design: LayshaftDesign, problem: LayshaftProblem, title: str) -> str:
-    """The speeds of a layshaft gearbox, for an input of 1, as a ray diagram with the tooth numbers beside it."""
+    """Draw the speeds of a layshaft gearbox, for an input of 1, as a ray diagram with a table of tooth numbers."""
     mechanism = design.mechanism
     head = mechanism.head.driver / mechanism.head.driven
     rays = [_Ray(0, 1.0, head, f"{mechanism.head.driver}/{mechanism.head.driven}")]
@@ -89,6 +90,7 @@ def layshaft_sheet(design: LayshaftDesign, problem: LayshaftProblem, title: str)
         gears.append((f"gear {k}", f"{gear.layshaft} : {gear.mainshaft}, ratio {length(gear.ratio.value, digits=5)}"))
     if mechanism.reverse is not None:
         back = mechanism.reverse
+        # The ratio of reverse is negative; the diagram shows the magnitude of the speed.
         main.append(-1.0 / back.ratio.value)
         rays.append(_Ray(1, head, main[-1], f"R {back.layshaft}/{back.idler}/{back.mainshaft}"))
         ratio = length(back.ratio.value, digits=5)
@@ -115,9 +117,10 @@ def _sheet(heading: str, words: str, diagram: Element, tables: Sequence[blocks.B
 
 
 def _diagram(names: Sequence[str], shafts: Sequence[Sequence[float]], rays: Sequence[_Ray]) -> Element:
-    """The ray diagram: equal heights are equal quotients of speeds."""
+    """Draw the ray diagram; equal heights are equal quotients of speeds."""
     panel = Box(EDGE, TOP, EDGE + beside(COLUMN), TOP + HEIGHT)
     every = [speed for speeds in shafts for speed in speeds]
+    # A logarithmic scale makes rays of one pair parallel.
     low, high = math.log(min(every)), math.log(max(every))
     span = (high - low) or 1.0
 
@@ -152,5 +155,6 @@ def _diagram(names: Sequence[str], shafts: Sequence[Sequence[float]], rays: Sequ
 
 def _label(at: complex, words: str, colour: str) -> Element:
     half = 0.5 * text_width(words, SPEED) + 2.0
+    # A background keeps the label legible on its ray.
     clear = element("rect", x=at.real - half, y=at.imag - 7.0, width=2.0 * half, height=14.0, fill=PAPER)
     return element("g", clear, text(at.real, at.imag + 3.8, words, SPEED, fill=colour, text_anchor="middle"))

@@ -1,4 +1,4 @@
-"""What the drawings of gears have in common: the two circles of a gear, framed labels, colours."""
+"""Elements shared by the drawings of gears: the two circles of a gear, framed labels, colours."""
 
 from __future__ import annotations
 
@@ -10,25 +10,27 @@ from service.render.page.svg import Box, Element, Points, Viewport, circle, elem
 from service.render.page.symbols import COUPLER, CURVE, INPUT, OUTPUT
 
 PAPER = "#fbfcfd"
-"""Of a panel."""
+"""Background of a panel."""
 
 COLOURS = (INPUT, OUTPUT, COUPLER, CURVE)
-"""Of the stages."""
+"""Colours of the stages."""
 
 LABEL = 11.5
 """Font size of a label, pixels."""
 
 SEEN = 0.8
-"""Distance of points of an outline that are told apart, pixels."""
+"""Minimum distance of points of an outline, pixels; closer points are dropped."""
 
 HALF_HEIGHT = 8.0
-"""Of a label's frame, pixels."""
+"""Half the height of a label's frame, pixels."""
 
 
 def circles(
     gear: Gear, centre: complex, view: Viewport, colour: str, shaded: str, opacity: float, /, **marks: str
 ) -> Element:
-    """Tip circle thin and pitch circle dash-dotted; the one that ``shaded`` names, "tip" or "pitch", is filled."""
+    """Draw the tip circle thin and the pitch circle dash-dotted; the one named by ``shaded``, "tip" or "pitch", is
+    filled.
+    """
     at = view.point(centre)
     faces: dict[str, dict[str, str | float]] = {"tip": {"fill": "none"}, "pitch": {"fill": "none"}}
     faces[shaded] = {"fill": colour, "fill_opacity": opacity}
@@ -38,8 +40,9 @@ def circles(
 
 
 def shifted_teeth(placed: PlacedGear, view: Viewport, colour: str) -> list[Element]:
-    """The true outline of a gear whose circles alone do not show what its profile shift makes of it."""
+    """Draw the true outline of a gear whose profile shift its circles alone do not show."""
     teeth = placed.teeth()
+    # A pointed cutter has no outline; the circles remain.
     if teeth is None:
         return []
     drawn = path([_thinned(view.points(placed.centre + np.append(teeth, teeth[:1])))], stroke=colour, stroke_width=0.7)
@@ -47,7 +50,7 @@ def shifted_teeth(placed: PlacedGear, view: Viewport, colour: str) -> list[Eleme
 
 
 def _thinned(points: Points) -> Points:
-    """Without points that lie closer to the one before than the eye sees."""
+    """Drop points that are too close to their predecessor to be visible."""
     along = np.concatenate([[0.0], np.cumsum(np.abs(np.diff(points)))])
     kept = np.concatenate([[True], np.diff(np.floor(along / SEEN)) > 0.0])
     kept[-1] = True
@@ -55,13 +58,13 @@ def _thinned(points: Points) -> Points:
 
 
 def label_box(at: complex, words: str) -> Box:
-    """What a label about a point covers."""
+    """Return the box covered by a label about a point."""
     half = 0.5 * text_width(words, LABEL) + 3.0
     return Box(at.real - half, at.imag - HALF_HEIGHT, at.real + half, at.imag + HALF_HEIGHT)
 
 
 def label(box: Box, words: str, colour: str, name: str) -> Element:
-    """Words in a rounded frame."""
+    """Draw words in a rounded frame."""
     frame = element(
         "rect", x=box.left, y=box.low, width=box.width, height=box.height, rx=3.0, fill="#fff", stroke=colour
     )

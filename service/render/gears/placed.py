@@ -1,4 +1,4 @@
-"""A gear in its place in a drawing, turned so that its teeth stand in the spaces of its mate."""
+"""A gear at its place in a drawing, rotated so that its teeth mesh with its mate."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from service.render.page.svg import Box, Points
 
 @dataclass(frozen=True)
 class PlacedGear:
-    """A gear in a drawing; ``tooth_at`` is the angle of one tooth's middle, the helix angle is in radians."""
+    """A gear in a drawing; ``tooth_at`` is the angle of one tooth's middle; angles in radians."""
 
     gear: Gear
     centre: complex
@@ -30,15 +30,15 @@ class PlacedGear:
 
     @property
     def reach(self) -> float:
-        """Radius of all that a drawing has to hold of it."""
+        """Radius of the drawn gear."""
         return self.gear.tip_radius
 
     def corners(self) -> Points:
-        """Corners of a box around the gear."""
+        """Return two corners of a box around the gear."""
         return np.array([self.centre + side * self.reach for side in (-1 - 1j, 1 + 1j)])
 
     def teeth(self) -> Points | None:
-        """Outline of all teeth about the centre; None for teeth whose cutter would come to a point, which have none."""
+        """Return the outline of all teeth about the centre; None if the cutter would come to a point."""
         try:
             return np.asarray(outline(self.gear, self.tooth_at, self.helix_angle))
         except DimensionError:
@@ -46,18 +46,21 @@ class PlacedGear:
 
 
 def box_around(gears: Iterable[PlacedGear]) -> Box:
-    """The box around all tip circles, or what else a drawing shows of them."""
+    """Return the box around all drawn gears."""
     return Box.around(np.concatenate([gear.corners() for gear in gears]))
 
 
 def facing(gear: Gear, tooth_at: float, mate: Gear, ahead: float) -> float:
-    """Angle of a tooth of ``mate`` so that a space of it faces the tooth of ``gear`` nearest to their contact.
+    """Return the angle of a tooth of ``mate`` at which one of its spaces faces the nearest tooth of ``gear`` at the
+    contact.
 
-    That tooth of ``gear`` is some way past the contact on the pitch circle; the space of ``mate`` is as far past it:
-    the other way round for external gears. ``ahead`` is the direction from the centre of ``gear`` to the contact; with
-    internal teeth both see it the same way.
+    That tooth of ``gear`` is at some arc length past the contact on the pitch circle, and the space of ``mate`` at the
+    same length past it, in the opposite direction for external gears. ``ahead`` is the direction from the centre of
+    ``gear`` to the contact; with internal teeth both gears have it in the same direction.
     """
+    # Arc length of the nearest tooth past the contact, as an angle of the mate.
     past = math.remainder(tooth_at - ahead, 2.0 * math.pi / gear.teeth) * gear.pitch_radius / mate.pitch_radius
+    # Gears in internal mesh turn in the same direction.
     if gear.internal or mate.internal:
         return ahead + past + math.pi / mate.teeth
     return ahead + math.pi - past + math.pi / mate.teeth

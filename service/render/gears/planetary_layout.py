@@ -1,4 +1,4 @@
-"""Where the gears of a planetary train stand: centres, planes, and the turn of each gear so that all teeth mesh."""
+"""Positions of the gears of a planetary train: centres, planes, and rotations in which all teeth mesh."""
 
 from __future__ import annotations
 
@@ -24,9 +24,9 @@ class PlanetaryGear(PlacedGear):
 
 
 def placed_planetary_gears(mechanism: PlanetaryMechanism) -> list[PlanetaryGear]:
-    """All gears with the axis at 0 and the first planet of each set on the positive real axis.
+    """Return all gears with the axis at 0 and the first planet of each set on the positive real axis.
 
-    Bevel gears are shown as if spread out in one plane, and without meshing teeth.
+    Bevel gears are shown spread out in one plane, without meshing teeth.
     """
     arrangement = ARRANGEMENTS[mechanism.arrangement]
     placed = pins(arrangement, mechanism.teeth)
@@ -42,6 +42,7 @@ def placed_planetary_gears(mechanism: PlanetaryMechanism) -> list[PlanetaryGear]
         )
         for name in arrangement.gear_names
     }
+    # Pins are computed for module 1.
     centres = {planet: mechanism.module * pin for planet, pin in placed.items()}
     first = _first_copies(arrangement, gears, centres)
     layout = []
@@ -61,13 +62,14 @@ def placed_planetary_gears(mechanism: PlanetaryMechanism) -> list[PlanetaryGear]
 
 
 def _first_copies(arrangement: Arrangement, gears: dict[str, Gear], centres: dict[str, complex]) -> dict[str, float]:
-    """Angles of a tooth of every gear, with the first copies of the planets in mesh."""
+    """Return the angle of a tooth of every gear with the first copies of the planets in mesh."""
     turned: dict[str, float] = {}
     for start in arrangement.gear_names:
         if start in turned:
             continue
         turned[start] = 0.0
         waiting = [start]
+        # Propagate the rotation from gear to gear; each gear is fixed when it is first reached.
         while waiting:
             known = waiting.pop()
             for mate in arrangement.meshing(known):
@@ -79,8 +81,9 @@ def _first_copies(arrangement: Arrangement, gears: dict[str, Gear], centres: dic
 
 
 def _direction(arrangement: Arrangement, centres: dict[str, complex], own: str, mate: str) -> float:
-    """Angle from the centre of ``own`` to its contact with ``mate``."""
+    """Return the angle from the centre of ``own`` to its contact with ``mate``."""
     here, there = (centres.get(arrangement.places[gear].body, 0j) for gear in (own, mate))
+    # In internal mesh both centres lie on the same side of the contact.
     if arrangement.places[own].internal or arrangement.places[mate].internal:
         return cmath.phase(here or there)
     return cmath.phase(there - here)
@@ -94,13 +97,14 @@ def _turned(
     planet: str,
     turn: float,
 ) -> float:
-    """How far a copy of a planet, ``turn`` ahead of the first, is turned itself so that all its gears mesh.
+    """Return the own rotation of a planet's copy, ``turn`` ahead of the first, with which all its gears mesh.
 
-    Its first gear fixes the rotation up to whole teeth; of these the one that suits the other gears best is taken.
+    Its first gear determines the rotation up to whole teeth; among these the best fit for the other gears is chosen.
     """
     (own, central), *others = arrangement.central_meshes(planet)
     ahead = cmath.phase(centres[planet]) + turn
     base = _wanted(gears, first, central, own, ahead) - first[own]
+    # Rotations by whole teeth of the first gear leave its own mesh unchanged.
     pitch = 2.0 * math.pi / gears[own].teeth
 
     def misfit(turned: float) -> float:
@@ -117,5 +121,5 @@ def _turned(
 
 
 def _wanted(gears: dict[str, Gear], first: dict[str, float], central: str, own: str, ahead: float) -> float:
-    """Angle of a tooth of a planet gear that meshes with a sun or ring, its pin in direction ``ahead``."""
+    """Return the angle of a tooth of a planet gear that meshes with a sun or ring, its pin in direction ``ahead``."""
     return facing(gears[central], first[central], gears[own], ahead)

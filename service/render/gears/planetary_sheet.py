@@ -1,4 +1,4 @@
-"""The sheet of a planetary train: the pitch circles of each plane to scale, and tables beside them."""
+"""The sheet of a planetary train: the pitch circles of each plane to scale, and tables."""
 
 from __future__ import annotations
 
@@ -19,20 +19,20 @@ from synthesis.kinds.planetary_train.design import PlanetaryDesign, PlanetaryMec
 from synthesis.kinds.planetary_train.problem import PlanetaryProblem
 
 LARGEST = "largest pitch diameter"
-"""What the size of a planetary train is."""
+"""Name of the metric `size` of a planetary train."""
 
 HEIGHT, HEIGHT_OF_SEVERAL, APART = 560.0, 430.0, 10.0
-"""Heights of a panel that is alone, and of one of several, and the space between these, pixels."""
+"""Heights of a single panel and of one of several, and the space between these, pixels."""
 
 RING_LABEL, SUN_LABEL = 140.0, 250.0
-"""Angles on the pitch circles of the gears about the main axis at which their labels stand, degrees."""
+"""Angles on the pitch circles of the gears about the main axis at which their labels are placed, degrees."""
 
 MARGIN = 24.0
-"""Room in a panel around what is shown, and more of it below, pixels."""
+"""Margins in a panel around the content, and additional space below, pixels."""
 
 
 def planetary_sheet(design: PlanetaryDesign, problem: PlanetaryProblem, title: str) -> str:
-    """The drawing of a planetary train as a complete SVG document: one panel a plane."""
+    """Draw a planetary train as a complete SVG document: one panel per plane."""
     mechanism, unit = design.mechanism, problem.length_unit
     gears = placed_planetary_gears(mechanism)
     planes = sorted({plane for placed in gears for plane in placed.planes})
@@ -50,8 +50,9 @@ def planetary_sheet(design: PlanetaryDesign, problem: PlanetaryProblem, title: s
 
 
 def around(gears: list[PlanetaryGear]) -> Box:
-    """The box about the axis with all gears in it."""
+    """Return the box centred on the axis that contains all gears."""
     module = max((placed.gear.module for placed in gears), default=1.0)
+    # Symmetric about the axis, so that all planes share one scale.
     reach = max((abs(placed.centre) + placed.gear.pitch_radius for placed in gears), default=1.0) + module
     return Box(-reach, -reach, reach, reach)
 
@@ -73,11 +74,12 @@ def _colour(placed: PlanetaryGear, mechanism: PlanetaryMechanism) -> str:
 def planetary_panel(
     mechanism: PlanetaryMechanism, view: Viewport, gears: list[PlanetaryGear], name: str, unit: str
 ) -> Element:
-    """The gears of one plane in a panel."""
+    """Draw the gears of one plane in a panel."""
     panel = view.panel
     group = framed(panel, name or "main", PAPER)
     if name:
         group.add(caption(panel, name))
+    # Large gears first, so that small ones remain visible.
     for placed in sorted(gears, key=lambda p: -p.gear.pitch_radius):
         marks = {"data_gear": placed.name, "data_teeth": f"{placed.gear.teeth:g}", "data_copy": f"{placed.copy}"}
         group.add(circles(placed.gear, placed.centre, view, _colour(placed, mechanism), "pitch", 0.05, **marks))
@@ -106,7 +108,7 @@ def _label(placed: PlanetaryGear, view: Viewport, colour: str) -> Element:
 
 
 def _of_plane(plane: int, widths: list[float | None] | None) -> str:
-    """Which plane is meant, where there are several."""
+    """Return the name of a plane, if there are several."""
     return f" in plane {plane}" if widths is not None and len(widths) > 1 else ""
 
 

@@ -1,4 +1,4 @@
-"""Where the gears of trains in series stand, and how each turns: units side by side, each as its kind lays it out."""
+"""Positions and speeds of the gears of trains in series: units side by side, each arranged as its kind requires."""
 
 from __future__ import annotations
 
@@ -14,15 +14,16 @@ from synthesis.kinds.train_series.design import TrainSeriesDesign
 from synthesis.kinds.train_series.problem import TrainSeriesProblem
 
 APART = 0.15
-"""Room between two units, as a share of the wider one."""
+"""Space between two units, as a share of the wider one."""
 
 
 @dataclass(frozen=True)
 class SeriesGear:
     """A gear of a unit.
 
-    ``speed`` and ``orbit`` are its own speed and that of its carrier about ``axis``, over the input's of the series.
-    ``layers`` are the names of what it is drawn on, ``line`` tells its words from those of others at one centre.
+    ``speed`` and ``orbit`` are its own speed and that of its carrier about ``axis``, relative to the input's of the
+    series. ``layers`` are the names of its layers; ``line`` separates its words from those of others at the same
+    centre.
     """
 
     placed: PlacedGear
@@ -38,7 +39,7 @@ class SeriesGear:
 
 
 def series_layout(design: TrainSeriesDesign, problem: TrainSeriesProblem) -> list[SeriesGear]:
-    """All gears from the input on, the first unit's axis at the origin."""
+    """Arrange all gears from the input on, the first unit's axis at the origin."""
     layout: list[SeriesGear] = []
     right = 0.0
     for k in range(len(design.mechanism.units)):
@@ -46,6 +47,7 @@ def series_layout(design: TrainSeriesDesign, problem: TrainSeriesProblem) -> lis
         if not gears:
             continue
         box = box_around(gear.placed for gear in gears)
+        # Place the unit to the right of the previous one.
         aside = 0j if not layout else complex(right + APART * box.width - box.left)
         right = box.right + aside.real
         layout += [
@@ -56,7 +58,7 @@ def series_layout(design: TrainSeriesDesign, problem: TrainSeriesProblem) -> lis
 
 
 def unit_layout(design: TrainSeriesDesign, problem: TrainSeriesProblem, number: int) -> Sequence[SeriesGear]:
-    """The gears of one unit, counted from 0, about its own origin."""
+    """Arrange the gears of one unit, counted from 0, about its own origin."""
     unit, metrics = design.mechanism.units[number], design.metrics.units[number]
     share = design.metrics.speeds[number]
     name = f"UNIT_{number + 1}"
@@ -71,6 +73,7 @@ def unit_layout(design: TrainSeriesDesign, problem: TrainSeriesProblem, number: 
                 placed.name.replace("_", " "),
                 placed.copy,
                 tuple(f"{name}_PLANE_{plane}" for plane in placed.planes),
+                # Adding 0 turns -0.0 into 0.0.
                 share * metrics.speeds[placed.body] + 0.0,
                 share * metrics.speeds.get(arrangement.carriers.get(placed.body, ""), 0.0),
                 0j,

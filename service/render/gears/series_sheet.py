@@ -1,4 +1,4 @@
-"""The sheet of trains in series: a panel for every unit, one for each of its planes, each to its scale, and tables."""
+"""The sheet of trains in series: a panel for each unit or each of its planes, to individual scales, and tables."""
 
 from __future__ import annotations
 
@@ -19,14 +19,16 @@ from synthesis.kinds.train_series.design import TrainSeriesDesign, UnitMechanism
 from synthesis.kinds.train_series.problem import TrainSeriesProblem
 
 HEIGHT, HEIGHTS, APART = 360.0, (220.0, 420.0), 10.0
-"""Height of a panel of a planetary unit, the least and the greatest of one of ordinary gears, and the space between."""
+"""Panel height of a planetary unit, minimum and maximum panel height of ordinary gears, and space between panels,
+pixels.
+"""
 
 MARGIN, FOOT = 24.0, 26.0
-"""Room in a panel around what is shown, and more of it below, pixels."""
+"""Margins in a panel around the content, and additional space below, pixels."""
 
 
 def series_sheet(design: TrainSeriesDesign, problem: TrainSeriesProblem, title: str) -> str:
-    """The drawing of trains in series as a complete SVG document."""
+    """Draw trains in series as a complete SVG document."""
     parts: list[Element] = []
     low = TOP
     for k, unit in enumerate(design.mechanism.units):
@@ -44,11 +46,12 @@ def series_sheet(design: TrainSeriesDesign, problem: TrainSeriesProblem, title: 
 
 
 def _unit(unit: UnitMechanism, problem: TrainSeriesProblem, number: int, low: float) -> tuple[list[Element], float]:
-    """The panels of a unit below ``low``, and the y below them."""
+    """Draw the panels of a unit below ``low``; return them and the y below."""
     name, length_unit = f"unit {number + 1}", problem.length_unit
     if not isinstance(unit, PlanetaryMechanism):
         gears = placed_gears(unit, problem.units[number].reverted)
         view = fitted(box_around(gears), beside(), HEIGHTS, MARGIN, FOOT)
+        # The fitted panel starts at the top: move it below the previous ones.
         panel = Box(view.panel.left, low, view.panel.right, low + view.panel.height)
         shown = Viewport.fit(box_around(gears), panel, MARGIN, FOOT)
         typed = problem.units[number].stages is not None
@@ -75,7 +78,7 @@ def _words(design: TrainSeriesDesign) -> str:
 
 
 def _gears(unit: UnitMechanism) -> str:
-    """The gears of a unit and what drives, in words."""
+    """Describe the gears and the members of a unit in words."""
     if isinstance(unit, PlanetaryMechanism):
         gears = ", ".join(f"{name} {teeth}" for name, teeth in unit.teeth.items())
         members = f"{unit.input} to {unit.output}, {unit.fixed} fixed"

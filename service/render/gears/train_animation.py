@@ -1,4 +1,4 @@
-"""A gear train that turns as GIF: true outlines in mesh, each gear at its own speed."""
+"""A turning gear train as GIF: true outlines in mesh, each gear at its own speed."""
 
 from __future__ import annotations
 
@@ -16,25 +16,25 @@ from synthesis.kinds.gear_train.problem import GearTrainProblem
 from synthesis.kinds.gear_train.verification import driven_train
 
 COLOURS = (INPUT, OUTPUT, COUPLER)
-"""Of the stages."""
+"""Colours of the stages."""
 
 FACES = ("#e8eef6", "#e6f1ea", "#f8eee2")
 
 SPOKE, HUB = 0.8, 0.08
-"""Length of the line that shows how a gear turns, and radius of its shaft, as shares of the pitch radius."""
+"""Length of the line that shows a gear's rotation, and radius of its shaft, as shares of the pitch radius."""
 
 PITCHES = 6
-"""Teeth of the input gear that pass in one cycle; the other stages' gears stand otherwise at its end."""
+"""Number of the input gear's teeth that pass in one cycle; gears of other stages do not return to their start."""
 
 
 def gear_train_animation(design: GearTrainDesign, problem: GearTrainProblem, title: str) -> bytes:
-    """Some teeth of a gear train's input as GIF."""
+    """Draw a gear train over some teeth of its input as GIF."""
     gears = placed_gears(design.mechanism, problem.reverted)
-    # Rings lie behind what runs in them.
+    # Rings lie behind the gears that run inside them.
     gears.sort(key=lambda gear: not gear.gear.internal)
     outlines = [_outline(gear) for gear in gears]
     first = design.mechanism.stages[0]
-    # A worm that drives takes a tooth of its gear along with every thread.
+    # A driving worm advances its gear by one tooth per thread.
     turn = math.tau * (1 if first.type == "worm" else PITCHES) / first.driver
     train = driven_train(design.mechanism)
 
@@ -42,6 +42,7 @@ def gear_train_animation(design: GearTrainDesign, problem: GearTrainProblem, tit
         for k in range(FRAMES):
             strokes = []
             for gear, points in zip(gears, outlines, strict=True):
+                # Rotation of the gear in this frame.
                 turned = complex(np.exp(1j * turn * k / FRAMES * float(gear.speed)))
                 colour, face = COLOURS[(gear.stage - 1) % 3], FACES[(gear.stage - 1) % 3]
                 if gear.section is not None:
@@ -67,7 +68,7 @@ def gear_train_animation(design: GearTrainDesign, problem: GearTrainProblem, tit
 
 
 def _ring_strokes(gear: TrainGear, points: Points, turned: complex, colour: str, face: str) -> list[Stroke]:
-    """A ring as its rim, its teeth within, and a line that shows how it turns."""
+    """Return a ring as its rim, its internal teeth, and a line that shows its rotation."""
     inner = gear.gear.root_radius
     return [
         Stroke(ring(gear.centre, gear.reach), colour, 1.4, closed=True, fill=face),
@@ -77,6 +78,6 @@ def _ring_strokes(gear: TrainGear, points: Points, turned: complex, colour: str,
 
 
 def _outline(placed: TrainGear) -> Points:
-    """All teeth around the origin; the pitch circle where there are none."""
+    """Return all teeth around the origin; the pitch circle if there are none."""
     teeth = placed.teeth()
     return ring(0j, placed.pitch_radius) if teeth is None else teeth

@@ -1,12 +1,12 @@
-"""Where the gears of an ordinary train stand: shaft centres in the plane, and the turn of each gear so that teeth mesh.
+"""Positions of the gears of an ordinary train: shaft centres in the plane, and rotations in which all teeth mesh.
 
-The shafts stand in one line; those of a reverted train go back and forth between two places, or round a triangle for
-three stages, so that the output shaft comes to stand on the input's axis. A ring stands so that its pinion is towards
-the shaft before.
+The shafts lie on one line; those of a reverted train alternate between two places, or go round a triangle for three
+stages, so that the output shaft returns to the input's axis. A ring is placed so that its pinion is towards the shaft
+before.
 
-Shafts that meet or cross have no plane in common: a train with bevel or worm stages has several *views*, side by side.
-Stages of parallel shafts are seen against their axes, bevel stages cut by the plane of their shafts, worm stages by
-the middle plane of the gear.
+Shafts that intersect or cross have no common plane: a train with bevel or worm stages has several *views*, side by
+side. Stages of parallel shafts are viewed along their axes, bevel stages are cut by the plane of their shafts, worm
+stages by the middle plane of the gear.
 """
 
 from __future__ import annotations
@@ -28,21 +28,20 @@ from synthesis.kinds.gear_train.design import GearTrainMechanism
 from synthesis.kinds.gear_train.verification import driven_train
 
 SAME_DISTANCE = 1e-9
-"""Share of a centre distance by which those of a reverted train may differ in rounding."""
+"""Relative difference of centre distances due to rounding up to which a reverted train counts as coaxial."""
 
 APART = 0.15
-"""Room between two views, as a share of the wider one."""
+"""Space between two views, as a share of the wider one."""
 
 RIM = 1.0
-"""Width of a ring beyond its roots, modules."""
+"""Width of a ring outside its root circle, modules."""
 
 
 @dataclass(frozen=True)
 class TrainGear(PlacedGear):
-    """A gear of an ordinary train; ``speed`` is its share of the input's, ``count`` are its teeth or threads.
+    """A gear of an ordinary train; ``speed`` is relative to the input's, ``count`` is its number of teeth or threads.
 
-    ``section`` is what is drawn of a gear that is cut along its axis, ``view`` the number of the view that it stands
-    in.
+    ``section`` is the section of a gear that is drawn cut along its axis, ``view`` is the number of its view.
     """
 
     stage: int
@@ -54,28 +53,30 @@ class TrainGear(PlacedGear):
 
     @property
     def reach(self) -> float:
-        """Radius of all that is drawn of it about its centre, but of a section."""
+        """Radius of the drawn gear about its centre; does not apply to sections."""
         return self.gear.root_radius + RIM * self.gear.module if self.gear.internal else self.gear.tip_radius
 
     def teeth(self) -> Points | None:
-        """Outline about the centre: all teeth, or what a section shows."""
+        """Return the outline about the centre: all teeth, or the outline of the section."""
         return super().teeth() if self.section is None else self.section.outline
 
     def corners(self) -> Points:
-        """Corners of a box around the gear."""
+        """Return corners of a box around the gear."""
         if self.section is None:
             return super().corners()
         return self.centre + np.concatenate([self.section.outline, self.section.axis])
 
 
 def placed_gears(mechanism: GearTrainMechanism, reverted: bool) -> list[TrainGear]:
-    """All gears in the order of the power, the input shaft, or the apex of its gears, at 0."""
+    """Arrange all gears in the order of the power flow; the input shaft, or the apex of its gears, is at 0."""
     train = driven_train(mechanism)
     distances = train.centre_distances
+    # Unequal distances cannot return to the input's axis.
     coaxial = reverted and max(distances) - min(distances) <= SAME_DISTANCE * max(distances)
     placed: list[TrainGear] = []
     shaft, view, before = 0j, 0, True
     for number, stage in enumerate(train.stages):
+        # A change between parallel and crossing shafts starts a new view.
         if number and not (before and stage.is_parallel):
             shaft, view = 0j, view + 1
         before = stage.is_parallel
@@ -89,14 +90,14 @@ def placed_gears(mechanism: GearTrainMechanism, reverted: bool) -> list[TrainGea
 
 
 def in_line(train: OrdinaryTrain, number: int, shaft: complex, ahead: complex) -> Iterator[TrainGear]:
-    """The gears of a stage of parallel shafts, from the driver's shaft on ahead."""
+    """Yield the gears of a stage of parallel shafts, from the driver's shaft in the direction ``ahead``."""
     stage, speeds, distance = train.stages[number], train.speeds[number], train.centre_distances[number]
     roles = ["driver", *("idler" for _ in stage.idlers), "driven"]
-    # A pinion meshes with the ring around it on the side that is away from the ring's axis.
+    # A pinion meshes with the ring around it on the side away from the ring's axis.
     contact = -ahead if stage.kind == "internal" and stage.driver < stage.driven else ahead
     centre, tooth_at = shaft, cmath.phase(contact)
     previous: Gear | None = None
-    # Shifted gears stand apart by more, or by less, than their pitch circles.
+    # Profile shifts change the centre distance: scale the pitch radii to the true distance.
     wide = 1.0
     if stage.shifts != (0.0, 0.0):
         wide = distance / sum(mesh.standard_distance for mesh in train.meshes[number])
@@ -112,7 +113,7 @@ def in_line(train: OrdinaryTrain, number: int, shaft: complex, ahead: complex) -
 
 
 def _crossing(train: OrdinaryTrain, number: int, view: int) -> list[TrainGear]:
-    """A bevel or worm stage in a view of its own."""
+    """Return a bevel or worm stage in a view of its own."""
     stage, (first, last) = train.stages[number], train.speeds[number]
     driver, driven = stage.driver, stage.driven
     if stage.kind == "bevel":
@@ -128,6 +129,7 @@ def _crossing(train: OrdinaryTrain, number: int, view: int) -> list[TrainGear]:
         ]
     worm = stage.worm(train.pressure_angle)
     threads = Gear(stage.quotient, stage.module, train.pressure_angle)
+    # A space of the gear faces the worm above it.
     facing_worm = 0.5 * math.pi + math.pi / driven
     return [
         TrainGear(
@@ -138,7 +140,7 @@ def _crossing(train: OrdinaryTrain, number: int, view: int) -> list[TrainGear]:
 
 
 def _side_by_side(gears: list[TrainGear]) -> list[TrainGear]:
-    """The views of a train beside one another, the first where it is."""
+    """Arrange the views of a train side by side, the first in place."""
     placed: list[TrainGear] = []
     right = 0.0
     for view in range(gears[-1].view + 1):
@@ -151,7 +153,7 @@ def _side_by_side(gears: list[TrainGear]) -> list[TrainGear]:
 
 
 def view_words(gears: Sequence[TrainGear], stages: Sequence[TrainStage]) -> list[tuple[Box, str]]:
-    """What each view shows, with the box around it; empty for a train in one plane."""
+    """Return the caption of each view and the box around it; an empty list for a train in one plane."""
     words = []
     for view in range(gears[-1].view + 1):
         own = [gear for gear in gears if gear.view == view]
@@ -164,10 +166,11 @@ def view_words(gears: Sequence[TrainGear], stages: Sequence[TrainStage]) -> list
 
 
 def caption_rows(spans: Sequence[tuple[float, float]], apart: float) -> list[int]:
-    """In which row, from 0 on, the caption of each view stands so that those of a row are ``apart``; ends of each."""
+    """Return for each caption its row, from 0, such that captions of a row keep the distance ``apart``."""
     ends: list[float] = []
     rows = []
     for left, right in spans:
+        # First row with enough space, or a new row.
         row = next((k for k, end in enumerate(ends) if end + apart <= left), len(ends))
         ends[row : row + 1] = [right]
         rows.append(row)
@@ -175,20 +178,22 @@ def caption_rows(spans: Sequence[tuple[float, float]], apart: float) -> list[int
 
 
 def moved_section(gear: TrainGear, stage: TrainStage, pressure_angle: float, turned: float) -> Points:
-    """The outline of a section when the input has turned so far, radians: a worm's threads go along its axis."""
+    """Return the outline of a section after a rotation of the input (radians): a worm's threads move along its axis."""
     assert gear.section is not None
     if stage.kind != "worm":
         return gear.section.outline
     worm = stage.worm(pressure_angle)
-    # The gear below turns counter-clockwise where its speed is positive, and takes the threads to the left.
+    # The gear below turns counter-clockwise if its speed is positive, and moves the threads to the left.
     along = -float(gear.speed) * turned * worm.dimensions.lead / math.tau * stage.sense
     return np.asarray(worm_section(worm, along).outline)
 
 
 def _direction(number: int, stages: int, coaxial: bool) -> complex:
-    """Unit vector from one shaft to the next."""
+    """Return the unit vector from one shaft to the next."""
     if not coaxial:
         return 1.0 + 0j
     if stages == 3:
+        # Three equal distances close a triangle.
         return cmath.exp(2j * math.pi * number / 3.0)
+    # Two places: forwards and backwards in turn.
     return complex((-1) ** number)

@@ -1,4 +1,4 @@
-"""The sheet of a gear train: its pitch circles to scale, with teeth, shafts and directions, and tables beside them."""
+"""The sheet of a gear train: pitch circles to scale, with teeth, shafts and directions, and tables."""
 
 from __future__ import annotations
 
@@ -23,29 +23,29 @@ from synthesis.kinds.gear_train.verification import driven_train
 from synthesis.model.gear_answer import MeshGeometry
 
 HEIGHTS = (420.0, 860.0)
-"""Least and greatest height of the drawing, pixels."""
+"""Minimum and maximum height of the drawing, pixels."""
 
 MARGIN, FOOT = 20.0, 26.0
-"""Room in the panel around what is shown, and more of it below for the scale bar, pixels."""
+"""Margins in the panel around the content, and additional space below for the scale bar, pixels."""
 
 CAPTION, CAPTIONS_APART = 14.0, 14.0
-"""Depth of a row of captions, below all that is shown, and room between two of a row, pixels."""
+"""Height of a row of captions below the content, and space between two captions of a row, pixels."""
 
 CAPTION_LETTERS = 10.5
 """Font size of a caption, pixels."""
 
 TURN_RADII, TURN = (14.0, 30.0), 140.0
-"""Least and greatest radius, pixels, and angle, degrees, of the arrow that shows how a shaft turns."""
+"""Minimum and maximum radius (pixels) and angle (degrees) of the arrow that shows a shaft's rotation."""
 
 TURN_OF_DRIVERS, TURN_OF_OUTPUT = 200.0, 20.0
-"""Angles at which these arrows begin, degrees: on coaxial shafts the output's is opposite to the input's."""
+"""Start angles of these arrows, degrees: on coaxial shafts the output's is opposite to the input's."""
 
 PLACES = (90.0, 65.0, 115.0, 40.0, 140.0, 270.0, 245.0, 295.0, 220.0, 320.0, 15.0, 165.0)
-"""Angles on the pitch circle, degrees, at which a gear's label is tried, the first that is free."""
+"""Trial angles of a gear's label on the pitch circle, degrees, in order of preference."""
 
 
 def gear_train_sheet(design: GearTrainDesign, problem: GearTrainProblem, title: str) -> str:
-    """The drawing of a gear train as a complete SVG document."""
+    """Draw a gear train as a complete SVG document."""
     gears = placed_gears(design.mechanism, problem.reverted)
     view, captions = _captioned(gears, view_words(gears, driven_train(design.mechanism).stages))
     tables, y = stacked(_tables(design, problem, gears))
@@ -57,17 +57,18 @@ def gear_train_sheet(design: GearTrainDesign, problem: GearTrainProblem, title: 
 
 
 def _captioned(gears: list[TrainGear], told: list[tuple[Box, str]]) -> tuple[Viewport, list[Element]]:
-    """A panel with room for what is told of each view, in as many rows below all of them as keep the words apart."""
+    """Return a panel with captions of all views, in as many rows below as keep the words separate."""
     shown, depth = box_around(gears), 0
     while True:
         view = fitted(shown, beside(), HEIGHTS, MARGIN, FOOT + depth * CAPTION)
         spans = []
         for box, words in told:
             wide, panel = text_width(words, CAPTION_LETTERS), view.panel
+            # Keep captions inside the panel.
             left = max(panel.left + 6.0, min(view.point(complex(box.left)).real, panel.right - 6.0 - wide))
             spans.append((left, left + wide))
         rows = caption_rows(spans, CAPTIONS_APART)
-        # More rows leave less room for the views, which can take still more rows: at most one for each.
+        # More rows leave less space for the views, which may need still more rows; at most one row per view.
         if max(rows, default=-1) < depth:
             break
         depth += 1
@@ -99,9 +100,9 @@ def _description(design: GearTrainDesign, problem: GearTrainProblem) -> str:
 
 
 def train_panel(gears: list[TrainGear], view: Viewport, unit: str, name: str = "main", typed: bool = False) -> Element:
-    """All gears with their shafts and directions in a panel; of stages with types with all their teeth."""
+    """Draw all gears with their shafts and directions in a panel; for typed stages with all their teeth."""
     group = framed(view.panel, name, PAPER)
-    # Rings lie behind what runs in them.
+    # Rings lie behind the gears that run inside them.
     for placed in sorted(gears, key=lambda gear: not gear.gear.internal):
         marks = {"data_stage": f"{placed.stage}", "data_gear": placed.role, "data_teeth": f"{placed.count}"}
         colour = COLOURS[placed.stage - 1]
@@ -119,6 +120,7 @@ def train_panel(gears: list[TrainGear], view: Viewport, unit: str, name: str = "
         if placed.section is not None:
             continue
         at = view.point(placed.centre)
+        # Coaxial gears share one shaft symbol.
         if all(abs(at - shaft) > 0.5 for shaft in shafts):
             shafts.append(at)
             group.add(*_shaft(at))
@@ -128,6 +130,7 @@ def train_panel(gears: list[TrainGear], view: Viewport, unit: str, name: str = "
             placed.role != "driven" or (placed is not gears[-1] and placed is last[placed.view])
         ):
             group.add(*_turn(placed, view, TURN_OF_DRIVERS))
+    # The output's arrow starts opposite, so that it stays visible on coaxial shafts.
     if gears[-1].section is None:
         group.add(*_turn(gears[-1], view, TURN_OF_OUTPUT))
     for placed, words, below in ((gears[0], "in", 1.0), (gears[-1], "out", -1.0)):
@@ -135,7 +138,7 @@ def train_panel(gears: list[TrainGear], view: Viewport, unit: str, name: str = "
         at += below * 11j
         group.add(text(at.real + 5.0, at.imag + 4.0, words, 10.5, fill=GROUND))
     taken: list[Box] = []
-    # Threads and teeth in mesh stay in sight: no number of a round gear stands on a worm.
+    # Threads and teeth in mesh stay visible: no label of a round gear covers a worm.
     bodies = [Box.around(view.points(one.centre + one.section.outline)) for one in gears if one.section is not None]
     for placed in gears:
         group.add(_label(placed, view, taken, bodies))
@@ -144,7 +147,7 @@ def train_panel(gears: list[TrainGear], view: Viewport, unit: str, name: str = "
 
 
 def _section(placed: TrainGear, section: Section, view: Viewport, colour: str, marks: dict[str, str]) -> Element:
-    """A gear that is cut along its axis, with its pitch lines and the axis."""
+    """Draw a gear in axial section, with its pitch lines and the axis."""
     body = view.points(placed.centre + section.outline).tolist()
     drawn: list[Element | None] = [polygon(body, stroke=colour, stroke_width=0.9, fill=colour, fill_opacity=0.06)]
     dashed: dict[str, str | float] = {"stroke": colour, "stroke_width": 1.4, "stroke_dasharray": "9 3 2 3"}
@@ -159,12 +162,12 @@ def _shaft(at: complex) -> list[Element]:
 
 
 def _turn(placed: TrainGear, view: Viewport, start: float) -> list[Element]:
-    """An arrow round the shaft the way it turns, from an angle of ``start`` degrees."""
+    """Draw an arrow around the shaft in its sense of rotation, from an angle of ``start`` degrees."""
     at = view.point(placed.centre)
     radius = max(TURN_RADII[0], min(TURN_RADII[1], 0.4 * view.scale * placed.pitch_radius))
     way = 1.0 if placed.speed > 0 else -1.0
     angles = np.radians(np.linspace(start, start + TURN, 25))[:: 1 if way > 0 else -1]
-    # Sheet coordinates run down: the conjugate turns the way the gear does.
+    # Sheet coordinates point down: the conjugate turns as the gear does.
     points = np.asarray(at + radius * np.exp(-1j * angles), np.complex128)
     head = arrow(complex(points[-2]), complex(points[-1] + 5.0 * _unit(points[-1] - points[-2])), 3.6, GREY)
     drawn = path([points], stroke=GREY, stroke_width=1.4)
@@ -177,7 +180,7 @@ def _unit(vector: complex) -> complex:
 
 
 def _label(placed: TrainGear, view: Viewport, taken: list[Box], bodies: list[Box]) -> Element:
-    """Tooth number at the pitch circle, at the first place where it covers no other label and no body in section."""
+    """Draw the tooth number at the pitch circle, at the first place that covers no other label and no section."""
     words = f"{placed.count}"
     panel = view.panel.grown(-3.0)
     boxes = []
@@ -190,15 +193,17 @@ def _label(placed: TrainGear, view: Viewport, taken: list[Box], bodies: list[Box
     inside = [
         box for box in boxes if panel.holds(complex(box.left, box.low)) and panel.holds(complex(box.right, box.high))
     ]
+    # A section may carry its own label.
     covered = taken if placed.section is not None else [*taken, *bodies]
     free = [box for box in inside if not any(box.overlaps(other) for other in covered)]
+    # Prefer free places inside the panel, then any inside, then the first.
     box = (free or inside or boxes)[0]
     taken.append(box)
     return label(box, words, COLOURS[placed.stage - 1], words)
 
 
 def _named(placed: TrainGear, stage: Stage, unit: str) -> str:
-    """Teeth and pitch diameter of a gear."""
+    """Return teeth and pitch diameter of a gear as words."""
     what = "teeth"
     if stage.type == "worm" and placed.role == "driver":
         what = "thread" if placed.count == 1 else "threads"
@@ -207,9 +212,10 @@ def _named(placed: TrainGear, stage: Stage, unit: str) -> str:
 
 
 def _of_type(stage: Stage, mesh: MeshGeometry, unit: str) -> list[tuple[str, str]]:
-    """What belongs to the type of a stage."""
+    """Return the rows that depend on the type of a stage."""
     rows = []
     if stage.type == "internal" and mesh.addendum is not None:
+        # Only the ring's addendum is shortened.
         short = min(mesh.addendum.driver, mesh.addendum.driven)
         rows.append(("addendum of the ring", f"{short:.6g} modules"))
     if mesh.helix_angle is not None and mesh.transverse_module is not None:
@@ -231,7 +237,7 @@ def _of_type(stage: Stage, mesh: MeshGeometry, unit: str) -> list[tuple[str, str
 
 
 def _shafts(design: GearTrainDesign) -> list[blocks.Block]:
-    """How every shaft turns, of stages with types."""
+    """Return the block of all shafts' rotations, for typed stages."""
     if design.metrics.shafts is None:
         return []
     rows = []
@@ -267,7 +273,7 @@ def _tables(design: GearTrainDesign, problem: GearTrainProblem, gears: list[Trai
             estimate = ", a first estimate" if problem.strength is not None else ""
             rows.append((f"face width{estimate}", f"{length(stage.face_width)} {unit}"))
         if any(mesh.interferes for mesh in meshes):
-            rows.append(("interference", "yes; see suggested shift"))
+            rows.append(("interference", "yes; see the suggested shift"))
         tables.append(blocks.rows(f"Stage {number}", rows))
     tables += _shafts(design)
     tables.append(checks(design.verification, problem))

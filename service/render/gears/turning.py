@@ -1,4 +1,4 @@
-"""Trains with axes that go round, as GIF: true outlines in mesh, each gear at its own speed, planets on their arms."""
+"""Trains with moving axes as GIF: true outlines in mesh, each gear at its own speed, planets on their arms."""
 
 from __future__ import annotations
 
@@ -22,21 +22,21 @@ from synthesis.kinds.train_series.design import TrainSeriesDesign
 from synthesis.kinds.train_series.problem import TrainSeriesProblem
 
 PITCHES = 9.0
-"""Teeth of the gear that turns fastest past its mates that go by in a cycle: few enough for the eye to follow."""
+"""Number of teeth of the fastest mesh that pass in a cycle; few enough for the eye to follow."""
 
 RIM = 3.0
-"""Width of a ring beyond its pitch circle, modules."""
+"""Width of a ring outside its pitch circle, modules."""
 
 SPOKE, HUB = 0.8, 0.08
-"""Length of the line that shows how a gear turns, and radius of its shaft, as shares of the pitch radius."""
+"""Length of the line that shows a gear's rotation, and radius of its shaft, as shares of the pitch radius."""
 
 COLOURS = (INPUT, OUTPUT, COUPLER, CURVE, GROUND)
 FACES = ("#e8eef6", "#e6f1ea", "#f8eee2", "#f1ecf6", "#eef0f2")
-"""Of the units of a series, or of what the gears of one train are."""
+"""Colours by unit of a series, or by the role of the gears in one train."""
 
 
 class Turning(NamedTuple):
-    """A gear with its speed, and that of its carrier about ``axis``, over the input's; ``tone`` is its colour.
+    """A gear with its speed, and that of its carrier about ``axis``, relative to the input's; ``tone`` is its colour.
 
     ``arm`` is the colour of its carrier.
     """
@@ -52,7 +52,7 @@ class Turning(NamedTuple):
 
 @dataclass(frozen=True)
 class _Drawn:
-    """A gear's outline about its centre, and what surrounds it where it is a ring."""
+    """A gear's outline about its centre, and its rim if it is a ring."""
 
     gear: Turning
     points: Points
@@ -60,14 +60,15 @@ class _Drawn:
 
     @property
     def reach(self) -> float:
-        """Radius of all that is drawn about its centre."""
+        """Radius of the drawn gear about its centre."""
         return float(max(np.abs(self.points).max(), 0.0 if self.rim is None else np.abs(self.rim).max()))
 
 
 def planetary_animation(design: PlanetaryDesign, problem: PlanetaryProblem, title: str) -> bytes:
-    """Some teeth of a planetary train as GIF: the input blue, the output green, a carrier too; what is held dark."""
+    """Draw a planetary train over some teeth as GIF: input blue, output green, fixed members dark; carriers alike."""
     mechanism, speeds = design.mechanism, design.metrics.speeds
     arrangement = ARRANGEMENTS[mechanism.arrangement]
+    # Indices of COLOURS: blue, green, dark.
     tones = {mechanism.input: 0, mechanism.output: 1, mechanism.fixed: 4}
     return animation(
         Turning(
@@ -88,7 +89,7 @@ def _arm(tone: int | None) -> str:
 
 
 def series_animation(design: TrainSeriesDesign, problem: TrainSeriesProblem, title: str) -> bytes:
-    """Some teeth of trains in series as GIF, each unit in a colour of its own."""
+    """Draw trains in series over some teeth as GIF, each unit in its own colour."""
     return animation(
         Turning(gear.placed, gear.speed, gear.orbit, gear.axis, (gear.unit - 1) % len(COLOURS), gear.toothed)
         for gear in series_layout(design, problem)
@@ -96,10 +97,12 @@ def series_animation(design: TrainSeriesDesign, problem: TrainSeriesProblem, tit
 
 
 def animation(gears: Iterable[Turning]) -> bytes:
-    """A GIF of gears that turn as long as :data:`PITCHES` teeth of the fastest take to pass."""
-    # Rings lie behind what runs in them.
+    """Draw a GIF of turning gears that covers the passage of :data:`PITCHES` teeth of the fastest one."""
+    # Rings lie behind the gears that run inside them.
     drawn = sorted((_drawn(gear) for gear in gears), key=lambda one: -one.reach * (one.rim is not None))
+    # Relative to the carrier: that is the speed at which teeth pass their mates.
     passing = max(abs(one.gear.speed - one.gear.orbit) * one.gear.placed.gear.teeth for one in drawn)
+    # A locked train has no relative motion.
     turn = math.tau * PITCHES / passing if passing > 0.0 else 0.0
 
     def frames() -> Iterator[list[Stroke]]:
@@ -109,7 +112,10 @@ def animation(gears: Iterable[Turning]) -> bytes:
             )
 
     shown = [
-        ring(one.gear.axis, abs(one.gear.placed.centre - one.gear.axis) + one.reach) for one in drawn if one.gear.orbit
+        # Orbiting gears sweep a circle about the axis.
+        ring(one.gear.axis, abs(one.gear.placed.centre - one.gear.axis) + one.reach)
+        for one in drawn
+        if one.gear.orbit
     ]
     shown += [ring(one.gear.placed.centre, one.reach) for one in drawn if not one.gear.orbit]
     return animated(frames(), Box.around(np.concatenate(shown)))
@@ -124,12 +130,12 @@ def _drawn(gear: Turning) -> _Drawn:
 
 
 def _centre(gear: Turning, turned: float) -> complex:
-    """Where the centre is when the input has turned so far, radians."""
+    """Return the centre after a rotation of the input (radians)."""
     return gear.axis + (gear.placed.centre - gear.axis) * complex(np.exp(1j * gear.orbit * turned))
 
 
 def _strokes(one: _Drawn, turned: float) -> list[Stroke]:
-    """A gear with a line that shows how it turns."""
+    """Return a gear with a line that shows its rotation."""
     gear, placed = one.gear, one.gear.placed
     centre, spin = _centre(gear, turned), complex(np.exp(1j * gear.speed * turned))
     colour, face = COLOURS[gear.tone], FACES[gear.tone]
@@ -146,7 +152,7 @@ def _strokes(one: _Drawn, turned: float) -> list[Stroke]:
 def gear_strokes(
     outline: Points, centre: complex, turned: float, pitch_radius: float, colour: str, face: str
 ) -> list[Stroke]:
-    """A gear with external teeth, turned so far (radians), with a line that shows it and its shaft."""
+    """Return a rotated external gear (radians) with a line that shows the rotation, and its shaft."""
     spin = complex(np.exp(1j * turned))
     spoke = np.array([centre, centre + SPOKE * pitch_radius * spin])
     return [
@@ -157,7 +163,7 @@ def gear_strokes(
 
 
 def _arms(drawn: Sequence[_Drawn], turned: float) -> list[Stroke]:
-    """Carriers as lines from the axis to the planets."""
+    """Return carriers as lines from the axis to the planets."""
     return [
         Stroke(np.array([one.gear.axis, _centre(one.gear, turned)]), one.gear.arm, 2.2)
         for one in drawn

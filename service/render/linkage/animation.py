@@ -1,4 +1,4 @@
-"""A linkage that goes through its cycle as GIF: links, slides, joints and the path of its coupler point."""
+"""A linkage moving through its cycle as GIF: links, slides, joints and the path of its coupler point."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from service.render.page.symbols import COUPLER, CURVE, INK, INPUT, OUTPUT
 from service.render.page.symbols import GROUND as GROUND_COLOUR
 
 CLOSES = 1e-6
-"""Distance of the joints at both ends of a cycle, as a share of its size, at which it is a closed one."""
+"""Distance of the joints between both ends of a cycle, as a share of its size, up to which the cycle is closed."""
 
 JOINT, BLOCK = 0.011, (0.056, 0.0336)
 """Radius of a joint, and length and width of a slide's block, as shares of the picture's diagonal."""
@@ -27,11 +27,12 @@ FACE = "#f6ece2"
 
 
 def linkage_animation(design: Any, problem: Any, title: str) -> bytes:
-    """A cycle of a linkage design: a full turn over and over, or from toggle to toggle and back."""
+    """Draw a cycle of a linkage design: a full turn in a loop, or from toggle to toggle and back."""
     scene = Scene.of(design)
     motion = scene.linkage.driven(_inputs(scene.linkage))
     names = list(motion.joints)
     places = np.array([motion.joints[name][0] for name in names])
+    # Skip frames in which the linkage cannot be assembled.
     kept = [k for k in range(FRAMES) if np.isfinite(places[:, k]).all()]
     shown = Box.around(np.concatenate([places[:, kept].reshape(-1), *scene.paths]))
     size = shown.diagonal
@@ -47,6 +48,7 @@ def linkage_animation(design: Any, problem: Any, title: str) -> bytes:
                 strokes.append(Stroke(np.array(block), OUTPUT, 1.8, closed=True, fill="#ffffff"))
             for name, at in joints.items():
                 fixed = name in scene.mechanism.links[GROUND]
+                # Fixed pivots are drawn larger.
                 radius = (1.3 if fixed else 1.0) * JOINT * size
                 colour = GROUND_COLOUR if fixed else INK
                 strokes.append(Stroke(ring(at, radius), colour, 1.6, closed=True, fill="#ffffff"))
@@ -56,19 +58,20 @@ def linkage_animation(design: Any, problem: Any, title: str) -> bytes:
 
 
 def _inputs(linkage: DrivenLinkage) -> NDArray[np.float64]:
-    """Equal steps of a cycle that closes; there and back, slowly at the ends, through one that does not."""
+    """Return equal steps of a closed cycle, otherwise steps to the far end and back, slower near the ends."""
     low, high = linkage.cycle
     ends = linkage.driven(np.array([low, high]))
     places = np.array([jet[0] for jet in ends.joints.values()])
     size = float(np.ptp(places.real) + np.ptp(places.imag))
     share = np.arange(FRAMES) / FRAMES
+    # An open cycle goes there and back, slower near its ends.
     if np.abs(places[:, 0] - places[:, 1]).max() > CLOSES * size:
         share = 0.5 - 0.5 * np.cos(math.tau * share)
     return np.asarray(low + (high - low) * share)
 
 
 def _link(scene: Scene, name: str, corners: list[complex]) -> Stroke:
-    """A bar between two joints, a plate between three or more."""
+    """Draw a bar between two joints, or a plate between three or more."""
     colour = INPUT if scene.mechanism.input == name else COUPLER if name == "coupler" else OUTPUT
     if len(corners) == 2:
         return Stroke(np.array(corners), colour, 4.0)

@@ -1,4 +1,4 @@
-"""What a kind of problem brings to the sheet of a linkage: the picture, its own tables, metrics and diagrams."""
+"""Content that a kind of problem adds to the sheet of a linkage: the picture, its own tables, metrics and diagrams."""
 
 from __future__ import annotations
 
@@ -15,51 +15,51 @@ Rows = Sequence[tuple[str, str]]
 
 
 class Picture(Protocol):
-    """A drawing of a linkage that knows how high it must be."""
+    """A drawing of a linkage that determines its own height."""
 
     @property
     def box(self) -> Box:
-        """What it shows, in the linkage's coordinates."""
+        """Box of the drawing, in the linkage's coordinates."""
 
     @property
     def wide(self) -> bool:
-        """Whether it takes the whole width, with the tables below it."""
+        """Whether the drawing takes the full width, with the tables below it."""
 
     def draw(self, width: float) -> tuple[list[Element], float]:
-        """Its parts at the left border below the title, in a width in pixels, and the y below them."""
+        """Draw the parts at the left border below the title, in a width in pixels; return them and the y below them."""
 
 
 @dataclass(frozen=True)
 class Content:
-    """All of a sheet that depends on the kind.
+    """All parts of a sheet that depend on the kind.
 
     Parameters
     ----------
     name : str
-        What the mechanism is called.
+        Name of the mechanism.
     words : str
-        The same and what it is in particular, for the line below the title.
+        The name with its particulars, for the subtitle.
     described : str
-        What the picture shows, for a reader who does not see it.
+        Description of the picture for readers who cannot see it.
     picture : Picture
     tables : sequence of Block
-        Between dimensions and checks: targets, limits, dwells, the line.
+        Blocks between dimensions and checks: targets, limits, dwells, the line.
     left_out : set of str
-        Fields of the metrics that the words have already, or that mean nothing to this kind.
+        Fields of the metrics that the words already contain, or that do not apply to this kind.
     titles : mapping of str to str
-        What fields of the metrics are called where their own names do not say enough.
+        Titles of metrics whose field names are too terse.
     standing : str
-        Where the linkage stands in its reference configuration.
+        Description of the reference configuration.
     more_dimensions : sequence of (str, str)
-        Rows between the links and the joints.
+        Additional rows between the links and the joints.
     hidden : set of str
-        Joints that mean nothing to this kind.
+        Joints that are not listed for this kind.
     dimensions : Block, optional
-        In place of the usual block.
+        Replacement for the standard block of dimensions.
     diagrams : sequence of Diagram
-        Below the picture.
+        Diagrams below the picture.
     marks : sequence of float
-        Angles that the diagrams mark, degrees.
+        Angles marked in the diagrams, degrees.
     """
 
     name: str

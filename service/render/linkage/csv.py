@@ -1,8 +1,8 @@
-"""The motion of a linkage as CSV: every joint and link over the cycle, with rates by the input.
+"""The motion of a linkage as CSV: every joint and link over the cycle, with derivatives by the input.
 
-Rates are derivatives by the input, whose unit is the radian for a crank and the length unit for a driven slider: times
-the input's speed (and its square) they are velocities and accelerations at constant speed. Cells are empty where the
-linkage cannot be assembled. Lines that begin with ``#`` say what the table is of.
+Derivatives are by the input, whose unit is the radian for a crank and the length unit for a driven slider. Multiplied
+by the input's speed (or its square) they are velocities (accelerations) at constant speed. Cells are empty where the
+linkage cannot be assembled. Lines that begin with ``#`` describe the table.
 """
 
 from __future__ import annotations
@@ -18,15 +18,16 @@ from synthesis.kinds.function.problem import FunctionProblem
 from synthesis.model.linkage_statement import LinkageProblem
 
 STEPS = 360
-"""Steps of the cycle, both ends included."""
+"""Number of steps of the cycle."""
 
 
 def linkage_table(design: Any, problem: LinkageProblem, title: str) -> str:
-    """The motion of a linkage design; numbers in full precision, cells empty where it cannot be assembled."""
+    """Write the motion of a linkage design; numbers in full precision, cells empty where it cannot be assembled."""
     linkage, unit = DrivenLinkage.of(design), problem.length_unit
     slide = linkage.mechanism.driven_by_slide
     inputs = np.linspace(*linkage.cycle, STEPS + 1)
     motion = linkage.driven(inputs, order=2)
+    # Derivatives are by the input, whose unit depends on the drive.
     by = unit if slide else "rad"
     columns = {f"input [{unit}]" if slide else "input_angle [deg]": inputs if slide else np.degrees(inputs)}
     for name, turned in motion.angles.items():
@@ -38,13 +39,14 @@ def linkage_table(design: Any, problem: LinkageProblem, title: str) -> str:
             columns[f"{name}_{letter}x [{unit}{per}]"] = point[order].real
             columns[f"{name}_{letter}y [{unit}{per}]"] = point[order].imag
     for name, sine in motion.sines.items():
+        # Rounding may push the sine slightly beyond 1.
         columns[f"{name}_transmission_angle [deg]"] = np.degrees(np.arcsin(np.minimum(np.abs(sine), 1.0)))
     remark = f"{design.mechanism.type}; rates are derivatives by the input, in {by}"
     return table.numbers([title or "Linkage", remark], columns)
 
 
 def function_table(design: FunctionDesign, problem: FunctionProblem, title: str) -> str:
-    """Of a function generator: value of the input, angle of the input link, and structural error there."""
+    """Write the input value, input angle and structural error of a function generator."""
     curve = design.structural_error.curve
     unit = "deg" if design.structural_error.unit == "degrees" else problem.length_unit
     rows = zip(curve.input, curve.input_angle, curve.error, strict=True)

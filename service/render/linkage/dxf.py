@@ -1,21 +1,21 @@
 """A linkage as DXF: links, joints and slides at the first target, the path of P as a spline, and the other targets.
 
 =================  ==================================================================
-layer              what is on it
+layer              content
 =================  ==================================================================
 GROUND             crosses at the fixed pivots, lines of slides on the ground
 LINK_<NAME>        a link at the first target: a line, or a closed outline of more joints
 JOINTS             circles at the pins
 SLIDES             blocks and lines of slides on moving links
 COUPLER_CURVE      the path of P over the cycle, a spline
-USED_CURVE         the part of it between the first target and the last
-TARGETS            demanded points, with their directions
+USED_CURVE         its part between the first target and the last
+TARGETS            required points, with their directions
 OTHER_POSITIONS    links at the other targets; frozen
 DIMENSIONS         lengths between the joints of each link, and the ground's
 TEXT               names of joints, numbers of targets
 =================  ==================================================================
 
-Coordinates are the problem's own, in its unit, which the header names.
+Coordinates are those of the problem, in its unit; the header contains the unit.
 """
 
 from __future__ import annotations
@@ -49,43 +49,45 @@ LAYERS = {
     "DIMENSIONS": (5, "CONTINUOUS"),
     "TEXT": (7, "CONTINUOUS"),
 }
-"""Colour index and line type of each layer but the links'."""
+"""Colour index and line type of each layer except those of the links."""
 
 LINK_COLOURS = (5, 30, 3, 4, 2, 6)
-"""Colour indices of the links in their order."""
+"""Colour indices of the links, in order."""
 
 PIN, ARM, WORDS, BLOCK = 0.008, 0.02, 0.018, 0.03
 """Radius of a pin, arm of a cross, height of letters and length of a block, as shares of the drawing's diagonal."""
 
 BLOCK_HEIGHT, TARGET, DIRECTION = 0.6 * BLOCK, 1.5 * PIN, 3.0 * ARM
-"""Height of a block, radius of a demanded point and length of its direction, as shares of the diagonal."""
+"""Height of a block, radius of a target point and length of its direction, as shares of the diagonal."""
 
 ARROW, GAP = 0.6 * WORDS, 0.3 * WORDS
-"""Arrows of a dimension, and how far its lines begin from the joints and go on beyond the arrows, as such shares."""
+"""Size of a dimension's arrows; gap between joint and extension line, and its overshoot; as shares of the diagonal."""
 
 ASIDE = 1.6
-"""Distance of the middle of a name from its joint in x and y, in heights of letters."""
+"""Distance in x and y from a joint to the middle of its name, in letter heights."""
 
 DIMENSION_ASIDE = 0.045
 """Distance of a dimension line from its link, as a share of the diagonal."""
 
 LONGEST_CURVE = 20.0
-"""A path farther off than this many diagonals of the linkage is no part of a drawing of it."""
+"""Maximum extent of a path in diagonals of the linkage; larger paths would dwarf it and are left out."""
 
 CLOSED = 1e-9
-"""Ends of a path nearer to one another than this share of the diagonal meet."""
+"""Ends of a path closer together than this share of the diagonal coincide."""
 
 
 def linkage_drawing(design: Any, problem: LinkageProblem, title: str) -> str:
-    """The drawing of a linkage design as a DXF document (R2010)."""
+    """Write a linkage design as a DXF document (R2010)."""
     scene, demanded = Scene.of(design), demands_of(problem)
     moving = [name for name in scene.mechanism.links if name != GROUND]
     colours = {_layer(name): (LINK_COLOURS[n % len(LINK_COLOURS)], "CONTINUOUS") for n, name in enumerate(moving)}
     document = dxf.new_drawing(
         title or "Linkage", problem.length_unit, LAYERS | colours, frozen="OTHER_POSITIONS", dimensions=True
     )
+    # All symbols scale with the drawing; guard against a single point.
     size = max(_box(scene, demanded).diagonal, np.finfo(np.float64).tiny)
     space = document.modelspace()
+    # The first target is drawn last, on top.
     for k in range(len(scene.inputs) - 1, -1, -1):
         _links(space, scene, k, size)
     _ground(space, scene, size)
@@ -98,7 +100,7 @@ def linkage_drawing(design: Any, problem: LinkageProblem, title: str) -> str:
 
 
 def _box(scene: Scene, demanded: list[Demand]) -> Box:
-    """What is shown, the path of P left out."""
+    """Return the box of the content, without the path of P."""
     return Box.around(np.array([*scene.places(), *(demand.point for demand in demanded)]))
 
 
@@ -107,7 +109,7 @@ def _layer(link: str) -> str:
 
 
 def _links(space: Modelspace, scene: Scene, k: int, size: float) -> None:
-    """The links at one target, on their own layers at the first."""
+    """Add the links at one target; at the first target they are on layers of their own."""
     joints = scene.joints(k)
     for name, corners in scene.links(joints):
         layer = _layer(name) if k == 0 else "OTHER_POSITIONS"
@@ -125,7 +127,7 @@ def _links(space: Modelspace, scene: Scene, k: int, size: float) -> None:
 
 
 def _ground(space: Modelspace, scene: Scene, size: float) -> None:
-    """Crosses at the fixed pivots, and the lines of slides over all targets."""
+    """Add crosses at the fixed pivots, and the lines of slides over all targets."""
     for joint in scene.mechanism.links[GROUND]:
         dxf.add_cross(space, complex(scene.mechanism.joints[joint]), ARM * size, "GROUND")
     for slide, low, high in scene.rails(2.0 * BLOCK * size):
@@ -133,15 +135,16 @@ def _ground(space: Modelspace, scene: Scene, size: float) -> None:
 
 
 def _curve(space: Modelspace, points: Complex, layer: str, size: float) -> None:
-    """A path as a cubic spline through its points."""
+    """Add a path as a cubic spline through its points."""
     kept = points[np.isfinite(points)]
     if len(kept) < 4 or float(np.ptp(kept.real) + np.ptp(kept.imag)) > LONGEST_CURVE * size:
         return
+    # Coincident points would break the interpolation.
     apart = np.append(np.abs(np.diff(kept)) > CLOSED * CLOSED * size, True)
     kept = kept[apart]
     if len(kept) < 4:
         return
-    # Of unit size, because the library takes what is shorter than 1e-12 for a point.
+    # Interpolate at unit size, because the library treats lengths below 1e-12 as zero.
     corner = kept[0]
     unit = [(z.real, z.imag, 0.0) for z in ((kept - corner) / size).tolist()]
     back = Matrix44.chain(Matrix44.scale(size), Matrix44.translate(corner.real, corner.imag, 0.0))
@@ -150,7 +153,7 @@ def _curve(space: Modelspace, points: Complex, layer: str, size: float) -> None:
 
 
 def _targets(space: Modelspace, demanded: list[Demand], size: float) -> None:
-    """Demanded points as circles, with the direction of the body."""
+    """Add target points as circles, with the direction of the body."""
     for k, demand in enumerate(demanded):
         at = demand.point
         dxf.add_circle(space, at, TARGET * size, "TARGETS")
@@ -160,9 +163,10 @@ def _targets(space: Modelspace, demanded: list[Demand], size: float) -> None:
 
 
 def _dimensions(space: Modelspace, scene: Scene, size: float) -> None:
-    """True lengths from joint to joint of every link at the first target."""
+    """Add dimensions from joint to joint of every link at the first target."""
     joints = scene.joints(0)
     for listed in scene.mechanism.links.values():
+        # A plate is dimensioned along its whole outline, a bar once.
         around = [*listed, listed[0]] if len(listed) > 2 else list(listed)
         for start, end in pairwise(around):
             if joints and abs(joints[end] - joints[start]) > CLOSED * size:

@@ -1,8 +1,8 @@
-"""What the drawing of a fourbar shows: configurations at the targets, the coupler curve, the input's range.
+"""Content of a fourbar's drawing: configurations at the targets, the coupler curve, the input's range.
 
-Everything is in mechanism coordinates; :mod:`service.render.linkage.fourbar_panel` puts it into a panel. All positions
-come from the analysis core. A target that the mechanism's own assembly misses is shown with the other assembly where
-that one meets the demanded position, so that a design with a branch defect is seen as what it is.
+Everything is in mechanism coordinates; :mod:`service.render.linkage.fourbar_panel` draws it in a panel. All positions
+come from the analysis core. If the mechanism's own assembly misses a target and the other assembly meets it, the target
+is shown with the other assembly, so that a branch defect is visible.
 """
 
 from __future__ import annotations
@@ -26,41 +26,43 @@ from synthesis.model.linkages import DrivenFourbar, driven_fourbar
 Real = NDArray[np.float64]
 
 MEETS = 1e-6
-"""A configuration meets a position when it misses by less than this share of the task's size, and than this angle in
-radians: far below what is visible, far above rounding."""
+"""A configuration meets a position if it misses by less than this share of the task's size, and this angle in radians:
+far below the visible, far above rounding.
+"""
 
 AT_LIMIT, INSIDE = 1e-6, 1e-9
-"""Input angles, radians, beyond a limit by less than the first count as at the limit, and are moved inside it by the
-second: a target at a toggle stays visible."""
+"""Input angles (radians) beyond a limit by less than the first value count as at the limit and are moved inside by the
+second, so that a target at a toggle remains visible.
+"""
 
 SWEPT_SAMPLES = 33
-"""Points of the path of A, whose box alone is asked for."""
+"""Number of points of the path of A, used only for its box."""
 
 CURVE_SAMPLES = 121
-"""First sample points on a coupler curve; more are put where it is fast."""
+"""Initial number of sample points on a coupler curve; more are added where it is fast."""
 
 CURVE_STEP = 0.01
 """Longest step between sample points, as a share of the curve's extent."""
 
 REFINEMENTS = 5
-"""Times that long steps are halved."""
+"""Maximum number of times that long steps are halved."""
 
 OTHERS = 9
-"""Linkages that are drawn beside the first at most: none where more points are demanded, some of more positions."""
+"""Maximum number of pale linkages. With more targets, point tasks show none and position tasks a selection."""
 
 MARKED = 24
-"""Targets that are drawn and listed at most; more are thinned to this number, evenly, keeping first and last."""
+"""Maximum number of targets that are drawn and listed; more are thinned evenly, keeping first and last."""
 
 SMALL_MOTION, SMALL_PART = 0.15, 0.04
-"""All moving joints together, or one group of joints, within this share of the drawing's diagonal get a detail."""
+"""A detail is drawn if all moving joints together, or one group of joints, lie within this share of the diagonal."""
 
 REST_SHARE = 0.25
-"""The part of the curve that is not used widens the shown box by at most this share of its diagonal on each side."""
+"""Limit, as a share of the diagonal, by which the unused part of the curve enlarges the shown box on each side."""
 
 
 @dataclass(frozen=True)
 class Configuration:
-    """The linkage at one target; ``own`` is False where it stands in the other assembly than at the first target."""
+    """The linkage at one target; ``own`` is False if it has the other assembly than at the first target."""
 
     index: int
     input_angle: float
@@ -74,15 +76,15 @@ class Configuration:
 
 @dataclass(frozen=True)
 class Scene:
-    """All that is drawn of one fourbar, in mechanism coordinates; angles in radians.
+    """Content of one fourbar's drawing, in mechanism coordinates; angles in radians.
 
     ``configurations`` are those that can be assembled, by target. ``used`` and ``rest`` are polylines of P, with NaN
-    where the linkage does not close: over the input angles that the targets need, and over the whole branch (and the
-    other branch, where a target lies on it). ``limits`` are the ends of the input's range, None for a crank; ``start``
-    and ``end`` the input angles at the first and at the last target. ``target`` is the curve that is matched as a
-    whole, where the problem is that; its first point alone is a target then. ``stance`` are the points of a stance.
-    ``demanded`` counts all demands, of which
-    ``demands`` are those that are drawn, and ``met`` those at which the linkage can be assembled.
+    where the linkage does not close: ``used`` over the input angles that the targets need, ``rest`` over the whole
+    branch (and the other branch, if a target lies on it). ``limits`` are the ends of the input's range, None for a
+    crank. ``start`` and ``end`` are the input angles at the first and the last target. ``target`` is the curve that is
+    matched as a whole, if any; then only its first point is a target. ``stance`` holds the points of a stance.
+    ``demanded`` counts all targets, ``demands`` are those that are drawn, and ``met`` counts those at which the linkage
+    can be assembled.
     """
 
     linkage: Fourbar
@@ -100,12 +102,12 @@ class Scene:
 
     @property
     def guides_a_body(self) -> bool:
-        """Whether angles are demanded, and not points only."""
+        """Whether angles are required, not only points."""
         return any(demand.angle is not None for demand in self.demands)
 
     @property
     def others(self) -> list[Configuration]:
-        """The configurations that are drawn beside the first: none where they would hide the path of a point."""
+        """Configurations that are drawn pale; none if they would hide the path of a point."""
         others = [c for c in self.configurations if c.index != 0]
         if len(others) <= OTHERS:
             return others
@@ -113,7 +115,7 @@ class Scene:
 
     @property
     def misses(self) -> bool:
-        """Whether some demanded point is missed."""
+        """Whether a required point is missed."""
         places = {demand.index: demand.point for demand in self.demands if demand.angle is None}
         size = max((abs(z - w) for z in places.values() for w in places.values()), default=0.0)
         return any(c.index in places and abs(c.p - places[c.index]) > MEETS * size for c in self.configurations)
@@ -129,20 +131,21 @@ class Scene:
         return complex(self.linkage.output_pivot)
 
     def moving(self) -> list[complex]:
-        """A, B and P at all targets, and the demanded points."""
+        """Return A, B and P at all targets, and the target points."""
         joints = [joint for c in self.configurations for joint in (c.a, c.b, c.p)]
         target = [] if self.target is None else list(self.target)
         return [*joints, *(demand.point for demand in self.demands), *target]
 
     def swept(self) -> Points:
-        """Path of A as far as the input reaches, coarsely."""
+        """Return a coarse path of A over the input's range."""
         start, end = self.limits or (0.0, math.tau)
         return np.asarray(positions(self.linkage, np.linspace(start, end, SWEPT_SAMPLES)).a)
 
     def box(self) -> Box:
-        """What the drawing must show: all joints and the used curve whole, the rest of the curve in part."""
+        """Return the box of the content: all joints and the used curve in full, the rest of the curve in part."""
         needed = Box.around(np.array([self.o2, self.o4, *self.moving(), *self.used]))
         widest = needed.grown(REST_SHARE * needed.diagonal)
+        # Unused parts of the curve may enlarge the box only by a limited share.
         for curve in (*self.rest, self.swept()):
             if not np.all(np.isnan(curve)):
                 needed = needed.united(Box.around(curve).united(needed).common(widest))
@@ -150,19 +153,20 @@ class Scene:
 
 
 def fourbar_of(design: LinkageDesign) -> FourbarMechanism:
-    """The fourbar that a design is."""
+    """Return the fourbar of a design."""
     mechanism = design.mechanism
     assert isinstance(mechanism, FourbarMechanism)
     return mechanism
 
 
 def scene(design: LinkageDesign, problem: MotionProblem | PathProblem, motion: DrivenLinkage) -> Scene:
-    """What is drawn of a fourbar design, with its motion, and of the problem that it answers."""
+    """Build the content of a fourbar design with its motion and its problem."""
     driven = driven_fourbar(fourbar_of(design))
     linkage = driven.linkage
     if isinstance(problem, PathProblem) and isinstance(design, PathDesign):
         problem = placed(problem, design)
     target = target_curve(problem)
+    # A curve that is matched as a whole has only its first point as a target.
     demands = demands_of(problem)[: None if target is None else 1]
     configurations = _configurations(design, driven, demands)
     start = end = driven.reference
@@ -173,6 +177,7 @@ def scene(design: LinkageDesign, problem: MotionProblem | PathProblem, motion: D
         start, end, used = float(way.angles[0]), float(way.angles[-1]), (way.start, way.end)
     if target is not None and configurations:
         inputs = [math.radians(met.at) for met in design.targets]
+        # A closed curve needs a full turn in the direction of the targets.
         turned = inputs[0] + math.copysign(math.tau, inputs[-1] - inputs[0])
         end = turned if isinstance(problem, PathProblem) and problem.closed else inputs[-1]
         used = (min(start, end, *inputs), max(start, end, *inputs))
@@ -192,7 +197,7 @@ def scene(design: LinkageDesign, problem: MotionProblem | PathProblem, motion: D
 
 
 def spread(count: int, most: int) -> list[int]:
-    """At most ``most`` of ``count`` places, evenly spread, with both ends.
+    """Return at most ``most`` of ``count`` indices, evenly spread, including both ends.
 
     >>> spread(3, 5), spread(200, 5)
     ([0, 1, 2], [0, 50, 100, 149, 199])
@@ -203,18 +208,20 @@ def spread(count: int, most: int) -> list[int]:
 
 
 def _configurations(design: LinkageDesign, driven: DrivenFourbar, demands: list[Demand]) -> list[Configuration]:
-    """The linkage at each target, in the assembly that meets it; without targets where it cannot be assembled."""
+    """Return the linkage at each target, in the assembly that meets it; targets without an assembly are left out."""
     toggles = toggle_angles(driven.linkage)
     reference = _assembled(driven.linkage, toggles, driven.reference, driven.assembly)
     if reference is None:
         return []
     first = demands[0]
     spread = max(abs(d.point - first.point) for d in demands)
+    # One target has no extent: measure misses by the coupler's length.
     size = spread if spread > 0.0 else float(driven.linkage.coupler)
     configurations = []
     for target in design.targets:
         if not (0 <= target.index < len(demands) and math.isfinite(target.at)):
             continue
+        # Try both assemblies; a hit beats a miss, then the mechanism's own assembly wins.
         demand = demands[target.index]
         choices = []
         for sign in (driven.assembly, -driven.assembly):
@@ -225,6 +232,7 @@ def _configurations(design: LinkageDesign, driven: DrivenFourbar, demands: list[
             body_angle = (first.angle or 0.0) + coupler_angle - reference[3]
             miss = abs(p - demand.point) / size
             if demand.angle is not None:
+                # Angles are compared modulo a full turn.
                 miss = max(miss, abs(math.remainder(body_angle - demand.angle, math.tau)))
             configuration = Configuration(
                 target.index, math.radians(target.at), sign, sign == driven.assembly, a, b, p, body_angle
@@ -238,8 +246,11 @@ def _configurations(design: LinkageDesign, driven: DrivenFourbar, demands: list[
 def _assembled(
     linkage: Fourbar, toggles: Real, angle: float, assembly: int
 ) -> tuple[complex, complex, complex, float] | None:
-    """A, B, P and coupler angle; None if it cannot close. An angle at a limit (``AT_LIMIT``) is moved inside it."""
+    """Return A, B, P and the coupler angle; None if it cannot close. An angle at a limit (``AT_LIMIT``) is moved
+    inside.
+    """
     off = np.remainder(toggles - angle + np.pi, 2.0 * np.pi) - np.pi
+    # Distance to the nearest toggle; cranks have none.
     nearest = float(off[np.argmin(np.abs(off))]) if off.size else math.inf
     shifts = (0.0, nearest + INSIDE, nearest - INSIDE) if abs(nearest) < AT_LIMIT else (0.0,)
     for shift in shifts:
@@ -250,7 +261,8 @@ def _assembled(
 
 
 def _curve(linkage: Fourbar, start: float, end: float, assembly: int) -> Points:
-    """P over a range of input angles, sampled densely near the ends (which may be toggles) and where P is fast."""
+    """Sample P over a range of input angles, densely near the ends (which may be toggles) and where P is fast."""
+    # Cosine spacing is dense at both ends, where P is fastest near toggles.
     share = 0.5 * (1.0 - np.cos(np.linspace(0.0, np.pi, CURVE_SAMPLES)))
     angles = start + (end - start) * share
     points = positions(linkage, angles, assembly).p
@@ -260,6 +272,7 @@ def _curve(linkage: Fourbar, start: float, end: float, assembly: int) -> Points:
         long = np.flatnonzero(np.abs(np.diff(points)) > CURVE_STEP * Box.around(points).diagonal)
         if long.size == 0:
             break
+        # Halve every long step.
         between = 0.5 * (angles[long] + angles[long + 1])
         angles = np.insert(angles, long + 1, between)
         points = np.insert(points, long + 1, positions(linkage, between, assembly).p)
@@ -267,7 +280,7 @@ def _curve(linkage: Fourbar, start: float, end: float, assembly: int) -> Points:
 
 
 def details(scene: Scene, whole: Box) -> list[Box]:
-    """At most two parts of the mechanism that are too small to be read beside the rest, the most telling first."""
+    """Return at most two parts of the mechanism that are too small to read in the whole, most informative first."""
     first = scene.configurations[0] if scene.configurations else None
     demanded = [demand.point for demand in scene.demands] if scene.target is None else list(scene.target)
     groups = [(SMALL_MOTION, scene.moving()), (SMALL_PART, [*demanded, *(c.p for c in scene.configurations)])]
@@ -282,7 +295,9 @@ def details(scene: Scene, whole: Box) -> list[Box]:
     parts: list[Box] = []
     for share, points in groups:
         box = Box.around(np.array(points))
+        # Coincident points are no detail.
         small = 0.0 < box.diagonal < share * whole.diagonal
+        # A detail inside another detail is not drawn again.
         seen = any(held.holds(box.centre) and box.diagonal > SMALL_PART * held.diagonal for held in parts)
         if small and not seen and len(parts) < 2:
             parts.append(box)

@@ -1,6 +1,6 @@
-"""Where a fourbar is drawn: a panel with its viewport, what is in sight there, and strokes that labels keep clear of.
+"""The canvas of a fourbar: a panel with its viewport, visibility tests, and strokes that labels avoid.
 
-The functions that draw links, curves and targets all take a canvas; they add to its root from the back to the front.
+The functions that draw links, curves and targets take a canvas and add to its root from back to front.
 """
 
 from __future__ import annotations
@@ -17,10 +17,10 @@ from service.render.page.sheet import clipping
 from service.render.page.svg import Box, Element, Points, Viewport, circle, path
 
 FRAME_REACH = 12.0
-"""Marks this near to the frame of a detail, pixels, are left to the detail."""
+"""Marks closer to the frame of a detail than this, pixels, appear only in the detail."""
 
 ROOMY, SMALLEST = 30.0, 0.4
-"""Distance of joints on the sheet, pixels, from which the linkage is drawn in full size, and the least factor on it."""
+"""Distance of joints on the sheet, pixels, at which the linkage is drawn in full size, and the minimum size factor."""
 
 
 class Detail(NamedTuple):
@@ -32,24 +32,24 @@ class Detail(NamedTuple):
 
 
 class Canvas:
-    """A panel that cuts off what leaves it.
+    """A panel that clips its content.
 
     Attributes
     ----------
     scene : Scene
-        What is drawn.
+        The content.
     viewport : Viewport
-        Where it is drawn; recorded on the root as ``data-scale``, ``data-centre`` and ``data-middle``.
+        The map to the panel; recorded on the root as ``data-scale``, ``data-centre`` and ``data-middle``.
     labels : Labels
-        Of this panel.
+        Labels of this panel.
     root : Element
-        What strokes are added to.
+        The element that receives the strokes.
     first : Configuration or None
-        The linkage at the first target, where it can be assembled there.
+        The linkage at the first target, if it can be assembled there.
     size : float
-        Factor on link widths and joint sizes: below 1 where the joints stand close together on the sheet.
+        Factor on link widths and joint sizes: below 1 if the joints are close together on the sheet.
     frames : list of (Detail, Box)
-        Parts that other panels show, with their frames in this one.
+        Parts shown in other panels, with their frames in this one.
     """
 
     def __init__(self, scene: Scene, viewport: Viewport, name: str, details: Sequence[Detail]) -> None:
@@ -67,15 +67,15 @@ class Canvas:
         self.size = self._link_size()
 
     def at(self, point: complex) -> complex:
-        """Sheet point of a mechanism point."""
+        """Map a mechanism point to the sheet."""
         return self.viewport.point(point)
 
     def sees(self, point: complex) -> bool:
-        """Whether a mechanism point lies in the panel."""
+        """Return whether a mechanism point lies in the panel."""
         return self.viewport.panel.holds(self.at(point))
 
     def readable(self, point: complex) -> bool:
-        """Whether a point is in sight and not left to a detail, which shows its marks and labels."""
+        """Return whether a point is visible here and not left to a detail, which shows its marks and labels."""
         at = self.at(point)
         return self.viewport.panel.holds(at) and not any(
             frame.grown(FRAME_REACH).holds(at) and detail.viewport.panel.holds(detail.viewport.point(point))
@@ -83,34 +83,36 @@ class Canvas:
         )
 
     def arc(self, radius: float, start: float, end: float) -> Points:
-        """Arc about O2 on the sheet; radius in pixels, angles in radians."""
+        """Return an arc about O2 on the sheet; radius in pixels, angles in radians."""
         count = max(3, math.ceil(abs(end - start) / math.tau * 180))
         return np.asarray(self.at(self.scene.o2) + radius * np.exp(-1j * np.linspace(start, end, count)))
 
     def segment(self, start: complex, end: complex, weight: float, /, **style: str | float | None) -> Element | None:
-        """A straight part of a link, cut at the panel; ``weight`` is what a label costs that covers it."""
+        """Draw a straight part of a link, clipped to the panel; ``weight`` is the cost of a label that covers it."""
         pieces = self.viewport.shown(np.array([start, end]))
         self.labels.avoid(pieces, weight)
         return path(pieces, **style)
 
     def mark(self, group: Element, name: str, joint: complex, radius: float, /, **style: str | float | None) -> None:
-        """Add a joint's circle to a group; joints out of sight are left out."""
+        """Add a joint's circle to a group; invisible joints are left out."""
         at = self.at(joint)
         if self.viewport.panel.grown(radius).holds(at):
             group.add(circle(at, radius, data_joint=name, **style))
             self.labels.avoid([np.array([at - radius, at + radius, at, at - 1j * radius, at + 1j * radius])], 4.0)
 
     def ends(self, c: Configuration) -> list[tuple[complex, complex]]:
-        """Input, coupler and output as lines from joint to joint."""
+        """Return input, coupler and output as lines from joint to joint."""
         return [(self.scene.o2, c.a), (c.a, c.b), (c.b, self.scene.o4)]
 
     def _link_size(self) -> float:
         if self.first is None:
             return 1.0
+        # Only visible links limit the size.
         spans = [abs(v - u) * self.viewport.scale for u, v in self.ends(self.first) if self.sees(u) or self.sees(v)]
         return min(1.0, max(SMALLEST, min(spans, default=ROOMY) / ROOMY))
 
     def _frame_of(self, detail: Detail) -> Box:
         at = self.at(detail.box.centre)
+        # Frames of tiny details must remain visible.
         half = [max(9.0, 0.5 * self.viewport.scale * side + 8.0) for side in (detail.box.width, detail.box.height)]
         return Box(at.real - half[0], at.imag - half[1], at.real + half[0], at.imag + half[1])

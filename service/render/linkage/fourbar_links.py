@@ -1,7 +1,7 @@
 """The links of a fourbar on its canvas: ground and pivots, bold at the first target, thin and grey at the others.
 
-The input link is solid, the output link hollow, the coupler a shaded plate, the ground dash-dotted. The parts of the
-linkage at a target stand in one group marked ``data-configuration`` (counted from 1), joints with ``data-joint``.
+The input link is solid, the output link hollow, the coupler a shaded plate, the ground dash-dotted. All parts of the
+linkage at a target form one group marked ``data-configuration`` (counted from 1), joints with ``data-joint``.
 """
 
 from __future__ import annotations
@@ -26,10 +26,10 @@ from service.render.page.symbols import (
 )
 
 LINK_WIDTH, JOINT_RADIUS, PIVOT_RADIUS = 5.0, 5.0, 6.0
-"""Sizes of the bold linkage, pixels, where there is room."""
+"""Sizes of the bold linkage at full size, pixels."""
 
 SEEN_BEYOND = 40.0
-"""Plates are cut at this distance outside their panel, pixels."""
+"""Plates are clipped at this distance outside their panel, pixels."""
 
 BAR_HEIGHT = 2.5
 """A coupler triangle lower than this many pixels is drawn as a bar."""
@@ -38,14 +38,15 @@ JOINT_NAME, LINK_NAME, GHOST_NAME = 15.0, 13.0, 11.0
 """Font sizes of the names of joints and links, and of joints at the other targets, pixels."""
 
 NAMED_LENGTH = 40.0
-"""Links shorter than this on the sheet, pixels, have no letter."""
+"""Links shorter than this on the sheet, pixels, get no letter."""
 
 
 def ground(canvas: Canvas) -> None:
-    """The line between the fixed pivots, and their bearings."""
+    """Draw the line between the fixed pivots, and their bearings."""
     o2, o4 = canvas.scene.o2, canvas.scene.o4
     group = element("g", data_link="ground").add(canvas.segment(o2, o4, 2.0, **GROUND_LINE))
     for pivot in (o2, o4):
+        # Pivots inside a detail's frame are drawn there only.
         if canvas.readable(pivot):
             symbol, outline = bearing(canvas.at(pivot), max(0.6, canvas.size))
             canvas.labels.avoid(outline, 6.0)
@@ -54,7 +55,7 @@ def ground(canvas: Canvas) -> None:
 
 
 def linkage(canvas: Canvas, c: Configuration) -> None:
-    """Links at the first target."""
+    """Draw the links at the first target."""
     o2, o4, width = canvas.scene.o2, canvas.scene.o4, LINK_WIDTH * canvas.size
     group = element("g", data_links="1", stroke_linecap="round", stroke_linejoin="round")
     group.add(
@@ -67,7 +68,7 @@ def linkage(canvas: Canvas, c: Configuration) -> None:
 
 
 def joints(canvas: Canvas, c: Configuration) -> None:
-    """Joints at the first target."""
+    """Draw the joints at the first target."""
     group = element("g", data_configuration="1", data_own_assembly="true")
     _body_line(canvas, group, c, INK)
     for name, joint in (("O2", canvas.scene.o2), ("O4", canvas.scene.o4)):
@@ -81,7 +82,7 @@ def joints(canvas: Canvas, c: Configuration) -> None:
 
 
 def ghost(canvas: Canvas, c: Configuration) -> None:
-    """The linkage at another target; dashed where it stands in the other assembly."""
+    """Draw the linkage at another target; dashed if it has the other assembly."""
     dashes = None if c.own else "6 4"
     style = GHOST | {"stroke_dasharray": dashes}
     group = element("g", data_configuration=f"{c.index + 1}", data_own_assembly=str(c.own).lower())
@@ -100,21 +101,24 @@ def ghost(canvas: Canvas, c: Configuration) -> None:
 def _plate(
     canvas: Canvas, c: Configuration, weight: float, fill: float, bar: float, /, **style: str | float | None
 ) -> list[Element | None]:
-    """The coupler: the triangle A B P, or a bar (of width ``bar``) where the triangle is flat."""
+    """Draw the coupler: the triangle A B P, or a bar (of width ``bar``) if the triangle is flat."""
+    # A fixed order makes the polygon independent of the assembly.
     corners = sorted((c.a, c.b, c.p), key=lambda z: (z.real, z.imag))
     pairs = [(c.a, c.b), (c.b, c.p), (c.p, c.a)]
+    # The height over the longest side decides between plate and bar.
     longest = max(pairs, key=lambda pair: abs(pair[1] - pair[0]))
     base = abs(longest[1] - longest[0])
     height = abs(((c.b - c.a).conjugate() * (c.p - c.a)).imag) / base if base > 0.0 else 0.0
     if height * canvas.viewport.scale < BAR_HEIGHT:
         return [canvas.segment(*longest, weight, data_link="coupler", **(style | {"stroke_width": bar}))]
+    # Huge coordinates of zoomed panels are clipped before drawing.
     seen = clipped_polygon([canvas.at(corner) for corner in corners], canvas.viewport.panel.grown(SEEN_BEYOND))
     face = polygon(seen, fill=COUPLER, fill_opacity=fill, data_link="coupler") if seen else None
     return [face, *(canvas.segment(u, v, weight, **style) for u, v in pairs if u != v)]
 
 
 def _body_line(canvas: Canvas, group: Element, c: Configuration, colour: str) -> None:
-    """The body's own line at P as the linkage carries it, inside the demanded direction when that is met."""
+    """Draw the body's own line at P as the linkage carries it, inside the required direction if that is met."""
     if canvas.readable(c.p) and canvas.scene.guides_a_body:
         at = canvas.at(c.p)
         tip = at + DIRECTION_LENGTH * cmath.exp(-1j * c.body_angle)
@@ -122,10 +126,11 @@ def _body_line(canvas: Canvas, group: Element, c: Configuration, colour: str) ->
 
 
 def label_joints(canvas: Canvas, c: Configuration) -> None:
-    """Names of the joints at the first target, away from the links that meet there."""
+    """Place the names of the joints at the first target, away from the links that meet there."""
     o2, o4, a, b, p = (canvas.at(z) for z in (canvas.scene.o2, canvas.scene.o4, c.a, c.b, c.p))
     pivots = PIVOT_RADIUS * canvas.size + 2.0, JOINT_RADIUS * canvas.size + 3.0
     style = {"fill": INK, "font_weight": "bold"}
+    # Rays are the directions of the links at a joint; labels go into the widest gap.
     for joint, point, words, digit, clearance, rays in (
         (canvas.scene.o2, o2, "O", "2", pivots[0], [a - o2, o4 - o2, 1j]),
         (canvas.scene.o4, o4, "O", "4", pivots[0], [b - o4, o2 - o4, 1j]),
@@ -139,7 +144,7 @@ def label_joints(canvas: Canvas, c: Configuration) -> None:
 
 
 def label_ghost(canvas: Canvas, c: Configuration) -> None:
-    """Names of A and B at another target, with its number, where there is room."""
+    """Place the names of A and B at another target, with its number, if there is space."""
     style = {"fill": GREY}
     for words, joint, pivot in (("A", c.a, canvas.scene.o2), ("B", c.b, canvas.scene.o4)):
         if canvas.readable(joint):
@@ -151,7 +156,7 @@ def label_ghost(canvas: Canvas, c: Configuration) -> None:
 
 
 def label_links(canvas: Canvas, c: Configuration) -> None:
-    """Letters of the links at their middles."""
+    """Place the letters of the links at their middles."""
     o2, o4 = canvas.scene.o2, canvas.scene.o4
     links = (("a", INPUT, o2, c.a), ("b", COUPLER, c.a, c.b), ("c", OUTPUT, o4, c.b), ("d", GROUND, o2, o4))
     for letter, colour, *ends in links:

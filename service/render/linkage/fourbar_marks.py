@@ -1,4 +1,4 @@
-"""What is drawn around a fourbar's links: paths of A and P, the input's limits and rotation, demands and misses."""
+"""Marks around a fourbar's links: paths of A and P, the input's limits and rotation, targets and misses."""
 
 from __future__ import annotations
 
@@ -22,29 +22,29 @@ from service.render.page.symbols import (
 )
 
 ROTATION_ARC = 26.0, 74.0
-"""Least and greatest radius of the arc that shows the input's rotation, pixels."""
+"""Minimum and maximum radius of the arc that shows the input's rotation, pixels."""
 
 ARC_SHARE, MAX_ARC_SHARE, ARROW_LENGTH = 0.42, 0.8, 9.0
-"""Radius of that arc between these as a share of the input link, its radius at most, and its arrow in pixels."""
+"""Preferred and maximum radius of that arc as shares of the input link, and the length of its arrow in pixels."""
 
 ARC_LENGTH = 26.0
-"""That arc is moved outwards along the input link where it would be shorter than this, pixels."""
+"""Minimum length of that arc, pixels; shorter arcs get a larger radius."""
 
 LEAST_ROTATION = 1e-9
-"""A rotation smaller than this, radians, is not drawn."""
+"""Rotations smaller than this, radians, are not drawn."""
 
 TICK = 9.0
 """Length of the tick at an input limit, pixels."""
 
 SEEN_MISS = 1.0
-"""A miss shorter than this on the sheet, pixels, is not drawn."""
+"""Misses shorter than this on the sheet, pixels, are not drawn."""
 
 LARGEST_ARC = 4.0
-"""Arcs of a larger radius, in panel diagonals, are left out: in a detail they would be straight lines of no meaning."""
+"""Maximum radius of an arc in panel diagonals; in a detail larger arcs would look like unrelated straight lines."""
 
 
 def input_circle(canvas: Canvas) -> None:
-    """The path of A as far as the input reaches, and ticks at its limits."""
+    """Draw the path of A over the input's range, and ticks at its limits."""
     scene, view = canvas.scene, canvas.viewport
     radius = view.scale * float(scene.linkage.input)
     if radius > LARGEST_ARC * view.panel.diagonal:
@@ -63,7 +63,7 @@ def input_circle(canvas: Canvas) -> None:
 
 
 def curves(canvas: Canvas) -> None:
-    """The demanded curve, the path of P over the whole branch, and the used part of it."""
+    """Draw the target curve, the path of P over the whole branch, and its used part."""
     scene, shown = canvas.scene, canvas.viewport.shown
     pieces, used = [piece for curve in scene.rest for piece in shown(curve)], shown(scene.used)
     if scene.target is not None:
@@ -79,14 +79,16 @@ def curves(canvas: Canvas) -> None:
 
 
 def rotation_arc(canvas: Canvas) -> complex | None:
-    """Arc with an arrow from the input's first to its last angle; its middle, None where there is no arc."""
+    """Draw an arc with an arrow from the input's first to its last angle; return its middle, or None without an arc."""
     scene = canvas.scene
     turned = scene.end - scene.start
     if abs(turned) < LEAST_ROTATION or not canvas.readable(scene.o2):
         return None
     link = canvas.viewport.scale * float(scene.linkage.input)
     least, most = ROTATION_ARC
+    # Small rotations get a larger radius, so that the arc remains visible.
     radius = max(min(max(ARC_SHARE * link, least), most), min(ARC_LENGTH / abs(turned), MAX_ARC_SHARE * link))
+    # The arrow head must not be longer than the arc.
     head = math.copysign(min(abs(turned), ARROW_LENGTH / radius), turned)
     arc = canvas.arc(radius, scene.start, scene.end - 0.8 * head)
     back, tip = (complex(z) for z in canvas.arc(radius, scene.end - head, scene.end)[[0, -1]])
@@ -98,7 +100,7 @@ def rotation_arc(canvas: Canvas) -> complex | None:
 
 
 def demand(canvas: Canvas, demanded: Demand) -> None:
-    """A demanded point or position."""
+    """Draw a target point or position."""
     if canvas.readable(demanded.point):
         symbol, lines = symbols.demanded(canvas.at(demanded.point), demanded.angle, demanded.index + 1)
         canvas.labels.avoid(lines, 3.0)
@@ -106,10 +108,11 @@ def demand(canvas: Canvas, demanded: Demand) -> None:
 
 
 def misses(canvas: Canvas) -> None:
-    """How far P is from the points that are fitted: a line from each to where P passes it."""
+    """Draw the deviation of P from the fitted points: a line from each point to the position of P there."""
     places = {demand.index: demand.point for demand in canvas.scene.demands if demand.angle is None}
     for c in canvas.scene.configurations:
         point = places.get(c.index)
+        # Positions show their error by the body line instead.
         if point is None or not canvas.readable(point):
             continue
         wanted, met = canvas.at(point), canvas.at(c.p)
@@ -119,16 +122,17 @@ def misses(canvas: Canvas) -> None:
 
 
 def label_demand(canvas: Canvas, demanded: Demand) -> None:
-    """The number of a target."""
+    """Place the number of a target."""
     if canvas.readable(demanded.point):
         at, words = canvas.at(demanded.point), f"{demanded.index + 1}"
+        # Put the number opposite to the direction arrow.
         away = -1j if demanded.angle is None else -cmath.exp(-1j * demanded.angle)
         style = {"fill": DEMANDED, "font_weight": "bold"}
         canvas.labels.place(at, words, 11.0, clearance=DEMAND_RADIUS + 2.0, away=away, ring=DEMANDED, style=style)
 
 
 def label_input(canvas: Canvas, arc: complex | None) -> None:
-    """The turn of the input at the middle of its arc, and the word at its limits, where there is room."""
+    """Place the rotation of the input at the middle of its arc, and "limit" at its limits, if there is space."""
     scene, o2 = canvas.scene, canvas.at(canvas.scene.o2)
     if arc is not None:
         turned = angle(math.degrees(scene.end - scene.start), 1)

@@ -1,7 +1,7 @@
 """One panel of a fourbar drawing, from the back to the front: curves, links, targets, labels and a scale bar.
 
-Line styles carry the meaning without colours too: see :mod:`service.render.linkage.fourbar_links`; the used part of the
-coupler curve is heavy and the rest of it thin.
+Line styles distinguish the parts without colours, too: see :mod:`service.render.linkage.fourbar_links`. The used part
+of the coupler curve is heavy, the rest thin.
 """
 
 from __future__ import annotations
@@ -18,30 +18,32 @@ from service.render.page.svg import Box, Element, Viewport, element, polygon, te
 from service.render.page.symbols import INK, scale_bar
 
 MARGIN, FOOT = 60.0, 22.0
-"""Room in a panel around what must be shown, and more of it below for the scale bar, pixels."""
+"""Margins of a panel around the content, and additional space below for the scale bar, pixels."""
 
 
 def panel(scene: Scene, viewport: Viewport, name: str, unit: str, details: Sequence[Detail]) -> Element:
-    """The panel as a nested drawing that cuts off what leaves it.
+    """Draw the panel as a nested drawing that clips its content.
 
     Parameters
     ----------
     scene : Scene
-        What is drawn.
+        The content.
     viewport : Viewport
-        Where it is drawn.
+        The map to the panel.
     name : str
         Marks the element (``data-view``) and is its heading, unless it is "main".
     unit : str
         Length unit, for the scale bar.
     details : sequence of Detail
-        Parts that other panels show: framed in this one, and labelled there only.
+        Parts shown in other panels: framed in this one, and labelled only there.
     """
     canvas = Canvas(scene, viewport, name, details)
     first, ghosts = canvas.first, scene.others
+    # Reserve the space of heading and scale bar before labels are placed.
     annotations = _annotations(canvas, name, unit)
     marks.input_circle(canvas)
     marks.curves(canvas)
+    # Earlier targets lie on top of later ones.
     for ghost in reversed(ghosts):
         links.ghost(canvas, ghost)
     links.ground(canvas)
@@ -68,7 +70,7 @@ def panel(scene: Scene, viewport: Viewport, name: str, unit: str, details: Seque
 
 
 def _annotations(canvas: Canvas, name: str, unit: str) -> list[Element]:
-    """Heading and scale bar, on white, clear of all labels."""
+    """Draw heading and scale bar on white, and keep labels away from them."""
     box = canvas.viewport.panel
     bar, covered = scale_bar(canvas.viewport, unit)
     canvas.labels.reserve(covered)
@@ -80,7 +82,7 @@ def _annotations(canvas: Canvas, name: str, unit: str) -> list[Element]:
 
 
 def _frame(canvas: Canvas, detail: Detail, box: Box) -> None:
-    """Frame around a part that another panel shows."""
+    """Draw a frame around a part that another panel shows."""
     corners = [complex(x, y) for x, y in ((box.left, box.low), (box.right, box.low), (box.right, box.high))]
     corners.append(complex(box.left, box.high))
     canvas.root.add(polygon(corners, fill="none", stroke=INK, stroke_width=0.9, stroke_dasharray="4 3"))

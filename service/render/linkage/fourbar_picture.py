@@ -1,4 +1,4 @@
-"""The picture of a fourbar: the main panel, details of what is too small in it, and the key to the line styles."""
+"""The picture of a fourbar: the main panel, details of small parts, and the key to the line styles."""
 
 from __future__ import annotations
 
@@ -15,13 +15,13 @@ from service.render.page.symbols import DEMANDED, GREY
 from synthesis.model.linkage_answer import LinkageDesign
 
 WIDE = 1.7
-"""Drawings wider than this in proportion to their height have their tables below instead of beside them."""
+"""Ratio of width to height above which the tables are placed below the drawing instead of next to it."""
 
 BESIDE_HEIGHT, BELOW_HEIGHT = (560.0, 860.0), (330.0, 620.0)
-"""Least and greatest height of the main panel with tables beside it, and with tables below it, pixels."""
+"""Minimum and maximum height of the main panel with tables next to it, and with tables below it, pixels."""
 
 SAMPLE, SAMPLE_GAP, KEY_SIZE, MAX_GAP = 28.0, 6.0, 10.5, 26.0
-"""Of the key: width of a sample with its gap, that gap, font size, and greatest space between entries; pixels."""
+"""Dimensions of the key: width of a sample with its gap, that gap, font size, maximum space between entries; pixels."""
 
 SAMPLES = {"used": USED_PATH, "rest": WHOLE_PATH, "ghost": GHOST, "curve": TARGET_CURVE, "miss": MISS}
 """Line styles of the key."""
@@ -39,16 +39,16 @@ class FourbarPicture:
 
     @cached_property
     def box(self) -> Box:
-        """What it shows."""
+        """Box of the content."""
         return self.scene.box()
 
     @property
     def wide(self) -> bool:
-        """Whether it is so wide that the tables stand below it."""
+        """Whether the drawing is so wide that the tables are placed below it."""
         return self.box.width > WIDE * self.box.height
 
     def draw(self, width: float) -> tuple[list[Element], float]:
-        """Main panel, details below it and key, and the y below them."""
+        """Draw the main panel, details below it and the key; return them and the y below."""
         heights = BELOW_HEIGHT if self.wide else BESIDE_HEIGHT
         main = fitted(self.box, width, heights, MARGIN, FOOT, spare=0.0)
         bottom = main.panel.high
@@ -67,30 +67,31 @@ class FourbarPicture:
 
 
 def description(design: LinkageDesign, unit: str, shown: Scene) -> str:
-    """The linkage in words, with its sizes and how many demands it is shown at."""
+    """Describe the linkage in words: its sizes and the number of targets shown."""
     mechanism = fourbar_of(design)
     sizes = ", ".join(f"{name} {value:.6g} {unit}" for name, value in mechanism.links)
-    met = f"shown at {shown.met} of {shown.demanded} demanded positions"
+    met = f"shown at {shown.met} of {shown.demanded} target positions"
     if len(shown.demands) < shown.demanded:
         met = f"{met}, of which {len(shown.demands)} are drawn"
     if shown.target is not None:
-        met = f"shown at the first of {len(design.targets)} points of the demanded curve"
+        met = f"shown at the first of {len(design.targets)} points of the target curve"
     return f"a fourbar linkage, {mechanism.assembly} assembly: {sizes}; {met}"
 
 
 def _key(shown: Scene, y: float, width: float) -> Element:
-    """What the line styles mean."""
+    """Draw the key to the line styles."""
     entries = [
-        ("target", "demanded position" if shown.guides_a_body else "demanded point"),
+        ("target", "target position" if shown.guides_a_body else "target point"),
         ("used", "path of P, used"),
         ("rest", "rest of branch"),
         *([("ghost", "other targets")] if shown.others else []),
-        *([("curve", "demanded curve")] if shown.target is not None else []),
-        *([("miss", "missed by")] if shown.misses else []),
+        *([("curve", "target curve")] if shown.target is not None else []),
+        *([("miss", "error")] if shown.misses else []),
     ]
     if shown.limits is not None:
         entries.append(("limit", "input limit"))
     group = element("g", data_key="true")
+    # Distribute the remaining width between the entries.
     spare = width - sum(SAMPLE + text_width(words, KEY_SIZE) for _, words in entries)
     x = EDGE
     for kind, words in entries:

@@ -1,4 +1,4 @@
-"""The written part of a fourbar's sheet: dimensions and targets in blocks of rows."""
+"""Tables of a fourbar's sheet: dimensions and targets in blocks of rows."""
 
 from __future__ import annotations
 
@@ -24,19 +24,20 @@ GRASHOF = {
 
 
 LINKS = {"d  ground O2–O4": "ground", "a  input O2–A": "input", "b  coupler A–B": "coupler", "c  output O4–B": "output"}
-"""Rows of dimensions that have a sample of their link's line style."""
+"""Rows of dimensions with a sample of the link's line style."""
 
 MIDDLE = 4.0
-"""Height of the middle of small letters above the base line, pixels."""
+"""Height of the middle of lower-case letters above the base line, pixels."""
 
 TARGET_COLUMNS = (0.05, 0.26, 0.47, 0.64, 0.84, 1.0)
 """Right ends of the columns of the table of targets, shares of its width."""
 
 
 def dimensions(design: LinkageDesign, scene: Scene, unit: str) -> Block:
-    """Links, coupler point, assembly, pivots and reference angle."""
+    """Return the block of links, coupler point, assembly, pivots and reference angle."""
     mechanism = fourbar_of(design)
     links, point, pivots = mechanism.links, mechanism.coupler_point, mechanism.fixed_pivots
+    # Coordinates are rounded relative to the linkage's size.
     size = max(links.ground, links.input, links.coupler, links.output)
 
     def pair(x: float, y: float) -> str:
@@ -61,7 +62,7 @@ def dimensions(design: LinkageDesign, scene: Scene, unit: str) -> Block:
 
 
 def targets(design: LinkageDesign, scene: Scene, unit: str) -> Block:
-    """Demanded positions with the input angle that meets each, and how exactly."""
+    """Return the block of target positions with the input angle at each, and the residual."""
     met = {target.index: target for target in design.targets}
     assembled = {c.index: c for c in scene.configurations}
     size = float(scene.linkage.ground + scene.linkage.coupler)
@@ -86,7 +87,7 @@ def targets(design: LinkageDesign, scene: Scene, unit: str) -> Block:
 
 
 def _sample(name: str, left: float, y: float) -> Element | None:
-    """Sample of a link's line style."""
+    """Draw a sample of a link's line style."""
     link = LINKS.get(name)
     if link is None:
         return None

@@ -1,4 +1,4 @@
-"""What is drawn of a function generator alone: the range of its input, its structural error, or its output."""
+"""Drawings specific to function generators: the range of the input, the structural error, or the output."""
 
 from __future__ import annotations
 
@@ -16,20 +16,20 @@ from synthesis.kinds.function.design import FunctionDesign
 from synthesis.kinds.function.problem import FunctionProblem
 
 HEIGHT = 250.0
-"""Of the diagram, pixels."""
+"""Height of the diagram, pixels."""
 
 SAMPLES = 181
-"""Points of the output's curve."""
+"""Number of points of the output's curve."""
 
 ARC = (24.0, 70.0)
-"""Least and greatest radius of the arc that shows the input's range, pixels."""
+"""Minimum and maximum radius of the arc that shows the input's range, pixels."""
 
 ARC_SHARE, ARC_SAMPLES = 0.4, 60
-"""Its radius between these, as a share of the crank, and its points."""
+"""Radius of that arc as a share of the crank, and its number of points."""
 
 
 def range_arc(design: FunctionDesign, scene: Scene, view: Viewport) -> list[Element]:
-    """An arc with an arrow from the input's first angle to its last."""
+    """Draw an arc with an arrow from the input's first angle to its last."""
     joints = scene.joints(0)
     if not joints:
         return []
@@ -43,9 +43,10 @@ def range_arc(design: FunctionDesign, scene: Scene, view: Viewport) -> list[Elem
 
 
 def function_diagram(design: FunctionDesign, problem: FunctionProblem, linkage: DrivenLinkage) -> Diagram:
-    """The structural error; the output where pairs are met, which have no error to be drawn."""
+    """Return the diagram of the structural error; for exact pairs, without an error curve, that of the output."""
     if problem.function is None and problem.aim == "precision":
         return _output(design, problem, linkage)
+    # Pairs have errors only at themselves: draw stems instead of a curve.
     error, pairs = design.structural_error, problem.function is None
     x, e = np.array(error.curve.input), np.array(error.curve.error)
     unit = "degrees" if error.unit == "degrees" else problem.length_unit
@@ -66,17 +67,19 @@ def function_diagram(design: FunctionDesign, problem: FunctionProblem, linkage: 
 
 
 def _output(design: FunctionDesign, problem: FunctionProblem, linkage: DrivenLinkage) -> Diagram:
-    """The value of the output over that of the input, as the driven linkage gives it, and the pairs that it meets."""
+    """Return the diagram of the output value over the input value from the driven linkage, with the required pairs."""
     dials = design.dials
     inputs = np.array([target.input for target in design.targets])
     pairs = np.array([target.output for target in design.targets])
     x = np.linspace(inputs.min(), inputs.max(), SAMPLES)
     motion = linkage.driven(np.radians(dials.input.place + dials.input.scale * (x - dials.input.at)))
+    # A slider's output is a place along its line, a rocker's an angle.
     if design.mechanism.type == "slider_crank":
         along = cmath.exp(-1j * math.radians(design.mechanism.slide.angle))
         places = ((motion.joints["B"][0] - motion.joints["O2"][0]) * along).real
     else:
         places = np.degrees(motion.angles["output"][0])
+        # Angles are known only up to whole turns: unwrap them, and shift the curve to the first pair.
         places[motion.valid] = np.unwrap(places[motion.valid], period=360.0)
     y = dials.output.at + (places - dials.output.place) / dials.output.scale
     if design.mechanism.type != "slider_crank":

@@ -1,4 +1,4 @@
-"""What each kind of problem shows on the sheet of a linkage: a function a kind, all collected in one table."""
+"""Sheet contents by kind of problem: one function per kind, collected in one table."""
 
 from __future__ import annotations
 
@@ -50,16 +50,16 @@ from synthesis.model.linkage_answer import FourbarMechanism, LinkageDesign, Sixb
 from synthesis.model.sixbars import IN_WORDS
 
 SAMPLES = 721
-"""Points of a diagram's curve, and of P's path during a dwell."""
+"""Number of points of a diagram's curve, and of P's path during a dwell."""
 
 MAX_ROWS = 12
-"""Targets that are listed, and configurations of a function generator that are drawn, at most."""
+"""Maximum number of targets that are listed, and of configurations of a function generator that are drawn."""
 
 PLACES = 4
-"""Places of its range at which a parallel motion is drawn; the body is drawn heavy at all of them."""
+"""Number of places of its range at which a parallel motion is drawn; the body is drawn heavy at all of them."""
 
 WEIGHT = 16.0
-"""Radius of the heaviest counterweight that is no disc, pixels."""
+"""Drawn radius of the heaviest counterweight without a disc radius, pixels."""
 
 NAMES = {
     "slider_crank": "Slider-crank",
@@ -80,10 +80,10 @@ NAMES = {
     "dwell_stephenson_2": "Stephenson II dwell sixbar",
     "watt_1": "Watt I sixbar for parallel motion",
 }
-"""What the types are called on a sheet."""
+"""Names of mechanism types on a sheet."""
 
 GENERATOR_NAMES = {**IN_WORDS, "fourbar": "Fourbar", "slider_crank": "Slider-crank"}
-"""What begins the title of a function generator."""
+"""First words of a function generator's title."""
 
 STROKE_NAMES = NAMES | {"fourbar": "Crank-rocker", "slider_crank": "Offset slider-crank"}
 
@@ -97,7 +97,7 @@ LINE_NAMES = {
     "hart": "Hart's inversor",
     "scott_russell": "Scott-Russell's mechanism",
 }
-"""What the families of straight-line linkages are called."""
+"""Names of the families of straight-line linkages."""
 
 PROPORTIONS = {"optimal": "best", "classical": "classical", "exact": "exact"}
 
@@ -107,11 +107,11 @@ BASES = {
     "right_cognate": "of its right cognate",
     "path": "of a fourbar through the points",
 }
-"""What a sixbar for parallel motion is made of."""
+"""Origin of a sixbar for parallel motion."""
 
 
 def guided(design: LinkageDesign, problem: MotionProblem | PathProblem, linkage: DrivenLinkage) -> Content:
-    """A body that is guided, or a point: at the targets; along a curve to be drawn whole, at its first and last."""
+    """Return the content for a guided body or point: at the targets; for a whole curve, at its first and last point."""
     unit = problem.length_unit
     if isinstance(design.mechanism, FourbarMechanism):
         fourbar = fourbar_scene(design, problem, linkage)
@@ -127,6 +127,7 @@ def guided(design: LinkageDesign, problem: MotionProblem | PathProblem, linkage:
         )
     inputs, target, demands = linkage.targets(design), target_curve(problem), demands_of(problem)
     if isinstance(problem, PathProblem) and problem.matched:
+        # A closed curve is drawn over a full cycle.
         last = inputs[0] + cycle_from_reference(linkage.mechanism) if problem.closed else inputs[-1]
         inputs, demands = np.array([inputs[0], last]), demands[:1]
     scene = Scene(linkage, inputs, ["P"], "P", demands, target)
@@ -151,22 +152,25 @@ def guided(design: LinkageDesign, problem: MotionProblem | PathProblem, linkage:
 
 
 def _stance(problem: MotionProblem | PathProblem, view: Viewport) -> list[Element]:
-    """The points of a stance, as they are demanded."""
+    """Draw the required points of a stance."""
     points = stance_curve(problem)
     drawn = None if points is None else path(view.shown(points), **STANCE, data_curve="stance")
     return [] if drawn is None else [drawn]
 
 
 def _first(rows: list[tuple[str, str]]) -> list[tuple[str, str]]:
-    """The first rows, and how many more there are."""
+    """Return the first rows, and the number of omitted ones."""
     more = len(rows) - MAX_ROWS
     return [*rows[:MAX_ROWS], (f"and {more} more", "")] if more > 0 else rows
 
 
 def function(design: FunctionDesign, problem: FunctionProblem, linkage: DrivenLinkage) -> Content:
-    """A function generator: at its targets, the range of the input as an arc, its structural error or output."""
+    """Return the content for a function generator: targets, the range of the input as an arc, structural error or
+    output.
+    """
     unit, error, dials = problem.length_unit, design.structural_error, design.dials
     slides = error.unit == "length"
+    # Evenly chosen targets, first and last included.
     chosen = np.unique(np.linspace(0, len(design.targets) - 1, min(MAX_ROWS, len(design.targets))).astype(int))
     scene = Scene(linkage, linkage.targets(design)[chosen], [], hidden={"P"})
 
@@ -177,10 +181,10 @@ def function(design: FunctionDesign, problem: FunctionProblem, linkage: DrivenLi
         return f"{length(place)} {unit}" if slides else angle(place)
 
     readings = [
-        (f"input stands at {angle(dials.input.place)}", f"at the value {length(dials.input.at)}"),
-        ("and turns for a unit by", angle(dials.input.scale, 6)),
-        (f"output stands at {placed(dials.output.place)}", f"at the value {length(dials.output.at)}"),
-        ("and goes for a unit by", placed(dials.output.scale)),
+        (f"input at {angle(dials.input.place)}", f"has the value {length(dials.input.at)}"),
+        ("input rotation per unit", angle(dials.input.scale, 6)),
+        (f"output at {placed(dials.output.place)}", f"has the value {length(dials.output.at)}"),
+        ("output travel per unit", placed(dials.output.scale)),
     ]
     met = [
         (
@@ -207,11 +211,14 @@ def function(design: FunctionDesign, problem: FunctionProblem, linkage: DrivenLi
 
 
 def quick_return(design: QuickReturnDesign, problem: QuickReturnProblem, linkage: DrivenLinkage) -> Content:
-    """A quick return: at both limit positions of its output; the output and its rate over a turn from the first."""
+    """Return the content for a quick return: both limit positions, and the output and its rate over a turn from the
+    first.
+    """
     unit, metrics, kind = problem.length_unit, design.metrics, design.mechanism.type
     scene = Scene(linkage, linkage.targets(design), [joint for joint in linkage.moving if joint != "P"])
     size, name = scene.box().diagonal, STROKE_NAMES[kind]
     turned = np.linspace(0.0, 360.0, SAMPLES)
+    # A full turn from the first limit position.
     motion = linkage.driven(linkage.inputs(design.targets[0].input_angle + turned), order=1)
     if OUTPUTS[kind] in linkage.mechanism.links:
         place, rate = motion.angles[OUTPUTS[kind]]
@@ -242,11 +249,13 @@ def quick_return(design: QuickReturnDesign, problem: QuickReturnProblem, linkage
 
 
 def steering(design: SteeringDesign, problem: SteeringProblem, linkage: DrivenLinkage) -> Content:
-    """A steering mechanism: straight and at both locks; the outer wheel's angle and its error over the inner's."""
+    """Return the content for a steering mechanism: straight and at both locks; outer angle and error over the inner
+    angle.
+    """
     unit, metrics, targets = problem.length_unit, design.metrics, design.targets
     straight = float(linkage.mechanism.reference_input)
     if linkage.mechanism.driven_by_slide:
-        # Both locks are as far from the straight position.
+        # Both locks are equally far from the straight position.
         locks = [targets[-1].at, 2.0 * straight - targets[-1].at]
     else:
         locks = [straight + math.radians(problem.lock), straight - math.radians(metrics.outer_lock)]
@@ -255,6 +264,7 @@ def steering(design: SteeringDesign, problem: SteeringProblem, linkage: DrivenLi
     inner, outer, error = (
         np.array([getattr(target, quantity) for target in targets]) for quantity in ("inner", "outer", "error")
     )
+    # The dashed lines mark the largest steering error.
     limit = metrics.steering_error
     met = [
         (f"inner {angle(target.inner, 2)}: outer {angle(target.outer, 3)}", f"error {angle(target.error, 4)}")
@@ -276,7 +286,7 @@ def steering(design: SteeringDesign, problem: SteeringProblem, linkage: DrivenLi
 
 
 def straight_line(design: StraightLineDesign, problem: StraightLineProblem, linkage: DrivenLinkage) -> Content:
-    """A straight-line linkage: at both ends and in the middle; distance from the line and velocity along it."""
+    """Return the content for a straight-line linkage: ends and middle; deviation and velocity along the line."""
     unit, metrics = problem.length_unit, design.metrics
     first, last = (float(at) for at in linkage.targets(design))
     scene = Scene(linkage, np.array([first, 0.5 * (first + last), last]), ["P"], "P")
@@ -284,6 +294,7 @@ def straight_line(design: StraightLineDesign, problem: StraightLineProblem, link
     along = cmath.rect(1.0, math.radians(problem.direction))
     end = start + problem.length * along
     box = Box.around(np.concatenate([scene.places(), [start, end], scene.used]))
+    # Diagrams run from the start, whatever the input's direction.
     turned, sense = np.linspace(0.0, abs(last - first), SAMPLES), math.copysign(1.0, last - first)
     point, rate = linkage.driven(first + sense * turned, order=1).joints["P"]
     at = np.degrees(turned)
@@ -319,17 +330,18 @@ def straight_line(design: StraightLineDesign, problem: StraightLineProblem, link
 
 
 def dwell(design: DwellDesign, problem: DwellProblem, linkage: DrivenLinkage) -> Content:
-    """A dwell sixbar: as a dwell begins and ends, and away from it; the output over a turn from the first dwell."""
+    """Return the content for a dwell sixbar: start and end of a dwell, and away from it; the output over a turn."""
     unit, mechanism = problem.length_unit, design.mechanism
     begun = [float(at) for at in linkage.targets(design)]
     rotations, slides = [math.radians(wanted.angle) for wanted in problem.wanted], problem.slides
     rotation = rotations[0]
-    # The last place is that in which the output stands farthest from its first rest, or the second rest.
+    # The last configuration shows the second rest, or the output farthest from its only rest.
     away = begun[1] if len(begun) > 1 else begun[0] + 0.5 * rotation + math.pi
-    # Of a Stephenson II the way of B tells how link 4 turns about E while the output rests.
+    # In a Stephenson II the path of B shows the rotation of link 4 about E while the output rests.
     along = "B" if mechanism.type == "dwell_stephenson_2" else "P"
     traced = [joint for joint in (along, "D") if joint in linkage.mechanism.joints]
     scene = Scene(linkage, np.array([begun[0], begun[0] + rotation, away]), traced)
+    # Input ranges of the dwells.
     spans = [(at, at + wide) for at, wide in zip(begun, rotations, strict=True)]
     resting = [linkage.path(along, *span, SAMPLES) for span in spans]
     turned = np.linspace(0.0, 360.0, SAMPLES)
@@ -376,7 +388,7 @@ def dwell(design: DwellDesign, problem: DwellProblem, linkage: DrivenLinkage) ->
 
 
 def parallel_motion(design: ParallelMotionDesign, problem: ParallelMotionProblem, linkage: DrivenLinkage) -> Content:
-    """A parallel motion: at places of its range, the body and its two paths; transmission angles over the range."""
+    """Return the content for a parallel motion: the body and its two paths over the range, and transmission angles."""
     unit, metrics = problem.length_unit, design.metrics
     first, last = (math.radians(degrees) for degrees in metrics.input_range)
     scene = Scene(linkage, np.linspace(first, last, PLACES + 1)[:-1], ["P", "Q"])
@@ -420,7 +432,7 @@ def _coupler_point(mechanism: Any) -> list[tuple[str, str]]:
 
 
 def _point_of_dwell(mechanism: DwellMechanism) -> list[tuple[str, str]]:
-    """P on the coupler, or the third pins of links by their angles: their distances are among the links."""
+    """Return the rows of P on the coupler, or of third pins by their angles; their distances are among the links."""
     if mechanism.coupler_point is not None:
         return _coupler_point(mechanism)
     triad = mechanism.type == "dwell_stephenson_2"
@@ -434,9 +446,9 @@ def _point_of_dwell(mechanism: DwellMechanism) -> list[tuple[str, str]]:
 
 
 def balancing(design: BalancedDesign, problem: BalancingProblem, linkage: DrivenLinkage) -> Content:
-    """A balanced linkage: at places of its cycle, its counterweights where they stand at first; what shakes it."""
+    """Return the content for a balanced linkage: places of its cycle, counterweights, shaking force and moment."""
     links, start = linkage.mechanism.links, float(linkage.mechanism.reference_input)
-    # A geared inertia is a wheel; the joint that gives its link an angle means nothing.
+    # A geared inertia is drawn as a wheel; the auxiliary joint that gives its link an angle is hidden.
     hidden = {joint for gear in design.geared for joint in links[gear.link]} - set(links[GROUND])
     scene = Scene(linkage, np.linspace(start, linkage.cycle[1], PLACES + 1)[:-1], [], hidden=hidden)
     weights = [(weight, complex(*weight.at)) for weight in design.counterweights if weight.mass > 0.0]
@@ -446,6 +458,7 @@ def balancing(design: BalancedDesign, problem: BalancingProblem, linkage: Driven
     def discs(view: Viewport) -> list[Element]:
         drawn = []
         for weight, at in weights:
+            # Drawn area is proportional to mass.
             size = WEIGHT * math.sqrt(weight.mass / heaviest)
             if weight.disc_radius is not None:
                 size = view.scale * weight.disc_radius
@@ -478,7 +491,7 @@ def balancing(design: BalancedDesign, problem: BalancingProblem, linkage: Driven
         f"a linkage at {PLACES} places of its motion, with its counterweights",
         PlanarPicture(scene, unit, discs, box),
         [blocks.rows("Counterweights", rows or [("none", "")])],
-        titles={"value": "what is left", "bound": "least that could be"},
+        titles={"value": "residual", "bound": "lower bound"},
         dimensions=blocks.rows(f"Joints in the reference ({unit})", places),
         diagrams=[
             Diagram(f"shaking force before {per[0]}", "force_before", curves.at, curves.force_before, CURVE),
@@ -504,5 +517,5 @@ _CONTENTS: dict[str, Callable[[Any, Any, DrivenLinkage], Content]] = {
 
 
 def content_of(design: Any, problem: Any, linkage: DrivenLinkage) -> Content:
-    """What the kind of a problem shows of a design on its sheet."""
+    """Return the sheet content of a design for its kind of problem."""
     return _CONTENTS[problem.kind](design, problem, linkage)

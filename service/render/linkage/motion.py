@@ -1,4 +1,4 @@
-"""The linkage of a design as every file of it needs it: rebuilt from its dimensions once, and driven over its range."""
+"""The linkage of a design for all its files: rebuilt once from its dimensions, and driven over its range."""
 
 from __future__ import annotations
 
@@ -23,9 +23,9 @@ Real = NDArray[np.float64]
 
 
 class DrivenLinkage:
-    """A mechanism, and its motion as far as a drawing asks for it.
+    """A mechanism and those parts of its motion that drawings need.
 
-    Inputs are radians, or lengths along the input slide.
+    Inputs are in radians, or lengths along the input slide.
     """
 
     def __init__(self, mechanism: Mechanism) -> None:
@@ -33,12 +33,12 @@ class DrivenLinkage:
 
     @classmethod
     def of(cls, design: Any) -> DrivenLinkage:
-        """The linkage of a design, rebuilt from its dimensions and its skeleton alone.
+        """Rebuild the linkage of a design from its dimensions and its skeleton alone.
 
         Raises
         ------
         NotBuilt
-            Where these make no mechanism that the analysis core accepts.
+            The analysis core accepts no such mechanism.
         """
         mechanism = rebuilt(design.mechanism, from_skeleton=True)
         if mechanism is None:
@@ -47,7 +47,7 @@ class DrivenLinkage:
 
     @cached_property
     def branch(self) -> Branch | None:
-        """The branch of the reference configuration; None where it is not known."""
+        """Branch of the reference configuration; None if it is unknown."""
         return branch_of(self.mechanism)
 
     @cached_property
@@ -57,7 +57,7 @@ class DrivenLinkage:
 
     @property
     def limits(self) -> tuple[float, float] | None:
-        """Inputs at which the linkage cannot go on; None where the input turns fully, or the branch is not known."""
+        """Inputs at which the linkage locks; None if the input turns fully, or the branch is unknown."""
         return None if self.branch is None or self.branch.full else self.cycle
 
     @property
@@ -66,28 +66,29 @@ class DrivenLinkage:
         return [joint for joint in self.mechanism.joints if joint not in self.mechanism.links[GROUND]]
 
     def driven(self, inputs: Real, order: int = 0) -> MechanismMotion:
-        """The linkage at inputs, with derivatives by the input up to an order."""
+        """Return the linkage at inputs, with derivatives by the input up to an order."""
         return drive(self.mechanism, inputs, order=order)
 
     def path(self, joint: str, first: float, last: float, count: int) -> Points:
-        """Path of a joint from an input to another; NaN where the linkage cannot be assembled."""
+        """Return the path of a joint between two inputs; NaN where the linkage cannot be assembled."""
         return np.asarray(self.driven(np.linspace(first, last, count)).joints[joint][0])
 
     def inputs(self, degrees: Any) -> Real:
-        """Inputs as the answer states them (degrees, or lengths of an input slide)."""
+        """Convert inputs from the units of the answer (degrees, or lengths of an input slide)."""
         stated = np.asarray(degrees, dtype=np.float64)
         return stated if self.mechanism.driven_by_slide else np.radians(stated)
 
     def targets(self, design: Any) -> Real:
-        """Inputs at the targets of a design; without targets, the input of the reference configuration."""
+        """Return the inputs at the targets of a design; without targets, the input of the reference configuration."""
         targets = getattr(design, "targets", None) or []
+        # Kinds name the input of a target differently.
         stated = [target.at if isinstance(target, DrivenTo) else target.input_angle for target in targets]
         return self.inputs(stated) if stated else np.atleast_1d(self.mechanism.reference_input)
 
 
 @dataclass(frozen=True)
 class Demand:
-    """A demanded point, and the direction of the body there where one is demanded, radians; counted from 0."""
+    """A target point, and the direction of the body there (radians) if it is required; counted from 0."""
 
     index: int
     point: complex
@@ -95,7 +96,7 @@ class Demand:
 
 
 def demands_of(problem: Any) -> list[Demand]:
-    """What a problem demands of the point P, in its order; nothing where it demands no places of it."""
+    """Return the targets of point P in a problem, in order; an empty list if there are none."""
     places = getattr(problem, "positions", None) or getattr(problem, "points", None) or []
     angles = [getattr(place, "angle", None) for place in places]
     return [
@@ -105,7 +106,7 @@ def demands_of(problem: Any) -> list[Demand]:
 
 
 def target_curve(problem: Any) -> Points | None:
-    """The curve that is to be drawn as a whole, closed where it is; None where points alone are demanded."""
+    """Return the curve that is required as a whole, closed if it is; None for separate target points."""
     if not getattr(problem, "matched", False):
         return None
     points = np.array([place.point for place in problem.points])
@@ -113,9 +114,10 @@ def target_curve(problem: Any) -> Points | None:
 
 
 def stance_curve(problem: Any) -> Points | None:
-    """The demanded points of a stance, in order; None where none is demanded."""
+    """Return the required points of a stance, in order; None without a stance."""
     stance = getattr(problem, "stance", None)
     if stance is None:
         return None
     (first, last), points = stance.points, np.array([place.point for place in problem.points])
+    # A stance of a closed path may pass its last point.
     return np.concatenate([points[first:], points[: last + 1]]) if stance.around else points[first : last + 1]

@@ -1,6 +1,6 @@
-"""The sheet of a linkage, whatever the kind of its problem: title, picture, dimensions, tables, checks and diagrams.
+"""The sheet of a linkage for every kind of problem: title, picture, dimensions, tables, checks and diagrams.
 
-What differs from kind to kind (the picture, the tables of its own, diagrams) is declared in
+The parts that depend on the kind (the picture, its own tables, diagrams) are in
 :mod:`service.render.linkage.kind_tables`.
 """
 
@@ -19,7 +19,7 @@ from service.render.page.sheet import EDGE, FULL, GUTTER, UNITS, beside, in_colu
 from service.render.page.svg import Box
 
 APART = 8.0, 10.0
-"""Space above a diagram, and above tables that stand below the picture, pixels."""
+"""Space above a diagram, and above tables below the picture, pixels."""
 
 BELOW = (320.0, 390.0, FULL - 2.0 * GUTTER - 710.0)
 """Widths of the columns of tables below a picture, pixels."""
@@ -33,11 +33,11 @@ TITLES = {
     "visits in order": "targets in order",
     "link ratio": "longest : shortest link",
 }
-"""What is measured of linkages of several kinds, where the name of the field does not say enough."""
+"""Titles of metrics shared by several kinds whose field names are too terse."""
 
 
 def linkage_sheet(design: Any, problem: Any, title: str) -> str:
-    """The drawing of a linkage design as a complete SVG document."""
+    """Draw a linkage design as a complete SVG document."""
     content = content_of(design, problem, DrivenLinkage.of(design))
     unit = problem.length_unit
     tables = [
@@ -54,7 +54,7 @@ def linkage_sheet(design: Any, problem: Any, title: str) -> str:
         parts.append(diagram.draw(Box(EDGE, top, EDGE + width, top + diagram.height), content.marks))
         bottom = top + diagram.height
     if picture.wide:
-        # Dimensions, what is demanded and checked, and metrics.
+        # The columns are: dimensions; targets and checks; metrics.
         drawn, y = in_columns((tables[:1], tables[1:-1], tables[-1:]), BELOW, bottom + APART[1])
     else:
         drawn, y = stacked(tables)
@@ -64,15 +64,18 @@ def linkage_sheet(design: Any, problem: Any, title: str) -> str:
 
 
 def _metrics(design: Any, problem: Any, content: Content) -> list[tuple[str, str]]:
-    """What was measured; where there are several transmission angles each of them, whose least is listed anyway."""
+    """Return the metrics; individual transmission angles only if there are several, because their minimum is listed
+    anyway.
+    """
     metrics, left_out = design.metrics, set(content.left_out)
+    # A single transmission angle is already listed as the minimum.
     if len(getattr(metrics, "transmission_angles", ())) < 2:
         left_out.add("transmission_angles")
     return entries(metrics, problem, left_out, {**TITLES, **content.titles})
 
 
 def _dimensions(design: Any, content: Content) -> list[tuple[str, str]]:
-    """Links, what else the kind has of dimensions, and the skeleton."""
+    """Return links, further dimensions of the kind, and the skeleton."""
     mechanism, size = design.mechanism, content.picture.box.diagonal
     links = mechanism.links if isinstance(mechanism.links, dict) else mechanism.links.model_dump()
     rows = [(name.replace("_", " "), length(value)) for name, value in links.items()]

@@ -1,4 +1,4 @@
-"""A linkage with the springs that balance it on its sheet: drawn at places of its motion, and the drive over it."""
+"""The sheet content of a spring-balanced linkage: drawn at several places of its motion, with the drive over it."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ from synthesis.kinds.spring_balancing.problem import SpringBalancingProblem
 from synthesis.model.dimension import Dimension
 
 PLACES = 4
-"""Places of the motion at which the linkage is drawn; at the first heavy."""
+"""Number of places of the motion at which the linkage is drawn, heavy at the first."""
 
 COILS, WIDTH, STRAIGHT = 9, 7.0, 0.16
 """Coils of a drawn spring, half its width in pixels, and the straight part at each end as a share of its length."""
@@ -33,23 +33,26 @@ TURNS, INNER, OUTER = 2.25, 7.0, 19.0
 
 
 def coil(start: complex, end: complex) -> Points:
-    """A spring between two points of the sheet."""
+    """Return the line of a spring between two points of the sheet."""
     along = end - start
     across = 1j * along / abs(along) if along != 0.0 else 0j
     shares = np.linspace(STRAIGHT, 1.0 - STRAIGHT, 2 * COILS + 1)
     sides = np.where(np.arange(2 * COILS + 1) % 2 == 1, 1.0, -1.0)
+    # The coil starts and ends on the axis.
     sides[[0, -1]] = 0.0
     return np.concatenate([[start], start + along * shares + WIDTH * sides * across, [end]])
 
 
 def spiral(at: complex, turned: float) -> Points:
-    """A torsion spring about a point of the sheet, which ends in a direction (radians)."""
+    """Return the line of a torsion spring about a point of the sheet, ending in a direction (radians)."""
     angles = np.linspace(0.0, 2.0 * math.pi * TURNS, 120)
     return np.asarray(at + np.linspace(INNER, OUTER, 120) * np.exp(1j * (angles - angles[-1] + turned)))
 
 
 def spring_balancing(design: SprungDesign, problem: SpringBalancingProblem, linkage: DrivenLinkage) -> Content:
-    """A linkage at places of its motion with its springs; the drive without them and with them."""
+    """Return the content for a spring-balanced linkage: places of its motion with springs; the drive without and with
+    them.
+    """
     curves = drive_curves(problem, design)
     inputs = np.linspace(curves.at[0], curves.at[-1], PLACES)
     scene = Scene(linkage, inputs, [])
@@ -65,6 +68,7 @@ def spring_balancing(design: SprungDesign, problem: SpringBalancingProblem, link
     def drawn(view: Viewport) -> list[Element]:
         shapes: list[Element | None] = []
         for number, (one, other) in ends.items():
+            # The first place is drawn last, on top of the pale ones.
             for k in range(len(inputs) - 1, -1, -1):
                 if not (np.isfinite(one[k]) and np.isfinite(other[k])):
                     continue
@@ -114,7 +118,7 @@ def spring_balancing(design: SprungDesign, problem: SpringBalancingProblem, link
         f"a linkage at {PLACES} places of its motion, with its springs",
         PlanarPicture(scene, unit, drawn, box),
         [blocks.rows("Springs", rows or [("none", "")])],
-        titles={"value": "what is left of the drive", "bound": "least that could be"},
+        titles={"value": "residual drive", "bound": "lower bound"},
         dimensions=blocks.rows(f"Joints in the reference ({unit})", places),
         diagrams=[
             Diagram(f"drive without the springs ({per}) {over}", "drive_before", shown, curves.before, CURVE),
@@ -124,10 +128,13 @@ def spring_balancing(design: SprungDesign, problem: SpringBalancingProblem, link
 
 
 def _turning_place(linkage: DrivenLinkage, scene: Scene, links: tuple[str, str]) -> tuple[complex, float]:
-    """Where a torsion spring is drawn at the first place: at the pin of both links, or the first pin of the second."""
+    """Return the place of a torsion spring in the first configuration: the pin of both links, or the second's first
+    pin.
+    """
     mechanism, joints = linkage.mechanism, scene.joints(0)
     listed = [joint for joint in mechanism.links[links[1]] if joint in joints]
     shared = [joint for joint in listed if joint in mechanism.links[links[0]]]
     at = joints[(shared or listed or list(joints))[0]]
+    # The spring's free end points along the link.
     others = [joints[joint] for joint in listed if joints[joint] != at]
     return at, cmath.phase(others[0] - at) if others else 0.0

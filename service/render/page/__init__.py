@@ -1,1 +1,1 @@
-"""What every drawing is made of: shapes, labels, numbers, blocks of rows. Knows no mechanism."""
+"""Building blocks of every drawing: shapes, labels, numbers, blocks of rows. They know no mechanism."""

@@ -1,7 +1,7 @@
-"""Animations as GIF: a design goes through its cycle, over and over.
+"""Animations as GIF: a design moves through its cycle in a loop.
 
-Every frame is polylines; they are drawn by Pillow at twice the size and reduced, which smooths them, in one palette. A
-GIF has 60 frames of 480 pixels, so that it takes about a second and a few hundred kilobytes whatever the mechanism.
+Every frame consists of polylines. Pillow draws them at twice the size and reduces the picture, which smooths them, to
+one palette. A GIF has 60 frames of 480 pixels: about a second of work and a few hundred kilobytes for any mechanism.
 """
 
 from __future__ import annotations
@@ -18,33 +18,33 @@ from PIL import Image, ImageDraw
 from service.render.page.svg import Box, Points
 
 FRAMES = 60
-"""Frames of a cycle."""
+"""Number of frames in a cycle."""
 
 PIXELS = 480
-"""Longer side of a frame; the shorter one is as long as what is shown, a third of it at least."""
+"""Longer side of a frame, pixels; the shorter side follows from the content, but is at least a third of it."""
 
 STEP_MS = 50
-"""Time of a frame, milliseconds: browsers slow down what is faster than 20 ms."""
+"""Duration of a frame, milliseconds; browsers slow down animations faster than 20 ms."""
 
 FINER = 2
-"""Oversampling: pixels drawn for each pixel of the frame, in each direction."""
+"""Oversampling factor in each direction."""
 
 MARGIN = 0.05
-"""Room around what is shown, as a share of its longer side."""
+"""Margin around the content as a share of its longer side."""
 
 COLOURS = 48
-"""Of the palette, the mixtures at smooth edges included."""
+"""Size of the palette, including mixtures at smooth edges."""
 
 ROUND = 48
-"""Corners of a polygon that stands for a circle."""
+"""Number of corners of a polygon that represents a circle."""
 
 MOST_CORNERS = 720
-"""Corners of a polyline at most; a frame shows no more."""
+"""Maximum number of corners of a polyline; a frame cannot show more."""
 
 
 @dataclass(frozen=True)
 class Stroke:
-    """A polyline in the mechanism's plane; ``width`` in pixels of the frame, ``fill`` where it bounds a face."""
+    """A polyline in the mechanism's plane; ``width`` in pixels of the frame, ``fill`` if it bounds a face."""
 
     points: Points
     colour: str
@@ -54,13 +54,14 @@ class Stroke:
 
 
 def ring(centre: complex, radius: float) -> Points:
-    """A circle."""
+    """Return a circle as a polygon."""
     return np.asarray(centre + radius * np.exp(2j * math.pi * np.arange(ROUND) / ROUND))
 
 
 def animated(frames: Iterable[Sequence[Stroke]], shown: Box) -> bytes:
-    """A GIF of frames that show a box of the plane, each frame's strokes in the order in which they are painted."""
+    """Draw a GIF whose frames show a box of the plane; strokes are painted in order."""
     longer = max(shown.width, shown.height) or 1.0
+    # Strokes at the edge need a margin, or half their width is cut off.
     box = shown.grown(MARGIN * longer)
     scale = FINER * PIXELS / max(box.width, box.height)
     size = tuple(max(round(side * scale / FINER), PIXELS // 3) for side in (box.width, box.height))
@@ -72,6 +73,7 @@ def animated(frames: Iterable[Sequence[Stroke]], shown: Box) -> bytes:
         for stroke in strokes:
             _paint(pen, stroke, _placed(stroke.points, box, scale, size))
         smooth = picture.reduce(FINER)
+        # The first frame's palette serves all frames, so that colours do not flicker.
         if palette is None:
             palette = smooth.quantize(COLOURS, method=Image.Quantize.MEDIANCUT)
         pictures.append(smooth.quantize(palette=palette, dither=Image.Dither.NONE))
@@ -81,11 +83,13 @@ def animated(frames: Iterable[Sequence[Stroke]], shown: Box) -> bytes:
 
 
 def _placed(points: Points, box: Box, scale: float, size: Sequence[int]) -> NDArray[np.float64]:
-    """Corners on the enlarged picture, y down, at most :data:`MOST_CORNERS`, clipped to its surroundings."""
+    """Return corners on the oversampled picture, y down, at most :data:`MOST_CORNERS`, clipped to its neighbourhood."""
+    # Ceiling division: thin to at most the maximum.
     every = -(-len(points) // MOST_CORNERS)
     kept = np.append(points[:-1:every], points[-1:]) if every > 1 else points
     middle = 0.5 * FINER * np.asarray(size, dtype=np.float64)
     centred = scale * (kept - box.centre)
+    # Pillow overflows on coordinates far outside the picture.
     far = 4.0 * float(middle.max())
     return np.asarray(np.clip(np.column_stack([middle[0] + centred.real, middle[1] - centred.imag]), -far, far))
 
@@ -95,6 +99,7 @@ def _paint(pen: ImageDraw.ImageDraw, stroke: Stroke, corners: NDArray[np.float64
     if stroke.fill is not None and len(listed) > 2:
         pen.polygon(listed, fill=stroke.fill)
     if stroke.closed:
+        # Overlap by one segment, so that the closing corner gets a curved joint, too.
         listed += listed[:2]
     if stroke.width > 0.0 and len(listed) > 1:
         pen.line(listed, fill=stroke.colour, width=max(1, round(FINER * stroke.width)), joint="curve")

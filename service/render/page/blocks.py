@@ -15,26 +15,26 @@ SIZE, SMALL = 11.5, 10.5
 """Font sizes of rows, and of tables with their many columns, pixels."""
 
 MARK, MARK_ROOM = 8.0, 22.0
-"""Where the mark of a check stands from the left, and where its name begins, pixels."""
+"""Offset of a check's mark from the left edge, and of its name, pixels."""
 
 BETWEEN, CLOSER = 5.0, 3.0
-"""Least space between the columns of a table, and by how much a note stands closer than a row, pixels."""
+"""Minimum space between the columns of a table, and the reduction of line spacing before a note, pixels."""
 
 WORDED = 0.36
-"""Width of a column of words, as a share of the table's."""
+"""Width of a text column as a share of the table's width."""
 
 Block = Callable[[float, float, float], tuple[Element, float]]
-"""Draws itself at left, top and width; returns its element and the y below it."""
+"""Draws a block at left, top and width; returns its element and the y below it."""
 
 Sample = Callable[[str, float, float], Element | None]
-"""Draws a sample of the line style that a row names, at the left on the row's base line; None without a style."""
+"""Draws a sample of a row's line style at the left on the row's base line; returns None for a row without a style."""
 
 SAMPLE = 34.0
 """Width of the samples of line styles, pixels."""
 
 
 class CheckRow(NamedTuple):
-    """A check as it is written: value and limit with their units, empty where there is none."""
+    """A check as text: value and limit with their units, empty if it has none."""
 
     name: str
     passed: bool
@@ -43,7 +43,7 @@ class CheckRow(NamedTuple):
 
 
 def rows(heading: str, entries: Sequence[tuple[str, str]], sample: Sample | None = None) -> Block:
-    """Names at the left and their values at the right; samples of line styles stand before the names."""
+    """Return a block of names at the left and values at the right, optionally with samples of line styles."""
 
     def draw(left: float, top: float, width: float) -> tuple[Element, float]:
         block, y = block_start(heading, left, top, width)
@@ -58,7 +58,7 @@ def rows(heading: str, entries: Sequence[tuple[str, str]], sample: Sample | None
 
 
 class Line(NamedTuple):
-    """Cells of a table, and a note on a line of its own below them; a line may be a note only."""
+    """Cells of a table row, and a note on a line of its own below; a line may consist of the note only."""
 
     cells: Sequence[str]
     note: str = ""
@@ -67,10 +67,11 @@ class Line(NamedTuple):
 def table(
     heading: str, heads: Sequence[str], lines: Sequence[Line], ends: Sequence[float], worded: int | None = None
 ) -> Block:
-    """A table in small type.
+    """Return a block with a table in small type.
 
-    ``ends`` are the right ends of its columns, shares of the width, to which cells are made smaller where they are too
-    wide. The column ``worded`` has words instead of numbers: they begin there, and are cut where the next begins.
+    ``ends`` are the right ends of its columns as shares of the width; cells that are too wide are set in smaller type.
+    The column ``worded`` contains words instead of numbers: they start at its end and are truncated where the next
+    begins.
     """
 
     def draw(left: float, top: float, width: float) -> tuple[Element, float]:
@@ -80,11 +81,13 @@ def table(
             y += ROW if cells else 0.0
             for n, (cell, end) in enumerate(zip(cells, ends, strict=False)):
                 x = left + end * width
+                # Words start where the previous column ends and are not shrunk.
                 if n == worded:
                     words = shortened(cell, SMALL, WORDED * width)
                     block.add(text(x, y, words, SMALL, fill=fill))
                     continue
                 room = (end - (ends[n - 1] if n else 0.0)) * width - BETWEEN
+                # Shrink only cells that are too wide.
                 size = SMALL * min(1.0, room / max(text_width(cell, SMALL), 1.0))
                 block.add(text(x, y, cell, size, text_anchor="end", fill=fill))
             if note:
@@ -96,7 +99,7 @@ def table(
 
 
 def checks(listed: Sequence[CheckRow]) -> Block:
-    """Every check with a mark, its whole name, its value and its limit, on a line of their own where both are long."""
+    """Return a block of every check with a mark, its name, value and limit; long values get a line of their own."""
 
     def draw(left: float, top: float, width: float) -> tuple[Element, float]:
         verdict = "all passed" if all(check.passed for check in listed) else "not all passed"
@@ -108,6 +111,7 @@ def checks(listed: Sequence[CheckRow]) -> Block:
             words = shortened(clean(check.name.replace("_", " ")), SIZE, room)
             row = element("g", _mark(check.passed, left + MARK, y - 4.0), data_check=clean(check.name))
             row.add(text(left + MARK_ROOM, y, words, SIZE, fill=INK))
+            # Name and measure do not fit on one line: put the measure below.
             if text_width(words, SIZE) + MARK + text_width(measure, SIZE) > room:
                 y += ROW - CLOSER
             row.add(text(left + width, y, measure, SIZE, text_anchor="end", fill=INK))
@@ -118,7 +122,7 @@ def checks(listed: Sequence[CheckRow]) -> Block:
 
 
 def block_start(heading: str, left: float, top: float, width: float) -> tuple[Element, float]:
-    """A block with its heading and rule; the y from which rows are counted."""
+    """Start a block with its heading and rule; return it and the y from which rows are counted."""
     base = top + HEADING - 9.0
     rule = line(complex(left, base + 6.0), complex(left + width, base + 6.0), stroke=PALE, stroke_width=1.0)
     title = text(left, base, heading, 12.5, font_weight="bold", fill=INK)
@@ -126,14 +130,14 @@ def block_start(heading: str, left: float, top: float, width: float) -> tuple[El
 
 
 def _value(right: float, y: float, value: str, after: float) -> Element:
-    """A value at the right end of a row, in smaller type where it would touch the row's name."""
+    """Draw a value at the right end of a row, in smaller type if it would touch the row's name."""
     width = text_width(value, SIZE)
     size = SIZE * min(1.0, (right - after - 6.0) / width) if width > 0.0 else SIZE
     return text(right, y, value, size, text_anchor="end", fill=INK)
 
 
 def _mark(passed: bool, x: float, y: float) -> Element:
-    """A tick or a cross, drawn, so that no font decides about it."""
+    """Draw a tick or a cross as a path, so that it does not depend on a font."""
     colour = OUTPUT if passed else "#b3261e"
     shape = f"M{x - 5:.1f} {y:.1f}l3.5 4l6.5 -8.5" if passed else f"M{x - 4:.1f} {y - 4:.1f}l8 8m0 -8l-8 8"
     return element("path", d=shape, fill="none", stroke=colour, stroke_width=2.2, data_passed=str(passed).lower())

@@ -1,4 +1,4 @@
-"""Diagrams of a quantity over an angle or another: frame, ticks of round numbers, curve, marks and limits."""
+"""Diagrams of a quantity over an angle or another quantity: frame, ticks at round numbers, curve, marks and limits."""
 
 from __future__ import annotations
 
@@ -17,18 +17,18 @@ from service.render.page.symbols import DEMANDED, GREY, INK, PALE
 Real = NDArray[np.float64]
 
 LEFT, FOOT, HEAD, RIGHT = 62.0, 22.0, 20.0, 4.0
-"""Room around the frame: for the numbers at its left and below, for its heading, and at its right; pixels."""
+"""Margins of the frame: numbers at the left and below, heading above, and the right margin; pixels."""
 
 TICKS = 5
-"""Intervals of the vertical axis at most."""
+"""Maximum number of intervals of the vertical axis."""
 
 QUARTERS = (0.0, 0.25, 0.5, 0.75, 1.0)
-"""Shares of the horizontal axis that are numbered."""
+"""Shares of the horizontal axis that get numbers."""
 
 TEXT = 10.0
 
 FLAT = 1e-9
-"""A range this small beside its values is drawn as a level line in the middle."""
+"""Ranges below this share of their values are drawn as a level line in the middle."""
 
 
 @dataclass(frozen=True)
@@ -38,25 +38,25 @@ class Diagram:
     Parameters
     ----------
     heading : str
-        What is drawn, with its unit.
+        The quantity with its unit.
     name : str
         Marks the group as ``data-diagram``.
     at, values : float, shape (n,)
-        Degrees where it is over an angle, whose range is that of the diagram, and the quantity; NaN interrupts the
+        Abscissa (degrees if it is an angle), whose range is that of the diagram, and the quantity; NaN interrupts the
         curve.
     colour : str
     limits : sequence of float
         Levels drawn as dashed lines.
     turned : bool
-        Whether it is over an angle, whose quarters are numbered; of another quantity round numbers are.
+        Whether the abscissa is an angle: its quarters are numbered, otherwise round numbers.
     from_zero : bool
-        Whether the quantity's zero is shown in any case.
+        Whether the range always includes zero.
     stems : bool
-        Whether values stand alone, each on a line from zero, and no curve goes through them.
+        Whether to draw separate values, each on a line from zero, instead of a curve.
     dots, rings : sequence of complex
-        Points of the diagram that are marked, as values of the curve and as demanded ones.
+        Marked points: values of the curve, and required values.
     height : float
-        Pixels, where it stands below others.
+        Height in pixels in a stack of diagrams.
     """
 
     heading: str
@@ -73,8 +73,9 @@ class Diagram:
     height: float = 170.0
 
     def draw(self, box: Box, joints: Sequence[float] = ()) -> Element:
-        """The diagram in a box of the sheet, with the segments' joints as vertical lines."""
+        """Draw the diagram in a box of the sheet, with the segments' joints as vertical lines."""
         frame = Box(box.left + LEFT, box.low + HEAD, box.right - RIGHT, box.high - FOOT)
+        # The vertical range includes limits and marks, not only the curve.
         levels = [*self.limits, *(point.imag for point in (*self.dots, *self.rings)), *([0.0] * self.from_zero)]
         marks = ticks([*self.values[np.isfinite(self.values)].tolist(), *levels])
         first, last = self.interval
@@ -110,6 +111,7 @@ class Diagram:
             for foot, point in zip(feet.tolist(), points.tolist(), strict=True):
                 group.add(line(foot, point, stroke=self.colour, stroke_width=1.6))
         else:
+            # Split the curve at undefined values.
             known = np.isfinite(self.values)
             runs = np.split(np.arange(len(self.values)), np.flatnonzero(np.diff(known)) + 1)
             curve = [points[run] for run in runs if len(run) and known[run[0]]]
@@ -123,13 +125,14 @@ class Diagram:
 
     @property
     def interval(self) -> tuple[float, float]:
-        """From where to where the diagram goes."""
+        """First and last abscissa."""
         return float(self.at.min()), float(self.at.max())
 
     def _numbered(self) -> list[tuple[float, str]]:
-        """Where the horizontal axis is numbered, and how."""
+        """Return the numbered places of the horizontal axis with their labels."""
         first, last = self.interval
         span = last - first
+        # Angles are numbered at quarters of the range.
         if self.turned:
             return [(first + share * span, written_angle(share * span, 1 if span >= TEXT else 3)) for share in QUARTERS]
         inside = [at for at in ticks([first, last]) if first - FLAT * span <= at <= last + FLAT * span]
@@ -137,13 +140,16 @@ class Diagram:
 
 
 def ticks(values: Sequence[float]) -> list[float]:
-    """Round numbers (steps of 1, 2 or 5 times a power of ten) from below the least value to above the greatest."""
+    """Return round numbers (steps of 1, 2 or 5 times a power of ten) that enclose the values."""
     low, high = min(values), max(values)
     spread = high - low
+    # Constant values get an interval of their own size.
     if spread <= FLAT * max(abs(low), abs(high)):
         spread = max(abs(low), abs(high)) or 1.0
         low, high = low - 0.5 * spread, high + 0.5 * spread
     power = 10.0 ** math.floor(math.log10(spread / TICKS))
+    # The smallest round step that needs no more than the maximum number of intervals.
     step = next(step * power for step in (1.0, 2.0, 5.0, 10.0) if spread <= step * power * TICKS * (1.0 + FLAT))
+    # Tolerate rounding, so that a round limit adds no extra tick.
     first, last = math.floor(low / step + FLAT), math.ceil(high / step - FLAT)
     return [k * step for k in range(first, last + 1)]

@@ -1,8 +1,8 @@
-"""Placement of labels in a panel: beside their points, clear of links, joints and each other.
+"""Placement of labels in a panel: next to their points, clear of links, joints and each other.
 
-Every label tries places on rings around its point, in a fixed order of directions, and takes the one of least cost.
-The cost counts what the label's box would cover: other labels most, then joints, links, curves; a ring farther out and
-a direction that is not the preferred one cost little. Labels are placed in the order of their importance.
+Every label tries positions on rings around its point, in a fixed order of directions, and takes the one of least cost.
+The cost depends on what the label's box would cover: other labels most, then joints, links, curves. A larger ring and a
+direction other than the preferred one cost little. Labels are placed in order of importance.
 """
 
 from __future__ import annotations
@@ -30,46 +30,46 @@ from service.render.page.svg import (
 )
 
 RINGS = (0.0, 4.0, 9.0, 16.0, 26.0, 40.0, 58.0, 80.0)
-"""Gaps between a point's clearance and the label's box that are tried, pixels."""
+"""Trial gaps between a point's clearance and the label's box, pixels."""
 
 Real = NDArray[np.float64]
 
 HALO = {"stroke": "#fff", "stroke_width": "3", "stroke_linejoin": "round", "paint_order": "stroke"}
-"""White rim of a label, so that it is read on lines too."""
+"""White rim of a label, so that it is legible on lines."""
 
 DIRECTIONS = np.exp(2j * np.pi * np.arange(24) / 24)
 
 GAP_COST, TURN_COST = 0.25, 3.0
-"""Cost of a gap, for each pixel, and of a direction at right angles to the preferred one."""
+"""Cost of a gap per pixel, and of a direction at right angles to the preferred one."""
 
 SUBSCRIPT_BELOW = 0.12
-"""How far a subscript hangs below the letters, in units of the font size."""
+"""Descent of a subscript below the letters, in units of the font size."""
 
 PAD = 2.0
-"""Space between a label and what it avoids, pixels."""
+"""Space between a label and the lines that it avoids, pixels."""
 
 TAKEN = 1000.0
-"""Cost of covering another label or leaving the panel; more than everything else together."""
+"""Cost of covering another label or leaving the panel; exceeds all other costs together."""
 
 LEADER_GAP = 15.0
-"""From this gap on a label is tied to its point by a leader line, pixels."""
+"""Minimum gap at which a leader line connects a label with its point, pixels."""
 
 NEAR = tuple(gap for gap in RINGS if gap < LEADER_GAP)
-"""Gaps that are tried for labels that may be left out."""
+"""Trial gaps for optional labels."""
 
 SAMPLE_STEP = 5.0
-"""Distance of the sample points on lines that labels avoid, pixels: below half the height of any label."""
+"""Distance of the sample points on lines that labels avoid, pixels; less than half the height of any label."""
 
 
 class Placed(NamedTuple):
-    """A label's box, and the leader from its point where it stands far off."""
+    """A label's box, and a leader from its point if it is far away."""
 
     box: Box
     leader: tuple[complex, complex] | None
 
 
 class Labels:
-    """The labels of one panel and what they keep clear of."""
+    """The labels of one panel and the obstacles that they avoid."""
 
     def __init__(self, panel: Box) -> None:
         self._panel = panel
@@ -79,12 +79,12 @@ class Labels:
         self.drawn: list[Element] = []
 
     def avoid(self, lines: list[Points], weight: float) -> None:
-        """Keep clear of polylines of the sheet; ``weight`` is the cost for each few pixels covered."""
+        """Add polylines of the sheet as obstacles; ``weight`` is the cost per few pixels covered."""
         self._lines.extend((polyline, weight) for polyline in lines)
         self._samples = None
 
     def reserve(self, box: Box) -> None:
-        """Keep all labels out of a box of the sheet."""
+        """Add a box of the sheet that no label may cover."""
         self._boxes.append(box)
 
     def place(
@@ -100,12 +100,12 @@ class Labels:
         ring: str | None = None,
         style: Mapping[str, str],
     ) -> None:
-        """Draw a label beside a point of the sheet.
+        """Draw a label next to a point of the sheet.
 
         Parameters
         ----------
         point : complex
-            What is labelled; a point outside the panel gets no label.
+            The labelled point; outside the panel it gets no label.
         words, subscript : str
             The text.
         size : float
@@ -115,7 +115,7 @@ class Labels:
         away : complex
             Preferred direction from the point to the label.
         optional : bool
-            Leave the label out rather than let it cover another label or stand far off.
+            Omit the label if it would cover another one or be far from its point.
         ring : str, optional
             Colour of a circle around the text.
         style : mapping
@@ -157,7 +157,8 @@ class Labels:
     def _best(
         self, point: complex, width: float, height: float, clearance: float, away: complex, rings: tuple[float, ...]
     ) -> tuple[Placed, float]:
-        """Cheapest place and its cost; rings that cannot be cheaper than the best place yet are skipped."""
+        """Find the cheapest place and its cost; rings that cannot beat the best place so far are skipped."""
+        # Upwards if no direction is preferred.
         preferred = away / abs(away) if abs(away) > 0.0 else 1j
         turned_away = TURN_COST * (1.0 - (DIRECTIONS * preferred.conjugate()).real)
         # The box touches the circle of radius clearance + gap about the point in the label's direction.
@@ -166,6 +167,7 @@ class Labels:
         obstacles = self._near(point, reach)
         best, best_place = math.inf, None
         for gap in rings:
+            # Larger gaps only cost more.
             if GAP_COST * gap >= best:
                 break
             centres = point + DIRECTIONS * (clearance + gap + half)
@@ -181,10 +183,11 @@ class Labels:
         return Placed(Box(low.real, low.imag, high.real, high.imag), leader), best
 
     def _near(self, point: complex, reach: float) -> tuple[Points, Real]:
-        """Sample points of the lines to avoid, and their weights, within reach of a point."""
+        """Return sample points of the obstacle lines within reach of a point, and their weights."""
         if self._samples is None:
             self._samples = self._sampled()
         points, weights = self._samples
+        # Only obstacles that some trial box could cover.
         near = (np.abs(points.real - point.real) < reach) & (np.abs(points.imag - point.imag) < reach)
         return points[near], weights[near]
 
@@ -194,6 +197,7 @@ class Labels:
             return np.empty(0, np.complex128), np.empty(0)
         start = np.concatenate([polyline[:-1] for polyline, _ in lines])
         end = np.concatenate([polyline[1:] for polyline, _ in lines])
+        # One weight per segment of every polyline.
         weights = np.repeat([weight for _, weight in lines], [polyline.size - 1 for polyline, _ in lines])
         enter, leave = clip_segments(start, end, self._panel)
         seen = enter <= leave
@@ -202,15 +206,16 @@ class Labels:
         count = np.ceil(np.abs(step) / SAMPLE_STEP).astype(np.int64) + 1
         order = np.arange(count.sum()) - np.repeat(np.cumsum(count) - count, count)
         share = (order + 0.5) / np.repeat(count, count)
-        # A short segment covers less than one full step does.
+        # A segment shorter than one sample step counts for less than a full step.
         weight = weights[seen] * np.minimum(1.0, np.abs(step) / (SAMPLE_STEP * count) + 0.25)
         return np.repeat(start, count) + share * np.repeat(step, count), np.repeat(weight, count)
 
     def _covered(self, centres: Points, width: float, height: float, points: Points, weights: Real) -> Real:
-        """Cost of what boxes at the given centres cover."""
+        """Compute the cost of what boxes at the given centres cover."""
         x, y = centres.real, centres.imag
         left, right, low, high = x - 0.5 * width, x + 0.5 * width, y - 0.5 * height, y + 0.5 * height
         panel = self._panel
+        # A label outside the panel is as bad as an overlap.
         cost = TAKEN * ((left < panel.left) | (right > panel.right) | (low < panel.low) | (high > panel.high))
         for box in self._boxes:
             cost = cost + TAKEN * ((left < box.right) & (box.left < right) & (low < box.high) & (box.low < high))
@@ -222,10 +227,11 @@ class Labels:
 
 
 def direction_between(directions: list[complex]) -> complex:
-    """Middle of the widest gap between directions from a point, where a label has most room."""
+    """Return the middle of the widest gap between directions from a point, where a label has most space."""
     angles = sorted(cmath.phase(d) for d in directions if abs(d) > 0.0)
     if not angles:
         return 1j
+    # The last gap wraps around the full turn.
     gaps = [(later - angle, angle) for angle, later in zip(angles, [*angles[1:], angles[0] + math.tau], strict=True)]
     gap, start = max(gaps)
     return cmath.exp(1j * (start + 0.5 * gap))

@@ -22,7 +22,7 @@ from numpy.typing import NDArray
 Points = NDArray[np.complex128]
 
 DECIMALS = 2
-"""Digits after the point of sheet coordinates: a hundredth of a pixel."""
+"""Decimals of sheet coordinates: a hundredth of a pixel."""
 
 ESCAPES = str.maketrans({"&": "&amp;", "<": "&lt;", ">": "&gt;", '"': "&quot;"})
 
@@ -31,20 +31,20 @@ GLYPH_WIDTHS = {
     for width, characters in ((0.4, "ijl.,:;|'!()[]/ ·"), (1.0, "mwMW%@—×→"), (0.64, "0123456789−+=<>≤≥–"))
     for character in characters
 }
-"""Widths of glyphs, in units of the font size, of the widest of the common sans-serif faces."""
+"""Glyph widths in units of the font size, for the widest of the common sans-serif faces."""
 
 TURNING = frozenset((*range(0x202A, 0x202F), *range(0x2066, 0x206A)))
-"""Characters that would turn the direction of all text after them."""
+"""Control characters that would change the direction of all following text."""
 
 SUBSCRIPT, SUBSCRIPT_DROP = 0.75, 0.25
-"""Font size of a subscript, and how far it stands below the base line, in units of the font size."""
+"""Font size of a subscript, and its drop below the base line, in units of the font size."""
 
 FONT_ASCENT, FONT_DESCENT = 0.78, 0.22
 """Extent of text above and below its base line, in units of the font size."""
 
 
 def number(value: float) -> str:
-    """Sheet coordinate as text; ``ValueError`` for a number that is not finite."""
+    """Format a sheet coordinate; raise ``ValueError`` if it is not finite."""
     if not math.isfinite(value):
         raise ValueError(f"expected a finite coordinate, got {value}")
     text = f"{value:.{DECIMALS}f}".rstrip("0").rstrip(".")
@@ -52,9 +52,9 @@ def number(value: float) -> str:
 
 
 def clean(text: str) -> str:
-    """Text without the characters that XML 1.0 forbids, and without control of the writing direction.
+    """Return text without characters that XML 1.0 forbids and without control of the writing direction.
 
-    Every run of white space becomes one blank.
+    Every run of white space becomes one space.
     """
     kept = "".join(c if _allowed(c) else " " if c.isspace() else "" for c in text)
     return " ".join(kept.split())
@@ -68,7 +68,7 @@ def _allowed(character: str) -> bool:
 
 
 def text_width(text: str, size: float) -> float:
-    """Estimated width of a line of text in pixels, rather too wide than too narrow."""
+    """Estimate the width of a line of text in pixels, rather too wide than too narrow."""
     return size * sum(_glyph_width(c) for c in text)
 
 
@@ -76,20 +76,23 @@ def _glyph_width(character: str) -> float:
     known = GLYPH_WIDTHS.get(character)
     if known is not None:
         return known
+    # Accents are drawn over the previous glyph.
     if unicodedata.combining(character):
         return 0.0
+    # Wide and full-width characters fill a square.
     if unicodedata.east_asian_width(character) in "WF":
         return 1.05
     return 0.72 if character.isupper() else 0.63
 
 
 def shortened(text: str, size: float, width: float) -> str:
-    """Text cut, with an ellipsis, to what fits in ``width`` pixels."""
+    """Truncate text with an ellipsis to fit in ``width`` pixels."""
     if text_width(text, size) <= width:
         return text
     room = width - text_width("…", size)
     used = 0.0
     for count, character in enumerate(text):
+        # Accumulate widths until the ellipsis would no longer fit.
         used += _glyph_width(character) * size
         if used > room:
             return text[:count].rstrip() + "…"
@@ -105,12 +108,12 @@ class Element:
     children: list[Element | str] = field(default_factory=list)
 
     def add(self, *children: Element | str | None) -> Element:
-        """Append the children that are not None; returns the element itself."""
+        """Append the children that are not None; return the element itself."""
         self.children.extend(child for child in children if child is not None)
         return self
 
     def write(self) -> str:
-        """The element as XML text."""
+        """Return the element as XML text."""
         parts: list[str] = []
         self._write(parts)
         return "".join(parts)
@@ -132,7 +135,7 @@ class Element:
 
 
 def element(tag: str, *children: Element | str, **attributes: str | float | None) -> Element:
-    """Element with attributes by keyword: underscores stand for hyphens, None leaves an attribute out."""
+    """Make an element with attributes by keyword: underscores stand for hyphens, None omits an attribute."""
     given = {name.rstrip("_").replace("_", "-"): value for name, value in attributes.items() if value is not None}
     return Element(tag, given, list(children))
 
@@ -140,7 +143,7 @@ def element(tag: str, *children: Element | str, **attributes: str | float | None
 def text(
     x: float, y: float, words: str, size: float, *, subscript: str = "", **attributes: str | float | None
 ) -> Element:
-    """A line of text with its base line at ``y``, and a subscript after it."""
+    """Draw a line of text with its base line at ``y``, optionally followed by a subscript."""
     drawn = element("text", x=x, y=y, font_size=size, **attributes).add(words)
     if subscript:
         drawn.add(element("tspan", subscript, dy=SUBSCRIPT_DROP * size, font_size=SUBSCRIPT * size))
@@ -148,23 +151,23 @@ def text(
 
 
 def line(start: complex, end: complex, **attributes: str | float | None) -> Element:
-    """A straight line between two points of the sheet."""
+    """Draw a straight line between two points of the sheet."""
     return element("line", x1=start.real, y1=start.imag, x2=end.real, y2=end.imag, **attributes)
 
 
 def circle(centre: complex, radius: float, **attributes: str | float | None) -> Element:
-    """A circle on the sheet."""
+    """Draw a circle on the sheet."""
     return element("circle", cx=centre.real, cy=centre.imag, r=radius, **attributes)
 
 
 def polygon(corners: list[complex], **attributes: str | float | None) -> Element:
-    """A closed polygon on the sheet."""
+    """Draw a closed polygon on the sheet."""
     listed = " ".join(f"{number(c.real)},{number(c.imag)}" for c in corners)
     return element("polygon", points=listed, **attributes)
 
 
 def path(pieces: list[Points], **attributes: str | float | None) -> Element | None:
-    """One path of several open polylines on the sheet; None when there is nothing to draw."""
+    """Draw several open polylines as one path on the sheet; return None if there is nothing to draw."""
     drawn = []
     for piece in pieces:
         if not np.isfinite(piece).all():
@@ -186,7 +189,7 @@ class Box:
 
     @classmethod
     def around(cls, points: Points) -> Box:
-        """Smallest box around the points that are not NaN."""
+        """Return the smallest box around the points that are not NaN."""
         x, y = points.real, points.imag
         return cls(float(np.nanmin(x)), float(np.nanmin(y)), float(np.nanmax(x)), float(np.nanmax(y)))
 
@@ -211,11 +214,11 @@ class Box:
         return complex(self.left + 0.5 * self.width, self.low + 0.5 * self.height)
 
     def grown(self, margin: float) -> Box:
-        """The box with a margin on all sides."""
+        """Return the box enlarged by a margin on all sides."""
         return Box(self.left - margin, self.low - margin, self.right + margin, self.high + margin)
 
     def united(self, other: Box) -> Box:
-        """Smallest box around both."""
+        """Return the smallest box around both."""
         return Box(
             min(self.left, other.left),
             min(self.low, other.low),
@@ -224,7 +227,7 @@ class Box:
         )
 
     def common(self, other: Box) -> Box:
-        """What both cover; call it only for boxes that overlap."""
+        """Return the intersection; call it only for boxes that overlap."""
         return Box(
             max(self.left, other.left),
             max(self.low, other.low),
@@ -233,17 +236,17 @@ class Box:
         )
 
     def overlaps(self, other: Box) -> bool:
-        """Whether the boxes share area."""
+        """Return whether the boxes share area."""
         return self.left < other.right and other.left < self.right and self.low < other.high and other.low < self.high
 
     def holds(self, point: complex) -> bool:
-        """Whether a point lies in the box."""
+        """Return whether a point lies in the box."""
         return self.left <= point.real <= self.right and self.low <= point.imag <= self.high
 
 
 @dataclass(frozen=True)
 class Viewport:
-    """Map from the mechanism (y up) to a panel of the sheet (y down): ``scale`` pixels for a length unit."""
+    """Map from the mechanism (y up) to a panel of the sheet (y down): ``scale`` pixels per length unit."""
 
     panel: Box
     centre: complex
@@ -252,7 +255,10 @@ class Viewport:
 
     @classmethod
     def fit(cls, shown: Box, panel: Box, margin: float, foot: float = 0.0) -> Viewport:
-        """Viewport that shows a box of the mechanism, centred, ``margin`` pixels (below: plus ``foot``) left free."""
+        """Return the viewport that shows a box of the mechanism, centred, with ``margin`` pixels (below: plus ``foot``)
+        free.
+        """
+        # The scale is limited by the narrower direction.
         room = panel.width - 2.0 * margin, panel.height - 2.0 * margin - foot
         scale = min(
             room[0] / shown.width if shown.width > 0.0 else math.inf,
@@ -261,20 +267,21 @@ class Viewport:
         return cls(panel, shown.centre, panel.centre - 0.5j * foot, scale)
 
     def point(self, point: complex) -> complex:
-        """Sheet point of a mechanism point."""
+        """Map a mechanism point to the sheet."""
+        # Conjugation flips y from upwards to downwards.
         return self.middle + self.scale * (complex(point) - self.centre).conjugate()
 
     def points(self, points: Points) -> Points:
-        """Sheet points of an array of mechanism points."""
+        """Map an array of mechanism points to the sheet."""
         return np.asarray(self.middle + self.scale * (points - self.centre).conj())
 
     def shown(self, points: Points) -> list[Points]:
-        """Sheet polylines of a mechanism polyline: what lies in the panel; NaN interrupts the line."""
+        """Map a mechanism polyline to sheet polylines within the panel; NaN interrupts the line."""
         return [_thinned(piece) for piece in clipped(self.points(points), self.panel.grown(CLIP_MARGIN))]
 
 
 CLIP_MARGIN = 20.0
-"""Lines are cut this many pixels outside their panel, so that ends and joins of wide strokes stay out of sight."""
+"""Lines are cut this many pixels outside their panel, so that ends and joins of wide strokes remain hidden."""
 
 
 FINEST_STEP = 0.8
@@ -282,6 +289,7 @@ FINEST_STEP = 0.8
 
 
 def _thinned(line: Points) -> Points:
+    # Number the steps along the line; keep the first point of every step.
     cells = np.floor(np.concatenate(([0.0], np.cumsum(np.abs(np.diff(line))))) / FINEST_STEP)
     kept = np.concatenate(([True], np.diff(cells) > 0.0))
     kept[-1] = True
@@ -289,7 +297,7 @@ def _thinned(line: Points) -> Points:
 
 
 def clip_segments(start: Points, end: Points, box: Box) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Shares of each segment at which it enters and leaves a box; it misses the box unless enter <= leave.
+    """Return the shares of each segment at which it enters and leaves a box; it misses the box unless enter <= leave.
 
     Liang and Barsky 1984, doi:10.1145/357332.357333.
     """
@@ -297,6 +305,7 @@ def clip_segments(start: Points, end: Points, box: Box) -> tuple[NDArray[np.floa
     enter, leave = np.zeros(step.shape), np.ones(step.shape)
     sides = ((start.real, step.real, box.left, box.right), (start.imag, step.imag, box.low, box.high))
     with np.errstate(divide="ignore", invalid="ignore"):
+        # Parallel sides divide by zero: such segments lie wholly inside or outside that pair of sides.
         for at, along, low, high in sides:
             first, second = (low - at) / along, (high - at) / along
             still = along == 0.0
@@ -307,22 +316,24 @@ def clip_segments(start: Points, end: Points, box: Box) -> tuple[NDArray[np.floa
 
 
 def clipped(line: Points, box: Box) -> list[Points]:
-    """Parts of a polyline inside a box; NaN interrupts the line."""
+    """Return the parts of a polyline inside a box; NaN interrupts the line."""
     if line.size == 0:
         return []
     x, y = line.real, line.imag
+    # Fast path: most lines lie inside.
     if x.min() >= box.left and x.max() <= box.right and y.min() >= box.low and y.max() <= box.high:
         return [line]
     start, end = line[:-1], line[1:]
     enter, leave = clip_segments(start, end, box)
     kept = np.flatnonzero(enter <= leave)
     starts, ends = start + enter * (end - start), start + leave * (end - start)
+    # A new part starts after a gap, or if the line re-enters the box within a segment.
     breaks = np.flatnonzero((np.diff(kept) != 1) | (enter[kept[1:]] > 0.0)) + 1
     return [np.concatenate((starts[run[:1]], ends[run])) for run in np.split(kept, breaks) if run.size]
 
 
 def clipped_polygon(corners: list[complex], box: Box) -> list[complex]:
-    """Part of a convex polygon inside a box, by cutting at one side after the other; empty where there is none."""
+    """Clip a convex polygon to a box, one side after the other; return an empty list if nothing remains."""
     for turn, limit in ((1, box.left), (-1, -box.right), (1j, box.low), (-1j, -box.high)):
         kept: list[complex] = []
         for here, there in zip(corners, corners[1:] + corners[:1], strict=True):
@@ -330,6 +341,7 @@ def clipped_polygon(corners: list[complex], box: Box) -> list[complex]:
             beyond = (there * complex(turn).conjugate()).real - limit
             if inside >= 0.0:
                 kept.append(here)
+            # The edge crosses the side: add the intersection.
             if (inside >= 0.0) != (beyond >= 0.0):
                 kept.append(here + (there - here) * (inside / (inside - beyond)))
         corners = kept
@@ -337,7 +349,7 @@ def clipped_polygon(corners: list[complex], box: Box) -> list[complex]:
 
 
 def document(title: str, description: str, size: tuple[float, float], *parts: Element) -> str:
-    """A whole white sheet of a width and a height as text, with its title and its description."""
+    """Return a complete white sheet of a given size as text, with its title and description."""
     width, height = size
     sheet = element(
         "svg",

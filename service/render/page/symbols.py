@@ -1,6 +1,6 @@
-"""Symbols of a drawing, in sheet coordinates: ground bearing, demanded position, arrow head, scale bar; and colours.
+"""Symbols of a drawing, in sheet coordinates: ground bearing, target position, arrow head, scale bar; and colours.
 
-A symbol that labels must keep clear of comes with its lines, or the box that it covers.
+A symbol that labels must avoid is returned with its lines, or with the box that it covers.
 """
 
 from __future__ import annotations
@@ -18,20 +18,20 @@ INPUT, COUPLER, OUTPUT, GROUND = "#1f5a9e", "#b8600b", "#22734a", "#3c444d"
 DEMANDED, CURVE = "#a3195b", "#5b3a8c"
 
 DIRECTION_LENGTH, DEMAND_RADIUS = 40.0, 7.5
-"""The demanded position's direction line and ring, pixels."""
+"""Length of a target position's direction line, and radius of its ring, pixels."""
 
 SCALE_BAR_SHARE = 0.2
-"""Longest scale bar as a share of the panel's width."""
+"""Maximum length of the scale bar as a share of the panel's width."""
 
 
 def arrow(back: complex, tip: complex, half: float, colour: str) -> Element:
-    """Filled arrow head of half width ``half``."""
+    """Draw a filled arrow head of half width ``half``."""
     along = (tip - back) / abs(tip - back)
     return polygon([tip, back + 1j * half * along, back - 1j * half * along], fill=colour)
 
 
 def bearing(at: complex, size: float) -> tuple[Element, list[Points]]:
-    """Ground symbol of a fixed pivot: a triangle on a hatched line; ``size`` 1 is the usual one."""
+    """Draw the ground symbol of a fixed pivot: a triangle on a hatched line; ``size`` 1 is the standard size."""
     half, height = 11.0 * size, 17.0 * size
     left, right = at + complex(-half, height), at + complex(half, height)
     ends = [at + complex(x * size, height) for x in (-12.0, -6.0, 0.0, 6.0, 12.0)]
@@ -45,13 +45,15 @@ def bearing(at: complex, size: float) -> tuple[Element, list[Points]]:
 
 
 def demanded(at: complex, angle: float | None, number: int) -> tuple[Element, list[Points]]:
-    """Ring of a demanded point; of a position with its body frame: a long arrow at its angle, a short line across.
+    """Draw the ring of a target point; for a position also its body frame: a long arrow at its angle, a short line
+    across.
 
-    The angle is in radians, and None where the point alone is demanded.
+    The angle is in radians, or None for a target point.
     """
     ring = circle(at, DEMAND_RADIUS, fill="none", stroke=DEMANDED, stroke_width=1.6, stroke_dasharray="3 1.6")
     if angle is None:
         return element("g", ring, data_target=f"{number}"), []
+    # Sheet coordinates point down, so the angle changes sign.
     ahead = cmath.exp(-1j * angle)
     tip, side = at + DIRECTION_LENGTH * ahead, at - 0.42j * DIRECTION_LENGTH * ahead
     symbol = element(
@@ -67,10 +69,11 @@ def demanded(at: complex, angle: float | None, number: int) -> tuple[Element, li
 
 
 def scale_bar(viewport: Viewport, unit: str) -> tuple[Element, Box]:
-    """Bar of a round length (1, 2 or 5 times a power of ten) in the panel's lower left corner."""
+    """Draw a bar of a round length (1, 2 or 5 times a power of ten) in the panel's lower left corner."""
     box = viewport.panel
     room = SCALE_BAR_SHARE * box.width / viewport.scale
     power = 10.0 ** math.floor(math.log10(room))
+    # The longest round length that fits.
     marked = max(step * power for step in (1.0, 2.0, 5.0) if step == 1.0 or step * power <= room)
     left, base, width = box.left + 14.0, box.high - 14.0, marked * viewport.scale
     words = f"{length(marked, digits=2)} {unit}"

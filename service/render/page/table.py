@@ -1,7 +1,7 @@
-"""Tables as CSV: lines of remarks that begin with ``#``, the columns' names with their units, rows of numbers.
+"""Tables as CSV: remark lines that begin with ``#``, column names with units, rows of numbers.
 
-Numbers are written in full precision, so that reading them gives the same numbers; a number that is not finite is an
-empty cell.
+Numbers are written in full precision, so that reading them returns the same values; a number that is not finite is
+an empty cell.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ Cell = str | int | float | None
 
 
 def table(heads: Iterable[str], rows: Iterable[Sequence[Cell]]) -> str:
-    """Rows of words and numbers below the columns' names; lines end as RFC 4180 wants them."""
+    """Write rows of words and numbers below the column names; line ends follow RFC 4180."""
     text = io.StringIO()
     writer = csv.writer(text, lineterminator="\r\n")
     writer.writerow(heads)
@@ -28,17 +28,17 @@ def table(heads: Iterable[str], rows: Iterable[Sequence[Cell]]) -> str:
 
 
 def written(value: float) -> str:
-    """A number in full precision; an empty cell where it is not finite."""
+    """Format a number in full precision; return an empty cell if it is not finite."""
     return repr(value) if math.isfinite(value) else ""
 
 
 def short(value: float) -> str:
-    """A number to twelve digits, for values that were rounded before; an empty cell where it is not finite."""
+    """Format a rounded value to twelve digits; return an empty cell if it is not finite."""
     return f"{value:.12g}" if math.isfinite(value) else ""
 
 
 def numbers(remarks: Iterable[str], columns: Mapping[str, ArrayLike], write: Callable[[float], str] = written) -> str:
-    """Columns of numbers below their names, and the remarks above them."""
+    """Write columns of numbers below their names, after the remarks."""
     text = io.StringIO()
     text.writelines(f"# {remark}\n" for remark in remarks)
     writer = csv.writer(text, lineterminator="\n")

@@ -1,4 +1,4 @@
-"""A balanced rotor as a table: one row an unbalance or a correction."""
+"""A balanced rotor as a table: one row per unbalance or correction."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from synthesis.model.dimension import Dimension
 
 
 def rotor_table(design: RotorDesign, problem: BalancingProblem, title: str) -> str:
-    """What the rotor has, and what is added to it or taken from it; each with its place."""
+    """Write the unbalances of the rotor, and the masses added or removed, each with its place."""
     units = symbols(problem)
     mechanism = design.mechanism
     rows: list[list[Cell]] = [["unbalance", None, e.z, e.angle, e.unbalance, None, None] for e in mechanism.unbalances]

@@ -1,15 +1,15 @@
-"""A balanced rotor as DXF: a template of each plane of correction, side by side.
+"""A balanced rotor as DXF: a template of each correction plane, side by side.
 
 ==========  ==================================================
-layer       what is on it
+layer       content
 ==========  ==================================================
 PLANE_n     the circle on which the masses lie, and its axis
 ADDED       crosses where masses are added
-REMOVED     circles where masses are taken away, with a cross
+REMOVED     circles where masses are removed, with a cross
 TEXT        the mass of each, its angle, and the plane's place
 ==========  ==================================================
 
-Angles are counted from the x axis, seen against the z axis; radii are true where the statement has a radius.
+Angles are measured from the x axis, viewed against the z axis; radii are to scale if the problem gives a radius.
 """
 
 from __future__ import annotations
@@ -30,7 +30,7 @@ APART, LETTERS, MARK = 3.2, 0.06, 0.05
 
 
 def rotor_drawing(design: RotorDesign, problem: BalancingProblem, title: str) -> str:
-    """The templates of a balanced rotor as a DXF document (R2010)."""
+    """Write the templates of a balanced rotor as a DXF document (R2010)."""
     units, shown = symbols(problem), faces(design.mechanism)
     layers = {"ADDED": (5, "CONTINUOUS"), "REMOVED": (1, "CONTINUOUS"), "TEXT": (7, "CONTINUOUS")}
     layers |= {f"PLANE_{n}": (3, "CONTINUOUS") for n in range(1, len(shown) + 1)}
@@ -53,6 +53,7 @@ def rotor_drawing(design: RotorDesign, problem: BalancingProblem, title: str) ->
                 (entry.unbalance, Dimension.UNBALANCE) if entry.mass is None else (entry.mass, Dimension.MASS)
             )
             words = f"{length(mass)} {units[dimension]} {angle(entry.angle % 360.0, 2)}"
+            # Words stand outside the circle at the angle of their mass.
             beyond = centre + cmath.rect(1.18 * size, math.radians(entry.angle))
             dxf.add_words(space, beyond, words.replace("°", " deg"), 0.8 * LETTERS * size)
     return dxf.written(document)

@@ -1,4 +1,4 @@
-"""The faces of a rotor: its planes of correction as they are seen along the axis, each with what is done there."""
+"""The faces of a rotor: its correction planes viewed along the axis, each with its corrections."""
 
 from __future__ import annotations
 
@@ -10,14 +10,14 @@ from synthesis.kinds.balancing.design import RotorCorrection, RotorMechanism
 
 
 class Mark(NamedTuple):
-    """A mass on a face: its place, in length units or, without a radius, in shares of the largest unbalance."""
+    """A mass on a face: its place, in length units or, without a radius, as a share of the largest unbalance."""
 
     at: complex
     correction: RotorCorrection
 
 
 class Face(NamedTuple):
-    """A plane of correction: its place along the axis, its marks, and the radius on which the outermost lies."""
+    """A correction plane: its place along the axis, its marks, and the radius of the outermost mark."""
 
     z: float
     marks: list[Mark]
@@ -25,7 +25,8 @@ class Face(NamedTuple):
 
 
 def faces(mechanism: RotorMechanism) -> list[Face]:
-    """The faces of all planes, drawn to one radius."""
+    """Return the faces of all planes, drawn to one radius."""
+    # Without radii, marks are placed by their share of the largest unbalance.
     size = max((entry.unbalance for entry in mechanism.corrections), default=0.0) or 1.0
     reach = max((entry.radius or entry.unbalance / size for entry in mechanism.corrections), default=1.0)
     return [

@@ -1,4 +1,4 @@
-"""The sheet of a balanced rotor: its planes of correction along the axis, and what is done in each of them."""
+"""The sheet of a balanced rotor: its correction planes along the axis, and the corrections in each."""
 
 from __future__ import annotations
 
@@ -20,17 +20,17 @@ from synthesis.kinds.balancing.problem import BalancingProblem
 from synthesis.model.dimension import Dimension
 
 COLUMN, SIDE, FACE = 400.0, 190.0, 330.0
-"""Width of the tables, and heights of the view along the axis and of the faces, pixels."""
+"""Width of the tables, and heights of the side view and of the faces, pixels."""
 
 LISTED = 24
-"""Masses that are listed at most; the table has all."""
+"""Maximum number of listed masses; the CSV table has all."""
 
 RIM, REACH = 105.0, 88.0
 """Radius of a face, and of its outermost mark, pixels."""
 
 
 def rotor_sheet(design: RotorDesign, problem: BalancingProblem, title: str) -> str:
-    """A balanced rotor as a complete SVG document."""
+    """Draw a balanced rotor as a complete SVG document."""
     mechanism, metrics, units = design.mechanism, design.metrics, symbols(problem)
     planes = len(mechanism.planes)
     parts = [_along(mechanism, units)]
@@ -66,7 +66,7 @@ def _listed(plane: int, mechanism: RotorMechanism, units: Mapping[Dimension, str
 
 
 def _bearings(design: RotorDesign, units: Mapping[Dimension, str]) -> list[blocks.Block]:
-    """The forces on the bearings before and after, where they are known."""
+    """Return the block of bearing forces before and after balancing, if they are known."""
     rows = []
     for entry in design.metrics.bearings or []:
         before, after = length(entry.before, digits=5), length(entry.after, entry.before, digits=5)
@@ -76,7 +76,7 @@ def _bearings(design: RotorDesign, units: Mapping[Dimension, str]) -> list[block
 
 
 def _along(mechanism: RotorMechanism, units: Mapping[Dimension, str]) -> Element:
-    """The rotor seen from the side: its axis, planes, bearings, and the unbalances as they stand at angle 0."""
+    """Draw the rotor from the side: its axis, planes, bearings, and the unbalances at angle 0."""
     panel = Box(EDGE, TOP, EDGE + beside(COLUMN), TOP + SIDE)
     group = framed(panel, "axis")
     stated = [*(entry.z for entry in mechanism.unbalances), *mechanism.planes, *(mechanism.bearings or ())]
@@ -85,6 +85,7 @@ def _along(mechanism: RotorMechanism, units: Mapping[Dimension, str]) -> Element
     middle = panel.low + 0.52 * SIDE
 
     def place(z: float) -> float:
+        # A single plane is drawn in the middle.
         share = (z - low) / span if high > low else 0.5
         return panel.left + 70.0 + (panel.width - 140.0) * share
 
@@ -102,6 +103,7 @@ def _along(mechanism: RotorMechanism, units: Mapping[Dimension, str]) -> Element
         group.add(text(place(z), panel.high - 10.0, words, 10.0, text_anchor="middle", fill=GREY))
     largest = max((entry.unbalance for entry in mechanism.unbalances), default=0.0) or 1.0
     for entry in mechanism.unbalances:
+        # The side view shows the vertical component of each unbalance.
         up = 52.0 * entry.unbalance / largest * math.sin(math.radians(entry.angle))
         at = complex(place(entry.z), middle - up)
         group.add(line(complex(at.real, middle), at, stroke=DEMANDED, stroke_width=1.5))
@@ -110,7 +112,7 @@ def _along(mechanism: RotorMechanism, units: Mapping[Dimension, str]) -> Element
 
 
 def _face(n: int, face: Face, panel: Box, mechanism: RotorMechanism, units: Mapping[Dimension, str]) -> Element:
-    """A plane of correction along the axis: the masses at their angles and radii."""
+    """Draw a correction plane viewed along the axis: the masses at their angles and radii."""
     group = framed(panel, f"plane_{n + 1}")
     centre = complex(0.5 * (panel.left + panel.right), panel.low + 0.54 * FACE)
     group.add(text(panel.left + 10.0, panel.low + 20.0, f"Plane {n + 1}", 12.0, font_weight="bold", fill=INK))
@@ -124,7 +126,9 @@ def _face(n: int, face: Face, panel: Box, mechanism: RotorMechanism, units: Mapp
     heaviest = max((entry.unbalance for entry in mechanism.corrections), default=0.0) or 1.0
     for mark in face.marks:
         entry = mark.correction
+        # Sheet coordinates point down.
         at = centre + REACH * mark.at.conjugate() / face.radius
+        # Drawn area is proportional to the unbalance.
         size = 3.5 + 8.0 * math.sqrt(entry.unbalance / heaviest)
         colour = DEMANDED if entry.removed else INPUT
         group.add(line(centre, at, stroke=PALE, stroke_width=0.9))
@@ -143,6 +147,6 @@ def _face(n: int, face: Face, panel: Box, mechanism: RotorMechanism, units: Mapp
         along = residue.conjugate() / abs(residue)
         tip = centre + 0.5 * RIM * along
         group.add(line(centre, tip, stroke=COUPLER, stroke_width=2.0), arrow(tip - 8.0 * along, tip, 4.0, COUPLER))
-    words = f"arrow: what the masses add, {with_unit(length(abs(residue)), units[Dimension.UNBALANCE])}"
+    words = f"arrow: sum of the corrections, {with_unit(length(abs(residue)), units[Dimension.UNBALANCE])}"
     group.add(text(panel.left + 10.0, panel.high - 10.0, words, 10.0, fill=GREY))
     return group

@@ -1,1 +1,1 @@
-"""Drawings of what turns with a shaft: flywheels."""
+"""Drawings of flywheels, engines, indexing drives and ratchets."""

@@ -1,11 +1,11 @@
-"""Piston engines: the sheet with end view, crankshaft and torque; the DXF drawing of both views; the table.
+"""Piston engines: the sheet with end view, crankshaft and torque; the DXF drawing of both views; the CSV table.
 
 =========  ============================================================
-layer      what is on it
+layer      content
 =========  ============================================================
-CYLINDERS  axes of the cylinders, seen from the front
-PISTONS    pistons and rods, seen from the front, with the first throw up
-CRANK      the throws, seen from the front, and the shaft from the side
+CYLINDERS  axes of the cylinders, viewed from the front
+PISTONS    pistons and rods, viewed from the front, with the first throw up
+CRANK      the throws, viewed from the front, and the shaft from the side
 TEXT       numbers of the cylinders
 =========  ============================================================
 """
@@ -33,23 +33,23 @@ from synthesis.kinds.engine.problem import EngineProblem
 from synthesis.model.dimension import FORCE, TORQUE
 
 PANEL, DIAGRAM, MARGIN = 400.0, 175.0, 26.0
-"""Heights of the panel and of each diagram, and room around what is shown, pixels."""
+"""Heights of the panel and of each diagram, and margin around the content, pixels."""
 
 LETTERS = 11.0
 """Font size of the numbers of cylinders, pixels."""
 
 SHOWN_ORDERS = 6
-"""Firing orders on the sheet."""
+"""Maximum number of firing orders on the sheet."""
 
 CROWN, STANDING = 0.72, 0.25
-"""Half of a piston's width in radii of the crank, and how far up an axis points that is seen from the side."""
+"""Half a piston's width in crank radii; minimum vertical component of an axis that is shown in the side view."""
 
 ENDS = (0.1, 0.3, 0.5, 0.7, 0.85, 1.0)
 """Right ends of the columns of the table of harmonics."""
 
 
 def engine_sheet(design: EngineDesign, problem: EngineProblem, title: str) -> str:
-    """The engine from the front and its shaft from the side, torque, shaking force and tables, as an SVG document."""
+    """Draw the engine from the front, its shaft from the side, torque, shaking force and tables as an SVG document."""
     mechanism, units = design.mechanism, symbols(problem)
     view = Viewport.fit(_box(mechanism), Box(EDGE, TOP, EDGE + beside(), TOP + PANEL), MARGIN, MARGIN)
     parts = [_panel(mechanism, view, problem.length_unit)]
@@ -74,6 +74,7 @@ def _diagrams(design: EngineDesign, torque: str, force: str) -> list[Diagram]:
     if course is None:
         return []
     at = np.array(course.angle)
+    # Torque on the crankshaft before friction and load.
     given = np.array(course.gas_torque) + np.array(course.inertia_torque)
     shaking = np.hypot(course.shaking_x, course.shaking_y)
     return [
@@ -121,12 +122,12 @@ def _tables(design: EngineDesign, problem: EngineProblem) -> list[blocks.Block]:
 
 
 def _reach(mechanism: EngineMechanism) -> float:
-    """From the shaft to beyond a piston at its top."""
+    """Return the distance from the shaft to beyond a piston at top dead centre."""
     return mechanism.rod + 2.1 * mechanism.crank
 
 
 def _box(mechanism: EngineMechanism) -> Box:
-    """Around the end view, whose shaft is the origin, and the crankshaft at its right."""
+    """Return the box around the end view, whose shaft is the origin, and the crankshaft at its right."""
     reach = _reach(mechanism)
     tips = [1j * reach * cmath.rect(1.0, math.radians(cylinder.axis)) for cylinder in mechanism.cylinders]
     shaft = _shaft(mechanism)
@@ -135,11 +136,12 @@ def _box(mechanism: EngineMechanism) -> Box:
 
 
 def _shaft(mechanism: EngineMechanism) -> list[complex]:
-    """The crankshaft from the side as a line, to the right of the end view."""
+    """Return the line of the crankshaft in side view, to the right of the end view."""
     reach, step = _reach(mechanism), 1.6 * mechanism.crank
     left = 1.2 * reach
     points = [complex(left)]
     for n, phase in enumerate(mechanism.throws):
+        # The side view shows the vertical component of each throw.
         high = 1j * mechanism.crank * math.cos(math.radians(phase))
         near, far = left + step * (n + 0.3), left + step * (n + 0.9)
         points += [complex(near), near + high, far + high, complex(far)]
@@ -147,19 +149,20 @@ def _shaft(mechanism: EngineMechanism) -> list[complex]:
 
 
 def _throws(mechanism: EngineMechanism) -> list[complex]:
-    """The pins from the front with the first throw up: those that lag stand behind it, clockwise."""
+    """Return the crank pins from the front with the first throw up; lagging throws follow clockwise."""
     first = mechanism.throws[0]
     return [1j * cmath.rect(mechanism.crank, math.radians(first - phase)) for phase in mechanism.throws]
 
 
 def _pistons(mechanism: EngineMechanism) -> list[tuple[int, complex, complex, complex]]:
-    """Of each cylinder its number, the crank's pin and the piston's, and the way along its axis; the first throw up.
+    """Return for each cylinder its number, crank pin, piston pin, and axis direction, with the first throw up.
 
-    The piston is r cos θ + √(l² − r² sin² θ) from the shaft (Norton 13.1).
+    The distance of the piston from the shaft is r cos θ + √(l² − r² sin² θ) (Norton 13.1).
     """
     pins, listed = _throws(mechanism), []
     for cylinder in mechanism.cylinders:
         way, pin = 1j * cmath.rect(1.0, math.radians(cylinder.axis)), pins[cylinder.throw - 1]
+        # Rotate so that the cylinder's axis is the real axis.
         turned = pin * way.conjugate()
         piston = (turned.real + math.sqrt(mechanism.rod**2 - turned.imag**2)) * way
         listed.append((cylinder.number, pin, piston, way))
@@ -167,16 +170,17 @@ def _pistons(mechanism: EngineMechanism) -> list[tuple[int, complex, complex, co
 
 
 def _crown(mechanism: EngineMechanism, piston: complex, way: complex) -> list[complex]:
-    """The corners of a piston about its pin."""
+    """Return the corners of a piston around its pin."""
     half = CROWN * mechanism.crank
     return [piston + (along + 1j * side) * half * way for along, side in ((-0.7, 1), (-0.7, -1), (0.8, -1), (0.8, 1))]
 
 
 def _moving(mechanism: EngineMechanism, view: Viewport) -> list[Element]:
-    """Rods and pistons from the front; of those that stand alike behind one another the foremost."""
+    """Draw rods and pistons from the front; of those that coincide only the foremost."""
     drawn, seen = [], set[tuple[float, float]]()
     for number, pin, piston, way in _pistons(mechanism):
         place = round(piston.real, 6), round(piston.imag, 6)
+        # Cylinders behind one another coincide in the end view.
         if place in seen:
             continue
         seen.add(place)
@@ -191,14 +195,16 @@ def _moving(mechanism: EngineMechanism, view: Viewport) -> list[Element]:
 
 
 def _beside(mechanism: EngineMechanism, view: Viewport) -> list[Element]:
-    """Rods and pistons from the side, of cylinders that stand: two of a throw are beside each other."""
+    """Draw rods and pistons of upright cylinders from the side; two on one throw are side by side."""
     left, step = 1.2 * _reach(mechanism), 1.6 * mechanism.crank
     drawn = []
     throws = {cylinder.number: cylinder.throw for cylinder in mechanism.cylinders}
     for number, pin, piston, way in _pistons(mechanism):
+        # Nearly horizontal cylinders have no useful side view.
         if way.imag < STANDING:
             continue
         on = [other for other, throw in throws.items() if throw == throws[number]]
+        # Pistons on one throw share its width.
         half = 0.36 * step / len(on)
         x = left + step * (throws[number] - 0.4) + half * (2 * on.index(number) + 1 - len(on))
         high = CROWN * mechanism.crank * way.imag
@@ -220,6 +226,7 @@ def _panel(mechanism: EngineMechanism, view: Viewport, unit: str) -> Element:
     middle, reach = view.point(0j), _reach(mechanism)
     numbers: dict[float, list[int]] = {}
     for cylinder in mechanism.cylinders:
+        # Cylinders of one bank share an axis.
         numbers.setdefault(cylinder.axis, []).append(cylinder.number)
     half = CROWN * mechanism.crank
     for axis, on in numbers.items():
@@ -245,7 +252,7 @@ def _panel(mechanism: EngineMechanism, view: Viewport, unit: str) -> Element:
 
 
 def _shaft_numbers(mechanism: EngineMechanism, view: Viewport) -> list[Element]:
-    """The cylinders of each throw, below the shaft's side view."""
+    """Draw the numbers of each throw's cylinders below the side view of the shaft."""
     left, step = 1.2 * _reach(mechanism), 1.6 * mechanism.crank
     listed = []
     for n in range(len(mechanism.throws)):
@@ -256,7 +263,7 @@ def _shaft_numbers(mechanism: EngineMechanism, view: Viewport) -> list[Element]:
 
 
 def engine_drawing(design: EngineDesign, problem: EngineProblem, title: str) -> str:
-    """End view and shaft as a DXF document (R2010)."""
+    """Write end view and shaft as a DXF document (R2010)."""
     mechanism = design.mechanism
     layers = {
         "CYLINDERS": (7, "CENTER"),
@@ -287,7 +294,7 @@ def engine_drawing(design: EngineDesign, problem: EngineProblem, title: str) -> 
 
 
 def engine_table(design: EngineDesign, problem: EngineProblem, title: str) -> str:
-    """Torques, shaking force and pins over a cycle where there are forces; otherwise the cylinders and their firing."""
+    """Write torques, shaking force and pin forces over a cycle if known; otherwise the cylinders and their firing."""
     course = design.course
     if course is not None:
         columns = {name: getattr(course, name) for name in type(course).model_fields}

@@ -1,9 +1,9 @@
-"""Flywheels: the sheet with face, section and the course of torque and speed; the DXF drawing; the table.
+"""Flywheels: the sheet with face, section, torque and speed over the cycle; the DXF drawing; the CSV table.
 
 =========  =====================================================
-layer      what is on it
+layer      content
 =========  =====================================================
-WHEEL      outside and inside, seen along the axis
+WHEEL      outer and inner circle, viewed along the axis
 SECTION    outlines of the cut through the axis, at the right
 CENTRES    cross at the shaft, axis of the section
 TEXT       the dimensions
@@ -29,20 +29,20 @@ from synthesis.kinds.flywheel.problem import FlywheelProblem
 from synthesis.model.dimension import DENSITY, ROTATIONAL_SPEED, TORQUE
 
 PANEL, DIAGRAM, MARGIN = 360.0, 175.0, 30.0
-"""Heights of the panel and of each diagram, and room around what is shown, pixels."""
+"""Heights of the panel and of each diagram, and margin around the content, pixels."""
 
 APART = 0.35
 """Space between the face and the section, in radii."""
 
 FILL = "#dfe7ef"
-"""Of the wheel's face and section."""
+"""Fill colour of the wheel's face and section."""
 
 LETTERS = 0.05
 """Height of letters in the drawing, in radii."""
 
 
 def flywheel_sheet(design: FlywheelDesign, problem: FlywheelProblem, title: str) -> str:
-    """Face and section of a flywheel to scale, its torque and speed, and tables, as a complete SVG document."""
+    """Draw face and section of a flywheel to scale, its torque and speed, and tables as a complete SVG document."""
     wheel, units = design.mechanism, symbols(problem)
     box = _box(wheel)
     view = Viewport.fit(box, Box(EDGE, TOP, EDGE + beside(), TOP + PANEL), MARGIN, MARGIN)
@@ -58,6 +58,7 @@ def flywheel_sheet(design: FlywheelDesign, problem: FlywheelProblem, title: str)
             at,
             speed,
             OUTPUT,
+            # The dashed lines show the fluctuation of speed.
             limits=(metrics.least_speed, metrics.greatest_speed),
             from_zero=False,
         ),
@@ -93,13 +94,13 @@ def _dimensions(wheel: FlywheelMechanism, problem: FlywheelProblem) -> list[tupl
 
 
 def _box(wheel: FlywheelMechanism) -> Box:
-    """Around the face, whose centre is the origin, and the section at its right."""
+    """Return the box around the face, whose centre is the origin, and the section at its right."""
     right = (1.0 + APART) * wheel.radius + wheel.thickness
     return Box(-wheel.radius, -wheel.radius, right, wheel.radius)
 
 
 def _cuts(wheel: FlywheelMechanism) -> list[list[complex]]:
-    """Corners of the cut faces of the section."""
+    """Return the corners of the cut faces of the section."""
     left = (1.0 + APART) * wheel.radius
     right = left + wheel.thickness
     halves = [(-wheel.radius, wheel.radius)]
@@ -129,7 +130,7 @@ def _panel(wheel: FlywheelMechanism, view: Viewport, unit: str) -> Element:
 
 
 def flywheel_drawing(design: FlywheelDesign, problem: FlywheelProblem, title: str) -> str:
-    """Face and section as a DXF document (R2010)."""
+    """Write face and section as a DXF document (R2010)."""
     wheel = design.mechanism
     layers = {name: (colour, "CONTINUOUS") for name, colour in (("WHEEL", 5), ("SECTION", 3), ("TEXT", 7))}
     document = dxf.new_drawing(title or "Flywheel", problem.length_unit, layers | {"CENTRES": (7, "CENTER")})
@@ -149,7 +150,7 @@ def flywheel_drawing(design: FlywheelDesign, problem: FlywheelProblem, title: st
 
 
 def flywheel_table(design: FlywheelDesign, problem: FlywheelProblem, title: str) -> str:
-    """Angle, torque and speed over a cycle."""
+    """Write angle, torque and speed over a cycle."""
     course = design.course
     unit = "n_m" if problem.units == "si" else "consistent"
     rows = zip(course.angle, course.torque, course.speed, strict=True)

@@ -1,7 +1,7 @@
-"""Geneva drives: the sheet with wheel, crank and program; the DXF drawing with true arcs; the animation; the table.
+"""Geneva drives: the sheet with wheel, crank and program; the DXF drawing with true arcs; the animation; the CSV table.
 
 =========  ===================================================================
-layer      what is on it
+layer      content
 =========  ===================================================================
 WHEEL      outline of the wheel: slots, locking arcs, lands, bore, a ring's outside
 CRANK      locking disc and rollers
@@ -40,23 +40,23 @@ Complex = NDArray[np.complex128]
 Mechanism = GenevaMechanism | SphericalGenevaMechanism
 
 PANEL, DIAGRAM, MARGIN = 380.0, 150.0, 24.0
-"""Heights of the panel and of each diagram, and room around what is shown, pixels."""
+"""Heights of the panel and of each diagram, and margin around the content, pixels."""
 
 FILL, DISC = "#dfe7ef", "#f3e7d3"
-"""Of the wheel and of the disc."""
+"""Fill colours of the wheel and of the disc."""
 
 FRAMES = 72
-"""Of a turn of the crank."""
+"""Number of frames per turn of the crank."""
 
 AROUND = 73
-"""Points of a drawn circle."""
+"""Number of points of a drawn circle."""
 
 LETTERS = 0.03
 """Height of letters in the drawing, in sizes of the drive."""
 
 
 def indexing_sheet(design: IndexingDesign, problem: IndexingProblem, title: str) -> str:
-    """Wheel and crank as a roller enters, the program, torque and pin force, and tables, as an SVG document."""
+    """Draw wheel and crank as a roller enters, the program, torque and pin force, and tables as an SVG document."""
     units, program, course = symbols(problem), design.program, design.course
     parts = [_panel(design, problem)]
     at = np.array(program.angle)
@@ -99,19 +99,21 @@ def _ring(radius: float, center: complex = 0j) -> Complex:
 
 
 def _wheel(design: IndexingDesign) -> Complex:
-    """The wheel in the crank's picture, as a roller enters: the crank stands at +x."""
+    """Return the wheel in the crank's frame as a roller enters; the crank is at +x."""
     profile = design.mechanism.profile
+    # As a roller enters, its slot is half a station off the line of centres.
     sense = 1.0 if design.mechanism.type == "geneva_external" else -1.0
     turned = sense * math.pi / design.mechanism.stations
     return np.asarray((np.array(profile.x) + 1j * np.array(profile.y)) * np.exp(1j * turned))
 
 
 def _plane_crank(mechanism: GenevaMechanism, half: float) -> tuple[Complex, list[complex]]:
-    """The disc as a polygon, and the rollers, as the first of them enters."""
+    """Return the disc as a polygon, and the rollers, as the first of them enters."""
     sense = 1.0 if mechanism.type == "geneva_external" else -1.0
     way = -sense * np.exp(-1j * half)
     at = np.exp(1j * np.radians(mechanism.disc.angle))
     outer, inner = np.array(mechanism.disc.outer_radius) * at, np.array(mechanism.disc.inner_radius) * at
+    # A crescent has an inner edge, a full disc has none.
     corners = np.concatenate([outer, inner[::-1]]) if inner.any() else outer
     turns = np.exp(2j * math.pi * np.arange(mechanism.rollers) / mechanism.rollers)
     rollers = mechanism.center_distance + way * mechanism.crank_radius * turns
@@ -119,9 +121,12 @@ def _plane_crank(mechanism: GenevaMechanism, half: float) -> tuple[Complex, list
 
 
 def _cap(mechanism: SphericalGenevaMechanism) -> tuple[Complex, complex]:
-    """The cap and the roller seen along the crank's axis from outside, beside the wheel; the roller stands up."""
+    """Return the cap and the roller viewed along the crank's axis from outside, next to the wheel; the roller points
+    up.
+    """
     center = 2.4 * mechanism.sphere_radius
     radius = mechanism.sphere_radius * math.sin(math.radians(mechanism.cap_angle))
+    # The cap is cut off by a plane at this share of its radius.
     share = min(1.0, mechanism.cap_offset / radius)
     ends = math.asin(share)
     arc = radius * np.exp(1j * np.linspace(math.pi + ends, 2.0 * math.pi - ends, AROUND))
@@ -130,7 +135,7 @@ def _cap(mechanism: SphericalGenevaMechanism) -> tuple[Complex, complex]:
 
 
 def _crank(design: IndexingDesign) -> tuple[Complex, list[complex], complex, float]:
-    """Disc, rollers, the crank's axis and the radius of the rollers' circle."""
+    """Return disc, rollers, the crank's axis and the radius of the rollers' circle."""
     mechanism = design.mechanism
     if isinstance(mechanism, GenevaMechanism):
         disc, rollers = _plane_crank(mechanism, course_of(mechanism).geneva.half)
@@ -141,10 +146,13 @@ def _crank(design: IndexingDesign) -> tuple[Complex, list[complex], complex, flo
 
 
 def _links(mechanism: Mechanism, angle: float, crank: float) -> list[Complex]:
-    """Input, coupler and output of a drag link, at angles of its input and of the crank since the entry; else none."""
+    """Return the lines of a drag link at angles of its input and of the crank since the entry; an empty list without
+    one.
+    """
     link = getattr(mechanism, "drag_link", None)
     if link is None or not isinstance(mechanism, GenevaMechanism):
         return []
+    # In the middle of an index the crank points to an external wheel's axis, and away from an internal one's.
     towards = math.pi if mechanism.type == "geneva_external" else 0.0
     output = towards - course_of(mechanism).geneva.half + crank - math.radians(link.crank_offset)
     pivot, axis = complex(*link.input_pivot), complex(mechanism.center_distance)
@@ -153,7 +161,7 @@ def _links(mechanism: Mechanism, angle: float, crank: float) -> list[Complex]:
 
 
 def _reach(mechanism: Mechanism) -> Complex:
-    """Around what a drag link reaches; nothing without one."""
+    """Return a circle around the range of a drag link; empty without one."""
     link = getattr(mechanism, "drag_link", None)
     return np.empty(0, np.complex128) if link is None else _ring(link.input, complex(*link.input_pivot))
 
@@ -195,7 +203,7 @@ def _panel(design: IndexingDesign, problem: IndexingProblem) -> Element:
 
 
 def indexing_drawing(design: IndexingDesign, problem: IndexingProblem, title: str) -> str:
-    """Wheel and crank as a DXF document (R2010): a plane wheel of true lines and arcs."""
+    """Write wheel and crank as a DXF document (R2010): a plane wheel of true lines and arcs."""
     mechanism, letters = design.mechanism, LETTERS * design.metrics.size
     layers = {"WHEEL": (5, "CONTINUOUS"), "CRANK": (3, "CONTINUOUS"), "CENTRES": (7, "CENTER")}
     document = dxf.new_drawing(title or _name(design), problem.length_unit, layers | {"TEXT": (7, "CONTINUOUS")})
@@ -225,12 +233,14 @@ def indexing_drawing(design: IndexingDesign, problem: IndexingProblem, title: st
 
 
 def _true_wheel(space: Modelspace, mechanism: GenevaMechanism) -> None:
-    """A plane wheel by the lines and arcs that it is made of, as a roller enters."""
+    """Add a plane wheel made of lines and arcs, as a roller enters."""
     internal = mechanism.type == "geneva_internal"
     step, half_slot, reach = math.pi / mechanism.stations, 0.5 * mechanism.slot_width, mechanism.wheel_radius
+    # Corner between the slot's side and the rim.
     mouth = complex(math.sqrt(reach**2 - half_slot**2), half_slot)
     end = complex(mechanism.slot_end_radius)
     c, lock = mechanism.center_distance, mechanism.locking_arc_radius
+    # Angle at which the locking arc meets the rim, by the law of cosines.
     beside = step - math.acos((reach**2 + c**2 - lock**2) / (2.0 * reach * c))
     corner = reach * np.exp(1j * beside)
     for k in range(mechanism.stations):
@@ -243,14 +253,14 @@ def _true_wheel(space: Modelspace, mechanism: GenevaMechanism) -> None:
         dxf.add_arc(space, turn * end, half_slot, turn * ends[0], turn * ends[1], "WHEEL")
         dxf.add_arc(space, 0j, reach, turn * mouth, turn * corner, "WHEEL")
         dxf.add_arc(space, 0j, reach, turn * corner.conjugate(), turn * mouth.conjugate(), "WHEEL")
-        # A ring's arc is the far side of its circle, from the corner of this slot on; another wheel's is the near side.
+        # A ring's arc is the far side of its circle, from the corner of this slot; another wheel's is the near side.
         ends = corner, corner.conjugate() * np.exp(2j * step)
         first, last = ends if internal else ends[::-1]
         dxf.add_arc(space, turn * c * np.exp(1j * step), lock, turn * first, turn * last, "WHEEL")
 
 
 def indexing_animation(design: IndexingDesign, problem: IndexingProblem, title: str) -> bytes:
-    """One turn of the crank as GIF."""
+    """Draw one turn of the crank as GIF."""
     mechanism = design.mechanism
     course = course_of(mechanism)
     wheel, outside = _wheel(design), _outside(design)
@@ -280,7 +290,7 @@ def indexing_animation(design: IndexingDesign, problem: IndexingProblem, title: 
 
 
 def indexing_table(design: IndexingDesign, problem: IndexingProblem, title: str) -> str:
-    """The program of an index with torque and pin force."""
+    """Write the program of an index with torque and pin force."""
     program, course = design.program, design.course
     columns = {
         "crank_deg": program.angle,

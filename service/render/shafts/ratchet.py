@@ -1,7 +1,7 @@
-"""Ratchets: the sheet with wheel and pawls; the DXF drawing; the table of a pawl's lift.
+"""Ratchets: the sheet with wheel and pawls; the DXF drawing; the CSV table of a pawl's lift.
 
 =========  =====================================
-layer      what is on it
+layer      content
 =========  =====================================
 WHEEL      outline of the teeth, bore
 PAWLS      pawls with their pivots
@@ -32,20 +32,20 @@ from synthesis.kinds.indexing.problem import IndexingProblem
 Complex = NDArray[np.complex128]
 
 PANEL, DIAGRAM, MARGIN = 400.0, 175.0, 24.0
-"""Heights of the panel and of the diagram, and room around what is shown, pixels."""
+"""Heights of the panel and of the diagram, and margin around the content, pixels."""
 
 FILL, PAWL = "#dfe7ef", "#f3e7d3"
-"""Of the wheel and of pawls."""
+"""Fill colours of the wheel and of pawls."""
 
 LETTERS = 0.04
 """Height of letters in the drawing, in radii of the wheel."""
 
 SHOWN = 361
-"""Positions of a turn over a pitch of which the lift is shown."""
+"""Number of samples of the lift diagram, which covers three pitches."""
 
 
 def ratchet_sheet(design: RatchetDesign, problem: IndexingProblem, title: str) -> str:
-    """Wheel and pawls to scale, the lift of a pawl over three teeth, and tables, as an SVG document."""
+    """Draw wheel and pawls to scale, the lift of a pawl over three teeth, and tables as an SVG document."""
     mechanism = design.mechanism
     parts = [_panel(mechanism, problem.length_unit)]
     at, lift = _lifts(mechanism)
@@ -61,7 +61,7 @@ def ratchet_sheet(design: RatchetDesign, problem: IndexingProblem, title: str) -
         ]
     )
     words = f"Ratchet of {mechanism.teeth} teeth, {mechanism.stations} stops; {verdict(design.verification)}"
-    described = "A ratchet wheel with its pawls, and how a pawl is lifted by three passing teeth."
+    described = "A ratchet wheel with its pawls, and the lift of a pawl by three passing teeth."
     return sheet(title or "Ratchet", words, described, [*parts, *tables], max(low + DIAGRAM, bottom))
 
 
@@ -81,7 +81,7 @@ def _ratchet(mechanism: RatchetMechanism) -> Ratchet:
 
 
 def _lifts(mechanism: RatchetMechanism) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """The wheel's angle over three teeth and the lift of the first pawl, degrees."""
+    """Return the wheel's angle over three teeth and the lift of the first pawl, degrees."""
     ratchet = _ratchet(mechanism)
     angle = 3.0 * ratchet.pitch * np.arange(SHOWN) / (SHOWN - 1)
     return np.degrees(angle), np.degrees(ratchet.lifted(angle))
@@ -92,7 +92,7 @@ def _wheel(mechanism: RatchetMechanism) -> Complex:
 
 
 def _pawl(mechanism: RatchetMechanism, pawl: Pawl) -> list[complex]:
-    """A pawl as a bar with a nose, where it is as the first one holds the wheel: others lie on the backs of teeth."""
+    """Return a pawl as a bar with a nose while the first one holds the wheel; others rest on the backs of teeth."""
     pivot, nose, height = complex(*pawl.pivot), complex(*pawl.nose), mechanism.tooth_height
     out = nose / abs(nose)
     back = (pivot - nose) / abs(pivot - nose)
@@ -106,6 +106,7 @@ def _pawl(mechanism: RatchetMechanism, pawl: Pawl) -> list[complex]:
         pivot + 0.3 * height * out,
         nose + clear * out + 1.2 * height * back,
     ]
+    # Only the first pawl rests on a face; others lie on backs of teeth.
     lift = 0.0 if pawl.stop == 0.0 else float(_ratchet(mechanism).lifted(np.radians(-pawl.stop)))
     return [complex(pivot + (corner - pivot) * np.exp(-1j * lift)) for corner in corners]
 
@@ -127,7 +128,7 @@ def _panel(mechanism: RatchetMechanism, unit: str) -> Element:
 
 
 def ratchet_drawing(design: RatchetDesign, problem: IndexingProblem, title: str) -> str:
-    """Wheel and pawls as a DXF document (R2010)."""
+    """Write wheel and pawls as a DXF document (R2010)."""
     mechanism = design.mechanism
     layers = {"WHEEL": (5, "CONTINUOUS"), "PAWLS": (3, "CONTINUOUS"), "CENTRES": (7, "CENTER")}
     document = dxf.new_drawing(title or "Ratchet", problem.length_unit, layers | {"TEXT": (7, "CONTINUOUS")})
@@ -140,12 +141,13 @@ def ratchet_drawing(design: RatchetDesign, problem: IndexingProblem, title: str)
         dxf.add_circle(space, complex(*pawl.pivot), 0.3 * mechanism.tooth_height, "PAWLS")
     dxf.add_cross(space, 0j, 2.0 * letters, "CENTRES")
     for n, (name, value) in enumerate(_dimensions(design, problem)):
+        # Dimensions are listed below the wheel and its pawls.
         at = complex(0.0, -2.2 * mechanism.wheel_radius - 1.6 * n * letters)
         dxf.add_words(space, at, f"{name} {value}", letters)
     return dxf.written(document)
 
 
 def ratchet_table(design: RatchetDesign, problem: IndexingProblem, title: str) -> str:
-    """The lift of the first pawl over three teeth."""
+    """Write the lift of the first pawl over three teeth."""
     at, lift = _lifts(design.mechanism)
     return table(["wheel_deg", "lift_deg"], (list(row) for row in zip(at.tolist(), lift.tolist(), strict=True)))
