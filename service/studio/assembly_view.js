@@ -30,7 +30,7 @@ import { symbolOf } from "./units.js";
 const POSITIONS = 144;
 
 /** The scale that a refusal says will do. */
-const SCALE = /fit from scale ([\d.e+]+) on|; scale ([\d.e+-]+) is the greatest/;
+const SCALE = /fit at scale ([\d.e+]+) or more|; use at most scale ([\d.e+-]*\d)/;
 
 const PROCESSES = { laser: t`cut by laser`, print: t`printed`, mill: t`milled` };
 

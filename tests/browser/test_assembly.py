@@ -191,7 +191,7 @@ def test_what_leaves_no_room_is_said_with_a_button_for_the_scale_that_works(open
     page.fill("#assembly-width", "60")
     page.locator("#assembly-width").press("Enter")
     fault = page.locator("#assembly-fault")
-    until(lambda: "There is no room for links 60 mm wide" in fault.inner_text(), 90, "the reason")
+    until(lambda: "Links 60 mm wide do not fit" in fault.inner_text(), 90, "the reason")
     assert page.locator("#assembly-width").get_attribute("aria-invalid") == "true"
     assert not page.locator(CANVAS).is_visible()
     fault.get_by_role("button").click()

@@ -207,4 +207,4 @@ def test_dimensions_are_typed_held_and_made_equal_and_the_fit_goes_on_from_there
     start = {name: complex(*at) for name, at in job["problem"]["start"].items()}
     assert abs(start["B"] - start["A"]) == pytest.approx(begun["Coupler A–B"], rel=1e-4)
     assert abs(start["P"] - start["A"]) == pytest.approx(begun["Coupler A–P"], rel=1e-4)
-    assert "from the start" in job["result"]["summary"]
+    assert "from the given start" in job["result"]["summary"]

@@ -257,7 +257,7 @@ def test_a_load_is_stated_on_the_drawing_and_a_fault_is_told_at_its_field(open_s
     page.fill('[data-path="/dynamics/point_masses/0/mass"]', "0.5")
     page.click("text=Show the forces")
     page.wait_for_selector('[data-path="/dynamics/links"][aria-invalid="true"]')
-    assert "has a thickness" in page.inner_text('[data-path="/dynamics/links"] > .error')
+    assert "needs a thickness" in page.inner_text('[data-path="/dynamics/links"] > .error')
     assert "what was stated before" in page.inner_text(".load-editor")
     page.set_viewport_size({"width": 390, "height": 844})
     assert page.evaluate("document.documentElement.scrollWidth - document.documentElement.clientWidth") <= 0

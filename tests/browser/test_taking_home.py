@@ -151,7 +151,7 @@ def check_report(path, job):
     assert job in text
     assert page.tags.count("figure") >= 1
     assert "script" not in page.tags
-    assert all(heading in text for heading in ("Answer", "Problem", "What was searched", "Checks", "Dimensions"))
+    assert all(heading in text for heading in ("Answer", "Problem", "Search", "Checks", "Dimensions"))
 
 
 def check_mujoco(path, job):
@@ -262,7 +262,7 @@ def test_what_leaves_no_room_for_parts_is_said_beside_the_button(studio):
     page.click("#tab-files")
     page.locator("#downloads").get_by_role("button", name="Parts", exact=True).click()
     said = page.locator("#downloads .error")
-    until(lambda: "There is no room for links" in said.inner_text(), 90, "the reason")
+    until(lambda: "wide do not fit" in said.inner_text(), 90, "the reason")
     assert [text for text in studio.wrong if "409" not in text] == []
     studio.wrong.clear()
 

@@ -271,7 +271,7 @@ def test_coupler_point_in_line(place: float) -> None:
 @pytest.mark.parametrize("make", [cognates, geared_fivebar_cognate, parallel_motion])
 @pytest.mark.parametrize("point", [0.0, 7.0, 5e-9j, 7.0 - 5e-9, [1j, 7.0, 2.0]])
 def test_point_at_a_moving_pivot_has_no_cognate(make, point) -> None:
-    with pytest.raises(DimensionError, match=r"^coupler_point must be apart from the moving pivots") as caught:
+    with pytest.raises(DimensionError, match=r"^coupler_point must be away from the moving pivots") as caught:
         make(Fourbar.from_lengths(2.0, 7.0, 9.0, 6.0, point))
     assert caught.value.name == "coupler_point"
     assert min(abs(caught.value.value), abs(caught.value.value - 7.0)) < 1e-8

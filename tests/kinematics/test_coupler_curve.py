@@ -439,7 +439,7 @@ def test_line_needs_a_direction() -> None:
 def test_point_at_a_moving_pivot_draws_no_sextic(point: object) -> None:
     linkage = Fourbar.from_lengths(2.0, 7.0, 9.0, 6.0, point)
     for call in (lambda: double_points(linkage), lambda: line_crossings(linkage, 0.0, 1.0)):
-        with pytest.raises(DimensionError, match=r"^coupler_point must be apart from the moving pivots"):
+        with pytest.raises(DimensionError, match=r"^coupler_point must be away from the moving pivots"):
             call()
 
 

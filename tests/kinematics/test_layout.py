@@ -274,5 +274,5 @@ def test_what_takes_too_long_is_refused_and_not_begun() -> None:
     assert max(laid_out(row, low, high, **SMALL).planes.values()) >= 2
     with pytest.raises(DimensionError, match="stub shafts must be fewer"):
         laid_out(row, low, high, through=True, **{**SMALL, "link_width": 6.0})
-    with pytest.raises(DimensionError, match="plates must be 12 at most"):
+    with pytest.raises(DimensionError, match="plates must be at most 12"):
         laid_out(many_pivots(8), low, high, **SMALL)

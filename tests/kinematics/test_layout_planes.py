@@ -90,7 +90,7 @@ def test_a_double_crank_on_one_base_is_never_free_but_on_two_bases_it_is() -> No
 def test_as_many_plates_as_are_promised() -> None:
     apart = [(n, n + 1) for n in range(MOST_PLATES - 1)]
     assert max(stacked(MOST_PLATES, apart, [])) == 2
-    with pytest.raises(DimensionError, match=f"{MOST_PLATES} at most"):
+    with pytest.raises(DimensionError, match=f"at most {MOST_PLATES}"):
         stacked(MOST_PLATES + 1, apart, [])
 
 

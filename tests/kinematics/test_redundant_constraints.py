@@ -150,8 +150,8 @@ def test_designs_of_one_make_are_driven_together() -> None:
 @pytest.mark.parametrize(
     ("make", "told"),
     [
-        (lambda: parallelogram(5.0 + 1.3j, 1.1), "in none nearby"),
-        (lambda: parallelogram(5.0 + 1.3j, 1.01), "in none nearby"),
+        (lambda: parallelogram(5.0 + 1.3j, 1.1), "in no nearby position"),
+        (lambda: parallelogram(5.0 + 1.3j, 1.01), "in no nearby position"),
         (lambda: parallelogram(5.0 + 0j, crank=1.0 + 0j), "dead centre"),
         (lambda: geared(1.1), "do not agree"),
     ],

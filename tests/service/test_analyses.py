@@ -290,7 +290,7 @@ BAD_MECHANISMS = {
     "too many freedoms": (
         changed(SIXBAR, ("skeleton", "links"), SIXBAR["skeleton"]["links"][:4]), "/mechanism/skeleton",
     ),
-    "too many links that no dyads close": ({"type": "skeleton", "skeleton": THREE_LEGS}, "/mechanism"),
+    "too many links outside dyads": ({"type": "skeleton", "skeleton": THREE_LEGS}, "/mechanism"),
 }  # fmt: skip
 
 BAD_MOTIONS = {

@@ -271,7 +271,7 @@ def test_a_report_shows_assemblies_where_they_are_asked_for(client: Any, jobs: A
     narrow = {"kind": "quick_return", "time_ratio": 1.5, "stroke": 40.0, "max_designs": 1}
     told = client.get(f"/v1/jobs/{finished(client, narrow)['id']}/report.html", params={"assemblies": True}).text
     assert "<h3>Assembly</h3>" in told
-    assert ("There is no room for links" in told) != ('data-panel="isometric"' in told)
+    assert ("wide do not fit" in told) != ('data-panel="isometric"' in told)
     assert client.get(at, params={"assemblies": "perhaps"}).status_code == 422
 
 

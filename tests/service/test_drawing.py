@@ -418,7 +418,7 @@ def test_of_many_targets_some_are_drawn_evenly_spread_with_both_ends() -> None:
     assert float(root.attrib["height"]) < 1200.0
     description = root.find(f"{SVG}desc")
     assert description is not None
-    assert f"shown at 200 of 200 demanded positions, of which {MARKED} are drawn" in (description.text or "")
+    assert f"shown at 200 of 200 target positions, of which {MARKED} are drawn" in (description.text or "")
 
 
 def test_numbers_and_cut_text() -> None:

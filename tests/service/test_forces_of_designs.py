@@ -156,7 +156,7 @@ def test_each_limit_is_kept_and_each_order_is_held(client, name):
 
     values = [value(design) for design in ordered]
     assert values == sorted(values)
-    assert f"Ordered by {name.replace('_', ' ')}, of " in job["result"]["summary"]
+    assert f"Ranked by {name.replace('_', ' ')} (" in job["result"]["summary"]
     limit = 1.05 * values[0]
     job, kept = designs(client, {**asked, "constraints": {f"max_{name}": limit}})
     assert kept, job["result"]["summary"]

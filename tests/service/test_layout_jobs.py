@@ -133,7 +133,7 @@ def test_fewest_planes_first(client, problem, width):
     assert len({*map(place, usual["designs"])}) > 1
     assert by_planes["designs"] == sorted(usual["designs"], key=place)
     assert first["designs"] == by_planes["designs"][:1]
-    assert "Ordered by planes" in by_planes["summary"]
+    assert "Ranked by planes" in by_planes["summary"]
     assert set(by_planes["front"]["designs"]) <= set(range(len(by_planes["designs"])))
 
 

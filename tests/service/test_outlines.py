@@ -391,7 +391,7 @@ def test_files_of_other_formats(client, what):
 BROKEN = {
     "not well-formed": b"<svg xmlns='http://www.w3.org/2000/svg'><g></svg>",
     "unfinished": b"<svg xmlns='http://www.w3.org/2000/svg'><rect width='9'",
-    "no <svg>": b"<html><body/></html>",
+    "not <svg>": b"<html><body/></html>",
     "not well-formed XML": page("\0<rect width='9' height='9'/>"),
     "declares XML entities": b'<!DOCTYPE svg [<!ENTITY a "aaa">]><svg xmlns="http://www.w3.org/2000/svg">&a;</svg>',
     "XML entities": b'<!DOCTYPE svg [<!ENTITY x SYSTEM "file:///etc/passwd">]><svg><text>&x;</text></svg>',

@@ -78,7 +78,7 @@ def test_the_lever_is_cut_as_two_plates_that_are_keyed_alike(server: Any) -> Non
     }  # fmt: skip
     read_me = files["README.txt"].decode()
     assert "second base: block_d_2, second_base" in read_me
-    assert "Link rocker is two plates" in read_me
+    assert "Link rocker consists of two plates" in read_me
     view = client.get(f"{place}/assembly", params={"pin": 5, "positions": 4}).json()
     assert (view["planes"], view["bases"]) == (4, 2)
     carried = {part["name"]: part["carrier"] for part in view["parts"]}
@@ -88,7 +88,7 @@ def test_the_lever_is_cut_as_two_plates_that_are_keyed_alike(server: Any) -> Non
     assert fault["path"] == "/query/shafts"
     (fault,) = refused(client, place, 422, width=60)["errors"]
     assert fault["path"] == "/query/width"
-    assert "fit from scale" in fault["detail"]
+    assert "fit at scale" in fault["detail"]
 
 
 @pytest.mark.parametrize(("ratio", "process"), [(1.2, "laser"), (2.5, "print"), (1.8, "mill")])
@@ -128,7 +128,7 @@ def test_a_plate_on_the_other_side_of_the_base_would_be_in_the_way(part: str, pl
 
 
 def test_the_least_scale_is_told_where_the_pins_are_too_thick() -> None:
-    with pytest.raises(NotMade, match=r"fit from scale [\d.]+ on") as refusal:
+    with pytest.raises(NotMade, match=r"fit at scale [\d.]+ or more") as refusal:
         assembly(2.5, pin=8.0)
     scale = float(str(refusal.value).split("scale ")[1].split()[0])
     assert assembly(2.5, pin=8.0, scale=scale).sides == 2

@@ -70,7 +70,7 @@ def test_a_bore_too_wide_for_a_flywheel_is_refused_with_one_that_does(client: An
     place = f"/v1/jobs/{job['id']}/designs/0"
     (error,) = refused(client, place, 422, bore=199)["errors"]
     assert error["path"] == "/query/bore"
-    most = float(error["detail"].split("up to ")[1].split()[0])
+    most = float(error["detail"].split("use at most ")[1].split()[0])
     assert bill(parts(client, place, bore=most))["pin_flywheel_shaft"]["width"] == f"{most:g}"
     answer = refused(client, place, 422, face_width=20)
     assert answer["errors"][0]["path"] == "/query/face_width"
@@ -81,7 +81,7 @@ ROTOR = next(one for one in examples("balancing") if one.get("object") == "rotor
 
 @pytest.mark.parametrize(
     ("problem", "reason"),
-    [(ROTOR, "no shape of it; ask for"), (examples("engine")[0], "bore, journal or web; ask for")],
+    [(ROTOR, "no shape of it; use"), (examples("engine")[0], "bore, journal or web; use")],
     ids=["rotor", "engine"],
 )
 def test_what_states_no_shape_says_why_and_what_to_ask_for(client: Any, problem: Any, reason: str) -> None:

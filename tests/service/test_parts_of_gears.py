@@ -168,8 +168,8 @@ def test_a_reverted_train_comes_back_to_its_axis(client: Any) -> None:
         holes = [complex(one.dxf.center.x, one.dxf.center.y) for one in cut(files, plate).query("CIRCLE")]
         assert len(holes) == 6
         assert min(abs(abs(a - b) - distance) for n, a in enumerate(holes) for b in holes[n + 1 :]) < 1e-9
-    assert b"stands in the lower plate alone" in files["README.txt"]
-    assert b"stands in the upper plate alone" in files["README.txt"]
+    assert b"is held only by the lower plate" in files["README.txt"]
+    assert b"is held only by the upper plate" in files["README.txt"]
 
 
 SET = {"kind": "planetary_train", "ratio": "4", "max_designs": 1, "arrangement": "simple", "teeth": {"max": 80}}
@@ -379,13 +379,13 @@ def test_bevel_teeth_are_half_of_the_cone_distance_wide_at_most(client: Any) -> 
     job = finished(client, BEVELS)
     (fault,) = refused(client, f"/v1/jobs/{job['id']}/designs/0", 422, face_width=40)["errors"]
     assert fault["path"] == "/query/face_width"
-    assert "half of the cone distance" in fault["detail"]
+    assert "half the cone distance" in fault["detail"]
 
 
 def test_crossing_stages_among_others_are_refused_with_the_reason(client: Any) -> None:
     stages = [{"type": "bevel", "driver": 20, "driven": 30}, {"type": "external"}]
     job = finished(client, {"kind": "gear_train", "ratio": 3, "stages": stages, "max_designs": 1})
-    assert "trains of one stage" in refused(client, f"/v1/jobs/{job['id']}/designs/0", 409)["detail"]
+    assert "single-stage trains" in refused(client, f"/v1/jobs/{job['id']}/designs/0", 409)["detail"]
 
 
 def test_the_axles_of_a_ravigneaux_set_are_as_thick_as_its_sun_lets_them(client: Any) -> None:

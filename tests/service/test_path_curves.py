@@ -33,7 +33,7 @@ def test_a_drawn_curve_is_matched_drawn_and_driven(server, client):
     root = ET.fromstring(drawing.text)
     curves = {e.get("data-curve") for e in root.iter(f"{SVG}path")}
     assert {"target", "used"} <= curves
-    assert "demanded curve" in drawing.text
+    assert "target curve" in drawing.text
 
     motion = client.get(f"/v1/jobs/{job['id']}/designs/0/motion", params={"steps": 360}).json()
     traced = np.array(motion["joints"]["P"]["x"], float) + 1j * np.array(motion["joints"]["P"]["y"], float)

@@ -144,7 +144,7 @@ def test_a_slot_of_a_link_lies_through_two_of_its_points() -> None:
 
 
 def test_gears_cannot_be_opened() -> None:
-    with pytest.raises(NotSimulated, match="no gears"):
+    with pytest.raises(NotSimulated, match="does not support gears"):
         pmks(skeleton_of([{"links": ["crank", "rocker"], "ratio": -2.0}]), 60.0)
 
 

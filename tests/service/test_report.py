@@ -137,12 +137,12 @@ def test_long_lists_are_thinned_with_both_ends_and_say_so():
 def test_where_nothing_was_found_the_report_says_whether_that_is_a_proof():
     problem, result = solved("gear_train", 0)
     none = result.model_copy(update={"designs": []})
-    assert "no design exists" in Page(report(problem, none, OCCASION, 5)).text
+    assert "no design satisfies" in Page(report(problem, none, OCCASION, 5)).text
     open_search = result.search.model_copy(update={"complete": False})
     unproven = none.model_copy(update={"search": open_search})
     said = Page(report(problem, unproven, OCCASION, 5)).text
-    assert "no proof that none exists" in said
-    assert "no design exists that" not in said
+    assert "does not prove that none exists" in said
+    assert "no design satisfies" not in said
 
 
 def test_a_design_that_fails_a_check_is_shown_to_fail():

@@ -182,7 +182,7 @@ def test_the_block_dynamics_says_masses_gravity_and_speed(designs: Designs) -> N
     own = {link: 1e-5 * plate([at[joint] for joint in links[link]], 20.0).area for link in ("coupler", "output")}
     found = {link: numbers(bodies[f"link_{link}"][1].find("inertial"), "mass")[0] for link in own}
     assert sum(found.values()) == pytest.approx(sum(own.values()) + 0.25, rel=1e-4)
-    assert "Not in this file: loads" in designs.text("weighed", "mjcf")
+    assert "Not included: loads" in designs.text("weighed", "mjcf")
 
 
 def swept(design: Any) -> float:
@@ -450,7 +450,7 @@ def test_what_has_no_simulation_is_told(designs: Designs) -> None:
     for form in FORMS:
         assert designs.fault("engine", form, 404)["type"] == "/problems/not-found"
     told = designs.fault("fourbar", "sim.py", 409, speed_rpm=1e6)
-    assert "beyond what MuJoCo takes" in told["detail"]
+    assert "the limit for MuJoCo" in told["detail"]
     assert designs.asked("fourbar", "urdf", speed_rpm=1e6).status_code == 200
     told = designs.fault("consistent", "mjcf", 409)
     assert told["type"] == "/problems/no-simulation"

@@ -125,15 +125,15 @@ def test_auto_takes_the_fourbar_where_one_is_sound(client):
 def test_auto_takes_sixbars_where_no_fourbar_is_sound_and_says_so(client):
     result = answered(client, mechanisms="auto")["result"]
     assert {design["mechanism"]["type"] for design in result["designs"]} <= set(SIXBARS)
-    assert "No linkage of two dyads does it; sixbars do." in result["summary"]
+    assert "No fourbar or slider-crank solves this; sixbars do." in result["summary"]
     assert "no fourbar exists" in result["summary"]
 
 
 @pytest.mark.campaign
 def test_types_that_were_not_tried_are_not_said_to_fail(client):
     result = answered(client, mechanisms=["slider_crank", "watt_1"], max_designs=1)["result"]
-    assert "None of the types named was found but sixbars." in result["summary"]
-    assert "No linkage of two dyads" not in result["summary"]
+    assert "No linkage of the requested types was found except sixbars." in result["summary"]
+    assert "No fourbar or slider-crank" not in result["summary"]
 
 
 def test_auto_looks_for_sliders_too(client):
@@ -180,10 +180,10 @@ def _as_of(sort: str, least: float) -> SimpleNamespace:
 @pytest.mark.parametrize(
     ("fourbar", "sixbars", "most", "offered", "told"),
     [
-        (10.0, [15.0, 8.0], 5, [15.0, 10.0], "sixbars have more and are offered beside it."),
-        (10.0, [9.0, 8.0], 5, [10.0], "no sixbar that was found has more."),
-        (10.0, [15.0, 14.0, 13.0], 2, [15.0, 10.0], "sixbars have more and are offered beside it."),
-        (10.0, [15.0], 1, [15.0], "sixbars have more and are offered in its place."),
+        (10.0, [15.0, 8.0], 5, [15.0, 10.0], "sixbars exceed it and are listed with it."),
+        (10.0, [9.0, 8.0], 5, [10.0], "no sixbar found exceeds it."),
+        (10.0, [15.0, 14.0, 13.0], 2, [15.0, 10.0], "sixbars exceed it and are listed with it."),
+        (10.0, [15.0], 1, [15.0], "sixbars exceed it and are listed in its place."),
     ],
 )
 def test_what_is_offered_beside_a_fourbar_is_what_is_told(monkeypatch, fourbar, sixbars, most, offered, told):
@@ -265,7 +265,7 @@ def test_more_than_five_positions_are_fitted_by_fourbars_where_sixbars_lack_some
     without = finished(client, {k: v for k, v in TASK.items() if k != "mechanisms"} | stated)["result"]
     assert result["designs"] == without["designs"]
     assert [design["mechanism"]["fixed_pivots"]["input"] for design in result["designs"]] == 2 * [[40.0, -80.0]]
-    assert "Sixbars were not looked for: they cannot keep input_side." in result["summary"]
+    assert "Sixbars were not searched: they do not support input_side." in result["summary"]
 
 
 @pytest.mark.campaign
@@ -283,7 +283,7 @@ def test_auto_takes_what_sixbars_cannot_keep_and_says_that_it_has_none(client, s
     auto = finished(client, plain | {"mechanisms": "auto"})["result"]
     assert auto["designs"] == without["designs"]
     assert auto["search"] == without["search"]
-    assert f"Sixbars were not looked for: they cannot keep {field}." in auto["summary"]
+    assert f"Sixbars were not searched: they do not support {field}." in auto["summary"]
 
 
 @pytest.mark.parametrize("types", [["fourbar"], ["slider_crank"]])
@@ -301,7 +301,7 @@ def test_types_of_two_dyads_alone(client, types):
 )
 def test_the_chain_is_kept_as_it_is_stated(client, chain):
     body = answered(client, mechanisms=list(SIXBARS), chain=chain)
-    assert "Stephenson II sixbars were not looked for beside chain." in body["result"]["summary"]
+    assert "Stephenson II sixbars were not searched: they do not support chain." in body["result"]["summary"]
     designs = passed(body)
     assert designs
     for design in designs:

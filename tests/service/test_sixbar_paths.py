@@ -286,7 +286,7 @@ def test_sixbars_that_meet_the_points_stand_before_a_slider_crank_that_is_fitted
 @pytest.mark.timeout(300)
 def test_a_type_without_a_class_is_left_out_beside_one(client):
     result = answered(client, mechanisms=["stephenson_2", "stephenson_3"], max_designs=1)["result"]
-    assert "Stephenson II sixbars were not looked for beside constraints.grashof." in result["summary"]
+    assert "Stephenson II sixbars were not searched: they do not support constraints.grashof." in result["summary"]
     assert {design["mechanism"]["type"] for design in result["designs"]} == {"stephenson_3"}
     alone = answered(client, max_designs=1)["result"]
     assert result["designs"] == alone["designs"]
@@ -309,7 +309,7 @@ def test_auto_offers_sixbars_where_no_fourbar_is_near(client):
     result = answered(client, mechanisms="auto", constraints={}, max_designs=4)["result"]
     types = {design["mechanism"]["type"] for design in result["designs"]}
     assert types & set(SIXBARS)
-    assert "are offered beside it" in result["summary"]
+    assert "are listed with it" in result["summary"]
 
 
 @pytest.mark.campaign
@@ -337,7 +337,7 @@ def _as_of(error: float, least: float) -> SimpleNamespace:
             [(1.0, 30.0), (3.0, 30.0)],
             5,
             [1.0, 4.0],
-            "have at most half of it and are offered beside it.",
+            "have at most half of it and are listed with it.",
         ),
         ([(4.0, 30.0)], [(3.0, 30.0)], 5, [4.0], "no sixbar that was found has half of it."),
         (
@@ -345,12 +345,12 @@ def _as_of(error: float, least: float) -> SimpleNamespace:
             [(3.0, 25.0)],
             5,
             [3.0, 4.0],
-            "No fourbar that was found is sound; sixbars are and are offered",
+            "No fourbar that was found is sound; sound sixbars were found and are listed",
         ),
         ([(4.0, 10.0)], [(3.0, 15.0)], 5, [4.0], "no sixbar that was found has half of it."),
-        ([], [(3.0, 15.0)], 5, [3.0], "No fourbar was found that meets all demands; sixbars do."),
-        ([], [], 5, [], "No fourbar was found that meets all demands; nor was a sixbar."),
-        ([(4.0, 30.0)], [(1.0, 30.0)], 1, [1.0], "offered in its place."),
+        ([], [(3.0, 15.0)], 5, [3.0], "No fourbar was found that satisfies all constraints; sixbars do."),
+        ([], [], 5, [], "No fourbar was found that satisfies all constraints; nor was a sixbar."),
+        ([(4.0, 30.0)], [(1.0, 30.0)], 1, [1.0], "listed in its place."),
         ([(4.0, 30.0)], [(0.0, 30.0)], 1, [0.0], "The error of the best fourbar is 4 mm; sixbars have at most half"),
         ([(0.0, 10.0)], [(0.0, 15.0)], 5, [0.0], "No fourbar that was found is sound, and no sixbar is."),
     ],
@@ -448,5 +448,5 @@ def test_auto_takes_what_sixbars_cannot_keep_and_says_that_it_has_none(client, s
     auto = finished(client, plain | stated | {"mechanisms": "auto"})["result"]
     assert auto["designs"] == without["designs"]
     assert auto["search"] == without["search"]
-    assert f"Sixbars were not looked for: they cannot keep {field}." in auto["summary"]
+    assert f"Sixbars were not searched: they do not support {field}." in auto["summary"]
     assert "Sixbars" not in without["summary"]

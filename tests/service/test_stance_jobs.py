@@ -67,7 +67,7 @@ def test_a_leg_walks_as_it_is_told_to(client, kind, begins):
     place = f"/v1/jobs/{job['id']}/designs/0"
     root = drawn(client, place, designs[0])
     assert [e for e in root.iter() if e.get("data-curve") == "stance"]
-    assert "In the stance P keeps within a band" in job["result"]["summary"]
+    assert "The flattest stance lies within a band" in job["result"]["summary"]
     assert client.get(f"/v1/jobs/{job['id']}/report.html").status_code == 200
 
 

@@ -207,7 +207,7 @@ def test_a_field_that_says_its_unit_has_the_dimension(kind):
             assert found in ("angle", "output"), (model, field)
         elif "length units squared" in says:
             assert found == "area", (model, field)
-        elif "revolutions a minute" in says:
+        elif "revolutions a minute" in says or "revolutions per minute" in says:
             assert found == "rotational speed", (model, field)
         elif "length unit" in says:
             assert str(found).startswith(("length", "inverse length", "stiffness", "output")), (model, field)

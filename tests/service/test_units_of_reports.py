@@ -234,7 +234,7 @@ def test_numbers_of_a_report_are_those_of_the_answer_with_their_units(kind, n):
     units = symbols(problem)
     page = Tables(report(problem, result, OCCASION, len(result.designs)))
     check_written(page.under("Problem", ""), problem, units)
-    check_written(page.under("What was searched", ""), result.search, units)
+    check_written(page.under("Search", ""), result.search, units)
     for number, design in enumerate(result.designs, 1):
         section = f"Design {number}: {words(design.mechanism.type)}"
         (checks,) = page.under(section, "Checks")
@@ -249,7 +249,7 @@ def test_numbers_of_a_report_are_those_of_the_answer_with_their_units(kind, n):
             "spring_balancing",
         )
         assert check_written(page.under(section, "Quantities"), design.metrics, units)
-        rest = page.under(section, "As it was driven")
+        rest = page.under(section, "Verified motion")
         check_written(rest, design, units, {"mechanism", "metrics", "verification"})
 
 

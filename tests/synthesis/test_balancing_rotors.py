@@ -165,12 +165,12 @@ def test_a_grade_at_bearings_beside_the_planes_proves_nothing() -> None:
     result = solve(stated(**fields, correction={"radius": 100.0}))
     assert not result.designs
     assert not result.search.complete
-    assert result.summary.startswith("No design was found.")
+    assert result.summary.startswith("No design found.")
     holes = {"angles": 4, "radius": 100.0, "step": 0.01, "max_per_hole": 0.2}
     result = solve(stated(**fields, correction={"holes": holes}))
     assert [design.metrics.places for design in result.designs] == [0]
-    assert "The least that was found is 0 g·mm" in result.summary
-    assert "its grade is beyond the limit" in result.summary
+    assert "The smallest residual found is 0 g·mm" in result.summary
+    assert "its grade exceeds the limit" in result.summary
     assert not result.search.complete
 
 

@@ -159,7 +159,7 @@ def test_an_acceleration_of_an_instant_is_not_called_met():
     result = solve(parse_problem(statement), lambda fraction, message: None)
     assert result.designs == []
     assert not result.search.complete
-    assert "state one" in result.summary
+    assert "set `limits.jerk`" in result.summary
 
 
 SHARP = {

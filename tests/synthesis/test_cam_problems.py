@@ -97,9 +97,9 @@ FAULTS = [
     ({"segments__1__law": "simple_harmonic"}, "/segments/1", "acceleration jumps"),
     ({"segments__1__law": "constant_acceleration"}, "/segments/1", "acceleration jumps"),
     ({"segments__1__law": "half_cycloidal_start"}, "/segments/2", "velocity jumps"),
-    ({"segments__3__lift": 20.0}, "/segments/0", "come back"),
+    ({"segments__3__lift": 20.0}, "/segments/0", "must end where it began"),
     ({"segments__1__lift": None}, "/segments/1/lift", "needs a lift"),
-    ({"segments__1": {"motion": "fall", "angle": 90.0, "lift": 25.0}}, "/segments/3/lift", "nothing to return"),
+    ({"segments__1": {"motion": "fall", "angle": 90.0, "lift": 25.0}}, "/segments/3/lift", "already at zero"),
     (
         {"segments__1__conditions": [{"angle": 45.0, "s": 12.0}]},
         "/segments/1/conditions",
@@ -154,9 +154,9 @@ FAULTS = [
         "above min",
     ),
     ({"minimize": "peak_contact_force"}, "/dynamics", "mass and spring"),
-    ({"limits": {"velocity": 40.0}}, "/limits/velocity", "each law is stated"),
-    ({"limits": {"acceleration": 90.0}}, "/limits/acceleration", "each law is stated"),
-    ({"limits": {"jerk": 2000.0}}, "/limits/jerk", "each law is stated"),
+    ({"limits": {"velocity": 40.0}}, "/limits/velocity", "all laws are given"),
+    ({"limits": {"acceleration": 90.0}}, "/limits/acceleration", "all laws are given"),
+    ({"limits": {"jerk": 2000.0}}, "/limits/jerk", "all laws are given"),
     ({"dynamics": {"mass": 1.0}, "speed_rpm": None}, "/speed_rpm", "speed"),
 ]
 
@@ -222,7 +222,7 @@ def test_a_velocity_that_jumps_up_is_followed_by_a_face(follower):
 )
 def test_jumps_that_no_follower_keeps_to_are_refused(law, follower, fields):
     (fault, *_) = jumping(law, follower, **fields).contradictions()
-    assert "edge that no follower keeps to" in fault.detail
+    assert "edge that no follower can track" in fault.detail
 
 
 @pytest.mark.parametrize("law", ["double_harmonic", "eighth_power"])

@@ -483,7 +483,7 @@ def test_a_criterion_that_lets_another_peak_explode_is_warned_about(criterion, e
         assert (times > 10.0) == (name in exploded)
         if name in exploded:
             assert f"the peak {name} is {times:.3g} times" in warning.lower()
-    assert f"state a limit on {' or '.join(exploded)}" in warning
+    assert f"set a limit on {' or '.join(exploded)}" in warning
 
 
 def test_a_sound_motion_is_not_warned_about():

@@ -130,7 +130,7 @@ def test_pointed_teeth_and_too_little_contact_are_refused() -> None:
 def test_nothing_fits_so_far_apart() -> None:
     result = solved(ratio="3", max_stages=1, teeth={"min": 17, "max": 60}, modules=[1.0], centre_distance=500.0)
     assert result.designs == []
-    assert "no two gears make a stage" in result.summary
+    assert "no two gears form a stage" in result.summary
 
 
 TWO_INTERVALS: dict[str, Any] = {

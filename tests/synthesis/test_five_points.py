@@ -203,7 +203,7 @@ def test_points_that_fits_miss_by_far_have_no_answer():
     nearest = min(design.metrics.max_distance for design in fitted.designs)
     result = answer(statement(points, -7.0 + 2.0j, 4.0 + 9.0j, **asked))
     assert result.designs == []
-    assert f"missed by {nearest:.4g} mm" in result.summary
+    assert f"misses a point by {nearest:.4g} mm" in result.summary
 
 
 @pytest.mark.campaign

@@ -99,7 +99,7 @@ def test_what_an_engine_gives_is_what_a_machine_takes_negative() -> None:
 def test_the_summary_has_units_where_the_statement_has() -> None:
     _, result = answered()
     metrics = result.designs[0].metrics
-    told = f"mass {metrics.mass:.6g} kg and inertia {metrics.inertia:.6g} kg·m²;"
+    told = f"a mass of {metrics.mass:.6g} kg and an inertia of {metrics.inertia:.6g} kg·m²."
     assert told in result.summary
     assert f"by {asked().energy:.6g} J over" in result.summary
     _, plain = answered(units="consistent")
@@ -159,8 +159,8 @@ def test_no_wheel_within_the_limits_is_lighter(form: str, limits: Statement) -> 
 def test_limits_that_allow_no_wheel() -> None:
     _, result = answered(limits={"radius": {"max": 50.0}, "thickness": {"max": 2.0}}, form="any")
     assert (result.designs, result.search.complete) == ([], True)
-    assert "no disc" in result.summary
-    assert "no rim" in result.summary
+    assert "No disc" in result.summary
+    assert "No rim" in result.summary
 
 
 @pytest.mark.parametrize(
@@ -213,7 +213,7 @@ def test_a_linkage_without_forces_all_round() -> None:
     }
     _, result = answered(torque=None, machine={"mechanism": rocker, "dynamics": {}})
     assert (result.designs, result.fluctuation, result.search.complete) == ([], None, False)
-    assert "not known all round" in result.summary
+    assert "not known over the whole cycle" in result.summary
 
 
 def test_a_wheel_on_inches() -> None:

@@ -228,7 +228,7 @@ def test_a_pivot_off_the_curve_is_answered_with_the_nearest_on_it() -> None:
     result = run(positions=FOUR, input_side={"fixed_pivot": [10.0, -200.0]})
     assert result.designs == []
     assert result.search.complete
-    assert "The nearest that is lies at about" in result.summary
+    assert "The nearest pivot that does is at about" in result.summary
 
 
 def test_curves_are_what_the_designs_stand_on() -> None:
@@ -262,7 +262,7 @@ class TestDegenerate:
             result = run(positions=positions[:n])
             assert result.designs == []
             assert result.search.complete
-            assert "no pin-jointed fourbar" in result.summary
+            assert "No pin-jointed fourbar" in result.summary
 
     def test_rotation_about_a_point(self) -> None:
         positions = [
@@ -273,7 +273,7 @@ class TestDegenerate:
             result = run(positions=positions[:n])
             assert result.designs == []
             assert result.search.complete
-            assert "rotation about one point" in result.summary
+            assert "rotations about one point" in result.summary
 
     def test_points_on_a_circle_that_the_body_turns_with(self) -> None:
         """P on a circle, the body turning at another rate: P itself is a circle point."""

@@ -400,7 +400,7 @@ def test_a_height_that_is_chosen_proves_nothing() -> None:
     high = ratchets(**wanted, pawls={"count": 1, "wheel_radius": 50.0})
     assert not high.designs
     assert not high.search.complete
-    assert high.summary.startswith("None was found")
+    assert high.summary.startswith("None found")
     assert ratchets(**wanted, pawls={"count": 1, "wheel_radius": 50.0, "tooth_height": 0.9}).designs
 
 

@@ -159,7 +159,7 @@ def test_a_demanded_yield_is_a_check_and_ranks() -> None:
     block = {"tolerances": FINE, "quality": {"max_error": 0.2, "max_angle_error": 0.2}, "samples": 2001}
     usual = solve(parse_problem({**open_ones, "max_designs": 40, "manufacture": block})).designs
     ranked = solve(parse_problem({**open_ones, "rank_by": "yield", "manufacture": block}))
-    assert "Ordered by yield" in ranked.summary
+    assert "Ranked by yield" in ranked.summary
     best = sorted((design.metrics.yield_.value for design in usual), reverse=True)[:4]
     assert [design.metrics.yield_.value for design in ranked.designs] == best
     limit = 0.5 * (best[0] + min(design.metrics.yield_.value for design in usual))

@@ -165,7 +165,7 @@ def test_of_a_dwell_out_of_reach_the_longest_that_was_found_is_told(angle, count
     assert "dwell_1" in {gap.check for gap in miss.gaps}
     longest = miss.reachable.dwell_angle
     assert 0.2 * angle < longest < angle
-    assert f"Dwells of up to {longest:.4g}° were found" in result.summary
+    assert f"The longest dwells found are {longest:.4g}°" in result.summary
     # The miss rests for so long; state that, and there is an answer.
     assert min(rest.width for rest in miss.design.targets) >= longest
     assert solve(parse_problem({**statement, "dwell_angle": longest})).designs

@@ -343,7 +343,7 @@ def test_a_fit_that_begins_at_a_linkage_ends_at_the_minimum_beside_it(demands):
     start = dict(zip(("O2", "A", "B", "O4", "P"), map(to_point, begun), strict=True))
     result = fit(points, start=start, constraints=demands)
     best = result.designs[0]
-    assert "from the start" in result.summary
+    assert "from the given start" in result.summary
     assert not result.search.complete
     before = least_sum_in_order(fourbar_mechanism(begun), points)
     after = least_sum_in_order(best.mechanism, points)

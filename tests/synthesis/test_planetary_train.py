@@ -375,13 +375,13 @@ def test_places_nearest_to_equal_spacing() -> None:
     [
         ({"ratio": -3, "input": "sun", "output": "carrier", "fixed": "ring"}, "opposite direction"),
         ({"ratio": 25, "tolerance": 0.01, "input": "sun", "output": "carrier"}, "nearest ratio"),
-        ({"ratio": 3, "planets": 12, "teeth": {"min": 17, "max": 19}}, "No train fits"),
+        ({"ratio": 3, "planets": 12, "teeth": {"min": 17, "max": 19}}, "No train keeps the limits"),
         ({"ratio": 3, "teeth": {"min": 17, "max": 20, "ring_max": 20}}, "tooth limits"),
         ({"ratio": 3, "max_size": 20.0}, "too large"),
         ({"ratio": 3, "min_clearance": 1000.0}, "clearance"),
         (
             {"ratio": 3, "arrangement": "simpson", "input": "sun", "output": "carrier_1", "fixed": "carrier_2"},
-            "takes no part",
+            "does not affect the ratio",
         ),
     ],
 )

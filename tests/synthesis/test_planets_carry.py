@@ -270,7 +270,7 @@ def test_more_trains_of_the_smallest_size_than_are_judged(monkeypatch: pytest.Mo
     assert few.designs[0].mechanism == full.designs[0].mechanism
     weak = solved(**{**stated, "strength": {**POWER, "power_kw": 500.0}})
     assert not weak.search.complete
-    assert "Others were not judged" in weak.summary
+    assert "Further trains were not checked" in weak.summary
 
 
 def test_where_none_carries_the_strongest_is_told() -> None:

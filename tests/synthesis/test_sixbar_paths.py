@@ -53,7 +53,7 @@ def test_the_box_of_joints_is_half_a_link_within_that_of_parts_whatever_obstacle
 def test_rounds_say_of_which_types_they_are():
     told = PathProblem.model_json_schema()["properties"]["rounds"]["description"]
     assert "For fourbars" in told
-    assert "sixbars among them, are drawn once, and it changes nothing" in told
+    assert "including sixbars, are sampled once and ignore this field" in told
 
 
 def as_of(error: float | None, quality: float, *, passed: bool = True) -> SimpleNamespace:
@@ -97,4 +97,4 @@ def test_of_which_type_none_meets_the_points_is_told_before_it_is_fitted(more, c
         return PathResult.model_construct(designs=[design] * count, search=search, summary="")
 
     found = exact_or_fitted(problem, lambda *_: None, lambda *_: answer(0), lambda *_: answer(1))
-    assert found.summary.startswith(f"{told} and keeps all demands; they are fitted instead.")
+    assert found.summary.startswith(f"{told} and satisfies all constraints; the points are fitted instead.")

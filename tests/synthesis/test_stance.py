@@ -251,4 +251,4 @@ def test_a_planted_leg_is_found_with_what_it_does(kind: str, method: str) -> Non
     assert best.metrics.stance_flatness <= 1.02 * flat * way
     assert best.metrics.stance_speed_deviation <= 1.02 * uneven
     assert best.metrics.rms_distance < 1e-3 * way
-    assert f"within a band of down to {min(d.metrics.stance_flatness for d in result.designs):.3g}" in result.summary
+    assert f"within a band of {min(d.metrics.stance_flatness for d in result.designs):.3g}" in result.summary

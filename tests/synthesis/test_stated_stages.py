@@ -148,7 +148,7 @@ def test_what_contradicts_the_stages_is_refused(stages: list[Statement], fields:
 
 def test_the_proof_says_that_gears_of_a_stage_stand() -> None:
     """The range of `teeth` is for the gears that no stage states."""
-    words = "the gears that stages state standing as they are"
+    words = "the gears given by stages unchanged"
     both = solved(SPUR | {"driver": 20, "driven": 80}, SPUR, ratio="8", teeth={"min": 20, "max": 40})
     assert words in both.summary
     assert words not in solved(SPUR | {"driver": 20, "driven": 80}, ratio="4").summary

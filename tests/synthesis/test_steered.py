@@ -111,7 +111,7 @@ def test_a_lid_is_guided_within_its_tolerances() -> None:
     confirm_tolerated(result, HATCH["positions"])
     assert result.designs[0].metrics.min_transmission_angle > 65.0
     assert not result.search.complete
-    assert "searched from poses drawn within" in result.summary
+    assert "samples poses within the tolerances" in result.summary
     assert result.search.candidates == result.search.accepted + sum(result.search.rejected.values())
 
 

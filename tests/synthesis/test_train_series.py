@@ -113,8 +113,8 @@ def test_the_smallest_series_within_a_tolerance() -> None:
     ("ratio", "units", "reason"),
     [
         (-9, [SET, SET], "none turns input and output in the opposite direction"),
-        (4000, [SET, SET], "the nearest of all has the ratio"),
-        (9, [SET, {**SET, "teeth": {"min": 60, "max": 61, "ring_max": 62}}], "no train keeps the demands on unit 2"),
+        (4000, [SET, SET], "the nearest has the ratio"),
+        (9, [SET, {**SET, "teeth": {"min": 60, "max": 61, "ring_max": 62}}], "no train satisfies the constraints of unit 2"),
     ],
 )
 def test_an_empty_answer_has_its_reason(ratio: float, units: list[dict[str, Any]], reason: str) -> None:
