@@ -14,6 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from kinematics.cam.program import TURN
+from kinematics.errors import DimensionError
 
 Real = NDArray[np.float64]
 Complex = NDArray[np.complex128]
@@ -89,7 +90,11 @@ def local_curves(points: Complex, at: Real, own: Indices) -> Complex:
     # Less the chord's own point, so that the rounding is that of the distances and not of the coordinates.
     values = points - start[:, None]
     powers = along[:, :, None] ** np.arange(STENCIL)
-    solved = np.linalg.solve(powers, np.stack([values.real, values.imag], axis=-1))
+    try:
+        solved = np.linalg.solve(powers, np.stack([values.real, values.imag], axis=-1))
+    except np.linalg.LinAlgError:
+        # A point far away from all others makes their angles, seen from the centre, equal to rounding.
+        raise DimensionError("points of the profile", "apart in the cam's angle", "points that coincide") from None
     curves = solved[..., 0] + 1j * solved[..., 1]
     curves[:, 0] = start
     return np.asarray(curves)

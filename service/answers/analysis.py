@@ -22,6 +22,7 @@ def analyse(body: Any) -> bytes:
     """
     from kinematics import errors as kinematics
     from synthesis.analyses import parse_request
+    from synthesis.analyses.budget import BudgetError
     from synthesis.mechanisms import MechanismError
 
     with refuse_numerical_errors():
@@ -34,6 +35,8 @@ def analyse(body: Any) -> bytes:
             raise invalid_request([(path, sentence(detail)) for path, detail in contradictions])
         try:
             answer = request.answer()
+        except BudgetError as error:
+            raise invalid_request([(error.path, sentence(error.detail))]) from None
         except MechanismError as error:
             raise invalid_mechanism([(f"/mechanism{error.path}", sentence(error.detail))]) from None
         except kinematics.MechanismError as error:

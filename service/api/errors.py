@@ -88,9 +88,9 @@ class ProblemDetails(BaseModel):
     )
 
 
-def malformed_json(detail: str) -> Refusal:
-    """The body is not JSON."""
-    return Refusal(400, "malformed-json", "Malformed JSON", detail)
+def malformed_json(detail: str, errors: Sequence[tuple[str, str]] = ()) -> Refusal:
+    """The body is not JSON, or not such as is parsed; ``errors`` are pairs of path and detail."""
+    return Refusal(400, "malformed-json", "Malformed JSON", detail, errors=errors)
 
 
 def malformed_drawing(detail: str) -> Refusal:

@@ -21,8 +21,19 @@ Pairs = Sequence[tuple[int, int]]
 AT_JOINT = 1e-12
 """Share of the size within which a single point lies at a joint: what rounding of its place leaves."""
 
+MAX_CELLS = 400_000
+"""Parts of a range, of all pairs together, that a sweep may begin with: it holds an array of numbers for each."""
+
 FIRST = 0.05
 """Half of a part of the range at first: radians, or a share of the mechanism's size along an input slide."""
+
+
+class RangeError(DimensionError):
+    """A range of the input that is too long to be looked at; ``most`` is the longest that would do."""
+
+    def __init__(self, length: float, most: float) -> None:
+        self.most = most
+        super().__init__("range of the input", f"at most {most:.4g} long", length)
 
 
 class _Pose(NamedTuple):
@@ -87,9 +98,18 @@ class Scene:
             self._loops = loop_equations(mechanism, dict(zip(joints, place.tolist(), strict=True)))
 
     def divided(self, low: float, high: float) -> tuple[Real, Real]:
-        """Middles and halves of equal parts of a range, none of which is too large to begin with."""
+        """Middles and halves of equal parts of a range, none of which is too large to begin with.
+
+        Raises
+        ------
+        RangeError
+            Where these parts would be more than :data:`MAX_CELLS` for all pairs together.
+        """
         if not (np.isfinite(low) and np.isfinite(high) and low <= high):
             raise DimensionError("range of the input", "finite, from the lower end to the higher", (low, high))
+        most = 2.0 * FIRST * self.unit * (MAX_CELLS // max(len(self.pairs), 1))
+        if high - low > most:
+            raise RangeError(high - low, most)
         count = max(int(np.ceil((high - low) / (2.0 * FIRST * self.unit))), 1)
         half = 0.5 * (high - low) / count
         return np.asarray(low + half * (2.0 * np.arange(count) + 1.0), np.float64), np.full(count, half)
