@@ -58,7 +58,7 @@ BLOCKS: tuple[dict[str, Any], ...] = (
 
 
 def analysis_corpus(solved: list[dict[str, Any]]) -> list[dict[str, Any]]:
-    """Sound requests: the example of each family, a mechanism of every type, and the mechanisms of ``solved`` designs."""
+    """Sound requests: the example of each family, a mechanism of every type, and those of ``solved`` designs."""
     examples = [family.request.model_json_schema()["examples"] for family in families()]
     stated = STATED.values() if isinstance(STATED, dict) else STATED
     mechanisms = [*(one[1] if isinstance(one, tuple) else one for one in stated), *solved]

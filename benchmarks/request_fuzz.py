@@ -26,7 +26,7 @@ from typing import Any
 
 import httpx
 
-from benchmarks.fuzz_bodies import analysis_corpus, job_corpus, spoil
+from benchmarks.fuzz_bodies import BLOCKS, analysis_corpus, job_corpus, spoil
 from synthesis.registry import example
 from tests.service.running import RunningServer
 
@@ -41,6 +41,9 @@ QUICK_KINDS = ("motion", "path", "function", "gear_train", "planetary_train", "c
 
 JOB_WAIT_S = 30
 """How long a job is waited for before it is cancelled."""
+
+PERIOD_S = 5.0
+"""How often the memory is looked at."""
 
 SHOWN = 12
 """Offences that are printed in full."""
@@ -120,10 +123,9 @@ def _solve_examples(server: RunningServer) -> list[dict[str, Any]]:
 
 def _warm(server: RunningServer, corpus: list[dict[str, Any]]) -> None:
     """Post all that is sound once: what is compiled now is no fault of a later case."""
-    for n, body in enumerate(corpus):
-        for k in range(3):
-            sent = body if k == 0 else json.loads(spoil([body], 10_000 * n + k, seed=-1))
-            server.client.post("/v1/analyses", content=json.dumps(sent), headers=JSON, timeout=300.0)
+    for body in corpus:
+        for block in ({}, *BLOCKS):
+            server.client.post("/v1/analyses", json={**body, **block}, timeout=300.0)
 
 
 JSON = {"Content-Type": "application/json"}
@@ -163,8 +165,7 @@ def _post_all(
         done, load = len(tally.times), os.getloadavg()[0]
         print(f"{time.monotonic() - began:7.0f} s  {done:7d} of {len(work)}  {tally.memory_mb[-1]:6.0f} MB  "
               f"{len(tally.offences)} offences  load {load:.1f}", flush=True)  # fmt: skip
-        threads[0].join(10.0)
-        time.sleep(0.0 if threads[0].is_alive() else 0.5)
+        time.sleep(PERIOD_S)
 
 
 def _post_analysis(client: httpx.Client, number: int, body: bytes, tally: Tally) -> None:

@@ -28,6 +28,9 @@ SHORT_S = 0.25
 WALL_S = 20.0
 """How long an analysis may take by the clock, on however busy a machine."""
 
+LOAD_WAIT_S = 45.0
+"""How long an analysis waits for the core to be loaded: five seconds on a quiet machine, once."""
+
 DRAWING_CPU_S, DRAWING_WALL_S = 30.0, 60.0
 """The same of drawings, animations, reports and simulations; a report shows twenty designs in full."""
 
@@ -103,7 +106,7 @@ class AnswerDesk:
 
     async def _wait_until_loaded(self) -> None:
         self._asked += 1
-        latest = time.monotonic() + WALL_S
+        latest = time.monotonic() + LOAD_WAIT_S
         try:
             while not self._loaded.is_set():
                 if time.monotonic() > latest:

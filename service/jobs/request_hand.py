@@ -33,7 +33,7 @@ COMPILE_S = 120.0
 IDLE_S = 600.0
 """After how long without a call a process ends that was not forked: it shares no memory with others."""
 
-LONG_PRIORITY = 10
+LONG_PRIORITY = 5
 """By how much a process is nicer while it does a long call: short ones have the processors first."""
 
 _PERIOD_S, _STOP_S = 0.02, 5.0
@@ -114,6 +114,11 @@ class _Clock:
     def grant_compilation(self) -> None:
         """Allow more, once."""
         self._granted = COMPILE_S
+
+    @property
+    def compiles(self) -> bool:
+        """Whether the call has begun to compile something."""
+        return self._granted > 0.0
 
     @property
     def over(self) -> bool:
@@ -228,7 +233,8 @@ class Hand(threading.Thread):
             if not call.long and clock.long:
                 if not self._queue.admit_as_long(call):
                     raise _Outstayed
-                slowed = self._slow_down()
+                # Whoever compiles holds a process that others want, the longer the slower it is.
+                slowed = not clock.compiles and self._slow_down()
         return slowed
 
     def _slow_down(self) -> bool:
