@@ -14,7 +14,7 @@ from random import Random
 from typing import Any
 
 from benchmarks.mechanisms import STATED
-from synthesis.analyses import families
+from synthesis.analyses import families, family
 from synthesis.registry import KINDS, example
 
 Json = Any
@@ -74,10 +74,13 @@ def spoil(corpus: list[dict[str, Any]], number: int, seed: int, blocks: bool = T
     """The body of a case, as JSON text."""
     rng = Random(f"{seed}/{number}")
     body = copy.deepcopy(corpus[rng.randrange(len(corpus))])
-    if blocks and rng.random() < 0.5:
-        for block in rng.sample(BLOCKS, rng.choice((1, 1, 2, 2, 3))):
+    if blocks and rng.random() < 0.6:
+        # Mostly such as the family has, so that they get past the schema.
+        fields = family(body.get("mechanism")).request.model_fields
+        known = [block for block in BLOCKS if fields.keys() >= block.keys()] if rng.random() < 0.85 else BLOCKS
+        for block in rng.sample(known, min(rng.choice((1, 1, 2, 2, 3)), len(known))):
             body.update(copy.deepcopy(block))
-    for _ in range(rng.choice((0, 1, 1, 1, 2, 3))):
+    for _ in range(rng.choice((0, 0, 1, 1, 1, 2, 3))):
         _spoil_one(body, rng)
     return json.dumps(body).encode()
 

@@ -8,7 +8,9 @@ from typing import Any
 from fastapi import Request, Response
 
 from service.answers.desk import CPU_S, DRAWING_CPU_S, AnswerDesk
+from service.answers.process import GZIP_MARK, call_and_pack
 from service.api.errors import Refusal, busy, compiling, gone, invalid_mechanism
+from service.api.representation import GZIP, takes_gzip
 from service.jobs.request_pool import Busy, GivenUp, Gone
 from service.telemetry import note_defect, span
 
@@ -25,6 +27,8 @@ async def answer_with_analysis(
     """
     try:
         with span("analysis"):
+            if takes_gzip(request):
+                work, args = call_and_pack, (work, *args)
             content = await answers.analyse(request.is_disconnected, tenant, work, *args)
     except GivenUp as error:
         taken = f"{CPU_S:g} seconds of computation" if error.of == "time" else "more memory than an analysis has"
@@ -36,7 +40,8 @@ async def answer_with_analysis(
         raise gone() from None
     except Refusal as refusal:
         raise _noted(refusal) from None
-    return Response(content, media_type="application/json")
+    packed = {"Content-Encoding": GZIP, "Vary": "Accept-Encoding"} if content.startswith(GZIP_MARK) else None
+    return Response(content, headers=packed, media_type="application/json")
 
 
 async def draw_in_turn(request: Request, answers: AnswerDesk, tenant: str, work: Callable[..., Any], *args: Any) -> Any:
