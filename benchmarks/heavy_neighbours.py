@@ -91,7 +91,8 @@ def run(seconds: float, tenants: int, folder: Path) -> None:
             for thread in threads:
                 thread.start()
             time.sleep(2.0)  # all of them are at it
-            until, times, answered = time.monotonic() + seconds, [], Counter[int]()
+            until, answered = time.monotonic() + seconds, Counter[int]()
+            times: list[float] = []
             while time.monotonic() < until:
                 status, took = _time(client, 1000 + len(times))
                 answered[status] += 1

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import re
 from dataclasses import dataclass
-from datetime import datetime
 from typing import Any
 
 from service.refusals import not_found
@@ -21,8 +20,8 @@ class SolvedJob:
     id: str
     kind: str
     label: str | None
-    created_at: datetime
-    finished_at: datetime | None
+    created_at: str
+    finished_at: str | None
     problem: str
     result: str
 

@@ -85,7 +85,7 @@ class ProcessStart:
     (:mod:`multiprocessing.forkserver`), which takes some hundredths of a second; else they are started anew.
     """
 
-    prepare: Callable[..., None]
+    prepare: Callable[..., Any]
     settings: tuple[Any, ...]
     forks: Callable[[], bool]
 

@@ -63,7 +63,7 @@ class RequestPool:
     def __init__(
         self,
         name: str,
-        prepare: Callable[..., None],
+        prepare: Callable[..., Any],
         settings: tuple[Any, ...],
         limits: Limits,
         *,

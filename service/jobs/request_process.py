@@ -30,7 +30,7 @@ _TICKS = os.sysconf("SC_CLK_TCK")
 log = structlog.get_logger(__name__)
 
 
-def serve_calls(pipe: Connection, prepare: Callable[..., None], settings: tuple[Any, ...]) -> None:
+def serve_calls(pipe: Connection, prepare: Callable[..., Any], settings: tuple[Any, ...]) -> None:
     """Do what a pipe asks for until it is closed.
 
     Parameters
@@ -102,7 +102,7 @@ def _report_compilations(pipe: Connection) -> None:
         return
     from numba.core import event
 
-    class Reporter(event.Listener):  # type: ignore[misc]  # numba has no types
+    class Reporter(event.Listener):
         """Sends a message for each compilation that is begun."""
 
         def on_start(self, event: Any) -> None:

@@ -1,8 +1,11 @@
 """Drawings that are made to cost the service time or memory, or are spoilt at random."""
 
+import io
 import random
 import re
+import time
 
+import ezdxf
 import pytest
 
 from tests.campaign import further
