@@ -73,7 +73,7 @@ def create_app(settings: Settings, executor: Executor, measured: Metrics, kernel
         notifier = ChangeNotifier(asyncio.get_running_loop())
         log_as = settings.log_level, settings.log_format
         app.state.answers = answers = AnswerDesk(*log_as, metrics=measured)
-        answers.start(after=lambda: kernels.has(ANALYSIS) or (kernels.ended and answers.asked))
+        answers.start(after=lambda: kernels.has(ANALYSIS) or (kernels.ended and answers.is_awaited))
         app.state.readers = readers = ImportDesk(*log_as, metrics=measured)
         app.state.workshop = workshop = Workshop(
             settings.job_memory_mb, settings.job_timeout_s, *log_as, metrics=measured

@@ -5,8 +5,8 @@ from __future__ import annotations
 from pydantic import ValidationError
 from pydantic_core import from_json, to_json
 
+from service.answers.job_result import SolvedJob, design_index
 from service.answers.numerical import refuse_numerical_errors
-from service.answers.solved import SolvedJob, design_index
 from service.refusals import Refusal, not_found
 from service.render import Form
 

@@ -28,6 +28,9 @@ SHORT_S = 0.25
 WALL_S = 20.0
 """How long an analysis may take by the clock, on however busy a machine."""
 
+WAIT_S = 10.0
+"""How long an analysis waits for its turn: it takes milliseconds where not all processes are busy."""
+
 LOAD_WAIT_S = 45.0
 """How long an analysis waits for the core to be loaded: five seconds on a quiet machine, once."""
 
@@ -37,7 +40,7 @@ DRAWING_CPU_S, DRAWING_WALL_S = 30.0, 60.0
 MEMORY_MB = 768
 """Memory of a call beyond what its idle process has, MiB."""
 
-HANDS, MOST_LONG = 4, 2
+HANDS, MAX_LONG = 4, 2
 """Analyses, or drawings, that run at once, and long ones of these."""
 
 _PERIOD_S = 0.02
@@ -56,11 +59,11 @@ class AnswerDesk:
         self._asked = 0
         self._analyses = RequestPool(
             "analyses", process.prepare, settings, Limits(WALL_S, CPU_S, SHORT_S),
-            hands=HANDS, most_long=MOST_LONG, forks=self._loaded.is_set, metrics=metrics,
+            hands=HANDS, max_long=MAX_LONG, wait_s=WAIT_S, forks=self._loaded.is_set, metrics=metrics,
         )  # fmt: skip
         self._drawings = RequestPool(
             "drawings", process.prepare, settings, Limits(DRAWING_WALL_S, DRAWING_CPU_S),
-            hands=MOST_LONG, forks=self._loaded.is_set, metrics=metrics,
+            hands=MAX_LONG, forks=self._loaded.is_set, metrics=metrics,
         )  # fmt: skip
 
     def start(self, after: Callable[[], bool]) -> None:
@@ -74,7 +77,7 @@ class AnswerDesk:
             pool.stop()
 
     @property
-    def asked(self) -> bool:
+    def is_awaited(self) -> bool:
         """Whether somebody waits for the core to be loaded."""
         return self._asked > 0
 

@@ -7,8 +7,8 @@ from typing import Any
 from pydantic import ValidationError
 from pydantic_core import to_json
 
+from service.answers.job_result import SolvedJob, design_index
 from service.answers.numerical import refuse_numerical_errors
-from service.answers.solved import SolvedJob, design_index
 from service.explained import sentence
 from service.refusals import Refusal, invalid_body, invalid_request
 

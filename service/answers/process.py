@@ -28,7 +28,7 @@ GZIP_MARK = b"\x1f\x8b"
 """What begins in this way is packed: no JSON does."""
 
 
-def call_and_pack(work: Callable[..., bytes], *args: Any) -> bytes:
-    """What a function answers; a large answer in gzip, which would hold the server's event loop up."""
+def compute_packed(work: Callable[..., bytes], *args: Any) -> bytes:
+    """Call a function, and pack a large answer: that would hold the event loop of the server up."""
     answer = work(*args)
     return gzip.compress(answer, PACKING_LEVEL) if len(answer) >= PACKED_BYTES else answer

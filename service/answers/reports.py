@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from importlib.metadata import version
 
-from service.answers.solved import SolvedJob
+from service.answers.job_result import SolvedJob
 
 
 def report_job(job: SolvedJob, most: int, built: dict[int, str]) -> tuple[str, str]:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from service.answers.solved import SolvedJob, design_index
+from service.answers.job_result import SolvedJob, design_index
 from service.refusals import Refusal, invalid_request, not_found
 from service.simulation.query import Form, NoSimulation, NotSimulated, SimulationQuery
 

@@ -10,8 +10,8 @@ from pydantic import BaseModel
 
 from service.answers.analysis import analyse
 from service.api import errors
-from service.api.answered import answer_with_analysis
 from service.api.body import JsonRoute
+from service.api.computation import answer_with_analysis
 from service.api.guard import Tenant
 from service.api.state import Answers
 

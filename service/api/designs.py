@@ -9,10 +9,10 @@ from pydantic import BaseModel, ConfigDict, Field
 
 from service.answers.designs import draw_design
 from service.answers.designs import move_design as compute_motion
-from service.answers.solved import SolvedJob
+from service.answers.job_result import SolvedJob
 from service.api import errors
 from service.api.analyses import analysis_responses
-from service.api.answered import answer_with_analysis, draw_in_turn
+from service.api.computation import answer_with_analysis, draw_in_turn
 from service.api.errors import Refusal
 from service.api.guard import GuardedRoute, Tenant
 from service.api.jobs import TAG, job_of

@@ -7,7 +7,7 @@ import re
 
 from service.explained import pointer
 
-MOST_STEPS = 8
+MAX_STEPS = 8
 """Steps of a place that are told: the field is wanted, not the hundredth list in it."""
 
 _TOKEN = re.compile(rb'"(?:[^"\\]|\\.)*"|[\[\]{},:]', re.DOTALL)
@@ -46,7 +46,7 @@ def locate_excess(body: bytes, most_values: int, most_depth: int) -> str:
             place[-1] = _read_key(token)
         after_colon = token == b":"
         if values > most_values or len(place) > most_depth:
-            return pointer(place[:-1][:MOST_STEPS])
+            return pointer(place[:-1][:MAX_STEPS])
     return ""
 
 

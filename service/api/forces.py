@@ -8,8 +8,8 @@ from fastapi import APIRouter, Body, Query, Request, Response
 
 from service.answers.forces import forces_of_design as compute_forces
 from service.api.analyses import analysis_responses
-from service.api.answered import answer_with_analysis
 from service.api.body import JsonRoute
+from service.api.computation import answer_with_analysis
 from service.api.designs import MotionSteps, solved_job
 from service.api.guard import GuardedRoute, Tenant
 from service.api.jobs import TAG

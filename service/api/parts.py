@@ -9,7 +9,7 @@ from fastapi import APIRouter, Query, Request, Response
 from pydantic_core import from_json
 from starlette.concurrency import run_in_threadpool
 
-from service.answers.solved import SolvedJob, design_index
+from service.answers.job_result import SolvedJob, design_index
 from service.api import errors
 from service.api.designs import HEADERS, solved_job
 from service.api.errors import Refusal, busy, gone, invalid_request, not_found

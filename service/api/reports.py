@@ -9,7 +9,7 @@ from pydantic import BaseModel, ConfigDict, Field
 
 from service.answers.reports import report_job as write_report
 from service.api import errors
-from service.api.answered import draw_in_turn
+from service.api.computation import draw_in_turn
 from service.api.designs import solved_job
 from service.api.guard import GuardedRoute, Tenant
 from service.api.jobs import NO_JOB, TAG

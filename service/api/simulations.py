@@ -9,7 +9,7 @@ from pydantic import BaseModel, ConfigDict, Field
 
 from service.answers.simulations import open_in_pmks, simulate_design
 from service.api import errors
-from service.api.answered import draw_in_turn
+from service.api.computation import draw_in_turn
 from service.api.designs import OTHER_DRAWINGS, solved_job
 from service.api.guard import GuardedRoute, Tenant
 from service.api.jobs import TAG

@@ -53,7 +53,7 @@ class RequestPool:
     prepare : callable
         Called first of all in a process, with ``settings``; it confines the process and limits its memory.
     hands : int
-        Calls that are done at once, and of these ``most_long`` long ones; all of them where left out.
+        Calls that are done at once, and of these ``max_long`` long ones; all of them where left out.
     wait_s : float
         How long a call waits for its turn.
     forks : callable
@@ -68,14 +68,14 @@ class RequestPool:
         limits: Limits,
         *,
         hands: int = 1,
-        most_long: int | None = None,
+        max_long: int | None = None,
         wait_s: float = MAX_WAIT_S,
         forks: Callable[[], bool] = lambda: False,
         metrics: PoolMetrics | None = None,
     ) -> None:
         self.name = name
         self._metrics, self._wait_s = metrics, wait_s
-        self._queue = RequestQueue(hands if most_long is None else most_long)
+        self._queue = RequestQueue(hands if max_long is None else max_long)
         self._asked: dict[bytes, tuple[Call, asyncio.Future[Any]]] = {}
         start = ProcessStart(prepare, settings, forks)
         self.hands = [Hand(f"{name}-{n}", self._queue, start, limits) for n in range(hands)]

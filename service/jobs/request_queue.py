@@ -69,12 +69,12 @@ class RequestQueue:
 
     Parameters
     ----------
-    most_long : int
+    max_long : int
         Long calls that run at once, at most.
     """
 
-    def __init__(self, most_long: int) -> None:
-        self._most_long = most_long
+    def __init__(self, max_long: int) -> None:
+        self._max_long = max_long
         self._changed = threading.Condition()
         self._new, self._long = _Rota(), _Rota()
         self._running = self._running_long = 0
@@ -110,7 +110,7 @@ class RequestQueue:
         """Count a running call as long; False where as many run as may, and the call is to give its process up."""
         with self._changed:
             call.long = True
-            if self._running_long >= self._most_long:
+            if self._running_long >= self._max_long:
                 return False
             self._running_long += 1
             call.counted = True
@@ -149,7 +149,7 @@ class RequestQueue:
 
     def _next(self) -> Call | None:
         # Long ones first: they leave the other processes to new ones, so that neither sort starves.
-        if self._running_long < self._most_long:
+        if self._running_long < self._max_long:
             call = self._long.pop()
             if call is not None:
                 self._running_long += 1

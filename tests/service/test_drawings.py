@@ -8,8 +8,8 @@ from types import SimpleNamespace
 import pytest
 
 from service.answers.designs import draw_design
-from service.answers.solved import SolvedJob
-from service.api.answered import draw_in_turn
+from service.answers.job_result import SolvedJob
+from service.api.computation import draw_in_turn
 from service.api.errors import Refusal
 from service.jobs.request_pool import Busy, GivenUp
 from synthesis.registry import example

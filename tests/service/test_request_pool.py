@@ -139,7 +139,7 @@ def spin(seconds: float) -> float:
 def test_long_calls_leave_a_process_to_short_ones() -> None:
     """Four tenants post what takes all the time that there is; a fifth one is answered all the same."""
     limits = Limits(wall_s=60.0, cpu_s=1.5, short_s=0.2)
-    pool = RequestPool("pool", operator.itemgetter, (0,), limits, hands=3, most_long=1)
+    pool = RequestPool("pool", operator.itemgetter, (0,), limits, hands=3, max_long=1)
 
     async def all_of_it() -> None:
         await asyncio.gather(*(pool.call(never, f"warm-{n}", math.hypot, 1.0, n) for n in range(6)))
@@ -163,7 +163,7 @@ def test_long_calls_leave_a_process_to_short_ones() -> None:
 
 def test_processor_time_is_bounded_and_a_long_call_that_waited_is_done() -> None:
     limits = Limits(wall_s=60.0, cpu_s=1.0, short_s=0.1)
-    pool = RequestPool("pool", operator.itemgetter, (0,), limits, hands=2, most_long=1)
+    pool = RequestPool("pool", operator.itemgetter, (0,), limits, hands=2, max_long=1)
 
     async def all_of_it() -> None:
         with pytest.raises(GivenUp, match="time"):
@@ -195,7 +195,7 @@ def test_who_is_not_begun_in_time_is_told_so() -> None:
 
 
 def test_tenants_have_their_turns() -> None:
-    queue = RequestQueue(most_long=1)
+    queue = RequestQueue(max_long=1)
     for tenant, n in (("flood", 1), ("flood", 2), ("flood", 3), ("other", 4)):
         queue.put(Call(math.hypot, (n,), tenant))
     assert [queue.take(0.0).args[0] for _ in range(4)] == [1, 4, 2, 3]  # type: ignore[union-attr]

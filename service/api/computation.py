@@ -8,7 +8,7 @@ from typing import Any
 from fastapi import Request, Response
 
 from service.answers.desk import CPU_S, DRAWING_CPU_S, AnswerDesk
-from service.answers.process import GZIP_MARK, call_and_pack
+from service.answers.process import GZIP_MARK, compute_packed
 from service.api.errors import Refusal, busy, compiling, gone, invalid_mechanism
 from service.api.representation import GZIP, takes_gzip
 from service.jobs.request_pool import Busy, GivenUp, Gone
@@ -28,7 +28,7 @@ async def answer_with_analysis(
     try:
         with span("analysis"):
             if takes_gzip(request):
-                work, args = call_and_pack, (work, *args)
+                work, args = compute_packed, (work, *args)
             content = await answers.analyse(request.is_disconnected, tenant, work, *args)
     except GivenUp as error:
         taken = f"{CPU_S:g} seconds of computation" if error.of == "time" else "more memory than an analysis has"
@@ -39,7 +39,7 @@ async def answer_with_analysis(
     except Gone:
         raise gone() from None
     except Refusal as refusal:
-        raise _noted(refusal) from None
+        raise _count_defect(refusal) from None
     packed = {"Content-Encoding": GZIP, "Vary": "Accept-Encoding"} if content.startswith(GZIP_MARK) else None
     return Response(content, headers=packed, media_type="application/json")
 
@@ -62,10 +62,10 @@ async def draw_in_turn(request: Request, answers: AnswerDesk, tenant: str, work:
     except Gone:
         raise gone() from None
     except Refusal as refusal:
-        raise _noted(refusal) from None
+        raise _count_defect(refusal) from None
 
 
-def _noted(refusal: Refusal) -> Refusal:
+def _count_defect(refusal: Refusal) -> Refusal:
     """The refusal, which is counted where a defect of the service's own led to it."""
     if refusal.defect is not None:
         note_defect(refusal.defect)
