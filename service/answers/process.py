@@ -21,8 +21,8 @@ def prepare(log_level: str, log_format: Format, memory_mb: int) -> None:
 PACKED_BYTES = 1 << 20
 """Answers from this size on are packed where they are computed; smaller ones by the server, in some milliseconds."""
 
-PACKING_LEVEL = 4
-"""As the server packs."""
+PACKING_LEVEL = 1
+"""A third of the time of the server's own level, and a tenth more bytes."""
 
 GZIP_MARK = b"\x1f\x8b"
 """What begins in this way is packed: no JSON does."""

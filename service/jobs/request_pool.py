@@ -10,6 +10,7 @@ from __future__ import annotations
 
 import asyncio
 import hashlib
+import threading
 import time
 from collections.abc import Awaitable, Callable
 from typing import Any, Protocol
@@ -75,15 +76,17 @@ class RequestPool:
     ) -> None:
         self.name = name
         self._metrics, self._wait_s = metrics, wait_s
+        self._beginning = threading.Lock()
         self._queue = RequestQueue(hands if max_long is None else max_long)
         self._asked: dict[bytes, tuple[Call, asyncio.Future[Any]]] = {}
         start = ProcessStart(prepare, settings, forks)
         self.hands = [Hand(f"{name}-{n}", self._queue, start, limits) for n in range(hands)]
 
     def begin(self) -> None:
-        """Start the threads, if that has not been done."""
-        for hand in self.hands:
-            hand.begin()
+        """Start the threads, if that has not been done. Callable from any thread."""
+        with self._beginning:
+            for hand in self.hands:
+                hand.begin()
 
     def counts(self) -> dict[str, int]:
         """Calls by their state."""
