@@ -14,6 +14,7 @@ from benchmarks.fuzz_bodies import BLOCKS, analysis_corpus, spoil
 from service.answers.numerical import refuse_numerical_errors
 from service.refusals import Refusal
 from synthesis.analyses import families
+from tests.service.running import until
 
 FOURBAR = {
     "type": "fourbar",
@@ -59,6 +60,15 @@ LAYOUT = {"link_width": 1, "pin_diameter": 0.4, "thickness": 0.3}
 TARGETS = [{"x": 1.0, "y": 2.0}, {"x": 2.0, "y": 3.0}]
 SOON_S = 60.0
 """On a machine that others use too, where kernels may have to be compiled first."""
+
+
+pytestmark = pytest.mark.timeout(600)
+
+
+@pytest.fixture(autouse=True, scope="module")
+def _loaded(server: Any) -> None:
+    """Wait until the core is loaded, which is no matter of these tests and may take a minute on a busy machine."""
+    until(lambda: post(server.client, {"mechanism": FOURBAR}).status_code == 200, 300.0, "an analysis")
 
 
 def post(client: httpx.Client, body: Any) -> httpx.Response:
