@@ -8,7 +8,8 @@
 # make test-cad  the tests of solids, in an environment of their own with the extra cad (.venv-cad, a gigabyte)
 # make campaign  the checks with thousands of random problems: three hundredths of them, or all with SHARE=1 (independent
 #              multibody programs are installed for them), and the studio's kinds on a phone
-# make fuzz    hundreds of requests of each operation, and of absurd problems of each kind; half an hour
+# make fuzz    hundreds of requests of each operation, and of absurd problems of each kind; half an hour. FUZZED=100000
+#              posts so many spoilt analyses, and a twentieth as many jobs
 # make format  format the sources as make check and make test-browser want them
 # make demo    solve one real problem through HTTP, print it, draw it to var/demo.svg
 # make docs    the site, in var/site: all pages, the references, and a gallery of machines that are solved for it
@@ -108,8 +109,12 @@ campaign: $(STAMP) $(MULTIBODY) chromium
 	$(BIN)/pytest -m "campaign and not browser and not cad" --campaign-share $(SHARE) $(SPREAD) $(shell grep -rlE campaign tests --include='test_*.py' --exclude-dir=cad)
 	$(BIN)/pytest -m "campaign and browser" --campaign-share $(SHARE) tests/browser
 
+# Spoilt analyses, and a twentieth as many jobs, that are posted to a server under a limit of memory.
+FUZZED := 5000
+
 fuzz: $(STAMP)
 	$(BIN)/pytest -m fuzz -s
+	$(BIN)/python -m benchmarks.request_fuzz --analyses $(FUZZED) --jobs $$(( $(FUZZED) / 20 ))
 
 # Processes are killed at random and at every write, and what became of the jobs is printed. A quarter of an hour on one
 # machine, and as long on many.

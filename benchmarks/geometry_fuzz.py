@@ -153,11 +153,11 @@ def _drawn(design: Any, problem: Any, animated: bool) -> str:
 
 
 def _moved(stored: str) -> str:
-    from service.api.designs import motion
-    from service.api.errors import Refusal
+    from service.answers.designs import move_design
+    from service.refusals import Refusal
 
     try:
-        answer = json.loads(motion(stored, "0", 36))
+        answer = json.loads(move_design(stored, "0", 36))
     except Refusal:
         return ""
     if "valid" in answer and not any(answer["valid"]):

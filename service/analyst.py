@@ -1,115 +1,14 @@
-"""The analysis core in the server's own process: loaded beside the start, then called in threads.
+"""The analysis core, warmed up: its kernels compiled, or loaded from their cache.
 
-Jobs are computed in worker processes, which can be killed; an analysis takes milliseconds, and a thread will do. Its
-library takes a second to import and its kernels some more to load, so that is done in the background when the service
-has started, and whoever asks before it is done waits. To compile kernels here would hold up all requests: other
-processes do that (:mod:`service.warming`).
+The processes that answer requests are forked from one that has done so (:mod:`service.answers`), and kernels that are
+missing are compiled ahead by others (:mod:`service.warming`).
 """
 
 from __future__ import annotations
 
-import asyncio
-import gc
-import threading
-import time
-from collections.abc import Callable
-from concurrent.futures import Future
-from functools import partial
-from queue import SimpleQueue
-from typing import Any, ParamSpec, TypeVar
-
-import structlog
+from typing import Any
 
 from service.loading import IMPORTS
-
-THREADS = 2
-"""Analyses that run at once. They hold the interpreter most of the time; more of them would only delay all others."""
-
-MAX_ANALYSIS_S = 20.0
-"""How long a client is kept waiting for an analysis."""
-
-_PERIOD_S = 0.02
-"""Period at which it looks whether the core may be loaded, which tells nobody."""
-
-P = ParamSpec("P")
-T = TypeVar("T")
-
-log = structlog.get_logger(__name__)
-
-
-class Busy(Exception):
-    """Other analyses have kept this one from being begun in time."""
-
-
-class TooLong(Exception):
-    """The analysis was begun and has not ended in time."""
-
-
-class Analyst:
-    """Runs functions that need the analysis core, each in one of a few threads of its own, once it is loaded.
-
-    A thread cannot be killed. An analysis that takes too long keeps its thread, but nobody waits for it any more, and
-    the threads are daemons, so that the service can stop without it.
-    """
-
-    def __init__(self) -> None:
-        self._calls: SimpleQueue[tuple[Future[Any], Callable[[], Any]]] = SimpleQueue()
-        self._loaded = threading.Event()
-
-    def start(self, after: Callable[[], bool]) -> None:
-        """Load the core once ``after`` says so, when its kernels have been compiled or must be; returns at once."""
-        for n in range(THREADS):
-            loading = after if n == 0 else None
-            threading.Thread(target=self._serve, args=(loading,), name=f"analyst-{n}", daemon=True).start()
-
-    @property
-    def asked(self) -> bool:
-        """Whether somebody waits for an analysis."""
-        return not self._calls.empty()
-
-    @property
-    def loaded(self) -> bool:
-        """Whether analyses are begun at once."""
-        return self._loaded.is_set()
-
-    async def call(self, work: Callable[P, T], *args: P.args, **kwargs: P.kwargs) -> T:
-        """Call a function in a thread; what it raises is raised here.
-
-        Raises
-        ------
-        Busy, TooLong
-            After :data:`MAX_ANALYSIS_S`.
-        """
-        future: Future[T] = Future()
-        self._calls.put((future, partial(work, *args, **kwargs)))
-        try:
-            async with asyncio.timeout(MAX_ANALYSIS_S):
-                return await asyncio.wrap_future(future)
-        except TimeoutError:
-            raise (Busy if future.cancelled() else TooLong) from None
-
-    def _serve(self, loading: Callable[[], bool] | None) -> None:
-        if loading is not None:
-            while not loading():
-                time.sleep(_PERIOD_S)
-            self._load()
-        self._loaded.wait()
-        while True:
-            future, work = self._calls.get()
-            if future.set_running_or_notify_cancel():
-                try:
-                    future.set_result(work())
-                except Exception as error:  # it is the caller's
-                    future.set_exception(error)
-
-    def _load(self) -> None:
-        try:
-            warm_up()
-        except Exception:  # the requests will say, one by one, what they could not have
-            log.exception("the analysis core could not be warmed up")
-        # All that is imported by now stays; see service.web.
-        gc.freeze()
-        self._loaded.set()
 
 
 def warm_up() -> None:
@@ -123,7 +22,18 @@ def warm_up() -> None:
         parse_request({"mechanism": mechanism, "dynamics": {}}).answer()
     rubbing = {"friction": {"pins": {"B": {"mu": 0.1, "radius": 0.1}}}}
     parse_request({"mechanism": _SLIDER_CRANK, "motion": {"at": 30.0}, "dynamics": rubbing}).answer()
+    fourbar = families()[0].request.example().model_dump(mode="json", exclude_unset=True)["mechanism"]
+    for mechanism in (_SLIDER_CRANK, fourbar):
+        for block in (_LAYOUT, _TARGETS, _MADE):
+            parse_request({"mechanism": mechanism, **block}).answer()
+    parse_request({"mechanism": fourbar, **_TOPICS}).answer()
 
+
+# Optional blocks, whose kernels nothing else here calls: a request that needs one must not wait for the compiler.
+_LAYOUT: dict[str, Any] = {"layout": {"link_width": 1.0, "pin_diameter": 0.4, "thickness": 0.3}}
+_TARGETS: dict[str, Any] = {"targets": [{"x": 1.0, "y": 2.0}, {"x": 2.0, "y": 3.0}]}
+_MADE: dict[str, Any] = {**_TARGETS, "manufacture": {"tolerances": {"length": 0.1}}}
+_TOPICS: dict[str, Any] = {"include": ["cognates", "centrodes", "curvature", "coupler_curve", "branches"]}
 
 _SLIDER_CRANK = {
     "type": "slider_crank",

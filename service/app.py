@@ -15,7 +15,7 @@ from starlette.types import Lifespan
 
 from service.access.gate import Gate
 from service.access.keys import KeyStore
-from service.analyst import Analyst
+from service.answers.desk import AnswerDesk
 from service.api import (
     analyses,
     batches,
@@ -35,7 +35,6 @@ from service.api import (
     simulations,
     studio,
 )
-from service.drawings import Drawings
 from service.imports.desk import ImportDesk
 from service.jobs.batches.desk import BatchDesk
 from service.jobs.batches.store import BatchStore
@@ -72,12 +71,12 @@ def create_app(settings: Settings, executor: Executor, measured: Metrics, kernel
         engine = connect(settings.store_url, durable=True)
         store = JobStore(engine)
         notifier = ChangeNotifier(asyncio.get_running_loop())
-        app.state.analyst = analyst = Analyst()
-        analyst.start(after=lambda: kernels.has(ANALYSIS) or (kernels.ended and analyst.asked))
-        app.state.drawings = Drawings()
-        app.state.readers = readers = ImportDesk(settings.log_level, settings.log_format)
+        log_as = settings.log_level, settings.log_format
+        app.state.answers = answers = AnswerDesk(*log_as, metrics=measured)
+        answers.start(after=lambda: kernels.has(ANALYSIS) or (kernels.ended and answers.is_awaited))
+        app.state.readers = readers = ImportDesk(*log_as, metrics=measured)
         app.state.workshop = workshop = Workshop(
-            settings.job_memory_mb, settings.job_timeout_s, settings.log_level, settings.log_format
+            settings.job_memory_mb, settings.job_timeout_s, *log_as, metrics=measured
         )
         try:
             executor.subscribe(notifier.publish)
@@ -92,6 +91,9 @@ def create_app(settings: Settings, executor: Executor, measured: Metrics, kernel
             app.state.batches = BatchDesk(batch_store, executor, notifier, measured, settings.max_queued, finished)
             pollers: list[JobPoller[Any]] = [JobPoller(store, notifier), JobPoller(batch_store, notifier)]
             app.state.poller, app.state.batch_poller = pollers
+            measured.watch_calls(
+                lambda: {**answers.counts(), **{pool.name: pool.counts() for pool in (readers.pool, workshop.pool)}}
+            )
             measured.watch(lambda: sum(each.listeners for each in pollers), executor.ready, store.unfinished)
             polling = [asyncio.create_task(poller.run()) for poller in pollers]
             tidying = asyncio.create_task(keep_tidy(store, batch_store, finished, settings.retention_days))
@@ -101,6 +103,7 @@ def create_app(settings: Settings, executor: Executor, measured: Metrics, kernel
             await asyncio.gather(*polling)
         finally:
             notifier.close()
+            await run_in_threadpool(answers.stop)
             readers.stop()
             await run_in_threadpool(workshop.stop)
             await run_in_threadpool(executor.stop)

@@ -103,6 +103,15 @@ class Metrics(WorkerMetrics):
         )
         self._jobs_accepted = self._counter("jobs_accepted", "Jobs that were accepted.", "kind")
         self._batches_accepted = self._counter("batches_accepted", "Batches that were accepted.", "kind")
+        self._given_up = self._counter(
+            "calls_given_up",
+            "Analyses, drawings, parts and files that were given up, by why: time, memory, busy, gone, lost.",
+            "pool",
+            "reason",
+        )
+        self._defects = self._counter(
+            "defects", "Requests refused after a numerical error that no field had kept out.", "operation"
+        )
         self._listeners = self._gauge("event_listeners", "Clients that listen to the events of a job.")
 
     def request(self, operation: str, method: str, status: int, seconds: float) -> None:
@@ -127,6 +136,18 @@ class Metrics(WorkerMetrics):
         """A batch was accepted."""
         self._batches_accepted.labels(kind).inc()
 
+    def call_given_up(self, pool: str, reason: str) -> None:
+        """An analysis, a drawing, parts or a file were given up."""
+        self._given_up.labels(pool, reason).inc()
+
+    def defect(self, operation: str) -> None:
+        """A request has met a defect of the service's own, and was refused for it."""
+        self._defects.labels(operation).inc()
+
+    def watch_calls(self, counts: Callable[[], Mapping[str, Mapping[str, int]]]) -> None:
+        """Ask this whenever the metrics are read: calls by pool and state."""
+        self.registry.register(_Calls(counts))
+
     def watch(
         self, listeners: Callable[[], int], workers: Callable[[], int], queue: Callable[[], Mapping[str, int]]
     ) -> None:
@@ -134,6 +155,29 @@ class Metrics(WorkerMetrics):
         self._listeners.set_function(listeners)
         self._workers.set_function(workers)
         self.registry.register(_Queue(queue))
+
+
+class _Calls(Collector):
+    """What runs and waits in the pools of processes that answer requests."""
+
+    def __init__(self, counts: Callable[[], Mapping[str, Mapping[str, int]]]) -> None:
+        self._counts = counts
+
+    def describe(self) -> Iterator[GaugeMetricFamily]:
+        yield _calls_family()
+
+    def collect(self) -> Iterator[GaugeMetricFamily]:
+        family = _calls_family()
+        for pool, counts in self._counts().items():
+            for state, calls in counts.items():
+                family.add_metric([pool, state], calls)
+        yield family
+
+
+def _calls_family() -> GaugeMetricFamily:
+    return GaugeMetricFamily(
+        "mechsynth_calls", "Analyses, drawings, parts and files that run or wait.", labels=["pool", "state"]
+    )
 
 
 class _Queue(Collector):

@@ -35,6 +35,7 @@ class _Record:
     spans: dict[str, float] = field(default_factory=dict)
     headers: dict[str, str] = field(default_factory=dict)
     refused: str | None = None
+    defect: str | None = None
     status: int = 0
 
 
@@ -58,6 +59,13 @@ def refused(type_: str) -> None:
     record = _record.get()
     if record is not None:
         record.refused = type_
+
+
+def note_defect(error: str) -> None:
+    """Note that the present request has met a defect of the service's own, by the type of the error."""
+    record = _record.get()
+    if record is not None:
+        record.defect = error
 
 
 def answer_with(headers: Mapping[str, str]) -> None:
@@ -109,6 +117,8 @@ class Telemetry:
         self._metrics.request(operation, method, record.status, seconds)
         if record.refused is not None:
             self._metrics.rejection(record.refused)
+        if record.defect is not None:
+            self._metrics.defect(operation)
         # The path holds nothing secret, but a query might; and a path may be long.
         log.info(
             "request",
@@ -117,6 +127,7 @@ class Telemetry:
             status=record.status or "none",
             ms=round(1e3 * seconds, 2),
             **({} if record.refused is None else {"problem": record.refused}),
+            **({} if record.defect is None else {"defect": record.defect}),
         )
 
 

@@ -14,6 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from kinematics.cam.program import TURN
+from kinematics.errors import DimensionError
 
 Real = NDArray[np.float64]
 Complex = NDArray[np.complex128]
@@ -95,7 +96,11 @@ def local_curves(points: Complex, at: Real, own: Indices) -> Complex:
     values = points - start[:, None]
     # With τ of the order of 1 the Vandermonde matrix of six points is well conditioned.
     powers = along[:, :, None] ** np.arange(STENCIL)
-    solved = np.linalg.solve(powers, np.stack([values.real, values.imag], axis=-1))
+    try:
+        solved = np.linalg.solve(powers, np.stack([values.real, values.imag], axis=-1))
+    except np.linalg.LinAlgError:
+        # A point far away from all others makes their angles, seen from the centre, equal to rounding.
+        raise DimensionError("points of the profile", "apart in the cam's angle", "points that coincide") from None
     curves = solved[..., 0] + 1j * solved[..., 1]
     # The solution reproduces the first point only to rounding; set it exactly.
     curves[:, 0] = start

@@ -2,21 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
-from typing import Annotated, Any, ParamSpec
+from collections.abc import Iterable
+from typing import Annotated, Any
 
-from fastapi import APIRouter, Body, Response
-from fastapi.exceptions import RequestValidationError
-from pydantic import BaseModel, ValidationError
-from pydantic_core import to_json
+from fastapi import APIRouter, Body, Request, Response
+from pydantic import BaseModel
 
-from service.analyst import MAX_ANALYSIS_S, Analyst, Busy, TooLong
+from service.answers.analysis import analyse
 from service.api import errors
 from service.api.body import JsonRoute
-from service.api.errors import busy, compiling, invalid_mechanism, invalid_request
-from service.api.state import Core
-from service.explained import sentence
-from service.telemetry import span
+from service.api.computation import answer_with_analysis
+from service.api.guard import Tenant
+from service.api.state import Answers
 
 TAG = {"name": "analyses", "description": "Drive a given mechanism."}
 
@@ -24,10 +21,6 @@ TAG = {"name": "analyses", "description": "Drive a given mechanism."}
 # body is validated where it is used, and the OpenAPI document gets the models when somebody asks for it.
 REQUEST = {"$ref": "#/components/schemas/AnalysisRequest"}
 ANALYSIS = {"$ref": "#/components/schemas/Analysis"}
-
-
-P = ParamSpec("P")
-
 
 router = APIRouter(prefix="/v1/analyses", tags=["analyses"], route_class=JsonRoute)
 
@@ -53,57 +46,14 @@ def analysis_responses(description: str, **described: str) -> dict[int | str, di
         e422="The body does not state a mechanism and its motion; `errors` says where.",
     ),
 )
-async def analyse_mechanism(analyst: Core, body: Annotated[Any, Body()]) -> Response:
+async def analyse_mechanism(
+    request: Request, answers: Answers, tenant: Tenant, body: Annotated[Any, Body()]
+) -> Response:
     """Positions, velocities, accelerations and jerks over the motion, toggles, circuits and limits.
 
     Nothing is stored. Where the mechanism cannot be assembled `valid` is false and the numbers are null.
     """
-    return await answered(analyst, _analysed, body)
-
-
-async def answered(analyst: Analyst, work: Callable[P, bytes], *args: P.args, **kwargs: P.kwargs) -> Response:
-    """What an analysis gives, as the answer to a request.
-
-    Raises
-    ------
-    Refusal
-        422 or 503 when it is not there in time.
-    """
-    try:
-        with span("analysis"):
-            return Response(await analyst.call(work, *args, **kwargs), media_type="application/json")
-    except TooLong:
-        fault = ("/mechanism", f"The analysis was given up after {MAX_ANALYSIS_S:g} seconds; are all lengths meant so?")
-        raise invalid_mechanism([fault]) from None
-    except Busy:
-        raise (busy("analyses") if analyst.loaded else compiling()) from None
-
-
-def invalid_body(error: ValidationError, body: Any) -> RequestValidationError:
-    """The refusal of a body that is validated where it is used."""
-    faults = error.errors(include_url=False, include_context=False, include_input=False)
-    return RequestValidationError([{**fault, "loc": ("body", *fault["loc"])} for fault in faults], body=body)
-
-
-def _analysed(body: Any) -> bytes:
-    from kinematics import errors as kinematics
-    from synthesis.analyses import parse_request
-    from synthesis.mechanisms import MechanismError
-
-    try:
-        request = parse_request(body)
-    except ValidationError as error:
-        raise invalid_body(error, body) from None
-    contradictions = request.faults()
-    if contradictions:
-        raise invalid_request([(path, sentence(detail)) for path, detail in contradictions])
-    try:
-        answer = request.answer()
-    except MechanismError as error:
-        raise invalid_mechanism([(f"/mechanism{error.path}", sentence(error.detail))]) from None
-    except kinematics.MechanismError as error:
-        raise invalid_mechanism([("/mechanism", sentence(str(error)))]) from None
-    return to_json(answer, inf_nan_mode="null")
+    return await answer_with_analysis(request, answers, tenant, analyse, body)
 
 
 def complete(document: dict[str, Any]) -> None:

@@ -11,12 +11,17 @@ from pydantic_core import from_json
 from starlette.requests import ClientDisconnect
 
 from service.api.errors import Refusal, invalid_request, malformed_json
+from service.api.excess import locate_excess
 from service.api.guard import GuardedRoute, Handler
 from service.explained import pointer
 
 MAX_VALUES = 20_000
 """Most values (numbers, strings, lists, objects) in a body. The largest honest problem has a few thousand; a body of a
 million tiny faults would keep the validation busy for a second."""
+
+
+MAX_DEPTH = 201
+"""Lists and objects within one another that the parser takes."""
 
 
 class BoundedRequest(Request):
@@ -113,17 +118,18 @@ def _too_large(limit: int) -> Refusal:
 
 def _parsed(body: bytes) -> Any:
     if _surely_has_more_values_than(body, MAX_VALUES):
-        raise _too_many()
+        raise _too_many(body)
     # This parser bounds depth and digits by itself, and passes NaN and 1e999 on to the validation, which knows the
     # field that they are in.
     try:
         parsed = from_json(body)
     except ValueError as error:
         # The message is the parser's own, "expected `:` at line 1 column 8"; it holds nothing of the input.
-        raise malformed_json(f"The body is not valid JSON: {error}.") from None
+        detail = f"The body is not valid JSON: {error}."
+        raise malformed_json(detail, _faults_of_depth(body) if "recursion" in str(error) else ()) from None
     values, keys = _counts(parsed)
     if values > MAX_VALUES:
-        raise _too_many()
+        raise _too_many(body)
     if _keys_written(body) != keys:
         twice = [(place, "This key is given twice; give it once.") for place in _given_twice(body)]
         if twice:
@@ -131,8 +137,19 @@ def _parsed(body: bytes) -> Any:
     return parsed
 
 
-def _too_many() -> Refusal:
-    return Refusal(422, "invalid-request", "Invalid request", f"The body holds more than {MAX_VALUES} values.")
+def _too_many(body: bytes) -> Refusal:
+    where = locate_excess(body, MAX_VALUES, MAX_DEPTH)
+    detail = f"Here the body comes to hold more than {MAX_VALUES} values; it may have {MAX_VALUES} at most."
+    return Refusal(
+        422, "invalid-request", "Invalid request", f"The body holds more than {MAX_VALUES} values.",
+        errors=[(where, detail)],
+    )  # fmt: skip
+
+
+def _faults_of_depth(body: bytes) -> list[tuple[str, str]]:
+    """Where a body that cannot be parsed is nested too deep; nothing where that is not what is wrong."""
+    where = locate_excess(body, len(body), MAX_DEPTH)
+    return [(where, f"This is nested more than {MAX_DEPTH} deep.")] if where else []
 
 
 def _surely_has_more_values_than(body: bytes, limit: int) -> bool:

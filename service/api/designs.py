@@ -2,34 +2,28 @@
 
 from __future__ import annotations
 
-import re
-from collections.abc import Callable
-from typing import Annotated, NamedTuple, ParamSpec, TypeVar
+from typing import Annotated, NamedTuple
 
-from fastapi import APIRouter, Query, Response
-from pydantic import BaseModel, ConfigDict, Field, ValidationError
-from pydantic_core import from_json, to_json
+from fastapi import APIRouter, Query, Request, Response
+from pydantic import BaseModel, ConfigDict, Field
 
+from service.answers.designs import draw_design
+from service.answers.designs import move_design as compute_motion
+from service.answers.job_result import SolvedJob
 from service.api import errors
-from service.api.analyses import analysis_responses, answered
-from service.api.errors import Refusal, busy, not_found
+from service.api.analyses import analysis_responses
+from service.api.computation import answer_with_analysis, draw_in_turn
+from service.api.errors import Refusal
 from service.api.guard import GuardedRoute, Tenant
 from service.api.jobs import TAG, job_of
-from service.api.state import Board, Core, Desk
-from service.drawings import Busy, Drawings
+from service.api.state import Answers, Desk
 from service.jobs.desk import JobDesk
 from service.jobs.schema import JobRow
 from service.render import Form
-from service.stated import read
 from service.telemetry import span
-from synthesis.registry import KINDS
 
 OTHER_DRAWINGS = "Other drawings have kept this one from being begun."
 
-P = ParamSpec("P")
-T = TypeVar("T")
-
-_DESIGN_NUMBER = re.compile("[0-9]{1,4}")
 _TEXT = {"type": "string"}
 
 router = APIRouter(prefix="/v1/jobs", tags=[TAG["name"]], route_class=GuardedRoute)
@@ -84,10 +78,12 @@ EXPORTS: dict[Form, Export] = {
 def _offer(form: Form, export: Export) -> None:
     """Add the operation that gives the files of one form."""
 
-    async def file(desk: Desk, board: Board, tenant: Tenant, job_id: str, number: str) -> Response:
-        job, result = await solved(desk, tenant, job_id)
+    async def file(
+        request: Request, desk: Desk, answers: Answers, tenant: Tenant, job_id: str, number: str
+    ) -> Response:
+        job = await solved_job(desk, tenant, job_id)
         with span("drawing"):
-            content = await drawn(board, _file, job, result, number, form)
+            content = await draw_in_turn(request, answers, tenant, draw_design, job, number, form)
         return Response(content, media_type=export.media_type, headers=HEADERS.get(form, _AS_IT_IS_SAID))
 
     router.add_api_route(
@@ -112,36 +108,6 @@ for _form, _export in EXPORTS.items():
     _offer(_form, _export)
 
 
-async def drawn(board: Drawings, draw: Callable[P, T], *args: P.args, **kwargs: P.kwargs) -> T:
-    """Have something drawn in its turn.
-
-    Raises
-    ------
-    Refusal
-        503 where its turn has not come in time.
-    """
-    try:
-        return await board.call(draw, *args, **kwargs)
-    except Busy:
-        raise busy("drawings") from None
-
-
-def _file(job: JobRow, result: str, number: str, form: Form) -> str | bytes:
-    # Drawing is for those who ask for it; the other requests do not wait for its import.
-    from service import render
-
-    kind = KINDS[job.kind]
-    designs = kind.result.model_validate_json(result).designs
-    n = design_index(number, len(designs))
-    problem = read(job.kind, job.problem)
-    try:
-        return render.exported(designs[n], problem, render.heading(problem, job.label, n), form)
-    except render.NoSuchExport:
-        raise not_found(f"There is no .{form} file of this type of mechanism.") from None
-    except render.NotBuilt:
-        raise Refusal(409, "no-drawing", "No drawing", "This design is of a size that is not drawn.") from None
-
-
 class MotionSteps(BaseModel):
     """How finely a cycle is divided."""
 
@@ -163,8 +129,9 @@ class MotionSteps(BaseModel):
     ),
 )
 async def move_design(
-    desk: Desk, tenant: Tenant, analyst: Core, job_id: str, number: str, query: Annotated[MotionSteps, Query()]
-) -> Response:
+    request: Request, desk: Desk, tenant: Tenant, answers: Answers, job_id: str, number: str,
+    query: Annotated[MotionSteps, Query()],
+) -> Response:  # fmt: skip
     """Design ``number`` of the job's result over its cycle, with the input at 1 rad/s (or 1 length unit/s).
 
     A crank turns from the input angle of the first target through a full turn, or as many as its gears need to come
@@ -172,29 +139,7 @@ async def move_design(
     `POST /v1/analyses`.
     """
     _, result = await solved(desk, tenant, job_id)
-    return await answered(analyst, motion, result, number, query.steps)
-
-
-def motion(result: str, number: str, steps: int) -> bytes:
-    """The motion of design ``number`` of a stored result, in JSON.
-
-    Raises
-    ------
-    Refusal
-        404 where there is no such design, 409 where it is no mechanism that the analysis core would be given.
-    """
-    from kinematics import errors as kinematics
-    from synthesis.analyses import family
-    from synthesis.mechanisms import MechanismError
-
-    designs = from_json(result)["designs"]
-    mechanism = designs[design_index(number, len(designs))]["mechanism"]
-    try:
-        answer = family(mechanism).request.over_the_cycle(mechanism, steps)
-    except (ValidationError, MechanismError, kinematics.MechanismError):
-        # A design for lengths at the end of what can be stated may itself lie beyond that.
-        raise Refusal(409, "no-motion", "No motion", "This design is of a size that is not analysed.") from None
-    return to_json(answer, inf_nan_mode="null")
+    return await answer_with_analysis(request, answers, tenant, compute_motion, result, number, query.steps)
 
 
 async def solved(desk: JobDesk, tenant: str, job_id: str) -> tuple[JobRow, str]:
@@ -212,14 +157,7 @@ async def solved(desk: JobDesk, tenant: str, job_id: str) -> tuple[JobRow, str]:
     return job, job.result
 
 
-def design_index(number: str, designs: int) -> int:
-    """The index that a path states of so many designs.
-
-    Raises
-    ------
-    Refusal
-        404 where it is none.
-    """
-    if not _DESIGN_NUMBER.fullmatch(number) or int(number) >= designs:
-        raise not_found(f"The job has {designs} designs, counted from 0; this is none of them.")
-    return int(number)
+async def solved_job(desk: JobDesk, tenant: str, job_id: str) -> SolvedJob:
+    """A job that has a result, as the processes that answer requests take it; errors as of :func:`solved`."""
+    job, result = await solved(desk, tenant, job_id)
+    return SolvedJob(job.id, job.kind, job.label, job.created_at, job.finished_at, job.problem, result)

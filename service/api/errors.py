@@ -16,9 +16,38 @@ from starlette.exceptions import HTTPException
 from starlette.routing import Match
 
 from service import telemetry
-from service.explained import MAX_FAULTS, explained, place
+from service.explained import MAX_FAULTS
 from service.jobs.database import unreachable
-from synthesis.model.counting import counted
+from service.refusals import (
+    Refusal,
+    invalid_body,
+    invalid_mechanism,
+    invalid_problem,
+    invalid_request,
+    not_found,
+    refuse_faults,
+)
+
+__all__ = [
+    "FieldError",
+    "ProblemDetails",
+    "Refusal",
+    "busy",
+    "compiling",
+    "gone",
+    "install",
+    "invalid_body",
+    "invalid_drawing",
+    "invalid_mechanism",
+    "invalid_problem",
+    "invalid_request",
+    "malformed_drawing",
+    "malformed_json",
+    "not_found",
+    "queue_full",
+    "responses",
+    "store_unavailable",
+]
 
 PROBLEM_JSON = "application/problem+json"
 
@@ -59,51 +88,9 @@ class ProblemDetails(BaseModel):
     )
 
 
-class Refusal(Exception):
-    """A request that is answered with an error, by a client's fault or by the state of things."""
-
-    def __init__(
-        self,
-        status: int,
-        type_: str,
-        title: str,
-        detail: str,
-        *,
-        errors: Sequence[tuple[str, str]] = (),
-        headers: Mapping[str, str] | None = None,
-    ) -> None:
-        super().__init__(detail)
-        self.status = status
-        self.type = f"/problems/{type_}"
-        self.title = title
-        self.detail = detail
-        self.errors = errors
-        self.headers = headers
-
-
-def malformed_json(detail: str) -> Refusal:
-    """The body is not JSON."""
-    return Refusal(400, "malformed-json", "Malformed JSON", detail)
-
-
-def not_found(detail: str) -> Refusal:
-    """There is no such thing."""
-    return Refusal(404, "not-found", "Not found", detail)
-
-
-def invalid_problem(errors: Sequence[tuple[str, str]]) -> Refusal:
-    """The problem is well-formed, but cannot be meant; ``errors`` are pairs of path and detail."""
-    return Refusal(422, "invalid-problem", "Invalid problem", _counted(len(errors)), errors=errors)
-
-
-def invalid_mechanism(errors: Sequence[tuple[str, str]]) -> Refusal:
-    """The mechanism is well-formed, but there is none such; ``errors`` are pairs of path and detail."""
-    return Refusal(422, "invalid-mechanism", "Invalid mechanism", _counted(len(errors)), errors=errors)
-
-
-def invalid_request(errors: Sequence[tuple[str, str]]) -> Refusal:
-    """Something else of the request cannot be meant; ``errors`` are pairs of path and detail."""
-    return Refusal(422, "invalid-request", "Invalid request", _counted(len(errors)), errors=errors)
+def malformed_json(detail: str, errors: Sequence[tuple[str, str]] = ()) -> Refusal:
+    """The body is not JSON, or not such as is parsed; ``errors`` are pairs of path and detail."""
+    return Refusal(400, "malformed-json", "Malformed JSON", detail, errors=errors)
 
 
 def malformed_drawing(detail: str) -> Refusal:
@@ -183,13 +170,7 @@ async def _refused(request: Request, refusal: Exception) -> Response:
 
 async def _invalid(request: Request, error: Exception) -> Response:
     assert isinstance(error, RequestValidationError)
-    # Several models that a part was tried as may say the same of it.
-    faults = list(dict.fromkeys((place(fault, error.body), explained(fault)) for fault in error.errors()))
-    if all(path.startswith("/problem/") for path, _ in faults):
-        return await _refused(request, invalid_problem(faults))
-    if all(path.startswith("/mechanism/") for path, _ in faults):
-        return await _refused(request, invalid_mechanism(faults))
-    return await _refused(request, invalid_request(faults))
+    return await _refused(request, refuse_faults(error.errors(), error.body))
 
 
 async def _http_error(request: Request, error: Exception) -> Response:
@@ -240,12 +221,6 @@ def _answer(
     if errors:
         content["errors"] = [{"path": path, "detail": text} for path, text in errors[:MAX_FAULTS]]
     return Response(to_json(content), status_code=status, headers=dict(headers or {}), media_type=PROBLEM_JSON)
-
-
-def _counted(faults: int) -> str:
-    if faults > MAX_FAULTS:
-        return f"The request has more than {MAX_FAULTS} faults; the first {MAX_FAULTS} are listed."
-    return f"The request has {counted(faults, 'fault')}."
 
 
 def _method(request: Request) -> str:

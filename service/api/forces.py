@@ -4,21 +4,16 @@ from __future__ import annotations
 
 from typing import Annotated, Any
 
-from fastapi import APIRouter, Body, Query, Response
-from pydantic import ValidationError
-from pydantic_core import to_json
+from fastapi import APIRouter, Body, Query, Request, Response
 
-from service.api.analyses import analysis_responses, answered, invalid_body
+from service.answers.forces import forces_of_design as compute_forces
+from service.api.analyses import analysis_responses
 from service.api.body import JsonRoute
-from service.api.designs import MotionSteps, design_index, solved
-from service.api.errors import Refusal, invalid_request
+from service.api.computation import answer_with_analysis
+from service.api.designs import MotionSteps, solved_job
 from service.api.guard import GuardedRoute, Tenant
 from service.api.jobs import TAG
-from service.api.state import Core, Desk
-from service.explained import sentence
-from service.jobs.schema import JobRow
-from service.stated import read
-from synthesis.registry import KINDS
+from service.api.state import Answers, Desk
 
 NO_DYNAMICS = "The job has no result (yet), its problem states no `dynamics`, or the design has no such forces."
 
@@ -39,16 +34,17 @@ stating = APIRouter(prefix="/v1/jobs", tags=[TAG["name"]], route_class=JsonRoute
     ),
 )
 async def forces_of_design(
-    desk: Desk, tenant: Tenant, analyst: Core, job_id: str, number: str, query: Annotated[MotionSteps, Query()]
-) -> Response:
+    request: Request, desk: Desk, tenant: Tenant, answers: Answers, job_id: str, number: str,
+    query: Annotated[MotionSteps, Query()],
+) -> Response:  # fmt: skip
     """Forces of design ``number`` of the job's result with the block `dynamics` of its problem.
 
     A crank that turns through is driven through its cycle, any other input over the range that the design was verified
     along, at constant speed; a design that has a block `dynamics` of its own, over the motion of its problem. The
     answer is that of `POST /v1/analyses`.
     """
-    job, result = await solved(desk, tenant, job_id)
-    return await answered(analyst, _forces, job, result, number, query.steps, None)
+    job = await solved_job(desk, tenant, job_id)
+    return await answer_with_analysis(request, answers, tenant, compute_forces, job, number, query.steps, None)
 
 
 @stating.post(
@@ -73,9 +69,10 @@ async def forces_of_design(
     },
 )
 async def analyse_forces_of_design(
+    request: Request,
     desk: Desk,
     tenant: Tenant,
-    analyst: Core,
+    answers: Answers,
     job_id: str,
     number: str,
     query: Annotated[MotionSteps, Query()],
@@ -85,52 +82,5 @@ async def analyse_forces_of_design(
 
     Nothing is stored.
     """
-    job, result = await solved(desk, tenant, job_id)
-    return await answered(analyst, _forces, job, result, number, query.steps, body)
-
-
-def _forces(job: JobRow, result: str, number: str, steps: int, body: Any) -> bytes:
-    """The forces of a design of a stored result, in JSON; by the problem's own block where ``body`` is None."""
-    from synthesis.model.dynamics import DesignForcesRequest
-    from synthesis.model.linkage_statement import LinkageProblem
-    from synthesis.outcome.forces import NoForces, forces_over_motion
-
-    kind = KINDS[job.kind]
-    designs = kind.result.model_validate_json(result).designs
-    design = designs[design_index(number, len(designs))]
-    problem = read(job.kind, job.problem)
-    if body is None and getattr(design, "dynamics", None):
-        return to_json(_with_its_own(problem, design, steps), inf_nan_mode="null")
-    if not isinstance(problem, LinkageProblem):
-        raise _refused("Only linkages have forces in their joints.")
-    if body is None:
-        if problem.dynamics is None:
-            raise _refused("The problem states no dynamics; post a block of your own.")
-        stated: Any = problem.dynamics
-    else:
-        try:
-            stated = DesignForcesRequest.model_validate(body).dynamics
-            stated.laid_out(problem.layout)
-        except ValidationError as error:
-            raise invalid_body(error, body) from None
-    try:
-        return to_json(forces_over_motion(stated, design, problem.length_unit, steps), inf_nan_mode="null")
-    except NoForces as error:
-        if body is None or not error.path:
-            raise _refused(sentence(str(error))) from None
-        raise invalid_request([(error.path, sentence(error.detail))]) from None
-
-
-def _with_its_own(problem: Any, design: Any, steps: int) -> dict[str, Any]:
-    """The forces of a design that has a block of its own, over the motion that its problem states."""
-    from synthesis.analyses import parse_request
-
-    motion = problem.motion.model_copy(update={"steps": steps}).model_dump(exclude_unset=True, by_alias=True)
-    if "speed_rpm" not in motion:
-        motion["speed"] = problem.motion.rate  # that of the kind, where none is stated
-    stated = {"mechanism": design.mechanism.model_dump(), "motion": motion, "dynamics": design.dynamics}
-    return parse_request({**stated, "length_unit": problem.length_unit}).answer()
-
-
-def _refused(detail: str) -> Refusal:
-    return Refusal(409, "no-forces", "No forces", detail)
+    job = await solved_job(desk, tenant, job_id)
+    return await answer_with_analysis(request, answers, tenant, compute_forces, job, number, query.steps, body)

@@ -9,7 +9,7 @@ from fastapi import APIRouter, Query, Request, Response
 from service.api import errors
 from service.api.body import BoundedRequest, foreign
 from service.api.errors import busy, gone, invalid_drawing, invalid_request, malformed_drawing
-from service.api.guard import GuardedRoute
+from service.api.guard import GuardedRoute, Tenant
 from service.api.replies import as_json
 from service.api.state import Readers
 from service.explained import pointer
@@ -17,7 +17,7 @@ from service.imports import Imports
 from service.imports.desk import ImportDesk
 from service.imports.limits import DEFAULT_POINTS, FEWEST, MOST_ASKED, PNG
 from service.imports.reader import Door
-from service.jobs.errands import Busy, Gone
+from service.jobs.request_pool import Busy, Gone
 from service.outlines import DrawingUnit, ForeignFormat, Malformed, NoOutline, Unsuitable
 from service.outlines.limits import DEFAULT_TOLERANCE, FARTHEST
 from service.telemetry import span
@@ -55,7 +55,7 @@ async def taken(request: Request, types: tuple[str, ...]) -> tuple[bytes, str]:
 
 
 async def answered(
-    request: Request, desk: ImportDesk, door: Door, types: tuple[str, ...], content: bytes, **asked: Any
+    request: Request, desk: ImportDesk, tenant: str, door: Door, types: tuple[str, ...], content: bytes, **asked: Any
 ) -> Response:
     """What a file gives, as the answer to a request.
 
@@ -66,7 +66,7 @@ async def answered(
     """
     try:
         with span("drawing"):
-            return as_json(await desk.read(request.is_disconnected, door, content, **asked))
+            return as_json(await desk.read(request.is_disconnected, tenant, door, content, **asked))
     except Busy:
         raise busy("files") from None
     except Gone:
@@ -100,6 +100,7 @@ async def answered(
 async def import_curves(
     request: Request,
     desk: Readers,
+    tenant: Tenant,
     length_unit: Annotated[
         DrawingUnit, Query(description="Unit of the answer, where the file states its own; else it is the file's.")
     ] = "mm",
@@ -141,6 +142,7 @@ async def import_curves(
     return await answered(
         request,
         desk,
+        tenant,
         "imports",
         TYPES,
         content,

@@ -7,7 +7,7 @@ from typing import Annotated
 from fastapi import APIRouter, Query, Request, Response
 
 from service.api import errors
-from service.api.guard import GuardedRoute
+from service.api.guard import GuardedRoute, Tenant
 from service.api.imports import DXF_TYPES, OF_ANY_FORMAT, SVG_TYPES, answered, file_of, taken
 from service.api.state import Readers
 from service.outlines import DrawingUnit, Outlines
@@ -37,6 +37,7 @@ router = APIRouter(prefix="/v1/outlines", tags=["outlines"], route_class=Guarded
 async def read_outlines(
     request: Request,
     desk: Readers,
+    tenant: Tenant,
     length_unit: Annotated[
         DrawingUnit | None,
         Query(description="Unit of the answer, where the drawing states its own; else it is the drawing's."),
@@ -57,4 +58,6 @@ async def read_outlines(
     blocks and uses are read where they stand. What gives no outline is told with the reason.
     """
     content, _ = await taken(request, TYPES)
-    return await answered(request, desk, "outlines", TYPES, content, tolerance=tolerance, length_unit=length_unit)
+    return await answered(
+        request, desk, tenant, "outlines", TYPES, content, tolerance=tolerance, length_unit=length_unit
+    )

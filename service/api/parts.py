@@ -9,14 +9,14 @@ from fastapi import APIRouter, Query, Request, Response
 from pydantic_core import from_json
 from starlette.concurrency import run_in_threadpool
 
+from service.answers.job_result import SolvedJob, design_index
 from service.api import errors
-from service.api.designs import HEADERS, design_index, solved
+from service.api.designs import HEADERS, solved_job
 from service.api.errors import Refusal, busy, gone, invalid_request, not_found
 from service.api.guard import GuardedRoute, Tenant
 from service.api.jobs import TAG
 from service.api.state import Bench, Desk
-from service.jobs.errands import Busy, GivenUp, Gone
-from service.jobs.schema import JobRow
+from service.jobs.request_pool import Busy, GivenUp, Gone
 from service.parts.answer import AssemblyView
 from service.parts.extra import installed
 from service.parts.sizes import NEEDS_CAD, SOLID, AssemblyQuery, File, PartFile, PartsQuery, Refused, ViewQuery
@@ -176,7 +176,7 @@ for _form in get_args(PartFile):
     _offer(_form)
 
 
-async def assemblies_of(request: Request, bench: Workshop, job: JobRow, result: str, most: int) -> dict[int, str]:
+async def assemblies_of(request: Request, bench: Workshop, tenant: str, job: SolvedJob, most: int) -> dict[int, str]:
     """Pictures of the first designs that parts are made of, as SVG; or a sentence that says why there is none.
 
     Raises
@@ -184,11 +184,11 @@ async def assemblies_of(request: Request, bench: Workshop, job: JobRow, result: 
     Refusal
         503 or 499, where that is no fault of the parts.
     """
-    designs = from_json(result)["designs"][:most]
+    designs = from_json(job.result)["designs"][:most]
     found = {}
     for n in range(len(designs)):
         try:
-            found[n] = (await _made(request, bench, filled, _order(job, result, n, {}), "svg")).decode()
+            found[n] = (await _made(request, bench, tenant, filled, _order(job, n, {}), "svg")).decode()
         except Refusal as refusal:
             if refusal.status not in (409, 422):
                 raise
@@ -196,9 +196,9 @@ async def assemblies_of(request: Request, bench: Workshop, job: JobRow, result: 
     return found
 
 
-def _order(job: JobRow, result: str, number: int, query: dict[str, Any]) -> dict[str, Any]:
+def _order(job: SolvedJob, number: int, query: dict[str, Any]) -> dict[str, Any]:
     """What the process is asked for."""
-    stored = {"kind": job.kind, "problem": job.problem, "label": job.label, "result": result}
+    stored = {"kind": job.kind, "problem": job.problem, "label": job.label, "result": job.result}
     return stored | {"number": number, "query": query}
 
 
@@ -206,19 +206,19 @@ async def _answered(
     request: Request, desk: Desk, bench: Bench, tenant: Tenant, job_id: str, number: str, query: PartsQuery,
     file: File | PartFile, part: str | None = None,
 ) -> Response:  # fmt: skip
-    job, result = await solved(desk, tenant, job_id)
-    n = await run_in_threadpool(_checked, result, number)
+    job = await solved_job(desk, tenant, job_id)
+    n = await run_in_threadpool(_checked, job.result, number)
     if (file in SOLID or (file == "zip" and query.process in NEEDS_CAD)) and not installed():
         raise Refusal(
             501, "no-cad", "No CAD",
             "The service runs without its extra `cad`, which makes solids; `process=laser` has outlines without it.",
         )  # fmt: skip
-    order = _order(job, result, n, query.model_dump(exclude_unset=True))
+    order = _order(job, n, query.model_dump(exclude_unset=True))
     with span("parts"):
         if part is None:
-            content = await _made(request, bench, filled, order, file)
+            content = await _made(request, bench, tenant, filled, order, file)
         else:
-            content = await _made(request, bench, part_filled, order, part, file)
+            content = await _made(request, bench, tenant, part_filled, order, part, file)
     names = {"zip": f"{job.kind}-{n + 1}-parts.zip", "svg": f"{job.kind}-{n + 1}-assembly.svg"}
     name = names.get(file, f"{job.kind}-{n + 1}.{file}") if part is None else f"{part}.{file}"
     headers = {"X-Content-Type-Options": "nosniff"}
@@ -229,10 +229,10 @@ async def _answered(
     return Response(content, media_type=_MEDIA[file], headers=headers)
 
 
-async def _made(request: Request, bench: Workshop, work: Callable[..., Any], *args: Any) -> bytes:
+async def _made(request: Request, bench: Workshop, tenant: str, work: Callable[..., Any], *args: Any) -> bytes:
     """What the process makes, or has made of the same."""
     try:
-        made = await bench.made(request.is_disconnected, work, *args)
+        made = await bench.made(request.is_disconnected, tenant, work, *args)
     except Busy:
         raise busy("parts") from None
     except Gone:

@@ -2,23 +2,20 @@
 
 from __future__ import annotations
 
-from importlib.metadata import version
 from typing import Annotated
 
 from fastapi import APIRouter, Query, Request, Response
 from pydantic import BaseModel, ConfigDict, Field
 
+from service.answers.reports import report_job as write_report
 from service.api import errors
-from service.api.designs import drawn, solved
+from service.api.computation import draw_in_turn
+from service.api.designs import solved_job
 from service.api.guard import GuardedRoute, Tenant
 from service.api.jobs import NO_JOB, TAG
 from service.api.parts import assemblies_of
-from service.api.state import Bench, Board, Desk
-from service.jobs.schema import JobRow
-from service.loading import IMPORTS
-from service.stated import read
+from service.api.state import Answers, Bench, Desk
 from service.telemetry import span
-from synthesis.registry import KINDS
 
 _TEXT = {"type": "string"}
 
@@ -64,19 +61,19 @@ class ReportScope(BaseModel):
     },
 )
 async def report_job(
-    request: Request, desk: Desk, board: Board, bench: Bench, tenant: Tenant, job_id: str,
+    request: Request, desk: Desk, answers: Answers, bench: Bench, tenant: Tenant, job_id: str,
     query: Annotated[ReportScope, Query()],
 ) -> Response:  # fmt: skip
     """The job as one self-contained page for paper.
 
     The problem, what was searched and what is proven; the designs with drawings, checks, and dimensions with units.
     """
-    job, result = await solved(desk, tenant, job_id)
+    job = await solved_job(desk, tenant, job_id)
     with span("report"):
         built = {}
         if query.assemblies:
-            built = await assemblies_of(request, bench, job, result, query.designs)
-        page, policy = await drawn(board, _report, job, result, query.designs, built)
+            built = await assemblies_of(request, bench, tenant, job, query.designs)
+        page, policy = await draw_in_turn(request, answers, tenant, write_report, job, query.designs, built)
     headers = {
         "Content-Security-Policy": policy,
         "X-Content-Type-Options": "nosniff",
@@ -84,13 +81,3 @@ async def report_job(
         "Content-Disposition": f'inline; filename="{job.kind}-{job.id}.html"',
     }
     return Response(page, media_type="text/html", headers=headers)
-
-
-def _report(job: JobRow, result: str, most: int, built: dict[int, str]) -> tuple[str, str]:
-    with IMPORTS:
-        from service.render.report import POLICY, Occasion, report
-
-    kind = KINDS[job.kind]
-    occasion = Occasion(job.id, job.kind, job.label, job.created_at, job.finished_at, version("mechsynth"))
-    problem = read(job.kind, job.problem)
-    return report(problem, kind.result.model_validate_json(result), occasion, most, built), POLICY

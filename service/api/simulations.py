@@ -4,21 +4,18 @@ from __future__ import annotations
 
 from typing import Annotated, NamedTuple
 
-from fastapi import APIRouter, Query, Response
+from fastapi import APIRouter, Query, Request, Response
 from pydantic import BaseModel, ConfigDict, Field
 
+from service.answers.simulations import open_in_pmks, simulate_design
 from service.api import errors
-from service.api.designs import OTHER_DRAWINGS, design_index, drawn, solved
-from service.api.errors import Refusal, invalid_request, not_found
+from service.api.computation import draw_in_turn
+from service.api.designs import OTHER_DRAWINGS, solved_job
 from service.api.guard import GuardedRoute, Tenant
 from service.api.jobs import TAG
-from service.api.state import Board, Desk
-from service.jobs.schema import JobRow
-from service.loading import IMPORTS
-from service.simulation.query import Form, NoSimulation, NotSimulated, SimulationQuery
-from service.stated import read
+from service.api.state import Answers, Desk
+from service.simulation.query import Form, SimulationQuery
 from service.telemetry import span
-from synthesis.registry import KINDS
 
 router = APIRouter(prefix="/v1/jobs", tags=[TAG["name"]], route_class=GuardedRoute)
 
@@ -73,11 +70,12 @@ def _offer(form: Form, export: Simulation) -> None:
     """Add the operation that gives the simulations of one form."""
 
     async def file(
-        desk: Desk, board: Board, tenant: Tenant, job_id: str, number: str, query: Annotated[SimulationQuery, Query()]
-    ) -> Response:
-        job, result = await solved(desk, tenant, job_id)
+        request: Request, desk: Desk, answers: Answers, tenant: Tenant, job_id: str, number: str,
+        query: Annotated[SimulationQuery, Query()],
+    ) -> Response:  # fmt: skip
+        job = await solved_job(desk, tenant, job_id)
         with span("simulation"):
-            n, content = await drawn(board, _simulation, job, result, number, form, query)
+            n, content = await draw_in_turn(request, answers, tenant, simulate_design, job, number, form, query)
         headers = {
             "X-Content-Type-Options": "nosniff",
             "Content-Disposition": f'attachment; filename="{job.kind}-{n + 1}.{form}"',
@@ -127,45 +125,14 @@ class PmksModel(BaseModel):
         e503=OTHER_DRAWINGS,
     ),
 )
-async def open_design_in_pmks(desk: Desk, board: Board, tenant: Tenant, job_id: str, number: str) -> PmksModel:
+async def open_design_in_pmks(
+    request: Request, desk: Desk, answers: Answers, tenant: Tenant, job_id: str, number: str
+) -> PmksModel:
     """The address at which PMKS+ (https://app.pmksplus.com) opens design ``number`` of the job's result.
 
     PMKS+ has pins and slides and no gears. It keeps three decimals of lengths, so that the design is made larger or
     smaller by a power of ten; masses are not passed on.
     """
-    job, result = await solved(desk, tenant, job_id)
-    url, scale = await drawn(board, _pmks, job, result, number)
+    job = await solved_job(desk, tenant, job_id)
+    url, scale = await draw_in_turn(request, answers, tenant, open_in_pmks, job, number)
     return PmksModel(url=url, scale=scale)
-
-
-def _pmks(job: JobRow, result: str, number: str) -> tuple[str, float]:
-    with IMPORTS:
-        from service.simulation.export import opened_in_pmks
-
-    designs = KINDS[job.kind].result.model_validate_json(result).designs
-    n = design_index(number, len(designs))
-    try:
-        return opened_in_pmks(designs[n], read(job.kind, job.problem))
-    except NoSimulation:
-        raise not_found("PMKS+ opens linkages only.") from None
-    except NotSimulated as error:
-        raise Refusal(409, "no-simulation", "No simulation", str(error)) from None
-
-
-def _simulation(job: JobRow, result: str, number: str, form: Form, query: SimulationQuery) -> tuple[int, str]:
-    # Who asks for nothing of this waits for no import.
-    with IMPORTS:
-        from service.render import heading
-        from service.simulation.export import simulation
-
-    designs = KINDS[job.kind].result.model_validate_json(result).designs
-    n = design_index(number, len(designs))
-    problem = read(job.kind, job.problem)
-    try:
-        return n, simulation(designs[n], problem, heading(problem, job.label, n), form, query)
-    except NoSimulation:
-        raise not_found("This type of mechanism has no simulations; linkages and gear trains have.") from None
-    except NotSimulated as error:
-        if error.path:
-            raise invalid_request([(error.path, str(error))]) from None
-        raise Refusal(409, "no-simulation", "No simulation", str(error)) from None

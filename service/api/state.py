@@ -7,8 +7,7 @@ from typing import Annotated, Any, TypeVar
 
 from fastapi import Depends, Request
 
-from service.analyst import Analyst
-from service.drawings import Drawings
+from service.answers.desk import AnswerDesk
 from service.imports.desk import ImportDesk
 from service.jobs.batches.desk import BatchDesk
 from service.jobs.batches.rows import BatchSummary
@@ -35,7 +34,6 @@ Desk = Annotated[JobDesk, Depends(_part("desk", JobDesk))]
 Batches = Annotated[BatchDesk, Depends(_part("batches", BatchDesk))]
 Poller = Annotated[JobPoller[JobSummary], Depends(_part("poller", JobPoller))]
 BatchPoller = Annotated[JobPoller[BatchSummary], Depends(_part("batch_poller", JobPoller))]
-Board = Annotated[Drawings, Depends(_part("drawings", Drawings))]
+Answers = Annotated[AnswerDesk, Depends(_part("answers", AnswerDesk))]
 Readers = Annotated[ImportDesk, Depends(_part("readers", ImportDesk))]
 Bench = Annotated[Workshop, Depends(_part("workshop", Workshop))]
-Core = Annotated[Analyst, Depends(_part("analyst", Analyst))]

@@ -1,7 +1,7 @@
 """Files that clients send are read by processes of their own, a file each at a time, within bounded time and memory.
 
 A reader that takes too long or too much is killed and replaced, so that no file can hold the server up or take it down
-with it (:mod:`service.jobs.errands`).
+with it (:mod:`service.jobs.request_pool`).
 """
 
 from __future__ import annotations
@@ -12,7 +12,7 @@ from typing import Any
 
 from service.imports import reader
 from service.imports.limits import MEMORY_MB, READ_S
-from service.jobs.errands import Errands, GivenUp
+from service.jobs.request_pool import GivenUp, Limits, PoolMetrics, RequestPool
 from service.logs import Format
 from service.outlines.faults import Unsuitable
 
@@ -23,11 +23,15 @@ READERS = 2
 class ImportDesk:
     """Has files read, each in its turn; ``memory_mb`` is what a file may take. To be used on one event loop only."""
 
-    def __init__(self, log_level: str, log_format: Format, memory_mb: int = MEMORY_MB) -> None:
+    def __init__(
+        self, log_level: str, log_format: Format, memory_mb: int = MEMORY_MB, metrics: PoolMetrics | None = None
+    ) -> None:
         settings = os.getpid(), log_level, log_format, memory_mb
-        self.errands = Errands("reader", reader.prepare, settings, limit_s=READ_S, hands=READERS)
+        self.pool = RequestPool("files", reader.prepare, settings, Limits(READ_S), hands=READERS, metrics=metrics)
 
-    async def read(self, gone: Callable[[], Awaitable[bool]], door: reader.Door, content: bytes, **asked: Any) -> bytes:
+    async def read(
+        self, gone: Callable[[], Awaitable[bool]], tenant: str, door: reader.Door, content: bytes, **asked: Any
+    ) -> bytes:
         """What a door of :mod:`service.imports.reader` answers to a file, as JSON.
 
         Raises
@@ -35,10 +39,10 @@ class ImportDesk:
         DrawingError
             Why the file gives nothing; it may also have taken more than the time or the memory that a file has.
         Busy, Gone, Lost
-            As :meth:`service.jobs.errands.Errands.call`.
+            As :meth:`service.jobs.request_pool.RequestPool.call`.
         """
         try:
-            answer = await self.errands.call(gone, reader.read, door, content, asked)
+            answer = await self.pool.call(gone, tenant, reader.read, door, content, asked)
         except GivenUp as error:
             longer, more = f"longer than {READ_S:g} seconds to read", "more memory to read than a file has here"
             taken = longer if error.of == "time" else more
@@ -50,4 +54,4 @@ class ImportDesk:
 
     def stop(self) -> None:
         """End the processes."""
-        self.errands.stop()
+        self.pool.stop()

@@ -23,10 +23,17 @@ def confine(server_pid: int, log_level: str, log_format: logs.Format) -> None:
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     # The default action ends the process at once; a handler in Python would wait for native code to return.
     signal.signal(signal.SIGTERM, signal.SIG_DFL)
-    # As many workers as processors run side by side, so threads inside them would only compete.
+    use_one_thread()
+    logs.configure(log_level, log_format)
+
+
+def use_one_thread() -> None:
+    """Keep numeric libraries that are imported from now on to one thread.
+
+    As many workers as processors run side by side, so threads inside them would only compete.
+    """
     for variable in _THREADS:
         os.environ[variable] = "1"
-    logs.configure(log_level, log_format)
 
 
 def limit_memory(beyond_mb: int) -> None:

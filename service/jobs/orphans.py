@@ -52,6 +52,11 @@ def tell_children() -> None:
     os.environ[_PARENT] = str(os.getpid())
 
 
+def forget_parent() -> None:
+    """Let the processes that are forked from this one take it for their parent, not the one that has started it."""
+    os.environ.pop(_PARENT, None)
+
+
 def _watch(parent_pid: int) -> None:
     while os.getppid() == parent_pid:
         time.sleep(_WATCH_PERIOD_S)

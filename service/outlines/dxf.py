@@ -22,6 +22,7 @@ from service.outlines.drawing import Drawing
 from service.outlines.faults import Malformed, Unsuitable
 from service.outlines.limits import FARTHEST, MOST_DEPTH, MOST_ELEMENTS, MOST_PIECES
 from service.outlines.path_data import ARC_SEGMENTS
+from service.outlines.references import grid_of, require_countable
 from service.outlines.splines import cubics
 
 PATHS = {"LINE", "ARC", "CIRCLE", "ELLIPSE", "LWPOLYLINE", "POLYLINE", "SOLID", "TRACE"}
@@ -50,6 +51,11 @@ class DxfReader:
         self.found: list[Curve] = []
         self.left_out: list[tuple[Source, str]] = []
         self.visited = self.pieces = 0
+
+    def shows(self, entity: DXFEntity) -> bool:
+        """Whether an entity is to be seen, by its own layer; those on layer 0 of a block go by the block's."""
+        layer, invisible = _attribute(entity, "layer"), _attribute(entity, "invisible")
+        return not invisible and str(layer).lower() not in self.hidden
 
     def visit(self, entity: DXFEntity, above: Source, depth: int) -> None:
         """Read an entity; ``above`` is the insert that contains it, or an empty source."""
@@ -85,7 +91,7 @@ class DxfReader:
         """Read the entities of a block at every place where it is inserted."""
         if depth >= MOST_DEPTH:
             raise Unsuitable(f"The drawing nests blocks more than {MOST_DEPTH} deep.")
-        rows, columns = (max(int(entity.dxf.get(name, 1)), 1) for name in ("row_count", "column_count"))
+        rows, columns = grid_of(entity)
         if rows * columns > MOST_ELEMENTS:
             raise Unsuitable(f"A block is inserted {rows} × {columns} times, more than {MOST_ELEMENTS}.")
         if entity.block() is None:
@@ -126,6 +132,7 @@ def curves_of(content: bytes) -> Drawing:
         raise Malformed(f"The drawing cannot be read as DXF ({type(error).__name__}).") from None
     _refuse_guesses(auditor)
     reader = DxfReader(layers)
+    require_countable(entities, reader.shows)
     for entity in entities:
         reader.visit(entity, Source(""), 0)
     return Drawing("dxf", reader.found, reader.left_out, _millimetres(unit))

@@ -9,7 +9,7 @@ from importlib import import_module
 from typing import Any
 
 from service.jobs.confined import confine, limit_memory
-from service.jobs.errands import Errands, digest
+from service.jobs.request_pool import Limits, PoolMetrics, RequestPool, digest
 from service.jobs.worker import LIBRARIES_MB
 from service.logs import Format
 from service.parts.extra import installed
@@ -37,24 +37,31 @@ class Workshop:
         Logging options of the process.
     """
 
-    def __init__(self, memory_mb: int, timeout_s: float, log_level: str = "info", log_format: Format = "text") -> None:
+    def __init__(
+        self,
+        memory_mb: int,
+        timeout_s: float,
+        log_level: str = "info",
+        log_format: Format = "text",
+        metrics: PoolMetrics | None = None,
+    ) -> None:
         settings = os.getpid(), log_level, log_format, memory_mb
-        self._errands = Errands("workshop", _prepare, settings, limit_s=min(timeout_s, MAX_PARTS_S))
+        self.pool = RequestPool("parts", _prepare, settings, Limits(min(timeout_s, MAX_PARTS_S)), metrics=metrics)
         self._kept: OrderedDict[bytes, bytes] = OrderedDict()
 
-    async def made(self, gone: Callable[[], Awaitable[bool]], work: Callable[..., Any], *args: Any) -> Any:
+    async def made(self, gone: Callable[[], Awaitable[bool]], tenant: str, work: Callable[..., Any], *args: Any) -> Any:
         """Return the result of a function of a module, or the cached file of an identical call; only files are cached.
 
         Raises
         ------
         Busy, GivenUp, Gone, Lost
-            See :meth:`service.jobs.errands.Errands.call`.
+            See :meth:`service.jobs.request_pool.RequestPool.call`.
         """
         key = digest(work, args)
         if key in self._kept:
             self._kept.move_to_end(key)
             return self._kept[key]
-        made = await self._errands.call(gone, work, *args)
+        made = await self.pool.call(gone, tenant, work, *args)
         if isinstance(made, bytes):
             self._kept[key] = made
             # Evict the least recently used files.
@@ -64,7 +71,7 @@ class Workshop:
 
     def stop(self) -> None:
         """Stop the process."""
-        self._errands.stop()
+        self.pool.stop()
 
 
 def _prepare(server_pid: int, log_level: str, log_format: Format, memory_mb: int) -> None:

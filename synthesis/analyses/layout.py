@@ -9,6 +9,7 @@ import numpy as np
 
 from kinematics.errors import MechanismError
 from kinematics.linkage import layout as core
+from kinematics.linkage.clearance.scene import RangeError
 from kinematics.linkage.planar.drive import drive
 from kinematics.linkage.planar.limits import cycle_from_reference
 from kinematics.linkage.planar.mechanism import Mechanism
@@ -36,17 +37,32 @@ def layout_of(mechanism: Mechanism, stated: LayoutSizes, used: tuple[float, floa
         First and last input of the used range, radians or places along the input slide; None where no motion leads
         through it.
     """
+    try:
+        return lay_out_range(mechanism, stated, used)
+    except RangeError as error:
+        return _without(str(error))
+
+
+def lay_out_range(mechanism: Mechanism, stated: LayoutSizes, used: tuple[float, float] | None) -> Layout:
+    """The same; a range of more than a cycle is looked at for one, after which all repeats.
+
+    Raises
+    ------
+    RangeError
+        For a range that is too long to be looked at.
+    """
     slides = mechanism.driven_by_slide
     try:
         if stated.over == "cycle":
             used = cycle_of(mechanism)
         if used is None:
             return _without("the mechanism cannot move through the used range")
+        turn = math.inf if slides else cycle_from_reference(mechanism)
         low, high = sorted(used)
+        high = min(high, low + turn)
         inputs = np.linspace(low, high, DRIVEN + 2)[1:-1] if high > low else np.array([low])
         if not drive(mechanism, inputs, order=0).valid.all():
             return _without("the mechanism cannot be assembled over the whole motion")
-        turn = math.inf if slides else cycle_from_reference(mechanism)
         found = core.laid_out(
             mechanism,
             low,
@@ -55,8 +71,10 @@ def layout_of(mechanism: Mechanism, stated: LayoutSizes, used: tuple[float, floa
             pin_diameter=stated.pin_diameter,
             gap=stated.gap,
             through=stated.shafts == "both_sides",
-            closed=abs(high - low - turn) <= WHOLE * turn,
+            closed=math.isfinite(turn) and abs(high - low - turn) <= WHOLE * turn,
         )
+    except RangeError:
+        raise
     except MechanismError as error:
         return _without(str(error))
     count = max(found.planes.values())

@@ -13,13 +13,15 @@ import numpy as np
 from pydantic import ConfigDict, Field, TypeAdapter
 
 from kinematics.errors import MechanismError as KinematicsError
+from kinematics.linkage.clearance.scene import RangeError
 from kinematics.linkage.planar.closures import decompose
 from kinematics.linkage.planar.mechanism import GROUND
 from synthesis.analyses.base import AnalysisRequest, Family
+from synthesis.analyses.budget import BudgetError, require_values
 from synthesis.analyses.cycle import MAX_EFFORT, cycle_of, effort
 from synthesis.analyses.dynamics import forces_of
 from synthesis.analyses.fourbar import FourbarAnalysis, Points, Topic, fourbar_analysis
-from synthesis.analyses.layout import layout_of
+from synthesis.analyses.layout import lay_out_range
 from synthesis.analyses.motions import StatedMotion, Sweep
 from synthesis.analyses.quantities import analysis
 from synthesis.analyses.targets import at_targets, target_faults
@@ -138,6 +140,7 @@ class LinkageAnalysisRequest(AnalysisRequest):
             stated = {name: getattr(motion, name) for name in toggles if getattr(motion, name) is not None}
             motion = motion.model_copy(update=toggles | stated)
         at, speed, time = motion.inputs(slide=slide)
+        require_values("/motion/steps" if isinstance(motion, Sweep) else "/motion/time/step", len(at), self._width())
         topics = [topic for topic in self.include if topic != "branches"]
         points = {name: (point.link, point.vector) for name, point in self.points.items()}
         more = fourbar_analysis(mechanism, np.radians(at), topics) if topics else None
@@ -145,7 +148,14 @@ class LinkageAnalysisRequest(AnalysisRequest):
         if self.layout is not None:
             ends = float(at.min()), float(at.max())
             used = ends if slide else (math.radians(ends[0]), math.radians(ends[1]))
-            planes["layout"] = layout_of(mechanism, self.layout, used).model_dump()
+            try:
+                planes["layout"] = lay_out_range(mechanism, self.layout, used).model_dump()
+            except RangeError as error:
+                most = error.most if slide else math.degrees(error.most)
+                unit = "length units" if slide else "degrees"
+                raise BudgetError(
+                    "/motion/to", f"at most {most:.6g} {unit} for a layout, counted from `from`"
+                ) from None
         met = at_targets(self.mechanism, self.targets, self.manufacture) if self.targets else {}
         forces = {}
         if self.dynamics is not None:
@@ -161,6 +171,15 @@ class LinkageAnalysisRequest(AnalysisRequest):
             **met,
             **forces,
         }
+
+    def _width(self) -> int:
+        """Numbers that the answer has at each position, about."""
+        mechanism = self.mechanism.mechanism()
+        tracks = len(mechanism.joints) + len(self.points)
+        width = 4 * len(mechanism.links) + 8 * tracks + 4 * len(mechanism.slides) + 2 * len(self.include)
+        if self.dynamics is not None:
+            width += 4 * (len(mechanism.joints) + len(mechanism.links))
+        return width
 
     @classmethod
     def over_the_cycle(cls, mechanism: dict[str, Any], steps: int) -> dict[str, Any]:

@@ -89,7 +89,8 @@ def linkage_of(mechanism: Any) -> Linkage | None:
         ``reference_input_angle`` are read; its skeleton is not looked at.
     """
     stated = mechanism.model_dump(exclude={"skeleton"})
-    if stated["type"] not in NAMES or stated.get("driven_by") == "slider":
+    # A linkage that is stated by its skeleton alone has no assembly: its dimensions are not known by their names.
+    if stated["type"] not in NAMES or "assembly" not in stated or stated.get("driven_by") == "slider":
         return None
     point = stated["coupler_point"]
     on_link = cmath.rect(point["distance"], math.radians(point["angle"]))

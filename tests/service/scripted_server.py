@@ -216,15 +216,10 @@ def break_lanes():
 
 
 def import_core_only():
-    """Let the server import the analysis core and not warm it up: few of these tests analyse anything."""
-    from service import analyst
-    from service.loading import IMPORTS
+    """Let the processes that analyse import the core and not warm it up: few of these tests analyse anything."""
+    from service.answers import desk
 
-    def load():
-        with IMPORTS:
-            import synthesis.analyses  # noqa: F401  (for its loading alone)
-
-    analyst.warm_up = load
+    desk.TEMPLATE = "tests.service.cold_template"
 
 
 if __name__ == "__main__":

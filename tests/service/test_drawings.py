@@ -1,78 +1,33 @@
-"""Drawings wait for each other, and nobody else waits for them."""
+"""Designs that cannot be drawn are said to be so, and a drawing whose turn does not come is refused."""
 
 import asyncio
 import copy
 import json
-import threading
 from types import SimpleNamespace
 
 import pytest
-from starlette.concurrency import run_in_threadpool
 
-from service import drawings
-from service.api import designs
+from service.answers.designs import draw_design
+from service.answers.job_result import SolvedJob
+from service.api.computation import draw_in_turn
 from service.api.errors import Refusal
-from service.drawings import MAX_AT_ONCE, Busy, Drawings
+from service.jobs.request_pool import Busy, GivenUp
 from synthesis.registry import example
-
-MANY = 60
-"""More than the threads that the server has for everything."""
+from tests.service.test_request_pool import never
 
 
-def test_who_does_not_draw_does_not_wait_for_who_does():
-    release, lock = threading.Event(), threading.Lock()
-    drawing, most = 0, 0
+@pytest.mark.parametrize(
+    ("raised", "status", "type_"),
+    [(Busy(), 503, "/problems/busy"), (GivenUp("time"), 409, "/problems/no-drawing")],
+)
+def test_a_drawing_without_a_turn_or_beyond_its_limits_is_refused(raised, status, type_):
+    async def fail(*_args):
+        raise raised
 
-    def draw():
-        nonlocal drawing, most
-        with lock:
-            drawing += 1
-            most = max(most, drawing)
-        release.wait(30)
-        with lock:
-            drawing -= 1
-        return "drawn"
-
-    async def ask():
-        board = Drawings()
-        under_way = [asyncio.ensure_future(board.call(draw)) for _ in range(MANY)]
-        async with asyncio.timeout(20):
-            while drawing < MAX_AT_ONCE:
-                await asyncio.sleep(0.01)  # threads begin when they do
-            assert await run_in_threadpool(lambda: "read") == "read"
-        release.set()
-        return await asyncio.gather(*under_way)
-
-    assert asyncio.run(ask()) == ["drawn"] * MANY
-    assert most == MAX_AT_ONCE
-
-
-def test_nobody_waits_for_ever_and_a_turn_comes_back(monkeypatch):
-    monkeypatch.setattr(drawings, "MAX_WAIT_S", 0.1)
-    release = threading.Event()
-
-    async def ask():
-        board = Drawings()
-        under_way = [asyncio.ensure_future(board.call(release.wait, 30)) for _ in range(MAX_AT_ONCE)]
-        await asyncio.sleep(0)  # they take their turns
-        with pytest.raises(Busy):
-            await board.call(divmod, 7, 2)
-        release.set()
-        await asyncio.gather(*under_way)
-        with pytest.raises(ZeroDivisionError):
-            await board.call(divmod, 7, 0)
-        return await board.call(divmod, 7, 2)
-
-    assert asyncio.run(ask()) == (3, 1)
-
-
-def test_a_drawing_that_finds_no_turn_is_refused():
-    async def never(*_args):
-        raise Busy
-
+    request = SimpleNamespace(is_disconnected=never)
     with pytest.raises(Refusal) as refused:
-        asyncio.run(designs.drawn(SimpleNamespace(call=never), divmod, 7, 2))
-    assert (refused.value.status, refused.value.type) == (503, "/problems/busy")
+        asyncio.run(draw_in_turn(request, SimpleNamespace(draw=fail), "acme", divmod, 7, 2))
+    assert (refused.value.status, refused.value.type) == (status, type_)
 
 
 LINKAGES = ("motion", "dwell", "straight_line", "quick_return", "steering", "parallel_motion")
@@ -87,7 +42,7 @@ def test_a_design_beyond_what_can_be_stated_is_not_drawn_but_said_to_be_so(serve
     result = copy.deepcopy(found["result"])
     joints = result["designs"][0]["mechanism"]["skeleton"]["joints"]
     joints[next(iter(joints))] = [2e9, 0.0]
-    row = SimpleNamespace(kind=kind, label=None, problem=json.dumps(found["problem"]))
+    job = SolvedJob("01", kind, None, "", None, json.dumps(found["problem"]), json.dumps(result))
     with pytest.raises(Refusal) as refused:
-        designs._file(row, json.dumps(result), "0", form)
+        draw_design(job, "0", form)
     assert (refused.value.status, refused.value.type) == (409, "/problems/no-drawing")

@@ -20,10 +20,10 @@ from service.outlines import DrawingError
 from service.outlines.faults import Malformed, NoOutline, Unsuitable
 from tests.service.drawn_files import dxf, page
 from tests.service.running import RunningServer, workers_of
-from tests.service.test_errands import never
 from tests.service.test_hostile_drawings import HOSTILE, everything, mutated
 from tests.service.test_imports import TABLES, blob, found, picture, read
 from tests.service.test_outlines import SHAPES
+from tests.service.test_request_pool import never
 
 REFUSED = (400, 413, 415, 422)
 SOON_S = 30.0
@@ -273,7 +273,7 @@ def test_500_changed_files_take_bounded_memory(alone):
 
 
 def asked(desk, content, door="imports"):
-    return asyncio.run(desk.read(never, door, content))
+    return asyncio.run(desk.read(never, "acme", door, content))
 
 
 @pytest.fixture

@@ -6,7 +6,7 @@ import json
 import numpy as np
 import pytest
 
-from service.api import designs
+from service.answers import designs
 from service.api.errors import Refusal
 from tests.service.running import PROBLEM
 from tests.service.test_analyses import assert_as_documented, joint
@@ -105,5 +105,5 @@ def test_a_design_beyond_what_can_be_stated_is_not_moved_but_said_to_be_so(found
     result = copy.deepcopy(found["result"])
     result["designs"][0]["mechanism"]["skeleton"]["joints"]["B"] = [2e9, 0.0]
     with pytest.raises(Refusal) as refused:
-        designs.motion(json.dumps(result), "0", 36)
+        designs.move_design(json.dumps(result), "0", 36)
     assert (refused.value.status, refused.value.type) == (409, "/problems/no-motion")

@@ -29,8 +29,8 @@ from service.parts.sizes import PartsQuery
 from service.parts.workshop import Workshop
 from synthesis.dispatch import solve
 from synthesis.registry import parse_problem
-from tests.service.test_errands import never
 from tests.service.test_parts import MOTION, SLIDER
+from tests.service.test_request_pool import never
 
 PLACES = st.lists(st.tuples(st.integers(-9, 9), st.integers(-9, 9)), min_size=1, max_size=6)
 
@@ -180,7 +180,7 @@ def test_what_was_made_is_kept_until_there_is_too_much(monkeypatch: Any) -> None
     bench = Workshop(memory_mb=100, timeout_s=1.0)
 
     async def all_of_it() -> list[bytes]:
-        return [await bench.made(never, os.urandom, size) for size in (5, 4, 5, 3, 5, 4)]
+        return [await bench.made(never, "acme", os.urandom, size) for size in (5, 4, 5, 3, 5, 4)]
 
     try:
         made = asyncio.run(all_of_it())

@@ -21,9 +21,20 @@ Pairs = Sequence[tuple[int, int]]
 AT_JOINT = 1e-12
 """Share of the size within which a single point counts as lying at a joint: rounding."""
 
+MAX_CELLS = 400_000
+"""Maximum number of initial parts of a range over all pairs: a sweep holds arrays of this length in memory."""
+
 FIRST = 0.05
 """Maximum half-width of the initial parts of a range: radians, or a share of the mechanism's size along an input
 slide."""
+
+
+class RangeError(DimensionError):
+    """A range of the input that is too long to sweep; ``most`` is the longest that would be accepted."""
+
+    def __init__(self, length: float, most: float) -> None:
+        self.most = most
+        super().__init__("range of the input", f"at most {most:.4g} long", length)
 
 
 class _Pose(NamedTuple):
@@ -88,9 +99,18 @@ class Scene:
             self._loops = loop_equations(mechanism, dict(zip(joints, place.tolist(), strict=True)))
 
     def divided(self, low: float, high: float) -> tuple[Real, Real]:
-        """Divide a range into equal parts of at most the initial width; return their middles and half-widths."""
+        """Divide a range into equal parts of at most the initial width; return their middles and half-widths.
+
+        Raises
+        ------
+        RangeError
+            For a range that would need more than :data:`MAX_CELLS` parts for all pairs together.
+        """
         if not (np.isfinite(low) and np.isfinite(high) and low <= high):
             raise DimensionError("range of the input", "finite, from the lower end to the higher", (low, high))
+        most = 2.0 * FIRST * self.unit * (MAX_CELLS // max(len(self.pairs), 1))
+        if high - low > most:
+            raise RangeError(high - low, most)
         count = max(int(np.ceil((high - low) / (2.0 * FIRST * self.unit))), 1)
         half = 0.5 * (high - low) / count
         return np.asarray(low + half * (2.0 * np.arange(count) + 1.0), np.float64), np.full(count, half)

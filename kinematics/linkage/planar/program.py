@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from kinematics.linkage.fourbar.closed_form import require
 from kinematics.linkage.planar import drive_kernels as kernels
 from kinematics.linkage.planar.closures import RECENT, Step, decompose
-from kinematics.linkage.planar.mechanism import GROUND, TOO_SHORT, Complex, Mechanism, Real
+from kinematics.linkage.planar.mechanism import GROUND, TOO_SHORT, Complex, Mechanism, Real, TopologyError
 
 Signs = NDArray[np.int64]
 
@@ -175,11 +175,19 @@ class _Numbers:
         return KINDS[step.kind], self.link[step.link], pin, joint, self.link.get(other, -1), other_pin, slide, closing
 
     def tree(self) -> list[tuple[int, ...]]:
-        """Return rows of links with given rotations, each on a joint that is known by then."""
+        """Return rows of links with given rotations, each on a joint that is known by then.
+
+        Raises
+        ------
+        TopologyError
+            For links that only slides hold, such as the yoke of a Scotch yoke: no rotation determines their position.
+        """
         rows: list[tuple[int, ...]] = []
         waiting = [link for link in self.links if link not in (GROUND, self.mechanism.input)]
         while waiting:
-            link = next(w for w in waiting if self.known & set(self.mechanism.links[w]))
+            link = next((w for w in waiting if self.known & set(self.mechanism.links[w])), None)
+            if link is None:
+                raise TopologyError(f"no pins lead from the input to {', '.join(waiting)}; slides alone hold it")
             pin = next(joint for joint in self.mechanism.links[link] if joint in self.known)
             rows.append((kernels.GIVEN, self.link[link], self.joint[pin], -1, -1, -1, -1, -1))
             self._know(link)

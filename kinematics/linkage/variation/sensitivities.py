@@ -205,6 +205,8 @@ def _transmission(task: Task, nominal: Real, inputs: Real, following: Real) -> t
         return None, np.zeros(len(nominal))
     margins, first, last = task.margins, int(inputs.argmin()), int(inputs.argmax())
     low, high = float(inputs[first] - margins[0]), float(inputs[last] + margins[1])
+    if not math.isfinite(high - low):  # a target that is nowhere near has no input
+        return None, np.zeros(len(nominal))
     if task.slide_angle is not None:
         still = task.slide_angle + 0.5 * math.pi
     else:

@@ -1,0 +1,47 @@
+"""A solved job as the processes that answer requests get it, and its designs by their numbers."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass
+from typing import Any
+
+from service.refusals import not_found
+from service.stated import read
+from synthesis.registry import KINDS
+
+_DESIGN_NUMBER = re.compile("[0-9]{1,4}")
+
+
+@dataclass(frozen=True, slots=True)
+class SolvedJob:
+    """What is asked of a job that has a result; ``problem`` and ``result`` are JSON text, as they are stored."""
+
+    id: str
+    kind: str
+    label: str | None
+    created_at: str
+    finished_at: str | None
+    problem: str
+    result: str
+
+    def statement(self) -> Any:
+        """The problem."""
+        return read(self.kind, self.problem)
+
+    def answer(self) -> Any:
+        """The result of the kind, with its designs."""
+        return KINDS[self.kind].result.model_validate_json(self.result)
+
+
+def design_index(number: str, designs: int) -> int:
+    """The index that a path states of so many designs.
+
+    Raises
+    ------
+    Refusal
+        404 where it is none.
+    """
+    if not _DESIGN_NUMBER.fullmatch(number) or int(number) >= designs:
+        raise not_found(f"The job has {designs} designs, counted from 0; this is none of them.")
+    return int(number)

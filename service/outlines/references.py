@@ -1,0 +1,72 @@
+"""How many entities a DXF drawing has once its blocks are put where they are inserted: counted, not expanded.
+
+A drawing of some hundred bytes can insert a block in a block in a block, each of them a thousand times.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable
+from typing import Any
+
+from service.outlines.faults import Unsuitable
+from service.outlines.limits import MOST_DEPTH, MOST_ELEMENTS
+
+Shown = Callable[[Any], bool]
+
+
+def require_countable(entities: Iterable[Any], shown: Shown) -> None:
+    """Refuse entities that are more than :data:`~service.outlines.limits.MOST_ELEMENTS` with those of their blocks.
+
+    Parameters
+    ----------
+    entities : iterable of DXF entities
+        Of the model space.
+    shown : callable
+        Whether an entity is read; the block of an insert that is not is left alone.
+
+    Raises
+    ------
+    Unsuitable
+        Also for blocks that lie too deep in one another, or in themselves.
+    """
+    if _Counter(shown).count(entities, 0) > MOST_ELEMENTS:
+        raise Unsuitable(f"The drawing has more than {MOST_ELEMENTS} entities, those of blocks counted each time.")
+
+
+def grid_of(insert: Any) -> tuple[int, int]:
+    """Rows and columns in which an insert repeats its block."""
+    rows, columns = (max(int(insert.dxf.get(name, 1)), 1) for name in ("row_count", "column_count"))
+    return rows, columns
+
+
+class _Counter:
+    """Counts each block once, however often it is inserted."""
+
+    def __init__(self, shown: Shown) -> None:
+        self._shown = shown
+        self._counts: dict[str, int] = {}
+        self._open: set[str] = set()
+
+    def count(self, entities: Iterable[Any], depth: int) -> int:
+        """All entities, those of blocks as often as they are inserted."""
+        total = 0
+        for entity in entities:
+            total += 1
+            if entity.dxftype() == "INSERT" and self._shown(entity):
+                rows, columns = grid_of(entity)
+                # What is copied and empty is looked at all the same.
+                total += rows * columns * max(self._count_block(entity, depth), 1)
+        return total
+
+    def _count_block(self, insert: Any, depth: int) -> int:
+        block = insert.block()
+        if block is None:
+            return 0
+        name = str(block.name).lower()
+        if name in self._open or depth >= MOST_DEPTH:
+            raise Unsuitable(f"The drawing has blocks more than {MOST_DEPTH} deep in one another.")
+        if name not in self._counts:
+            self._open.add(name)
+            self._counts[name] = self.count(block, depth + 1)
+            self._open.remove(name)
+        return self._counts[name]

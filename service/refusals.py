@@ -1,0 +1,116 @@
+"""Why a request is refused: the status, the kind of problem, and the faults by their places.
+
+A refusal is an exception that a process can raise for the server: it is pickled by its fields. Nothing here knows of
+HTTP frameworks, so the processes that answer requests need not load one.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+from pydantic import ValidationError
+
+from service.explained import MAX_FAULTS, explained, place
+from synthesis.model.counting import counted
+
+FieldFaults = Sequence[tuple[str, str]]
+"""Pairs of a JSON pointer and what is wrong there."""
+
+
+class Refusal(Exception):
+    """A request that is answered with an error, by a client's fault or by the state of things.
+
+    ``defect`` names the error of the service's own that led to the refusal, where there was one.
+    """
+
+    def __init__(
+        self,
+        status: int,
+        type_: str,
+        title: str,
+        detail: str,
+        *,
+        errors: FieldFaults = (),
+        headers: Mapping[str, str] | None = None,
+        defect: str | None = None,
+    ) -> None:
+        super().__init__(detail)
+        self.status = status
+        self.type = f"/problems/{type_}"
+        self.title = title
+        self.detail = detail
+        self.errors = errors
+        self.headers = headers
+        self.defect = defect
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        """Pickle the fields: the default would call the constructor with the detail alone."""
+        headers = None if self.headers is None else dict(self.headers)
+        fields = self.type, self.title, self.detail, list(self.errors), headers, self.defect
+        return _restore_refusal, (self.status, *fields)
+
+
+def _restore_refusal(
+    status: int, type_: str, title: str, detail: str, errors: FieldFaults, headers: Any, defect: str | None
+) -> Refusal:
+    name = type_.removeprefix("/problems/")
+    return Refusal(status, name, title, detail, errors=errors, headers=headers, defect=defect)
+
+
+def not_found(detail: str) -> Refusal:
+    """There is no such thing."""
+    return Refusal(404, "not-found", "Not found", detail)
+
+
+def invalid_problem(errors: FieldFaults) -> Refusal:
+    """The problem is well-formed, but cannot be meant; ``errors`` are pairs of path and detail."""
+    return Refusal(422, "invalid-problem", "Invalid problem", count_faults(len(errors)), errors=errors)
+
+
+def invalid_mechanism(errors: FieldFaults, *, defect: str | None = None) -> Refusal:
+    """The mechanism is well-formed, but there is none such; ``errors`` are pairs of path and detail."""
+    detail = count_faults(len(errors))
+    return Refusal(422, "invalid-mechanism", "Invalid mechanism", detail, errors=errors, defect=defect)
+
+
+def invalid_request(errors: FieldFaults) -> Refusal:
+    """Something else of the request cannot be meant; ``errors`` are pairs of path and detail."""
+    return Refusal(422, "invalid-request", "Invalid request", count_faults(len(errors)), errors=errors)
+
+
+def invalid_body(error: ValidationError, body: Any) -> Refusal:
+    """The refusal of a body that is validated where it is used, not by the framework."""
+    faults = error.errors(include_url=False, include_context=False)
+    return refuse_faults([{**fault, "loc": ("body", *fault["loc"])} for fault in faults], body)
+
+
+def refuse_faults(faults: Sequence[Mapping[str, Any]], body: Any) -> Refusal:
+    """Sort pydantic's faults into the refusal that names what they lie in: a problem, a mechanism, or the request."""
+    # Several models that a part was tried as may say the same of it.
+    placed = list(dict.fromkeys((place(fault, body), explained(fault)) for fault in faults))
+    if all(path.startswith("/problem/") for path, _ in placed):
+        return invalid_problem(placed)
+    if all(path.startswith("/mechanism/") for path, _ in placed):
+        return invalid_mechanism(placed)
+    return invalid_request(placed)
+
+
+def count_faults(faults: int) -> str:
+    """Say in a sentence how many faults a request has."""
+    if faults > MAX_FAULTS:
+        return f"The request has more than {MAX_FAULTS} faults; the first {MAX_FAULTS} are listed."
+    return f"The request has {counted(faults, 'fault')}."
+
+
+__all__ = [
+    "FieldFaults",
+    "Refusal",
+    "count_faults",
+    "invalid_body",
+    "invalid_mechanism",
+    "invalid_problem",
+    "invalid_request",
+    "not_found",
+    "refuse_faults",
+]
