@@ -17,7 +17,7 @@ def _solve(problem: BalancingProblem, progress: Progress) -> BalancingResult:
 
 
 def _brief(problem: BalancingProblem) -> bool:
-    """Holes and weights in stock are searched among."""
+    """Return whether the answer is instant: only holes and weights in stock need a search."""
     correction = problem.correction
     return correction is None or (correction.holes is None and correction.stock is None)
 

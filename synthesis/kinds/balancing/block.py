@@ -1,4 +1,4 @@
-"""The block ``dynamics`` of an answer: what the client stated, with counterweights and geared inertias in it."""
+"""The block ``dynamics`` of an answer: the client's, with counterweights and geared inertias added."""
 
 from __future__ import annotations
 
@@ -12,13 +12,14 @@ from synthesis.model.dynamics import DynamicsBlock
 
 
 def weighted(machine: Machine, block: DynamicsBlock, weights: Sequence[Weight]) -> dict[str, Any]:
-    """The block with the bodies of links that carry a weight as mass, centre of gravity and moment of inertia."""
+    """Add weights to the block: links with a weight become bodies with mass, centre of gravity and inertia."""
     stated = block.model_dump(mode="json", by_alias=True, exclude_unset=True)
     bodies = dict(stated.get("bodies", {}))
     for link in dict.fromkeys(weight.link for weight in weights):
         own = machine.bodies.get(link)
         parts = [weight.body for weight in weights if weight.link == link]
         if own is not None and (float(own.mass) > 0.0 or float(own.inertia) > 0.0):
+            # A body without mass has no meaningful centre; its inertia is moved to the weight's.
             parts.insert(0, own if float(own.mass) > 0.0 else body(0.0, complex(parts[0].cg), float(own.inertia)))
         whole = joined(parts)
         cg = complex(whole.cg) / machine.scale
@@ -27,6 +28,6 @@ def weighted(machine: Machine, block: DynamicsBlock, weights: Sequence[Weight]) 
 
 
 def with_inertias(block: dict[str, Any], inertias: dict[str, float]) -> dict[str, Any]:
-    """The block with links that have an inertia and no mass that counts."""
+    """Add links that have an inertia but no mass to the block."""
     turned = {link: {"mass": 0.0, "inertia": inertia} for link, inertia in inertias.items()}
     return {**block, "bodies": {**block["bodies"], **turned}}

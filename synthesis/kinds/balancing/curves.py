@@ -1,4 +1,4 @@
-"""What shakes the frame over the motion, before and after: for drawings."""
+"""Shaking force and moment over the motion, before and after balancing, for drawings."""
 
 from __future__ import annotations
 
@@ -17,13 +17,14 @@ from synthesis.kinds.balancing.verify_linkage import machine_of_answer
 Real = NDArray[np.float64]
 
 POSITIONS = 361
+"""Number of positions of a curve."""
 
 ROUNDING = 1e-9
-"""Share of the peak before that is drawn as zero after."""
+"""Share of the unbalanced peak below which the balanced curve is drawn as zero."""
 
 
 class ShakingCurves(NamedTuple):
-    """Over inputs in degrees (or lengths): magnitude of the force, and the moment; NaN where they are not known."""
+    """Magnitude of the force, and the moment, over inputs in degrees (or lengths); NaN where they are unknown."""
 
     at: Real
     force_before: Real
@@ -33,7 +34,7 @@ class ShakingCurves(NamedTuple):
 
 
 def shaking_curves(problem: BalancingProblem, design: BalancedDesign) -> ShakingCurves:
-    """The curves of a linkage and of its design, of the inertia of the links alone."""
+    """Compute the curves of a linkage and of its design, from the inertia of the links alone."""
     task = task_of(problem)
     at = np.linspace(task.start, task.end, POSITIONS)
     curves = []
@@ -41,6 +42,7 @@ def shaking_curves(problem: BalancingProblem, design: BalancedDesign) -> Shaking
         found = reactions(inertial(machine), placed(inertial(machine), at, task.speed, task.acceleration))
         curves += [np.abs(found.shaking_force), found.shaking_moment]
     for before, after in ((0, 2), (1, 3)):
+        # Rounding would otherwise be drawn as a noisy curve.
         curves[after] = np.where(
             np.abs(curves[after]) > ROUNDING * np.nanmax(np.abs(curves[before])), curves[after], 0.0
         )

@@ -14,7 +14,7 @@ Inertia = Annotated[float, INERTIA]
 
 
 class RotorUnbalance(Answer):
-    """An unbalance of the rotor before it is corrected."""
+    """An unbalance of the rotor before its correction."""
 
     unbalance: Unbalance = Field(description="Mass times radius.")
     angle: Angle
@@ -22,40 +22,40 @@ class RotorUnbalance(Answer):
 
 
 class RotorCorrection(Answer):
-    """A mass that is added to the rotor at a place, or taken from it there."""
+    """A mass that is added to the rotor at a place, or removed there."""
 
-    plane: int = Field(description="From 0.")
+    plane: int = Field(description="Number of the plane, from 0.")
     z: Length
-    angle: Angle = Field(description="Where the mass is, degrees.")
+    angle: Angle = Field(description="Angle of the mass, degrees.")
     unbalance: Unbalance = Field(description="Mass times radius.")
-    mass: Mass | None = optional("Left out where no correction is stated.")
-    radius: Length | None = optional("Left out where no correction is stated.")
-    removed: bool = Field(description="Whether the mass is taken away.")
+    mass: Mass | None = optional("Omitted if no correction is given.")
+    radius: Length | None = optional("Omitted if no correction is given.")
+    removed: bool = Field(description="True if the mass is removed.")
 
 
 class RotorMechanism(Answer):
-    """A rotor with all that balances it, as `POST /v1/analyses` takes it."""
+    """A rotor with its corrections, in the form of `POST /v1/analyses`."""
 
     type: Literal["rotor"] = "rotor"
     unbalances: list[RotorUnbalance]
     corrections: list[RotorCorrection]
     planes: list[Length]
-    bearings: tuple[Length, Length] | None = optional("Left out where the statement does not tell them.")
+    bearings: tuple[Length, Length] | None = optional("Omitted if the problem does not give them.")
 
 
 class PlaneBalance(Answer):
-    """What is left in a plane of correction."""
+    """Residual unbalance in a plane of correction."""
 
     z: Length
-    needed: Unbalance = Field(description="What has to be added there.")
+    needed: Unbalance = Field(description="Unbalance that must be added there.")
     needed_angle: Angle
-    residual: Unbalance = Field(description="What is left of it.")
-    bound: Unbalance = Field(description="No choice of the stated places leaves less, of however many.")
-    places: int = Field(description="Masses or holes of the plane.")
+    residual: Unbalance = Field(description="Remaining unbalance.")
+    bound: Unbalance = Field(description="Lower bound for any choice of any number of the given places.")
+    places: int = Field(description="Number of masses or holes in the plane.")
 
 
 class BearingForces(Answer):
-    """The turning force on a bearing at the stated speed."""
+    """The rotating force on a bearing at the given speed."""
 
     z: Length
     before: Force
@@ -65,27 +65,29 @@ class BearingForces(Answer):
 class RotorMetrics(Answer):
     """Measured properties of a balanced rotor."""
 
-    residual_unbalance: Unbalance = Field(description="Sum of what is left in the planes.")
-    bound: Unbalance = Field(description="No choice of the stated places leaves less, of however many.")
-    optimal: bool = Field(description="Whether it is proved that as few places in each plane cannot leave less.")
-    places: int = Field(description="Masses or holes of all planes.")
-    initial_unbalance: Unbalance = Field(description="The sum of the unbalances as vectors, before.")
+    residual_unbalance: Unbalance = Field(description="Sum of the residual unbalances of the planes.")
+    bound: Unbalance = Field(description="Lower bound for any choice of any number of the given places.")
+    optimal: bool = Field(description="True if the residual is proven minimal for this number of places in each plane.")
+    places: int = Field(description="Number of masses or holes in all planes.")
+    initial_unbalance: Unbalance = Field(description="Vector sum of the unbalances before the correction.")
     residual_couple: Torque | None = optional(
-        "That stays at the stated speed where one plane balances the force alone, about the plane."
+        "Remaining couple about the plane at the given speed, if a single plane balances only the force."
     )
-    grade: Grade | None = optional("Balance quality grade that is left; left out without speed and rotor mass.")
-    initial_grade: Grade | None = optional("The same of the rotor before.")
-    shaking_force: Force | None = optional("Before, at the stated speed.")
-    shaking_moment: Torque | None = optional("Before, about the first plane, at the stated speed.")
+    grade: Grade | None = optional("Balance quality grade after the correction; omitted without speed and rotor mass.")
+    initial_grade: Grade | None = optional("Balance quality grade before the correction.")
+    shaking_force: Force | None = optional("Shaking force before the correction, at the given speed.")
+    shaking_moment: Torque | None = optional(
+        "Shaking moment before the correction, about the first plane, at the given speed."
+    )
     residual_vibration: list[float] | None = optional(
-        "Amplitudes at the sensors that the influence coefficients foretell, in the unit of the readings."
+        "Amplitudes at the sensors predicted by the influence coefficients, in the unit of the readings."
     )
     planes: list[PlaneBalance]
-    bearings: list[BearingForces] | None = optional("Left out without speed or bearings.")
+    bearings: list[BearingForces] | None = optional("Omitted without speed or bearings.")
 
 
 class RotorDesign(Answer):
-    """A balanced rotor with the proof that it is."""
+    """A balanced rotor with its verification."""
 
     mechanism: RotorMechanism
     verification: Verification
@@ -93,30 +95,34 @@ class RotorDesign(Answer):
 
 
 class BalancedLinkage(Answer):
-    """A linkage by its skeleton, with the links of geared inertias where it has them."""
+    """A linkage by its skeleton, including the links of geared inertias."""
 
     type: Literal["skeleton"] = "skeleton"
     skeleton: Skeleton
 
 
 class Counterweight(Answer):
-    """A weight that is fixed to a link."""
+    """A weight fixed to a link."""
 
     link: str
     mass: Mass
-    at: Point = Field(description="Its centre in the reference configuration.")
-    joint: str = Field(description="About which its radius and angle are told: the link's fixed pivot or first joint.")
-    radius: Length = Field(description="From that joint.")
+    at: Point = Field(description="Centre of the weight in the reference configuration.")
+    joint: str = Field(
+        description="Joint from which radius and angle are measured: the link's fixed pivot or first joint."
+    )
+    radius: Length = Field(description="Distance from that joint.")
     angle: Angle = Field(
-        description="From the line of that joint to the link's next joint, counter-clockwise, degrees."
+        description="Angle from the line of that joint to the link's next joint, counter-clockwise, degrees."
     )
     moment: Unbalance = Field(description="Mass times radius.")
-    inertia: Inertia = Field(description="About its own centre; of a disc, or of an inertia without mass.")
-    disc_radius: Length | None = optional("Of a disc of the stated density and thickness.")
+    inertia: Inertia = Field(
+        description="Moment of inertia about its own centre; for a disc, or for an inertia without mass."
+    )
+    disc_radius: Length | None = optional("Radius of a disc of the given density and thickness.")
 
 
 class GearedInertia(Answer):
-    """A link that gears turn against another one, on the same pivot."""
+    """A link on the same pivot as another one and geared to it."""
 
     link: str
     against: str
@@ -125,52 +131,55 @@ class GearedInertia(Answer):
 
 
 class ForceLevel(Answer):
-    """A quantity that counts in the objective or has a cap."""
+    """A quantity in the objective or with a cap."""
 
     name: str
     norm: Literal["max", "rms"]
     weight: float
-    cap: float | None = optional("Left out where it has none.")
-    ratio: float = Field(description="What it is with the counterweights over what it was.")
+    cap: float | None = optional("Omitted if there is none.")
+    ratio: float = Field(description="Value with the counterweights over the value without.")
 
 
 class BalanceMetrics(Answer):
-    """What shakes the frame before and after, and what that takes.
+    """Shaking force, shaking moment and drive before and after, and the added mass.
 
-    Peaks over the motion: of what is balanced exactly, of the inertia of the links alone; of what is minimized, of all
-    that acts.
+    Peaks over the motion: for exact balancing from the inertia of the links alone; for a minimum from all forces.
     """
 
-    value: float = Field(description="What is left, as a share of what was before; of several, with their weights.")
-    bound: float = Field(description="No counterweights that are allowed leave less.")
-    gap: float | None = optional("How far the value is above the bound, as a share of it, where it is minimized.")
-    levels: list[ForceLevel] = Field(description="What counts where it is minimized; empty otherwise.")
+    value: float = Field(
+        description="Remaining share of the unbalanced value; with several quantities, their weighted sum."
+    )
+    bound: float = Field(description="Lower bound for all permitted counterweights.")
+    gap: float | None = optional("Excess of the value over the bound, as a share of the value, if minimized.")
+    levels: list[ForceLevel] = Field(
+        description="Quantities in the objective or with a cap, if minimized; empty otherwise."
+    )
     shaking_force: Force
     unbalanced_shaking_force: Force
     shaking_moment: Torque
     unbalanced_shaking_moment: Torque
-    drive: Torque = Field(description="Greatest torque (force, where the input slides) of the drive.")
+    drive: Torque = Field(description="Peak torque of the drive (force, for a sliding input).")
     unbalanced_drive: Torque
     added_mass: Mass
 
 
 class BalancedDesign(Answer):
-    """A linkage with its counterweights and the proof of what they do."""
+    """A linkage with its counterweights and its verification."""
 
     mechanism: BalancedLinkage
     dynamics: dict[str, Any] = Field(
-        description="The whole block `dynamics` with the counterweights in it, as `POST /v1/analyses` takes it."
+        description="The whole block `dynamics` including the counterweights, in the form of `POST /v1/analyses`."
     )
     counterweights: list[Counterweight]
-    geared: list[GearedInertia] = Field(description="Empty where none is needed.")
+    geared: list[GearedInertia] = Field(description="Geared inertias; empty if none is needed.")
     verification: Verification
     metrics: BalanceMetrics
 
 
 class BalancingResult(Result[RotorDesign | BalancedDesign]):
-    """What balances a rotor or a linkage.
+    """Corrections of a rotor, or counterweights of a linkage.
 
-    Of a rotor the least residual comes first; where places are chosen, the designs are the Pareto set of the residual
-    against the places that are used. Of a linkage each design is a set of links with counterweights, the lightest
+    For a rotor the smallest residual comes first; with a choice of places, the designs are the Pareto set of residual
+    against number of places. For a linkage each design is a set of links with counterweights, the lightest
     first.
     """

@@ -12,28 +12,28 @@ from synthesis.kinds.balancing.problem import BalancingProblem
 
 
 def task_of(problem: BalancingProblem) -> Task:
-    """The machine of a consistent problem, and its motion."""
+    """Build the machine of a consistent problem, and its motion."""
     assert problem.mechanism is not None
     assert problem.dynamics is not None
     return driven_task(problem.mechanism, problem.dynamics, problem.length_unit, problem.motion)
 
 
 def inertial(machine: Machine) -> Machine:
-    """The same with its masses alone: no weight, loads or friction."""
+    """Return the machine with its masses alone: without weight, loads or friction."""
     return replace(machine, gravity=0j, loads=(), friction=Friction())
 
 
 def moving(mechanism: Mechanism) -> list[str]:
-    """The links that move."""
+    """List the moving links."""
     return [link for link in mechanism.links if link != GROUND]
 
 
 def pivot(mechanism: Mechanism, link: str) -> str:
-    """The joint from which a weight on a link is told: its fixed pivot, or its first joint."""
+    """Return the joint from which a weight on a link is measured: its fixed pivot, or its first joint."""
     fixed = [joint for joint in mechanism.links[link] if joint in mechanism.links[GROUND]]
     return fixed[0] if fixed else mechanism.link_line(link)[0]
 
 
 def on_fixed_pivot(mechanism: Mechanism, link: str) -> bool:
-    """Whether a link turns about a fixed pivot."""
+    """Return whether a link turns about a fixed pivot."""
     return pivot(mechanism, link) in mechanism.links[GROUND]

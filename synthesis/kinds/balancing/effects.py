@@ -1,4 +1,4 @@
-"""What a counterweight does to the shaking force, the shaking moment, the drive and the joints: all of it is linear.
+"""Effects of a counterweight on the shaking force, the shaking moment, the drive and the joints: all are linear.
 
 A weight of mass μ, first moment s and moment of inertia J about a joint O of its link, S = s e^{iφ}, adds
 
@@ -6,8 +6,8 @@ A weight of mass μ, first moment s and moment of inertia J about a joint O of i
     to its moment about c          −((O − c) × (μ a_O + S'') + S × a_O + J α) + (μ (O − c) + S) × g,
     to the power of the drive      μ a_O·v_O + a_O·S' + v_O·S'' + J ω α − g·(μ v_O + S'),   S' = i ω S,
 
-by momentum and energy, and to the forces in the joints what the reactions to a unit of each say. So the quantities are
-sums of four numbers for each weight, whatever they are divided by (Demeulenaere, Verschuure, Swevers and De Schutter,
+by momentum and energy, and to the forces in the joints the reactions to a unit of each parameter. So the quantities are
+linear in four numbers for each weight (Demeulenaere, Verschuure, Swevers and De Schutter,
 A general and numerically efficient framework to design sector-type and cylindrical counterweights for balancing of
 planar linkages, J. Mech. Des. 132, 2010).
 """
@@ -31,25 +31,25 @@ Real = NDArray[np.float64]
 Complex = NDArray[np.complex128]
 
 PARAMETERS = 4
-"""Of a weight: mass, both components of the first moment, and the moment of inertia."""
+"""Number of parameters of a weight: mass, both components of the first moment, and the moment of inertia."""
 
 
 class Linear(NamedTuple):
-    """A quantity over positions: what it is without weights, shape (N,), and its change by each parameter, (K, N).
+    """A quantity over positions: its value without weights, shape (N,), and its change by each parameter, (K, N).
 
-    A force is complex; the others are real.
+    Forces are complex; other quantities are real.
     """
 
     fixed: Complex
     by: Complex
 
     def at(self, parameters: Real) -> Complex:
-        """The quantity with weights, (..., N) for parameters of shape (..., K)."""
+        """Return the quantity with weights, (..., N) for parameters of shape (..., K)."""
         return np.asarray(self.fixed + parameters @ self.by)
 
 
 def quantities(machine: Machine, now: Places, links: Sequence[str], joints: Sequence[str]) -> dict[str, list[Linear]]:
-    """Shaking force and moment, the drive, and the forces in joints (on each link of the joint) by their names."""
+    """Compute shaking force and moment, the drive, and the forces in joints (on each of their links), by name."""
     found = reactions(machine, now)
     force, moment, drive = [], [], []
     gravity = np.asarray(machine.gravity)
@@ -61,6 +61,7 @@ def quantities(machine: Machine, now: Places, links: Sequence[str], joints: Sequ
         turn = now.turns[link][0]
         none = np.zeros(len(rate))
         rows = [(np.ones(len(rate)), 0j * turn, none), (none, turn, none), (none, 1j * turn, none)]
+        # One row for each parameter: unit mass at O, unit first moment along x and y, unit inertia.
         for mass, moved, inertia in [*rows, (none, 0j * turn, np.ones(len(rate)))]:
             first, second = 1j * omega * moved, (1j * alpha - omega**2) * moved
             forced = mass * acceleration + second
@@ -70,6 +71,7 @@ def quantities(machine: Machine, now: Places, links: Sequence[str], joints: Sequ
             )
             power = mass * dot(acceleration, velocity) + dot(acceleration, first) + dot(velocity, second)
             power = power + inertia * omega * alpha - dot(gravity, mass * velocity + first)
+            # Power over the input's rate is the drive's torque (or force).
             drive.append(power / rate)
     listed = {
         "shaking_force": [Linear(found.shaking_force, np.array(force))],
@@ -77,6 +79,7 @@ def quantities(machine: Machine, now: Places, links: Sequence[str], joints: Sequ
         "drive": [Linear(found.drive.astype(np.complex128), np.array(drive, np.complex128))],
     }
     if joints:
+        # Joint forces have no closed form: take the reactions to unit parameters.
         units = [unit for link in links for unit in _units(machine, now, link)]
         for joint in joints:
             listed[f"joint {joint}"] = [
@@ -89,7 +92,7 @@ def quantities(machine: Machine, now: Places, links: Sequence[str], joints: Sequ
 
 
 def _units(machine: Machine, now: Places, link: str) -> list[Reactions]:
-    """Reactions to a unit mass at O, to ones a unit beside it along x and y, and to a unit of inertia."""
+    """Compute the reactions to a unit mass at O, to unit masses offset by one along x and y, and to a unit inertia."""
     about = complex(now.reference(pivot(machine.mechanism, link)))
     bare = replace(machine, loads=(), pin_masses={}, bodies={})
     parts = [body(1.0, about), body(1.0, about + 1.0), body(1.0, about + 1j), body(0.0, about, 1.0)]
@@ -97,7 +100,7 @@ def _units(machine: Machine, now: Places, link: str) -> list[Reactions]:
 
 
 def _as_parameters(by: Complex) -> None:
-    """A mass beside O has a first moment and an inertia of 1 besides its mass: these are taken off, in place."""
+    """Convert to parameters in place: subtract the mass and the inertia of 1 of a mass offset from O."""
     for n in range(0, len(by), PARAMETERS):
         by[n + 1] -= by[n] + by[n + 3]
         by[n + 2] -= by[n] + by[n + 3]

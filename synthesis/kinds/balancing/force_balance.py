@@ -1,18 +1,18 @@
 """Counterweights that balance the shaking force of any planar linkage, exactly.
 
 The linearly independent vectors of Berkof and Lowen (A new method for completely force balancing simple linkages,
-J. Eng. Ind. 91, 1969; Norton, *Design of Machinery*, 12.6-12.8), without writing down a loop: no force shakes the frame
-in any motion where the momentum by the input, P(q) = Σ m r', vanishes at all positions. A weight of mass μ and of first
-moment c about a joint O of its link adds
+J. Eng. Ind. 91, 1969; Norton, *Design of Machinery*, 12.6-12.8), without setting up loop equations: no force shakes
+the frame in any motion if the momentum by the input, P(q) = Σ m r', vanishes at all positions. A weight of mass μ and
+of first moment c about a joint O of its link adds
 
     μ O' + i φ' c e^{iφ},
 
 which is linear in μ and c; about a fixed pivot μ does not count. Over many generic positions that is a linear system,
-and it has a solution where and only where the closure of the loops lets the weights cancel all that moves.
+and it has a solution if and only if the closure of the loops lets the weights cancel the momentum.
 
-By masses of its links alone a linkage can be balanced so if each link reaches the ground by a path of pins (Tepper and
+With masses on its links alone a linkage can be balanced if each link reaches the ground by a path of pins (Tepper and
 Lowen, General theorems concerning full force balancing of planar linkages by internal mass redistribution, J. Eng. Ind.
-94, 1972); :func:`unpinned` tells those that do not.
+94, 1972); :func:`unpinned` lists those that do not.
 """
 
 from __future__ import annotations
@@ -37,26 +37,26 @@ Real = NDArray[np.float64]
 Complex = NDArray[np.complex128]
 
 GENERIC = 97
-"""Positions that the linear system is made of: prime, so that no symmetry of a motion falls in step with them."""
+"""Number of positions of the linear system: prime, so that no symmetry of a motion coincides with them."""
 
 VANISHES = 1e-9
-"""Share of the momentum of all parts by themselves that is rounding."""
+"""Share of the momentum of all separate parts that is attributed to rounding."""
 
 DEPENDENT = 1e-11
 """Singular value, as a share of the largest, below which columns count as dependent."""
 
 NO_WEIGHT = 1e-12
-"""Share of the largest first moment below which a weight is left out."""
+"""Share of the largest first moment below which a weight is omitted."""
 
 IDLE = 1e-6
-"""Share of the largest mass below which a weight on a link without a fixed pivot is tolerance of the program."""
+"""Share of the largest mass below which a weight on a link without a fixed pivot is the program's tolerance."""
 
 MOST_SETS = 200
-"""Sets of links that are tried at most."""
+"""Maximum number of sets of links that are tried."""
 
 
 class Weight(NamedTuple):
-    """A counterweight: its link, its mass and its place in the reference, in the units of the forces; its inertia."""
+    """A counterweight: its link, mass, place in the reference and inertia, in the units of the forces."""
 
     link: str
     mass: float
@@ -65,22 +65,22 @@ class Weight(NamedTuple):
 
     @property
     def body(self) -> Body:
-        """The same as a body."""
+        """The weight as a body."""
         return body(self.mass, self.at, self.inertia)
 
 
 def momentum(machine: Machine, paced: Places) -> tuple[Complex, float]:
-    """Σ m r' over positions, and the largest sum of the magnitudes of its parts."""
+    """Compute Σ m r' over positions, and the largest sum of the magnitudes of its parts."""
     parts = [np.asarray(part.mass)[..., None] * paced.point(link, part.cg)[1] for link, part in machine.bodies.items()]
     parts += [np.asarray(mass)[..., None] * paced.joints[joint][1] for joint, mass in machine.pin_masses.items()]
     return np.asarray(sum(parts)), float(sum(np.abs(part) for part in parts).max())
 
 
 def force_balances(task: Task, stated: Counterweights) -> list[list[Weight]]:
-    """Sets of counterweights that balance the shaking force; none where no set does.
+    """Find sets of counterweights that balance the shaking force; none if no set does.
 
-    Of links that the client names, one set; else all sets of as few links as serve, those on fixed pivots first, then
-    the lightest.
+    One set on links that the client names; else all sets of as few links as possible, those on fixed pivots first,
+    then the lightest.
     """
     machine = inertial(task.machine)
     system = _System(machine, _generic(task), stated)
@@ -90,6 +90,7 @@ def force_balances(task: Task, stated: Counterweights) -> list[list[Weight]]:
     links = moving(machine.mechanism)
     fixed = [link for link in links if on_fixed_pivot(machine.mechanism, link)]
     for candidates in (fixed, links):
+        # If weights on all candidates cannot balance the force, no subset can.
         if not system.solvable(candidates):
             continue
         tried = 0
@@ -107,25 +108,27 @@ def force_balances(task: Task, stated: Counterweights) -> list[list[Weight]]:
 
 
 def balanceable(task: Task) -> bool:
-    """Whether weights on all links that move could balance the force."""
+    """Return whether weights on all moving links could balance the force."""
     machine = inertial(task.machine)
     return _System(machine, _generic(task), Counterweights()).solvable(moving(machine.mechanism))
 
 
 def unpinned(mechanism: Mechanism) -> list[str]:
-    """The links from which no path of pins leads to the ground."""
+    """List the links from which no path of pins leads to the ground."""
     reached, ahead = {GROUND}, [GROUND]
     while ahead:
         joints = mechanism.links[ahead.pop()]
         for link, listed in mechanism.links.items():
             if link not in reached and set(listed) & set(joints):
+                # Two links are pinned together if they share a joint; slides do not count.
                 reached.add(link)
                 ahead.append(link)
     return [link for link in mechanism.links if link not in reached]
 
 
 def _generic(task: Task) -> Real:
-    """Positions over the range, none at its ends."""
+    """Choose positions over the range, none at its ends."""
+    # An irrational-looking offset keeps the positions away from ends, middle and other special places.
     shares = (np.arange(GENERIC) + 0.382) / GENERIC
     return np.asarray(task.start + (task.end - task.start) * shares)
 
@@ -148,13 +151,13 @@ class _System:
             self.carried[link] = _real(paced.joints[pivot(self.mechanism, link)][1][known])
 
     def solvable(self, links: Sequence[str]) -> bool:
-        """Whether weights on these links can cancel the momentum, whatever their masses."""
+        """Return whether weights of any mass on these links can cancel the momentum."""
         loose = [link for link in links if not on_fixed_pivot(self.mechanism, link)]
         columns = [*(self.turning[link] for link in links), *(self.carried[link][:, None] for link in loose)]
         return self._solution(columns, self.total) is not None
 
     def weights(self, links: Sequence[str]) -> list[Weight] | None:
-        """The weights on these links."""
+        """Find the weights on these links; None if they cannot balance the force."""
         loose = [link for link in links if not on_fixed_pivot(self.mechanism, link)]
         columns = [self.turning[link] for link in links]
         masses = dict.fromkeys(links, self.stated.mass)
@@ -164,6 +167,7 @@ class _System:
                 return None
             moments, masses = found
             used = [link for link in links if link not in loose or masses[link] > IDLE * max(masses.values())]
+            # Masses at the program's tolerance are dropped if the rest still balances.
             if len(used) < len(links) and (without := self.weights(used)) is not None:
                 return without
         else:
@@ -172,6 +176,7 @@ class _System:
             if solved is None:
                 return None
             moments = dict(zip(links, (solved[0::2] + 1j * solved[1::2]).tolist(), strict=True))
+        # Negligible weights are dropped, except on links whose mass is carried.
         largest = max((abs(moment) for moment in moments.values()), default=0.0)
         return [
             self._weight(link, moment, masses[link])
@@ -186,17 +191,18 @@ class _System:
         return Weight(link, mass, at, self.stated.inertia(mass, self.machine.scale))
 
     def _radius(self, link: str) -> float:
-        """Of a weight on a link: the stated one, or the length of the link."""
+        """Return the radius of a weight on a link: the given one, or the length of the link."""
         if self.stated.radius is not None:
             return self.machine.scale * self.stated.radius
         first, second = (complex(self.mechanism.joints[joint]) for joint in self.mechanism.link_line(link))
         return self.machine.scale * abs(second - first)
 
     def _solution(self, columns: Sequence[Real], total: Real) -> Real | None:
-        """What multiplies the columns for them to cancel a total, of least magnitude; None where nothing does."""
+        """Solve for the least coefficients with which the columns cancel a total; None if there are none."""
         if not columns:
             return np.zeros(0) if np.abs(total).max() <= VANISHES * self.size else None
         matrix = np.concatenate(columns, axis=1)
+        # Columns are normalized, so that the rank tolerance does not depend on units.
         sizes = np.linalg.norm(matrix, axis=0)
         sizes[sizes == 0.0] = 1.0
         found = np.linalg.lstsq(matrix / sizes, -total, rcond=DEPENDENT)[0] / sizes
@@ -204,10 +210,10 @@ class _System:
         return np.asarray(found) if left <= VANISHES * self.size else None
 
     def _lightest(self, links: Sequence[str], loose: list[str]) -> tuple[dict[str, complex], dict[str, float]] | None:
-        """Moments and masses of least total mass, no weight farther out than its radius.
+        """Find moments and masses of minimum total mass, with no weight farther out than its radius.
 
-        The masses of weights on links without a fixed pivot count in the momentum; the program is a second-order cone
-        program, and its answer is brought to rounding by the least change that solves the linear system.
+        The masses of weights on links without a fixed pivot count in the momentum. The program is a second-order cone
+        program; its answer is corrected by the least change that solves the linear system, to rounding.
         """
         columns = [*(self.turning[link] for link in links), *(self.carried[link][:, None] for link in loose)]
         if (start := self._solution(columns, self.total)) is None:
@@ -216,7 +222,7 @@ class _System:
         sizes = np.linalg.norm(matrix, axis=0)
         sizes[sizes == 0.0] = 1.0
         _, values, rows = np.linalg.svd(matrix / sizes, full_matrices=False)
-        kept = rows[values > DEPENDENT * values[0]] * sizes  # what of x the positions tell
+        kept = rows[values > DEPENDENT * values[0]] * sizes  # combinations of x that the positions determine
         count, turned = len(links) + 2 * len(links), 2 * len(links)
         # Unknowns: moments, masses of the loose links, masses of the others; in units of a mass on a link.
         unit = max(float(np.abs(start).max()), 1e-300)
@@ -225,6 +231,7 @@ class _System:
         equal[:, : kept.shape[1]] = kept
         scale = np.abs(equal).max(axis=1)
         cones = np.zeros((3 * len(links), count))
+        # |moment| ≤ radius · mass of every weight.
         for n, link in enumerate(links):
             cones[3 * n, turned + order.index(link)] = -self._radius(link)
             cones[3 * n + 1, 2 * n] = cones[3 * n + 2, 2 * n + 1] = -1.0
@@ -238,6 +245,7 @@ class _System:
         )
         if solution.status != "solved":
             return None
+        # The cone program is only accurate to its tolerance; the next step removes the residual.
         near = unit * solution.x
         x = near[: turned + len(loose)]
         x = x + np.linalg.lstsq(kept, kept @ (start - x), rcond=None)[0]
@@ -249,5 +257,5 @@ class _System:
 
 
 def _real(values: Complex) -> Real:
-    """Complex values as twice as many real ones."""
+    """Stack real and imaginary parts of complex values."""
     return np.concatenate([values.real, values.imag])

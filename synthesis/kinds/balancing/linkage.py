@@ -1,4 +1,4 @@
-"""Linkages: counterweights, exact or the best there are, each verified by driving what is answered."""
+"""Linkages: exact or optimal counterweights, each verified by driving the answered linkage."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from synthesis.model.kind import Progress
 from synthesis.outcome.sifting import Sifting
 
 LEAST_POSITIONS = 5
-"""Positions at which a linkage must be assembled for its motion to be one."""
+"""Minimum number of positions at which a linkage must be assembled for its motion to count."""
 
 
 def solve_linkage(problem: BalancingProblem, progress: Progress) -> BalancingResult:
@@ -39,7 +39,7 @@ def solve_linkage(problem: BalancingProblem, progress: Progress) -> BalancingRes
 
     sifting.sift(sets, verified)
     progress(1.0, "verified")
-    # What no weights can do is told by the rank of a linear system; sets are listed up to a number.
+    # The rank of a linear system proves that no weights balance the force; listed sets are limited in number.
     complete = not sifting.rejected
     return _answer(problem, sifting, _summary(problem, task, sifting), complete=complete)
 
@@ -52,9 +52,10 @@ def _without_moment(problem: BalancingProblem, task: Task, sifting: Sifting[Bala
     verified = partial(verify_linkage, problem, task, geared.mechanism, inertias=geared.inertias)
     sifting.sift([geared.weights], verified)
     done = (
-        "Neither a force nor a moment shakes the frame: the coupler is two masses at its pins, and gears turn an equal "
+        "Neither a force nor a moment shakes the frame: the coupler acts like two masses at its pins, and gears turn "
+        "an "
     )
-    summary = f"{done}inertia against each crank." if sifting.passed else "No design was found."
+    summary = f"{done}equal inertia against each crank." if sifting.passed else "No design found."
     return _answer(problem, sifting, summary + sifting.reasons(), complete=False)
 
 
@@ -65,27 +66,25 @@ def _least(
     try:
         setting = setting_of(problem, task)
     except NothingToReduce as error:
-        return _answer(problem, sifting, f"The {error} is zero without counterweights; leave it out.", complete=False)
+        return _answer(problem, sifting, f"The {error} is zero without counterweights; omit it.", complete=False)
     except Undetermined:
-        summary = "Forces in joints that redundant constraints leave open cannot be minimized or capped; drop them."
+        summary = "Joint forces that redundant constraints leave undetermined cannot be minimized or capped; omit them."
         return _answer(problem, sifting, summary, complete=False)
     progress(0.4, "solving the conic programs")
     found = minimum(setting, task)
     if found.violated:
         share = 100.0 * next(iter(found.violated.values()))
         caps = _listed([name.replace("_", " ") for name in found.violated])
-        summary = f"None exists: the caps cannot be kept together. With all raised by {share:.3g} % they could; {caps} "
-        return _answer(problem, sifting, summary + "would stand at theirs.", complete=True)
+        summary = f"None exists: the caps cannot be met together. Raised by {share:.3g} % they could; {caps} "
+        return _answer(problem, sifting, summary + "would then be reached.", complete=True)
     if not found.solved:
-        return _answer(problem, sifting, "No design was found: the program was not solved.", complete=False)
+        return _answer(problem, sifting, "No design found: the program was not solved.", complete=False)
     progress(0.8, "verifying")
     sifting.sift([found], partial(verify_minimum, problem, task))
     if not sifting.passed:
-        return _answer(problem, sifting, f"No design was found.{sifting.reasons()}", complete=False)
+        return _answer(problem, sifting, f"No design found.{sifting.reasons()}", complete=False)
     metrics = sifting.passed[0].metrics
-    summary = (
-        f"What counts is brought to {metrics.value:.4g}, and no counterweights bring it below {metrics.bound:.4g}."
-    )
+    summary = f"The objective is reduced to {metrics.value:.4g}; no counterweights reduce it below {metrics.bound:.4g}."
     return _answer(problem, sifting, summary, complete=True)
 
 
@@ -105,16 +104,17 @@ def _summary(problem: BalancingProblem, task: Task, sifting: Sifting[BalancedDes
         first = sifting.passed[0]
         links = [weight.link for weight in first.counterweights]
         if not links:
-            return "The linkage is balanced as it is."
+            return "The linkage is already balanced."
+        # Balancing the force usually increases the moment.
         grown = first.metrics.shaking_moment, first.metrics.unbalanced_shaking_moment
-        change = f" The shaking moment becomes {grown[0] / grown[1]:.3g} times what it was." if grown[1] > 0.0 else ""
-        return f"No force shakes the frame with counterweights on {_listed(links)}.{change}"
+        change = f" The shaking moment is {grown[0] / grown[1]:.3g} times the unbalanced one." if grown[1] > 0.0 else ""
+        return f"Counterweights on {_listed(links)} cancel the shaking force.{change}"
     if sifting.rejected:
-        return f"No design was found.{sifting.reasons()}"
+        return f"No design found.{sifting.reasons()}"
     loose = unpinned(task.machine.mechanism)
-    theorem = "a linkage can be balanced where every link reaches the ground by a path of pins"
+    theorem = "a linkage can be balanced if every link reaches the ground by a path of pins"
     if stated is not None and balanceable(task):
-        return f"No weights of this size on {_listed(stated)} balance the force; others do."
+        return f"No weights of this size on {_listed(stated)} balance the force; weights on other links do."
     if loose:
         return f"None exists: {theorem}, and {_listed(loose)} {'has' if len(loose) == 1 else 'have'} none."
     return "None exists: no weights on the moving links balance the force."

@@ -1,4 +1,4 @@
-"""What is wrong with a linkage that is to be balanced: as an analysis tells it, and what balancing needs besides."""
+"""Errors of a linkage to be balanced: those of an analysis, and the additional requirements of balancing."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ def linkage_faults(
     weights: Counterweights,
     joints: Mapping[str, Iterable[str]],
 ) -> list[tuple[str, str]]:
-    """Faults of a mechanism, its masses, its motion and its counterweights, by their fields.
+    """Return errors of a mechanism, its masses, its motion and its counterweights, by their fields.
 
     ``joints`` are names of joints by the fields that have them.
     """
@@ -32,14 +32,14 @@ def linkage_faults(
     machine, _ = machine_of(dynamics, mechanism, unit)
     masses = [*(float(part.mass) for part in machine.bodies.values()), *map(float, machine.pin_masses.values())]
     if not any(masses):
-        faults.append(("/dynamics/bodies", "without mass nothing shakes; state what the links weigh"))
+        faults.append(("/dynamics/bodies", "without mass nothing shakes; give the masses of the links"))
     moving = [link for link in mechanism.links if link != GROUND]
     for n, link in enumerate(weights.links or []):
         if link not in moving:
-            faults.append((f"/counterweights/links/{n}", f"no link in motion; they are {', '.join(moving)}"))
+            faults.append((f"/counterweights/links/{n}", f"not a moving link; these are {', '.join(moving)}"))
     known = [joint for joint in mechanism.joints if sum(joint in listed for listed in mechanism.links.values()) > 1]
     for path, named in joints.items():
         for joint in named:
             if joint not in known:
-                faults.append((f"{path}/{token(joint)}", f"no joint of two links; they are {', '.join(known)}"))
+                faults.append((f"{path}/{token(joint)}", f"not a joint of two links; these are {', '.join(known)}"))
     return faults

@@ -1,8 +1,8 @@
-"""Counterweights for the least of what counts, with a bound that no weights can go below.
+"""Counterweights that minimize the objective, with a lower bound for all permitted weights.
 
-The program is solved on a few positions of a dense grid; positions at which the answer exceeds the level that it was
-promised are added (cutting planes), until nothing is exceeded that matters. All of it is linear algebra on the
-:mod:`effects`: no mechanism is driven again before the proof.
+The program is solved on a few positions of a dense grid; positions at which the answer exceeds the promised level
+are added (cutting planes), until no relevant excess remains. All of it is linear algebra on the
+:mod:`effects`: no mechanism is driven again before the verification.
 """
 
 from __future__ import annotations
@@ -24,37 +24,37 @@ from synthesis.kinds.balancing.program import Answer, Level, Limits, best_weight
 Real = NDArray[np.float64]
 
 GRID = 2880
-"""Positions of the motion on which peaks and means are taken."""
+"""Number of positions of the motion at which peaks and means are evaluated."""
 
 FIRST, MOST_ADDED = 72, 6
-"""Positions of the grid that the program begins with, and peaks beyond its level that are added for each quantity."""
+"""Number of grid positions of the first program, and of peaks added per quantity and round."""
 
 ROUNDS = 10
-"""Programs that are solved at most."""
+"""Maximum number of programs solved."""
 
 CLOSE = 1e-4
 """Share of the value by which the grid may exceed the program when nothing more is added."""
 
 KEPT = 1e-6
-"""Share of a cap by which the grid may exceed it, some of the solver's tolerances."""
+"""Share of a cap by which the grid may exceed it, a few times the solver's tolerance."""
 
 SENSITIVE = 10.0
-"""How many times the share by which a cap is exceeded the value may lie below the bound, which is of weights that keep
-the cap; the bound is lowered by it."""
+"""Maximum ratio of the value's shortfall below the bound to the share by which a cap is exceeded. The bound holds for
+weights that keep the cap; it is lowered by this amount."""
 
 TOLERANCE = 1e-7
-"""Share of the dual value, and of the sum of the weights of the objective, that the solver's tolerance may be off: the
-bound is the less by it."""
+"""Possible error of the solver as a share of the dual value, and of the objective's sum of weights: the bound is
+reduced by it."""
 
 NOTHING = 1e-9
-"""Mass as a share of the linkage's, below which a weight is left out; effect of a parameter that counts as none."""
+"""Negligible mass of a weight as a share of the linkage's, and negligible effect of a parameter."""
 
 UNCHANGED = 1e-12
-"""Peak of a quantity as a share of its changes, below which it is zero without weights: nothing is a share of it."""
+"""Peak of a quantity as a share of its changes, below which it is zero without weights and cannot be reduced."""
 
 
 class Setting(NamedTuple):
-    """The program of a task: its quantities in units of what they are without weights, and the units of parameters."""
+    """The program of a task: its quantities in units of their unbalanced values, and the units of parameters."""
 
     links: list[str]
     levels: list[Level]
@@ -64,7 +64,7 @@ class Setting(NamedTuple):
 
 
 class Minimum(NamedTuple):
-    """The weights, the bound, and the positions of the last program by quantity; ``violated`` caps where there is none.
+    """The weights, the bound, and the positions of the last program by quantity; or the ``violated`` caps.
 
     A violated cap comes with the share by which it would have to be raised.
     """
@@ -78,22 +78,22 @@ class Minimum(NamedTuple):
 
 
 class NothingToReduce(ValueError):
-    """A quantity that counts and is zero without weights."""
+    """A quantity in the objective is zero without weights."""
 
 
 class Undetermined(ValueError):
-    """What counts or has a cap is known at no position: redundant constraints leave forces in joints open."""
+    """A quantity is known at no position: redundant constraints leave joint forces undetermined."""
 
 
 def setting_of(problem: BalancingProblem, task: Task) -> Setting:
-    """Quantities over the grid, and the limits of the weights.
+    """Build the quantities over the grid, and the limits of the weights.
 
     Raises
     ------
     NothingToReduce
-        Where a quantity that counts is zero.
+        If a quantity in the objective is zero.
     Undetermined
-        Where the quantities are known at no position.
+        If the quantities are known at no position.
     """
     machine, stated = task.machine, problem.counterweights
     scale, mechanism = machine.scale, machine.mechanism
@@ -106,14 +106,17 @@ def setting_of(problem: BalancingProblem, task: Task) -> Setting:
     known = np.isfinite(np.concatenate([part.fixed[None] for parts in found.values() for part in parts])).all(axis=0)
     if not known.any():
         raise Undetermined
+    # Mass and size of the linkage scale all parameters to about one.
     mass = sum(float(part.mass) for part in machine.bodies.values()) + sum(map(float, machine.pin_masses.values()))
     places = np.array([scale * complex(z) for z in mechanism.joints.values()])
     size = float(np.abs(places[:, None] - places).max())
+    # Parameters are scaled by the linkage's mass and size, so that the program's numbers are near one.
     units = np.tile([mass, mass * size, mass * size, mass * size**2], len(links))
     levels = []
     for name, weight, cap in _counted(problem):
         mean = problem.objective.norm == "rms"
         scaled = [Linear(part.fixed[known], units[:, None] * part.by[:, known]) for part in found[name]]
+        # With means in the objective, a cap still applies to the peak: it is a level of its own.
         for of_mean, own_weight, own_cap in (
             (False, 0.0 if mean else weight, cap),
             (True, weight if mean else 0.0, None),
@@ -131,7 +134,7 @@ def setting_of(problem: BalancingProblem, task: Task) -> Setting:
 
 
 def _counted(problem: BalancingProblem) -> list[tuple[str, float, float | None]]:
-    """Quantities with their weights and caps."""
+    """List the quantities with their weights and caps."""
     objective, caps = problem.objective, problem.caps
     listed: list[tuple[str, float, float | None]] = [
         (name, getattr(objective, name), getattr(caps, name)) for name in ("shaking_force", "shaking_moment", "drive")
@@ -173,9 +176,10 @@ def _limits(
 
 
 def minimum(setting: Setting, task: Task) -> Minimum:
-    """The best weights of a setting."""
+    """Find the best weights of a setting."""
     levels, count = setting.levels, len(setting.grid)
     used = {level.name: np.unique(np.linspace(0, count - 1, FIRST).astype(int)).tolist() for level in levels}
+    # Scale of the objective: its value without counterweights.
     weighed = sum(level.weight for level in levels)
     bound, best, least = 0.0, None, math.inf
     for _ in range(ROUNDS):
@@ -185,6 +189,7 @@ def minimum(setting: Setting, task: Task) -> Minimum:
         if found.solution.status != "solved":
             break
         dual = found.solution.dual
+        # The solver's tolerance may make the dual value too large: subtract it.
         bound = max(bound, dual - TOLERANCE * (abs(dual) + weighed))
         parameters = _lightest(setting, found.parameters)
         reached = [level.of(parameters) for level in levels]
@@ -193,6 +198,7 @@ def minimum(setting: Setting, task: Task) -> Minimum:
             (float(of.max()) / level.cap - 1.0 for level, of in zip(levels, reached, strict=True) if level.cap),
             default=0.0,
         )
+        # Only weights that keep all caps are answers; the best one over all rounds is kept.
         if beyond <= KEPT and value < least:
             best, least = parameters, value
         if beyond <= KEPT and value - bound <= CLOSE * max(value, NOTHING * weighed):
@@ -201,13 +207,14 @@ def minimum(setting: Setting, task: Task) -> Minimum:
             break
     if best is None:
         return Minimum([], bound, np.zeros(len(setting.units)), used, {}, solved=False)
+    # Weights slightly over a cap may fall below the bound: that is not a contradiction.
     if bound <= least * (1.0 + SENSITIVE * KEPT):
         bound = min(bound, least)
     return Minimum(_weights(setting, task, best), bound, best, used, {}, solved=True)
 
 
 def _add(levels: list[Level], reached: list[Real], found: Answer, used: dict[str, list[int]]) -> bool:
-    """Add the positions of the highest peaks beyond the level that the program has promised."""
+    """Add the positions of the highest peaks above the promised level; return whether any were added."""
     grown = False
     for level, of, promised in zip(levels, reached, found.levels.tolist(), strict=True):
         if level.mean:
@@ -224,7 +231,7 @@ def _add(levels: list[Level], reached: list[Real], found: Answer, used: dict[str
 
 
 def _violated(setting: Setting, used: dict[str, list[int]]) -> Minimum:
-    """Which caps cannot be kept: those that stand at the least share by which all would have to be raised."""
+    """Find the caps that cannot be kept: those reached at the smallest common raise."""
     found = best_weights(setting.levels, setting.limits, used, relaxed=True)
     share = found.excess
     caps = {}
@@ -235,9 +242,9 @@ def _violated(setting: Setting, used: dict[str, list[int]]) -> Minimum:
 
 
 def _lightest(setting: Setting, parameters: Real) -> Real:
-    """The parameters well inside the set, which the solver keeps to a tolerance; no mass that has no effect.
+    """Move the parameters inside the feasible set, which the solver keeps to a tolerance; drop masses without effect.
 
-    Where the mass of a weight does not count and its inertia neither, it is the least for its first moment.
+    If neither mass nor inertia of a weight counts, its mass is the least for its first moment.
     """
     limits, inside = setting.limits, parameters.copy()
     for n in range(len(setting.links)):
@@ -252,7 +259,7 @@ def _lightest(setting: Setting, parameters: Real) -> Real:
         own = mass, *first, max(least, inertia) if limits.turning[n] else least
         inside[PARAMETERS * n : PARAMETERS * (n + 1)] = own
     whole = float(inside[0::PARAMETERS].sum())
-    # A smaller weight of the same shape is in the set, too.
+    # A smaller weight of the same shape is in the set too.
     return inside * (limits.total / whole) if whole > limits.total else inside
 
 
@@ -262,7 +269,7 @@ def _of(parameters: Real, n: int) -> tuple[float, Real, float]:
 
 
 def _weights(setting: Setting, task: Task, parameters: Real) -> list[Weight]:
-    """The parameters as weights at places of the reference."""
+    """Convert the parameters to weights at places of the reference."""
     mechanism, scale = task.machine.mechanism, task.machine.scale
     own = setting.units * parameters
     listed = []

@@ -2,12 +2,12 @@
 
 A coupler whose centre of gravity lies on the line of its pins, with k² = r b for r and b its distances from them, has
 the momentum and the angular momentum of two masses at the pins (Norton, *Design of Machinery*, 12.12-12.17). They
-belong to the cranks then, and with the force balanced each crank is a body that turns about its centre of gravity: its
-angular momentum I φ' is undone by an equal inertia that gears turn the other way,
+then belong to the cranks, and with the force balanced each crank is a body that turns about its centre of gravity: its
+angular momentum I φ' is cancelled by an equal inertia that gears turn in the opposite direction,
 
     m2 r2 = m3 b a2/a3,  m4 r4 = m3 r a4/a3,  I2 = m2 (k2² + r2² + a2 r2),  I4 = m4 (k4² + r4² + a4 r4)
 
-(12.14-12.17; of 12.17a the first factor on the right is misprinted m2).
+(12.14-12.17; in 12.17a the first factor on the right is misprinted as m2).
 """
 
 from __future__ import annotations
@@ -27,15 +27,15 @@ from synthesis.kinds.balancing.force_balance import Weight
 from synthesis.kinds.balancing.stated_weights import Counterweights
 
 INLINE = 1e-9
-"""Share of the coupler by which its centre of gravity may be beside the line of its pins: rounding."""
+"""Share of the coupler by which its centre of gravity may be off the line of its pins: rounding."""
 
 
 class NoMomentBalance(ValueError):
-    """A linkage that gears cannot balance so; says why."""
+    """Gears cannot balance this linkage; the message gives the reason."""
 
 
 class Geared(NamedTuple):
-    """The mechanism with the links of its gears, the weights, and the inertias of those links by their names."""
+    """The mechanism with the links of its gears, the weights, and the inertias of those links by name."""
 
     mechanism: Mechanism
     weights: list[Weight]
@@ -43,12 +43,12 @@ class Geared(NamedTuple):
 
 
 def moment_balance(machine: Machine, stated: Counterweights) -> Geared:
-    """Weights and geared inertias of a fourbar.
+    """Find weights and geared inertias of a fourbar.
 
     Raises
     ------
     NoMomentBalance
-        For another linkage, a coupler whose centre of gravity is beside its line, or masses on it elsewhere.
+        For another linkage, for a coupler whose centre of gravity is off its line, or for masses elsewhere on it.
     """
     mechanism, scale = machine.mechanism, machine.scale
     crank, coupler, output = _fourbar(mechanism)
@@ -60,7 +60,7 @@ def moment_balance(machine: Machine, stated: Counterweights) -> Geared:
     known = machine.bodies.get(coupler, body(0.0))
     others = [j for j, mass in machine.pin_masses.items() if float(mass) > 0.0 and j not in (*pins.values(), *ground)]
     if others:
-        raise NoMomentBalance(f"a mass sits at {others[0]}; only the pins of the cranks may carry one")
+        raise NoMomentBalance(f"there is a mass at {others[0]}; only the pins of the cranks may carry one")
     weights = _two_masses(coupler, known, a, b, stated, scale)
     whole = joined([known, *(weight.body for weight in weights)])
     along = complex((complex(whole.cg) - a) / (b - a)) if float(whole.mass) > 0.0 else 0j
@@ -73,6 +73,7 @@ def moment_balance(machine: Machine, stated: Counterweights) -> Geared:
         pivot, pin = place[pivots[link]], place[pins[link]]
         carried = float(machine.pin_masses.get(pins[link], np.zeros(()))) + shares[link] * float(whole.mass)
         own = machine.bodies.get(link, body(0.0))
+        # The coupler's share at the pin and the crank's own moment are cancelled by one weight.
         moment = -carried * (pin - pivot) - float(own.mass) * (complex(own.cg) - pivot)
         turned = [own]
         if abs(moment) > 0.0:
@@ -93,13 +94,13 @@ def moment_balance(machine: Machine, stated: Counterweights) -> Geared:
 
 
 def with_inertias(machine: Machine, geared: Geared) -> Machine:
-    """A machine with the geared links in it."""
+    """Add the geared links to a machine."""
     turned = {link: body(0.0, 0j, inertia) for link, inertia in geared.inertias.items()}
     return replace(machine, mechanism=geared.mechanism, bodies={**machine.bodies, **turned})
 
 
 def _fourbar(mechanism: Mechanism) -> tuple[str, str, str]:
-    """Input, coupler and output of a fourbar."""
+    """Return input, coupler and output of a fourbar."""
     links, ground = moving(mechanism), set(mechanism.links[GROUND])
     cranks = [link for link in links if set(mechanism.links[link]) & ground]
     if len(links) != 3 or len(cranks) != 2 or mechanism.slides or mechanism.gears:
@@ -111,27 +112,28 @@ def _fourbar(mechanism: Mechanism) -> tuple[str, str, str]:
 def _two_masses(
     coupler: str, known: Body, a: complex, b: complex, stated: Counterweights, scale: float
 ) -> list[Weight]:
-    """What makes the coupler two masses at its pins: nothing, an inertia, or a mass in the middle between them.
+    """Make the coupler equivalent to two masses at its pins: by nothing, an inertia, or a mass midway between them.
 
-    The coupler is two masses where m r b − I = 0. A mass at a pin changes nothing of that, a mass in the middle adds
-    a²/4 for each unit, and an inertia takes away its own.
+    It is equivalent to two masses if m r b − I = 0. A mass at a pin does not change this, a mass in the middle adds
+    a²/4 per unit, and an inertia subtracts its own.
     """
     mass, own = float(known.mass), float(known.inertia)
     if mass == 0.0 and own == 0.0:
         return []
     along = complex((complex(known.cg) - a) / (b - a)) if mass > 0.0 else 0j
     if abs(along.imag) > INLINE:
-        raise NoMomentBalance("the coupler's centre of gravity is beside the line of its pins")
+        raise NoMomentBalance("the coupler's centre of gravity is off the line of its pins")
     square = abs(b - a) ** 2
+    # m r b − I: positive if inertia is missing, negative if mass is.
     surplus = mass * along.real * (1.0 - along.real) * square - own
     if abs(surplus) <= INLINE * (own + mass * square):
         return []
     if surplus > 0.0:
         return [Weight(coupler, 0.0, a, surplus)]
-    # A disc in the middle brings an inertia of its own: m a²/4 − m² I(1) has to be what is missing.
+    # A disc in the middle has an inertia of its own: m a²/4 − m² I(1) must equal the deficit.
     quarter, own_of_one = 0.25 * square, stated.inertia(1.0, scale)
     root = quarter**2 + 4.0 * own_of_one * surplus
     if root < 0.0:
-        raise NoMomentBalance("a disc in the middle of the coupler is too flat for it; state it thicker or denser")
+        raise NoMomentBalance("a disc in the middle of the coupler is too flat; make it thicker or denser")
     needed = -2.0 * surplus / (quarter + math.sqrt(root))
     return [Weight(coupler, needed, 0.5 * (a + b), stated.inertia(needed, scale))]

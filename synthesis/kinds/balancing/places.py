@@ -1,10 +1,10 @@
-"""The best choice among places on a circle: which holes to drill how deep, or which weights to fix where.
+"""The best choice among places on a circle: holes to drill with their depths, or weights to fix.
 
-Every place of a plane contributes one of a few vectors, or nothing. Wanted are the choices whose sum is nearest to a
-target, for each number of places used. The places are split in two halves; all sums of each half are listed, and for
-every sum of one half the nearest of the other is looked up in a tree (Horowitz and Sahni's two lists for subset sums,
-J. ACM 21, 1974, in the plane). That covers (10⁵)² choices exactly. Places beyond are branched on, and a branch whose
-continuous optimum, the distance to the zonotope of all that its places can sum to, is no better is left out.
+Every place of a plane contributes one of a few vectors, or nothing. The search finds the choices whose sum is nearest
+to a target, for each number of places used. The places are split in two halves; all sums of each half are listed, and
+for every sum of one half the nearest of the other is looked up in a tree (Horowitz and Sahni's two lists for subset
+sums, J. ACM 21, 1974, in the plane). That covers (10⁵)² choices exactly. Further places are branched on, and a branch
+is pruned if its continuous optimum, the distance to the zonotope of all sums of its places, is no better.
 """
 
 from __future__ import annotations
@@ -20,32 +20,32 @@ Complex = NDArray[np.complex128]
 Real = NDArray[np.float64]
 
 DIRECTIONS = np.exp(1j * np.linspace(0.0, 2.0 * np.pi, 720, endpoint=False))
-"""Along which sums are bounded."""
+"""Directions along which sums are bounded."""
 
 GROUP = 100_000
-"""Sums that are listed of a half at most."""
+"""Maximum number of listed sums of a half."""
 
 QUERIES = 3_000_000
-"""Sums that are looked up at most, in some seconds; beyond, what was found is not proved to be the best."""
+"""Maximum number of look-ups, which take some seconds; beyond it the result is not proven to be the best."""
 
 
 LEFT_OUT = 50
-"""Looked-up sums that take as long as what a branch takes besides."""
+"""Cost of one branch node, in look-ups."""
 
 
 LOST = 1e-9
-"""All that the places can sum up to, as a share of the target, below which it makes no difference to be told."""
+"""Greatest sum of the places, as a share of the target, below which the choice makes no noticeable difference."""
 
 
 class Choice(NamedTuple):
-    """Places that are used, each with the number of its contribution; the sum's difference to the target."""
+    """The places used, each with the number of its contribution, and the sum's difference to the target."""
 
     picks: dict[int, int]
     residual: complex
 
 
 class Chosen(NamedTuple):
-    """The best choices, each with more places and less residual than the one before it; and what is proved."""
+    """The best choices, each with more places and a smaller residual than the one before; and the proven bound."""
 
     choices: list[Choice]
     bound: float
@@ -61,25 +61,27 @@ class _Sums(NamedTuple):
 
 
 def best_choices(target: complex, places: Sequence[Complex], most: int) -> Chosen:
-    """The choices nearest to a target by the number of places that they use.
+    """Find the choices nearest to a target for every number of places used.
 
     Parameters
     ----------
     target : complex
-        What is to be summed up.
+        The required sum.
     places : sequence of complex arrays
-        What each place can contribute besides nothing.
+        The possible contributions of each place besides nothing.
     most : int
-        Most places that are used.
+        Maximum number of places used.
     """
     if sum(float(np.abs(contributions).max()) for contributions in places) <= LOST * abs(target):
-        # All sums are one number beside the target.
+        # All sums are negligible in comparison with the target.
         return Chosen([Choice({}, target)], _outside(target, _support(places)), proved=False)
     first, second, rest = _split(range(len(places)), places, most)
     if rest:
-        # Not all can be listed: those that reach farthest towards the target are.
+        # Not all places can be listed: list those that reach farthest towards the target.
+        # Component of each place's contributions along the target.
         reach = [float((target.conjugate() * place).real.max()) for place in places]
         first, second, rest = _split(sorted(range(len(places)), key=lambda n: -reach[n]), places, most)
+    # All sums of both halves; the target minus a sum of one is looked up in the other.
     head, tail = _sums([places[n] for n in first], most), _sums([places[n] for n in second], most)
     trees = {
         used: (cKDTree(np.stack([tail.values.real, tail.values.imag], axis=1)[at]), at)
@@ -93,7 +95,7 @@ def best_choices(target: complex, places: Sequence[Complex], most: int) -> Chose
     for branch in _branches([len(places[n]) for n in rest], most):
         picked = {n: pick - 1 for n, pick in zip(rest, branch, strict=True) if pick}
         left = target - sum((complex(places[n][pick]) for n, pick in picked.items()), 0j)
-        # A branch uses so many places at least: it is of no use where as few come nearer than it ever can.
+        # A branch uses at least these places: prune it if as few places already come nearer than it ever can.
         few = [abs(choice.residual) for count, choice in best.items() if count <= len(picked)]
         if asked > QUERIES:
             complete = False
@@ -114,6 +116,8 @@ def best_choices(target: complex, places: Sequence[Complex], most: int) -> Chose
                 asked += len(points)
                 n = int(np.argmin(distance))
                 if count not in best or distance[n] < abs(best[count].residual):
+                    # Residuals are recomputed from the picks in a fixed order, free of the sums' accumulated
+                    # rounding.
                     picks = picked | _picks(first, places, int(head.codes[at[n]]))
                     picks |= _picks(second, places, int(tail.codes[among[index[n]]]))
                     reached = sum(complex(places[k][pick]) for k, pick in sorted(picks.items()))
@@ -127,7 +131,7 @@ def best_choices(target: complex, places: Sequence[Complex], most: int) -> Chose
 
 
 def _split(order: Sequence[int], places: Sequence[Complex], most: int) -> tuple[list[int], list[int], list[int]]:
-    """Places of the two halves, and those beyond, in an order; every second one is the other half's."""
+    """Split the places into two halves and the rest; each place goes to the smaller half while it fits."""
     halves: tuple[list[int], list[int]] = ([], [])
     rest: list[int] = []
     for n in order:
@@ -141,7 +145,7 @@ def _split(order: Sequence[int], places: Sequence[Complex], most: int) -> tuple[
 
 
 def _branches(sizes: Sequence[int], most: int) -> Iterator[tuple[int, ...]]:
-    """Contributions of places, 0 for none, of which at most some are used; the last place's change first."""
+    """Yield contributions of places, 0 for none, with at most ``most`` used; the last place varies fastest."""
     if not sizes:
         yield ()
         return
@@ -151,7 +155,7 @@ def _branches(sizes: Sequence[int], most: int) -> Iterator[tuple[int, ...]]:
 
 
 def _count(sizes: Sequence[int], most: int) -> int:
-    """How many choices there are of places with so many contributions, of which at most some are used."""
+    """Count the choices of places with these numbers of contributions, of which at most ``most`` are used."""
     counts = [1]
     for size in sizes:
         counts = [
@@ -183,16 +187,16 @@ def _picks(group: Sequence[int], places: Sequence[Complex], code: int) -> dict[i
 
 
 def _beyond(target: complex, places: Sequence[Complex]) -> float:
-    """Distance from a target to the sums of convex combinations of what places contribute: no choice comes nearer.
+    """Return the distance from a target to the convex hull of all sums of the places: no choice comes nearer.
 
-    The largest distance along a direction is a lower bound, whatever the directions; those of the sides of a zonotope
-    of segments from 0 give its distance but for its corners.
+    The largest distance along any direction is a lower bound; the directions of the sides of a zonotope of segments
+    from 0 give its distance except at its corners.
     """
     return _outside(target, _support(places))
 
 
 def _support(places: Sequence[Complex]) -> Real:
-    """How far the sums reach along each of the directions."""
+    """Return the maximum reach of the sums along each of the directions."""
     support = np.zeros(len(DIRECTIONS))
     for contributions in places:
         support += np.maximum(0.0, (np.conj(DIRECTIONS)[:, None] * contributions).real.max(axis=1))

@@ -27,7 +27,7 @@ FOURBAR: dict[str, Any] = {
         }
     },
 }
-"""A fourbar with masses, of the examples."""
+"""A fourbar with masses, used by the examples."""
 
 OF_ROTORS = (
     *("masses", "bearing_readings", "influence", "rpm", "planes", "bearings", "rotor_mass", "max_grade", "correction"),
@@ -39,11 +39,11 @@ OF_MINIMIZED = ("reach", "max_mass", "total_mass", "max_gyration", "max_disc_rad
 
 
 class BalancingProblem(StatedRotor):
-    """Balancing of a rotor or a linkage: the masses that have to be added, so that little or nothing shakes the frame.
+    """Balancing of a rotor or a linkage: masses to add so that little or nothing shakes the frame.
 
     The unbalance of a rotor is known from its masses, from the forces on its bearings, or from runs with trial weights;
-    among holes or stock weights those of the least residual are found. A linkage gets counterweights with which it
-    exerts no force on its frame, or no force and no moment; where there are none, that is proved.
+    among holes or stock weights those with the smallest residual are found. A linkage gets counterweights with which it
+    exerts no force on its frame, or neither force nor moment; if none exist, that is proven.
     """
 
     model_config = ConfigDict(
@@ -129,35 +129,36 @@ class BalancingProblem(StatedRotor):
     object: Literal["rotor", "linkage"]
     goal: Literal["force", "force_and_moment", "minimize"] = Field(
         default="force",
-        description="Of a linkage. force: nothing shakes it but a moment. force_and_moment: neither, by gears on the "
-        "cranks of a fourbar whose coupler's centre of gravity is on the line of its pins. minimize: what counts in "
-        "`objective` as little as the counterweights allow, with a proven bound.",
+        description="Goal for a linkage. force: no shaking force; a moment may remain. force_and_moment: neither, by "
+        "gears on the cranks of a fourbar whose coupler's centre of gravity is on the line of its pins. minimize: the "
+        "`objective` is as small as the counterweights permit, with a proven bound.",
     )
-    mechanism: dict[str, Any] | None = Field(default=None, description="A linkage, as in `POST /v1/analyses`.")
+    mechanism: dict[str, Any] | None = Field(default=None, description="Linkage, as in `POST /v1/analyses`.")
     motion: Sweep = Field(
         default=Sweep(),
-        description="Of a linkage; by default a full turn at 1 rad/s, of a driven slider from toggle to toggle.",
+        description="Motion of a linkage; by default a full turn at 1 rad/s, or for a driven slider from toggle to "
+        "toggle.",
     )
     dynamics: DynamicsBlock | None = Field(
-        default=None, description="Of a linkage: what it weighs and carries, as in `POST /v1/analyses`."
+        default=None, description="Masses and loads of a linkage, as in `POST /v1/analyses`."
     )
     counterweights: Counterweights = Field(
-        default=Counterweights(), description="Of a linkage: which links may have one, and of what size."
+        default=Counterweights(), description="Counterweights of a linkage: permitted links and sizes."
     )
 
-    objective: ForceWeights = Field(default=ForceWeights(shaking_force=1.0), description="What is minimized.")
-    caps: ForceCaps = Field(default=ForceCaps(), description="What must be kept while the objective is minimized.")
+    objective: ForceWeights = Field(default=ForceWeights(shaking_force=1.0), description="Quantities to minimize.")
+    caps: ForceCaps = Field(default=ForceCaps(), description="Limits to keep while the objective is minimized.")
 
     @property
     def force_units(self) -> Literal["si", "consistent"]:
-        """Forces are in these units."""
+        """Unit system of the forces."""
         return self.units if self.dynamics is None else self.dynamics.units
 
     def contradictions(self) -> list[Contradiction]:
-        """Fields of another object, and what is wrong with those of this one."""
+        """Return fields of the other object, and errors in those of this one."""
         strange = OF_LINKAGES if self.object == "rotor" else OF_ROTORS
         found = [
-            Contradiction(f"/{name}", f"a {self.object} has none; leave it out")
+            Contradiction(f"/{name}", f"not applicable to a {self.object}; omit it")
             for name in strange
             if getattr(self, name) != type(self).model_fields[name].default
         ]
@@ -168,14 +169,12 @@ class BalancingProblem(StatedRotor):
     def _linkage_faults(self) -> list[Contradiction]:
         missing = [name for name in ("mechanism", "dynamics") if getattr(self, name) is None]
         if missing:
-            return [
-                Contradiction(f"/{name}", "a linkage is balanced by its masses in motion; state it") for name in missing
-            ]
+            return [Contradiction(f"/{name}", "required to balance a linkage") for name in missing]
         assert self.mechanism is not None
         assert self.dynamics is not None
         if self.motion.rate == 0.0:
-            return [Contradiction("/motion", "what stands still does not shake; state a speed")]
-        # It brings the analysis core, for which the parsing of problems does not wait.
+            return [Contradiction("/motion", "a linkage at rest does not shake; give a speed")]
+        # Imported here because it loads the analysis core, which parsing a problem should not wait for.
         from synthesis.kinds.balancing.linkage_faults import linkage_faults
 
         joints = {
@@ -189,24 +188,24 @@ class BalancingProblem(StatedRotor):
         return found or self._goal_faults()
 
     def _goal_faults(self) -> list[Contradiction]:
-        """Fields of another goal, and what a minimum needs."""
+        """Return fields of another goal, and missing requirements of a minimum."""
         minimized, weights = self.goal == "minimize", self.counterweights
         found = [
-            Contradiction(f"/counterweights/{name}", f"the goal {self.goal} has none; leave it out")
+            Contradiction(f"/counterweights/{name}", f"not applicable to the goal {self.goal}; omit it")
             for name in (OF_EXACT if minimized else OF_MINIMIZED)
             if getattr(weights, name) is not None
         ]
         if not minimized:
             return found + [
-                Contradiction(f"/{name}", f"the goal {self.goal} has none; leave it out")
+                Contradiction(f"/{name}", f"not applicable to the goal {self.goal}; omit it")
                 for name in ("objective", "caps")
                 if getattr(self, name) != type(self).model_fields[name].default
             ]
         if weights.total_mass is None and weights.max_mass is None:
-            detail = "unbounded: the more mass the less shakes; limit the mass of each weight, or of all"
+            detail = "unbounded: more mass always shakes less; limit the mass of each weight, or of all"
             found.append(Contradiction("/counterweights/total_mass", detail))
         assert self.dynamics is not None
         if self.dynamics.friction is not None:
-            detail = "the best weights are known without friction only; leave it out"
+            detail = "the best weights can only be computed without friction; omit it"
             found.append(Contradiction("/dynamics/friction", detail))
         return found

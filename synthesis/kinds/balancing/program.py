@@ -1,13 +1,13 @@
 """The conic program of the best counterweights on some positions of the motion.
 
 Variables are, in units of the linkage's mass and size, mass μ, first moment s and inertia J of each weight, and for
-each quantity that counts the level t that it reaches. The set of what can be built is convex:
+each counted quantity the level t that it reaches. The set of feasible weights is convex:
 
     J ≥ |s|²/μ + μ²/(2πρt)    a disc of density ρ and thickness t; with more inertia, a ring of the same mass,
     |s| ≤ R μ                 its centre within reach,
 
 two rotated second-order cones and one. So is every goal: a largest magnitude over positions, or a root of the mean
-square. The dual value of the program bounds what any weights can reach, as more positions only raise it.
+square. The dual value of the program bounds all weights, as more positions only raise it.
 """
 
 from __future__ import annotations
@@ -29,9 +29,9 @@ Complex = NDArray[np.complex128]
 
 @dataclass(frozen=True)
 class Level:
-    """A quantity that counts: its values over its unbalanced one, its weight in the cost, and its cap.
+    """A counted quantity: its values over its unbalanced one, its weight in the cost, and its cap.
 
-    ``mean`` tells whether its root mean square is meant and not its largest magnitude.
+    ``mean`` selects its root mean square instead of its largest magnitude.
     """
 
     name: str
@@ -41,23 +41,22 @@ class Level:
     mean: bool = False
 
     def of(self, parameters: Real) -> Real:
-        """The level that weights reach, by positions: shape (..., N); of a mean, the same at all of them."""
+        """Return the level by positions, shape (..., N); for a mean, the same at all of them."""
         reached = np.stack([np.abs(part.at(parameters)) for part in self.values])
         if self.mean:
             return np.asarray(np.sqrt((reached**2).mean(axis=-1, keepdims=True)).max(axis=0))
         return np.asarray(reached.max(axis=0))
 
     def reached(self, parameters: Real) -> Real:
-        """The level, shape (...)."""
+        """Return the level, shape (...)."""
         return np.asarray(self.of(parameters).max(axis=-1))
 
 
 class Limits(NamedTuple):
-    """Of each weight: the greatest mass, the reach, 2πρt (infinite of a point mass), and the radius of gyration.
+    """Limits of each weight: maximum mass, reach, 2πρt (infinite for a point mass), and radius of gyration.
 
-    Of all: the total mass.
-
-    ``turning`` and ``carried`` tell of which weights the inertia and the mass count.
+    ``total`` is the maximum total mass. ``turning`` and ``carried`` are the masks of the weights whose inertia and
+    whose mass count.
     """
 
     mass: Real
@@ -69,12 +68,12 @@ class Limits(NamedTuple):
     carried: NDArray[np.bool_]
 
     def turns(self, n: int) -> bool:
-        """Whether the inertia of a weight counts or is limited."""
+        """Return whether the inertia of a weight counts or is limited."""
         return bool(self.turning[n]) or math.isfinite(self.gyration[n])
 
 
 class Answer(NamedTuple):
-    """Parameters of all weights, the levels by the place of the quantity, and the solution of the program."""
+    """Parameters of all weights, the levels by quantity, and the solution of the program."""
 
     parameters: Real
     levels: Real
@@ -83,9 +82,9 @@ class Answer(NamedTuple):
 
 
 def best_weights(levels: Sequence[Level], limits: Limits, at: Mapping[str, Sequence[int]], *, relaxed: bool) -> Answer:
-    """The best weights on the positions ``at`` of each quantity.
+    """Find the best weights on the positions ``at`` of each quantity.
 
-    With ``relaxed`` all caps may be exceeded by one share, and the least such share is found instead.
+    With ``relaxed`` all caps may be exceeded by a common share, and the smallest such share is found instead.
     """
     links = len(limits.mass)
     count = PARAMETERS * links
@@ -122,7 +121,7 @@ def best_weights(levels: Sequence[Level], limits: Limits, at: Mapping[str, Seque
 
 
 def _sizes(limits: Limits, total: int) -> list[Rows]:
-    """Masses within their bounds, centres within reach."""
+    """Build the rows for masses within their bounds and centres within reach."""
     links = len(limits.mass)
     bounds, offsets = [], []
     for n in range(links):
@@ -148,7 +147,7 @@ def _sizes(limits: Limits, total: int) -> list[Rows]:
 
 
 def _inertias(limits: Limits, total: int, own: Mapping[int, int]) -> list[Rows]:
-    """J − j ≥ |s|²/μ and j ≥ μ²/(2πρt), j the disc's about its centre in columns ``own``; J = 0 where it is nothing."""
+    """Build J − j ≥ |s|²/μ and j ≥ μ²/(2πρt), j the disc's own in columns ``own``; J = 0 if it does not count."""
     rows = []
     for n in range(len(limits.mass)):
         mass, inertia = PARAMETERS * n, PARAMETERS * n + 3
@@ -167,6 +166,7 @@ def _inertias(limits: Limits, total: int, own: Mapping[int, int]) -> list[Rows]:
         cone[1, mass + 1] = cone[2, mass + 2] = -2.0
         cone[3, inertia], cone[3, mass] = -1.0, 1.0
         if n in own:
+            # (j c + 1)² ≥ (j c − 1)² + 4 μ² with c = 2πρt, which is j ≥ μ²/c.
             cone[0, own[n]] = cone[3, own[n]] = 1.0
             disc = np.zeros((3, total))
             disc[0, own[n]] = disc[2, own[n]] = -limits.disc[n]
@@ -177,7 +177,7 @@ def _inertias(limits: Limits, total: int, own: Mapping[int, int]) -> list[Rows]:
 
 
 def _largest(level: Level, total: int, column: int, at: Sequence[int]) -> list[Rows]:
-    """|q| ≤ t at positions: cones of a force, pairs of inequalities of what is a number."""
+    """Build |q| ≤ t at positions: cones for a force, pairs of inequalities for a real quantity."""
     rows = []
     listed = list(at)
     for part in level.values:
@@ -198,9 +198,10 @@ def _largest(level: Level, total: int, column: int, at: Sequence[int]) -> list[R
 
 
 def _mean(part: Linear, total: int, column: int) -> Rows:
-    """The root mean square ≤ t: one cone, of the triangle of what the positions add up to."""
+    """Build the root mean square ≤ t: one cone, from the triangular factor of all positions."""
     count = len(part.fixed)
     stacked = np.concatenate([part.by, part.fixed[None]]).T
+    # The factor R has the same norm as the stacked rows: 2N rows shrink to K + 1.
     triangle = np.asarray(np.linalg.qr(np.concatenate([stacked.real, stacked.imag]) / math.sqrt(count), mode="r"))
     matrix = np.zeros((1 + len(triangle), total))
     matrix[0, column] = -1.0

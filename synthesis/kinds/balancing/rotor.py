@@ -1,4 +1,4 @@
-"""Rotors: their unbalance from what is stated of it, and the masses that balance them."""
+"""Rotors: their unbalance from the given data, and the masses that balance them."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ class Rotor(NamedTuple):
 
 
 class Weight(NamedTuple):
-    """A mass at an angle (degrees) and a radius; ``moment`` is what it adds, of a mass that is taken away as well."""
+    """A mass at an angle (degrees) and a radius; ``moment`` is the unbalance that it adds, also if it is removed."""
 
     plane: int
     moment: complex
@@ -40,7 +40,7 @@ class Weight(NamedTuple):
 
 
 class Balancing(NamedTuple):
-    """The weights of all planes; what each of these has to have added, and what is proved to be left at least."""
+    """The weights of all planes, the unbalance that each plane needs, and the proven bound of its residual."""
 
     weights: list[Weight]
     needed: Complex
@@ -49,12 +49,12 @@ class Balancing(NamedTuple):
 
 
 def metres(problem: BalancingProblem) -> float:
-    """The length unit in that of the forces."""
+    """Return the length unit in the unit of the forces."""
     return METRES[problem.length_unit] if problem.units == "si" else 1.0
 
 
 def rotor_of(problem: BalancingProblem) -> Rotor:
-    """The unbalances that a statement tells; of runs with trial weights, those in the planes."""
+    """Build the rotor from the given unbalances; for runs with trial weights, those in the planes."""
     if problem.influence is not None:
         initial = np.array([reading.vector for reading in problem.influence.initial])
         moments = unbalances_by_influence(initial, coefficients(problem))
@@ -62,13 +62,14 @@ def rotor_of(problem: BalancingProblem) -> Rotor:
         moments = np.array([mass.moment for mass in problem.masses])
     else:
         assert problem.rpm is not None
+        # F = m r ω²: a bearing force determines an unbalance at this speed.
         square = metres(problem) * (problem.rpm * RAD_PER_S) ** 2
         moments = np.array([reading.vector / square for reading in problem.bearing_readings])
     return Rotor(moments, np.array(problem.places, np.float64))
 
 
 def coefficients(problem: BalancingProblem) -> Complex:
-    """The influence coefficients of the stated runs, readings by masses times length units."""
+    """Compute the influence coefficients of the given runs: readings per mass times length unit."""
     assert problem.influence is not None
     return influence_coefficients(
         np.array([reading.vector for reading in problem.influence.initial]),
@@ -78,7 +79,8 @@ def coefficients(problem: BalancingProblem) -> Complex:
 
 
 def balanced(problem: BalancingProblem, rotor: Rotor) -> list[Balancing]:
-    """The ways to balance a rotor, the least residual first: one, or the best for each number of places."""
+    """Balance a rotor, the smallest residual first: one way, or the best for each number of places."""
+    # The vectors that the planes must add to cancel force and, with two planes, moment.
     needed = plane_corrections(rotor.moments, rotor.z, np.array(problem.used_planes))
     stated = problem.correction
     if stated is None or stated.placed is None:
@@ -88,7 +90,7 @@ def balanced(problem: BalancingProblem, rotor: Rotor) -> list[Balancing]:
 
 
 def _single(plane: int, moment: complex, stated: Correction | None) -> Weight:
-    """One mass of a plane."""
+    """Choose the single mass of a plane."""
     size, removed = abs(moment), stated is not None and stated.removed
     angle = math.degrees(cmath.phase(-moment if removed else moment))
     if stated is None:
@@ -100,13 +102,13 @@ def _single(plane: int, moment: complex, stated: Correction | None) -> Weight:
 
 
 def _placed(stated: Correction, needed: Complex) -> list[Balancing]:
-    """Holes or stock weights of all planes: the Pareto set of places and residual."""
+    """Choose holes or stock weights of all planes: the Pareto set of places and residual."""
     placed = stated.placed
     assert placed is not None
     sign = -1.0 if stated.holes is not None else 1.0
     directions = placed.directions
     masses = placed.step * np.arange(1, placed.steps + 1) if isinstance(placed, Holes) else np.array(placed.masses)
-    # Of two opposite holes the shallower undoes a part of the deeper: one of them is enough.
+    # Of two opposite holes the shallower cancels part of the deeper: one of them is enough.
     opposite = isinstance(placed, Holes)
     axes = _axes(directions) if opposite else [[angle] for angle in directions]
     options = [[(angle, float(mass)) for angle in axis for mass in masses] for axis in axes]
@@ -131,7 +133,8 @@ def _placed(stated: Correction, needed: Complex) -> list[Balancing]:
 
 
 def _fronts(chosen: list[Chosen]) -> list[tuple[Choice, ...]]:
-    """Choices of all planes that no others beat by places and residual in sum, the least residual first."""
+    """Combine the planes' choices to the Pareto set of total places and total residual, the smallest residual first."""
+    # By number of places first, so that one pass finds the front.
     combined = sorted(
         itertools.product(*(plane.choices for plane in chosen)),
         key=lambda choices: (sum(len(one.picks) for one in choices), sum(abs(one.residual) for one in choices)),
@@ -147,7 +150,7 @@ def _fronts(chosen: list[Chosen]) -> list[tuple[Choice, ...]]:
 
 
 def _axes(directions: list[float]) -> list[list[float]]:
-    """The angles, opposite ones together."""
+    """Group the angles with their opposite ones."""
     axes: dict[float, list[float]] = {}
     for angle in directions:
         axes.setdefault(round(angle % 180.0, 9) % 180.0, []).append(angle)

@@ -25,7 +25,7 @@ def solve_balancing(problem: BalancingProblem, progress: Progress) -> BalancingR
     sifting = Sifting[RotorDesign](problem)
     sifting.sift(ways, partial(verify_rotor, problem, rotor))
     progress(1.0, "verified")
-    # What leaves least in the planes has the least grade where the grade is of these planes.
+    # The smallest residual in the planes also has the smallest grade if the grade refers to these planes.
     proving = {"grade"} if _graded_in_planes(problem) else set()
     complete = all(way.proved for way in ways) and not sifting.rejected.keys() - proving
     return BalancingResult(
@@ -36,7 +36,7 @@ def solve_balancing(problem: BalancingProblem, progress: Progress) -> BalancingR
 
 
 def _graded_in_planes(problem: BalancingProblem) -> bool:
-    """Whether the bearings are in the planes, or there are none that count."""
+    """Return whether the bearings are in the planes, or no bearings count."""
     return problem.supports is None or sorted(problem.supports) == sorted(problem.used_planes)
 
 
@@ -47,22 +47,22 @@ def _ranked(problem: BalancingProblem, designs: list[RotorDesign]) -> list[Rotor
 
 
 def _summary(problem: BalancingProblem, sifting: Sifting[RotorDesign], complete: bool) -> str:
-    """What is left, and what is proved, in words."""
+    """Describe the residual and the proven bound."""
     if not sifting.passed:
         grades = [grade for design in sifting.failed if (grade := design.metrics.grade) is not None]
-        told = f" The least grade that was found is {min(grades):.4g} mm/s." if grades else ""
-        return ("No design exists." if complete else "No design was found.") + told
+        told = f" The smallest grade found is {min(grades):.4g} mm/s." if grades else ""
+        return ("No design exists." if complete else "No design found.") + told
     planes = len(problem.used_planes)
     where = "in one plane" if planes == 1 else "in two planes"
     first = _ranked(problem, sifting.passed)[0].metrics
     least = min(design.metrics.residual_unbalance for design in [*sifting.passed, *sifting.failed])
     kept = any(design.metrics.residual_unbalance == least for design in sifting.passed)
     if problem.correction is None or problem.correction.placed is None:
-        force = " The force is balanced; what the masses do out of the plane is left." if planes == 1 else ""
+        force = " The shaking force is balanced; moments out of the plane remain." if planes == 1 else ""
         return f"Balanced {where}.{force}"
     unit = " g·mm" if problem.units == "si" else ""
-    proved = "than which no choice of the places leaves less" if first.optimal else "and better choices may exist"
+    proved = "proven for this number of places" if first.optimal else "not proven to be the best"
     return (
-        f"Balanced {where} by {first.places} masses or holes, up to {first.residual_unbalance:.4g}{unit}. "
-        f"The least that was found is {least:.4g}{unit}, {proved}{'' if kept else '; its grade is beyond the limit'}."
+        f"Balanced {where} by {first.places} masses or holes; residual unbalance {first.residual_unbalance:.4g}{unit}. "
+        f"The smallest residual found is {least:.4g}{unit}, {proved}{'' if kept else '; its grade exceeds the limit'}."
     )

@@ -1,7 +1,7 @@
-"""The proof of a balanced linkage: its answer driven, and the forces on its frame from the reactions of all joints.
+"""Verification of a balanced linkage: drive the answer, and sum the forces on its frame from all joint reactions.
 
 Nothing is taken from the search: mechanism and block are read from the answer as ``POST /v1/analyses`` would read them,
-and the shaking force is the sum of what all joints do to the frame (Newton and Euler link by link), while the
+and the shaking force is the sum of all joint forces on the frame (Newton and Euler link by link), while the
 counterweights come from momentum.
 """
 
@@ -41,18 +41,18 @@ from synthesis.proof.checks import tolerated
 Real = NDArray[np.float64]
 
 POSITIONS = 720
-"""Over the motion, at which the forces are measured, or as many as its steps where these are more."""
+"""Number of positions over the motion at which the forces are measured; the motion's steps if these are more."""
 
 BALANCED = 1e-9
-"""Share of the unbalanced peak that is rounding."""
+"""Share of the unbalanced peak that is attributed to rounding."""
 
 GRAM_MILLIMETRES = 1e6
 """g·mm in a kg·m."""
 
 
 class Shaking(NamedTuple):
-    """Peaks over the positions at which the reactions are known; ``parts`` are those of force and moment if what the
-    parts of the linkage do by themselves only added up.
+    """Peaks over the positions at which the reactions are known; ``parts`` are the peaks of force and moment if the
+    contributions of all parts of the linkage added up in magnitude.
     """
 
     force: float
@@ -62,9 +62,10 @@ class Shaking(NamedTuple):
 
 
 def measured(machine: Machine, task: Task, count: int, acceleration: float) -> Shaking:
-    """The peaks of a machine's own inertia over the motion of a task."""
+    """Measure the peaks of a machine's own inertia over the motion of a task."""
     now = placed(inertial(machine), task.positions(count), task.speed, acceleration)
     found = reactions(inertial(machine), now)
+    # Positions at which the reactions are determined.
     known = found.solved
     if not known.any():
         return Shaking(math.nan, math.nan, math.nan, (math.nan, math.nan))
@@ -76,7 +77,7 @@ def measured(machine: Machine, task: Task, count: int, acceleration: float) -> S
 
 
 def _parts(machine: Machine, now: Places) -> tuple[Real, Real]:
-    """Σ m |r''|, and Σ m |r − c| |r''| + I |φ''|, over positions."""
+    """Compute Σ m |r''|, and Σ m |r − c| |r''| + I |φ''|, over positions."""
     forces, moments = np.zeros(now.smooth.shape), np.zeros(now.smooth.shape)
     moved = [(part.mass, now.point(link, part.cg)) for link, part in machine.bodies.items()]
     moved += [(mass, now.joints[joint]) for joint, mass in machine.pin_masses.items()]
@@ -84,6 +85,7 @@ def _parts(machine: Machine, now: Places) -> tuple[Real, Real]:
         force = np.asarray(mass)[..., None] * np.abs(acceleration)
         forces, moments = forces + force, moments + np.abs(place - machine.about) * force
     for link, part in machine.bodies.items():
+        # Pin masses have no inertia of their own.
         moments = moments + np.asarray(part.inertia)[..., None] * np.abs(now.spins[link][2])
     return forces, moments
 
@@ -95,11 +97,11 @@ def verify_linkage(
     weights: Sequence[Weight],
     inertias: dict[str, float],
 ) -> BalancedDesign:
-    """A linkage with its counterweights, measured; ``inertias`` are those of the geared links by name."""
+    """Measure a linkage with its counterweights; ``inertias`` are those of the geared links by name."""
     answer, block = answer_of(problem, task, mechanism, weights, inertias)
     machine = machine_of_answer(problem, answer, block)
     count = max(POSITIONS, problem.motion.steps)
-    # Also with an acceleration that matters as much as the speed.
+    # Also with an acceleration that matters as much as the speed: exact balance must hold in any motion.
     accelerated = task.acceleration + _matching(task)
     first, last = (measured(one, task, count, task.acceleration) for one in (task.machine, machine))
     before, after = (measured(one, task, count, accelerated) for one in (task.machine, machine))
@@ -147,20 +149,22 @@ def answer_of(
     weights: Sequence[Weight],
     inertias: dict[str, float],
 ) -> tuple[BalancedLinkage, dict[str, Any]]:
-    """Mechanism and block of an answer."""
+    """Build mechanism and block of an answer."""
     assert problem.dynamics is not None
     block = with_inertias(weighted(task.machine, problem.dynamics, weights), inertias)
     return BalancedLinkage(skeleton=Skeleton.model_validate(skeleton_of(mechanism))), block
 
 
 def machine_of_answer(problem: BalancingProblem, mechanism: BalancedLinkage, block: dict[str, Any]) -> Machine:
-    """The machine that mechanism and block of an answer make, read as an analysis reads them."""
+    """Build the machine of an answer's mechanism and block, read like in an analysis."""
+    # Read only what the answer states, not the solver's own data.
     built = GivenSkeleton.model_validate(mechanism.model_dump()).mechanism()
     return machine_of(DynamicsBlock.model_validate(block), built, problem.length_unit)[0]
 
 
 def _matching(task: Task) -> float:
-    """The acceleration of the input that moves its joints as its speed does."""
+    """Return the acceleration of the input with an effect of the size of the speed's."""
+    # A slide's range sets the length scale of its acceleration.
     if task.machine.mechanism.driven_by_slide:
         return task.speed**2 / abs(task.end - task.start) if task.end != task.start else 1.0
     return task.speed**2
@@ -175,22 +179,24 @@ def _moment_share(after: Shaking, before: Shaking) -> float:
 
 
 def _share(part: float, whole: float, parts: float, parts_after: float) -> float:
-    """What is left of a whole; where that is rounding of its parts, of these."""
+    """Return the remaining share of a whole; if the whole is rounding of its parts, the share of the parts."""
     if whole <= BALANCED * parts or whole == 0.0:
         whole = max(parts, parts_after)
     return part / whole if whole > 0.0 else part
 
 
 def told(problem: BalancingProblem, machine: Machine, weight: Weight) -> Counterweight:
-    """A weight in the units of the answer."""
+    """Describe a weight in the units of the answer."""
     assert problem.dynamics is not None
     mechanism, scale, stated = machine.mechanism, machine.scale, problem.counterweights
     joint = pivot(mechanism, weight.link)
     about = complex(mechanism.joints[joint])
+    # The angle is measured from a joint that differs from the pivot.
     other = next(name for name in mechanism.links[weight.link] if name != joint and _beyond(mechanism, weight, name))
     arm = weight.at / scale - about
     line = complex(mechanism.joints[other]) - about
     written = GRAM_MILLIMETRES * scale if problem.dynamics.units == "si" else 1.0
+    # A disc of the counterweight's mass, if density and thickness are given.
     disc = None
     if stated.density is not None and stated.thickness is not None and weight.mass > 0.0:
         disc = math.sqrt(weight.mass / (math.pi * stated.density * scale * stated.thickness)) / scale
@@ -209,5 +215,5 @@ def told(problem: BalancingProblem, machine: Machine, weight: Weight) -> Counter
 
 
 def _beyond(mechanism: Mechanism, weight: Weight, joint: str) -> bool:
-    """Whether a joint of the weight's link is elsewhere than its pivot."""
+    """Return whether a joint of the weight's link is not at its pivot."""
     return complex(mechanism.joints[joint]) != complex(mechanism.joints[pivot(mechanism, weight.link)])

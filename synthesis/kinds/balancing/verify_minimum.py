@@ -1,7 +1,7 @@
-"""The proof of counterweights that minimize: the answer driven over the grid, its value above the bound and near it.
+"""Verification of minimizing counterweights: drive the answer over the grid; its value must be just above the bound.
 
-The forces are the reactions of the answer's own linkage, solved joint by joint; the program had them from momentum and
-energy. What the weights are is measured on the answer as well.
+The forces are the reactions of the answer's own linkage, solved joint by joint, while the program used momentum and
+energy. The sizes of the weights are measured on the answer as well.
 """
 
 from __future__ import annotations
@@ -27,22 +27,22 @@ from synthesis.proof.checks import at_least, at_most, tolerated
 Real = NDArray[np.float64]
 
 GAP = 5e-3
-"""Share of the value that the bound may be below it."""
+"""Maximum share of the value by which the bound may be below it."""
 
 KEPT = 1e-3
-"""Share of a greatest radius of gyration by which one may be above it."""
+"""Share by which a radius of gyration may exceed its limit."""
 
 CAPPED = 2e-6
-"""Share of a cap by which a peak may be above it."""
+"""Share by which a peak may exceed its cap."""
 
 NEARLY_NOTHING = 1e-6
-"""Value, as a share of the sum of the weights of the objective, that is nothing: a share of it means nothing."""
+"""Value, as a share of the objective's sum of weights, below which it is negligible and a gap has no meaning."""
 
 AGREEMENT = 1e-6
 """Share of the peak by which two routes to a force may differ."""
 
 BUILT = 1e-9
-"""Share by which masses and places may be beyond their limits: rounding."""
+"""Share by which masses and places may exceed their limits by rounding."""
 
 
 class Measured(NamedTuple):
@@ -53,7 +53,7 @@ class Measured(NamedTuple):
     differences: list[float]
 
     def series(self, name: str) -> list[Real]:
-        """The magnitudes of a quantity where it is known."""
+        """Return the magnitudes of a quantity at positions at which it is known."""
         known = self.found.solved
         if name == "shaking_force":
             return [np.abs(self.found.shaking_force[known])]
@@ -64,7 +64,7 @@ class Measured(NamedTuple):
         return [np.abs(force[known]) for force in self.found.joints[name.removeprefix("joint ")].values()]
 
     def level(self, name: str, norm: str) -> float:
-        """The peak of a quantity, or the root of its mean square."""
+        """Return the peak of a quantity, or its root mean square."""
         series = self.series(name)
         if norm == "max":
             return max(float(one.max()) for one in series)
@@ -72,7 +72,7 @@ class Measured(NamedTuple):
 
 
 def verify_minimum(problem: BalancingProblem, task: Task, found: Minimum) -> BalancedDesign:
-    """A linkage with its best counterweights, measured."""
+    """Measure a linkage with its best counterweights."""
     mechanism = task.machine.mechanism
     answer, block = answer_of(problem, task, mechanism, found.weights, {})
     grid = task.positions(max(GRID, problem.motion.steps))
@@ -86,6 +86,7 @@ def verify_minimum(problem: BalancingProblem, task: Task, found: Minimum) -> Bal
     levels = _levels(problem, before, after)
     value = math.fsum(level.weight * level.ratio for level in levels)
     weighed = math.fsum(level.weight for level in levels)
+    # A share of a negligible value would be meaningless.
     gap = (value - found.bound) / value if value > NEARLY_NOTHING * weighed else 0.0
     weights = [told(problem, task.machine, weight) for weight in found.weights]
     stated, scale = problem.counterweights, task.machine.scale
@@ -138,7 +139,7 @@ def verify_minimum(problem: BalancingProblem, task: Task, found: Minimum) -> Bal
 
 
 def _levels(problem: BalancingProblem, before: Measured, after: Measured) -> list[ForceLevel]:
-    """Each quantity that counts or has a cap; a cap is of the peak, also where means count."""
+    """Compare each quantity in the objective or with a cap; a cap is on the peak, also if means count."""
     objective, caps = problem.objective, problem.caps
     names = ["shaking_force", "shaking_moment", "drive"]
     listed = [(name, getattr(objective, name), getattr(caps, name)) for name in names]
@@ -158,9 +159,10 @@ def _levels(problem: BalancingProblem, before: Measured, after: Measured) -> lis
 
 
 def _measured(machine: Machine, task: Task, grid: Real) -> Measured:
-    """A machine over the grid, by both routes."""
+    """Measure a machine over the grid, by both routes."""
     now = placed(machine, grid, task.speed, task.acceleration)
     found = reactions(machine, now)
+    # The second route: momentum and energy instead of joint reactions.
     check = balance(machine, now, paced(machine, grid), found.rubbing)
     known = found.solved
     pairs = (

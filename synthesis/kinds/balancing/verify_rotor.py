@@ -1,8 +1,8 @@
-"""The proof of a balanced rotor: its masses turned as points in space, and the forces that hold it.
+"""Verification of a balanced rotor: its masses rotated as points in space, and the forces that hold it.
 
-Nothing of the solver's formulas is used. Every unbalance and every correction of the answer is a point mass on a
+None of the solver's formulas is used. Every unbalance and every correction of the answer is a point mass on a
 circle; at positions over a turn the forces at both bearings are solved from Newton's and Euler's equations of the whole
-rotor, and are compared with those of the rotor before.
+rotor, and are compared with those before the correction.
 """
 
 from __future__ import annotations
@@ -33,20 +33,20 @@ from synthesis.proof.checks import at_most, tolerated
 Real = NDArray[np.float64]
 
 POSITIONS = 72
-"""Over a turn, at which the forces are solved."""
+"""Number of positions over a turn at which the forces are solved."""
 
 BALANCED = 1e-10
-"""Share of the forces of all unbalances by themselves that is rounding."""
+"""Share of the forces of all separate unbalances that is attributed to rounding."""
 
 FORETOLD = 1e-9
-"""Share of the readings up to which those that are foretold are 0."""
+"""Share of the readings up to which predicted ones count as zero."""
 
 GRAM_MILLIMETRES = 1e6
 """g·mm in a kg·m."""
 
 
 class Turned(NamedTuple):
-    """Over a turn: the largest of the whole force, of its moment about the first plane, and of the bearings' forces."""
+    """Maxima over a turn: of the total force, of its moment about the first plane, and of the bearing forces."""
 
     force: float
     moment: float
@@ -62,7 +62,7 @@ class Points(NamedTuple):
 
 
 def verify_rotor(problem: BalancingProblem, rotor: Rotor, found: Balancing) -> RotorDesign:
-    """A rotor with its corrections, measured."""
+    """Measure a rotor with its corrections."""
     planes, unit = problem.used_planes, metres(problem)
     written = GRAM_MILLIMETRES * unit if problem.units == "si" else 1.0
     mechanism = _mechanism(problem, rotor, found, written)
@@ -119,7 +119,7 @@ def verify_rotor(problem: BalancingProblem, rotor: Rotor, found: Balancing) -> R
 
 
 def _mechanism(problem: BalancingProblem, rotor: Rotor, found: Balancing, written: float) -> RotorMechanism:
-    """The rotor of the answer."""
+    """Build the rotor of the answer."""
     planes, supports = problem.used_planes, problem.supports
     return RotorMechanism(
         unbalances=[
@@ -144,9 +144,10 @@ def _mechanism(problem: BalancingProblem, rotor: Rotor, found: Balancing, writte
 
 
 def _points(mechanism: RotorMechanism, written: float, *, corrected: bool) -> Points:
-    """The point masses of a rotor of the answer, in masses times length units."""
+    """List the point masses of a rotor of the answer, in masses times length units."""
     rows = [(entry.unbalance, entry.angle, entry.z) for entry in mechanism.unbalances]
     if corrected:
+        # Removed material acts against its direction.
         signs = [-1.0 if entry.removed else 1.0 for entry in mechanism.corrections]
         added = zip(signs, mechanism.corrections, strict=True)
         rows += [(sign * entry.unbalance, entry.angle, entry.z) for sign, entry in added]
@@ -155,7 +156,7 @@ def _points(mechanism: RotorMechanism, written: float, *, corrected: bool) -> Po
 
 
 def _turned(points: Points, about: float, supports: list[float] | None, unit: float, speed: float) -> Turned:
-    """The rotor at positions over a turn: m a of its points in space, and what holds it."""
+    """Rotate the rotor over a turn: m a of its points in space, and the forces that hold it."""
     turn = 2.0 * np.pi * np.arange(POSITIONS) / POSITIONS
     angles = points.angles + turn[:, None]
     pull = unit * speed**2 * points.moments
@@ -164,6 +165,7 @@ def _turned(points: Points, about: float, supports: list[float] | None, unit: fl
     moment = ((points.z - about)[:, None] * forces).sum(axis=1)
     held: list[float] = []
     if supports is not None:
+        # Two bearings: force and moment equilibrium give both of their forces.
         levers = np.array([[1.0, 1.0], [supports[0] - about, supports[1] - about]])
         carried = np.linalg.solve(levers, np.stack([whole, moment], axis=1))
         held = np.hypot(carried[..., 0], carried[..., 1]).max(axis=0).tolist()
@@ -173,11 +175,13 @@ def _turned(points: Points, about: float, supports: list[float] | None, unit: fl
 
 
 def _checks(problem: BalancingProblem, before: Points, after: Points, left: list[float]) -> list[Check]:
-    """What is left in the planes is what is said; of single masses, nothing, and no force is on the bearings."""
+    """Check the residuals in the planes; single masses must leave nothing, and no force on the bearings."""
     planes = problem.used_planes
     measured = _turned(after, planes[0], planes if len(planes) == 2 else None, 1.0, 1.0)
+    # With one plane only the force can be balanced.
     found = measured.supports or [measured.force]
     parts = _alone(before, planes)
+    # Compare the residuals found by turning with those reported.
     off = max(abs(one - other) for one, other in zip(found, left, strict=True))
     checks = [tolerated("residual", _share(off, parts), BALANCED)]
     if _continuous(problem) and len(planes) == 2 and problem.supports is not None:
@@ -187,29 +191,31 @@ def _checks(problem: BalancingProblem, before: Points, after: Points, left: list
 
 
 def _alone(points: Points, supports: list[float]) -> float:
-    """The sum of what each point by itself exerts where the rotor is held: what their sum is a share of."""
+    """Sum the magnitudes of each point's own bearing forces, the scale for their sum."""
     if len(supports) == 1:
         return float(np.abs(points.moments).sum())
     near, far = supports
+    # Lever rule: the shares of both bearings.
     shares = np.abs((points.z - near) / (far - near)) + np.abs((points.z - far) / (far - near))
     return float((np.abs(points.moments) * shares).sum())
 
 
 def _grades(problem: BalancingProblem, *rotors: Points) -> list[float] | None:
-    """e ω in mm/s of rotors; None without mass and speed.
+    """Compute e ω in mm/s of rotors; None without mass and speed.
 
-    The unbalance is the sum of those in the bearings' planes (the tolerance planes of ISO 21940-11), where these are
-    known, so that a couple that one plane leaves counts too.
+    The unbalance is the sum of those in the bearings' planes (the tolerance planes of ISO 21940-11), if these are
+    known, so that a couple left by a single plane counts too.
     """
     if problem.rotor_mass is None or problem.rpm is None:
         return None
+    # e ω = U ω/m, in mm/s.
     rate = METRES[problem.length_unit] * 1e3 * problem.rpm * RAD_PER_S / problem.rotor_mass
     turned = [_turned(points, problem.planes[0], problem.supports, 1.0, 1.0) for points in rotors]
     return [rate * (sum(one.supports) if one.supports else one.force) for one in turned]
 
 
 def _continuous(problem: BalancingProblem) -> bool:
-    """Whether each plane has one mass of the size and at the angle that it needs."""
+    """Return whether each plane has one mass of exactly the required size and angle."""
     return problem.correction is None or problem.correction.placed is None
 
 

@@ -1,4 +1,4 @@
-"""Cams: the motion program that is best by a criterion, the smallest cam that carries it, and their proof."""
+"""Cams: the best motion program for a criterion, the smallest cam that follows it, and the verification of both."""
 
 from __future__ import annotations
 
@@ -18,13 +18,13 @@ def _solve(problem: CamProblem, progress: Progress) -> CamResult:
 
 
 def _warm_up() -> None:
-    """Load the kernels and the convex optimizer by the first examples: a motion by stated laws, and one sought."""
+    """Load the kernels and the convex optimizer by the first two examples: given laws, and an optimal motion."""
     for example in KIND.examples[:2]:
         _solve(CamProblem.model_validate(example), lambda fraction, message: None)
 
 
 def _brief(problem: CamProblem) -> bool:
-    """A motion whose laws are stated is drawn and measured; others are sought."""
+    """Return whether every law is given: the motion is then only drawn and measured, not optimized."""
     return not any(isinstance(segment, Move) and segment.law in ("auto", "optimal") for segment in problem.segments)
 
 

@@ -1,4 +1,4 @@
-"""What every answer about a cam has in common: segments, joints, how good the program is, forces, and the result."""
+"""Parts that every answer about a cam shares: segments, joints, optimality, forces, and the result."""
 
 from __future__ import annotations
 
@@ -47,17 +47,17 @@ from synthesis.outcome.sifting import Sifting
 from synthesis.proof.checks import at_least
 
 FORCE_SLACK = 1e-9
-"""Relative slack of the least contact force: the least preload gives exactly that, but for rounding."""
+"""Relative slack of the minimum contact force: the smallest sufficient preload gives exactly that, to rounding."""
 
 SAMPLES = 181
-"""Cam angles between two changes of walls at which is asked which cam pushes; it is one and the same in between."""
+"""Cam angles sampled between two wall changes to decide which cam pushes; it is the same cam throughout."""
 
 BINDS = 1e-6
-"""Relative distance to a demand within which it is met with nothing to spare."""
+"""Relative distance to a constraint within which the constraint counts as active."""
 
 
 def segments_of(problem: CamProblem, composed: Composition) -> list[CamSegment]:
-    """Every segment with its law, its place and its exact peaks."""
+    """Return every segment with its law, its cam angles and its exact peaks."""
     segments, start = [], 0.0
     unit = 1.0 / problem.displacement_unit
     for stated, name, segment in zip(problem.segments, composed.names, composed.program.segments, strict=True):
@@ -79,7 +79,7 @@ def segments_of(problem: CamProblem, composed: Composition) -> list[CamSegment]:
 
 
 def joints_of(problem: CamProblem, program: Program) -> list[CamJoint]:
-    """Joints of the segments, and inner jumps."""
+    """Return the joints between segments, and jumps inside segments."""
     names: tuple[Literal["s", "v", "a", "j"], ...] = ("s", "v", "a", "j")
     unit = 1.0 / problem.displacement_unit
     joints = []
@@ -97,16 +97,20 @@ def joints_of(problem: CamProblem, program: Program) -> list[CamJoint]:
 
 
 def optimality_of(problem: CamProblem, composed: Composition, size: float) -> Optimality:
-    """The criterion's value and its bound; ``size`` is the cam's, where that is the criterion."""
+    """Return the criterion's value and lower bound; ``size`` is the cam's, used if that is the criterion."""
     value, scope = composed.value, composed.scope
     if problem.minimize == "size":
         value = size
+        # The convex program bounds the size by pressure angle and curvature only; the other limits may
+        # enlarge the cam.
         if composed.bound is not None:
             scope += "; the bound is by pressure angle, or by curvature and width of a face"
     bound = None if composed.bound is None else min(composed.bound, value)
+    # The program works with moments about an oscillating arm's pivot; the answer is in forces at the roller.
     if problem.minimize == "peak_contact_force":
         value /= arm_length(problem)
         bound = None if bound is None else bound / arm_length(problem)
+    # A bound of zero proves nothing about the gap.
     gap = value / bound - 1.0 if bound else None
     return Optimality(
         criterion=problem.minimize,
@@ -119,7 +123,7 @@ def optimality_of(problem: CamProblem, composed: Composition, size: float) -> Op
 
 
 def forces_of(problem: CamProblem, program: Program) -> CamForces | None:
-    """Contact force and torque of the follower, with spring and least preload where the client leaves them free."""
+    """Compute contact force and torque of the follower; a free spring and a free preload are chosen first."""
     if problem.dynamics is None:
         return None
     stated, pressed = problem, held(problem, program)
@@ -129,6 +133,7 @@ def forces_of(problem: CamProblem, program: Program) -> CamForces | None:
     groove = problem.grooved
     force, torque = running.force_extremes, running.torque_extremes
     over_speeds = None if top_rpm is None else _over_speeds(running, top_rpm, arm)
+    # A groove has no preferred wall: the angles at which the force changes sign are the wall changes.
     changes = np.unique(np.degrees(running.reversals()).round(9)).tolist() if groove else None
     damping = dynamics.damping_ratio
     train, warning = train_vibration(problem, running)
@@ -144,6 +149,8 @@ def forces_of(problem: CamProblem, program: Program) -> CamForces | None:
         spring_rate=load.spring_rate / arm**2,
         jump_speed=None if groove else _jump_rpm(running),
         natural_frequency=load.natural_frequency,
+        # An overdamped follower (damping ratio of at least 1) does not oscillate, so it has no damped
+        # frequency.
         damped_frequency=load.natural_frequency * math.sqrt(1.0 - damping**2) if damping < 1.0 else None,
         frequency_ratio=load.natural_frequency / running.speed,
         over_speeds=over_speeds,
@@ -154,12 +161,15 @@ def forces_of(problem: CamProblem, program: Program) -> CamForces | None:
 
 
 def _pushing(running: RunningCam, changes: Sequence[float]) -> list[PushingCam]:
-    """Which of two conjugate cams pushes between the changes: the first where the force is along the displacement."""
+    """Find which conjugate cam pushes between wall changes: the first if the force acts along the displacement."""
+    # Without any change one cam pushes over the whole turn.
     starts = list(changes) or [0.0]
     ends = [*starts[1:], starts[0] if changes else 360.0]
     found = []
     for start, end in zip(starts, ends, strict=True):
         last = end if end > start else end + 360.0
+        # The sign is read where the force is greatest: near the changes it is only rounding. Both ends are
+        # left out.
         force = running.force(np.radians(np.linspace(start, last, SAMPLES)[1:-1]))
         strongest = force[np.abs(force).argmax()]
         found.append(PushingCam(start=start, end=end, cam=1 if strongest >= 0.0 else 2))
@@ -167,13 +177,13 @@ def _pushing(running: RunningCam, changes: Sequence[float]) -> list[PushingCam]:
 
 
 def _jump_rpm(running: RunningCam) -> float | None:
-    """The speed at which the follower first leaves the cam; where it rests without any force it has not left it."""
+    """Return the speed at which the follower first leaves the cam, rev/min; resting without force is not leaving it."""
     speed = running.jump_speed(-FORCE_SLACK * running.force_extremes.largest)
     return None if math.isinf(speed) else speed * 30.0 / math.pi
 
 
 def _over_speeds(running: RunningCam, top_rpm: float, arm: float) -> ContactOverSpeeds:
-    """Where the follower is pressed to the cam least, at any speed up to the greatest."""
+    """Find the minimum contact force over the turn, at any speed up to the greatest."""
     weakest = weakest_contact(running.program, running.load, top_rpm)
     return ContactOverSpeeds(
         max_rpm=top_rpm,
@@ -184,7 +194,7 @@ def _over_speeds(running: RunningCam, top_rpm: float, arm: float) -> ContactOver
 
 
 def _choice(problem: CamProblem, spring: Spring, over_speeds: ContactOverSpeeds, arm: float) -> SpringChoice:
-    """The chosen spring with its bound, and the demands that are met with nothing to spare."""
+    """Describe the chosen spring with its lower bound and its active constraints."""
     dynamics = problem.dynamics
     assert dynamics is not None
     assert problem.speed_rpm is not None
@@ -192,12 +202,14 @@ def _choice(problem: CamProblem, spring: Spring, over_speeds: ContactOverSpeeds,
     binding: list[Binding] = []
     if over_speeds.min_contact_force <= dynamics.least_force + BINDS * abs(force):
         binding.append("least_force")
+    # A free rate has no range of its own.
     low, high = (stated.min, stated.max) if isinstance(stated, RateRange) else (0.0, math.inf)
     if dynamics.min_frequency_ratio is not None:
         speed = radians_a_second(problem.speed_rpm)
         needed = least_rate(dynamics, problem.length_unit, speed)
         if low < needed and rate <= needed * (1.0 + BINDS):
             binding.append("min_frequency_ratio")
+            # The frequency ratio, not the lower end of the range, fixes the rate: do not report both.
             low = -1.0
     if rate <= low * (1.0 + BINDS):
         binding.append("spring_rate/min")
@@ -209,9 +221,9 @@ def _choice(problem: CamProblem, spring: Spring, over_speeds: ContactOverSpeeds,
 
 
 def force_checks(problem: CamProblem, forces: CamForces | None) -> list[Check]:
-    """Whether the follower stays on the cam with the least force that is demanded, none where no other is stated.
+    """Check that the minimum contact force is at least the required one (0 by default).
 
-    Between two walls the force may have either sign.
+    Between two walls the force may have either sign, so that only the frequency ratio is checked there.
     """
     if forces is None or problem.dynamics is None:
         return []
@@ -231,12 +243,13 @@ def force_checks(problem: CamProblem, forces: CamForces | None) -> list[Check]:
 
 
 def motion_metrics(problem: CamProblem, program: Program) -> dict[str, Any]:
-    """Metrics of the motion alone, whatever cam makes it."""
+    """Compute the metrics of the motion program alone, which do not depend on the cam."""
     _, v, a, j = program.peaks
     torque = extremes(lambda at: np.asarray(program.pieces.motion(at).v * program.pieces.motion(at).a), program.breaks)
     return {
         "peak_velocity": v.largest,
         "peak_acceleration": a.largest,
+        # At a jump of the acceleration the jerk is unbounded, so no peak is reported.
         "peak_jerk": j.largest if program.obeys_fundamental_law else None,
         "rms_acceleration": root_mean_square(program, lambda motion: motion.a),
         "peak_inertia_torque": torque.largest,
@@ -251,27 +264,29 @@ def result_of(
     size: Size,
     radius: tuple[str, float],
 ) -> CamResult:
-    """The result with its only candidate; ``radius`` is its name and value, for the summary."""
+    """Build the result with its only candidate; ``radius`` is its name and value, for the summary."""
     passed = design.verification.passed
     failed = [check.name for check in design.verification.checks if not check.passed]
     sifting = Sifting[CamDesign | BarrelCamDesign](problem)
     sifting.add(design)
     name, length = radius
     if passed:
-        summary = f"A cam of {name} radius {length:.6g} {problem.length_unit} carries the program."
+        summary = f"A cam with a {name} radius of {length:.6g} {problem.length_unit} follows the program."
         if design.optimality.bound is not None and design.optimality.gap is not None:
             gap = 100.0 * design.optimality.gap
-            summary += f" Its {problem.minimize.replace('_', ' ')} is within {gap:.2g} % of the least possible."
+            summary += f" Its {problem.minimize.replace('_', ' ')} is within {gap:.2g} % of the minimum."
         if design.optimality.warning is not None:
             summary += f" {design.optimality.warning}"
         if design.metrics.peak_jerk is None:
-            summary += " Where its acceleration jumps the jerk has no bound, so that no peak of it is told."
+            summary += " The acceleration jumps, so the jerk has no finite peak and none is reported."
     else:
         summary = (
-            f"The smallest cam found, of {name} radius {length:.6g} {problem.length_unit}, fails: {', '.join(failed)}."
+            f"The smallest cam found, with a {name} radius of {length:.6g} {problem.length_unit}, fails: "
+            f"{', '.join(failed)}."
         )
         if "meets_accelerations" in failed and problem.limits.jerk is None:
-            summary += " Without a limit on jerk an acceleration may be met for an instant only; state one."
+            summary += " Without a limit on jerk an acceleration may be reached only for an instant; set `limits.jerk`."
+    # A given radius is not the result of an optimization.
     stated = any(getattr(problem.follower, f"{part}_radius", None) for part in ("prime", "base", "cylinder"))
     given = composed.bound is None and not any(isinstance(s, Move) and s.law == "auto" for s in problem.segments)
     # With the laws given and the smallest cam proven, a limit on size is broken by every cam.
@@ -289,7 +304,7 @@ def _method(composed: Composition, stated: bool) -> str:
 
 
 def none_of(problem: CamProblem, reason: str, proven: bool, cause: str) -> CamResult:
-    """No design, and why."""
+    """Build a result without designs that gives the reason."""
     sifting = Sifting[CamDesign](problem)
     sifting.reject(cause)
     method = "convex_program" if cause == "motion_limits" else "exact sizing"

@@ -1,7 +1,7 @@
 """Barrel cams: the smallest cylinder for a motion program, its groove, and their verification.
 
-tan φ = v/R, so that the greatest velocity of rise and fall ask for R ≥ |v|/tan φ; the unrolled pitch curve has the
-curvature a R/(R² + v²)^{3/2}, whose radius must exceed the roller's by the ratio that is asked for, at every angle.
+tan φ = v/R, so that the greatest velocities of rise and fall require R ≥ |v|/tan φ. The unrolled pitch curve has the
+curvature a R/(R² + v²)^{3/2}; its radius must exceed the roller's by the required ratio at every angle.
 """
 
 from __future__ import annotations
@@ -42,6 +42,7 @@ def solve_barrel(problem: CamProblem, follower: BarrelRoller, composed: Composit
     barrel = BarrelCam(program, size.radius, roller)
     progress(0.7, "verifying")
 
+    # Both walls get points at the same angles: those of the wall that needs more of them.
     walls = partial(barrel.wall, side=-1), partial(barrel.wall, side=1)
     angle = max((profile_angles(program, wall, roller, problem.profile_points) for wall in walls), key=len)
     mechanism, verification, measured = resolved(
@@ -50,7 +51,7 @@ def solve_barrel(problem: CamProblem, follower: BarrelRoller, composed: Composit
     if measured is None:
         reason = (
             f"the contact of a roller of radius {roller:.6g} in a groove on a cylinder of radius {size.radius:.6g} is "
-            "not resolved by any number of points that a wall may have; take a larger roller or a slower motion"
+            "not resolved by the maximum number of points per wall; use a larger roller or a slower motion"
         )
         return none_of(problem, reason, False, "follower_can_be_laid_on")
     design = BarrelCamDesign(
@@ -66,31 +67,37 @@ def solve_barrel(problem: CamProblem, follower: BarrelRoller, composed: Composit
 
 
 def _closer(angle: Real, measured: MeasuredBarrel, failed: set[str]) -> Real | None:
-    """Angles that stand closer where the walls' points are too few; None where more do not help."""
+    """Return a finer set of angles if the walls have too few points; None if more points do not help."""
+    # A cusp is a property of the groove, not of its resolution.
     if "no_cusp" in failed:
         return None
     if any("reproduces" in name for name in failed):
         return refined(angle, measured.off, REPRODUCED)
+    # Refine where the curvature is unsettled; refine for the pressure angle only once no curvature is.
     doubtful = measured.unsettled if measured.unsettled.any() else measured.unsteady
     return refined(angle, doubtful, 1.0) if doubtful.any() else None
 
 
 def smallest_barrel(problem: CamProblem, follower: BarrelRoller, program: Program) -> Size | None:
-    """The smallest radius of the cylinder, or the one that is stated; None where curvature allows none."""
+    """Return the smallest radius of the cylinder, or the given one; None if curvature allows none."""
     if follower.cylinder_radius is not None:
         return Size(follower.cylinder_radius, proven=True)
     limits, v, roller = problem.limits, program.peaks[1], follower.roller_radius
     rise = math.tan(math.radians(limits.pressure_angle))
     fall = math.tan(math.radians(limits.falling_pressure_angle))
+    # Pressure angle, hub and roller bound R directly; curvature needs the search over all cam angles below.
+    # R ≥ |v|/tan φ for rise and fall separately, and at least hub and roller.
     least = max(v.greatest / rise, -v.least / fall, limits.hub_radius, roller)
     rho = least_pitch_radius(limits, roller)
+    # Beyond this radius the unrolled curve is almost straight, so that curvature no longer decides.
     stop = MAX_RADIUS * (least + program.peaks[2].largest + rho)
     radius = smallest_allowed(program, _curvature(rho), least, stop)
+    # The margin keeps rounding in the finished groove from breaking the limit.
     return None if radius is None else Size(radius * (1.0 + MARGIN), proven=True)
 
 
 def _curvature(rho: float) -> Callable[[Motion, Real], Real]:
-    """|κ| ρ − 1 as a function of motion and R."""
+    """Return |κ| ρ − 1 as a function of motion and R."""
 
     def excess(motion: Motion, radius: Real) -> Real:
         return np.asarray(np.abs(motion.a) * radius * rho / (radius**2 + motion.v**2) ** 1.5 - 1.0)
@@ -99,7 +106,7 @@ def _curvature(rho: float) -> Callable[[Motion, Real], Real]:
 
 
 def _metrics(problem: CamProblem, program: Program, roller: float, measured: MeasuredBarrel) -> BarrelMetrics:
-    """The measured groove as the answer has it."""
+    """Return the metrics of the measured groove as the answer reports them."""
     least = reported(measured.least_radius)
     return BarrelMetrics(
         lift=program.lift,

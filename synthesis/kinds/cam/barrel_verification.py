@@ -1,7 +1,7 @@
-"""The proof of a barrel cam: a roller is laid against both walls of the finished groove, and what it does is measured.
+"""Verification of a barrel cam: lay a roller against both walls of the finished groove and measure its motion.
 
 Displacement, velocity and pressure angle come from the points of the walls alone, at cam angles four times as close as
-the design's; the cylinder is unrolled, as it is for the making of such cams.
+the design's. The cylinder is unrolled, as in the manufacture of such cams.
 """
 
 from __future__ import annotations
@@ -29,12 +29,12 @@ Real = NDArray[np.float64]
 
 @dataclass(frozen=True)
 class MeasuredBarrel:
-    """What the finished groove does: greatest pressure angles (degrees), least radius of its pitch curve, its length.
+    """Measurements on the finished groove: greatest pressure angles (degrees), least radius of its pitch curve, length.
 
     ``off`` is the greatest deviation of either wall from the program, from each angle of the table to the next, as a
-    share of the lift; NaN where the roller touches nothing. ``unsettled`` says, by how many times what is allowed, how
-    far the curvature from each angle to the next depends on how close points stand, where it may be the greatest;
-    ``unsteady`` the same of the pressure angle.
+    share of the lift; NaN if the roller touches no wall. ``unsettled`` is, as a multiple of the permitted value, the
+    dependence of the curvature on the point spacing from each angle to the next, where the curvature may be
+    greatest; ``unsteady`` is the same for the pressure angle.
     """
 
     rising: float
@@ -47,7 +47,7 @@ class MeasuredBarrel:
 
 
 def verify_barrel(problem: CamProblem, mechanism: BarrelCamMechanism) -> tuple[Verification, MeasuredBarrel | None]:
-    """Measure a barrel cam against its problem; None where the roller cannot be laid against a wall at all."""
+    """Measure a barrel cam against its problem; None if the roller cannot be laid against a wall at all."""
     radius, roller = mechanism.cylinder_radius, mechanism.follower.roller_radius
     demanded = Reproduction.of(problem, mechanism.program)
     try:
@@ -56,6 +56,7 @@ def verify_barrel(problem: CamProblem, mechanism: BarrelCamMechanism) -> tuple[V
             UnrolledWall(points_of(curve), TURN * radius, at, stretches.breaks)
             for curve in (mechanism.lower_wall, mechanism.upper_wall)
         )
+        # Side 1 is the lower wall, which the roller touches from above; side −1 the upper wall.
         touches = lower.follow(radius * demanded.angle, roller, 1), upper.follow(radius * demanded.angle, roller, -1)
     except (DimensionError, ShapeError):
         return Verification.of([NOT_LAID_ON]), None
@@ -71,6 +72,7 @@ def verify_barrel(problem: CamProblem, mechanism: BarrelCamMechanism) -> tuple[V
         walls = worst_of_wall(lower, roller, 1, stretches), worst_of_wall(upper, roller, -1, stretches)
     except DimensionError:
         return Verification.of([*checks, NOT_LAID_ON]), None
+    # The worse of both walls counts.
     rising, falling = (math.degrees(max(getattr(wall, name) for wall in walls)) for name in ("rising", "falling"))
     unsettled, unsteady = (
         np.maximum(getattr(walls[0], name), getattr(walls[1], name)) for name in ("unsettled", "unsteady")
@@ -79,6 +81,7 @@ def verify_barrel(problem: CamProblem, mechanism: BarrelCamMechanism) -> tuple[V
     measured = MeasuredBarrel(
         rising, falling, _pitch_radius(*walls, roller), length, np.maximum(*off), unsettled, unsteady
     )
+    # A wall that the roller loses has no displacements to difference; its reproduction check has failed already.
     if all(touched):
         worst = float(measured.off.max())
         checks += rate_checks(problem, _measure(lower, radius, roller), demanded.lift, demanded.tolerance, worst)
@@ -89,7 +92,7 @@ def verify_barrel(problem: CamProblem, mechanism: BarrelCamMechanism) -> tuple[V
 
 
 def _measure(wall: UnrolledWall, radius: float, roller: float) -> Measure:
-    """s and v = R times the slope of the wall where the roller touches it."""
+    """Return a function for s and v, where v is R times the slope of the wall at the contact with the roller."""
 
     def measure(angle: Real) -> tuple[Real, Real]:
         touch = wall.follow(radius * angle, roller, 1)
@@ -99,6 +102,7 @@ def _measure(wall: UnrolledWall, radius: float, roller: float) -> Measure:
 
 
 def _pitch_radius(lower: WorstOfWall, upper: WorstOfWall, roller: float) -> float:
-    """Least radius of curvature of the pitch curve, which lies a roller's radius inside each wall."""
+    """Return the least radius of curvature of the pitch curve, which runs one roller radius inside each wall."""
+    # The offset by the roller radius shortens radii on the one side of a bend and lengthens them on the other.
     bends = (lower.up, -roller), (lower.down, roller), (upper.up, roller), (upper.down, -roller)
     return min((1.0 / bend + inside for bend, inside in bends if bend > 0.0), default=math.inf)

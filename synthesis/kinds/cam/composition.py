@@ -1,9 +1,9 @@
-"""The motion program of a problem: given segments, automatic laws, optimal runs, and how good it is.
+"""The motion program of a problem: given segments, automatic laws, optimal runs, and the program's optimality.
 
-Segments with a law, dwells and polynomials are taken as they are. Automatic segments take the laws whose velocity and
+Segments with a given law, dwells and polynomials are used unchanged. Automatic segments get the laws whose velocity and
 acceleration fit their neighbours, and among those the best by the criterion: a shortest path over the states at the
-joints. The segments that are still open form runs of neighbouring optimal segments. Each run is one convex program;
-where the criterion belongs to the whole cam (size, contact force), one program covers all runs.
+joints. The remaining open segments form runs of neighbouring optimal segments. Each run is one convex program;
+if the criterion belongs to the whole cam (size, contact force), one program covers all runs.
 """
 
 from __future__ import annotations
@@ -44,42 +44,43 @@ from synthesis.kinds.cam.segments import Dwell, Move, Polynomial
 from synthesis.model.kind import Progress
 
 ORDERS = {"velocity": 1, "acceleration": 2, "jerk": 3}
-"""Derivatives that criteria and limits are named after."""
+"""Orders of the derivatives that criteria and limits name."""
 
 FITS = 1e-9
 """Jump at a joint, as a share of the segments' own rates, up to which an automatic law fits."""
 
 NO_UNDERCUT = 1.02
-"""Radius of curvature of the pitch curve over the roller's at least, whatever is asked: at 1 the cam has a cusp."""
+"""Minimum radius of curvature of the pitch curve over the roller's, for any request: at 1 the cam has a cusp."""
 
 EDGE = 0.02
-"""Radius of curvature, as a share of the travel, below which the cam under a flat face is an edge and no cam."""
+"""Radius of curvature, as a share of the travel, below which the cam under a flat face is an edge."""
 
 LOOSE = 1e6
-"""Limits on a derivative that are this many times a unit lift over a unit angle do not bind on any grid here, and would
-only spoil the program's scaling; verification holds the motion to them all the same."""
+"""Limits on a derivative that exceed a unit lift over a unit angle by this factor do not bind on any grid here and
+would only spoil the program's scaling; verification checks them all the same."""
 
 SAMPLES = 721
-"""Points of a segment at which a criterion without a closed form compares laws; the choice needs no more."""
+"""Points of a segment at which laws are compared by a criterion without a closed form; the choice needs no more."""
 
 
 def silent(fraction: float, message: str) -> None:
-    """The default progress: it reports nothing."""
+    """Ignore progress reports: the default callback."""
 
 
 @dataclass(frozen=True)
 class _GridProgress:
-    """Reports the convex programs of several runs, within a part of the whole work."""
+    """Reports the convex programs of several runs as a fraction of the whole work."""
 
     progress: Progress
     reach: tuple[float, float]
     runs: int
 
     def of(self, run: int) -> OnGrid:
-        """For the programs of one run."""
+        """Return the callback for the programs of one run."""
         start, end = self.reach
 
         def on_grid(steps: int) -> None:
+            # Every run is solved on a coarse and then on a fine grid, of about equal effort.
             share = (run + (0.5 if steps > STEPS[0] else 0.0)) / self.runs
             which = f" {run + 1} of {self.runs}" if self.runs > 1 else ""
             self.progress(start + (end - start) * share, f"optimal motion{which}: convex program of {steps} steps")
@@ -91,8 +92,8 @@ class _GridProgress:
 class Composition:
     """A finished program, and the criterion's value and bound.
 
-    ``names`` are the segments' laws. ``bound`` is None where nothing was optimized over all motions; ``scope`` says
-    what the bound holds for.
+    ``names`` are the segments' laws. ``bound`` is None if no segment was optimized over all motions; ``scope`` names
+    the motions for which the bound holds.
     """
 
     program: Program
@@ -104,7 +105,7 @@ class Composition:
 
 @dataclass(frozen=True)
 class NoProgram:
-    """No program keeps the limits; ``proven`` tells whether that is certain."""
+    """The reason why no program keeps the limits; ``proven`` if that is certain."""
 
     reason: str
     proven: bool
@@ -113,7 +114,7 @@ class NoProgram:
 def compose(
     problem: CamProblem, grids: Sequence[int] = STEPS, progress: Progress = silent, reach: tuple[float, float] = (0, 1)
 ) -> Composition | NoProgram:
-    """The best program of a problem without contradictions.
+    """Compose the best program of a problem without contradictions.
 
     ``grids`` is as for the convex program of least size; ``progress`` is called before each program, with fractions
     within ``reach``.
@@ -131,11 +132,13 @@ def compose(
                 PolynomialCondition(*condition) for condition in problem.program.polynomial_conditions(stated)
             ]
             segments.append(polynomial_segment(angle, conditions))
+        # No ends: the motion is optimal or automatic, and is filled in below.
         elif pair is None:
             segments.append(None)
         else:
             segments.append(law_segment(LAWS[law], angle, start, end))
         names.append(law)
+    # Automatic segments come first: the optimal runs need the states at both of their ends.
     refused = _choose_laws(problem, heights, ends, segments, names)
     if refused is not None:
         return refused
@@ -152,7 +155,7 @@ def compose(
 
 
 def criterion(problem: CamProblem, program: Program) -> float:
-    """The criterion's exact value over the whole program; NaN for the size, which the sizing gives."""
+    """Return the criterion's exact value over the whole program; NaN for the size, which the sizing determines."""
     name = problem.minimize
     kind, _, of = name.partition("_")
     if name == "size":
@@ -165,6 +168,8 @@ def criterion(problem: CamProblem, program: Program) -> float:
         least = force.least
         if top_rpm is not None:
             least = min(least, weakest_contact(program, load, top_rpm).force)
+        # A free preload raises the force everywhere by the same amount, until the minimum reaches the
+        # required force.
         return force.greatest + _added_preload(problem, least)
     if kind == "peak":
         if of == "torque":
@@ -176,12 +181,12 @@ def criterion(problem: CamProblem, program: Program) -> float:
 
 
 def root_mean_square(program: Program, function: Callable[[Motion], np.ndarray]) -> float:
-    """Over the whole turn."""
+    """Return the root mean square of a function of the motion over the whole turn."""
     return math.sqrt(_integrated_square(program.pieces, function) / TURN)
 
 
 def _integrated_square(pieces: Pieces, function: Callable[[Motion], np.ndarray]) -> float:
-    """∫ f² by Gauss's rule on every piece: exact for polynomials, to rounding for laws with sines."""
+    """Return ∫ f² by Gauss's rule on every piece: exact for polynomials, accurate to rounding for laws with sines."""
     nodes, weights = np.polynomial.legendre.leggauss(24)
     half = 0.5 * np.diff(pieces.start)
     values = function(pieces.motion(pieces.start[:-1, None] + half[:, None] * (nodes + 1.0)))
@@ -199,7 +204,7 @@ def _preload(problem: CamProblem) -> float | None:
 
 
 def _added_preload(problem: CamProblem, least: float) -> float:
-    """What a free preload adds to a force that is ``least`` somewhere; a spring pushes, and takes nothing away."""
+    """Return the amount by which a free preload raises a force of minimum ``least``; it is never negative."""
     return max(_floor(problem) - least, 0.0) if _preload(problem) is None else 0.0
 
 
@@ -219,8 +224,10 @@ def _choose_laws(
     auto = [isinstance(s, Move) and s.law == "auto" for s in problem.segments]
     if not any(auto):
         return None
+    # Start behind a segment that is not automatic, so that no row of neighbours is split at the turn's end.
     first = next((k for k in range(count) if not auto[k]), 0)
     row: list[int] = []
+    # The sentinel −1 closes the last row.
     for k in [*((first + n) % count for n in range(count)), -1]:
         if k >= 0 and auto[k]:
             row.append(k)
@@ -243,9 +250,11 @@ def _choose_row(
     """Choose the laws of one row of automatic segments: a shortest path over the states at its joints."""
     count = len(segments)
     before, after = ends[row[0] - 1], ends[(row[-1] + 1) % count]
+    # If all segments are automatic the row is a closed ring; it starts and ends at rest, which always fits.
     closed = len(row) == count
     enter = (0.0, 0.0) if before is None or closed else before[1][1:]
     leave = (0.0, 0.0) if after is None or closed else after[0][1:]
+    # Paths to a joint's state: for every state only the cheapest one is kept (dynamic programming).
     paths: dict[tuple[float, float], tuple[float, tuple[tuple[str, Segment], ...]]] = {enter: (0.0, ())}
     for n, k in enumerate(row):
         angle, (start, end) = math.radians(problem.segments[k].angle), heights[k]
@@ -254,6 +263,8 @@ def _choose_row(
         for state, (cost, chosen) in paths.items():
             wanted = leave if n == len(row) - 1 else None
             for name, segment, at_start, at_end in _candidates(angle, start, end, state, wanted):
+                # Both states are compared in units of the segment's mean velocity, so that the
+                # tolerance has no dimension.
                 near = abs(at_start[0] - state[0]) <= FITS * unit and abs(at_start[1] - state[1]) <= FITS * unit / angle
                 if not near or not _within_limits(problem, segment):
                     continue
@@ -262,6 +273,8 @@ def _choose_row(
                 ):
                     continue
                 total = _joined_cost(problem, cost, segment)
+                # States are equal if they agree to seven digits: laws give a few discrete ones, the
+                # polynomial any other.
                 key = (round(at_end[0] / unit, 7), round(at_end[1] * angle / unit, 7))
                 if key not in following or total < following[key][0]:
                     following[key] = total, (*chosen, (name, segment))
@@ -280,14 +293,16 @@ def _choose_row(
 def _candidates(
     angle: float, start: float, end: float, enter: tuple[float, float], leave: tuple[float, float] | None
 ) -> list[tuple[str, Segment, tuple[float, float], tuple[float, float]]]:
-    """Named laws, and the polynomial through both ends' states; with v and a at start and end."""
+    """List the named laws, and the polynomial through both end states; with v and a at start and end."""
     candidates = []
     for name in END_RATES:
+        # These two have velocity or acceleration jumps at their ends, so that they are only used on request.
         if name in ("constant_acceleration", "constant_velocity"):
             continue
         first, last = law_ends(name, angle, start, end)
         candidates.append((name, law_segment(LAWS[name], angle, start, end), first[1:], last[1:]))
     leave = (0.0, 0.0) if leave is None else leave
+    # Between two rests the named laws are better than a plain polynomial.
     if enter != (0.0, 0.0) or leave != (0.0, 0.0):
         states = ((0.0, start, *enter), (angle, end, *leave))
         conditions = [PolynomialCondition(at, i, x) for at, *state in states for i, x in enumerate(state)]
@@ -305,7 +320,7 @@ def _within_limits(problem: CamProblem, segment: Segment) -> bool:
 
 
 def _joined_cost(problem: CamProblem, cost: float, segment: Segment) -> float:
-    """The criterion over one segment more: the greater peak, or the sum of squares."""
+    """Return the criterion's value with one more segment: the greater peak, or the sum of squares."""
     name = problem.minimize
     kind, _, of = name.partition("_")
     at = np.linspace(0.0, segment.angle, SAMPLES)
@@ -325,9 +340,10 @@ def _joined_cost(problem: CamProblem, cost: float, segment: Segment) -> float:
 
 
 def _need(problem: CamProblem, motion: Motion) -> float:
-    """The radius that a segment alone asks for, near enough to compare laws."""
+    """Estimate the radius that a segment alone requires, accurately enough to compare laws."""
     if isinstance(problem.follower, TranslatingFlat):
         return float(np.max(-motion.s - motion.a))
+    # R or d ≥ |v|/tan φ, less the displacement for a radial cam.
     tangent = math.tan(math.radians(problem.limits.pressure_angle))
     barrel = isinstance(problem.follower, BarrelRoller)
     return float(np.max(np.abs(motion.v) / tangent - (0.0 if barrel else motion.s)))
@@ -343,13 +359,14 @@ def _segment_ends(segment: Segment) -> tuple[State, State]:
 
 
 def _runs(problem: CamProblem, segments: Sequence[Segment | None]) -> list[list[int]]:
-    """Rows of neighbouring open segments; one by one for the torque, which is convex for one move only."""
+    """Find rows of neighbouring open segments; single segments for the torque, which is convex for one move only."""
     count = len(segments)
     open_ = [k for k in range(count) if segments[k] is None]
     if problem.minimize.endswith("torque"):
         return [[k] for k in open_]
     if len(open_) == count:
         return [open_]
+    # Start behind a closed segment, so that a run over the turn's end stays in one row.
     first = next(k for k in range(count) if segments[k] is not None)
     rows: list[list[int]] = []
     joined = False
@@ -371,7 +388,7 @@ def _run(
     segments: Sequence[Segment | None],
     row: Sequence[int],
 ) -> Run:
-    """A row of open segments as a run: what its neighbours and its statement fix."""
+    """Build the run of a row of open segments: its end conditions, bands and limits."""
     count = len(segments)
     continuity = 3 if problem.continuity == "jerk" else 2
     angles = [math.radians(problem.segments[k].angle) for k in row]
@@ -380,7 +397,9 @@ def _run(
     unit = problem.displacement_unit
     conditions = [Condition.at(0.0, 0, heights[row[0]][0]), Condition.at(total, 0, heights[row[-1]][1])]
     demands: list[Demand] = []
+    # The whole turn is open: the derivatives agree at its start and end, but have no given values.
     if len(row) == count:
+        # At a reversal the velocity is zero: fixing it keeps the motion from overshooting the position.
         conditions += [Condition(((total, i, 1.0), (0.0, i, -1.0)), 0.0) for i in range(1, continuity + 1)]
         if _turns(heights, row[-1], row[0]):
             conditions.append(Condition.at(0.0, 1, 0.0))
@@ -389,6 +408,7 @@ def _run(
             pair = ends[neighbour]
             state = (0.0, 0.0, 0.0) if pair is None else pair[side]
             segment = segments[neighbour]
+            # A neighbour that is open itself belongs to another run (torque): they meet at rest.
             jerk = 0.0
             if segment is not None:
                 jerk = float(segment.pieces.motion(segment.angle if side else 0.0, before=bool(side)).j)
@@ -419,7 +439,7 @@ def _run(
 
 
 def _turns(heights: Sequence[tuple[float, float]], before: int, after: int) -> bool:
-    """Whether the follower turns back between two moves."""
+    """Return whether the follower reverses between two moves."""
     return (heights[before][1] - heights[before][0]) * (heights[after][1] - heights[after][0]) < 0.0
 
 
@@ -432,7 +452,7 @@ def _optimized(
     grids: Sequence[int],
     grid_progress: _GridProgress,
 ) -> list[Best] | NoProgram:
-    """Solve the runs, and put their motions where the program is open."""
+    """Solve the runs, and put their motions into the open segments."""
     runs = [_run(problem, heights, ends, segments, row) for row in rows]
     given = [segment for segment in segments if segment is not None]
     kind, _, of = problem.minimize.partition("_")
@@ -442,6 +462,7 @@ def _optimized(
     elif problem.minimize == "peak_contact_force":
         load, speed = follower_load(problem)
         weights = load.spring_rate, load.damping * speed, load.mass * speed**2
+        # The preload is a variable of the program, so that it is taken out of the given segments' forces.
         loads = [_range_of(segment, lambda m: load.force(m, speed) - load.preload) for segment in given]
         rest = (min(low for low, _ in loads), max(high for _, high in loads)) if loads else None
         results = [best_force(runs, weights, _floor(problem), _preload(problem), rest, on_grid=grid_progress.of(0))]
@@ -457,9 +478,10 @@ def _optimized(
         if isinstance(each, NoMotion):
             if each.factor is None:
                 return NoProgram("no optimal motion was found within the limits and conditions", proven=False)
-            reason = f"no motion keeps the limits: they would have to be at least {each.factor:.6g} times as large"
+            reason = f"no motion keeps the limits; they must be at least {each.factor:.6g} times as large"
             return NoProgram(reason, proven=True)
         best.append(each)
+    # Runs and motions are in the same order.
     motions = [motion for each in best for motion in each.motions]
     for row, motion in zip(rows, motions, strict=True):
         at = 0.0
@@ -471,7 +493,9 @@ def _optimized(
 
 
 def _cut(motion: KnotMotion, start: float, end: float, angle: float) -> Segment:
-    """The part of a motion between two of its knots, as a segment."""
+    """Cut the part of a motion between two of its knots, as a segment."""
+    # Knots stand on the segment ends except for rounding, so the nearest ones are taken and the last is set
+    # exactly.
     first, last = (int(np.abs(motion.times - at).argmin()) for at in (start, end))
     times = motion.times[first : last + 1] - motion.times[first]
     times[-1] = angle
@@ -489,7 +513,7 @@ def _range_of(segment: Segment, function: Callable[[Motion], np.ndarray]) -> tup
 def _smallest(
     problem: CamProblem, runs: Sequence[Run], given: Sequence[Segment], grids: Sequence[int], on_grid: OnGrid
 ) -> Best | NoMotion:
-    """Motion and size together, for a translating follower."""
+    """Solve for motion and size together, for a translating follower."""
     limits = problem.limits
     if isinstance(problem.follower, TranslatingFlat):
         rest = None
@@ -502,28 +526,30 @@ def _smallest(
     rising = math.tan(math.radians(limits.pressure_angle))
     falling = math.tan(math.radians(limits.falling_pressure_angle))
     rest_rows = []
+    # The given segments do not change: of each only the tightest value of either side's condition matters.
     for segment in given:
         for k, sign in ((rising, 1), (falling, -1)):
             rest_rows.append((k, sign, _range_of(segment, _room(k, sign))[0]))
     lowest = min(min(pair) for pair in problem.program.heights())
+    # The lowest height with zero velocity bounds the size even if all given segments are higher.
     rest_rows += [(min(rising, falling), sign, min(rising, falling) * lowest) for sign in (1, -1)]
     offset = None if problem.follower.offset == "free" else float(problem.follower.offset)
     return best_roller_size(runs, [(rising, falling)] * len(runs), offset, rest_rows, grids, on_grid=on_grid)
 
 
 def _room(tangent: float, sign: int) -> Callable[[Motion], np.ndarray]:
-    """s tan φ ∓ v: what a pressure angle leaves."""
+    """Return s tan φ ∓ v, the margin that a pressure angle leaves, as a function of the motion."""
     return lambda motion: np.asarray(tangent * motion.s - sign * motion.v)
 
 
 def _bound(
     problem: CamProblem, program: Program, rows: Sequence[Sequence[int]], best: Sequence[Best], value: float
 ) -> tuple[float | None, str]:
-    """The lower bound of the criterion over the whole program, and what it holds for."""
+    """Return the lower bound of the criterion over the whole program, and the motions for which it holds."""
     if not best:
         automatic = any(isinstance(s, Move) and s.law == "auto" for s in problem.segments)
         return None, "the best of the named laws" if automatic else "the laws are given"
-    scope = "all motions in the optimal segments, the other segments as they are"
+    scope = "all motions in the optimal segments, with the other segments unchanged"
     cap = next((each.cap for each in best if each.cap is not None), None)
     if cap is not None:
         name = {2: "acceleration", 3: "jerk", 4: "fourth derivative"}[cap[0]]
@@ -531,7 +557,7 @@ def _bound(
     name = problem.minimize
     kind, _, of = name.partition("_")
     if of == "torque" and (problem.limits.acceleration is not None or problem.limits.jerk is not None):
-        scope += ", whatever their acceleration and jerk: under the limits on these the least is higher than the bound"
+        scope += ", without limits on acceleration and jerk; with them the minimum is higher than the bound"
     if name in ("size", "peak_contact_force"):
         return best[0].bound, scope
     open_ = {k for row in rows for k in row}
@@ -542,7 +568,10 @@ def _bound(
 
     if kind == "peak":
         peaks = [max(map(abs, _range_of(segment, measured))) for segment in given]
+        # The bound never exceeds the value reached: rounding in the multipliers could otherwise make the gap
+        # negative.
         return min(max([each.bound for each in best] + peaks), value), scope
+    # Mean squares add up by angle: the bounds of the runs, and the given segments exactly.
     square = sum(
         each.bound**2 * sum(program.segments[k].angle for k in row) for each, row in zip(best, rows, strict=True)
     )
@@ -551,7 +580,7 @@ def _bound(
 
 
 def roller_radius_range(problem: CamProblem) -> tuple[float, float] | None:
-    """Least and greatest roller radius; None for a flat face."""
+    """Return the least and greatest roller radius; None for a flat face."""
     radius = getattr(problem.follower, "roller_radius", None)
     if radius is None:
         return None
@@ -559,11 +588,12 @@ def roller_radius_range(problem: CamProblem) -> tuple[float, float] | None:
 
 
 def least_face_radius(problem: CamProblem) -> float:
-    """Least radius of curvature of a cam under a flat face: the client's, or as little as is not an edge."""
+    """Return the least radius of curvature of a cam under a flat face: the limit, or the least that is not an edge."""
+    # On an arm the travel is an angle; the pivot distance turns it into a length.
     reach = getattr(problem.follower, "pivot_distance", 1.0)
     return max(problem.limits.min_radius, EDGE * problem.program.travel * reach)
 
 
 def least_pitch_radius(limits: CamLimits, roller_radius: float) -> float:
-    """Least radius of curvature of the pitch curve: the client's, or as little as leaves the profile without a cusp."""
+    """Return the least radius of curvature of the pitch curve: the limit, or the least that avoids a cusp."""
     return max(limits.curvature_ratio, NO_UNDERCUT) * roller_radius

@@ -1,4 +1,4 @@
-"""Conjugate cams: the second cam of a pair, sized as the first is, and the proof that both rollers fit everywhere."""
+"""Conjugate cams: the second cam of a pair, sized like the first, and the verification that both rollers always fit."""
 
 from __future__ import annotations
 
@@ -32,13 +32,15 @@ Real = NDArray[np.float64]
 Sized = Callable[[CamProblem, Program], Cam | None]
 
 SAME_DISTANCE = 1e-12
-"""Share of the rollers' distance by which it may change over a turn: rounding."""
+"""Relative change of the rollers' distance over a turn that is attributed to rounding."""
 
 
 def second_cam(problem: CamProblem, first: Cam, sized: Sized) -> Cam | None:
-    """The smallest second cam within the limits, for the offset or the pivot of the first; None where there is none."""
+    """Size the smallest second cam within the limits, for the first cam's offset or pivot; None if there is none."""
     stated, follower = problem.follower, first.follower
     if isinstance(stated, TranslatingRoller):
+        # Seen from the opposite side the same slide has the opposite offset, and the same arm the opposite
+        # sense.
         assert isinstance(follower, core.TranslatingRoller)
         changed = {"offset": -follower.offset, "prime_radius": None}
     else:
@@ -50,7 +52,8 @@ def second_cam(problem: CamProblem, first: Cam, sized: Sized) -> Cam | None:
 
 
 def with_equal_rollers(first: Cam, second: Cam) -> tuple[Cam, Cam]:
-    """Both with the smaller of their rollers' radii: what is as large as one curve allows may not fit the other."""
+    """Give both cams the smaller of their rollers' radii: the largest that one curve allows may not fit the other."""
+    # Equal rollers make the yoke symmetrical and exchangeable.
     radius = min(first.roller_radius, second.roller_radius)
     return _with_roller(first, radius), _with_roller(second, radius)
 
@@ -61,16 +64,18 @@ def _with_roller(cam: Cam, radius: float) -> Cam:
 
 
 def pair_mechanism(first: Cam, second: Cam, angle: Real) -> CamMechanism:
-    """Both cams as the answer has them, at given cam angles."""
+    """Build the mechanism of both cams at given cam angles."""
     mechanism, other = cam_mechanism(first, angle), cam_mechanism(second, angle)
     one, two = first.follower, second.follower
     assert isinstance(one, core.TranslatingRoller | core.OscillatingRoller)
     assert isinstance(two, core.TranslatingRoller | core.OscillatingRoller)
     apart = span(one, two, first.program.peaks[0].greatest)
     swings = isinstance(one, core.OscillatingRoller)
+    # The profile is stored in the common frame, the follower as its own cam sees it.
     found = SecondCam(
         follower=other.follower,
         prime_radius=second.size,
+        # On an arm the rollers span an angle; the distance of their centres is its chord.
         roller_distance=2.0 * one.arm * math.sin(0.5 * apart) if isinstance(one, core.OscillatingRoller) else apart,
         arm_angle=math.degrees(apart) if swings else None,
         profile=_turned(one, other.profile),
@@ -85,7 +90,7 @@ def _turned(follower: core.Roller, curve: CamCurve) -> CamCurve:
 
 
 def verify_pair(problem: CamProblem, mechanism: CamMechanism) -> tuple[Verification, Measured | None]:
-    """Both cams measured; of the second what :func:`second_measured` tells."""
+    """Verify both cams; the second is measured by :func:`second_measured`."""
     verification, measured = verify(problem, mechanism)
     if measured is None:
         return verification, None
@@ -93,6 +98,7 @@ def verify_pair(problem: CamProblem, mechanism: CamMechanism) -> tuple[Verificat
     both = Verification.of([*verification.checks, *checks])
     if second is None:
         return both, None
+    # Points are refined together, so that each angle carries the worse of both deviations.
     return both, replace(
         measured,
         off=np.maximum(measured.off, second.off),
@@ -102,7 +108,7 @@ def verify_pair(problem: CamProblem, mechanism: CamMechanism) -> tuple[Verificat
 
 
 def second_measured(problem: CamProblem, mechanism: CamMechanism) -> tuple[list[Check], Measured | None]:
-    """The second roller laid against its profile: it has to stand where the rigid follower carries it."""
+    """Measure the second roller laid against its profile: the rigid follower must carry it there."""
     second, first = mechanism.second, core_follower(mechanism)
     assert second is not None
     assert isinstance(first, core.TranslatingRoller | core.OscillatingRoller)
@@ -111,6 +117,7 @@ def second_measured(problem: CamProblem, mechanism: CamMechanism) -> tuple[list[
         stretches = stretches_of(mechanism.program)
         follower = follower_by_dimensions(second.follower.type, second.prime_radius, second.follower)
         assert isinstance(follower, core.TranslatingRoller | core.OscillatingRoller)
+        # The second profile is stored in the first cam's frame; rotate it back into its own.
         own = turned(first, points_of(second.profile))
         contour = Contour(own, np.radians(mechanism.program.angle), stretches.breaks)
         contact = contour.follow(follower, demanded.angle, mechanism.rotation)
@@ -118,6 +125,8 @@ def second_measured(problem: CamProblem, mechanism: CamMechanism) -> tuple[list[
     except (DimensionError, ShapeError):
         return [Check(name="second_reproduces_program", passed=False)], None
     apart = second.roller_distance if second.arm_angle is None else math.radians(second.arm_angle)
+    # The second follower's displacement is what the first one lacks to its highest position.
+    # The rollers keep their distance: the second displacement plus the first's is constant.
     off = demanded.deviation(apart - span(first, follower, 0.0) - contact.s)
     measured = measured_of(found, follower.roller_radius, off)
     distance = np.abs(points_of(mechanism.pitch_curve) - points_of(second.pitch_curve)) / second.roller_distance
@@ -138,7 +147,7 @@ def second_measured(problem: CamProblem, mechanism: CamMechanism) -> tuple[list[
 
 
 def second_metrics(problem: CamProblem, mechanism: CamMechanism) -> SecondMetrics | None:
-    """The second cam measured, as the answer has it; None of a single cam."""
+    """Return the metrics of the second cam; None for a single cam."""
     if mechanism.second is None:
         return None
     _, measured = second_measured(problem, mechanism)

@@ -1,4 +1,4 @@
-"""Cams as answers: the mechanism, its motion program and how good it is, and what was measured on the finished profile.
+"""Cams as answers: the mechanism, its motion program with its optimality, and the measurements on the finished profile.
 
 Angles are degrees; displacements are lengths, or degrees of an oscillating follower's arm. Derivatives are by the
 radian of cam rotation (of an arm in radians).
@@ -28,11 +28,11 @@ from synthesis.model.dimension import (
 
 
 class CamFollower(Answer):
-    """The follower and what belongs to its type."""
+    """The follower and the dimensions of its type."""
 
     type: Literal["translating_roller", "oscillating_roller", "translating_flat", "oscillating_flat"]
     roller_radius: Length | None = optional()
-    offset: Length | None = optional("Of a translating follower's slide; of a face only where it is not 0.")
+    offset: Length | None = optional("Offset of a translating follower's slide; for a flat face only if it is not 0.")
     arm: Length | None = optional()
     pivot_distance: Length | None = optional()
     face_offset: Length | None = optional()
@@ -40,7 +40,7 @@ class CamFollower(Answer):
 
 
 class CamCurve(Answer):
-    """Points of a closed curve in the cam's own frame, and the cam angles at which the follower stands there."""
+    """Points of a closed curve in the cam's own frame, with the cam angles at which the follower touches them."""
 
     angle: list[Angle]
     x: list[Length]
@@ -55,20 +55,20 @@ class ProgramTable(Answer):
     v: list[Velocity]
     a: list[Acceleration]
     j: list[Jerk]
-    breaks: list[Angle] = Field(description="Cam angles of the table between which the motion is smooth.")
+    breaks: list[Angle] = Field(description="Cam angles of the table at which the motion is not smooth.")
 
 
 class SecondCam(Answer):
     """The second of two conjugate cams, on the same shaft and in the same frame, with the roller opposite the first.
 
-    The follower is as its own cam sees it: displaced by what the first is below its highest place. On a slide it lies
-    on −x at cam angle 0.
+    Its follower's displacement is the distance of the first follower below its highest position. A follower on a slide
+    lies on −x at cam angle 0.
     """
 
     follower: CamFollower
     prime_radius: Length
-    roller_distance: Length = Field(description="Of the two rollers' centres, the same at all cam angles.")
-    arm_angle: Angle | None = optional("Between the two arms of an oscillating follower, degrees.")
+    roller_distance: Length = Field(description="Distance of the two rollers' centres, the same at all cam angles.")
+    arm_angle: Angle | None = optional("Angle between the two arms of an oscillating follower, degrees.")
     profile: CamCurve
     pitch_curve: CamCurve
 
@@ -78,13 +78,13 @@ class CamMechanism(Answer):
 
     type: Literal["cam"] = "cam"
     follower: CamFollower
-    prime_radius: Length | None = optional("Of a roller follower's cam.")
-    base_radius: Length | None = optional("Of a flat-faced follower's cam.")
+    prime_radius: Length | None = optional("Prime radius of a roller follower's cam.")
+    base_radius: Length | None = optional("Base radius of a flat-faced follower's cam.")
     rotation: Literal["ccw", "cw"]
     profile: CamCurve
-    outer_wall: CamCurve | None = optional("Of a groove; the profile is its inner wall.")
+    outer_wall: CamCurve | None = optional("Outer wall of a groove; the profile is its inner wall.")
     pitch_curve: CamCurve = Field(description="Path of the roller's centre; the profile itself under a flat face.")
-    second: SecondCam | None = optional("Of conjugate cams.")
+    second: SecondCam | None = optional("The second of two conjugate cams.")
     program: ProgramTable
 
 
@@ -98,14 +98,14 @@ class BarrelFollower(Answer):
 class BarrelCamMechanism(Answer):
     """A barrel (cylindrical) cam with its groove unrolled.
 
-    x runs along the circumference of the cylinder on which the roller's middle runs, as the cam passes under the
-    follower, from 0 at cam angle 0 to 2π times the radius; y along the axis, as the follower's displacement.
+    x runs along the circumference of the cylinder on which the roller's middle runs, in the order in which the cam
+    passes the follower, from 0 at cam angle 0 to 2π times the radius; y along the axis, like the displacement.
     """
 
     type: Literal["barrel_cam"] = "barrel_cam"
     follower: BarrelFollower
     cylinder_radius: Length
-    rotation: Literal["ccw", "cw"] = Field(description="Seen against the y axis.")
+    rotation: Literal["ccw", "cw"] = Field(description="Sense of rotation, seen against the y axis.")
     lower_wall: CamCurve
     upper_wall: CamCurve
     pitch_curve: CamCurve = Field(description="Path of the roller's centre.")
@@ -113,20 +113,20 @@ class BarrelCamMechanism(Answer):
 
 
 class CamSegment(Answer):
-    """A segment of the program as it came out: its law, its place and its peaks."""
+    """A segment of the finished program: its law, its cam angles and its peaks."""
 
     motion: str
     law: str
-    start: Angle = Field(description="Cam angle, degrees.")
+    start: Angle = Field(description="Cam angle at its start, degrees.")
     angle: Angle
-    displacement: tuple[Displacement, Displacement] = Field(description="At its start and its end.")
+    displacement: tuple[Displacement, Displacement] = Field(description="Displacement at its start and its end.")
     peak_velocity: Velocity
     peak_acceleration: Acceleration
-    peak_jerk: Jerk = Field(description="Between jumps of the acceleration, which `joints` tell.")
+    peak_jerk: Jerk = Field(description="Peak between jumps of the acceleration, which `joints` lists.")
 
 
 class CamJump(Answer):
-    """What displacement and derivatives gain at a joint, from the end of one segment to the start of the next."""
+    """Increments of displacement and derivatives at a joint, from the end of one segment to the start of the next."""
 
     s: Displacement
     v: Velocity
@@ -135,7 +135,7 @@ class CamJump(Answer):
 
 
 class CamJoint(Answer):
-    """Where two segments meet: what is continuous there, and by how much each derivative jumps."""
+    """A joint of two segments: the continuous derivatives, and the jump of each derivative."""
 
     angle: Angle
     segments: tuple[int, int]
@@ -144,9 +144,9 @@ class CamJoint(Answer):
 
 
 class Optimality(Answer):
-    """How good the program is by the criterion: the value reached and a lower bound that no motion can beat.
+    """Optimality of the program by the criterion: the value reached and a lower bound that no motion can beat.
 
-    ``scope`` says for which motions the bound holds. ``gap`` is value/bound − 1.
+    ``scope`` names the motions for which the bound holds. ``gap`` is value/bound − 1.
     """
 
     criterion: str
@@ -154,26 +154,28 @@ class Optimality(Answer):
     bound: float | None = optional()
     gap: float | None = optional()
     scope: str
-    warning: str | None = optional("Peaks that are many times those of a plain law, where the criterion costs them.")
+    warning: str | None = optional(
+        "Warning about peaks that are many times those of a plain law, as the cost of this criterion."
+    )
 
 
 Binding = Literal["least_force", "min_frequency_ratio", "spring_rate/min", "spring_rate/max"]
 
 
 class ContactOverSpeeds(Answer):
-    """The least contact force at all cam angles and all speeds up to the greatest."""
+    """The minimum contact force over all cam angles and all speeds up to the greatest."""
 
     max_rpm: RotationalSpeed
     min_contact_force: Force
-    angle: Angle = Field(description="At which it is, degrees.")
-    rpm: RotationalSpeed = Field(description="At which it is.")
+    angle: Angle = Field(description="Cam angle of the minimum, degrees.")
+    rpm: RotationalSpeed = Field(description="Speed at the minimum.")
 
 
 class SpringChoice(Answer):
-    """The return spring that was chosen, by its greatest contact force at the stated speed.
+    """The chosen return spring, measured by its greatest contact force at the given speed.
 
-    ``bound``: no spring that keeps the demands has a smaller one; left out where none keeps them, and this is the one
-    that comes nearest. ``binding`` are the demands that are met with nothing to spare.
+    ``bound`` is a lower bound for all springs that keep the constraints; it is omitted if none keeps them, and this
+    spring comes nearest. ``binding`` lists the active constraints.
     """
 
     max_contact_force: Force
@@ -185,57 +187,60 @@ class SpringChoice(Answer):
 class TrainVibration(Answer):
     """The follower as a mass behind an elastic train, with its return spring, in steady state at the cam's speed."""
 
-    natural_frequency: RadianFrequency = Field(description="Of the mass on train and spring, rad/s.")
+    natural_frequency: RadianFrequency = Field(description="Natural frequency of the mass on train and spring, rad/s.")
     damped_frequency: RadianFrequency
     frequency_ratio: float = Field(description="Natural frequency over cam speed.")
     period_ratio: float = Field(description="τ: natural period over the time of the shortest move.")
     residual_amplitude: Displacement | None = optional(
-        "Greatest amplitude of the free vibration at the start of a dwell; left out without a dwell, at a resonance, "
-        "and where the mass hardly follows."
+        "Greatest amplitude of the free vibration at the start of a dwell; omitted without a dwell, at a resonance, "
+        "and if the mass hardly follows the cam."
     )
-    min_contact_force: Force | None = optional("Of the cam on the vibrating train.")
+    min_contact_force: Force | None = optional("Minimum contact force between the cam and the vibrating train.")
     max_contact_force: Force | None = optional()
 
 
 class PushingCam(Answer):
-    """From one cam angle to another one of two conjugate cams pushes the follower."""
+    """The one of two conjugate cams that pushes the follower between two cam angles."""
 
-    start: Angle = Field(description="Degrees.")
-    end: Angle = Field(description="Degrees; less than the start where the turn ends between.")
+    start: Angle = Field(description="Cam angle, degrees.")
+    end: Angle = Field(description="Cam angle, degrees; less than the start if the turn ends in between.")
     cam: Literal[1, 2]
 
 
 class CamForces(Answer):
-    """The follower as one mass on a spring, at the stated speed."""
+    """Forces on the follower, modelled as one mass on a spring, at the given speed."""
 
     preload: Force = Field(description="Spring force at zero displacement.")
-    least_preload: Force = Field(description="That keeps the least contact force.")
+    least_preload: Force = Field(description="Smallest preload that keeps the required contact force.")
     min_contact_force: Force
     max_contact_force: Force
     min_torque: Torque
     max_torque: Torque
     wall_changes: list[Angle] | None = optional(
-        "Cam angles at which a roller in a groove changes walls: where the force along its motion begins to have the "
-        "other sign than the last one that it had. Without spring and preload it is zero in a rest."
+        "Cam angles at which a roller in a groove changes walls: the force along its motion changes sign there, "
+        "compared "
+        "with its last sign. Without spring and preload the force is zero in a dwell."
     )
-    pushing: list[PushingCam] | None = optional("Of conjugate cams, from each change of walls to the next.")
-    spring_rate: Stiffness = Field(description="Of the return spring, stated or chosen.")
+    pushing: list[PushingCam] | None = optional(
+        "The pushing one of two conjugate cams, from each wall change to the next."
+    )
+    spring_rate: Stiffness = Field(description="Rate of the return spring, given or chosen.")
     jump_speed: RotationalSpeed | None = Field(
-        description="At which the follower first leaves the cam; null where it does at none, and in a groove."
+        description="Speed at which the follower first leaves the cam; null if it never does, and in a groove."
     )
-    natural_frequency: RadianFrequency = Field(description="Of mass and spring, rad/s.")
+    natural_frequency: RadianFrequency = Field(description="Natural frequency of mass and spring, rad/s.")
     damped_frequency: RadianFrequency | None = Field(
-        description="Likewise with the damping; null where it is critical."
+        description="Damped natural frequency, rad/s; null if the damping is critical or more."
     )
     frequency_ratio: float = Field(description="Natural frequency over cam speed.")
-    over_speeds: ContactOverSpeeds | None = optional("Where a greatest speed is stated, or the spring is chosen.")
-    spring: SpringChoice | None = optional("Where the spring's rate is free.")
-    train: TrainVibration | None = optional("Where the stiffness of the train is stated.")
+    over_speeds: ContactOverSpeeds | None = optional("Given if a maximum speed is given or the spring is chosen.")
+    spring: SpringChoice | None = optional("Given if the spring's rate is free.")
+    train: TrainVibration | None = optional("Given if the stiffness of the train is given.")
     warning: str | None = optional()
 
 
 class SecondMetrics(Answer):
-    """Measured on the second of two conjugate cams; its rise is where the follower comes back."""
+    """Measurements on the second of two conjugate cams; its rise is the follower's return."""
 
     size: Length = Field(description="Greatest radius of the profile.")
     max_pressure_angle_rise: Angle = Field(description="Degrees.")
@@ -246,7 +251,7 @@ class SecondMetrics(Answer):
 
 
 class CamMetrics(Answer):
-    """Measured on the finished cam."""
+    """Measurements on the finished cam."""
 
     size: Length = Field(description="Greatest radius of the profile.")
     lift: Displacement
@@ -254,33 +259,33 @@ class CamMetrics(Answer):
     max_pressure_angle_fall: Angle | None = optional("Degrees.")
     min_convex_radius: Length = Field(description="Least convex radius of curvature of the profile.")
     min_concave_radius: Length | None = optional("None where it is convex.")
-    curvature_ratio: float | None = optional("Pitch curve over roller.")
+    curvature_ratio: float | None = optional("Least radius of curvature of the pitch curve over the roller's radius.")
     face_width: Length | None = optional("Length that the contact sweeps.")
     second: SecondMetrics | None = optional("Of conjugate cams.")
     overturning_moment: Torque | None = optional(
-        "Greatest on the slide of a translating follower, where its forces and the lever are known."
+        "Greatest moment on the slide of a translating follower, if its forces and the lever are known."
     )
     peak_velocity: Velocity
     peak_acceleration: Acceleration
-    peak_jerk: Jerk | None = Field(description="Null where the acceleration jumps: the jerk has no bound there.")
+    peak_jerk: Jerk | None = Field(description="Null if the acceleration jumps: the jerk is unbounded there.")
     rms_acceleration: Acceleration
     peak_inertia_torque: AccelerationSquared = Field(description="Greatest |v a|: torque by unit mass at unit speed.")
     forces: CamForces | None = optional()
 
 
 class BarrelMetrics(Answer):
-    """Measured on the finished groove."""
+    """Measurements on the finished groove."""
 
     lift: Displacement
     groove_width: Length
-    length: Length = Field(description="Along the axis, from the lowest to the highest point of the groove.")
+    length: Length = Field(description="Length along the axis, from the lowest to the highest point of the groove.")
     max_pressure_angle_rise: Angle = Field(description="Degrees.")
     max_pressure_angle_fall: Angle = Field(description="Degrees.")
     min_radius: Length = Field(description="Least radius of curvature of the unrolled pitch curve.")
-    curvature_ratio: float = Field(description="That over the roller's radius.")
+    curvature_ratio: float = Field(description="Least radius of curvature of the pitch curve over the roller's radius.")
     peak_velocity: Velocity
     peak_acceleration: Acceleration
-    peak_jerk: Jerk | None = Field(description="Null where the acceleration jumps: the jerk has no bound there.")
+    peak_jerk: Jerk | None = Field(description="Null if the acceleration jumps: the jerk is unbounded there.")
     rms_acceleration: Acceleration
     peak_inertia_torque: AccelerationSquared = Field(description="Greatest |v a|: torque by unit mass at unit speed.")
     forces: CamForces | None = optional()
@@ -291,7 +296,7 @@ Metrics = TypeVar("Metrics", CamMetrics, BarrelMetrics)
 
 
 class ProgrammedDesign(Answer, Generic[Mechanism, Metrics]):
-    """A cam of any form with its motion program and the proof of what it does."""
+    """A cam of any form with its motion program and its verification."""
 
     mechanism: Mechanism
     segments: list[CamSegment]
@@ -302,15 +307,15 @@ class ProgrammedDesign(Answer, Generic[Mechanism, Metrics]):
 
 
 class CamDesign(ProgrammedDesign[CamMechanism, CamMetrics]):
-    """A cam with the proof of what it does."""
+    """A radial cam with its verification."""
 
 
 class BarrelCamDesign(ProgrammedDesign[BarrelCamMechanism, BarrelMetrics]):
-    """A barrel cam with the proof of what it does."""
+    """A barrel cam with its verification."""
 
 
 class CamSearch(Search):
-    """How the cam was found. ``sizing_proven``: no smaller cam carries this program within the limits."""
+    """The search for the cam. ``sizing_proven``: no smaller cam follows this program within the limits."""
 
     sizing_proven: bool
 

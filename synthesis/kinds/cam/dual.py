@@ -1,20 +1,19 @@
 """A lower bound for all motions, from the multipliers of a program on knots.
 
-The solver's optimum bounds nothing but the motions on its own grid. Its multipliers do more. Let q be the highest
-derivative that is limited or made small, u = dᵠs/dtᵠ, and let multipliers weigh values of s, …, dᵠ⁻¹s at the knots
-(atoms μ_i,k) and over steps (densities ρ_i). Integrating by parts from the end, the weighted sum over any motion
-whatsoever is
+The solver's optimum only bounds the motions on its own grid. Its multipliers prove more. Let q be the highest
+derivative that is limited or minimized, u = dᵠs/dtᵠ, and let multipliers weigh values of s, …, dᵠ⁻¹s at the knots
+(atoms μ_i,k) and over steps (densities ρ_i). Integrated by parts from the end, the weighted sum over any motion is
 
     Σ μ_i,k s⁽ⁱ⁾(t_k) + ∫ Σ ρ_i s⁽ⁱ⁾ dt = Σ λ_i(0) s⁽ⁱ⁾(0) + ∫ r u dt,      −λ_i′ = λ_{i−1} + ρ_i,   r = λ_{q−1}
 
 with jumps μ_i,k of the costate λ_i at the knots (Luenberger, *Optimization by Vector Space Methods*, ch. 8 and 9). Weak
-duality then needs only the least of ∫ r u over what u may be: −U ∫|r| where |u| ≤ U, −¼ ∫ r² where ∫ u² is the
-objective. r is a piecewise polynomial, and both integrals are taken from above by its Bernstein coefficients. So the
-bound holds, to the rounding of double precision, for every motion that meets the demands, with knots or without.
+duality then needs only the minimum of ∫ r u over the permitted u: −U ∫|r| for |u| ≤ U, −¼ ∫ r² if ∫ u² is the
+objective. r is a piecewise polynomial, and both integrals are bounded from above by its Bernstein coefficients. So the
+bound holds, to the rounding of double precision, for every motion that meets the constraints, with knots or without.
 
-Where a demand speaks of the highest derivative itself together with others (a contact force without a limit on
-jerk), q is one order more, and the bound holds for all motions whose q-th derivative stays within that of the motion
-found; ``cap`` says so.
+If a constraint involves the highest derivative itself together with others (a contact force without a limit on
+jerk), q is one order higher, and the bound holds for all motions whose q-th derivative stays within that of the motion
+found; ``cap`` is that limit.
 """
 
 from __future__ import annotations
@@ -33,14 +32,14 @@ Real = NDArray[np.float64]
 
 
 VANISHES = 1e-10
-"""λ(0) below this share of the greatest multiplier is rounding."""
+"""Share of the greatest multiplier below which λ(0) is rounding."""
 
 
 @dataclass(frozen=True)
 class LowerBound:
-    """A bound of the objective, and for which motions.
+    """A lower bound of the objective, and the motions for which it holds.
 
-    ``cap`` is None where it holds for all motions, else (order, limit): it holds for those whose derivative of that
+    ``cap`` is None if it holds for all motions, else (order, limit): it holds for those whose derivative of that
     order stays below the limit.
     """
 
@@ -49,7 +48,7 @@ class LowerBound:
 
 
 def lower_bound(program: ConvexProgram, solution: Solution) -> LowerBound:
-    """The greater of the lower bounds that the multipliers of a solution prove, spread over the steps and not."""
+    """Return the greater of the bounds that the multipliers prove, with and without spreading them over the steps."""
     bounds = [_bound(program, solution, spread) for spread in (False, True)]
     return max(bounds, key=lambda bound: bound.value)
 
@@ -70,7 +69,7 @@ def _bound(program: ConvexProgram, solution: Solution, spread: bool) -> LowerBou
 
 @dataclass(frozen=True)
 class _Lagrangian:
-    """Least value over the motions: constant + gains · z − square, the last by the square of the multipliers."""
+    """Minimum over the motions: constant + gains · z − square, the last by the square of the multipliers."""
 
     constant: float
     gains: Real
@@ -81,8 +80,10 @@ class _Lagrangian:
 
 
 def _best_scale(program: ConvexProgram, least: _Lagrangian) -> float:
-    """The bound at the scale of the multipliers that makes it greatest, or that the objective allows."""
+    """Return the bound at the best scale of the multipliers, or at the one that the objective prescribes."""
     if program.objective == "rms":
+        # Maximum over t ≥ 0 of t·constant − t²·square, and the root of it: the objective is a root mean
+        # square.
         if least.constant <= 0.0:
             return 0.0
         if least.square <= 0.0:
@@ -90,6 +91,7 @@ def _best_scale(program: ConvexProgram, least: _Lagrangian) -> float:
         return math.sqrt(least.constant**2 / (4.0 * least.square)) if least.square else 0.0
     others = np.abs(least.gains) * program.box
     if program.objective == "scalar":
+        # The scale makes the objective's own variable cancel; the others take their worst value in the box.
         weight = -float(least.gains[0])
         missed = float(others[1:].sum())
     else:
@@ -106,6 +108,7 @@ def _block(
     order = max([limit.order for limit in block.limits] + [rms])
     cap: tuple[int, float] | None = None
     demanded = max((demand.order for demand in block.demands), default=-1)
+    # A demand on the derivative u itself needs one order more, with the found motion's peak as a cap.
     if order <= demanded:
         order = demanded + 1
         cap = order, motion.derivative(order).peak()
@@ -113,6 +116,7 @@ def _block(
     constant, gains = 0.0, np.zeros(len(program.box))
     for limit, pair in zip(block.limits, multipliers.limits, strict=True):
         if limit.order < order:
+            # Both signs of the two-sided limit |sⁱ| ≤ U contribute with their own multipliers.
             weight = sum(
                 measure.add(times, slice(0, len(times)), limit.order, sign, one, spread)
                 for sign, one in zip((1.0, -1.0), pair, strict=True)
@@ -125,6 +129,7 @@ def _block(
         for i, share in enumerate(demand.weights[:order]):
             if share:
                 measure.add(times, block.within(demand), i, share, weights, spread)
+        # The right-hand sides enter the Lagrangian with a minus sign.
         constant -= demand.right * weight
         gains[: len(demand.gains)] += np.array(demand.gains) * weight
     if 0 <= rms < order:
@@ -135,6 +140,7 @@ def _block(
         measure.density[:, rms, 0] += 2.0 * mean
         constant -= float(mean**2 @ curve.steps)
     stated, vanishes = _stationary(block, multipliers.conditions, measure)
+    # Start states are free, so that λ(0) ≠ 0 makes the infimum −∞: the multipliers prove nothing.
     if not vanishes:
         return _Lagrangian(-math.inf, gains, 0.0), cap
     for condition, weight in zip(block.conditions, stated, strict=True):
@@ -142,6 +148,7 @@ def _block(
     _, switching = _costate(times, _with_conditions(block, stated, measure))
     square = 0.0
     at_order = [limit for limit in block.limits if limit.order == order]
+    # The objective integrates u² without a limit on u: −min (u² + r u) = r²/4.
     if rms == order and not at_order:
         square = 0.25 * switching.convex_integral(np.square)
     elif rms == order:
@@ -159,7 +166,7 @@ def _block(
 
 
 def _huber(r: Real, bound: float) -> Real:
-    """−min over |u| ≤ bound of u² + r u, a convex function of r."""
+    """Return −min over |u| ≤ bound of u² + r u, a convex function of r."""
     size = np.abs(r)
     return np.where(size <= 2.0 * bound, 0.25 * r**2, bound * size - bound**2)
 
@@ -175,16 +182,19 @@ class _Measure:
     density: Real
 
     def add(self, times: Real, knots: slice, order: int, share: float, weights: Weights, spread: bool) -> float:
-        """Add the multipliers of a demand that holds on a range of knots; returns their sum.
+        """Add the multipliers of a constraint that holds on a range of knots; return their sum.
 
-        A demand holds at every time of its range, so that the weight of a knot may as well be spread over the steps
-        beside it. Spread, the many small weights along a plateau make a smooth switching function instead of a
-        staircase; weights that stand alone are better left where they are.
+        The constraint holds at every time of its range, so that the weight of a knot may also be spread over the two
+        adjacent steps. Spread, the many small weights along a plateau make a smooth switching function instead of a
+        staircase; isolated weights are better left at their knots.
         """
+        # Weights on a step become a constant density over it.
         step = np.diff(times)[knots.start : knots.stop - 1]
         rows = slice(knots.start, knots.stop - 1)
         self.density[rows, order, 0] += share * weights.steps / step
         if spread and len(step):
+            # Each knot's weight becomes a hat function over its neighbouring steps, so that its total is
+            # unchanged.
             reach = np.zeros(len(weights.knots))
             reach[:-1] += 0.5 * step
             reach[1:] += 0.5 * step
@@ -197,11 +207,12 @@ class _Measure:
 
 
 def _costate(times: Real, measure: _Measure) -> tuple[Real, Piecewise]:
-    """λ(0) and the switching function r = λ_{q−1} of weights at the knots and over the steps."""
+    """Return λ(0) and the switching function r = λ_{q−1} for weights at the knots and over the steps."""
     step = np.diff(times)
     n, order, _ = measure.density.shape
     start = np.zeros(order)
     curve = np.zeros((n, 2))
+    # Integrate backwards from the end, one order at a time: −λ_i′ = λ_{i−1} + ρ_i, with jumps μ_i at the knots.
     for i in range(order):
         rate = curve.copy()
         rate[:, :2] += measure.density[:, i]
@@ -214,7 +225,7 @@ def _costate(times: Real, measure: _Measure) -> tuple[Real, Piecewise]:
 
 
 def _with_conditions(block: Block, weights: Real, measure: _Measure) -> _Measure:
-    """The weights of the demands and of the conditions together; conditions above the order are dropped."""
+    """Add the weights of the conditions to those of the demands; conditions above the order are dropped."""
     total = measure.atoms.copy()
     for condition, weight in zip(block.conditions, weights, strict=True):
         for at, order, coefficient in condition.terms:
@@ -224,10 +235,10 @@ def _with_conditions(block: Block, weights: Real, measure: _Measure) -> _Measure
 
 
 def _stationary(block: Block, weights: Real, measure: _Measure) -> tuple[Real, bool]:
-    """The conditions' multipliers, changed as little as makes λ(0) vanish: a start state that is free costs nothing.
+    """Adjust the conditions' multipliers as little as makes λ(0) vanish: a free start state costs nothing.
 
-    Conditions above the order q are given the multiplier zero, which is to drop them. Also tells whether λ(0) could
-    be made to vanish; where it could not, the multipliers prove nothing.
+    Conditions above the order q get the multiplier zero, which drops them. The second value is whether λ(0) could
+    be made to vanish; if not, the multipliers prove nothing.
     """
     order = measure.atoms.shape[1]
     used = np.array([all(i < order for _, i, _ in condition.terms) for condition in block.conditions])
@@ -238,6 +249,7 @@ def _stationary(block: Block, weights: Real, measure: _Measure) -> tuple[Real, b
             for at, i, coefficient in condition.terms:
                 for k in range(i, order):
                     influence[k, column] += coefficient * at ** (k - i) / math.factorial(k - i)
+    # The second pass removes the rounding of the first.
     for _ in range(2):
         start, _ = _costate(block.times, _with_conditions(block, weights, measure))
         weights = weights - np.linalg.lstsq(influence, start, rcond=RANK_TOLERANCE)[0]

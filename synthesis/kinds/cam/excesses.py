@@ -1,9 +1,9 @@
-"""What a criterion costs: derivatives of an optimal motion whose peaks are many times a plain law's.
+"""The cost of a criterion: derivatives of an optimal motion whose peaks are many times a plain law's.
 
-The motion of least peak acceleration jumps from one acceleration to another, so that its jerk is bounded only by the
-grid on which it was found; of least peak velocity the acceleration is. Each move between rests is compared with the
-cycloidal one of equal lift and angle (Norton, *Cam Design and Manufacturing Handbook*, Table 2-2), which has no jump in
-its acceleration.
+The motion of minimum peak acceleration jumps from one acceleration to another, so that its jerk is bounded only by the
+grid on which it was found; the motion of minimum peak velocity has jumps of that kind in its velocity. Each move
+between rests is compared with the cycloidal one of equal lift and angle (Norton, *Cam Design and Manufacturing
+Handbook*, Table 2-2), which has no jump in its acceleration.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ from synthesis.kinds.cam.segments import Move
 PLAIN = "cycloidal"
 
 EXPLODED = 10.0
-"""Times a plain law's peak from which on a peak is warned about: laws in use stay below six."""
+"""Multiple of a plain law's peak from which a peak is warned about: common laws stay below six."""
 
 RESTING = 1e-9
 """Velocity at an end, as a share of the peak, up to which a move begins or ends at rest."""
@@ -26,13 +26,14 @@ DERIVATIVES = ((1, "velocity"), (2, "acceleration"), (3, "jerk"))
 
 
 def excesses(problem: CamProblem, composed: Composition) -> dict[str, float]:
-    """Greatest peaks of moves whose law was left to the criterion, over a plain law's: those that have exploded."""
+    """Return excessive peaks as multiples of a plain law's, by name, for moves whose law the criterion chose."""
     found: dict[str, float] = {}
     for stated, segment in zip(problem.segments, composed.program.segments, strict=True):
         if not isinstance(stated, Move) or not stated.follows_criterion:
             continue
         first, last = segment.pieces.motion(0.0), segment.pieces.motion(segment.angle, before=True)
         moving = max(abs(float(first.v)), abs(float(last.v)))
+        # A plain law starts and ends at rest: other moves have nothing to compare with.
         if moving > RESTING * segment.extremes(1).largest:
             continue
         plain = law_segment(LAWS[PLAIN], segment.angle, float(first.s), float(last.s))
@@ -44,11 +45,12 @@ def excesses(problem: CamProblem, composed: Composition) -> dict[str, float]:
 
 
 def warning_of(problem: CamProblem, composed: Composition) -> str | None:
-    """What a client has to know of them, as a sentence; None where no peak has exploded."""
+    """Describe the excessive peaks in a sentence; None if there are none."""
     found = excesses(problem, composed)
     if not found:
         return None
     told = " and ".join(f"the peak {name} is {times:.3g} times" for name, times in found.items())
+    # A limit is the remedy only if none is given yet.
     unlimited = [name for name in found if getattr(problem.limits, name) is None]
-    advice = f"; state a limit on {' or '.join(unlimited)}" if unlimited else ""
+    advice = f"; set a limit on {' or '.join(unlimited)}" if unlimited else ""
     return f"{told.capitalize()} that of a {PLAIN} motion of the same lift and angle{advice}."

@@ -25,18 +25,18 @@ class LengthRange(Statement):
 
 
 class RateRange(Statement):
-    """A spring rate that is free between two."""
+    """A spring rate that is free between two values."""
 
     min: Annotated[NonNegative, STIFFNESS]
     max: Annotated[PositiveNumber, STIFFNESS]
 
 
 class TranslatingRoller(Statement):
-    """A roller on a slide. Without a prime radius the smallest sound one is found."""
+    """A roller on a slide. Without a prime radius the smallest feasible one is found."""
 
     type: Literal["translating_roller"]
     roller_radius: PositiveLength | LengthRange = Field(
-        description="Radius, or a range: the largest that fits is taken."
+        description="Radius, or a range: the largest that fits is used."
     )
     offset: Coordinate | Literal["free"] = Field(
         default=0.0,
@@ -45,8 +45,8 @@ class TranslatingRoller(Statement):
     prime_radius: PositiveLength | None = None
     overhang: PositiveLength | None = Field(
         default=None,
-        description="From the roller's centre at zero displacement to the near end of the slide's guide: the lever of "
-        "the lateral force, which shrinks with the displacement.",
+        description="Distance from the roller's centre at zero displacement to the near end of the slide's guide: the "
+        "lever of the lateral force, which shrinks with the displacement.",
     )
 
 
@@ -55,10 +55,12 @@ class OscillatingRoller(Statement):
 
     type: Literal["oscillating_roller"]
     roller_radius: PositiveLength | LengthRange = Field(
-        description="Radius, or a range: the largest that fits is taken."
+        description="Radius, or a range: the largest that fits is used."
     )
-    arm: PositiveLength = Field(description="From the pivot to the roller's centre.")
-    pivot_distance: PositiveLength | LengthRange = Field(description="From the cam's centre to the pivot, or a range.")
+    arm: PositiveLength = Field(description="Distance from the pivot to the roller's centre.")
+    pivot_distance: PositiveLength | LengthRange = Field(
+        description="Distance from the cam's centre to the pivot, or a range."
+    )
     sense: Literal[1, -1] = Field(
         default=1, description="1: the arm swings outward in the sense in which the cam turns; -1: against it."
     )
@@ -66,14 +68,15 @@ class OscillatingRoller(Statement):
 
 
 class TranslatingFlat(Statement):
-    """A flat face on a slide, square to its motion. Without a base radius the smallest sound one is found."""
+    """A flat face on a slide, square to its motion. Without a base radius the smallest feasible one is found."""
 
     type: Literal["translating_flat"]
     base_radius: PositiveLength | None = None
     offset: Coordinate | Literal["free"] = Field(
         default=0.0,
-        description="Distance of the slide's axis from the cam's centre, positive to the side on which a rise touches "
-        "the face; free: that of the least overturning moment.",
+        description="Distance of the slide's axis from the cam's centre, positive toward the side on which a rise "
+        "touches "
+        "the face; `free`: the offset of minimum overturning moment.",
     )
 
 
@@ -96,7 +99,7 @@ class BarrelRoller(Statement):
     roller_radius: PositiveLength
     cylinder_radius: PositiveLength | None = Field(
         default=None,
-        description="Of the cylinder on which the roller's middle runs. Left open: the smallest sound one.",
+        description="Radius of the cylinder on which the roller's middle runs. Default: the smallest feasible one.",
     )
 
 
@@ -108,42 +111,41 @@ Follower = Annotated[
 class FollowerDynamics(Statement):
     """The follower as one mass on a spring. Newton, kilogram and the length unit; pound-force and lbf s²/in for inches.
 
-    For an oscillating follower all is taken at its arm's end: effective mass and spring at the roller.
+    For an oscillating follower all values refer to its arm's end: effective mass and spring at the roller.
     """
 
     mass: Annotated[PositiveNumber, MASS]
     spring_rate: Annotated[NonNegative, STIFFNESS] | RateRange | Literal["free"] = Field(
         default=0.0,
-        description="Force per length unit. Free, or in a range: that spring is taken whose greatest contact force is "
-        "least, of all that hold the follower to the cam at every speed up to `max_rpm`.",
+        description="Force per length unit. `free`, or a range: the spring with the smallest peak contact force is "
+        "chosen, of all that hold the follower to the cam at every speed up to `max_rpm`.",
     )
-    damping_ratio: NonNegative = Field(default=0.0, description="Share of critical damping of mass and spring.")
+    damping_ratio: NonNegative = Field(default=0.0, description="Fraction of critical damping of mass and spring.")
     preload: Annotated[NonNegative, FORCE] | None = Field(
-        default=None, description="Spring force at zero displacement. Left open: the least."
+        default=None, description="Spring force at zero displacement. Default: the smallest sufficient one."
     )
-    least_force: Annotated[NonNegative, FORCE] = Field(
-        default=0.0, description="Contact force that must always be left."
-    )
+    least_force: Annotated[NonNegative, FORCE] = Field(default=0.0, description="Minimum contact force at all times.")
     max_rpm: Annotated[PositiveNumber, ROTATIONAL_SPEED] | None = Field(
         default=None,
-        description="The contact force is kept at all speeds of the cam from 0 to so many revolutions a minute. Left "
-        "open: at its stated speed, and for a spring that is chosen at all speeds up to it.",
+        description="The contact force is kept at all cam speeds from 0 to this one, in revolutions per minute. "
+        "Default: "
+        "only at `speed_rpm`, and for a chosen spring at all speeds up to it.",
     )
     train_stiffness: Annotated[PositiveNumber, STIFFNESS] | None = Field(
         default=None,
-        description="Force per length unit of the train between cam and mass, which is what vibrates. Left open: "
-        "unknown, and nothing is said of vibrations.",
+        description="Force per length unit of the elastic train between cam and mass. Default: unknown, and vibrations "
+        "are not computed.",
     )
     train_damping_ratio: Annotated[NonNegative, Field(lt=1.0)] = Field(
-        default=0.0, description="Share of critical damping of the mass on its train."
+        default=0.0, description="Fraction of critical damping of the mass on its train."
     )
     min_frequency_ratio: NonNegative | None = Field(
-        default=None, description="Least natural frequency of mass and spring over the cam's stated speed."
+        default=None, description="Minimum natural frequency of mass and spring over the cam's speed."
     )
 
 
 def follower_contradictions(follower: Follower) -> list[Contradiction]:
-    """Dimensions of a follower that contradict one another."""
+    """Return contradictions between dimensions of a follower."""
     contradictions = []
     for name in ("roller_radius", "pivot_distance"):
         stated = getattr(follower, name, None)
@@ -157,18 +159,22 @@ def follower_contradictions(follower: Follower) -> list[Contradiction]:
         if isinstance(follower, TranslatingRoller):
             offset = follower.offset
             if offset == "free":
-                detail = "a free offset needs a free prime radius; leave the prime radius out or state the offset"
+                detail = "a free offset needs a free prime radius; omit the prime radius or give the offset"
                 contradictions.append(Contradiction("/follower/offset", detail))
             elif abs(offset) >= follower.prime_radius:
                 contradictions.append(Contradiction("/follower/offset", "must be less than the prime radius"))
         elif isinstance(follower.pivot_distance, LengthRange):
-            detail = "a free pivot needs a free prime radius; leave the prime radius out or state the pivot"
+            detail = "a free pivot needs a free prime radius; omit the prime radius or give the pivot distance"
             contradictions.append(Contradiction("/follower/pivot_distance", detail))
         else:
             arm, pivot = follower.arm, follower.pivot_distance
+            # The cam's centre, the pivot and the roller's centre must form a triangle.
             if not abs(pivot - arm) < follower.prime_radius < pivot + arm:
-                contradictions.append(Contradiction("/follower/prime_radius", "arm and pivot distance do not reach it"))
+                contradictions.append(
+                    Contradiction("/follower/prime_radius", "arm and pivot distance cannot reach the prime radius")
+                )
     if isinstance(follower, OscillatingFlat):
+        # At its lowest position the face must pass between cam and pivot.
         reach = (follower.base_radius or 0.0) + follower.face_offset
         if reach >= follower.pivot_distance:
             contradictions.append(Contradiction("/follower/pivot_distance", "must exceed base radius and face offset"))

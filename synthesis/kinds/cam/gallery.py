@@ -1,17 +1,17 @@
-"""Its examples as a person looks for them, in their order."""
+"""Examples of the kind cam for the gallery, in order of presentation."""
 
 from __future__ import annotations
 
 from synthesis.model.kind import Named
 
 GALLERY = (
-    Named("Rise and return", "Lift and rest", "The smallest cam that is sound, by modified sine."),
-    Named("Gentlest pulse", "Lift and rest", "Up and down with the least acceleration that a bound on jerk allows."),
-    Named("Constant feed", "Lift and rest", "Steady speed forth, the gentlest way back."),
+    Named("Rise and return", "Lift and rest", "The smallest feasible cam with a modified-sine motion."),
+    Named("Gentlest pulse", "Lift and rest", "Up and down with the minimum acceleration within a limit on jerk."),
+    Named("Constant feed", "Lift and rest", "Constant speed forward, the gentlest return."),
     Named(
         "Valve cam",
         "Lift and rest",
-        "A flat follower under its spring at 3000 rev/min, with the least force of contact.",
+        "A flat follower under its spring at 3000 rev/min, with the minimum contact force.",
     ),
-    Named("Barrel cam", "Lift and rest", "A roller in the groove of a drum, to and fro by 40 mm."),
+    Named("Barrel cam", "Lift and rest", "A roller in the groove of a drum, back and forth by 40 mm."),
 )

@@ -1,6 +1,6 @@
-"""Where the segments of a motion program meet: velocity and acceleration at the ends of laws and polynomials.
+"""Ends of segments in a motion program: velocity and acceleration at the ends of laws and polynomials.
 
-Written without any library, because a statement is checked where it comes in.
+Written without numpy, because requests are checked before the numerical libraries are loaded.
 """
 
 from __future__ import annotations
@@ -9,7 +9,7 @@ import math
 from collections.abc import Sequence
 
 State = tuple[float, float, float]
-"""s, v, a."""
+"""s, v, a at an end of a segment."""
 
 _SQUARE = math.pi**2
 
@@ -35,30 +35,30 @@ END_RATES: dict[str, tuple[float, float, float, float]] = {
     "half_cycloidal_start": (0.0, 0.0, 2.0, 0.0),
     "half_cycloidal_end": (2.0, 0.0, 0.0, 0.0),
 }
-"""v and a at the start, v and a at the end, of a unit rise over a unit angle by each law."""
+"""v and a at the start, v and a at the end, of a unit rise over a unit angle for each law."""
 
 MIRRORED = {"eighth_power": "eighth_power_reversed", "double_harmonic": "double_harmonic_reversed"}
-"""Laws that begin without acceleration and end with one, and what mirrors them in a fall; books name both alike."""
+"""Laws that begin without acceleration and end with one, and their mirror images for a fall; books name both alike."""
 
 SINGULAR = 1e-11
 """Pivot, relative to its column, below which conditions do not determine a polynomial."""
 
 SAMPLES = 32
-"""Steps of a polynomial at which its range is measured, which only scales what counts as rounding, or as an edge."""
+"""Steps at which a polynomial's range is measured; the range only scales what counts as rounding or as an edge."""
 
 Conditions = Sequence[tuple[float, int, float]]
 """(angle in radians from the segment's start, order, value)."""
 
 
 def law_ends(law: str, angle: float, start: float, end: float) -> tuple[State, State]:
-    """s, v, a at both ends of a move by a law; radians."""
+    """Return s, v, a at both ends of a move by a law; radians."""
     v0, a0, v1, a1 = END_RATES[law]
     lift = end - start
     return (start, v0 * lift / angle, a0 * lift / angle**2), (end, v1 * lift / angle, a1 * lift / angle**2)
 
 
 def polynomial_ends(angle: float, conditions: Conditions) -> tuple[State, State] | None:
-    """s, v, a at both ends of the polynomial of least degree through conditions; None where they determine none."""
+    """Return s, v, a at both ends of the lowest-degree polynomial through conditions; None if they determine none."""
     coefficients = _coefficients(angle, conditions)
     if coefficients is None:
         return None
@@ -70,7 +70,7 @@ def polynomial_ends(angle: float, conditions: Conditions) -> tuple[State, State]
 
 
 def polynomial_range(angle: float, conditions: Conditions) -> tuple[float, float] | None:
-    """Least and greatest s of the polynomial of least degree through conditions, by samples; None as for its ends."""
+    """Return the sampled least and greatest s of the lowest-degree polynomial through conditions, or None."""
     coefficients = _coefficients(angle, conditions)
     if coefficients is None:
         return None
@@ -79,11 +79,12 @@ def polynomial_range(angle: float, conditions: Conditions) -> tuple[float, float
 
 
 def _coefficients(angle: float, conditions: Conditions) -> list[float] | None:
-    """Of the powers of u = θ/β: elimination with rows scaled and pivots chosen by column."""
+    """Solve for the coefficients of powers of u = θ/β: elimination with scaled rows and column pivots."""
     n = len(conditions)
     rows = []
     for at, order, value in conditions:
         row = [_power(at / angle, k, order) for k in range(n)]
+        # Conditions on different derivatives differ by powers of k: scaled rows make the pivots comparable.
         size = max(map(abs, row))
         if not size:
             return None
@@ -97,6 +98,7 @@ def _coefficients(angle: float, conditions: Conditions) -> list[float] | None:
             factor = rows[r][column] / rows[column][column]
             if factor:
                 rows[r] = [x - factor * y for x, y in zip(rows[r], rows[column], strict=True)]
+    # Back substitution.
     solution = [0.0] * n
     for r in range(n - 1, -1, -1):
         known = sum(rows[r][c] * solution[c] for c in range(r + 1, n))
@@ -105,5 +107,5 @@ def _coefficients(angle: float, conditions: Conditions) -> list[float] | None:
 
 
 def _power(u: float, k: int, order: int) -> float:
-    """The derivative of an order of u^k."""
+    """Return the derivative of the given order of u^k."""
     return float(math.perm(k, order)) * u ** (k - order) if k >= order else 0.0

@@ -4,8 +4,8 @@ Between two knots, h apart, the state x = (s, s′, …) follows from the consta
 
     x_i(t + h) = Σ_{j ≥ i} x_j hʲ⁻ⁱ/(j−i)! + u hᵐ⁻ⁱ/(m−i)!
 
-which is exact, so that the motion is a piecewise polynomial of degree m with m − 1 continuous derivatives and its peaks
-are found exactly, not sampled.
+which is exact. So the motion is a piecewise polynomial of degree m with m − 1 continuous derivatives, and its peaks
+are found exactly instead of by sampling.
 """
 
 from __future__ import annotations
@@ -42,7 +42,7 @@ class KnotMotion:
 
     @cached_property
     def displacement(self) -> Piecewise:
-        """s as a piecewise polynomial of degree m."""
+        """Displacement s as a piecewise polynomial of degree m."""
         m = self.states.shape[1]
         h = np.diff(self.times)[:, None]
         rows = np.column_stack([self.states[:-1], self.control])
@@ -51,14 +51,14 @@ class KnotMotion:
         return Piecewise(self.times, rows * h**powers / factorials)
 
     def derivative(self, order: int) -> Piecewise:
-        """The derivative of an order, 0 for the displacement itself."""
+        """Return the derivative of the given order; 0 is the displacement itself."""
         curve = self.displacement
         for _ in range(order):
             curve = curve.derivative()
         return curve
 
     def combination(self, weights: tuple[float, ...]) -> Piecewise:
-        """Σ weights[i] · dⁱs/dtⁱ."""
+        """Return Σ weights[i] · dⁱs/dtⁱ."""
         m = self.states.shape[1]
         total = np.zeros((len(self.control), m + 1))
         for order, weight in enumerate(weights):
@@ -69,13 +69,14 @@ class KnotMotion:
 
 
 def integrated(times: Real, start: Real, control: Real) -> KnotMotion:
-    """The motion that a start state and a control lead to.
+    """Integrate a control from a start state into a motion.
 
-    Summed order by order from the highest, each a cumulative sum, so that the knots join to rounding.
+    Order by order from the highest, each a cumulative sum, so that the knots join to rounding.
     """
     size = len(start)
     states = np.empty((len(times), size))
     step = np.diff(times)
+    # State i needs the higher ones at the left knots, which the earlier passes have filled in.
     for i in range(size - 1, -1, -1):
         gained = control * step ** (size - i) / math.factorial(size - i)
         for j in range(i + 1, size):

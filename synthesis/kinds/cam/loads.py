@@ -1,4 +1,4 @@
-"""What a cam moves, in one consistent set of units, and the spring that is chosen where the client leaves it free."""
+"""The load that a cam moves, in one consistent set of units, and the choice of its spring if the rate is free."""
 
 from __future__ import annotations
 
@@ -13,15 +13,15 @@ from synthesis.kinds.cam.problem import METRES, CamProblem
 
 
 def arm_length(problem: CamProblem) -> float:
-    """From an oscillating roller's pivot to its centre; 1 for the followers that are pushed straight."""
+    """Return the distance from an oscillating roller's pivot to its centre; 1 for translating followers."""
     return getattr(problem.follower, "arm", 1.0)
 
 
 def follower_load(problem: CamProblem) -> tuple[FollowerLoad, float]:
-    """What the cam moves, in a consistent set of units, and the speed in rad/s.
+    """Return the moved load, in a consistent set of units, and the speed in rad/s.
 
-    For an oscillating follower mass and spring at the arm's end become moments about the pivot. A free preload is left
-    at zero; the spring's rate is a number (:func:`with_spring`).
+    For an oscillating follower, mass and spring at the arm's end become moments about the pivot. A free preload is
+    zero here; the spring's rate must be a number (:func:`with_spring`).
     """
     dynamics = problem.dynamics
     assert dynamics is not None
@@ -37,12 +37,12 @@ def follower_load(problem: CamProblem) -> tuple[FollowerLoad, float]:
 
 
 def radians_a_second(rpm: float) -> float:
-    """Of revolutions a minute."""
+    """Convert revolutions per minute to radians per second."""
     return rpm * math.pi / 30.0
 
 
 def greatest_rpm(problem: CamProblem) -> float | None:
-    """The speed up to which contact is kept from rest; None where it is kept at the stated speed alone."""
+    """Return the speed up to which contact is kept from rest; None if it is kept only at the given speed."""
     dynamics = problem.dynamics
     assert dynamics is not None
     if dynamics.max_rpm is not None:
@@ -51,21 +51,21 @@ def greatest_rpm(problem: CamProblem) -> float | None:
 
 
 def weakest_contact(program: Program, load: FollowerLoad, top_rpm: float) -> WeakestContact:
-    """The least contact force of a load from rest to a speed."""
+    """Find the minimum contact force of a load from rest to a speed."""
     top = radians_a_second(top_rpm)
     return RunningCam(program, load, top).weakest_contact(top)
 
 
 def least_rate(dynamics: FollowerDynamics, length_unit: str, speed: float) -> float:
-    """The spring rate, as the client states it, that the least natural frequency asks for at a speed in rad/s."""
+    """Return the spring rate, in the request's units, that the natural frequency requires at a speed in rad/s."""
     return dynamics.mass * METRES[length_unit] * ((dynamics.min_frequency_ratio or 0.0) * speed) ** 2
 
 
 def with_spring(problem: CamProblem, program: Program) -> tuple[CamProblem, Spring | None]:
-    """The problem with a number for its spring rate, and the spring where it was free.
+    """Return the problem with a number for its spring rate, and the spring if the rate was free.
 
-    Chosen is the spring of least greatest contact force at the stated speed among those that keep the least force at
-    all speeds from 0 to the greatest, and the natural frequency; in the units of :func:`follower_load`.
+    The chosen spring has the smallest peak contact force at the given speed among those that keep the required force
+    at all speeds from 0 to the greatest, and the natural frequency; in the units of :func:`follower_load`.
     """
     dynamics = problem.dynamics
     if dynamics is None or isinstance(dynamics.spring_rate, float):
@@ -90,9 +90,9 @@ def with_spring(problem: CamProblem, program: Program) -> tuple[CamProblem, Spri
 
 @dataclass(frozen=True)
 class Held:
-    """A follower that is pressed to its cam: the problem with a number for its spring, and what runs.
+    """A follower pressed to its cam: the problem with a number for its spring, and the running cam.
 
-    ``least_preload`` keeps the least force, up to ``top_rpm`` where that is a number; ``spring`` is the chosen one.
+    ``least_preload`` keeps the required force, up to ``top_rpm`` if that is a number; ``spring`` is the chosen one.
     """
 
     problem: CamProblem
@@ -103,15 +103,17 @@ class Held:
 
 
 def held(stated: CamProblem, program: Program) -> Held:
-    """The follower with its spring, and the least preload where the client leaves it free."""
+    """Press the follower to its cam: choose its spring, and the smallest sufficient preload if that is free."""
     problem, spring = with_spring(stated, program)
     dynamics = problem.dynamics
     assert dynamics is not None
     load, speed = follower_load(problem)
     floor, top_rpm = dynamics.least_force * arm_length(problem), greatest_rpm(stated)
+    # Without preload, its weakest contact shows how much preload is missing.
     alone = RunningCam(program, replace(load, preload=0.0), speed)
     least = alone.least_preload(floor)
     if top_rpm is not None:
         least = max(least, floor - weakest_contact(program, alone.load, top_rpm).force)
+    # In a groove the walls hold the follower, so that a free preload stays zero.
     preload = least if dynamics.preload is None and not problem.grooved else load.preload
     return Held(problem, RunningCam(program, replace(load, preload=preload), speed), least, top_rpm, spring)

@@ -1,8 +1,8 @@
-"""Contact force and overturning moment on the finished cam: of the motion that its profile gives.
+"""Contact force and overturning moment on the finished cam, computed from the motion that its profile produces.
 
-The follower is laid against the profile at cam angles four times as close as the design's. From each contact come
-displacement, velocity and acceleration, and with them the force of mass, damping and spring at many speeds. Neither the
-program nor the parabola of the force over speed is looked at.
+The follower is laid against the profile at cam angles four times as close as the design's. Each contact gives
+displacement, velocity and acceleration, and these the force of mass, damping and spring at many speeds. Neither the
+program nor the closed form of the force over speed (a parabola) is used.
 """
 
 from __future__ import annotations
@@ -30,18 +30,19 @@ MOMENT_SLACK = 1e-8
 """Relative slack of an overturning moment at its limit: the radius is enlarged by no more than rounding."""
 
 SPEEDS = 65
-"""Speeds at which the force is measured, from 0 to the greatest."""
+"""Number of speeds at which the force is measured, from 0 to the greatest."""
 
 MEASURED_FORCE = 1e-3
 """Share of the greatest force by which a measured one may be less: accelerations come from the profile's curvature."""
 
 
 def measured_contact(problem: CamProblem, mechanism: CamMechanism, forces: CamForces | None) -> list[Check]:
-    """The check ``contact_on_profile``: the least contact force measured, where one is kept over a range of speeds."""
+    """Check ``contact_on_profile``: the measured minimum contact force, if one is kept over a range of speeds."""
     if forces is None or forces.over_speeds is None or problem.dynamics is None:
         return []
     load, _ = _load(problem, forces)
     found, _ = _laid(mechanism)
+    # The least force over speed may lie anywhere: sample the range instead of its closed form.
     speeds = np.linspace(0.0, radians_a_second(forces.over_speeds.max_rpm), SPEEDS)[:, None]
     force = load.force(_motion(found), speeds) / arm_length(problem)
     least, floor = float(force.min()), problem.dynamics.least_force
@@ -51,7 +52,7 @@ def measured_contact(problem: CamProblem, mechanism: CamMechanism, forces: CamFo
 
 
 def overturning_checks(problem: CamProblem, mechanism: CamMechanism, metrics: CamMetrics) -> list[Check]:
-    """The overturning moment of the answer, and that of the contacts with the finished profile, against the limit."""
+    """Check the answer's overturning moment, and that of the contacts with the finished profile, against the limit."""
     limit, forces, moment = problem.limits.overturning_moment, metrics.forces, metrics.overturning_moment
     if limit is None or forces is None or moment is None:
         return []
@@ -65,6 +66,7 @@ def overturning_checks(problem: CamProblem, mechanism: CamMechanism, metrics: Ca
     else:
         point, normal = found.point / turned, found.normal / turned
     if isinstance(problem.follower, TranslatingRoller):
+        # The guide's lever shrinks with the displacement; the lateral force is the contact force times tan φ.
         lever = (problem.follower.overhang or 0.0) - found.s
         measured = force * normal.imag / normal.real * lever
     else:
@@ -79,14 +81,14 @@ def overturning_checks(problem: CamProblem, mechanism: CamMechanism, metrics: Ca
 
 
 def _load(problem: CamProblem, forces: CamForces) -> tuple[FollowerLoad, float]:
-    """The load with the spring and the preload of the answer, and the speed."""
+    """Return the load with the answer's spring and preload, and the speed."""
     assert problem.dynamics is not None
     dynamics = problem.dynamics.model_copy(update={"spring_rate": forces.spring_rate, "preload": forces.preload})
     return follower_load(problem.model_copy(update={"dynamics": dynamics}))
 
 
 def _laid(mechanism: CamMechanism) -> tuple[ContactMotion, Real]:
-    """The follower laid against the profile, and the cam angles at which."""
+    """Lay the follower against the profile; also return the cam angles of the contacts."""
     at = np.radians(mechanism.program.angle)
     step = np.diff(np.append(at, at[0] + TURN))
     angle = (at[:, None] + step[:, None] * (np.arange(FINER) / FINER)).ravel()
@@ -95,4 +97,5 @@ def _laid(mechanism: CamMechanism) -> tuple[ContactMotion, Real]:
 
 
 def _motion(found: ContactMotion) -> Motion:
+    # Forces need no jerk.
     return Motion(found.s, found.v, found.a, np.zeros_like(found.s))

@@ -1,13 +1,13 @@
-"""Velocity, acceleration, jerk and stated conditions, measured on the finished profile.
+"""Velocity, acceleration, jerk and given conditions, measured on the finished profile.
 
 The contact search gives the displacement s at any cam angle, and the direction of the profile at the contact gives
 the velocity without differences. Acceleration and jerk are n-th differences over n + 1 angles a step h apart,
 
     δⁿs/hⁿ = ∫ B(u) s⁽ⁿ⁾(θ + u) du,    B a B-spline of width n h, ∫ B = 1
 
-(Schumaker, *Spline Functions*, §4.3): a mean of the derivative itself, which never exceeds its peak, whatever the
-motion. A deviation ε of the displacement adds 2ⁿ ε/hⁿ at most. So a limit that is broken over more than a window's
-width is found; a spike narrower than that is not, and neither would any instrument on the finished cam find it.
+(Schumaker, *Spline Functions*, §4.3): a mean of the derivative itself, which never exceeds its peak for any motion.
+A deviation ε of the displacement adds at most 2ⁿ ε/hⁿ. So a limit that is broken over more than a window's
+width is detected; a narrower spike is not, and no instrument on the finished cam would detect it either.
 """
 
 from __future__ import annotations
@@ -27,7 +27,7 @@ from synthesis.model.dimension import Dimension
 
 Real = NDArray[np.float64]
 Measure = Callable[[Real], tuple[Real, Real]]
-"""s and v at cam angles (radians), as the follower has them on the finished profile."""
+"""Function for s and v of the follower on the finished profile, at cam angles in radians."""
 
 GRID = 320
 """Equal steps of a segment at which its displacement is measured."""
@@ -39,31 +39,31 @@ the lift moves a jerk by 2e-4 of the least that any motion has, an acceleration 
 ORDERS = {"velocity": 1, "acceleration": 2, "jerk": 3}
 
 PEAK_SLACK = 2e-3
-"""Relative slack of the limits on the motion: twice what deviations of the displacement do to the differences."""
+"""Relative slack of the limits on the motion: twice the effect of displacement deviations on the differences."""
 
 CONDITION_SLACK = {1: 1e-3, 2: 1e-2}
 """Deviation of a measured velocity or acceleration from a condition, as a share of the segment's peak."""
 
 FINE, NEAR = 2.0, 2
-"""Steps between the angles of a difference at a condition on the acceleration, and how many halves of that around it:
-the value that is stated must lie among the means there and what both sides lead to, because an acceleration may bend at
-its condition."""
+"""Step of a difference at a condition on the acceleration, in grid steps, and the number of half steps around it that
+are used: the given value must lie among the means there and the extrapolations from both sides, because an acceleration
+may have a kink at its condition."""
 
 FINEST = 0.25
-"""Of those steps at least, where a limit on jerk says how fast an acceleration may be left again. Without one it may be
-met for an instant, which no cam shows."""
+"""Least share of those steps, if a limit on jerk bounds how fast an acceleration may change. Without that limit it may
+be reached for an instant, which no cam shows."""
 
 HIDDEN = 0.2
 """Share of the slack of a condition that the profile's deviation may add to a difference: the steps are as small as
 that allows."""
 
 ONE_SIDED = (2.0, -5.0, 4.0, -1.0)
-"""Second derivative at the first of four equally spaced values, exact for a cubic; 12 deviations add to it at most."""
+"""Second derivative at the first of four equally spaced values, exact for a cubic; adds at most 12 deviations."""
 
 
 @dataclass(frozen=True)
 class _Open:
-    """An automatic or optimal segment, with its place and the grid of what was measured in it."""
+    """An automatic or optimal segment, with its cam angles and the measurements on its grid."""
 
     index: int
     segment: Move
@@ -74,27 +74,28 @@ class _Open:
     v: Real
 
     def means(self, name: str) -> Real:
-        """Windowed means of the acceleration or the jerk."""
+        """Return windowed means of the acceleration or the jerk."""
         order, stride = ORDERS[name], STRIDE[name]
         s, h = self.s, stride * self.span / GRID
         count = len(s) - order * stride
+        # Binomial weights: the n-th difference of displacements ``stride`` grid steps apart.
         total = sum(
             (-1) ** (order - k) * math.comb(order, k) * s[k * stride : k * stride + count] for k in range(order + 1)
         )
         return np.asarray(total / h**order)
 
     def peak(self, name: str) -> float:
-        """Greatest magnitude of a derivative."""
+        """Return the greatest magnitude of a derivative."""
         return float(np.abs(self.v if name == "velocity" else self.means(name)).max())
 
 
 def rate_checks(problem: CamProblem, measure: Measure, lift: float, reproduced: float, off: float) -> list[Check]:
-    """Limits, positions, conditions and bands of the automatic and optimal segments.
+    """Check limits, positions, conditions and bands of the automatic and optimal segments.
 
     Parameters
     ----------
     problem : CamProblem
-        What was asked.
+        The request.
     measure : callable
         The follower on the finished profile.
     lift : float
@@ -127,13 +128,14 @@ def rate_checks(problem: CamProblem, measure: Measure, lift: float, reproduced: 
         worst = [_rate_deviation(problem, measure, part, order, off * lift) for part in parts]
         stated = [value for value in worst if value is not None]
         if stated:
+            # Differences of accelerations are less accurate than velocities.
             slack = CONDITION_SLACK[order]
             checks.append(Check(name=name, passed=max(stated) <= slack, value=reported(max(stated)), limit=slack))
     return checks
 
 
 def _open_segments(problem: CamProblem, measure: Measure) -> Iterator[_Open]:
-    """Automatic and optimal segments, each measured on its own grid."""
+    """Measure automatic and optimal segments, each on its own grid."""
     start = 0.0
     for index, (segment, heights) in enumerate(zip(problem.segments, problem.program.heights(), strict=True)):
         span = math.radians(segment.angle)
@@ -144,7 +146,7 @@ def _open_segments(problem: CamProblem, measure: Measure) -> Iterator[_Open]:
 
 
 def _displacement_deviation(problem: CamProblem, measure: Measure, part: _Open) -> float:
-    """How far the measured displacement is from ends, conditions and bands."""
+    """Return the greatest deviation of the measured displacement from ends, conditions and bands."""
     unit = problem.displacement_unit
     stated = [(0.0, part.heights[0]), (part.span, part.heights[1])]
     stated += [(t, x) for t, order, x in problem.program.polynomial_conditions(part.segment) if order == 0]
@@ -154,6 +156,7 @@ def _displacement_deviation(problem: CamProblem, measure: Measure, part: _Open) 
     for band in part.segment.bands:
         ends = np.radians([band.start, band.end])
         inside = part.s[(grid >= ends[0]) & (grid <= ends[1])]
+        # Band ends seldom fall on the grid, so that they are measured as well.
         within = np.concatenate([inside, measure(part.start + ends)[0]])
         if band.upper is not None:
             off = max(off, float(within.max()) - band.upper * unit)
@@ -163,9 +166,9 @@ def _displacement_deviation(problem: CamProblem, measure: Measure, part: _Open) 
 
 
 def _rate_deviation(problem: CamProblem, measure: Measure, part: _Open, order: int, off: float) -> float | None:
-    """How far a measured rate is from its conditions, as a share of the segment's peak; None without a condition.
+    """Return the deviation of a rate from its conditions, as a share of the segment's peak; None without a condition.
 
-    ``off`` is by how much the displacement is off the program.
+    ``off`` is the deviation of the displacement from the program.
     """
     stated = [(t, x) for t, of, x in problem.program.polynomial_conditions(part.segment) if of == order]
     if not stated:
@@ -176,6 +179,8 @@ def _rate_deviation(problem: CamProblem, measure: Measure, part: _Open, order: i
     peak = part.peak("acceleration")
     step = FINE * part.span / GRID
     if problem.limits.jerk is not None:
+        # The smallest step at which the profile's deviation hides at most HIDDEN of the slack, within its two
+        # bounds.
         shown = math.sqrt(sum(map(abs, ONE_SIDED)) * off / (HIDDEN * CONDITION_SLACK[2] * peak))
         step = min(max(shown, FINEST / FINE * step), step)
     # Half steps around the condition, whole ones to either side.
@@ -185,5 +190,6 @@ def _rate_deviation(problem: CamProblem, measure: Measure, part: _Open, order: i
     for side in (-2, 2):
         means.append(np.sum([weight * s[side * k] for k, weight in enumerate(ONE_SIDED)], axis=0))
     measured = np.array(means) / step**2
+    # No deviation if the value lies between the least and the greatest of the means and extrapolations.
     missed = np.maximum(np.maximum(measured.min(axis=0) - value, value - measured.max(axis=0)), 0.0)
     return float(missed.max()) / peak

@@ -1,19 +1,19 @@
-"""Convex programs over motions by knots: statement, and solution by cvxpy and Clarabel.
+"""Convex programs over motions by knots: formulation, and solution by cvxpy and Clarabel.
 
 The unknowns are the states (s, s′, …) of one or more motions at their knots, a constant control u = dᵐs/dtᵐ on each
-step, and a few scalars z that the motions share (the peak to be made small; preload; the position of the follower).
-Everything is linear in them but the objective:
+step, and a few scalars z that the motions share (the peak to be minimized; preload; the position of the follower).
+Everything is linear in them except the objective:
 
     minimize z₀, or a Euclidean norm of some scalars, or ∫ (dᵖs/dtᵖ)² dt
 
 subject to Taylor's formula from knot to knot (:mod:`synthesis.kinds.cam.knots`), conditions, limits and demands. A
-limit or demand is made of every Bernstein coefficient of what it speaks of, on every step, and so holds between the
-knots as well. The equations couple neighbouring knots only, so that the interior-point solver factors a band, and the
-time grows in proportion to the number of knots. Each motion runs over 0 ≤ t ≤ 1 here, scaled to a unit lift by the
+limit or demand is imposed on every Bernstein coefficient of its left-hand side, on every step, and so holds between
+the knots as well. The equations couple neighbouring knots only, so that the interior-point solver factors a band, and
+the time grows in proportion to the number of knots. Each motion runs over 0 ≤ t ≤ 1 here, scaled to a unit lift by the
 caller.
 
-The multipliers of the solution are kept: :mod:`synthesis.kinds.cam.dual` makes of them a bound for all motions, knots
-or not.
+The multipliers of the solution are kept: :mod:`synthesis.kinds.cam.dual` derives from them a bound for all motions,
+with knots or without.
 """
 
 from __future__ import annotations
@@ -31,13 +31,13 @@ from synthesis.numerics.convex import minimized, modeling
 Real = NDArray[np.float64]
 
 RANK_TOLERANCE = 1e-12
-"""Singular values below this share of the greatest are taken for zero: conditions that say the same twice."""
+"""Singular values below this share of the greatest count as zero: they come from redundant conditions."""
 
 VARIABLE_SCALE = 0.1
-"""The i-th derivative is held in the program as 0.1ⁱ times its value: those of a unit lift grow about so fast."""
+"""Factor 0.1ⁱ of the i-th derivative in the program: the derivatives of a unit lift grow at about the inverse rate."""
 
 AT_KNOT = 1e-9
-"""A time this close to a knot is that knot."""
+"""Time difference up to which a time coincides with a knot."""
 
 
 @dataclass(frozen=True)
@@ -49,7 +49,7 @@ class Condition:
 
     @classmethod
     def at(cls, time: float, order: int, value: float) -> Condition:
-        """The derivative of an order has a value at a time."""
+        """Return the condition that the derivative of an order has a value at a time."""
         return cls(((time, order, 1.0),), value)
 
 
@@ -64,7 +64,7 @@ class Limit:
 
 @dataclass(frozen=True)
 class Demand:
-    """Σ weights[i] dⁱs/dtⁱ + Σ gains[j] z_j ≤ right wherever start ≤ t ≤ end."""
+    """Σ weights[i] dⁱs/dtⁱ + Σ gains[j] z_j ≤ right for start ≤ t ≤ end."""
 
     weights: tuple[float, ...]
     right: float
@@ -74,13 +74,13 @@ class Demand:
 
     @property
     def order(self) -> int:
-        """The highest derivative that it speaks of."""
+        """The highest derivative involved."""
         return max((i for i, weight in enumerate(self.weights) if weight), default=0)
 
 
 @dataclass(frozen=True)
 class Block:
-    """One motion of a program: its grid, the order of its control, and what must hold of it."""
+    """One motion of a program: its grid, the order of its control, and its constraints."""
 
     times: Real
     size: int
@@ -89,20 +89,20 @@ class Block:
     demands: tuple[Demand, ...] = ()
 
     def knot(self, time: float) -> int:
-        """Number of the knot at a time; the grid has one wherever a condition stands."""
+        """Return the index of the knot at a time; the grid has one at every condition."""
         index = int(np.abs(self.times - time).argmin())
         if abs(self.times[index] - time) > AT_KNOT:
-            raise ValueError(f"a condition stands at {time}, where the grid has no knot")
+            raise ValueError(f"a condition is set at {time}, but the grid has no knot there")
         return index
 
     def within(self, demand: Demand) -> slice:
-        """The knots at which a demand is made; it is made on the steps between them."""
+        """Return the knots at which a demand holds; it also holds on the steps between them."""
         return slice(self.knot(demand.start), self.knot(demand.end) + 1)
 
 
 @dataclass(frozen=True)
 class ConvexProgram:
-    """Motions, shared scalars and what is made least.
+    """Motions, shared scalars and the objective to minimize.
 
     Parameters
     ----------
@@ -113,9 +113,9 @@ class ConvexProgram:
     rms_order : int
         p of the objective "rms".
     rows, right : float64, shapes (k, scalars) and (k,)
-        rows @ z ≤ right: demands on the scalars alone.
+        rows @ z ≤ right: constraints on the scalars alone.
     box : float64, shape (scalars,)
-        Bounds of |z|; the first is not bounded where the objective is a scalar.
+        Bounds of |z|; the first is not bounded if the objective is a scalar.
     """
 
     blocks: tuple[Block, ...]
@@ -145,7 +145,7 @@ class Multipliers:
 
 @dataclass(frozen=True)
 class Solution:
-    """What the solver found: exact motions, scalars, and the multipliers."""
+    """The result of the solver: exact motions, scalars, and the multipliers."""
 
     motions: tuple[KnotMotion, ...]
     scalars: Real
@@ -159,13 +159,13 @@ def solve(program: ConvexProgram) -> Solution | None:
     Parameters
     ----------
     program : ConvexProgram
-        The statement.
+        The formulation.
 
     Returns
     -------
     Solution or None
-        Motions that are integrated from their control and meet every condition to rounding. None where the program
-        has no solution on its grid, or the solver found none.
+        Motions that are integrated from their control and meet every condition to rounding. None if the program
+        has no solution on its grid, or the solver finds none.
     """
     cp = modeling()
 
@@ -181,6 +181,7 @@ def solve(program: ConvexProgram) -> Solution | None:
     if len(program.right):
         rows = program.rows @ z <= program.right
         constraints.append(rows)
+    # z₀ is the objective itself and needs no box; its duality gap would gain nothing from one.
     boxed = range(1 if program.objective == "scalar" else 0, scalars)
     constraints += [cp.abs(z[j]) <= program.box[j] for j in boxed]
     worth = 1.0
@@ -190,6 +191,7 @@ def solve(program: ConvexProgram) -> Solution | None:
         cost = cp.norm(z, 2)
     else:
         cost = models[0].mean_square(program.rms_order)
+        # The solver minimizes the scaled derivative; the multipliers belong to the unscaled one.
         worth = float(models[0].scale[program.rms_order]) ** 2
     if not minimized(cost, constraints):
         return None
@@ -209,11 +211,13 @@ class BlockModel:
 
         self.block = block
         n, m = len(block.times) - 1, block.size
+        # Without this scaling the Taylor equations mix numbers over many orders of magnitude.
         self.scale = VARIABLE_SCALE ** -np.arange(m + 1.0)
         self.states = cp.Variable((n + 1, m))
         self.control = cp.Variable(n)
         step = np.diff(block.times) / VARIABLE_SCALE
         self.constraints: list[Any] = []
+        # One equation per state and step: x_i(t + h) by Taylor's formula, in the scaled variables.
         for i in range(m):
             following = cp.multiply(step ** (m - i) / math.factorial(m - i), self.control)
             for j in range(i, m):
@@ -227,7 +231,7 @@ class BlockModel:
             self.constraints += [inequality.knots, *inequality.inner]
 
     def mean_square(self, order: int) -> Any:
-        """∫ (dᵖs/dtᵖ)² dt: exact for the control and the highest state, by Simpson-like weights for lower ones."""
+        """Build ∫ (dᵖs/dtᵖ)² dt: exact for the control and the highest state, by Simpson's rule for lower ones."""
         cp = modeling()
 
         step = np.diff(self.block.times)
@@ -235,11 +239,12 @@ class BlockModel:
             return cp.sum_squares(cp.multiply(np.sqrt(step), self.control))
         value = self.states[:, order]
         root = np.sqrt(step / 6.0)
+        # Simpson on a step: (x² + y² + (x + y)²)/6 is exact for the square of a linear function.
         parts = value[:-1], value[1:], value[:-1] + value[1:]
         return sum(cp.sum_squares(cp.multiply(root, part)) for part in parts)
 
     def motion(self) -> KnotMotion:
-        """The motion of the solution, corrected by the least change of its control that meets every condition."""
+        """Return the solved motion, corrected by the least change of its control that meets every condition."""
         block = self.block
         m = block.size
         start = np.asarray(self.states.value[0], np.float64) * self.scale[:m]
@@ -247,7 +252,7 @@ class BlockModel:
         return corrected(block, start, control)
 
     def multipliers(self, worth: float) -> Multipliers:
-        """The multipliers in the statement's units; its objective is ``worth`` times that of the scaled variables."""
+        """Return the multipliers in unscaled units; the objective is ``worth`` times that of the scaled variables."""
         conditions = [
             worth * float(np.asarray(constraint.dual_value)) * self._worth(condition)
             for constraint, condition in zip(self.conditions, self.block.conditions, strict=True)
@@ -257,7 +262,7 @@ class BlockModel:
         return Multipliers(np.array(conditions), tuple(limits), tuple(demands))
 
     def _worth(self, condition: Condition) -> float:
-        """A condition is stated to the solver in the scaled variable of its highest order."""
+        """Return the scale of a condition: the solver gets it in the scaled variable of its highest order."""
         return 1.0 / float(self.scale[max(order for _, order, _ in condition.terms)])
 
     def _condition(self, condition: Condition) -> Any:
@@ -273,6 +278,7 @@ class BlockModel:
         unit = (0.0,) * limit.order
         above = Demand((*unit, 1.0), limit.constant, gains)
         below = Demand((*unit, -1.0), limit.constant, gains)
+        # A limit on the control itself is constant on each step and needs no Bernstein coefficients.
         if limit.order < self.block.size:
             return self._demand(above, z), self._demand(below, z)
         bound = limit.constant + (limit.gain * z[0] if limit.gain else 0.0)
@@ -283,13 +289,14 @@ class BlockModel:
         )
 
     def _demand(self, demand: Demand, z: Any) -> _Inequality:
-        """A demand at its knots, and of the inner Bernstein coefficients of what it speaks of on its steps."""
+        """Impose a demand at its knots and on the inner Bernstein coefficients on its steps."""
         cp = modeling()
 
         knots = self.block.within(demand)
         steps = slice(knots.start, knots.stop - 1)
         scale = float(self.scale[demand.order])
         step = np.diff(self.block.times)[steps]
+        # The lowest derivative involved has the highest degree, which decides the number of coefficients.
         least = next((i for i, weight in enumerate(demand.weights) if weight), 0)
         degree = self.block.size - least
         inner: list[Any] = [0.0] * max(degree - 1, 0)
@@ -300,6 +307,7 @@ class BlockModel:
             total = total + (weight * self.scale[order] / scale) * self.states[knots, order]
             for j in range(1, degree):
                 for up in range(min(j, self.block.size - order) + 1):
+                    # Bernstein coefficient j of the derivative's Taylor expansion on the step.
                     share = weight * math.comb(j, up) / math.comb(degree, up) / math.factorial(up)
                     factor = share * step**up * self.scale[order + up] / scale
                     high = order + up
@@ -314,16 +322,17 @@ class BlockModel:
 
 @dataclass(frozen=True)
 class _Inequality:
-    """The constraints of one demand, stated in units of ``scale``."""
+    """The constraints of one demand, in units of ``scale``."""
 
     knots: Any
     inner: list[Any]
     scale: float
 
     def weights(self, worth: float) -> Weights:
-        """Its multipliers, at least zero; an interior-point solver keeps them there to rounding."""
+        """Read the multipliers; an interior-point solver keeps them non-negative only to rounding."""
         factor = worth / self.scale
         knots = np.maximum(np.asarray(self.knots.dual_value, np.float64).reshape(-1), 0.0) * factor
+        # All inner coefficients of a step share its weight.
         steps = np.zeros(len(knots) - 1)
         for each in self.inner:
             steps += np.maximum(np.asarray(each.dual_value, np.float64).reshape(-1), 0.0) * factor
@@ -331,9 +340,9 @@ class _Inequality:
 
 
 def corrected(block: Block, start: Real, control: Real) -> KnotMotion:
-    """Integrate a control from a start state so that every condition is met to rounding.
+    """Integrate a control from a start state so that all conditions hold to rounding.
 
-    The conditions are linear in start and control; their residual is taken away by the least change, measured by the
+    The conditions are linear in start and control; their residual is removed by the least change, measured by the
     control's mean square and by the start state.
     """
     m, step = block.size, np.diff(block.times)
@@ -343,14 +352,17 @@ def corrected(block: Block, start: Real, control: Real) -> KnotMotion:
         for at, order, coefficient in condition.terms:
             knot = block.knot(at)
             time = block.times[knot] - block.times[0]
+            # Influence of the start state, and of each step's constant control, on the derivative at the knot.
             for i in range(order, m):
                 row[i] += coefficient * time ** (i - order) / math.factorial(i - order)
             power = m - order
             left, right = block.times[knot] - block.times[:knot], block.times[knot] - block.times[1 : knot + 1]
             row[m : m + knot] += coefficient * (left**power - right**power) / math.factorial(power)
     scaled = matrix.copy()
+    # In the variables control·√step the norm of the change is the control's mean square.
     scaled[:, m:] /= root
     motion = integrated(block.times, start, control)
+    # The second pass removes the rounding of the first.
     for _ in range(2):
         gap = np.array(
             [c.value - sum(k * motion.states[block.knot(t), i] for t, i, k in c.terms) for c in block.conditions]

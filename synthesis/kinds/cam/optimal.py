@@ -1,7 +1,7 @@
-"""Motions that are best by a criterion, with a lower bound for all motions: the door to the convex programs.
+"""Motions that are optimal by a criterion, with a lower bound for all motions: the entry point to the convex programs.
 
-A run is one open segment of a motion program, or several in a row, between segments that are given. Conditions state
-what is known at its ends and at single angles; limits and demands hold at every angle. The criteria are
+A run is one open segment of a motion program, or several in a row, between segments that are given. Conditions fix
+values at its ends and at single angles; limits and demands hold at every angle. The criteria are
 
 - the peak or the root mean square of a derivative of s: a linear, or a quadratic program;
 - the peak of a contact force F = Σ w_i s⁽ⁱ⁾ + F₀ that must not fall below a floor: linear, the preload F₀ given or
@@ -10,9 +10,9 @@ what is known at its ends and at single angles; limits and demands hold at every
   second-order cone program; the base radius of a flat-faced one under R + s + a ≥ ρ and a face width: linear;
 - the peak or root mean square of the inertia torque v a (:mod:`synthesis.kinds.cam.torque`).
 
-The programs are solved on 400 steps, and on 2000 where the gap to the bound is then not small. Known limits (unit
-lift and angle, dwell to dwell): max |s⁽ⁿ⁾| ≥ (n − 1)! 4ⁿ⁻¹; rms a ≥ √12, rms j ≥ √720; least max |a| under |j| ≤ J is
-(J/4)(1 − √(1 − 32/J)); max |v a| ≥ 9/4.
+The programs are solved on 400 steps, and on 2000 if the gap to the bound is then not small. Known limits (unit
+lift and angle, dwell to dwell): max |s⁽ⁿ⁾| ≥ (n − 1)! 4ⁿ⁻¹; rms a ≥ √12, rms j ≥ √720; the minimum of max |a| under
+|j| ≤ J is (J/4)(1 − √(1 − 32/J)); max |v a| ≥ 9/4.
 """
 
 from __future__ import annotations
@@ -34,22 +34,22 @@ from synthesis.kinds.cam.torque import least_torque
 Real = NDArray[np.float64]
 
 STEPS = (400, 2000)
-"""Steps of the first grid, and of the second where the first leaves a gap."""
+"""Steps of the first grid, and of the second one, used if the first leaves a gap."""
 
 SMALL_GAP = 1e-3
 """Share of the bound by which the value may exceed it on the first grid."""
 
 TORQUE_STEPS = 800
-"""Steps where no limit binds: the acceleration of least torque grows beyond all bounds at the ends."""
+"""Steps if no limit binds: the acceleration of minimum torque is unbounded at the ends, so the grid is finer there."""
 
 TIGHTENED = 1e-7
-"""Share by which limits are narrowed for the solver, so that its own tolerance does not break them."""
+"""Share by which limits are tightened for the solver, so that its own tolerance does not break them."""
 
 MAX_SCALED_RADIUS = 1e4
-"""Radius and offset, in units of the cam's own size, that the bound has to cover: a cam beyond is no candidate."""
+"""Radius and offset, in units of the cam's own size, that the bound has to cover: larger cams are of no use."""
 
 SAME_TIME = 1e-9
-"""Times closer than this share of the run are one."""
+"""Time difference, as a share of the run, up to which two times coincide."""
 
 
 OnGrid = Callable[[int], None]
@@ -57,12 +57,12 @@ OnGrid = Callable[[int], None]
 
 
 def silent(steps: int) -> None:
-    """Nobody wants to know."""
+    """Ignore the report: the default callback."""
 
 
 @dataclass(frozen=True)
 class Run:
-    """What is open: an angle, and all that must hold in it. Radians from its start, derivatives per radian."""
+    """An open part of the program: an angle and its constraints. Radians from its start, derivatives per radian."""
 
     angle: float
     conditions: tuple[Condition, ...]
@@ -72,7 +72,7 @@ class Run:
 
     @property
     def lift(self) -> float:
-        """The greatest distance between two stated positions; what the program is scaled by."""
+        """The greatest distance between two given positions, by which the program is scaled."""
         stated = [c.value for c in self.conditions if len(c.terms) == 1 and c.terms[0][1] == 0]
         return max(stated) - min(stated)
 
@@ -81,8 +81,8 @@ class Run:
 class Best:
     """The best motions found, one for each run, the criterion's exact value and its lower bound.
 
-    ``cap`` tells for which motions the bound holds: None for all, else (order, limit) for those whose derivative of
-    that order stays within the limit. ``scalars`` are preload, offset and the like, as the criterion has them.
+    ``cap`` names the motions for which the bound holds: None for all, else (order, limit) for those whose derivative of
+    that order stays within the limit. ``scalars`` are preload, offset and the like, as the criterion defines them.
     """
 
     motions: tuple[KnotMotion, ...]
@@ -94,7 +94,7 @@ class Best:
 
 @dataclass(frozen=True)
 class NoMotion:
-    """No motion was found. ``factor``, where it is known, is a proof: the limits times less than it are too low."""
+    """No motion was found. ``factor``, if known, is proven: limits below this multiple of the given are too low."""
 
     factor: float | None
 
@@ -102,11 +102,13 @@ class NoMotion:
 def best_derivative(
     run: Run, measure: Literal["peak", "rms"], order: int, *, on_grid: OnGrid = silent
 ) -> Best | NoMotion:
-    """The motion of least peak or root mean square of a derivative."""
+    """Find the motion of minimum peak or root mean square of a derivative."""
+    # The control must be at least the minimized derivative itself.
     size = max(_order(run), order)
 
     def program(steps: int) -> ConvexProgram:
         block = _block(run, run.lift, size, steps)
+        # A limit on the minimized derivative is dropped: the objective pushes against it anyway.
         others = tuple(limit for limit in block.limits if limit.order != order)
         if measure == "rms":
             return ConvexProgram((block,), "rms", order)
@@ -118,22 +120,25 @@ def best_derivative(
 
     best = _solved((run,), program, value, run.lift / run.angle**order, run.lift, on_grid=on_grid)
     limit = next((limit.constant for limit in run.limits if limit.order == order), math.inf)
+    # The dropped limit: if even the minimum exceeds it, the ratio proves how far it is too low.
     if isinstance(best, Best) and measure == "peak" and best.value > limit:
         return NoMotion(best.bound / limit if best.bound > limit and best.cap is None else None)
     return best
 
 
 def best_torque(run: Run, measure: Literal["peak", "rms"], *, on_grid: OnGrid = silent) -> Best | NoMotion:
-    """The motion of least peak or root mean square of v a, what a mass takes of the shaft at constant speed."""
+    """Find the motion of minimum peak or root mean square of v a, the torque of a mass at constant speed."""
     lift, angle = run.lift, run.angle
     size = max(_order(run), 3)
     limited = any(limit.order >= 2 for limit in run.limits)
     block = _block(run, lift, size, STEPS[0])
     if not limited:
         x = np.linspace(0.0, 1.0, TORQUE_STEPS + 1)
+        # A 3-4-5 polynomial spaces the knots: close at the ends, where the acceleration grows without bound.
         block = replace(block, times=x**3 * (10.0 - 15.0 * x + 6.0 * x**2))
     start, end = (_stated(run, at, 0) / lift for at in (0.0, angle))
     ends = tuple(_stated(run, at, 1) * angle / lift for at in (0.0, angle))
+    # The cone program assumes a rise: a fall is solved as its mirror image.
     falls = end < start
     if falls:
         block = _mirrored(block)
@@ -145,6 +150,7 @@ def best_torque(run: Run, measure: Literal["peak", "rms"], *, on_grid: OnGrid = 
     motion = least.motion
     if falls:
         motion = KnotMotion(motion.times, -motion.states, -motion.control)
+    # v·a of the scaled motion, back in units of lift and angle.
     unit = lift**2 / angle**3
     return Best((_physical(motion, run, lift),), least.value * unit, least.bound * unit)
 
@@ -158,7 +164,7 @@ def best_force(
     *,
     on_grid: OnGrid = silent,
 ) -> Best | NoMotion:
-    """The motions of least peak contact force Σ weights[i] s⁽ⁱ⁾ + preload, which stays at or above a floor.
+    """Find the motions of minimum peak contact force Σ weights[i] s⁽ⁱ⁾ + preload, which stays at or above a floor.
 
     Parameters
     ----------
@@ -169,9 +175,9 @@ def best_force(
     floor : float
         Least contact force allowed.
     preload : float or None
-        None leaves it free: then it is the least that keeps the floor and is not negative, and ``scalars`` holds it.
+        None leaves it free: then it is the smallest that keeps the floor and is not negative; ``scalars`` holds it.
     rest : tuple of two floats or None
-        Least and greatest Σ weights[i] s⁽ⁱ⁾ on the parts that are given, if there are any.
+        Least and greatest Σ weights[i] s⁽ⁱ⁾ on the given parts, if there are any.
     """
     lift = max(run.lift for run in runs)
     unit = max(abs(w) * lift / min(run.angle for run in runs) ** i for i, w in enumerate(weights))
@@ -184,10 +190,12 @@ def best_force(
         for run in runs:
             shares = tuple(w * lift / run.angle**i / unit for i, w in enumerate(weights))
             above = Demand(shares, -known / unit, (-1.0, *free))
+            # With a fixed preload the floor bounds the force itself, with a free one the force plus the variable
+            # preload.
             below = Demand(tuple(-w for w in shares), (known - floor) / unit, (0.0, *(-f for f in free)))
             block = _block(run, lift, size, steps)
             blocks.append(replace(block, demands=(*block.demands, above, below)))
-        # A spring pushes: its preload is nowhere negative.
+        # A spring only pushes: its preload is never negative.
         rows, right = [[0.0, *(-f for f in free)] for _ in free], [0.0 for _ in free]
         if rest is not None:
             rows += [[-1.0, *free], [0.0, *(-f for f in free)]]
@@ -218,22 +226,22 @@ def best_roller_size(
     *,
     on_grid: OnGrid = silent,
 ) -> Best | NoMotion:
-    """The motions of least prime radius of a translating roller follower under a pressure angle.
+    """Find the motions of minimum prime radius of a translating roller follower under a pressure angle.
 
     Parameters
     ----------
     runs : sequence of Run
         All open parts of the motion program.
     tangents : sequence of two floats
-        For each run tan φ that is allowed while rising and while falling. Where the follower rests at its lowest,
-        |e| ≤ tan φ d for both, so that v − e ≤ tan φ (s + d) needs to be asked with the rise's limit only, and
+        For each run tan φ that is allowed while rising and while falling. If the follower rests at its lowest,
+        |e| ≤ tan φ d for both, so that v − e ≤ tan φ (s + d) is only needed with the rise's limit, and
         e − v with the fall's.
     offset : float or None
-        The follower's offset e; None leaves it free. ``scalars`` holds d, and e where it is free.
+        The follower's offset e; None leaves it free. ``scalars`` holds d, and e if that is free.
     rest : sequence of (tan φ, sign, least of s tan φ − sign v)
-        Of the given parts of the program: sign (v − e) ≤ tan φ (s + d) there.
+        For the given parts of the program: sign (v − e) ≤ tan φ (s + d) there.
     grids : sequence of int
-        Steps of the first grid and of those that follow while a gap is left.
+        Steps of the first grid and of those that follow while a gap remains.
     """
     unit = max(run.lift for run in runs)
     known = 0.0 if offset is None else offset / unit
@@ -253,6 +261,7 @@ def best_roller_size(
         for tangent, sign, room in rest:
             rows.append([-tangent, *(-sign * f for f in free)])
             right.append(room / unit + sign * known)
+        # With a free offset the prime radius √(d² + e²) is minimized, otherwise d alone: e is constant.
         objective: Literal["scalar", "norm"] = "scalar" if offset is not None else "norm"
         return ConvexProgram(
             tuple(blocks),
@@ -279,7 +288,7 @@ def best_flat_size(
     *,
     on_grid: OnGrid = silent,
 ) -> Best | NoMotion:
-    """The motions of least base radius of a translating flat-faced follower.
+    """Find the motions of minimum base radius of a translating flat-faced follower.
 
     Parameters
     ----------
@@ -299,6 +308,7 @@ def best_flat_size(
         blocks = []
         for run in runs:
             speed = 1.0 / run.angle
+            # R + s + a ≥ ρ; the scalars are R, greatest v and −least v.
             demands = [Demand((-1.0, 0.0, -(speed**2)), -least_radius / unit, (-1.0,))]
             if width is not None:
                 demands += [Demand((0.0, speed), 0.0, (0.0, -1.0)), Demand((0.0, -speed), 0.0, (0.0, 0.0, 1.0))]
@@ -344,7 +354,7 @@ def _solved(
     *,
     on_grid: OnGrid,
 ) -> Best | NoMotion:
-    """Solve on the first grid, and on the second where there is no solution or a gap; back to the client's units."""
+    """Solve on the first grid, and on the next without a solution or with a gap; return values in client units."""
     best: tuple[Solution, float, LowerBound] | None = None
     for steps in grids:
         on_grid(steps)
@@ -353,6 +363,7 @@ def _solved(
         if solution is None:
             continue
         reached, bound = value(solution), lower_bound(statement, solution)
+        # Bounds of all grids are valid: keep the best, if it holds for the same motions.
         if best is not None and best[2].value > bound.value and best[2].cap == bound.cap:
             bound = best[2]
         best = solution, reached, bound
@@ -365,36 +376,39 @@ def _solved(
     if cap is not None:
         cap = cap[0], cap[1] * lift / min(run.angle for run in runs) ** cap[0]
     motions = tuple(_physical(motion, run, lift) for motion, run in zip(solution.motions, runs, strict=True))
-    # The bound cannot exceed what was reached but by rounding, which must not be sold as a bound.
+    # The bound exceeds the value reached only by rounding; such a bound must not be reported.
     return Best(motions, reached * worth, min(bound.value, reached) * worth, cap, solution.scalars * scalar_worth)
 
 
 def _none(runs: Sequence[Run], lift: float) -> NoMotion:
-    """How far the limits are too low: a lower bound of the least common factor that lets each run have a motion."""
+    """Bound how far the limits are too low: the least common factor that lets each run have a motion, from below."""
     factors = []
     for run in runs:
         if not run.limits:
             continue
         block = _block(run, lift, _order(run), STEPS[0])
+        # With all limits proportional to z₀ the least z₀ is the factor.
         scaled = tuple(Limit(limit.order, 0.0, limit.constant) for limit in block.limits)
         statement = ConvexProgram((replace(block, limits=scaled),), "scalar", box=np.ones(1))
         solution = solve(statement)
         if solution is not None:
             bound = lower_bound(statement, solution)
             if bound.cap is None:
+                # The limits were tightened by this margin, so that the proven factor is smaller by it.
                 factors.append(bound.value * (1.0 - TIGHTENED))
+    # Every run must be feasible, so the greatest factor counts.
     factor = max(factors, default=0.0)
     return NoMotion(factor if factor > 1.0 else None)
 
 
 def _order(run: Run) -> int:
-    """Order of the control: one above what must be continuous or is stated, and that of the highest limit at least."""
+    """Return the order of the control: above every continuous or given derivative, and at least every limit's."""
     stated = max((order for condition in run.conditions for _, order, _ in condition.terms), default=0)
     return max([run.continuity + 1, stated + 1, 2] + [limit.order for limit in run.limits])
 
 
 def _block(run: Run, lift: float, size: int, steps: int) -> Block:
-    """A run as a block of a convex program: time and displacement scaled to one."""
+    """Build the block of a run: time and displacement scaled to one."""
     angle = run.angle
     conditions = tuple(
         Condition(
@@ -423,12 +437,12 @@ def _block(run: Run, lift: float, size: int, steps: int) -> Block:
 
 
 def _worth(condition: Condition, lift: float, angle: float) -> float:
-    """Unit of a condition: that of its highest order."""
+    """Return the unit of a condition: the one of its highest order."""
     return lift / angle ** max(order for _, order, _ in condition.terms)
 
 
 def _grid(marks: Sequence[float], steps: int) -> Real:
-    """Equal steps between marks, a multiple of four each, so that limits known to switch at quarters fall on knots."""
+    """Place equal steps between marks, a multiple of four each: limits that switch at quarters then fall on knots."""
     kept = [marks[0]]
     for mark in marks[1:]:
         if mark - kept[-1] > SAME_TIME:
@@ -442,7 +456,7 @@ def _grid(marks: Sequence[float], steps: int) -> Real:
 
 
 def _physical(motion: KnotMotion, run: Run, lift: float) -> KnotMotion:
-    """A scaled motion in the run's angle and length unit."""
+    """Scale a motion back to the run's angle and length unit."""
     orders = np.arange(motion.states.shape[1])
     return KnotMotion(
         motion.times * run.angle,
@@ -452,14 +466,14 @@ def _physical(motion: KnotMotion, run: Run, lift: float) -> KnotMotion:
 
 
 def _mirrored(block: Block) -> Block:
-    """The block of −s: a fall as a rise."""
+    """Return the block of −s: a fall as a rise."""
     conditions = tuple(replace(condition, value=-condition.value) for condition in block.conditions)
     demands = tuple(replace(d, weights=tuple(-w for w in d.weights)) for d in block.demands)
     return replace(block, conditions=conditions, demands=demands)
 
 
 def _stated(run: Run, at: float, order: int) -> float:
-    """The value that a run's conditions state."""
+    """Return the value that a run's conditions give at a time; 0 if they give none."""
     for condition in run.conditions:
         (time, stated, _), *others = condition.terms
         if not others and stated == order and abs(time - at) <= SAME_TIME * run.angle:

@@ -1,10 +1,10 @@
-"""The moment that tilts a translating follower in its guide, and the offset of the slide that it steers.
+"""The moment that tilts a translating follower in its guide, and the slide offset that minimizes it.
 
-Under a flat face the contact force F acts beside the slide's axis, at the distance v − e: the moment is F (v − e). A
+Under a flat face the contact force F acts at the distance v − e from the slide's axis: the moment is F (v − e). A
 roller is pushed sideways with F tan φ = F (v − e)/(d + s), and the lever of that to the guide shrinks with the
 displacement: F (v − e)(l − s)/(d + s), l the overhang at s = 0. F acts along the motion and depends neither on the
-offset e nor on the size of the cam. So the moment of a face is convex in e, and a limit M on that of a roller asks for
-d ≥ |v − e| |F| (l − s)/M − s, as a pressure angle does whose tangent is M/(|F| (l − s)).
+offset e nor on the size of the cam. So the moment of a face is convex in e, and a limit M on that of a roller requires
+d ≥ |v − e| |F| (l − s)/M − s, like a pressure angle whose tangent is M/(|F| (l − s)).
 """
 
 from __future__ import annotations
@@ -31,7 +31,7 @@ FOUND = 1e-11
 
 
 def overturning_moment(problem: CamProblem, cam: Cam) -> float | None:
-    """The greatest moment on the slide of a finished cam's follower; None where it has no slide, lever or forces."""
+    """Compute the greatest moment on a finished cam's slide; None without a slide, a lever or forces."""
     if problem.dynamics is None:
         return None
     running, follower, program = held(problem, cam.program).running, cam.follower, cam.program
@@ -53,7 +53,7 @@ def overturning_moment(problem: CamProblem, cam: Cam) -> float | None:
 
 
 def moment_share(problem: CamProblem, program: Program) -> Callable[[Motion], Real] | None:
-    """F (l − s)/M of a roller whose moment is limited: what |v − e|/(d + s) may not exceed the inverse of."""
+    """Return F (l − s)/M for a roller with limited moment: |v − e|/(d + s) may not exceed its inverse."""
     limit, follower = problem.limits.overturning_moment, problem.follower
     if limit is None or not isinstance(follower, TranslatingRoller) or follower.overhang is None:
         return None
@@ -62,12 +62,13 @@ def moment_share(problem: CamProblem, program: Program) -> Callable[[Motion], Re
 
 
 def face_offset(problem: CamProblem, program: Program) -> float:
-    """The offset of a face of least overturning moment, which is a greatest value of straight lines in it: global."""
+    """Find the face offset of minimum overturning moment; it is global, as the moment is convex in the offset."""
     running, v = held(problem, program).running, program.peaks[1]
 
     def moment(offset: float) -> float:
         return extremes(lambda at: running.force(at) * (program.motion(at).v - offset), program.breaks).largest
 
+    # The contact sweeps between these velocities; the best offset lies between them.
     span = v.greatest - v.least
     best = minimize_scalar(moment, bounds=(v.least, v.greatest), method="bounded", options={"xatol": FOUND * span})
     return float(best.x)

@@ -1,4 +1,4 @@
-"""Cams: a motion program, a follower, limits, and what is made least."""
+"""Cams: a motion program, a follower, limits, and the quantity to minimize."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ from synthesis.model.dimension import ROTATIONAL_SPEED
 from synthesis.model.statement import Contradiction, Count, Flag, PositiveNumber, StatedProblem
 
 METRES = {"mm": 1e-3, "cm": 1e-2, "m": 1.0, "in": 1.0}
-"""With newtons and kilograms lengths must be metres for F = m a; in millimetres the mass counts a thousandth."""
+"""Metres per length unit for F = m a with newtons and kilograms; lbf, lbf s²/in and inches are consistent."""
 
 Criterion = Literal[
     "size",
@@ -41,10 +41,10 @@ Criterion = Literal[
 
 
 class CamProblem(StatedProblem):
-    """A motion program and the smallest sound cam for it.
+    """A motion program and the smallest feasible cam for it.
 
-    Every segment follows the one before; their angles make one turn. Displacement, velocity and acceleration must be
-    continuous all around, the fundamental law of cam design, unless ``accept_discontinuity`` is set.
+    Every segment follows the one before; their angles add up to one turn. Displacement, velocity and acceleration must
+    be continuous all around, the fundamental law of cam design, unless ``accept_discontinuity`` is set.
     """
 
     model_config = ConfigDict(
@@ -118,47 +118,48 @@ class CamProblem(StatedProblem):
     )
 
     kind: Literal["cam"]
-    segments: list[Segment] = Field(min_length=1, description="Once around, in order.")
+    segments: list[Segment] = Field(min_length=1, description="The segments of one turn, in order.")
     follower: Follower
     limits: CamLimits = CamLimits()
     speed_rpm: Annotated[PositiveNumber, ROTATIONAL_SPEED] | None = Field(
-        default=None, description="Cam speed, revolutions a minute."
+        default=None, description="Cam speed, revolutions per minute."
     )
-    rotation: Literal["ccw", "cw"] = Field(default="ccw", description="Sense in which the cam turns.")
+    rotation: Literal["ccw", "cw"] = Field(default="ccw", description="Sense of rotation of the cam.")
     minimize: Criterion = Field(
         default="peak_acceleration",
-        description="What automatic and optimal motions make least; the cam is as small as then can be.",
+        description="Quantity that automatic and optimal motions minimize; the cam is then made as small as possible.",
     )
     closure: Literal["force", "form", "conjugate"] = Field(
         default="force",
-        description="What holds the follower to the cam: a force; a groove whose two walls guide the roller; or a "
-        "second cam on the shaft, conjugate to the first, with a roller of its own on the other side.",
+        description="How the cam keeps the follower in contact: by force; by a groove whose two walls guide the "
+        "roller; "
+        "or by a second cam on the shaft, conjugate to the first, with a roller of its own on the other side.",
     )
     dynamics: FollowerDynamics | None = None
     continuity: Literal["acceleration", "jerk"] = Field(
-        default="acceleration", description="The highest derivative that is continuous in optimal motions."
+        default="acceleration", description="Highest derivative that is continuous in optimal motions."
     )
     accept_discontinuity: Flag = Field(
         default=False,
-        description="Take a program whose acceleration jumps, or whose velocity jumps up where a force holds the "
-        "follower. Where a velocity drops at once, or jumps in a groove, the cam would need an edge that no follower "
-        "keeps to.",
+        description="Accept a program whose acceleration jumps, or whose velocity jumps up if a force holds the "
+        "follower. Sudden drops of the velocity, and any velocity jump in a groove, are always refused: the cam would "
+        "need an edge that no follower can track.",
     )
     profile_points: Annotated[Count, Field(ge=180, le=7200)] = Field(
         default=720,
-        description="Points of the profile at equal cam angles; more where the motion needs them. An angle within "
-        "2 % of a step of one where a derivative of the motion jumps gives way to it, and so does one between others "
-        "that are closer than a tenth of a step.",
+        description="Points of the profile at equal cam angles; more if the motion needs them. Points within 2 % of a "
+        "step from a jump of a derivative of the motion are replaced by one at the jump, and so are points between "
+        "others that are closer together than a tenth of a step.",
     )
 
     @property
     def oscillating(self) -> bool:
-        """Whether displacements are degrees of an arm."""
+        """True if displacements are degrees of an arm."""
         return self.follower.type.startswith("oscillating")
 
     @property
     def displacement_unit(self) -> float:
-        """Stated displacements times this are the solver's: radians of an arm, or lengths."""
+        """Factor from requested displacements to the solver's: radians of an arm, or lengths."""
         return math.pi / 180.0 if self.oscillating else 1.0
 
     @property
@@ -167,7 +168,7 @@ class CamProblem(StatedProblem):
         return StatedProgram(self.segments, self.displacement_unit)
 
     def contradictions(self) -> list[Contradiction]:
-        """Faults that no single field shows."""
+        """Return contradictions that no single field shows."""
         contradictions = [
             *self.program.segment_contradictions(),
             *self._closure(),
@@ -176,32 +177,34 @@ class CamProblem(StatedProblem):
             *self._limits(),
             *self._overturning(),
         ]
+        # Joints are checked only if the segments themselves are sound: their ends are undefined otherwise.
         return contradictions or self.program.joint_contradictions(self.accept_discontinuity, self.grooved)
 
     @property
     def grooved(self) -> bool:
-        """Whether the follower runs between two walls, or two cams, so that no force has to hold it."""
+        """True if the follower runs between two walls, or two cams, so that no force has to hold it."""
         return self.closure != "force" or isinstance(self.follower, BarrelRoller)
 
     def _closure(self) -> list[Contradiction]:
-        """A groove guides a roller and nothing else; so do two cams."""
+        """Check the closure: a groove or two cams can only guide a roller."""
         if self.closure != "force" and isinstance(self.follower, TranslatingFlat | OscillatingFlat):
-            detail = "only a roller runs in a groove; take another follower or force"
+            detail = "a groove can only guide a roller; choose a roller follower, or closure `force`"
             if self.closure == "conjugate":
-                detail = "only rollers run between two cams; take another follower or force"
+                detail = "conjugate cams can only guide rollers; choose a roller follower, or closure `force`"
             return [Contradiction("/closure", detail)]
         if self.closure == "conjugate" and isinstance(self.follower, BarrelRoller):
-            detail = "the groove of a barrel has two walls already; take a radial roller follower"
+            detail = "a barrel's groove already has two walls; choose a radial roller follower"
             return [Contradiction("/closure", detail)]
         if self.closure == "conjugate" and isinstance(self.follower, TranslatingRoller) and self.follower.overhang:
-            detail = "a yoke around two cams is guided on both sides; leave it out"
+            detail = "a yoke around two cams is guided on both sides; omit the overhang"
             return [Contradiction("/follower/overhang", detail)]
         return []
 
     def _spring(self, dynamics: FollowerDynamics) -> list[Contradiction]:
-        """A spring that is chosen, and the speeds up to which it holds."""
+        """Check a free spring, and the speeds up to which it holds the follower."""
         contradictions, rate, speed = [], dynamics.spring_rate, self.speed_rpm
         assert speed is not None
+        # Spring and motion cannot both be optimized for the contact force.
         free, sought = (
             not isinstance(rate, float),
             any(isinstance(segment, Move) and segment.follows_criterion for segment in self.segments),
@@ -213,65 +216,70 @@ class CamProblem(StatedProblem):
                 dynamics.mass * METRES[self.length_unit] * (dynamics.min_frequency_ratio * speed * math.pi / 30.0) ** 2
             )
             if least > rate.max:
-                detail = f"the spring would need a rate of {least:.6g}, more than the range has"
+                detail = f"the spring needs a rate of at least {least:.6g}, above the given range"
                 contradictions.append(Contradiction("/dynamics/min_frequency_ratio", detail))
         if dynamics.train_damping_ratio > 0.0 and dynamics.train_stiffness is None:
-            detail = "what is damped is a train; state its stiffness"
+            detail = "a train damping ratio needs `train_stiffness`"
             contradictions.append(Contradiction("/dynamics/train_damping_ratio", detail))
         if dynamics.max_rpm is not None and dynamics.max_rpm < speed:
-            contradictions.append(Contradiction("/dynamics/max_rpm", "must be at least the stated speed"))
+            contradictions.append(Contradiction("/dynamics/max_rpm", "must be at least `speed_rpm`"))
         if self.grooved:
-            detail = "between two walls no spring holds the follower; state a rate, or take the closure by force"
+            detail = (
+                "between two walls no spring is needed to hold the follower; give a rate, or choose closure `force`"
+            )
             if free:
                 contradictions.append(Contradiction("/dynamics/spring_rate", detail))
             if dynamics.max_rpm is not None:
-                contradictions.append(
-                    Contradiction("/dynamics/max_rpm", "in a groove no contact is lost; leave it out")
-                )
+                contradictions.append(Contradiction("/dynamics/max_rpm", "in a groove no contact is lost; omit it"))
         if self.minimize == "peak_contact_force" and sought:
             if free:
                 detail = (
-                    "force times displacement is not convex where both are sought: motions of least contact force are "
-                    "found for a stated rate, springs for motions by another criterion or by law"
+                    "force times displacement is not convex if both are unknown; give the spring rate to minimize the "
+                    "contact force, or choose the spring for another criterion or for given laws"
                 )
                 contradictions.append(Contradiction("/dynamics/spring_rate", detail))
             if dynamics.max_rpm is not None:
                 detail = (
-                    "motions of least contact force are found for one speed; choose another criterion or leave it out"
+                    "motions of minimum contact force are found for one speed only; choose another criterion or omit "
+                    "`max_rpm`"
                 )
                 contradictions.append(Contradiction("/dynamics/max_rpm", detail))
         return contradictions
 
     def _overturning(self) -> list[Contradiction]:
-        """A moment needs forces, and a slide whose lever is known."""
+        """Check the overturning moment: it needs forces, and a slide whose lever is known."""
         follower, contradictions = self.follower, []
         forces = self.dynamics is not None
         if isinstance(follower, TranslatingRoller) and follower.overhang is not None:
             if not forces:
-                detail = "it is the lever of a force; state dynamics, or leave it out"
+                detail = "the overhang is the lever of a force; give `dynamics` or omit the overhang"
                 contradictions.append(Contradiction("/follower/overhang", detail))
             elif follower.overhang <= max(max(pair) for pair in self.program.heights()):
-                detail = "must be more than the highest displacement, or the roller would run into the guide"
+                detail = "must exceed the highest displacement; otherwise the roller runs into the guide"
                 contradictions.append(Contradiction("/follower/overhang", detail))
         if isinstance(follower, TranslatingFlat) and follower.offset == "free" and not forces:
-            detail = "it is found by the overturning moment; state dynamics, or the offset"
+            detail = "a free offset minimizes the overturning moment; give `dynamics`, or the offset"
             contradictions.append(Contradiction("/follower/offset", detail))
         if self.limits.overturning_moment is None:
             return contradictions
         place = "/limits/overturning_moment"
         if not isinstance(follower, TranslatingRoller | TranslatingFlat):
-            contradictions.append(Contradiction(place, "only a slide on a radial cam is overturned; leave it out"))
+            contradictions.append(
+                Contradiction(place, "only a slide on a radial cam can be overturned; omit the limit")
+            )
         elif not forces:
-            contradictions.append(Contradiction(place, "a moment needs the follower's mass and spring: state dynamics"))
+            contradictions.append(
+                Contradiction(place, "a moment depends on the follower's mass and spring; give `dynamics`")
+            )
         elif isinstance(follower, TranslatingRoller) and follower.overhang is None:
-            contradictions.append(Contradiction("/follower/overhang", "the lever of the moment that is limited"))
+            contradictions.append(Contradiction("/follower/overhang", "required: the lever of the limited moment"))
         return contradictions
 
     def _limits(self) -> list[Contradiction]:
-        """Limits on the motion have a motion to choose."""
+        """Check that limits on the motion have a motion to choose."""
         if any(isinstance(segment, Move) and segment.follows_criterion for segment in self.segments):
             return []
-        detail = "each law is stated, and has the peaks that it has; let a law be auto or optimal, or drop the limit"
+        detail = "all laws are given, so their peaks cannot change; set a law to auto or optimal, or omit the limit"
         return [
             Contradiction(f"/limits/{name}", detail)
             for name in ("velocity", "acceleration", "jerk")
@@ -279,17 +287,17 @@ class CamProblem(StatedProblem):
         ]
 
     def _inputs(self) -> list[Contradiction]:
-        """What a criterion needs."""
+        """Check the inputs that a criterion needs."""
         contradictions = []
         force = self.minimize == "peak_contact_force"
         if force and self.dynamics is None:
             contradictions.append(Contradiction("/dynamics", "a contact force needs the follower's mass and spring"))
         if force and self.grooved:
             contradictions.append(
-                Contradiction("/minimize", "in a groove no force holds the follower; choose otherwise")
+                Contradiction("/minimize", "in a groove no force holds the follower; choose another criterion")
             )
         if self.dynamics is not None and self.dynamics.least_force > 0.0 and self.grooved:
-            detail = "in a groove the roller changes walls and the force its sign; drop the demand"
+            detail = "in a groove the roller changes walls and the force its sign; omit `least_force`"
             contradictions.append(Contradiction("/dynamics/least_force", detail))
         if self.dynamics is not None and self.speed_rpm is None:
             contradictions.append(Contradiction("/speed_rpm", "forces need the cam's speed"))
@@ -297,9 +305,11 @@ class CamProblem(StatedProblem):
             contradictions += self._spring(self.dynamics)
         optimal = any(isinstance(segment, Move) and segment.law == "optimal" for segment in self.segments)
         if optimal and self.minimize == "size" and self.oscillating:
-            detail = "optimal motions of least size are found for translating followers; choose another criterion"
+            detail = (
+                "optimal motions of minimum size are found for translating followers only; choose another criterion"
+            )
             contradictions.append(Contradiction("/minimize", detail))
         if optimal and self.minimize == "size" and isinstance(self.follower, BarrelRoller):
-            detail = "by pressure angle a barrel is smallest where the peak velocity is; choose peak_velocity"
+            detail = "a barrel is smallest at the minimum peak velocity, by pressure angle; choose peak_velocity"
             contradictions.append(Contradiction("/minimize", detail))
         return contradictions

@@ -1,6 +1,6 @@
-"""The motion program as a finished cam has to reproduce it: its table against the statement, a follower against it.
+"""Comparison of a finished cam with the motion program: the table with the request, and the follower with the table.
 
-Whatever the cam, its follower is measured at cam angles four times as close as the table's, and compared there with the
+For any cam, the follower is measured at cam angles four times as close as the table's, and compared there with the
 quintic through the table's s, v, a on both sides. The deviations are shares of the lift.
 """
 
@@ -29,32 +29,32 @@ FINER = 4
 """Cam angles of the verification for each one of the design."""
 
 REPRODUCED = 1e-6
-"""Deviation of the measured displacement from the program, as a share of the lift: a micrometre in a metre of lift."""
+"""Permitted deviation of the measured displacement from the program, as a share of the lift: 1 µm for 1 m of lift."""
 
 REPRODUCED_WITH_JUMPS = 1e-4
-"""The same where the client accepted jumps in velocity or acceleration, which no curve through points can follow."""
+"""The same if the client accepts jumps in velocity or acceleration, which no curve through points can follow."""
 
 STATED = 1e-7
-"""Deviation of the program from the statement, as a share of the lift."""
+"""Permitted deviation of the program from the request, as a share of the lift."""
 
 TABLE_SLACK = 1e-6
-"""Relative slack of limits where the program's table or a dimension has the value, which keeps them exactly."""
+"""Relative slack of limits on values from the program's table or on dimensions, which keep them exactly."""
 
 ANGLE_TOLERANCE = 1e-12
-"""Radians within which an angle of the table is the joint of two segments."""
+"""Angle in radians within which an angle of the table is a joint of two segments."""
 
 MAX_REPORTED = 1e9
-"""Stands in an answer for a value without bound, which JSON cannot write."""
+"""Value reported instead of an unbounded one, which JSON cannot represent."""
 
 
 def reported(value: float) -> float:
-    """A measured value as a check can state it."""
+    """Limit a measured value to one that a check can report."""
     return min(value, MAX_REPORTED)
 
 
 @dataclass(frozen=True)
 class Reproduction:
-    """What a follower has to do at the verification's cam angles.
+    """Target motion of a follower at the verification's cam angles.
 
     Attributes
     ----------
@@ -67,7 +67,7 @@ class Reproduction:
     tolerance : float
         Deviation that passes, as a share of the lift.
     checks : list of Check
-        The program's table against the statement.
+        The program's table against the request.
     """
 
     angle: Real
@@ -78,8 +78,9 @@ class Reproduction:
 
     @classmethod
     def of(cls, problem: CamProblem, program: ProgramTable) -> Reproduction:
-        """What the program's table of a finished cam asks of its follower."""
+        """Build the target from the program's table of a finished cam."""
         angle, displacement = table_angles(program), np.array(program.s) * problem.displacement_unit
+        # A program that never moves is compared absolutely.
         lift = float(np.ptp(displacement)) or 1.0
         return cls(
             _finer(angle),
@@ -90,28 +91,28 @@ class Reproduction:
         )
 
     def deviation(self, measured: Real) -> Real:
-        """Greatest deviation of a measured displacement from each angle of the table to the next; share of the lift.
+        """Return the greatest deviation of a measured displacement between table angles, as a share of the lift.
 
-        NaN where the follower touches nothing.
+        Shape (n,), from each angle of the table to the next; NaN if the follower touches nothing.
         """
         return np.asarray(np.abs(measured - self.displacement).reshape(-1, FINER).max(axis=1) / self.lift)
 
     def check(self, name: str, deviation: Real, touches: bool) -> Check:
-        """Whether the program comes back; it does not where the follower touches nothing."""
+        """Check that the program is reproduced; it is not if the follower touches nothing."""
         worst = float(deviation.max()) if touches else math.inf
         return tolerated(name, reported(worst), self.tolerance)
 
 
 def _finer(angle: Real) -> Real:
-    """Each interval of a closed series of angles in equal parts."""
+    """Divide each interval of a closed series of angles into equal parts."""
     step = np.diff(np.append(angle, TURN + angle[0]))
     return np.asarray((angle[:, None] + step[:, None] * (np.arange(FINER) / FINER)).reshape(-1), np.float64)
 
 
 def _between(angle: Real, s: Real, program: ProgramTable) -> Real:
-    """Displacement at the finer angles, from the table's s, v, a at both ends of each interval: its quintic.
+    """Interpolate the displacement at the finer angles by the quintic through s, v, a at both ends of each interval.
 
-    The profile's points are the contacts at the table's angles, so that between them alone it can go astray.
+    The profile's points are the contacts at the table's angles, so that only between them can the profile deviate.
     """
     step = np.diff(np.append(angle, TURN + angle[0]))[:, None]
     begin = s[:, None], step * np.array(program.v)[:, None], step**2 * np.array(program.a)[:, None]
@@ -120,6 +121,7 @@ def _between(angle: Real, s: Real, program: ProgramTable) -> Real:
     rest1 = step * end[1][:, None] - begin[1] - begin[2]
     rest2 = step**2 * end[2][:, None] - begin[2]
     u = np.arange(FINER) / FINER
+    # Coefficients of u³, u⁴, u⁵ of the Hermite quintic, from the remainders after the start's Taylor terms.
     third = 10.0 * rest - 4.0 * rest1 + 0.5 * rest2
     fourth = -15.0 * rest + 7.0 * rest1 - rest2
     fifth = 6.0 * rest - 3.0 * rest1 + 0.5 * rest2
@@ -128,10 +130,10 @@ def _between(angle: Real, s: Real, program: ProgramTable) -> Real:
 
 
 def program_checks(problem: CamProblem, program: ProgramTable, lift: float) -> list[Check]:
-    """The program's table against the statement, segment by segment."""
+    """Check the program's table against the request, segment by segment."""
     angle, table = table_angles(program), np.array(program.s) * problem.displacement_unit
     worst, start = 0.0, 0.0
-    # Limits on the motion are those of automatic and optimal segments: the others are as the client states them.
+    # Limits on the motion apply to automatic and optimal segments only: the others follow the client's laws.
     limited = np.zeros(len(angle), dtype=bool)
     stated = zip(problem.segments, problem.program.laws(), problem.program.heights(), strict=True)
     for segment, law, (low, high) in stated:

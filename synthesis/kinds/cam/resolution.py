@@ -1,4 +1,4 @@
-"""Refinement of a profile: points are added where a sound cam fails its verification because its points are too few."""
+"""Refinement of a profile: points are added if a sound cam fails its verification because it has too few points."""
 
 from __future__ import annotations
 
@@ -14,19 +14,19 @@ from synthesis.model.kind import Progress
 Real = NDArray[np.float64]
 
 MAX_POINTS = 14_000
-"""Points of a curve at most. Where a motion changes its acceleration within less than a step, points are put closer
-until the profile reproduces it; beyond this number the design fails its verification."""
+"""Maximum number of points of a curve. If a motion changes its acceleration within less than a step, points are placed
+closer until the profile reproduces it; beyond this number the design fails its verification."""
 
 MAX_REFINEMENTS = 8
-"""Times that points are put closer at most."""
+"""Maximum number of refinements."""
 
 
 class Reproduced(Protocol):
-    """What was measured on a profile; ``off`` is by how much the follower's motion misses the program."""
+    """Measurements on a profile; ``off`` is the deviation of the follower's motion from the program."""
 
     @property
     def off(self) -> Real:
-        """By angle of the profile; NaN where the follower cannot be laid on."""
+        """Deviation by angle of the profile; NaN if the follower cannot be laid on."""
 
 
 Mechanism = TypeVar("Mechanism")
@@ -40,21 +40,22 @@ def resolved(
     closer: Callable[[Real, Measured, set[str]], Real | None],
     progress: Progress,
 ) -> tuple[Mechanism, Verification, Measured | None]:
-    """The mechanism whose points stand at ``angle`` or closer, verified.
+    """Return the verified mechanism with points at ``angle`` or, if necessary, at a refinement of it.
 
     Parameters
     ----------
     angle : float, shape (n,)
-        Where points stand at first, radians.
+        Initial cam angles of the points, radians.
     make, verify : callable
-        The mechanism with such points, and its checks with what was measured; None where nothing can be.
+        The mechanism with such points, and its checks with the measurements; None if nothing can be measured.
     closer : callable
-        Angles that stand closer, from those used, what was measured with them and the checks that failed; None where
-        more points do not help.
+        A refinement of the angles, from those used, the measurements and the checks that failed; None if more points
+        do not help.
     """
     mechanism = make(angle)
     verification, measured = verify(mechanism)
     for _ in range(MAX_REFINEMENTS):
+        # Without contact everywhere there is nothing that closer points could improve.
         if measured is None or not np.isfinite(measured.off).all():
             break
         finer = closer(angle, measured, {check.name for check in verification.checks if not check.passed})

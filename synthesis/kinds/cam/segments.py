@@ -1,4 +1,4 @@
-"""Segments of a motion program as they are stated: dwells, moves by a law, stretches of constant velocity, polynomials.
+"""Segments of a requested motion program: dwells, moves by a law, stretches of constant velocity, polynomials.
 
 Angles are degrees of cam rotation. Displacements are lengths, or degrees of an oscillating follower's arm; their
 derivatives are by the radian of cam rotation (length/rad, length/rad², …; rad/rad, … for an arm).
@@ -14,7 +14,7 @@ from synthesis.model.dimension import ACCELERATION, ANGLE, DISPLACEMENT, JERK, V
 from synthesis.model.statement import NonNegative, Number, PositiveNumber, Statement
 
 Span = Annotated[float, ANGLE, Field(strict=True, ge=1e-4, le=360.0, allow_inf_nan=False)]
-"""Of a segment, degrees: shorter ones are below what any shaft is set to, and rates over them are rounding."""
+"""Angle of a segment, degrees: no shaft is set as finely as shorter ones, and rates over them would be rounding."""
 
 
 Law = Literal[
@@ -41,46 +41,46 @@ Law = Literal[
     "half_cycloidal_start",
     "half_cycloidal_end",
 ]
-"""Laws by their names; ``auto`` takes the best of them by the criterion, ``optimal`` the best of all motions."""
+"""Names of the laws; ``auto`` selects the best of them by the criterion, ``optimal`` the best of all motions."""
 
 
 class ProgramCondition(Statement):
-    """What must hold at one angle; whatever is left out is free."""
+    """Conditions at one angle; omitted quantities are free."""
 
-    angle: Annotated[NonNegative, ANGLE] = Field(description="From the segment's start, degrees.")
+    angle: Annotated[NonNegative, ANGLE] = Field(description="Angle from the segment's start, degrees.")
     s: Annotated[Number, DISPLACEMENT] | None = Field(default=None, description="Displacement from the program's zero.")
     v: Annotated[Number, VELOCITY] | None = Field(default=None, description="Velocity, per radian of cam rotation.")
     a: Annotated[Number, ACCELERATION] | None = Field(default=None, description="Acceleration, per radian squared.")
     j: Annotated[Number, JERK] | None = Field(default=None, description="Jerk, per radian cubed.")
 
     def values(self) -> list[tuple[int, float]]:
-        """(order, value) of what is stated."""
+        """Return (order, value) of every given quantity."""
         return [(k, x) for k, x in enumerate((self.s, self.v, self.a, self.j)) if x is not None]
 
 
 class DisplacementBand(Statement):
     """A stretch in which the displacement stays between two values."""
 
-    start: Annotated[NonNegative, ANGLE] = Field(description="From the segment's start, degrees.")
-    end: Span = Field(description="From the segment's start, degrees.")
+    start: Annotated[NonNegative, ANGLE] = Field(description="Angle from the segment's start, degrees.")
+    end: Span = Field(description="Angle from the segment's start, degrees.")
     lower: Annotated[Number, DISPLACEMENT] | None = None
     upper: Annotated[Number, DISPLACEMENT] | None = None
 
 
 class Dwell(Statement):
-    """A rest where the segment before has ended."""
+    """A rest at the displacement at which the previous segment ends."""
 
     motion: Literal["dwell"]
     angle: Span
 
 
 class Move(Statement):
-    """A rise, or a fall (``return`` is another word for it), by a law."""
+    """A rise, or a fall (``return`` is a synonym), by a law."""
 
     motion: Literal["rise", "fall", "return"]
     angle: Span
     lift: Annotated[PositiveNumber, DISPLACEMENT] | None = Field(
-        default=None, description="Travel, positive for a fall too; a return without it goes back to zero."
+        default=None, description="Travel, also positive for a fall; a return without it goes back to zero."
     )
     law: Law = "auto"
     conditions: list[ProgramCondition] = Field(default=[], description="Interior conditions of an optimal motion.")
@@ -88,7 +88,7 @@ class Move(Statement):
 
     @property
     def follows_criterion(self) -> bool:
-        """Whether no law is stated, so that the criterion chooses the motion, within the limits."""
+        """True if no law is given, so that the criterion chooses the motion, within the limits."""
         return self.law in ("auto", "optimal")
 
 
@@ -101,7 +101,7 @@ class ConstantVelocity(Statement):
 
 
 class Polynomial(Statement):
-    """The polynomial of least degree through conditions anywhere in the segment."""
+    """The polynomial of lowest degree through conditions anywhere in the segment."""
 
     motion: Literal["polynomial"]
     angle: Span

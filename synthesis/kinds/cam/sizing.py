@@ -1,6 +1,6 @@
-"""The smallest cam that carries a motion program under limits on pressure angle, curvature and face width.
+"""The smallest cam for a motion program under limits on pressure angle, curvature and face width.
 
-Formulas are this module's own and not those of the analysis core that verifies its cams. θ is the cam angle, k the
+The formulas are independent of those of the analysis core that verifies the cams. θ is the cam angle, k the
 tangent of the greatest pressure angle (rise and fall may have their own), ρ the least radius of curvature of the
 pitch curve.
 
@@ -15,9 +15,9 @@ tan φ = ±(C cos ψ − L μ)/(C sin ψ), so that with cos γ = L μ cos φ/C e
 Translating face: R ≥ ρ − s − a, and the contact sweeps from least to greatest v. Oscillating face with offset f:
 ρ = C sin ψ (1 − v²/μ²) + C cos ψ a/μ³ − f, again an interval of ψ at each cam angle.
 
-Where every cam angle allows an interval, the smallest radius is the greatest lower end; otherwise it is found by
+If every cam angle allows an interval, the smallest radius is the greatest lower end; otherwise it is found by
 exchange (:mod:`synthesis.kinds.cam.critical`). A free offset, arm or pivot is searched; without curvature the prime
-radius is a convex function of the offset, and its least value is the global one.
+radius is a convex function of the offset, and its minimum is global.
 """
 
 from __future__ import annotations
@@ -37,39 +37,39 @@ from synthesis.kinds.cam.critical import critical_motion, smallest_allowed
 Real = NDArray[np.float64]
 
 MAX_RADIUS = 1e4
-"""Radii are looked for up to this many times the follower's travel and the given lengths."""
+"""Upper end of the search for radii, in multiples of the follower's travel and the given lengths."""
 
 MARGIN = 1e-9
-"""Share by which a radius at a limit is enlarged, so that the limit holds when it is measured on the finished cam."""
+"""Share by which a radius at a limit is enlarged, so that the limit holds when measured on the finished cam."""
 
 CENTRE_CLEARANCE = 1e-6
-"""Distance, as a share of the lift, that the trace point keeps from the cam's centre, where no radius is left."""
+"""Minimum distance of the trace point from the cam's centre, as a share of the lift."""
 
 ANGLE_CLEARANCE = 1e-9
-"""Radians by which an arm stays clear of being in line with pivot and centre, where the contact is not determined."""
+"""Minimum angle between an arm and the line from pivot to centre, radians: in line the contact is not determined."""
 
 VALLEY_TOLERANCE = 1e-7
-"""Accuracy of a searched dimension as a share of its range, where each evaluation sizes a cam: the radius is flat at
-its minimum, so that it is good to the square of it."""
+"""Accuracy of a searched dimension as a share of its range, if each evaluation sizes a cam: the radius is flat at
+its minimum, so that it is accurate to the square of this."""
 
 COARSE = 48
-"""Values of a free dimension from which its search starts."""
+"""Number of steps of the grid on which the search for a free dimension starts."""
 
 UNSOUND_RADIUS = 1e30
-"""Stands for a radius where there is none: finite, so that the search can calculate with it."""
+"""Radius that stands for an infeasible one: finite, so that the search can compute with it."""
 
 MINIMUM_TOLERANCE = 1e-10
-"""Relative accuracy of a searched dimension: the radius is flat there, to the square of it."""
+"""Relative accuracy of a searched dimension: the radius is flat there, so it is accurate to the square of this."""
 
 
 @dataclass(frozen=True)
 class RollerLimits:
-    """What a roller's cam must keep.
+    """Limits of a roller's cam.
 
     ``rise`` and ``fall`` are the greatest pressure angles (radians) for v ≥ 0 and v ≤ 0; ``pitch_radius`` is the
     least |radius of curvature| of the pitch curve, 0 without a limit; ``least`` is the smallest prime radius that
-    hub and roller leave room for. ``moment`` is the share of the greatest overturning moment of a slide that the
-    tangent of the pressure angle is multiplied with, with its sign.
+    hub and roller permit. ``moment`` times the tangent of the pressure angle is the overturning moment of a slide as
+    a signed share of its limit.
     """
 
     rise: float
@@ -80,15 +80,15 @@ class RollerLimits:
 
     @property
     def angles(self) -> tuple[tuple[int, float], ...]:
-        """Sign of v and pressure angle."""
+        """Sign of v and pressure angle for rise and fall."""
         return (1, self.rise), (-1, self.fall)
 
 
 @dataclass(frozen=True)
 class Size:
-    """The smallest radius found, and the dimension that was free where one was.
+    """The smallest radius found, and the value of the free dimension if there was one.
 
-    ``proven`` tells that no smaller radius exists, to rounding.
+    ``proven`` if no smaller radius exists, to rounding.
     """
 
     radius: float
@@ -97,12 +97,12 @@ class Size:
 
 
 def _on(sign: int, v: Real) -> NDArray[np.bool_]:
-    """Where a limit for rises (1, dwells included) or falls (−1) counts."""
+    """Return the mask of a limit for rises (1, dwells included) or falls (−1)."""
     return v >= 0.0 if sign > 0 else v <= 0.0
 
 
 def translating_roller(program: Program, offset: float, limits: RollerLimits) -> Size | None:
-    """The smallest prime radius of a translating roller follower at an offset; None where none is sound."""
+    """Find the smallest prime radius of a translating roller follower at an offset; None if none is feasible."""
     d = _least_height(program, offset, limits)
     if limits.pitch_radius > 0.0:
         sound = smallest_allowed(
@@ -111,14 +111,15 @@ def translating_roller(program: Program, offset: float, limits: RollerLimits) ->
         if sound is None:
             return None
         d = sound
+    # The margin is on d, the quantity that the limits bound; the offset is exact.
     return Size(math.hypot(d * (1.0 + MARGIN), offset), proven=True)
 
 
 def free_offset(program: Program, limits: RollerLimits, range_of_offset: tuple[float, float]) -> Size | None:
-    """The smallest prime radius of a translating roller follower over its offset.
+    """Find the smallest prime radius of a translating roller follower over its offset.
 
     By pressure angle alone d is a convex function of the offset, and so is the radius. If curvature allows the best
-    offset's radius, that is the global least; else the offset is searched from a grid and the answer is not proven.
+    offset's radius, that is the global minimum; else the offset is searched from a grid and the answer is not proven.
     """
     low, high = range_of_offset
     by_angle = replace(limits, pitch_radius=0.0)
@@ -127,10 +128,11 @@ def free_offset(program: Program, limits: RollerLimits, range_of_offset: tuple[f
     def radius(offset: float) -> float:
         if limits.moment is not None:
             return math.hypot(_least_height(program, offset, by_angle), offset)
+        # The worst points do not depend on the offset, unless the moment is limited.
         return math.hypot(_least_height_at(motion, offset, by_angle, program), offset)
 
     best = _minimized(radius, low, high)
-    # Exactly, at the offset found and with its own worst points.
+    # Solve exactly at the offset found, with its own worst points.
     alone = translating_roller(program, best, by_angle)
     size = translating_roller(program, best, limits)
     if alone is None:
@@ -141,7 +143,7 @@ def free_offset(program: Program, limits: RollerLimits, range_of_offset: tuple[f
 
 
 def _angle_functions(limits: RollerLimits) -> list[Callable[[Motion], Real]]:
-    """±v/k − s for each limit: |v − e|/k − s differs from them by a constant."""
+    """Return ±v/k − s for each limit: |v − e|/k − s differs from them by a constant."""
     functions: list[Callable[[Motion], Real]] = [lambda motion: motion.s]
     for _, angle in limits.angles:
         functions += [_needed_height(sign / math.tan(angle)) for sign in (1.0, -1.0)]
@@ -149,11 +151,12 @@ def _angle_functions(limits: RollerLimits) -> list[Callable[[Motion], Real]]:
 
 
 def _needed_height(share: float) -> Callable[[Motion], Real]:
-    """share · v − s."""
+    """Return the function share · v − s."""
     return lambda motion: share * motion.v - motion.s
 
 
 def _least_height(program: Program, offset: float, limits: RollerLimits) -> float:
+    # Its stationary points are all angles at which d can be greatest.
     functions = _angle_functions(limits)
     if limits.moment is not None:
         functions += [_needed_by_moment(sign, offset, limits.moment) for sign in (1.0, -1.0)]
@@ -161,12 +164,12 @@ def _least_height(program: Program, offset: float, limits: RollerLimits) -> floa
 
 
 def _needed_by_moment(sign: float, offset: float, moment: Callable[[Motion], Real]) -> Callable[[Motion], Real]:
-    """±share · (v − e) − s."""
+    """Return the function ±share · (v − e) − s."""
     return lambda motion: sign * moment(motion) * (motion.v - offset) - motion.s
 
 
 def _least_height_at(motion: Motion, offset: float, limits: RollerLimits, program: Program) -> float:
-    """Least d by pressure angle, by the prime circle's own least, and such that the trace point passes no centre."""
+    """Return the least d by pressure angle, by the limits of the prime circle, and with the centre's clearance."""
     least = math.sqrt(max(limits.least**2 - offset**2, 0.0))
     needed = [least, float(-motion.s.min()) + CENTRE_CLEARANCE * program.lift]
     for sign, angle in limits.angles:
@@ -179,7 +182,7 @@ def _least_height_at(motion: Motion, offset: float, limits: RollerLimits, progra
 
 
 def _translating_curvature(offset: float, radius: float) -> Callable[[Motion, Real], Real]:
-    """|κ| ρ − 1 as a function of motion and d."""
+    """Return |κ| ρ − 1 as a function of motion and d."""
 
     def excess(motion: Motion, d: Real) -> Real:
         x, w = motion.s + d, motion.v - offset
@@ -197,12 +200,13 @@ def _reach(program: Program, length: float, limits: RollerLimits) -> float:
 
 
 def oscillating_roller(program: Program, arm: float, pivot: float, sense: int, limits: RollerLimits) -> Size | None:
-    """The smallest prime radius of an oscillating roller follower; None where no start angle is sound.
+    """Find the smallest prime radius of an oscillating roller follower; None if no start angle is feasible.
 
     Pressure angle allows an interval of start angles at each cam angle. Within the common interval curvature is
-    found by exchange.
+    satisfied by exchange.
     """
     s = program.peaks[0]
+    # The arm must not pass through the line of pivot and centre anywhere in its swing.
     low, high = max(0.0, -s.least) + ANGLE_CLEARANCE, math.pi - max(s.greatest, 0.0) - ANGLE_CLEARANCE
     functions: list[Callable[[Motion], Real]] = []
     for _, angle in limits.angles:
@@ -213,6 +217,7 @@ def oscillating_roller(program: Program, arm: float, pivot: float, sense: int, l
         if not on.any():
             continue
         share = arm * (1.0 - sense * motion.v[on]) * math.cos(angle) / pivot
+        # γ does not exist: the velocity is too great for this pressure angle at any start angle.
         if np.abs(share).max() > 1.0:
             return None
         gamma = np.arccos(share)
@@ -229,8 +234,9 @@ def oscillating_roller(program: Program, arm: float, pivot: float, sense: int, l
         start = smallest_allowed(program, _oscillating_curvature(arm, pivot, sense, limits.pitch_radius), start, high)
         if start is None:
             return None
+    # The margin must not leave the permitted interval.
     start = min(start * (1.0 + MARGIN), 0.5 * (start + high))
-    # Rather than by the law of cosines, which loses digits where arm and pivot distance are nearly equal.
+    # The law of cosines would lose digits if arm and pivot distance are nearly equal.
     radius = math.hypot(arm - pivot, 2.0 * math.sqrt(arm * pivot) * math.sin(0.5 * start))
     return Size(radius, proven=True)
 
@@ -238,12 +244,12 @@ def oscillating_roller(program: Program, arm: float, pivot: float, sense: int, l
 def free_pivot(
     program: Program, arm: float, range_of_pivot: tuple[float, float], sense: int, limits: RollerLimits
 ) -> Size | None:
-    """The smallest prime radius over the pivot's distance; searched from a grid, so that it is not proven."""
+    """Find the smallest prime radius over the pivot's distance; searched from a grid, so that it is not proven."""
     return _searched(lambda c: oscillating_roller(program, arm, c, sense, limits), *range_of_pivot)
 
 
 def _start_needed(sign: float, angle: float, arm: float, pivot: float, sense: int) -> Callable[[Motion], Real]:
-    """±γ − s: what bounds the start angle but for a constant."""
+    """Return the function ±γ − s, which bounds the start angle except for a constant."""
     return lambda motion: sign * _gamma(motion.v, angle, arm, pivot, sense) - motion.s
 
 
@@ -252,13 +258,13 @@ def _gamma(v: Real, angle: float, arm: float, pivot: float, sense: int) -> Real:
 
 
 def _start_angle(arm: float, pivot: float, radius: float) -> float | None:
-    """ψ0 of a prime radius; None beyond reach."""
+    """Return ψ0 of a prime radius; None if it is out of reach."""
     share = (radius**2 - (arm - pivot) ** 2) / (4.0 * arm * pivot)
     return 2.0 * math.asin(math.sqrt(max(share, 0.0))) if share < 1.0 else None
 
 
 def _oscillating_curvature(arm: float, pivot: float, sense: int, radius: float) -> Callable[[Motion, Real], Real]:
-    """|κ| ρ − 1 as a function of motion and ψ0, from z = e^{iθ}(C − L e^{∓iψ})."""
+    """Return |κ| ρ − 1 as a function of motion and ψ0, from z = e^{iθ}(C − L e^{∓iψ})."""
 
     def excess(motion: Motion, start: Real) -> Real:
         rate = 1.0 - sense * motion.v
@@ -272,11 +278,12 @@ def _oscillating_curvature(arm: float, pivot: float, sense: int, radius: float) 
 
 
 def translating_flat(program: Program, least_radius: float, least: float) -> Size:
-    """The smallest base radius of a translating flat-faced follower: R + s + a ≥ ρ everywhere."""
+    """Find the smallest base radius of a translating flat-faced follower: R + s + a ≥ ρ everywhere."""
     motion = critical_motion(program, lambda m: m.s + m.a, lambda m: m.s)
     needed = least_radius - float((motion.s + motion.a).min())
     standing = CENTRE_CLEARANCE * program.lift - float(motion.s.min())
     radius = max(needed, least, standing)
+    # An absolute margin as well: a base radius near zero would get none in proportion.
     return Size(radius + MARGIN * max(radius, program.lift), proven=True)
 
 
@@ -289,11 +296,14 @@ def oscillating_flat(
     least: float,
     width: float | None,
 ) -> Size | None:
-    """The smallest base radius of an oscillating flat-faced follower; None where no start angle is sound."""
+    """Find the smallest base radius of an oscillating flat-faced follower; None if no start angle is feasible."""
+    # The contact stays finite only while μ > 0 over the whole turn.
     s, v = program.peaks[:2]
+    # At μ = 1 ∓ v = 0 the contact runs off to infinity.
     if not (v.greatest if sense == 1 else -v.least) < 1.0:
         return None
 
+    # ρ + f = across · sin ψ + along · cos ψ, a sinusoid of the start angle.
     def parts(m: Motion) -> tuple[Real, Real]:
         rate = 1.0 - sense * m.v
         return pivot * (1.0 - (m.v / rate) ** 2), pivot * m.a / rate**3
@@ -310,6 +320,7 @@ def oscillating_flat(
 
     motion = critical_motion(program, lower, upper, lambda m: np.hypot(*parts(m)))
     across, along = parts(motion)
+    # The amplitude of the sinusoid is too small: no start angle reaches the radius.
     if (least_radius + face_offset > np.hypot(across, along)).any():
         return None
     reach = (least + face_offset) / pivot
@@ -330,10 +341,10 @@ def oscillating_flat(
 
 
 def _narrow_enough(program: Program, pivot: float, sense: int, width: float, low: float, high: float) -> float | None:
-    """The smallest start angle whose contact sweeps no more than a width: C cos ψ/μ at any two cam angles.
+    """Find the smallest start angle whose contact sweeps at most a width: C cos ψ/μ at any two cam angles.
 
-    For two angles with stretches a, b and displacements the sweep is a sinusoid of ψ0; the set of start angles that
-    a pair allows is found at closely spaced start angles with exact extremes, and its first end by bisection.
+    For two cam angles with given factors and displacements the sweep is a sinusoid of ψ0. The permitted start angles
+    are found at closely spaced ones with exact extremes, and the first end of their range by bisection.
     """
 
     def sweep(start: float) -> float:
@@ -356,19 +367,21 @@ def _narrow_enough(program: Program, pivot: float, sense: int, width: float, low
 
 
 def _minimized(function: Callable[[float], float], low: float, high: float) -> float:
-    """Where a convex function is least."""
+    """Return the minimizer of a convex function on an interval."""
     minimum = minimize_scalar(
         function, bounds=(low, high), method="bounded", options={"xatol": MINIMUM_TOLERANCE * (high - low)}
     )
+    # The bounded search never evaluates the ends exactly.
     return min((low, float(minimum.x), high), key=function)
 
 
 def _searched(size: Callable[[float], Size | None], low: float, high: float) -> Size | None:
-    """The least radius over a dimension: a grid, and the three best valleys of it to the bottom."""
+    """Minimize the radius over a dimension: a grid, then a descent into its three best valleys."""
     cache: dict[float, float] = {}
 
     def radius(value: float) -> float:
         value = float(value)
+        # Every evaluation sizes a cam: remember them, and read the best off at the end.
         if value not in cache:
             smallest = size(value)
             cache[value] = UNSOUND_RADIUS if smallest is None else smallest.radius
@@ -376,6 +389,7 @@ def _searched(size: Callable[[float], Size | None], low: float, high: float) -> 
 
     grid = [float(value) for value in np.linspace(low, high, COARSE + 1)]
     values = [radius(value) for value in grid]
+    # Local minima of the grid among the feasible values.
     valleys = [
         k for k in range(len(grid)) if values[k] < UNSOUND_RADIUS and values[k] == min(values[max(k - 1, 0) : k + 2])
     ]

@@ -1,4 +1,4 @@
-"""Cams: the best motion program, the smallest sound cam that carries it, and its verification."""
+"""Cams: the best motion program, the smallest feasible cam for it, and its verification."""
 
 from __future__ import annotations
 
@@ -68,32 +68,32 @@ from synthesis.model.statement import Contradiction, ContradictionError
 Real = NDArray[np.float64]
 
 UNSOUND = {"no_cusp", "does_not_cross_itself", "outer_wall_is_sound", "second_no_cusp", "second_does_not_cross_itself"}
-"""Checks that more points do not mend."""
+"""Checks that more points cannot repair."""
 
 PEAKS = {"peak_velocity", "peak_acceleration", "peak_jerk"}
-"""Checks of differences of what is measured, which too few points fail although the program keeps the limit."""
+"""Checks of differenced measurements, which fail with too few points although the program keeps the limit."""
 
 HALVED = 7.0
-"""What :func:`refined` takes as a deviation, in those allowed, that divides a step in two."""
+"""Deviation, in units of the permitted one, for which :func:`refined` divides a step in two."""
 
 PEAK_ACCELERATIONS = (6.0, 8.0, 11.0, 16.0)
-"""Peak accelerations, by lift and angle squared, between which size by pressure angle and by curvature are traded."""
+"""Peak accelerations, in units of lift and angle squared, tried to trade size by pressure angle against curvature."""
 
 JERK_SHARE = 25.0
 """Peak jerk that goes with them: the acceleration may change fully within an eighth of the angle of a segment."""
 
 BOUND_TOLERANCE = 0.01
-"""A cam within this share of the bound is small enough."""
+"""Share by which a cam may exceed the bound and still end the search."""
 
 NOT_ZERO = 1e-300
-"""Stands for the curvature of a straight pitch curve, which allows a roller of any radius."""
+"""Curvature that stands for a straight pitch curve, which allows a roller of any radius."""
 
 MIN_BASE = 1e-3
-"""Base radius of a cam at least, as a share of the travel, where the client asks for no hub."""
+"""Minimum base radius of a cam, as a share of the travel, if the client requests no hub."""
 
 
 MEASURED_SHORT = 1e-3
-"""Relative shortfall of the measured curvature up to which it comes from the measure, and the cam is sized again."""
+"""Relative shortfall of the curvature that counts as an error of measurement, after which the cam is sized again."""
 
 
 def solve_cam(problem: CamProblem, progress: Progress) -> CamResult:
@@ -104,6 +104,7 @@ def solve_cam(problem: CamProblem, progress: Progress) -> CamResult:
         return none_of(problem, composed.reason, composed.proven, "motion_limits")
     composed = _smoothed(problem, composed, progress)
     if not problem.accept_discontinuity and not composed.program.obeys_fundamental_law:
+        # Automatic laws may still leave a jump between segments; report the first one.
         joint = next(joint for joint in composed.program.continuity if not all(joint.continuous[:3]))
         where = f"/segments/{joint.segments[1]}"
         raise ContradictionError(Contradiction(where, "the motion is not continuous there; see accept_discontinuity"))
@@ -114,10 +115,11 @@ def solve_cam(problem: CamProblem, progress: Progress) -> CamResult:
     if sized is None:
         proven = not isinstance(getattr(problem.follower, "pivot_distance", None), LengthRange)
         proven = proven and getattr(problem.follower, "offset", None) != "free" and composed.bound is None
-        # Where an arm's face is too wide is found on a grid of start angles.
+        # The width of an arm's face is checked on a grid of start angles only, which proves nothing.
         proven = proven and (problem.limits.face_width is None or not isinstance(problem.follower, OscillatingFlat))
-        reason = "no cam of any size carries the program within the limits on pressure angle, curvature and face width"
+        reason = "no cam of any size follows the program within the limits on pressure angle, curvature and face width"
         return none_of(problem, reason, proven, "size")
+    # With conjugate closure the second cam follows from the first one's program.
     cam, size = sized
     cams = _pair(problem, cam)
     if cams is None:
@@ -126,6 +128,7 @@ def solve_cam(problem: CamProblem, progress: Progress) -> CamResult:
     progress(0.7, "verifying")
     mechanism, verification, measured = _verified(problem, cams, progress)
     tighter = _tightened(problem, verification)
+    # A second sizing, with a slightly tighter curvature, makes up for the error of the measurement.
     if tighter is not None and (larger := _sized(tighter, composed.program)) is not None:
         cams, size = _pair(tighter, larger[0]) or cams, larger[1]
         mechanism, verification, measured = _verified(problem, cams, progress)
@@ -149,7 +152,7 @@ def solve_cam(problem: CamProblem, progress: Progress) -> CamResult:
 
 
 def _pair(problem: CamProblem, cam: Cam) -> tuple[Cam, ...] | None:
-    """The cam alone, or with the second one that is conjugate to it; None where that has no sound size."""
+    """Return the cam alone, or with its conjugate cam; None if that has no feasible size."""
     if problem.closure != "conjugate":
         return (cam,)
 
@@ -164,9 +167,11 @@ def _pair(problem: CamProblem, cam: Cam) -> tuple[Cam, ...] | None:
 def _verified(
     problem: CamProblem, cams: tuple[Cam, ...], progress: Progress
 ) -> tuple[CamMechanism, Verification, Measured | None]:
-    """The finished cams, what their checks say, and the measure; None where the follower cannot be laid on."""
+    """Return the finished cams, their checks and the measurements; None if the follower cannot be laid on."""
     cam, groove = cams[0], problem.closure == "form"
     curves = [cam.profile, cam.outer_wall] if groove else [one.profile for one in cams]
+    # Both curves share their angles: those of the curve that needs more of them.
+    # Every curve that a roller touches asks for points of its own.
     laid = [profile_angles(cam.program, curve, cam.roller_radius, problem.profile_points) for curve in curves]
     make: Callable[[Real], CamMechanism] = partial(cam_mechanism, cam, groove=groove)
     if len(cams) > 1:
@@ -176,14 +181,15 @@ def _verified(
 
 
 def _tightened(problem: CamProblem, verification: Verification) -> CamProblem | None:
-    """The problem with the limit of curvature that brings the measured one within the stated one.
+    """Tighten the curvature limit so that the measured curvature meets the requested one.
 
-    Sizes are exact, the finished cam is measured through its points, on the safe side. None where nothing else than a
-    little curvature is missing.
+    Sizes are exact; the finished cam is measured through its points, on the safe side. None unless only a little
+    curvature is missing.
     """
     failed = [check for check in verification.checks if not check.passed]
     if not failed or {check.name for check in failed} - {"curvature_ratio", "second_curvature_ratio"}:
         return None
+    # The largest shortfall decides; failed checks have a limit and a value.
     short = max((check.limit or 0.0) / (check.value or math.inf) - 1.0 for check in failed)
     if not 0.0 < short < MEASURED_SHORT:
         return None
@@ -192,28 +198,29 @@ def _tightened(problem: CamProblem, verification: Verification) -> CamProblem | 
 
 
 def _not_laid_on(cam: Cam) -> str:
-    """Why the follower cannot be laid against the profile."""
+    """Explain why the follower cannot be laid against the profile."""
     if cam.program.smoothness < 2:
-        return "where the displacement or the velocity jumps the profile breaks off; choose laws that join"
+        return "the profile breaks off at a jump of the displacement or the velocity; choose laws that join"
     if cam.roller_radius <= 0.0:
         return "the follower cannot be laid against the profile"
     return (
         f"the contact of a roller of radius {cam.roller_radius:.6g} on a cam of prime radius {cam.size:.6g} is not "
-        "resolved by any number of points that a profile may have; take a larger roller or a slower motion"
+        "resolved by the maximum number of points per profile; use a larger roller or a slower motion"
     )
 
 
 def _smoothed(problem: CamProblem, composed: Composition, progress: Progress) -> Composition:
-    """For the least size: the motion whose cam is smallest when curvature counts as well.
+    """For minimum size: find the motion whose cam is smallest if curvature counts as well.
 
-    The convex program knows pressure angle, not the curvature of a roller's pitch curve, and the motion of least
-    size is abrupt where nothing limits its acceleration. So it is solved again under limits on acceleration and
-    jerk, and the smallest of the cams is taken. The bound stays that of all motions.
+    The convex program considers pressure angle, not the curvature of a roller's pitch curve, and the motion of minimum
+    size is abrupt if no limit holds its acceleration. So it is solved again under limits on acceleration and jerk, and
+    the smallest of the cams is used. The bound remains that of all motions.
     """
     if problem.minimize != "size" or composed.bound is None or roller_radius_range(problem) is None:
         return composed
     stated = problem.limits
     unlimited = stated.acceleration is None and stated.jerk is None
+    # Without limits of its own the first motion has unusable spikes, so its cam is not a candidate.
     best, least = composed, math.inf if unlimited else _radius(problem, composed)
     span = min(s.angle for s in composed.program.segments if s.pieces.count > 1)
     for n, share in enumerate(PEAK_ACCELERATIONS):
@@ -226,6 +233,7 @@ def _smoothed(problem: CamProblem, composed: Composition, progress: Progress) ->
             update={"acceleration": min(stated.acceleration or a, a), "jerk": min(stated.jerk or j, j)}
         )
         reach = 0.4 + 0.1 * n / len(PEAK_ACCELERATIONS), 0.4 + 0.1 * (n + 1) / len(PEAK_ACCELERATIONS)
+        # The coarse grid suffices to compare sizes; the bound comes from the first solution.
         other = compose(problem.model_copy(update={"limits": limits}), STEPS[:1], progress, reach)
         if isinstance(other, Composition):
             radius = _radius(problem, other)
@@ -240,7 +248,7 @@ def _radius(problem: CamProblem, composed: Composition) -> float:
 
 
 def _closer(angle: Real, measured: Measured, failed: set[str]) -> Real | None:
-    """Angles that stand closer where the profile's points are too few; None where more do not help."""
+    """Return a finer set of angles if the profile has too few points; None if more points do not help."""
     if failed & UNSOUND:
         return None
     if failed & {"reproduces_program", "outer_wall_reproduces_program", "second_reproduces_program"}:
@@ -248,13 +256,14 @@ def _closer(angle: Real, measured: Measured, failed: set[str]) -> Real | None:
     for doubtful in (measured.unsettled, measured.unsteady):
         if doubtful.any():
             return refined(angle, doubtful, 1.0)
+    # The table keeps the limit but the measured peak does not: closer points make the differences accurate.
     if failed & PEAKS and not failed & {f"table_{peak[5:]}" for peak in PEAKS}:
         return refined(angle, np.full_like(angle, HALVED), 1.0)
     return None
 
 
 def _sized(problem: CamProblem, program: Program) -> tuple[Cam, Size] | None:
-    """The smallest cam, or the one whose radius is stated; None where no radius is sound."""
+    """Return the smallest cam, or the one of given radius; None if no radius is feasible."""
     follower, limits = problem.follower, problem.limits
     rollers = roller_radius_range(problem)
     try:
@@ -272,6 +281,7 @@ def _sized(problem: CamProblem, program: Program) -> tuple[Cam, Size] | None:
                 size = Size(follower.prime_radius, True)
             elif follower.offset == "free":
                 centred = translating_roller(program, 0.0, roller_limits)
+                # The best offset is smaller than the radius of a centred follower, which would be a worse cam.
                 widest = centred.radius if centred is not None else program.lift * 10.0
                 size = free_offset(program, roller_limits, (-widest, widest))
             else:
@@ -300,7 +310,7 @@ def _sized(problem: CamProblem, program: Program) -> tuple[Cam, Size] | None:
 
 
 def _least_base(problem: CamProblem, program: Program) -> float:
-    """Least radius of the base circle: the hub's, or as little as leaves a cam around its centre.
+    """Return the least radius of the base circle: the hub's, or the least that leaves a cam around its centre.
 
     The travel of an arm is that of its roller, or of a face at the pivot's distance.
     """
@@ -311,7 +321,7 @@ def _least_base(problem: CamProblem, program: Program) -> float:
 
 
 def _flat_cam(problem: CamProblem, program: Program) -> tuple[Cam, Size] | None:
-    """The smallest cam under a flat face, or the one whose radius is stated; None where no radius is sound."""
+    """Return the smallest cam under a flat face, or the one of given radius; None if no radius is feasible."""
     follower, limits = problem.follower, problem.limits
     least = _least_base(problem, program)
     size: Size | None
@@ -335,11 +345,12 @@ def _flat_cam(problem: CamProblem, program: Program) -> tuple[Cam, Size] | None:
 
 
 def _largest_roller(cam: Cam, largest: float, problem: CamProblem) -> Cam:
-    """The cam with the largest roller that curvature and hub allow: contact stress falls with it."""
+    """Give the cam the largest roller that curvature and hub allow: contact stress falls with its radius."""
     follower = cam.follower
     assert isinstance(follower, core.TranslatingRoller | core.OscillatingRoller)
     if largest <= follower.roller_radius:
         return cam
+    # The largest roller whose offset curve keeps the required ratio to the pitch curve.
     curvature = max(cam.pitch_curvature_extremes.largest, NOT_ZERO)
     allowed = 1.0 / curvature / least_pitch_radius(problem.limits, 1.0)
     fits = follower.prime_radius - _least_base(problem, cam.program)
@@ -348,7 +359,7 @@ def _largest_roller(cam: Cam, largest: float, problem: CamProblem) -> Cam:
 
 
 def _metrics(problem: CamProblem, cam: Cam, mechanism: CamMechanism, measured: Measured) -> CamMetrics:
-    """The measured profile as the answer has it."""
+    """Return the metrics of the measured profile as the answer reports them."""
     program = cam.program
     roller = cam.roller_radius > 0.0
     return CamMetrics(

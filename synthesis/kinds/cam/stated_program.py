@@ -1,6 +1,6 @@
-"""The motion program as it is stated: where each segment begins and ends, and what contradicts itself there.
+"""The requested motion program: start and end of each segment, and contradictions there.
 
-Written without any library, because a statement is checked where it comes in.
+Written without numpy, because requests are checked before the numerical libraries are loaded.
 """
 
 from __future__ import annotations
@@ -17,21 +17,21 @@ WHOLE_TURN = 1e-7
 """Degrees by which the segments may miss a full turn: rounding of angles like 360/7."""
 
 SMOOTH = 1e-6
-"""Jump at a joint, relative to the segments' own rates, up to which it is continuous."""
+"""Jump at a joint, relative to the segments' own rates, up to which it counts as continuous."""
 
 
 @dataclass(frozen=True)
 class StatedProgram:
     """Segments that follow one another, with the unit of their displacements.
 
-    ``displacement_unit`` times a stated displacement is the solver's: radians of an arm, or lengths.
+    ``displacement_unit`` times a requested displacement is the solver's: radians of an arm, or lengths.
     """
 
     segments: Sequence[Segment]
     displacement_unit: float
 
     def polynomial_conditions(self, segment: Polynomial | Move) -> Conditions:
-        """A segment's conditions in radians and the solver's displacements."""
+        """Return a segment's conditions in radians and the solver's displacements."""
         unit = self.displacement_unit
         return [
             (math.radians(condition.angle), order, value * (unit if order == 0 else 1.0))
@@ -40,9 +40,9 @@ class StatedProgram:
         ]
 
     def heights(self) -> list[tuple[float, float]]:
-        """Displacement at start and end of each segment, in the solver's unit; the first begins at zero.
+        """Return the displacement at start and end of each segment, in the solver's unit; the first begins at zero.
 
-        A polynomial begins and ends where its conditions put it.
+        A polynomial begins and ends at the values that its conditions determine.
         """
         heights = []
         at = 0.0
@@ -61,7 +61,7 @@ class StatedProgram:
         return heights
 
     def _ranges(self) -> list[tuple[float, float]]:
-        """Least and greatest displacement of each segment; a polynomial may rise and fall between two equal ends."""
+        """Return the displacement range of each segment; a polynomial may rise and fall between two equal ends."""
         ranges = [(min(pair), max(pair)) for pair in self.heights()]
         for k, segment in enumerate(self.segments):
             if isinstance(segment, Polynomial):
@@ -71,15 +71,15 @@ class StatedProgram:
 
     @property
     def travel(self) -> float:
-        """From the lowest to the highest displacement, in the solver's unit."""
+        """Distance from the lowest to the highest displacement, in the solver's unit."""
         ranges = self._ranges()
         return max(high for _, high in ranges) - min(low for low, _ in ranges)
 
     def laws(self) -> list[str]:
-        """The law by which each segment runs, or what else it is.
+        """Return the law of each segment, or its motion if it has no law.
 
-        In the books the fall that mirrors a rise has its name. So a fall by such a name is the mirrored one, unless its
-        neighbours join the other alone, which begins without acceleration.
+        In the books the fall that mirrors a rise has the rise's name. So a fall with such a name is the mirrored law,
+        unless its neighbours only join the other one, which begins without acceleration.
         """
         stated = [segment.law if isinstance(segment, Move) else segment.motion for segment in self.segments]
         laws = [
@@ -89,11 +89,12 @@ class StatedProgram:
         for k, law in enumerate(stated):
             if laws[k] != law and not self._joins(k, laws):
                 other = [*laws[:k], law, *laws[k + 1 :]]
+                # Keep the mirrored law unless only the other one joins both neighbours.
                 laws = other if self._joins(k, other) else laws
         return laws
 
     def ends(self) -> list[tuple[State, State] | None]:
-        """s, v, a at both ends of each segment; None for automatic and optimal motions, which follow others."""
+        """Return s, v, a at both ends of each segment; None for automatic and optimal motions, which adapt."""
         return self._ends_by(self.laws())
 
     def _ends_by(self, laws: Sequence[str]) -> list[tuple[State, State] | None]:
@@ -113,7 +114,7 @@ class StatedProgram:
         return ends
 
     def segment_contradictions(self) -> list[Contradiction]:
-        """Faults within a segment."""
+        """Return the errors within a segment."""
         contradictions = []
         heights = self.heights()
         for k, segment in enumerate(self.segments):
@@ -123,33 +124,33 @@ class StatedProgram:
                     contradictions.append(Contradiction(f"{where}/lift", f"a {segment.motion} needs a lift"))
                 elif segment.lift is None and heights[k][0] <= 0.0:
                     contradictions.append(
-                        Contradiction(f"{where}/lift", "there is nothing to return from; state a lift")
+                        Contradiction(f"{where}/lift", "the follower is already at zero; give a lift")
                     )
                 for name in ("conditions", "bands"):
                     if getattr(segment, name) and segment.law != "optimal":
-                        contradictions.append(Contradiction(f"{where}/{name}", "only an optimal motion can meet them"))
+                        contradictions.append(Contradiction(f"{where}/{name}", "only an optimal motion can have them"))
                 for n, band in enumerate(segment.bands):
                     contradictions += _band_faults(f"{where}/bands/{n}", band, segment.angle)
             if isinstance(segment, Move | Polynomial):
                 for n, condition in enumerate(segment.conditions):
+                    # At the ends of a move the neighbours fix the state; a condition there would be redundant or
+                    # contradictory.
                     inner = isinstance(segment, Move)
                     if condition.angle > segment.angle or (inner and condition.angle in (0.0, segment.angle)):
                         detail = f"must lie within the segment's {segment.angle:g} degrees"
                         contradictions.append(Contradiction(f"{where}/conditions/{n}/angle", detail))
                     if not condition.values():
-                        contradictions.append(
-                            Contradiction(f"{where}/conditions/{n}", "states nothing; give s, v, a or j")
-                        )
+                        contradictions.append(Contradiction(f"{where}/conditions/{n}", "is empty; give s, v, a or j"))
             if isinstance(segment, Polynomial) and not contradictions:
                 conditions = self.polynomial_conditions(segment)
                 if polynomial_ends(math.radians(segment.angle), conditions) is None:
                     contradictions.append(Contradiction(f"{where}/conditions", "do not determine one polynomial"))
         if not contradictions and not any(_moves(segment) for segment in self.segments):
-            contradictions.append(Contradiction("/segments", "the follower never moves; state a rise"))
+            contradictions.append(Contradiction("/segments", "the follower never moves; add a rise"))
         return contradictions
 
     def joint_contradictions(self, accept_discontinuity: bool, grooved: bool) -> list[Contradiction]:
-        """Segments that do not make one turn, or that do not meet as a cam's program must; ``grooved``: in a groove."""
+        """Return the errors of segments that do not make one turn, or do not join as a cam's program must."""
         return [*self._turn(), *self._joints(accept_discontinuity, grooved)]
 
     def _turn(self) -> list[Contradiction]:
@@ -159,12 +160,12 @@ class StatedProgram:
         return []
 
     def _travel(self) -> float:
-        """The size of displacements, by which jumps are measured."""
+        """Return the size of displacements, the scale for jumps."""
         longest = max(high - low for low, high in self._ranges())
         return longest or max(abs(a) for a, _ in self.heights()) or 1.0
 
     def _jumps(self, joint: int, ends: Sequence[tuple[State, State] | None]) -> tuple[float, float]:
-        """Steps of v and a from a segment to the next; 0 where they are rounding, or where one follows the other."""
+        """Return the steps of v and a at a joint; 0 if they are rounding, or if one segment adapts to the other."""
         before, after = ends[joint], ends[(joint + 1) % len(ends)]
         if before is None or after is None:
             return 0.0, 0.0
@@ -176,12 +177,12 @@ class StatedProgram:
         return velocity, acceleration
 
     def _joins(self, k: int, laws: Sequence[str]) -> bool:
-        """Whether v and a of a segment go on in both neighbours."""
+        """Return whether v and a of a segment are continuous with both neighbours."""
         ends = self._ends_by(laws)
         return not any((*self._jumps(k - 1, ends), *self._jumps(k, ends)))
 
     def _joints(self, accept_discontinuity: bool, grooved: bool) -> list[Contradiction]:
-        """Joints where s jumps, or v as no follower can, or v or a without being accepted."""
+        """Return the joints with a jump of s, an impossible jump of v, or a jump of v or a that is not accepted."""
         heights, ends = self.heights(), self.ends()
         contradictions = []
         for k, segment in enumerate(self.segments):
@@ -190,14 +191,15 @@ class StatedProgram:
             joint = f"where segment {n} ({following.motion}) follows segment {k} ({segment.motion})"
             gap = heights[n][0] - heights[k][1]
             if abs(gap) > SMOOTH * self._travel():
-                hint = "; the program must come back to where it began" if n == 0 else ""
+                hint = "; the program must end where it began" if n == 0 else ""
                 gap /= self.displacement_unit
                 contradictions.append(Contradiction(f"/segments/{n}", f"displacement jumps by {gap:.6g} {joint}{hint}"))
                 continue
             velocity, acceleration = self._jumps(k, ends)
             reason = "which breaks the fundamental law of cam design; choose other laws or accept_discontinuity"
+            # Downward, or in a groove, the roller would have to turn an edge at once: no contact can be kept there.
             if velocity < 0.0 or (velocity and grooved):
-                reason = "for which the cam would need an edge that no follower keeps to; choose laws that join"
+                reason = "for which the cam would need an edge that no follower can track; choose laws that join"
             elif accept_discontinuity:
                 continue
             for name, jump in (("velocity", velocity), ("acceleration", acceleration)):
@@ -210,10 +212,11 @@ class StatedProgram:
         return contradictions
 
     def _inner_jumps(self) -> list[Contradiction]:
-        """Laws whose acceleration jumps in their middle."""
+        """Return the laws whose acceleration jumps in their middle."""
         return [
             Contradiction(
-                f"/segments/{k}/law", f"the acceleration of {segment.law} jumps; accept_discontinuity takes it"
+                f"/segments/{k}/law",
+                f"the acceleration of {segment.law} jumps; choose another law or set accept_discontinuity",
             )
             for k, segment in enumerate(self.segments)
             if isinstance(segment, Move) and segment.law == "constant_acceleration"
@@ -222,7 +225,7 @@ class StatedProgram:
 
 def _band_faults(where: str, band: DisplacementBand, angle: float) -> list[Contradiction]:
     if band.lower is None and band.upper is None:
-        return [Contradiction(where, "states no bound; give lower or upper")]
+        return [Contradiction(where, "has no bound; give lower or upper")]
     if not band.start < band.end <= angle:
         return [Contradiction(f"{where}/end", f"must be after start and within the segment's {angle:g} degrees")]
     if band.lower is not None and band.upper is not None and band.lower > band.upper:
@@ -231,7 +234,7 @@ def _band_faults(where: str, band: DisplacementBand, angle: float) -> list[Contr
 
 
 def _moves(segment: Segment) -> bool:
-    """Whether the follower moves in a segment; the polynomial of least degree through one value is that value."""
+    """Return whether the follower moves in a segment; the lowest-degree polynomial through one value is constant."""
     if isinstance(segment, Polynomial):
         stated = [pair for condition in segment.conditions for pair in condition.values()]
         return len({value for order, value in stated if order == 0}) > 1 or any(x for order, x in stated if order)

@@ -1,4 +1,4 @@
-"""The motion of least inertia torque.
+"""The motion of minimum inertia torque.
 
 The torque that a mass takes is proportional to v a = dE/dt with E = v²/2, and in E the problem is convex: the lift
 ∫ √(2E) dt is a concave function of E, and a peak or mean square of dE/dt is convex (Norton §8.7 compares the torques
@@ -12,8 +12,8 @@ best motion. Two things follow:
       h − ½∫ v̄ − E(0) W(0) + α (E(1) − E(0)) ≤ ∫ (W + α) Ė dt ≤ max |Ė| ∫ |W + α| dt,  and ≤ rms(Ė) · rms(W + α);
 
 - the motion itself, which must have a continuous acceleration as well: programs over states at knots in which v a is
-  replaced by v̄ a, with v held to v̄ from above. Where acceleration or jerk is limited, v̄ cannot be kept, and v a
-  is replaced by its tangent at the motion before. The bound knows nothing of those limits, so that a gap remains then.
+  replaced by v̄ a, with v bounded by v̄ from above. If acceleration or jerk is limited, v̄ cannot be kept, and v a
+  is replaced by its tangent at the previous motion. The bound ignores those limits, so that a gap remains then.
 """
 
 from __future__ import annotations
@@ -33,22 +33,22 @@ from synthesis.numerics.convex import minimized, modeling
 Real = NDArray[np.float64]
 
 STANDSTILL = 1e-9
-"""Share of the greatest velocity that stands for zero where the follower rests, so that 1/v̄ stays finite."""
+"""Share of the greatest velocity that replaces zero at rest, so that 1/v̄ stays finite."""
 
 PASSES = 4
-"""Programs at most."""
+"""Maximum number of programs solved."""
 
 ABOVE = 1e-3
-"""Share by which v may exceed v̄: it makes up for what is lost where the acceleration cannot follow at once."""
+"""Share by which v may exceed v̄: it compensates for the loss at points where the acceleration cannot jump."""
 
 ABRUPT = 0.1
-"""Where v a changes within a step by more than this share of its peak, the next pass has smaller steps."""
+"""Change of v a within a step, as a share of its peak, above which the next pass divides the step."""
 
 PARTS = 6
-"""Of a step that is made smaller."""
+"""Number of parts into which such a step is divided."""
 
 LITTLE = 1e-4
-"""A pass that gains less than this share is the last."""
+"""Relative gain below which a pass is the last."""
 
 
 @dataclass(frozen=True)
@@ -61,7 +61,7 @@ class LeastTorque:
 
 
 def torque(motion: KnotMotion) -> Piecewise:
-    """v a of a motion, exactly."""
+    """Return v a of a motion, exactly."""
     v, a = motion.derivative(1).coefficients, motion.derivative(2).coefficients
     product = np.zeros((len(v), v.shape[1] + a.shape[1] - 1))
     for k in range(a.shape[1]):
@@ -72,14 +72,14 @@ def torque(motion: KnotMotion) -> Piecewise:
 def least_torque(
     block: Block, measure: Literal["peak", "rms"], lift: float, ends: tuple[float, float]
 ) -> LeastTorque | None:
-    """The motion of least peak or root mean square of v a.
+    """Find the motion of minimum peak or root mean square of v a.
 
     Parameters
     ----------
     block : Block
         Grid over 0 ≤ t ≤ 1, conditions and limits of the motion.
     measure : {"peak", "rms"}
-        What of v a is made least.
+        Whether the peak or the root mean square of v a is minimized.
     lift : float
         Distance between the first and the last position, positive.
     ends : tuple of two floats
@@ -88,7 +88,7 @@ def least_torque(
     Returns
     -------
     LeastTorque or None
-        None where no motion meets the conditions and limits on this grid.
+        None if no motion meets the conditions and limits on this grid.
     """
     velocity = _best_velocity(block.times, measure, lift, ends)
     if velocity is None:
@@ -111,6 +111,7 @@ def least_torque(
         finer = _refined(block.times, product)
         block = replace(block, times=finer)
         v = np.maximum(motion.derivative(1)(finer), 0.0)
+        # With limits the optimal velocity is out of reach: linearize at the last motion instead.
         motion = (
             _linearized(block, measure, v, motion.derivative(2)(finer), None)
             if limited
@@ -120,7 +121,8 @@ def least_torque(
 
 
 def _refined(times: Real, product: Piecewise) -> Real:
-    """The grid with smaller steps where v a changes abruptly."""
+    """Divide the steps of the grid on which v a changes abruptly."""
+    # Change of v a over each step: value at its end minus value at its start.
     change = np.abs(product.coefficients.sum(axis=1) - product.coefficients[:, 0])
     abrupt = np.flatnonzero(change > ABRUPT * product.peak())
     parts = [times[k] + np.diff(times)[k] * np.arange(1, PARTS) / PARTS for k in abrupt]
@@ -128,7 +130,7 @@ def _refined(times: Real, product: Piecewise) -> Real:
 
 
 def _best_velocity(times: Real, measure: str, lift: float, ends: tuple[float, float]) -> Real | None:
-    """v̄ at the knots: the cone program in E, lift at least as demanded."""
+    """Solve the cone program in E for v̄ at the knots; the lift is at least the given one."""
     cp = modeling()
 
     step = np.diff(times)
@@ -137,6 +139,7 @@ def _best_velocity(times: Real, measure: str, lift: float, ends: tuple[float, fl
     constraints = [
         energy[0] == 0.5 * ends[0] ** 2,
         energy[-1] == 0.5 * ends[1] ** 2,
+        # A relaxation: speed ≤ √(2E) is convex, and the objective makes it active.
         speed <= cp.sqrt(2.0 * energy),
         0.5 * step @ (speed[1:] + speed[:-1]) >= lift,
     ]
@@ -147,8 +150,9 @@ def _best_velocity(times: Real, measure: str, lift: float, ends: tuple[float, fl
 
 
 def _bound(times: Real, velocity: Real, measure: str, lift: float, ends: tuple[float, float]) -> float:
-    """The bound above, for v̄ constant on each step and the best α."""
+    """Compute the bound above, for v̄ constant on each step and the best α."""
     step = np.diff(times)
+    # 1/v̄ must stay finite at rest, where v̄ vanishes.
     mean = np.maximum(0.5 * (velocity[1:] + velocity[:-1]), STANDSTILL * velocity.max())
     at_left = np.cumsum((step / mean)[::-1])[::-1]
     first, last = 0.5 * ends[0] ** 2, 0.5 * ends[1] ** 2
@@ -159,12 +163,13 @@ def _bound(times: Real, velocity: Real, measure: str, lift: float, ends: tuple[f
         size = weight.convex_integral(np.abs) if measure == "peak" else weight.rms()
         return (known + alpha * (last - first)) / size
 
+    # The bound is concave in α; the weight W + α changes sign only for −W(0) < α < 0.
     maximum = minimize_scalar(lambda alpha: -proved(alpha), bounds=(-float(at_left[0]), 0.0), method="bounded")
     return max(proved(float(maximum.x)), 0.0)
 
 
 def _linearized(block: Block, measure: str, v: Real, a: Real | None, ceiling: Real | None) -> KnotMotion | None:
-    """The best motion with v a replaced by its tangent at (v, a); where a is None, by v times the new acceleration."""
+    """Solve for the best motion with v a replaced by its tangent at (v, a), or by v times the new acceleration."""
     cp = modeling()
 
     model = BlockModel(block, None)
@@ -174,6 +179,7 @@ def _linearized(block: Block, measure: str, v: Real, a: Real | None, ceiling: Re
     if measure == "peak":
         cost = cp.norm(product, "inf")
     else:
+        # Simpson's rule for the square of a piecewise linear function, exact on each step.
         root = np.sqrt(np.diff(block.times) / 6.0)
         parts = product[1:], product[:-1], product[1:] + product[:-1]
         cost = sum(cp.sum_squares(cp.multiply(root, part)) for part in parts)

@@ -1,10 +1,10 @@
-"""The proof of a cam: its follower is laid against the finished profile, and what it does is measured.
+"""Verification of a cam: its follower is laid against the finished profile, and its motion is measured.
 
-Nothing that a solver computed is taken over but the answer itself. The points of the profile alone give
+Only the answer itself is used, none of the solver's other results. The points of the profile alone give
 displacement, pressure angle and radius of curvature at cam angles four times as close as the design's; the
-displacement is compared with the program's table, its quintic between, and the program's table with what the problem
-states: laws and rests by the analysis core. What is stated of automatic and optimal motions (ends, conditions, bands,
-limits on velocity, acceleration and jerk) is measured on the profile too (:mod:`synthesis.kinds.cam.measured_rates`).
+displacement is compared with the program's table and its quintic in between, and the table with the request: laws and
+rests by the analysis core. Constraints of automatic and optimal motions (ends, conditions, bands, limits on velocity,
+acceleration and jerk) are measured on the profile too (:mod:`synthesis.kinds.cam.measured_rates`).
 """
 
 from __future__ import annotations
@@ -33,30 +33,30 @@ from synthesis.proof.checks import at_least, at_most
 Real = NDArray[np.float64]
 
 MEASURED_SLACK = 1e-5
-"""Relative slack of limits on pressure angle, curvature and width, which are measured on a curve through points and
-made worse by as much as that curve may be off."""
+"""Relative slack of limits on pressure angle, curvature and width. They are measured on a curve through points and
+worsened by the possible error of that curve."""
 
 NOT_LAID_ON = Check(name="follower_can_be_laid_on", passed=False)
-"""Of a profile that the follower cannot be laid against at all, or not where its points are said to be touched."""
+"""Failed check of a profile that the follower cannot be laid against, or touches at other angles than its points'."""
 
 UNSETTLED_SLACK = 2e-3
-"""The same of limits on curvature where a profile of very many short moves can have no more points."""
+"""Relative slack of limits on curvature if a profile of very many short moves can have no more points."""
 
 ROUNDED_SLACK = 2e-2
-"""The same at most where the profile has spikes of a motion without a limit on its acceleration, a millionth of a turn
-long, of which rounding of the points leaves the curvature few digits."""
+"""Maximum of this slack if the profile has spikes a millionth of a turn long, of a motion without a limit on its
+acceleration, for which rounding of the points leaves the curvature few digits."""
 
 
 @dataclass(frozen=True)
 class Measured:
-    """What the finished profile does.
+    """Measurements on the finished profile.
 
     Attributes
     ----------
     rising, falling : float
         Greatest pressure angles, degrees.
     convex_radius, concave_radius : float
-        Least radii of curvature of the profile; infinite where no part is convex, or concave.
+        Least radii of curvature of the profile; infinite if no part is convex, or concave.
     curvature_ratio : float
         Least radius of curvature of the pitch curve over the roller's; infinite under a flat face.
     sweep : float
@@ -65,14 +65,14 @@ class Measured:
         Greatest radius of the profile.
     off : float64, shape (n,)
         Greatest deviation of the displacement from the program, from each of the n angles of its table to the next, as
-        a share of the lift; NaN where the follower touches nothing.
+        a share of the lift; NaN if the follower touches nothing.
     rounded : float
         Share of the greatest curvature by which it is made worse for the rounding of the points.
     unsettled : float64, shape (n,)
-        By how many times what is allowed the curvature from each angle to the next depends on how close points stand,
-        where it may be the greatest; 0 elsewhere.
+        Dependence of the curvature on the point spacing, from each angle to the next, as a multiple of the permitted
+        one; 0 where the curvature cannot be greatest.
     unsteady : float, shape (n,)
-        The same of the pressure angle, or of the width of a face.
+        The same for the pressure angle, or for the width of a face.
     """
 
     rising: float
@@ -94,14 +94,14 @@ def verify(problem: CamProblem, mechanism: CamMechanism) -> tuple[Verification, 
     Parameters
     ----------
     problem : CamProblem
-        What was asked.
+        The request.
     mechanism : CamMechanism
-        The finished cam; its pitch curve is not looked at.
+        The finished cam; its pitch curve is not used.
 
     Returns
     -------
     Verification, Measured or None
-        None where the follower cannot be laid against the profile at all.
+        None if the follower cannot be laid against the profile at all.
     """
     demanded = Reproduction.of(problem, mechanism.program)
     try:
@@ -123,11 +123,12 @@ def verify(problem: CamProblem, mechanism: CamMechanism) -> tuple[Verification, 
     if problem.closure == "form":
         wall_checks, wall_off = _groove_checks(mechanism, contour, follower, demanded)
         checks += wall_checks
+        # The worse wall decides the refinement.
         off = np.maximum(off, wall_off)
     try:
         found = worst(contour, follower, mechanism.rotation, stretches)
     except DimensionError:
-        # Where points are out of the follower's reach at their own angles, the profile has no contacts to be measured.
+        # The points are out of the follower's reach at their own angles: the profile has no contacts to measure.
         return Verification.of([*checks, NOT_LAID_ON]), None
     measured = measured_of(found, mechanism.follower.roller_radius or 0.0, off)
     if touches:
@@ -142,7 +143,7 @@ def verify(problem: CamProblem, mechanism: CamMechanism) -> tuple[Verification, 
 
 
 def measured_of(found: Worst, roller: float, off: Real) -> Measured:
-    """What the worst places of a profile are under a roller of a radius, 0 for a flat face."""
+    """Build the measurements from the worst places of a profile, for a roller's radius or 0 for a flat face."""
     convex = 1.0 / found.convex if found.convex > 0.0 else math.inf
     concave = 1.0 / found.concave if found.concave > 0.0 else math.inf
     return Measured(
@@ -150,7 +151,7 @@ def measured_of(found: Worst, roller: float, off: Real) -> Measured:
         math.degrees(found.falling),
         convex,
         concave,
-        # The pitch curve lies a roller's radius outside the profile.
+        # The pitch curve runs one roller radius outside the profile.
         min(convex + roller, concave - roller) / roller if roller else math.inf,
         found.sweep,
         found.radius,
@@ -164,7 +165,7 @@ def measured_of(found: Worst, roller: float, off: Real) -> Measured:
 def _groove_checks(
     mechanism: CamMechanism, contour: Contour, follower: Follower, demanded: Reproduction
 ) -> tuple[list[Check], Real]:
-    """The roller against the outer wall, from within: the same program comes back. Also how far it is off."""
+    """Check the roller against the outer wall, from within; also return its deviation from the program."""
     name, unmeasured = "outer_wall_reproduces_program", np.zeros(len(demanded.angle) // FINER)
     if mechanism.outer_wall is None:
         return [Check(name=name, passed=False)], unmeasured
@@ -182,7 +183,7 @@ def _groove_checks(
 
 
 def _limit_checks(problem: CamProblem, mechanism: CamMechanism, measured: Measured) -> list[Check]:
-    """The client's limits; which of them count is for the stated follower to say, not for the answer."""
+    """Check the client's limits; the requested follower decides which of them apply, not the answer's."""
     limits, slack = problem.limits, curvature_slack(measured.unsettled, measured.rounded)
     if isinstance(problem.follower, TranslatingRoller | OscillatingRoller):
         checks = roller_checks(limits, measured.rising, measured.falling, measured.curvature_ratio, slack)
@@ -197,16 +198,16 @@ def _limit_checks(problem: CamProblem, mechanism: CamMechanism, measured: Measur
         size = mechanism.base_radius or 0.0
     pivot = mechanism.follower.pivot_distance
     if pivot is not None:
-        # The cam turns all around, so that its greatest radius comes to where the arm is borne.
+        # The cam turns fully, so that its greatest radius passes the pivot of the arm.
         clear = measured.radius < pivot
         checks.append(Check(name="clears_pivot", passed=clear, value=measured.radius, limit=pivot, dimension=LENGTH))
     return [*checks, *size_checks(limits, size - (mechanism.follower.roller_radius or 0.0), size)]
 
 
 def curvature_slack(unsettled: Real, rounded: float) -> float:
-    """Relative slack of limits on curvature: whether it depends on how close points stand, and what rounding does.
+    """Return the relative slack of limits on curvature, from its dependence on point spacing and from rounding.
 
-    Rounding may have made the curvature as much worse as is added for it.
+    Rounding may have worsened the curvature by as much as is added for it.
     """
     return UNSETTLED_SLACK if unsettled.any() else MEASURED_SLACK + min(2.0 * rounded, ROUNDED_SLACK)
 
@@ -214,7 +215,7 @@ def curvature_slack(unsettled: Real, rounded: float) -> float:
 def roller_checks(
     limits: CamLimits, rising: float, falling: float, curvature_ratio: float, slack: float
 ) -> list[Check]:
-    """Limits of every roller: pressure angles (degrees), least radius of the pitch curve over the roller's."""
+    """Check every roller's limits: pressure angles (degrees), and the least pitch-curve radius over the roller's."""
     return [
         at_most("pressure_angle", rising, limits.pressure_angle, ANGLE, MEASURED_SLACK),
         at_most("pressure_angle_fall", falling, limits.falling_pressure_angle, ANGLE, MEASURED_SLACK),
@@ -223,7 +224,7 @@ def roller_checks(
 
 
 def size_checks(limits: CamLimits, hub: float, size: float) -> list[Check]:
-    """Limits on a cam's dimensions, where they are stated: what the hub may take, and the cam's own radius."""
+    """Check the given limits on a cam's dimensions: the radius left for the hub, and the cam's own radius."""
     checks = []
     if limits.hub_radius > 0.0:
         checks.append(at_least("hub_radius", hub, limits.hub_radius, LENGTH, TABLE_SLACK))

@@ -1,9 +1,9 @@
-"""Whether a follower vibrates: the mass on the elastic train that the cam drives it through.
+"""Vibration of a follower: a mass on the elastic train through which the cam drives it.
 
-The return spring only adds to the train's stiffness; it is the train between cam and mass that swings, at
-ω_n = √((k + k_s)/m). Where ω_n is less than ten times the cam's speed, the program's harmonics excite it markedly. τ,
-the natural period over the time of a move, says how much of it is left in the dwell after the move (Norton §15.4;
-Koster, *Vibrations of Cam Mechanisms*, 1974).
+The return spring only adds to the train's stiffness; it is the train between cam and mass that vibrates, at
+ω_n = √((k + k_s)/m). If ω_n is less than ten times the cam's speed, the program's harmonics excite it markedly. τ,
+the natural period over the time of a move, determines how much vibration is left in the dwell after the move
+(Norton §15.4; Koster, *Vibrations of Cam Mechanisms*, 1974).
 """
 
 from __future__ import annotations
@@ -20,27 +20,32 @@ from synthesis.kinds.cam.problem import CamProblem
 from synthesis.kinds.cam.segments import Dwell
 
 SOFTEST = 1.0
-"""Natural frequency over cam speed below which the mass hardly follows the cam, and no motion of it is told."""
+"""Natural frequency over cam speed below which the mass hardly follows the cam, and its motion is not reported."""
 
 
 def train_vibration(problem: CamProblem, running: RunningCam) -> tuple[TrainVibration | None, str | None]:
-    """The vibration of the stated train under the load of a running cam, and a warning; none without a train."""
+    """Compute the vibration of the given train under a running cam's load, and a warning; None without a train."""
     dynamics = problem.dynamics
     assert dynamics is not None
     if dynamics.train_stiffness is None:
         return None, None
     load, arm = running.load, arm_length(problem)
     stiffness, ratio = dynamics.train_stiffness * arm**2, dynamics.train_damping_ratio
+    # The return spring acts in parallel with the train.
     natural = math.sqrt((stiffness + load.spring_rate) / load.mass)
     train = FollowerTrain(load.mass, stiffness, 2.0 * ratio * load.mass * natural, load.spring_rate, load.preload)
     response = Response(running.program, train, running.speed)
+    # Without any move the period is compared with the whole turn.
     moves = [segment.angle for segment, rests in _segments(problem, running) if not rests]
+    # Natural period over the duration of the shortest move.
     tau = TURN / natural * running.speed / min(moves, default=TURN)
     amplitude = least = greatest = None
+    # At a resonance the steady state is unbounded.
     steady = response.frequency_ratio >= SOFTEST and not response.resonant
     if steady:
         force = response.contact_force
         least, greatest = float(force.min()) / arm, float(force.max()) / arm
+        # Free vibration only shows in dwells.
         at_rest = [x for x, (_, rests) in zip(response.residual(), _segments(problem, running), strict=True) if rests]
         amplitude = float(max(at_rest)) / problem.displacement_unit if at_rest else None
     found = TrainVibration(
@@ -59,11 +64,13 @@ def train_vibration(problem: CamProblem, running: RunningCam) -> tuple[TrainVibr
             f"(period over the shortest move's time: {tau:.3g}); the follower will vibrate"
         )
     if response.frequency_ratio >= SOFTEST and response.resonant:
-        warning = "a harmonic of the cam's speed meets the natural frequency of the follower train: it resonates"
+        warning = (
+            "a harmonic of the cam's speed coincides with the natural frequency of the follower train: it resonates"
+        )
     return found, warning
 
 
 def _segments(problem: CamProblem, running: RunningCam) -> list[tuple[Segment, bool]]:
-    """Every segment of the program, and whether it is a dwell."""
+    """Return every segment of the program, and whether it is a dwell."""
     rests = [isinstance(stated, Dwell) for stated in problem.segments]
     return list(zip(running.program.segments, rests, strict=True))

@@ -17,7 +17,7 @@ def _solve(problem: EngineProblem, progress: Progress) -> EngineResult:
 
 
 def _brief(problem: EngineProblem) -> bool:
-    """An engine whose throws are given is only analysed."""
+    """Return whether the throws are given, so that the engine is only analysed."""
     return problem.layout.throws is not None
 
 

@@ -14,10 +14,10 @@ Real = NDArray[np.float64]
 
 
 class Cylinders(NamedTuple):
-    """Cylinders in the order in which they are counted; degrees, and spacings along the shaft.
+    """Cylinders in the order of their numbers; degrees, and spacings along the shaft.
 
-    ``throw`` is the number of each one's throw from 0, ``axis`` its direction from the engine's own, positive to the
-    left, and ``phase`` the lag of its throw.
+    ``throw`` is the number of each cylinder's throw from 0, ``axis`` its direction from the engine's own, positive to
+    the left, and ``phase`` the lag of its throw.
     """
 
     throw: NDArray[np.int64]
@@ -32,12 +32,14 @@ class Cylinders(NamedTuple):
 
 
 def axes_of(layout: EngineLayout, cylinders: int) -> list[list[float]]:
-    """The axes of the cylinders on each throw, the first bank first."""
+    """List the axes of the cylinders on each throw, the first bank first."""
     if layout.type == "radial":
         return [[360.0 * n / cylinders for n in range(cylinders)]]
     banks = BANKS[layout.type]
+    # Banks are spread symmetrically about the engine's own axis.
     half = 90.0 if layout.type == "opposed" else 0.5 * (banks - 1) * (layout.vee_angle or 0.0)
     step = 0.0 if banks == 1 else 2.0 * half / (banks - 1)
+    # From left to right.
     row = [half - step * n for n in range(banks)]
     if layout.first_bank == "right":
         row.reverse()
@@ -49,7 +51,7 @@ def axes_of(layout: EngineLayout, cylinders: int) -> list[list[float]]:
 
 
 def cylinders_of(layout: EngineLayout, cylinders: int, throws: Sequence[float]) -> Cylinders:
-    """The cylinders of an engine whose throws lag by these phases."""
+    """Arrange the cylinders of an engine whose throws lag by these phases."""
     axes = axes_of(layout, cylinders)
     places = layout.positions or [float(n) for n in range(len(throws))]
     listed = [(n, axis, throws[n], places[n]) for n, row in enumerate(axes) for axis in row]
@@ -61,5 +63,5 @@ def cylinders_of(layout: EngineLayout, cylinders: int, throws: Sequence[float]) 
 
 
 def middle_of(places: Real) -> float:
-    """The middle of the cylinders along the shaft."""
+    """Return the middle of the cylinders along the shaft."""
     return 0.5 * float(places.min() + places.max())

@@ -1,4 +1,4 @@
-"""Weights that take the primary and secondary harmonics of an engine away, and the overbalance of a single cylinder."""
+"""Weights that cancel the primary and secondary harmonics of an engine, and the overbalance of a single cylinder."""
 
 from __future__ import annotations
 
@@ -19,16 +19,16 @@ from synthesis.kinds.engine.problem import EngineProblem
 Real = NDArray[np.float64]
 
 NONE = 1e-9
-"""Part of a harmonic, in units of one cylinder's, that is nothing."""
+"""Part of a harmonic, in units of one cylinder's, that counts as zero."""
 
 QUARTERS = 1440
-"""Positions of a turn over which peaks are taken: a quarter of a degree."""
+"""Number of positions of a turn over which peaks are taken: a quarter of a degree apart."""
 
 
 def balancers_of(problem: EngineProblem, cylinders: Cylinders, series: dict[int, float]) -> list[Balancer]:
-    """What balances the first two orders, of forces first; moments about the middle of the engine."""
+    """Find balancers of the first two orders, forces first; moments are about the middle of the engine."""
     axis, top = np.radians(cylinders.axis), np.radians(cylinders.top)
-    # The crank stands at 0 where its first throw does: at the top dead centre of an upright cylinder there.
+    # The crank angle is 0 when its first throw is: at the top dead centre of an upright cylinder there.
     turned = float(np.radians(cylinders.phase[0]))
     places = cylinders.place - middle_of(cylinders.place)
     found = []
@@ -44,12 +44,14 @@ def balancers_of(problem: EngineProblem, cylinders: Cylinders, series: dict[int,
 def _balancer(
     problem: EngineProblem, against: str, order: int, forward: complex, backward: complex, coefficient: float
 ) -> Balancer | None:
-    """Weights opposite to both parts: m R (kω)² = part · m_B r ω² A_k."""
+    """Build weights opposite to both parts: m R (kω)² = part · m_B r ω² A_k."""
     sizes = abs(forward), abs(backward)
     if max(sizes) <= NONE:
         return None
+    # A weight at k times the crank's speed has k² times the effect.
     share = coefficient / order**2
     form: Literal["crankshaft_weights", "counter_shaft", "lanchester_pair", "shafts"] = "shafts"
+    # The form follows from the parts: equal ones are a planar harmonic, a single one rotates.
     if abs(sizes[0] - sizes[1]) <= NONE:
         form = "lanchester_pair"
     elif sizes[1] <= NONE and order == 1:
@@ -76,9 +78,9 @@ def _opposite(part: complex) -> float:
 
 
 def peak_of_shares(problem: EngineProblem, speed: float, *, turning: bool, share: float) -> float:
-    """The peak of the shaking force of one cylinder whose counterweight carries a share of m_B.
+    """Compute the peak shaking force of one cylinder whose counterweight carries a share of m_B.
 
-    ``turning``: whether all that turns is balanced too. Norton, Sec. 13.10; peaks over quarters of a degree.
+    ``turning``: whether all rotating masses are balanced too. Norton, Sec. 13.10; peaks over quarters of a degree.
     """
     degrees = 360.0 * np.arange(QUARTERS) / QUARTERS
     return _peak(problem, speed, _uncounted(problem, speed, degrees, turning=turning), degrees, share)
@@ -89,7 +91,7 @@ def _uncounted(problem: EngineProblem, speed: float, degrees: Real, *, turning: 
     unit = speed**2 * np.exp(1j * np.radians(degrees))
     own = masses.turning
     if turning:
-        # Balanced exactly: neither the throw nor the rod's part at its pin is left.
+        # Balanced exactly: neither the throw nor the rod's part at its pin remains.
         own = -masses.rod.crank_pin * problem.scale * problem.crank
     return np.asarray(shaking + own * unit)
 
@@ -101,7 +103,7 @@ def _peak(problem: EngineProblem, speed: float, force: NDArray[np.complex128], d
 
 
 def overbalance_of(problem: EngineProblem, speed: float) -> Overbalance:
-    """The share of least peak: the peak is convex in it."""
+    """Find the share of minimum peak, in which the peak is convex."""
     degrees = 360.0 * np.arange(QUARTERS) / QUARTERS
     force = _uncounted(problem, speed, degrees, turning=True)
     best = minimize_scalar(

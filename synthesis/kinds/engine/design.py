@@ -22,13 +22,13 @@ from synthesis.model.dimension import (
 
 
 class EngineCylinder(Answer):
-    """A cylinder, as counted from the front."""
+    """A cylinder, numbered from the front."""
 
     number: int
-    throw: int = Field(description="The throw that it is on, from 1.")
-    axis: Angle = Field(description="Its direction from the engine's own, positive to the left, degrees.")
-    phase: Angle = Field(description="By how much its throw lags behind the first, degrees.")
-    place: float = Field(description="Along the shaft, in spacings of the throws.")
+    throw: int = Field(description="Number of its throw, from 1.")
+    axis: Angle = Field(description="Direction of its axis from the engine's own, positive to the left, degrees.")
+    phase: Angle = Field(description="Lag of its throw behind the first, degrees.")
+    place: float = Field(description="Place along the shaft, in spacings of the throws.")
 
 
 class EngineMechanism(Answer):
@@ -43,30 +43,32 @@ class EngineMechanism(Answer):
 
 
 class FiringOrder(Answer):
-    """An order in which cylinders fire, with the crank angles at which they do."""
+    """An order in which cylinders fire, with the crank angles of firing."""
 
     order: list[int]
-    reversed: list[int] = Field(description="The same, turning the other way.")
-    angles: list[Angle] = Field(description="In that order, after the first, degrees.")
-    adjacent: int = Field(description="How often neighbours of one bank fire after each other.")
+    reversed: list[int] = Field(description="The same order for the opposite rotation.")
+    angles: list[Angle] = Field(description="Firing angles in that order, after the first, degrees.")
+    adjacent: int = Field(description="Number of times that neighbours in one bank fire in succession.")
 
 
 class EngineFiring(Answer):
-    """The most even firing orders; orders that differ by their direction only are one."""
+    """The most even firing orders; orders that only differ by their direction count as one."""
 
-    unevenness: Angle = Field(description="Largest less smallest gap between firings, degrees.")
-    orders: list[FiringOrder] = Field(description="At most 64, those with the fewest neighbours first.")
-    even_choices: int = Field(description="Choices of where each cylinder fires that are as even.")
-    choices: int = Field(description="All choices.")
-    stated_unevenness: Angle | None = optional("Of the firing angles that are stated.")
+    unevenness: Angle = Field(description="Largest minus smallest interval between firings, degrees.")
+    orders: list[FiringOrder] = Field(
+        description="At most 64 orders, those with the fewest successive neighbours first."
+    )
+    even_choices: int = Field(description="Number of equally even choices of the cylinders' firing angles.")
+    choices: int = Field(description="Number of all choices.")
+    stated_unevenness: Angle | None = optional("Unevenness of the given firing angles.")
 
 
 class VectorHarmonic(Answer):
     """A harmonic of a force or moment, an ellipse, in units of one cylinder's."""
 
-    forward: float = Field(description="The part that turns with the crank.")
+    forward: float = Field(description="The part that rotates with the crank.")
     backward: float
-    major: float = Field(description="Half axes of the ellipse.")
+    major: float = Field(description="Major half axis of the ellipse.")
     minor: float
 
 
@@ -74,7 +76,7 @@ class EngineHarmonic(Answer):
     """A harmonic of the engine: forces in units of m_B r ω² A_k, moments of that times the spacing."""
 
     order: int
-    coefficient: float | None = Field(description="A_k of the piston's acceleration; null where it has no such part.")
+    coefficient: float | None = Field(description="A_k of the piston's acceleration; null if it has no such part.")
     force: VectorHarmonic
     moment: VectorHarmonic
     torque: float = Field(description="|Σ exp(−jk τ)|, in units of one cylinder's torque of that order.")
@@ -85,43 +87,43 @@ class EngineHarmonic(Answer):
 
 
 class Balancer(Answer):
-    """Turning weights that take a harmonic away: mass times radius in units of m_B r, of couples also times spacing."""
+    """Rotating weights that cancel a harmonic: mass times radius in units of m_B r, for couples also times spacing."""
 
     against: Literal["force", "moment"]
     order: int
     form: Literal["crankshaft_weights", "counter_shaft", "lanchester_pair", "shafts"]
-    forward: float = Field(description="Of the weight, or couple of weights, that turns with the crank.")
+    forward: float = Field(description="The weight, or couple of weights, that rotates with the crank.")
     forward_angle: Angle = Field(description="Its angle with the first throw at 0, degrees.")
-    backward: float = Field(description="Of that which turns against it.")
+    backward: float = Field(description="The weight, or couple of weights, that rotates opposite to the crank.")
     backward_angle: Angle
     height_difference: Length | None = optional(
-        "Of a pair of shafts: with the one that turns forward higher by the rod's length, the second harmonic of the "
-        "inertia torque goes too (Nakamura); 0.7 of it where gas counts."
+        "For a pair of shafts: with the forward one higher by the rod's length, the second harmonic of the "
+        "inertia torque is cancelled too (Nakamura); with 0.7 of it if gas forces count."
     )
 
 
 class Overbalance(Answer):
-    """Of one cylinder: the share of m_B that a counterweight opposite the crank pin carries for the least peak."""
+    """For one cylinder: the share of m_B carried by a counterweight opposite the crank pin for the minimum peak."""
 
     share: float
     peak: Force
-    unbalanced_peak: Force = Field(description="Without any counterweight, what turns included.")
-    exact_balance_peak: Force = Field(description="With what turns balanced alone.")
+    unbalanced_peak: Force = Field(description="Peak without any counterweight, including rotating masses.")
+    exact_balance_peak: Force = Field(description="Peak with only the rotating masses balanced.")
 
 
 class EngineForces(Answer):
-    """Greatest forces at the stated speed."""
+    """Peak forces at the given speed."""
 
     shaking_force: Force
-    shaking_moment: Torque | None = optional("If the spacing is stated.")
+    shaking_moment: Torque | None = optional("Given if the spacing is given.")
     mean_torque: Torque
     max_torque: Torque
     min_torque: Torque
-    side_force: Force = Field(description="Of a piston on its wall.")
+    side_force: Force = Field(description="Force of a piston on its wall.")
     wrist_pin_force: Force
-    crank_pin_force: Force = Field(description="Of one rod.")
+    crank_pin_force: Force = Field(description="Crank pin force of one rod.")
     two_mass_torque_difference: Torque = Field(
-        description="By how much the torque is off where the rod is taken as two masses."
+        description="Difference of the torque if the rod is modelled as two masses."
     )
 
 
@@ -130,13 +132,15 @@ class EngineFlywheel(Answer):
 
     speed: Annotated[float, ROTATIONAL_SPEED]
     energy: Annotated[float, ENERGY]
-    inertia: Annotated[float, INERTIA] = Field(description="With which the coefficient is exact, less what there is.")
+    inertia: Annotated[float, INERTIA] = Field(
+        description="Inertia for exactly the requested coefficient, minus the existing inertia."
+    )
     first_order_inertia: Annotated[float, INERTIA]
-    coefficient: float = Field(description="With this inertia.")
+    coefficient: float = Field(description="Coefficient with this inertia.")
 
 
 class EngineCourse(Answer):
-    """Over a cycle: torques that the engine gives, what shakes its frame, and the pins of the first cylinder.
+    """Curves over a cycle: torques of the engine, forces on its frame, and the pins of the first cylinder.
 
     The pins' x is along the cylinder, away from the crank; y is to the left of it.
     """
@@ -146,46 +150,52 @@ class EngineCourse(Answer):
     inertia_torque: list[Torque]
     shaking_x: Annotated[list[float], FORCE]
     shaking_y: Annotated[list[float], FORCE]
-    side: Annotated[list[float], FORCE] = Field(description="Of the piston on the wall.")
-    wrist_x: Annotated[list[float], FORCE] = Field(description="Of the rod on the piston.")
+    side: Annotated[list[float], FORCE] = Field(description="Force of the piston on the wall.")
+    wrist_x: Annotated[list[float], FORCE] = Field(description="Force of the rod on the piston.")
     wrist_y: Annotated[list[float], FORCE]
-    crank_pin_x: Annotated[list[float], FORCE] = Field(description="Of the rod on the crank.")
+    crank_pin_x: Annotated[list[float], FORCE] = Field(description="Force of the rod on the crank.")
     crank_pin_y: Annotated[list[float], FORCE]
-    main_x: Annotated[list[float], FORCE] = Field(description="Of the crank with this rod alone on its bearings.")
+    main_x: Annotated[list[float], FORCE] = Field(description="Force of the crank with this rod alone on its bearings.")
     main_y: Annotated[list[float], FORCE]
 
 
 class LumpedMasses(Answer):
-    """Masses that stand for the rod and the throw of one cylinder (Norton, eq. 13.9-13.11)."""
+    """Equivalent masses of the rod and the throw of one cylinder (Norton, eq. 13.9-13.11)."""
 
-    rod_crank_pin: Annotated[float, MASS] = Field(description="Of the rod as two masses at its pins.")
+    rod_crank_pin: Annotated[float, MASS] = Field(
+        description="Mass at the crank pin of the rod as two masses at its pins."
+    )
     rod_wrist_pin: Annotated[float, MASS]
     rod_inertia: Annotated[float, INERTIA] = Field(description="Moment of inertia of these two about their centre.")
-    rod_inertia_error: Percent | None = optional("By how much that is more than the rod's, in percent of it.")
-    percussion_distance: Length | None = optional("From the rod's centre to where the exact model's other mass is.")
-    percussion_mass: Annotated[float, MASS] | None = optional("That mass, with which the inertia is right.")
+    rod_inertia_error: Percent | None = optional("Excess of that over the rod's inertia, percent.")
+    percussion_distance: Length | None = optional("Distance from the rod's centre to the exact model's other mass.")
+    percussion_mass: Annotated[float, MASS] | None = optional(
+        "The exact model's other mass, which gives the correct inertia."
+    )
     percussion_wrist_pin: Annotated[float, MASS] | None = optional("The exact model's mass at the wrist pin.")
-    throw_crank_pin: Annotated[float, MASS] | None = optional("Of the throw as one mass at the crank pin.")
-    throw_inertia: Annotated[float, INERTIA] | None = optional("Moment of inertia of that about the shaft.")
-    throw_inertia_error: Percent | None = optional("By how much that is more than the throw's, in percent of it.")
+    throw_crank_pin: Annotated[float, MASS] | None = optional("Mass of the throw as one mass at the crank pin.")
+    throw_inertia: Annotated[float, INERTIA] | None = optional("Moment of inertia of that mass about the shaft.")
+    throw_inertia_error: Percent | None = optional("Excess of that over the throw's inertia, percent.")
 
 
 class EngineMetrics(Answer):
-    """What engines are ordered by: parts that no weight on the crankshaft balances, moments about the middle."""
+    """Ranking criteria of engines: parts that no weight on the crankshaft balances, moments about the middle."""
 
     unevenness: Angle
-    primary_force: float = Field(description="The part that turns against the crank, in units of m_B r ω².")
+    primary_force: float = Field(description="The part that rotates opposite to the crank, in units of m_B r ω².")
     primary_moment: float
-    secondary_force: float = Field(description="Its greatest size, in units of m_B r ω² A₂.")
+    secondary_force: float = Field(description="Greatest magnitude, in units of m_B r ω² A₂.")
     secondary_moment: float
-    torque: float = Field(description="The greatest of the first three harmonics, in units of one cylinder's.")
-    binomial_terms: list[float] = Field(description="Of the root in the piston's place: λ²/2, λ⁴/8, λ⁶/16.")
-    forces: EngineForces | None = optional("If masses or pressure are stated.")
-    masses: LumpedMasses | None = optional("If masses are stated.")
+    torque: float = Field(description="Greatest of the first three harmonics, in units of one cylinder's.")
+    binomial_terms: list[float] = Field(
+        description="Binomial terms of the root in the piston's position: λ²/2, λ⁴/8, λ⁶/16."
+    )
+    forces: EngineForces | None = optional("Given if masses or pressure are given.")
+    masses: LumpedMasses | None = optional("Given if masses are given.")
 
 
 class EngineDesign(Answer):
-    """An engine with the proof of its harmonics and its firing."""
+    """An engine with the verification of its harmonics and its firing."""
 
     mechanism: EngineMechanism
     verification: Verification
@@ -193,12 +203,12 @@ class EngineDesign(Answer):
     firing: EngineFiring
     harmonics: list[EngineHarmonic]
     balancers: list[Balancer]
-    overbalance: Overbalance | None = optional("Of one cylinder with masses.")
-    flywheel: EngineFlywheel | None = optional("If one is asked for.")
-    course: EngineCourse | None = optional("If masses or pressure are stated.")
+    overbalance: Overbalance | None = optional("Given for one cylinder with masses.")
+    flywheel: EngineFlywheel | None = optional("Given if a flywheel is requested.")
+    course: EngineCourse | None = optional("Given if masses or pressure are given.")
 
 
 class EngineResult(Result[EngineDesign]):
     """Engines, the smoothest first."""
 
-    count: int = Field(description="Arrangements of throws that there are; those that are alike count once.")
+    count: int = Field(description="Number of arrangements of throws; equivalent ones count once.")

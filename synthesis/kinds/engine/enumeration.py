@@ -1,13 +1,13 @@
-"""All arrangements of an engine's throws that fire evenly; those that a turn, mirror or the other end makes alike once.
+"""All arrangements of an engine's throws that fire evenly; equivalent ones (by turn, mirror, other end) once.
 
-Even firing puts the top dead centres on slots: n of them with one cylinder each, or in a four-stroke engine of an even
-number of cylinders n/2 with two each. A throw with cylinders of several banks takes the slots of all of them, so that
-only banks whose angles are whole numbers of slots apart can share throws. An arrangement is a word: the slot of the
-first cylinder of each throw. Words are made one throw after the other, from the slots that are left.
+Even firing puts the top dead centres on slots: n slots with one cylinder each, or in a four-stroke engine with an even
+number of cylinders n/2 with two each. A throw with cylinders of several banks occupies the slots of all of them, so
+that only banks whose angles are whole numbers of slots apart can share throws. An arrangement is a word: the slot of
+the first cylinder of each throw. Words are built one throw after the other, from the free slots.
 
-Of more than eight throws, each with a cylinder, words are counted by Burnside's lemma. No turn alone, and no mirror of
-more than two slots, leaves a word as it is. Counted from the other end it may stay, if pairs of places p, N − 1 − p
-have slots s, π(s), π an involution: a turn by half, or a mirror. With f slots that π leaves and t pairs that it
+For more than eight throws, each with one cylinder, words are counted by Burnside's lemma. No turn alone, and no mirror
+of more than two slots, leaves a word unchanged. Counted from the other end it may be unchanged, if pairs of places
+p, N − 1 − p have slots s, π(s), π an involution: a half turn, or a mirror. With f slots fixed by π and t pairs that it
 exchanges, of capacity c, there are (N/2)!/((c/2)!^f c!^t) 2^(tc) of them.
 """
 
@@ -27,20 +27,20 @@ from synthesis.kinds.engine.problem import EngineLayout, EngineProblem
 Real = NDArray[np.float64]
 
 MOST_THROWS = 8
-"""Throws up to which all arrangements are listed."""
+"""Number of throws up to which all arrangements are listed."""
 
 MOST_LISTED = 5040
-"""Symmetric arrangements of more throws that are listed."""
+"""Maximum number of listed symmetric arrangements of more throws."""
 
 WHOLE = 1e-9
 """Slots by which an angle between banks may miss a whole number of them."""
 
 DIGITS = 7
-"""Decimals of a degree in which arrangements are compared."""
+"""Decimals of a degree to which arrangements are compared."""
 
 
 class Arrangements(NamedTuple):
-    """Phases of throws, degrees: those that are listed, how many there are, and whether that is all of them."""
+    """Phases of throws, degrees: the listed ones, the number of all, and whether all are listed."""
 
     phases: list[tuple[float, ...]]
     total: int
@@ -48,7 +48,7 @@ class Arrangements(NamedTuple):
 
 
 class Slots(NamedTuple):
-    """Places of even firing within a turn: how many, how many cylinders each, and degrees between them."""
+    """Places of even firing within a turn: their number, cylinders per slot, and degrees between slots."""
 
     number: int
     capacity: int
@@ -56,16 +56,17 @@ class Slots(NamedTuple):
 
 
 def slots_of(cylinders: int, strokes: int) -> Slots:
-    """The slots of even firing."""
+    """Return the slots of even firing."""
     if strokes == 4 and cylinders % 2 == 0:
         return Slots(cylinders // 2, 2, 720.0 / cylinders)
     return Slots(cylinders, 1, 360.0 / cylinders)
 
 
 def even_arrangements(problem: EngineProblem, layout: EngineLayout) -> Arrangements:
-    """The arrangements of a layout's throws that fire evenly, the first throw at 0."""
+    """List the arrangements of a layout's throws that fire evenly, the first throw at 0."""
     axes = axes_of(layout, problem.cylinders)
     slots = slots_of(problem.cylinders, problem.stroke_cycle)
+    # Bank angles relative to the throw's first cylinder, in slots.
     steps = [[(axis - row[0]) / slots.step for axis in row] for row in axes]
     if any(abs(step - round(step)) > WHOLE for row in steps for step in row):
         return Arrangements([], 0, True)
@@ -81,7 +82,7 @@ def even_arrangements(problem: EngineProblem, layout: EngineLayout) -> Arrangeme
 
 
 def stated_arrangements(problem: EngineProblem, layout: EngineLayout, angles: Sequence[float]) -> Arrangements:
-    """All arrangements of stated phases, even or not, the first throw at the first of them."""
+    """List all arrangements of given phases, even or not, with the first throw at the first phase."""
     throws = layout.throw_count(problem.cylinders) or 1
     first = angles[0]
     combinations = itertools.product(angles, repeat=throws - 1)
@@ -90,7 +91,8 @@ def stated_arrangements(problem: EngineProblem, layout: EngineLayout, angles: Se
 
 
 def distinct(phases: Iterator[tuple[float, ...]], layout: EngineLayout, cylinders: int) -> list[tuple[float, ...]]:
-    """One of each set of arrangements that are alike, the first throw at 0; in the order of their phases."""
+    """Select one of each set of equivalent arrangements, the first throw at 0, in the order of their phases."""
+    # Arrangements that a symmetry maps onto each other shake alike.
     turns = _alike(layout, cylinders)
     found: dict[tuple[float, ...], tuple[float, ...]] = {}
     for throws in phases:
@@ -99,21 +101,22 @@ def distinct(phases: Iterator[tuple[float, ...]], layout: EngineLayout, cylinder
             image = throws[::-1] if other else throws
             exact = tuple(_within_turn(mirror * (phase - image[0])) for phase in image)
             images.append((tuple(round(phase, DIGITS) for phase in exact), exact))
+        # The lexicographically smallest image represents the whole set.
         key, exact = min(images)
         found.setdefault(key, exact)
     return [found[key] for key in sorted(found)]
 
 
 def _within_turn(angle: float) -> float:
-    """From 0 to below 360; what rounding has left of a full turn is 0."""
+    """Reduce an angle to 0 up to below 360; a full turn except for rounding becomes 0."""
     turned = angle % 360.0
     return 0.0 if min(turned, 360.0 - turned) < 0.5 * 10.0**-DIGITS else turned
 
 
 def _alike(layout: EngineLayout, cylinders: int) -> list[tuple[float, bool]]:
-    """What leaves the cylinders where they are: a mirror (−1) or none, and whether they are counted from the other end.
+    """List the symmetries of the cylinders: mirror (−1) or none, and whether they are counted from the other end.
 
-    The engine may be turned by half besides: so do opposed cylinders come to where those of the other bank were.
+    The engine may also be turned by half: this maps opposed cylinders to those of the other bank.
     """
     axes = axes_of(layout, cylinders)
     places = layout.positions or list(range(len(axes)))
@@ -131,7 +134,8 @@ def _alike(layout: EngineLayout, cylinders: int) -> list[tuple[float, bool]]:
 
 
 def _words(taken: list[list[int]], slots: Slots) -> Iterator[tuple[int, ...]]:
-    """Words whose first letter is 0; ``taken`` are the slots that a throw takes beside its first."""
+    """Yield words whose first letter is 0; ``taken`` are the slots that a throw occupies relative to its first."""
+    # Free places per slot.
     left = [slots.capacity] * slots.number
     word: list[int] = []
 
@@ -142,6 +146,7 @@ def _words(taken: list[list[int]], slots: Slots) -> Iterator[tuple[int, ...]]:
         for slot in range(slots.number if word else 1):
             used = [(slot + step) % slots.number for step in taken[len(word)]]
             for one in used:
+                # A slot may be used twice by one throw, hence the check after all decrements.
                 left[one] -= 1
             if all(left[one] >= 0 for one in used):
                 word.append(slot)
@@ -154,12 +159,12 @@ def _words(taken: list[list[int]], slots: Slots) -> Iterator[tuple[int, ...]]:
 
 
 def _symmetric(problem: EngineProblem, slots: Slots, throws: int) -> Iterator[tuple[int, ...]]:
-    """Words that read alike from both ends; where each slot is taken once, the other end reads them mirrored."""
+    """Yield palindromic words; if each slot is taken once, the other end reads them mirrored."""
     if slots.capacity == 2:
         for half in itertools.permutations(range(1, slots.number)):
             yield (0, *half, *reversed(half), 0)
         return
-    # There are too many to be listed: a part of them is drawn.
+    # There are too many to list: a random sample is drawn.
     rng = np.random.default_rng(problem.seed)
     for _ in range(MOST_LISTED):
         last = int(rng.integers(1, slots.number))
@@ -175,10 +180,10 @@ def _symmetric(problem: EngineProblem, slots: Slots, throws: int) -> Iterator[tu
 
 
 def _counted(layout: EngineLayout, slots: Slots, throws: int) -> int:
-    """Arrangements of throws with a cylinder each, by Burnside's lemma; more than two slots."""
+    """Count the arrangements of throws with one cylinder each, by Burnside's lemma; more than two slots."""
     m, c = slots.number, slots.capacity
     alike = _alike(layout, throws)
-    # Every turn of the shaft goes with each of these; only involutions leave a word as it is.
+    # Every turn of the shaft is combined with each of these; only involutions leave a word unchanged.
     halves = {0, m // 2} if m % 2 == 0 else {0}
     turns = [[(s + r) % m for s in range(m)] for r in halves if (1.0, True) in alike]
     mirrors = [[(r - s) % m for s in range(m)] for r in range(m) if (-1.0, True) in alike]
@@ -187,7 +192,7 @@ def _counted(layout: EngineLayout, slots: Slots, throws: int) -> int:
 
 
 def _fixed(image: list[int], capacity: int, throws: int) -> int:
-    """Words that read from the other end are their own image, of an involution of the slots."""
+    """Count the words that are their own image from the other end, for an involution of the slots."""
     kept = sum(image[slot] == slot for slot in range(len(image)))
     pairs = (len(image) - kept) // 2
     half = throws // 2

@@ -1,4 +1,4 @@
-"""The firing orders of an engine as an answer has them."""
+"""The firing orders of an engine as the answer reports them."""
 
 from __future__ import annotations
 
@@ -13,16 +13,16 @@ from synthesis.kinds.engine.problem import EngineProblem
 Real = NDArray[np.float64]
 
 MOST_ORDERS = 64
-"""Orders that are listed."""
+"""Maximum number of listed orders."""
 
 
 def firing_of(problem: EngineProblem, cylinders: Cylinders) -> EngineFiring:
-    """The most even firing orders, those with the fewest neighbours first if that is asked for."""
+    """Find the most even firing orders, with the fewest successive neighbours first if requested."""
     found = firing_choices(cylinders.top, problem.stroke_cycle)
     orders: dict[tuple[int, ...], FiringOrder] = {}
     for angles in found.angles:
         listed = _order(angles, cylinders)
-        # An order and its reverse are one: the one that names the higher cylinder first stands for both.
+        # An order and its reverse count as one: the one that names the higher cylinder first represents both.
         known = orders.get(tuple(listed.reversed))
         if known is None or known.order < listed.order:
             orders.pop(tuple(listed.reversed), None)
@@ -57,19 +57,19 @@ def _order(angles: Real, cylinders: Cylinders) -> FiringOrder:
 
 
 def _adjacent(number: NDArray[np.int64], cylinders: Cylinders) -> int:
-    """How often neighbours of a bank fire after each other, round the cycle."""
+    """Count how often neighbours of a bank fire in succession, over the whole cycle."""
     if len(number) < 3:
         return 0
     following = np.roll(number, -1)
     same = np.abs(cylinders.axis[number] - cylinders.axis[following]) <= SAME
-    # Places in a bank: how many different ones of its cylinders lie before each.
+    # Rank in a bank: the number of distinct places of its cylinders before each.
     rows = [np.unique(cylinders.place[np.abs(cylinders.axis - axis) <= SAME]) for axis in cylinders.axis]
     rank = np.array([int((row < place).sum()) for row, place in zip(rows, cylinders.place, strict=True)])
     return int((same & (np.abs(rank[number] - rank[following]) == 1)).sum())
 
 
 def fires(firing: EngineFiring) -> Real:
-    """Firing angles by cylinder, of the first order that is listed."""
+    """Return the firing angles by cylinder, of the first listed order."""
     first = firing.orders[0]
     at = np.empty(len(first.order))
     at[np.array(first.order) - 1] = first.angles

@@ -1,7 +1,7 @@
 """Forces of an engine at a speed: one cylinder's in closed form, and their sums over the engine.
 
-Of one cylinder, x along its axis away from the crank and y to the left of it, with the crank at θ after top dead
-centre (Norton, *Design of Machinery*, eq. 13.6, 13.15, 13.20-13.23), m_B all that goes to and fro, m_p the piston's
+For one cylinder, x is along its axis away from the crank and y to the left of it, with the crank at θ after top dead
+centre (Norton, *Design of Machinery*, eq. 13.6, 13.15, 13.20-13.23), m_B all reciprocating mass, m_p the piston's
 part of it, and m_3a, m_3b the rod as two masses at the crank pin and at the wrist pin:
 
     side force of the piston on the wall     −(m_B a + F_g) tan φ
@@ -31,11 +31,11 @@ Real = NDArray[np.float64]
 Complex = NDArray[np.complex128]
 
 STEPS = 1440
-"""Positions of a turn."""
+"""Number of positions of a turn."""
 
 
 class Cylinder(NamedTuple):
-    """One cylinder over its cycle, from the top dead centre at which it fires; shape (N,)."""
+    """One cylinder over its cycle, from the top dead centre of its firing; shape (N,)."""
 
     side: Real
     wrist: Complex
@@ -48,7 +48,7 @@ class Cylinder(NamedTuple):
 
 
 class Engine(NamedTuple):
-    """An engine over its cycle, shape (N,): torques that it gives, and what shakes the frame."""
+    """An engine over its cycle, shape (N,): its torques, and the forces on its frame."""
 
     angle: Real
     gas: Real
@@ -67,25 +67,28 @@ class Masses(NamedTuple):
 
 
 def masses_of(problem: EngineProblem) -> Masses:
-    """Masses in the units of the forces; none where none are stated."""
+    """Build the masses in the units of the forces; zero if none are given."""
     stated, scale = problem.masses, problem.scale
     if stated is None:
         return Masses(0.0, Rod(0.0, 0.0, 0.0), 0.0)
     length = scale * problem.rod_length
+    # The exact rod is two masses at its pins plus an excess moment of inertia.
     rod = two_mass_rod(length, stated.rod.mass, scale * stated.rod.cg, stated.rod.inertia)
     turning = 0.0 if stated.crank is None else stated.crank.mass * scale * stated.crank.cg
     return Masses(stated.piston, rod, turning)
 
 
 def gas_force(problem: EngineProblem, angle: Real) -> Real:
-    """What gas pushes a piston towards the crank with, over degrees after the top dead centre at which it fires."""
+    """Compute the gas force on a piston towards the crank, over degrees after the top dead centre of its firing."""
     if problem.pressure is None or problem.bore is None:
         return np.zeros_like(angle)
     rows: PairRows = problem.pressure.table
     at, value = (np.array(column) for column in zip(*rows, strict=True))
+    # Close the table by its first row if it does not cover the whole cycle.
     if at[-1] - at[0] < problem.cycle:
         at, value = np.append(at, at[0] + problem.cycle), np.append(value, value[0])
     value[-1] = value[0]
+    # Fold angles into the table's cycle.
     within = at[0] + np.mod(angle - at[0], problem.cycle)
     area = math.pi / 4.0 * (problem.scale * problem.bore) ** 2
     if problem.pressure.interpolation == "linear":
@@ -94,7 +97,7 @@ def gas_force(problem: EngineProblem, angle: Real) -> Real:
 
 
 def one_cylinder(problem: EngineProblem, degrees: Real, speed: float) -> Cylinder:
-    """The forces of one cylinder at angles after the top dead centre at which it fires; speed in rad/s."""
+    """Compute the forces of one cylinder at angles after the top dead centre of its firing; speed in rad/s."""
     theta = np.radians(degrees)
     scale = problem.scale
     crank, length, masses = scale * problem.crank, scale * problem.rod_length, masses_of(problem)
@@ -102,7 +105,7 @@ def one_cylinder(problem: EngineProblem, degrees: Real, speed: float) -> Cylinde
     rod, square = masses.rod, speed**2
     to_and_fro = masses.piston + rod.wrist_pin
     gas, inertia = gas_force(problem, degrees), to_and_fro * square * moved.bend
-    # The rod's swing: sin φ = (r/l) sin θ, exact in any method, and a correction of the exact one only.
+    # The rod's swing, sin φ = (r/l) sin θ, is exact in both methods; its correction only applies to the exact one.
     excess = rod.excess if problem.method == "exact" else 0.0
     lean = np.arcsin(crank / length * np.sin(theta))
     swing = crank / length * np.cos(theta) / np.cos(lean)
@@ -126,7 +129,7 @@ def one_cylinder(problem: EngineProblem, degrees: Real, speed: float) -> Cylinde
 
 
 def whole_engine(problem: EngineProblem, cylinders: Cylinders, fires: Real, speed: float, steps: int = STEPS) -> Engine:
-    """The sums over an engine whose cylinders fire at these crank angles (degrees); moments in spacings."""
+    """Sum over an engine whose cylinders fire at these crank angles (degrees); moments in spacings."""
     count = round(steps * problem.cycle / 360.0)
     angle = problem.cycle * np.arange(count + 1) / count
     gas, inertia, two_mass = np.zeros(count + 1), np.zeros(count + 1), np.zeros(count + 1)
@@ -138,9 +141,10 @@ def whole_engine(problem: EngineProblem, cylinders: Cylinders, fires: Real, spee
         gas, inertia, two_mass = gas + one.gas, inertia + one.inertia, two_mass + one.two_mass
         shaking, moment = shaking + force, moment + (place - about) * force
     turning = masses_of(problem).turning * speed**2
+    # The rotating mass belongs to the throw: it counts once even if several cylinders share it.
     for throw in np.unique(cylinders.throw):
         k = int(np.argmax(cylinders.throw == throw))
-        # The crank leads the first top dead centre of its cylinder by nothing but that cylinder's axis.
+        # The crank leads the first top dead centre of its cylinder only by that cylinder's axis.
         force = turning * np.exp(1j * np.radians(angle - fires[k] + cylinders.axis[k]))
         shaking, moment = shaking + force, moment + (cylinders.place[k] - about) * force
     return Engine(angle, gas, inertia, shaking, moment, two_mass)

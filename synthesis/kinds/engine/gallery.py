@@ -1,10 +1,10 @@
-"""Its examples as a person looks for them, in their order."""
+"""Examples of the kind engine for the gallery, in order of presentation."""
 
 from __future__ import annotations
 
 from synthesis.model.kind import Named
 
 GALLERY = (
-    Named("Four in line", "Run smoothly", "What shakes of a four-stroke engine, and in which order it fires."),
-    Named("V8", "Run smoothly", "Eight cylinders at 90°: what shakes, and in which order they fire."),
+    Named("Four in line", "Run smoothly", "Shaking forces and firing order of a four-stroke engine."),
+    Named("V8", "Run smoothly", "Eight cylinders at 90°: shaking forces and firing orders."),
 )

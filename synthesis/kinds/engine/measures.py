@@ -1,4 +1,4 @@
-"""What is told of an arrangement: firing, harmonics, balancers, and forces at a speed."""
+"""Measured properties of an arrangement: firing, harmonics, balancers, and forces at a speed."""
 
 from __future__ import annotations
 
@@ -30,14 +30,14 @@ from synthesis.model.answer import Verification
 Real = NDArray[np.float64]
 
 ORDERS = (1, 2, 3, 4, 6)
-"""Orders that are told; the third of the torque only."""
+"""Reported orders; the third only for the torque."""
 
 EVERY = 4
-"""Of the positions, each fourth is listed: a degree apart."""
+"""Stride of the listed positions: one degree."""
 
 
 NOTHING = 1e-12
-"""Sums over cylinders below this, in units of one cylinder's, are what rounding has left of nothing."""
+"""Sums over cylinders below this, in units of one cylinder's, are rounding of zero."""
 
 
 def _clear(value: float) -> float:
@@ -47,7 +47,7 @@ def _clear(value: float) -> float:
 def measured(
     problem: EngineProblem, layout: EngineLayout, mechanism: EngineMechanism, cylinders: Cylinders
 ) -> EngineDesign:
-    """An arrangement as a design that has not been verified yet."""
+    """Measure an arrangement as a design that has not been verified yet."""
     ratio = problem.crank / problem.rod_length
     series = acceleration_harmonics(ratio, max(ORDERS), two_term=problem.method == "two_term")
     firing = firing_of(problem, cylinders)
@@ -76,9 +76,11 @@ def measured(
 
 def _metrics(problem: EngineProblem, cylinders: Cylinders, uneven: float, forces: EngineForces | None) -> EngineMetrics:
     axis, top = np.radians(cylinders.axis), np.radians(cylinders.top)
+    # Moments refer to the middle of the shaft.
     places = cylinders.place - middle_of(cylinders.place)
     return EngineMetrics(
         unevenness=uneven,
+        # Counterweights on the shaft cancel the forward part, so only the backward part counts.
         primary_force=_clear(float(np.abs(turning_parts(1, axis, top).backward))),
         primary_moment=_clear(float(np.abs(turning_parts(1, axis, top, places).backward))),
         secondary_force=_clear(float(turning_parts(2, axis, top).major)),
@@ -91,14 +93,17 @@ def _metrics(problem: EngineProblem, cylinders: Cylinders, uneven: float, forces
 
 
 def _lumped(problem: EngineProblem, masses: EngineMasses) -> LumpedMasses:
-    """Norton's models: two masses at the pins, two of which one is at the wrist pin, one at the crank pin."""
+    """Compute Norton's models: two masses at the pins, two with one at the wrist pin, one at the crank pin."""
     scale, stated, throw = problem.scale, masses.rod, masses.crank
     crank, rod = scale * problem.crank, scale * problem.rod_length
+    # Distance from the rod's centre of gravity to the wrist pin.
     to_wrist = rod - scale * stated.cg
     two = two_mass_rod(rod, stated.mass, scale * stated.cg, stated.inertia)
+    # The masses at the pins imply an inertia of m a b about the centre of gravity.
     own = stated.mass * scale * stated.cg * to_wrist
     found: dict[str, float] = {"rod_crank_pin": two.crank_pin, "rod_wrist_pin": two.wrist_pin, "rod_inertia": own}
     if stated.inertia and to_wrist > 0.0 and stated.mass > 0.0:
+        # The centre of percussion for the wrist pin as pivot lies this far from the centre of gravity.
         distance = stated.inertia / (stated.mass * to_wrist)
         found |= {
             "rod_inertia_error": 100.0 * (own / stated.inertia - 1.0),
@@ -148,6 +153,7 @@ def _forces(problem: EngineProblem, layout: EngineLayout, engine: Engine, speed:
     return EngineForces(
         shaking_force=float(np.abs(engine.shaking).max()),
         shaking_moment=None if spacing is None else float(np.abs(engine.moment).max()) * spacing,
+        # The last sample repeats the first.
         mean_torque=float(torque[:-1].mean()),
         max_torque=float(torque.max()),
         min_torque=float(torque.min()),
@@ -183,10 +189,12 @@ def _flywheel(problem: EngineProblem, cylinders: Cylinders, fire: Real) -> Engin
         return None
     speed = wanted.speed_rpm * RAD_PER_S
     engine = whole_engine(problem, cylinders, fire, speed)
+    # The engine's torque drives the shaft, so a machine takes its negative.
     found = flywheel.table_fluctuation(np.radians(engine.angle), -(engine.gas + engine.inertia), smooth=True)
     exact = flywheel.exact_inertia(found, speed, wanted.coefficient)
     whole = flywheel.first_order_inertia(found.energy, speed, wanted.coefficient)
     own = _existing_inertia(problem, len(np.unique(cylinders.throw)))
+    # A heavy crankshaft may already have more inertia than required.
     present = max(exact, own)
     return EngineFlywheel(
         speed=wanted.speed_rpm,
@@ -198,7 +206,7 @@ def _flywheel(problem: EngineProblem, cylinders: Cylinders, fire: Real) -> Engin
 
 
 def _existing_inertia(problem: EngineProblem, throws: int) -> float:
-    """What the shaft has before a flywheel is on it: what is stated, and its throws."""
+    """Sum the shaft's inertia without a flywheel: the given one, and its throws."""
     throw = None if problem.masses is None else problem.masses.crank
     stated = 0.0 if problem.flywheel is None else problem.flywheel.existing_inertia
     return stated + (0.0 if throw is None or throw.inertia is None else throws * throw.inertia)

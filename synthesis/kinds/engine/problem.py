@@ -1,4 +1,4 @@
-"""Piston engines: cylinders, their arrangement, masses, gas, and what is to be found."""
+"""Piston engines: cylinders, their arrangement, masses, gas, and the requested results."""
 
 from __future__ import annotations
 
@@ -23,37 +23,39 @@ from synthesis.model.statement import (
 )
 
 MOST_CYLINDERS = 16
-"""Cylinders at most: 2^15 choices of firing."""
+"""Maximum number of cylinders: 2^15 choices of firing."""
 
 LEAST_ROD = 1.0 + 1e-3
 """Rod over crank below which the rod is refused: at 1 it could not pass the dead centre."""
 
 MOST_COMBINATIONS, MOST_CHOICES = 20_000, 20_000_000
-"""Combinations of stated throw angles that are gone through, and choices of firing that they have together."""
+"""Maximum number of combinations of given throw angles, and of their choices of firing in total."""
 
 MOST_ROD = 1e6
 """Rod over crank above which it is no engine: its motion is lost in the rounding of the rod."""
 
 BANKS: dict[str, int] = {"inline": 1, "vee": 2, "opposed": 2, "w": 3}
-"""Rows of cylinders by type of layout; a radial engine has a star of them instead."""
+"""Number of banks by type of layout; a radial engine has a star of cylinders instead."""
 
 
 class EngineLayout(Statement):
-    """How cylinders and cranks are arranged."""
+    """The arrangement of cylinders and cranks."""
 
     type: Literal["inline", "vee", "opposed", "radial", "w"]
     vee_angle: Annotated[float, ANGLE, Field(strict=True, gt=0.0, lt=180.0)] | None = Field(
-        default=None, description="Between neighbouring banks of a vee or w, degrees; 180 is `opposed`, 0 `inline`."
+        default=None,
+        description="Angle between neighbouring banks of a vee or w, degrees; use `opposed` for 180 and `inline` "
+        "for 0.",
     )
     pins: Literal["shared", "own"] = Field(
         default="shared",
-        description="Whether the cylinders of all banks that stand side by side are on one throw, or each has its own.",
+        description="Whether neighbouring cylinders of different banks share one throw, or each has its own.",
     )
     throws: list[Degrees] | None = Field(
         default=None,
         min_length=1,
         max_length=MOST_CYLINDERS,
-        description="Phases of the throws along the shaft: by how much each lags, degrees. Left out, they are sought.",
+        description="Phases (lags) of the throws along the shaft, degrees. Default: they are found.",
     )
     positions: list[Number] | None = Field(
         default=None,
@@ -62,15 +64,15 @@ class EngineLayout(Statement):
         description="Places of the throws along the shaft, in spacings; by default 0, 1, 2, ...",
     )
     spacing: PositiveLength | None = Field(
-        default=None, description="Between neighbouring throws; without it moments are those of a spacing of 1."
+        default=None, description="Spacing of neighbouring throws; without it moments are for a spacing of 1."
     )
     numbering: Literal["along_shaft", "by_bank"] = Field(
-        default="along_shaft", description="How cylinders are counted: throw by throw, or bank by bank."
+        default="along_shaft", description="Numbering of the cylinders: throw by throw, or bank by bank."
     )
-    first_bank: Literal["left", "right"] = Field(default="left", description="Which bank is counted first.")
+    first_bank: Literal["left", "right"] = Field(default="left", description="The bank that is numbered first.")
 
     def throw_count(self, cylinders: int) -> int | None:
-        """Throws of so many cylinders; None where they do not divide."""
+        """Return the number of throws for the cylinders; None if they do not fill the banks."""
         if self.type == "inline" or self.pins == "own":
             return cylinders
         if self.type == "radial":
@@ -83,9 +85,10 @@ class StatedRod(Statement):
     """A connecting rod."""
 
     mass: Annotated[NonNegative, MASS]
-    cg: Annotated[NonNegative, LENGTH] = Field(description="From the crank pin to the centre of gravity.")
+    cg: Annotated[NonNegative, LENGTH] = Field(description="Distance from the crank pin to the centre of gravity.")
     inertia: Annotated[NonNegative, INERTIA] | None = Field(
-        default=None, description="About it; by default that of two masses at the pins."
+        default=None,
+        description="Moment of inertia about the centre of gravity; by default that of two masses at the pins.",
     )
 
 
@@ -93,39 +96,41 @@ class StatedCrank(Statement):
     """One throw of the crankshaft."""
 
     mass: Annotated[NonNegative, MASS]
-    cg: Annotated[Number, LENGTH] = Field(description="From the shaft towards the pin; negative with counterweights.")
+    cg: Annotated[Number, LENGTH] = Field(
+        description="Distance of the centre of gravity from the shaft towards the pin; negative with counterweights."
+    )
     inertia: Annotated[NonNegative, INERTIA] | None = Field(
-        default=None, description="About the shaft; it is a part of the flywheel's."
+        default=None, description="Moment of inertia about the shaft; it counts towards the flywheel's."
     )
 
 
 class EngineMasses(Statement):
-    """What moves, of each cylinder alike."""
+    """Moving masses, equal for all cylinders."""
 
-    piston: Annotated[PositiveNumber, MASS] = Field(description="With its pin and rings.")
+    piston: Annotated[PositiveNumber, MASS] = Field(description="Mass of the piston with its pin and rings.")
     rod: StatedRod
     crank: StatedCrank | None = None
 
 
 class CylinderPressure(Statement):
-    """Gauge pressure in a cylinder over its cycle, which begins at the top dead centre at which it fires."""
+    """Gauge pressure in a cylinder over its cycle, which begins at the top dead centre of its firing."""
 
-    table: PairRows = Field(description="Rows of crank angle (°) and pressure (Pa, or in the consistent units).")
+    table: PairRows = Field(description="Rows of crank angle (°) and pressure (Pa, or in consistent units).")
     interpolation: Interpolation = "linear"
 
 
 class IdleFlywheel(StatedFlywheel):
-    """The flywheel that is to even the speed, as a rule at idle."""
+    """A flywheel to even the speed, usually at idle."""
 
     speed_rpm: Annotated[PositiveNumber, ROTATIONAL_SPEED]
 
 
 class EngineProblem(StatedProblem):
-    """Piston engine: how it shakes, turns and fires, or the arrangements of its throws that fire evenly.
+    """Piston engine: its shaking, torque and firing, or the arrangements of its throws that fire evenly.
 
-    With `throws` the engine is analysed: harmonics of forces, moments and torque, exact and not of two terms; firing
-    orders; pin forces; what balances it. Without them all arrangements of the throws that fire evenly are found, and
-    ordered by what shakes the frame. Every number is verified by driving the slider-crank of each cylinder.
+    With `throws` the engine is analysed: exact harmonics of forces, moments and torque instead of two terms; firing
+    orders; pin forces; balancers. Without them all arrangements of the throws that fire evenly are found and
+    ranked by their shaking of the frame. Every number is verified by driving the slider-crank of each cylinder.
     """
 
     model_config = ConfigDict(
@@ -177,55 +182,60 @@ class EngineProblem(StatedProblem):
     kind: Literal["engine"]
     units: Literal["si", "consistent"] = Field(
         default="si",
-        description="`si`: kg, N, N·m, Pa, lengths in the length unit; `consistent`: as they are.",
+        description="`si`: kg, N, N·m, Pa, lengths in the length unit; `consistent`: no conversion.",
     )
     cylinders: Annotated[Count, Field(ge=1, le=MOST_CYLINDERS)]
     stroke_cycle: Literal[2, 4]
-    stroke: PositiveLength = Field(description="Of the piston: twice the crank's radius.")
-    rod: PositiveLength | None = Field(default=None, description="Its length; give this or `rod_ratio`.")
+    stroke: PositiveLength = Field(description="Stroke of the piston: twice the crank's radius.")
+    rod: PositiveLength | None = Field(default=None, description="Length of the rod; give this or `rod_ratio`.")
     rod_ratio: PositiveNumber | None = Field(default=None, description="Length of the rod over the crank's radius.")
-    bore: PositiveLength | None = Field(default=None, description="Diameter; for gas forces.")
-    masses: EngineMasses | None = Field(default=None, description="Without them forces are in units of m_B r ω².")
+    bore: PositiveLength | None = Field(default=None, description="Cylinder diameter, for gas forces.")
+    masses: EngineMasses | None = Field(
+        default=None, description="Moving masses; without them forces are in units of m_B r ω²."
+    )
     pressure: CylinderPressure | None = None
     speed_rpm: Annotated[PositiveNumber, ROTATIONAL_SPEED] | None = Field(
-        default=None, description="At which forces are told; needed with masses or pressure."
+        default=None, description="Speed for the forces; required with masses or pressure."
     )
     layout: EngineLayout
     other_layouts: list[EngineLayout] = Field(
-        default=[], max_length=8, description="Where throws are sought: further layouts that are allowed."
+        default=[], max_length=8, description="Further permitted layouts, if throws are to be found."
     )
     throw_angles: list[Degrees] | None = Field(
         default=None,
         min_length=1,
         max_length=24,
-        description="Where throws are sought: the phases that are allowed, even firing or not.",
+        description="Permitted phases, if throws are to be found, with or without even firing.",
     )
     moment_about: Literal["first_throw", "middle"] = Field(
         default="first_throw",
-        description="Of the reported moments; arrangements are ordered by those about the middle.",
+        description="Reference of the reported moments; arrangements are ranked by moments about the middle.",
     )
     method: Literal["exact", "two_term"] = Field(
         default="exact", description="`two_term`: cos θ + (r/l) cos 2θ, for comparison with books."
     )
     avoid_adjacent: Flag = Field(
-        default=True, description="Firing orders in which neighbours of one bank fire after each other come later."
+        default=True, description="Rank firing orders lower if neighbours in one bank fire in succession."
     )
     firing_order: list[Annotated[Count, Field(ge=1, le=MOST_CYLINDERS)]] | None = Field(
-        default=None, min_length=1, max_length=MOST_CYLINDERS, description="An order that the engine has to have."
+        default=None, min_length=1, max_length=MOST_CYLINDERS, description="Required firing order."
     )
     firing_angles: list[Degrees] | None = Field(
-        default=None, min_length=1, max_length=MOST_CYLINDERS, description="Where these cylinders fire, in that order."
+        default=None,
+        min_length=1,
+        max_length=MOST_CYLINDERS,
+        description="Firing angles of these cylinders, in that order.",
     )
     flywheel: IdleFlywheel | None = None
 
     @property
     def force_units(self) -> Literal["si", "consistent"]:
-        """Those that are stated."""
+        """The given units."""
         return self.units
 
     @property
     def scale(self) -> float:
-        """The length unit in that of the forces."""
+        """The length unit in the unit of the forces."""
         return METRES[self.length_unit] if self.units == "si" else 1.0
 
     @property
@@ -235,25 +245,25 @@ class EngineProblem(StatedProblem):
 
     @property
     def rod_length(self) -> float:
-        """In the length unit."""
+        """Length of the rod, in the length unit."""
         return self.rod if self.rod is not None else (self.rod_ratio or 0.0) * self.crank
 
     @property
     def cycle(self) -> float:
-        """Degrees of the crank after which an engine repeats."""
+        """Crank angle of a cycle, degrees."""
         return 0.5 * FULL_TURN * self.stroke_cycle
 
     @property
     def layouts(self) -> list[tuple[str, EngineLayout]]:
-        """All layouts with their places in the statement."""
+        """All layouts with their paths in the problem."""
         others = [(f"/other_layouts/{n}", layout) for n, layout in enumerate(self.other_layouts)]
         return [("/layout", self.layout), *others]
 
     def contradictions(self) -> list[Contradiction]:
-        """Lengths, counts and tables that do not agree."""
+        """Return lengths, counts and tables that do not agree."""
         found = []
         if (self.rod is None) == (self.rod_ratio is None):
-            found.append(Contradiction("/rod", "give the rod by its length or by rod_ratio, one of both"))
+            found.append(Contradiction("/rod", "give exactly one of rod and rod_ratio"))
         elif self.rod_length < LEAST_ROD * self.crank:
             path = "/rod" if self.rod is not None else "/rod_ratio"
             found.append(Contradiction(path, "the rod must be longer than the crank's radius"))
@@ -270,17 +280,18 @@ class EngineProblem(StatedProblem):
             detail = "a vee or w needs the angle between its banks; other layouts have none"
             found.append(Contradiction(f"{path}/vee_angle", detail))
         if layout.type in ("inline", "radial") and layout.pins == "own":
-            found.append(Contradiction(f"{path}/pins", "only banks side by side can have pins of their own"))
+            found.append(Contradiction(f"{path}/pins", "only layouts with several banks can have pins of their own"))
         count = layout.throw_count(self.cylinders)
         if count is None:
-            detail = f"{self.cylinders} cylinders do not fill {BANKS[layout.type]} banks; give each its own pin"
+            detail = f"{self.cylinders} cylinders do not fill {BANKS[layout.type]} banks; use pins `own`"
             found.append(Contradiction("/cylinders", detail))
         elif layout.throws is not None and len(layout.throws) != count:
             found.append(Contradiction(f"{path}/throws", f"expected {count}, one for each throw"))
         if count is not None and layout.positions is not None and len(layout.positions) != count:
             found.append(Contradiction(f"{path}/positions", f"expected {count}, one for each throw"))
+        # Further layouts are compared with their best throws.
         if path != "/layout" and layout.throws is not None:
-            found.append(Contradiction(f"{path}/throws", "throws of further layouts are sought; leave them out"))
+            found.append(Contradiction(f"{path}/throws", "throws of further layouts are found; omit them"))
         return found
 
     def _force_faults(self) -> list[Contradiction]:
@@ -288,15 +299,17 @@ class EngineProblem(StatedProblem):
         if self.speed_rpm is None and (self.masses is not None or self.pressure is not None):
             found.append(Contradiction("/speed_rpm", "forces of masses and gas need a speed"))
         if self.pressure is not None:
+            # Without a bore, pressure gives no force.
             if self.bore is None:
-                found.append(Contradiction("/bore", "gas acts on the area of a bore; state it"))
+                found.append(Contradiction("/bore", "gas pressure acts on the bore; give `bore`"))
             fault = period_fault(self.pressure.table, self.cycle)
             if fault is not None:
                 found.append(Contradiction("/pressure/table", fault))
         if self.masses is not None and self.masses.rod.cg > self.rod_length:
             found.append(Contradiction("/masses/rod/cg", "lies beyond the wrist pin"))
+        # Without masses or gas there is no torque to even out.
         if self.flywheel is not None and self.masses is None and self.pressure is None:
-            found.append(Contradiction("/flywheel", "a flywheel evens torque; state masses or pressure"))
+            found.append(Contradiction("/flywheel", "a flywheel evens the torque; give masses or pressure"))
         return found
 
     def _firing_faults(self) -> list[Contradiction]:
@@ -305,15 +318,18 @@ class EngineProblem(StatedProblem):
             found.append(Contradiction("/firing_order", f"expected each of the cylinders 1 to {self.cylinders} once"))
         if self.firing_angles is not None and (order is None or len(order) != len(self.firing_angles)):
             found.append(Contradiction("/firing_angles", "expected an angle for each cylinder of firing_order"))
+        # Given throws leave nothing to search.
         if given and (self.other_layouts or self.throw_angles is not None):
             path = "/other_layouts" if self.other_layouts else "/throw_angles"
-            found.append(Contradiction(path, "the throws are given; nothing is sought"))
+            found.append(Contradiction(path, "the throws are given, so nothing is to be found; omit this"))
         if self.throw_angles is not None and not given:
+            # A four-stroke cylinder may fire in either of two turns.
             choices = 1 if self.stroke_cycle == 2 else 1 << (self.cylinders - 1)
             for path, layout in self.layouts:
                 count = layout.throw_count(self.cylinders) or 1
+                # The first throw is fixed, as only differences matter.
                 combinations = len(self.throw_angles) ** (count - 1)
                 if combinations > MOST_COMBINATIONS or combinations * choices > MOST_CHOICES:
-                    detail = f"{combinations} combinations of {count} throws for {path} are too many to be compared"
+                    detail = f"{combinations} combinations of {count} throws for {path} are too many to compare"
                     found.append(Contradiction("/throw_angles", detail))
         return found

@@ -1,4 +1,4 @@
-"""Piston engines: the given arrangement, or all that fire evenly in the order of what shakes the frame."""
+"""Piston engines: the given arrangement, or all that fire evenly, ranked by their shaking of the frame."""
 
 from __future__ import annotations
 
@@ -23,14 +23,14 @@ from synthesis.outcome.sifting import Sifting
 Real = NDArray[np.float64]
 
 DIGITS = 9
-"""Decimals in which what engines are ordered by is compared."""
+"""Decimals to which the ranking criteria of engines are compared."""
 
 CHOSEN = 3
-"""Times as many arrangements are analysed as designs are asked for, where an order of firing is demanded."""
+"""Number of analysed arrangements per requested design, if a firing order is required."""
 
 
 class _Candidate(NamedTuple):
-    """An arrangement, and what it is ordered by."""
+    """An arrangement with its ranking criteria."""
 
     score: tuple[float, ...]
     place: int
@@ -43,7 +43,7 @@ def solve_engine(problem: EngineProblem, progress: Progress) -> EngineResult:
     Returns
     -------
     EngineResult
-        Complete where the throws are given, or all arrangements were listed: those of up to eight throws.
+        Complete if the throws are given, or all arrangements were listed: those of up to eight throws.
     """
     sifting = Sifting[EngineDesign](problem)
     given = problem.layout.throws
@@ -67,6 +67,7 @@ def solve_engine(problem: EngineProblem, progress: Progress) -> EngineResult:
         candidates += _scored(problem, layout, place, found.phases)
     candidates.sort()
     progress(0.6, "analysing the best")
+    # A required firing order rejects many: analyse more arrangements.
     wanted = problem.max_designs * (CHOSEN if problem.firing_order is not None else 1)
     sifting.sift(candidates[:wanted], partial(_design, problem), enough=problem.max_designs)
     verified = sifting.candidates
@@ -83,7 +84,7 @@ def solve_engine(problem: EngineProblem, progress: Progress) -> EngineResult:
 def _scored(
     problem: EngineProblem, layout: EngineLayout, place: int, phases: list[tuple[float, ...]]
 ) -> list[_Candidate]:
-    """Arrangements of one layout with what they are ordered by, all at once."""
+    """Score the arrangements of one layout, all at once."""
     if not phases:
         return []
     plain = cylinders_of(layout, problem.cylinders, phases[0])
@@ -103,16 +104,17 @@ def _scored(
         second.major,
         second_moment.major,
         torque,
-        # What is alike so far: the smaller the weights on the crankshaft, the better.
+        # Tie-breakers: the smaller the weights on the crankshaft, the better.
         np.abs(force.forward),
         np.abs(moment.forward),
     ]
+    # Rounded, so that arrangements equal except for rounding stay in the order of their phases.
     scores = np.round(np.stack(columns, axis=1), DIGITS) + 0.0
     return [_Candidate(tuple(row), place, throws) for row, throws in zip(scores.tolist(), phases, strict=True)]
 
 
 def _design(problem: EngineProblem, candidate: _Candidate) -> EngineDesign:
-    """An arrangement as a verified design."""
+    """Build an arrangement as a verified design."""
     layout = problem.layouts[candidate.place][1]
     cylinders = cylinders_of(layout, problem.cylinders, candidate.throws)
     mechanism = EngineMechanism(
@@ -135,12 +137,12 @@ def _listed(cylinders: Cylinders) -> list[EngineCylinder]:
 
 
 def _told(sifting: Sifting[EngineDesign]) -> str:
-    """The first design in words."""
+    """Describe the first design."""
     if not sifting.passed:
         return "No engine passed its checks."
     best = sifting.passed[0]
     order, metrics = "-".join(map(str, best.firing.orders[0].order)), best.metrics
-    evenly = "evenly" if metrics.unevenness <= 1e-6 else f"unevenly, by {metrics.unevenness:.4g}°,"
+    evenly = "evenly" if metrics.unevenness <= 1e-6 else f"unevenly (intervals differ by {metrics.unevenness:.4g}°)"
     shaken = [
         name.replace("_", " ")
         for name in ("primary_force", "primary_moment", "secondary_force", "secondary_moment")
@@ -148,12 +150,12 @@ def _told(sifting: Sifting[EngineDesign]) -> str:
     ]
     left = " and ".join(shaken) or "nothing up to the second order"
     fired = f"The {best.mechanism.layout} engine fires {evenly} in the order {order}"
-    return f"{fired}; weights on the crankshaft leave {left}."
+    return f"{fired}. Unbalanced after crankshaft counterweights: {left}."
 
 
 def _summary(problem: EngineProblem, sifting: Sifting[EngineDesign], count: int, listed: int) -> str:
     if not count:
-        return "No arrangement of these throws fires evenly; state throw_angles to compare uneven ones."
+        return "No arrangement of these throws fires evenly; give throw_angles to compare uneven ones."
     evenly = "" if problem.throw_angles is not None else " with even firing"
     part = "" if listed == count else f", of which {grouped(listed)} symmetric ones were compared"
     return f"Arrangements of the throws{evenly}: {grouped(count)}{part}. {_told(sifting)}"

@@ -1,8 +1,8 @@
-"""Verification of engines: the slider-crank of each cylinder is driven, and what shakes the frame measured on that.
+"""Verification of engines: the slider-crank of each cylinder is driven, and the forces on the frame are measured on it.
 
-Nothing of the solver's is used: pistons and cranks are those of a mechanism that closes, accelerations are the drive's,
+No result of the solver is used: pistons and cranks are those of a closed mechanism, accelerations are the drive's,
 harmonics are read from a Fourier transform of their sum, torques and pin forces are the reactions of
-:mod:`kinematics.dynamics`, and a balancing weight's force is the second derivative of where it is.
+:mod:`kinematics.dynamics`, and a balancing weight's force is the second derivative of its position.
 """
 
 from __future__ import annotations
@@ -33,23 +33,23 @@ Real = NDArray[np.float64]
 Complex = NDArray[np.complex128]
 
 SAMPLES = 4096
-"""Positions of a turn: far more than a piston has harmonics, but for rods hardly longer than the crank."""
+"""Number of positions of a turn: far more than a piston has harmonics, except for rods hardly longer than the crank."""
 
 AGREES = 1e-9
-"""Difference of two routes, as a share of the sizes of one cylinder, that is rounding."""
+"""Difference of two routes, as a share of one cylinder's magnitudes, that is attributed to rounding."""
 
 EVEN = 1e-6
-"""Degrees of unevenness that are rounding."""
+"""Unevenness in degrees that is attributed to rounding."""
 
 AT_TOP = 1e-6
-"""Degrees by which a firing may miss the top dead centre as it is found."""
+"""Degrees by which a firing may miss the numerically located top dead centre."""
 
 KEPT = 1e-6
-"""Share by which the integrated coefficient of fluctuation may be above the stated one."""
+"""Share by which the integrated coefficient of fluctuation may exceed the requested one."""
 
 
 class _Shaken(NamedTuple):
-    """Fourier coefficients of the accelerations of all pistons, summed: at k with the crank, at −k against it."""
+    """Fourier coefficients of the accelerations of all pistons, summed: at k with the crank, at −k opposite to it."""
 
     force: Complex
     moment: Complex
@@ -57,17 +57,17 @@ class _Shaken(NamedTuple):
 
 
 def verify_engine(problem: EngineProblem, design: EngineDesign) -> Verification:
-    """Drive the cylinders of an engine and compare what is measured with what the design says.
+    """Drive the cylinders of an engine and compare the measurements with the values of the design.
 
     Parameters
     ----------
     problem : EngineProblem
-        What was asked.
+        The request.
     design : EngineDesign
         Its mechanism gives the engine; all other parts are claims.
     """
     shaken = _shaken(design)
-    # The books' two terms are off by the terms that they leave out: of the order of λ³ in the second harmonic.
+    # The books' two terms are off by the omitted terms: of the order of λ³ in the second harmonic.
     off = AGREES if problem.method == "exact" else (problem.crank / problem.rod_length) ** 2
     checks = [
         tolerated("harmonics", _harmonics_off(problem, design, shaken), AGREES),
@@ -87,7 +87,7 @@ def verify_engine(problem: EngineProblem, design: EngineDesign) -> Verification:
 
 
 def _driven(design: EngineDesign, cylinder: EngineCylinder, angle: Real) -> Complex:
-    """Place, velocity and acceleration by the angle of a cylinder's piston, over angles of the crank; (3, N)."""
+    """Return place, velocity and acceleration by angle of a cylinder's piston, over crank angles; (3, N)."""
     mechanism, axis = design.mechanism, math.radians(cylinder.axis)
     made = catalogue.slider_crank(0j, 0j, axis, mechanism.crank, mechanism.rod, axis)
     motion = drive(made, angle - math.radians(cylinder.phase), order=2)
@@ -99,7 +99,7 @@ def _turn() -> Real:
 
 
 def _shaken(design: EngineDesign) -> _Shaken:
-    """What the pistons do to the frame at unit mass and speed, over r: the opposite of their accelerations."""
+    """Compute the force of the pistons on the frame at unit mass and speed, over r: minus their accelerations."""
     turn, crank = _turn(), design.mechanism.crank
     force, moment = np.zeros(SAMPLES, np.complex128), np.zeros(SAMPLES, np.complex128)
     for cylinder in design.mechanism.cylinders:
@@ -122,14 +122,16 @@ def _middle(design: EngineDesign) -> float:
 
 
 def _harmonics_off(problem: EngineProblem, design: EngineDesign, shaken: _Shaken) -> float:
-    """The largest difference of a part that turns, in units of the first harmonic of one cylinder."""
+    """Return the largest difference of a rotating part, in units of the first harmonic of one cylinder."""
     about, worst, count = _about(problem, design), 0.0, len(design.mechanism.cylinders)
+    # Moments are compared in units of the longest lever.
     reach = max(1.0, *(abs(cylinder.place - about) for cylinder in design.mechanism.cylinders))
     for harmonic in design.harmonics:
         k = harmonic.order
+        # The third order is only reported for the torque.
         if k == 3:
             continue
-        # One cylinder's harmonic is planar: both of its parts are half of it.
+        # One cylinder's harmonic is planar: its two rotating parts are half of it each.
         whole = 2.0 * abs(shaken.one[k])
         moment = shaken.moment - about * shaken.force
         for spectrum, told, size in ((shaken.force, harmonic.force, 1.0), (moment, harmonic.moment, reach)):
@@ -140,7 +142,7 @@ def _harmonics_off(problem: EngineProblem, design: EngineDesign, shaken: _Shaken
 
 
 def _series_off(design: EngineDesign, shaken: _Shaken) -> float:
-    """The largest difference of a coefficient of the piston's acceleration."""
+    """Return the largest difference of a coefficient of the piston's acceleration."""
     known = {harmonic.order: harmonic.coefficient for harmonic in design.harmonics}
     return max(
         abs(2.0 * float(shaken.one[k].real) - coefficient)
@@ -150,8 +152,9 @@ def _series_off(design: EngineDesign, shaken: _Shaken) -> float:
 
 
 def _firing_off(design: EngineDesign) -> float:
-    """By how many degrees a firing misses the place where its piston turns, farthest from the shaft."""
+    """Return the largest distance of a firing from the outer dead centre of its piston, degrees."""
     first = design.mechanism.cylinders[0]
+    # Crank angle of the first cylinder's top dead centre, the origin of firing angles.
     start = math.radians(first.phase + first.axis)
     worst = 0.0
     for order in design.firing.orders:
@@ -159,21 +162,21 @@ def _firing_off(design: EngineDesign) -> float:
             cylinder = design.mechanism.cylinders[number - 1]
             away = np.exp(-1j * math.radians(cylinder.axis))
             place, slope, bend = (_driven(design, cylinder, np.array([start + math.radians(angle)]))[:, 0] * away).real
-            # One step of Newton's method tells how far the dead centre is; at the other one the piston bends up.
+            # One Newton step gives the distance to the dead centre; at the inner one the curvature is positive.
             missed = math.degrees(abs(slope / bend)) if bend < 0.0 and place > 0.0 else 180.0
             worst = max(worst, missed)
     return worst
 
 
 def _gaps(problem: EngineProblem, design: EngineDesign) -> float:
-    """Largest less smallest gap of the first order."""
+    """Return the largest minus the smallest interval of the first order."""
     order = design.firing.orders[0]
     gaps = np.diff([*order.angles, order.angles[0] + problem.cycle])
     return float(gaps.max() - gaps.min())
 
 
 def _has_order(problem: EngineProblem, design: EngineDesign) -> bool:
-    """Whether the cylinders can fire in the stated order: each at a top dead centre, where it is stated to or not."""
+    """Return whether the cylinders can fire in the given order, each at a top dead centre, at given angles if any."""
     order, cylinders = problem.firing_order or [], design.mechanism.cylinders
     tops = [math.fmod(cylinders[k - 1].phase + cylinders[k - 1].axis, 360.0) for k in order]
     tops = [(top - tops[0]) % 360.0 for top in tops]
@@ -184,13 +187,13 @@ def _has_order(problem: EngineProblem, design: EngineDesign) -> bool:
         return max(map(abs, missed)) <= EVEN and turned == sorted(turned)
     at = 0.0
     for top in tops[1:]:
-        # The next top dead centre of this cylinder; two may fire together.
+        # The next top dead centre of this cylinder; two may fire at the same time.
         at += (top - at - EVEN) % 360.0 + EVEN if (top - at) % 360.0 > EVEN else 0.0
     return at < problem.cycle - EVEN or len(order) == 1
 
 
 def _unbalanced(design: EngineDesign, shaken: _Shaken, none: float) -> float:
-    """What the balancers leave of the harmonics that they are against, in units of one cylinder's first."""
+    """Return the remainder of the balanced harmonics, in units of one cylinder's first."""
     turn, worst = _turn(), 0.0
     first = design.mechanism.cylinders[0]
     moment = shaken.moment - _middle(design) * shaken.force
@@ -204,7 +207,7 @@ def _unbalanced(design: EngineDesign, shaken: _Shaken, none: float) -> float:
 
 
 def _pushed(balancer: Balancer, angle: Real) -> Complex:
-    """The force of a balancer's weights at unit speed: the opposite of their acceleration, by a Fourier transform."""
+    """Compute a balancer's force at unit speed: minus its weights' acceleration, by a Fourier transform."""
     k = balancer.order
     place = balancer.forward * np.exp(1j * (k * angle + math.radians(balancer.forward_angle)))
     place = place + balancer.backward * np.exp(1j * (math.radians(balancer.backward_angle) - k * angle))
@@ -213,7 +216,7 @@ def _pushed(balancer: Balancer, angle: Real) -> Complex:
 
 
 def _forces_checks(problem: EngineProblem, design: EngineDesign, course: EngineCourse, off: float) -> list[Check]:
-    """Torque, shaking force and pins of the course, by the reactions in the slider-crank of each cylinder."""
+    """Check torque, shaking force and pins of the curves, by the reactions in each cylinder's slider-crank."""
     assert problem.speed_rpm is not None, "a statement without contradictions"
     angle = np.array(course.angle)
     speed = problem.speed_rpm * RAD_PER_S
@@ -237,24 +240,25 @@ def _forces_checks(problem: EngineProblem, design: EngineDesign, course: EngineC
 
 
 def _summed(problem: EngineProblem, design: EngineDesign, angle: Real, speed: float) -> tuple[Real, Complex, Reactions]:
-    """Torque given and shaking force of the engine at angles (degrees), and the reactions of one cylinder there."""
+    """Sum torque and shaking force of the engine at angles (degrees); also return one cylinder's reactions there."""
     order = design.firing.orders[0]
     torque, shaking = np.zeros(len(angle)), np.zeros(len(angle), np.complex128)
     turning: set[int] = set()
     for number, fire in zip(order.order, order.angles, strict=True):
         cylinder = design.mechanism.cylinders[number - 1]
+        # The mass of a throw counts for the first of its cylinders only.
         heavy = cylinder.throw not in turning
         turning.add(cylinder.throw)
         found = _reactions(problem, design, angle - fire, speed, heavy=heavy)
         torque = torque - found.drive
         gas = _gas(problem, angle - fire)
-        # Gas pushes the cylinder head as much as the piston.
+        # Gas pushes the cylinder head as strongly as the piston.
         shaking = shaking + (found.shaking_force + gas) * np.exp(1j * math.radians(cylinder.axis))
     return torque, shaking, _reactions(problem, design, angle, speed, heavy=True)
 
 
 def _reactions(problem: EngineProblem, design: EngineDesign, after: Real, speed: float, *, heavy: bool) -> Reactions:
-    """Reactions of one upright cylinder at degrees after the top dead centre at which it fires."""
+    """Compute the reactions of one upright cylinder at degrees after the top dead centre of its firing."""
     scale, crank, rod = problem.scale, design.mechanism.crank, design.mechanism.rod
     made = catalogue.slider_crank(0j, 0j, 0.0, crank, rod, 0.0)
     bodies, pins = {}, {}
@@ -275,7 +279,7 @@ def _reactions(problem: EngineProblem, design: EngineDesign, after: Real, speed:
 
 
 def _gas(problem: EngineProblem, after: Real) -> Real:
-    """The force of the gas, from the table itself."""
+    """Compute the gas force from the table itself."""
     if problem.pressure is None or problem.bore is None:
         return np.zeros(len(after))
     rows = [list(row) for row in problem.pressure.table]
@@ -291,7 +295,7 @@ def _gas(problem: EngineProblem, after: Real) -> Real:
 
 
 def _flywheel_checks(problem: EngineProblem, design: EngineDesign, wheel: EngineFlywheel) -> list[Check]:
-    """The coefficient by integrating the speed of the shaft over two cycles."""
+    """Check the coefficient by integrating the speed of the shaft over two cycles."""
     assert problem.flywheel is not None
     count = round(4.0 * problem.cycle)
     degrees = problem.cycle * np.arange(count + 1) / count
@@ -301,7 +305,7 @@ def _flywheel_checks(problem: EngineProblem, design: EngineDesign, wheel: Engine
     throw = None if problem.masses is None else problem.masses.crank
     if throw is not None and throw.inertia is not None:
         inertia += throw.inertia * len(design.mechanism.throws)
-    # Corners of the gas pressure lie between the positions: a cubic through these is what both routes take.
+    # Corners of the gas pressure lie between the positions: both routes use a cubic through these.
     spline = CubicSpline(np.radians(degrees), np.append(-torque[:-1], -torque[0]), bc_type="periodic")
     fine = np.radians(problem.cycle * np.arange(2 * count + 1) / (2 * count))
     run = (

@@ -19,25 +19,25 @@ from synthesis.model.loads import FULL_TURN
 Real = NDArray[np.float64]
 
 STEPS = 3600
-"""Positions of a turn at which a linkage's torque is computed, as far as an analysis may have so many. Where a load
-sets in, a cubic through them errs by the square of a step: some 1e-7 of a coefficient."""
+"""Maximum number of positions of a turn at which a linkage's torque is computed. At the onset of a load, a cubic
+through them errs by the square of a step: some 1e-7 of a coefficient."""
 
 
 class UnknownTorque(ValueError):
-    """The torque is not known all round a cycle; says why."""
+    """The torque is not known over the whole cycle; the message gives the reason."""
 
 
 class Course(NamedTuple):
-    """What is taken from a shaft over one cycle.
+    """Torque taken from a shaft over one cycle.
 
     Attributes
     ----------
     angle : float, shape (N + 1,)
         Radians, upwards over one cycle.
     demand : float, shape (N + 1,)
-        Torque that is taken; negative where the shaft is driven. The last is the first one again.
+        Torque taken from the shaft; negative if the shaft is driven. The last equals the first.
     smooth : bool
-        Whether it is a periodic cubic between these, or straight.
+        True for a periodic cubic between these points, false for straight lines.
     """
 
     angle: Real
@@ -46,18 +46,19 @@ class Course(NamedTuple):
 
 
 def solver_course(problem: FlywheelProblem) -> Course:
-    """The torque by the table's rows, or by the reactions in a linkage.
+    """Compute the torque from the table's rows, or from the reactions in a linkage.
 
     Raises
     ------
     UnknownTorque
-        Where a linkage's is not known at all positions, or it does not repeat.
+        If a linkage's torque is not known at all positions, or does not repeat.
     """
     if problem.torque is None:
         return machine_course(problem, "drive", 0.0)
     rows = np.array(problem.torque.table, np.float64)
     angle, torque = np.radians(rows[:, 0]), rows[:, 1]
     cycle = 2.0 * math.pi * problem.torque.turns
+    # A table that stops before a full cycle is closed by its first row; one that covers it has that row twice.
     if rows[-1, 0] - rows[0, 0] < FULL_TURN * problem.torque.turns:
         angle, torque = np.append(angle, angle[0] + cycle), np.append(torque, torque[0])
     else:
@@ -67,28 +68,30 @@ def solver_course(problem: FlywheelProblem) -> Course:
 
 
 def machine_course(problem: FlywheelProblem, route: str, share: float) -> Course:
-    """The torque that a linkage takes, by one of the two ``route`` s to its forces; a ``share`` of a step farther on.
+    """Compute a linkage's torque by one of the two ``route`` s to its forces, shifted by a ``share`` of a step.
 
     Raises
     ------
     UnknownTorque
-        Where it is not known at all positions, or does not repeat.
+        If it is not known at all positions, or does not repeat.
     """
     assert problem.machine is not None
     request = weighed_request(problem.machine.mechanism, problem.machine.dynamics, problem.length_unit)
     assert request.dynamics is not None
     mechanism = request.mechanism.mechanism()
     turns = repeated_after(request.dynamics, mechanism)
+    # At least 36 positions per turn must remain of the maximum number.
     if not 0 < turns < MAX_POSITIONS // 36:
-        raise UnknownTorque("the linkage and its loads do not repeat after a few turns")
+        raise UnknownTorque("the linkage and its loads do not repeat within a few turns")
     steps = turns * min(STEPS, (MAX_POSITIONS - 1) // turns)
     at = FULL_TURN * turns * (np.arange(steps + 1) + share) / steps
+    # The linkage is driven at constant speed: the fluctuation is small.
     speed = np.full(len(at), problem.speed_rpm * RAD_PER_S)
     found = forces_of(mechanism, request.dynamics, problem.length_unit, at, speed, 0.0)
     for status, angle in zip(found["status"], at, strict=True):
         if status not in DETERMINED:
-            raise UnknownTorque(f"the linkage's forces are not known all round: {status} at {angle:.4g}°")
+            raise UnknownTorque(f"the linkage's forces are not known over the whole cycle: {status} at {angle:.4g}°")
     demand = np.array(found[route], np.float64)
     if not closes(mechanism, at, demand, turns):
-        raise UnknownTorque("the linkage's torque is not the same again after a cycle")
+        raise UnknownTorque("the linkage's torque does not repeat after a cycle")
     return Course(np.radians(at), np.append(demand[:-1], demand[0]), smooth=True)

@@ -16,23 +16,25 @@ class FlywheelMechanism(Answer):
 
     type: Literal["flywheel"] = "flywheel"
     form: Literal["disc", "rim"]
-    radius: Length = Field(description="Of the outside.")
-    inner_radius: Length = Field(description="0 of a disc.")
-    thickness: Length = Field(description="Along the axis.")
+    radius: Length = Field(description="Outer radius.")
+    inner_radius: Length = Field(description="Inner radius; 0 for a disc.")
+    thickness: Length = Field(description="Thickness along the axis.")
     density: Annotated[float, DENSITY]
 
 
 class Fluctuation(Answer):
-    """What the torque asks of any flywheel on its shaft."""
+    """Requirements of the torque on any flywheel of its shaft."""
 
     mean_torque: Torque
-    energy: Annotated[float, ENERGY] = Field(description="Largest less smallest energy taken from the flywheel.")
+    energy: Annotated[float, ENERGY] = Field(description="Largest minus smallest energy taken from the flywheel.")
     inertia: Annotated[float, INERTIA] = Field(
-        description="With which the coefficient is exactly as stated, less what the shaft has."
+        description="Inertia for exactly the requested coefficient, minus the existing inertia."
     )
-    first_order_inertia: Annotated[float, INERTIA] = Field(description="E/(k ω²), less what the shaft has.")
-    first_order_coefficient: float = Field(description="That which this inertia has in truth.")
-    pulses: list[Pulse] = Field(description="Where the torque stays above its mean, or below.")
+    first_order_inertia: Annotated[float, INERTIA] = Field(
+        description="First-order inertia E/(k ω²), minus the existing inertia."
+    )
+    first_order_coefficient: float = Field(description="Actual coefficient with the first-order inertia.")
+    pulses: list[Pulse] = Field(description="Intervals in which the torque stays above its mean, or below it.")
 
 
 class SpeedCurve(Answer):
@@ -51,15 +53,15 @@ class FlywheelMetrics(Answer):
 
     mass: Annotated[float, MASS]
     inertia: Annotated[float, INERTIA]
-    coefficient: float = Field(description="(ω_max − ω_min)/ω_mean of the shaft with it.")
+    coefficient: float = Field(description="(ω_max − ω_min)/ω_mean of the shaft with this flywheel.")
     least_speed: RotationalSpeed
     greatest_speed: RotationalSpeed
-    rim_speed: Annotated[float, SPEED] = Field(description="At the greatest speed.")
-    at_limits: list[Limit] = Field(description="The limits at which it stands: without them it would be lighter.")
+    rim_speed: Annotated[float, SPEED] = Field(description="Rim speed at the greatest shaft speed.")
+    at_limits: list[Limit] = Field(description="Active limits: without them the wheel would be lighter.")
 
 
 class FlywheelDesign(Answer):
-    """A flywheel with the proof of the speed that it keeps."""
+    """A flywheel with the verification of its speed."""
 
     mechanism: FlywheelMechanism
     verification: Verification
@@ -70,4 +72,4 @@ class FlywheelDesign(Answer):
 class FlywheelResult(Result[FlywheelDesign]):
     """Flywheels, the lightest first."""
 
-    fluctuation: Fluctuation | None = Field(description="Null where the torque is not known all round the cycle.")
+    fluctuation: Fluctuation | None = Field(description="Null if the torque is not known over the whole cycle.")

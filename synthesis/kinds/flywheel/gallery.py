@@ -1,4 +1,4 @@
-"""Its examples as a person looks for them, in their order."""
+"""Examples of the kind flywheel for the gallery, in order of presentation."""
 
 from __future__ import annotations
 
@@ -6,5 +6,5 @@ from synthesis.model.kind import Named
 
 GALLERY = (
     Named("Punch press", "Run smoothly", "A flywheel that keeps the speed within 5 % through the blow."),
-    Named("Pump with one cylinder", "Run smoothly", "The rim that evens out a slider-crank against its load."),
+    Named("Pump with one cylinder", "Run smoothly", "The rim that evens out a slider-crank and its load."),
 )

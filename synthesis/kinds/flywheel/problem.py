@@ -1,4 +1,4 @@
-"""Flywheels: a torque over a cycle, a speed, how much it may vary, and the limits of the wheel."""
+"""Flywheels: a torque over a cycle, a speed with its permitted fluctuation, and the limits of the wheel."""
 
 from __future__ import annotations
 
@@ -12,26 +12,28 @@ from synthesis.model.loads import FULL_TURN, Interpolation, PairRows, Turns, per
 from synthesis.model.statement import Contradiction, PositiveLength, PositiveNumber, Range, StatedProblem, Statement
 
 PULSE: list[JsonValue] = [[0.0, 10.0], [60.0, 10.0], [90.0, 160.0], [120.0, 160.0], [150.0, 10.0], [360.0, 10.0]]
-"""A press that works over a sixth of a turn: the torque of the examples, N·m over degrees."""
+"""Torque of the examples, N·m over degrees: a press that works over a sixth of a turn."""
 
 
 class StatedTorque(Statement):
     """The torque of a shaft over its angle, as a table that repeats after whole turns."""
 
-    table: PairRows = Field(description="Rows of the shaft's angle (°) and the torque.")
+    table: PairRows = Field(description="Rows of shaft angle (°) and torque.")
     interpolation: Interpolation = "linear"
-    turns: Turns = Field(default=1, description="Turns of the shaft after which it repeats; 2 of a four-stroke engine.")
+    turns: Turns = Field(
+        default=1, description="Turns of the shaft after which the torque repeats; 2 for a four-stroke engine."
+    )
     side: Literal["demand", "supply"] = Field(
         default="demand",
-        description="`demand`: what a machine takes from the shaft; `supply`: what an engine gives it. "
-        "The other side is steady.",
+        description="`demand`: torque that a machine takes from the shaft; `supply`: torque that an engine gives it. "
+        "The other side is constant.",
     )
 
 
 class Machine(Statement):
-    """A linkage that the shaft drives, with its masses and loads: the torque is what it takes at constant speed."""
+    """A linkage driven by the shaft, with its masses and loads; its torque is computed at constant speed."""
 
-    mechanism: dict[str, Any] = Field(description="As in `POST /v1/analyses`; its input is the shaft.")
+    mechanism: dict[str, Any] = Field(description="Mechanism as in `POST /v1/analyses`; its input is the shaft.")
     dynamics: WeighedLinkage
 
 
@@ -48,30 +50,32 @@ class Least(Statement):
 
 
 class FastestRim(Statement):
-    """The greatest speed of the rim at the shaft's greatest speed."""
+    """Maximum speed of the rim at the shaft's greatest speed."""
 
-    max: Annotated[PositiveNumber, SPEED] = Field(description="m/s, or in the consistent units.")
+    max: Annotated[PositiveNumber, SPEED] = Field(description="Maximum rim speed, m/s or in consistent units.")
 
 
 class Flattest(Statement):
-    """The greatest radius, in thicknesses."""
+    """Maximum ratio of radius to thickness."""
 
     max: PositiveNumber
 
 
 class Thickness(Range):
-    """Least and greatest thickness of the wheel, along its axis."""
+    """Minimum and maximum thickness of the wheel, along its axis."""
 
     min: PositiveLength | None = None
     max: PositiveLength | None = None
 
 
 class FlywheelLimits(Statement):
-    """What bounds the wheel. Its mass falls as its radius grows, so that one of these sets its size."""
+    """Limits of the wheel. Its mass falls as its radius grows, so that one of these determines its size."""
 
-    radius: Most | None = Field(default=None, description="Of the outside.")
+    radius: Most | None = Field(default=None, description="Limit of the outer radius.")
     thickness: Thickness | None = None
-    wall: Least | None = Field(default=None, description="Of a rim, between its inner and its outer radius.")
+    wall: Least | None = Field(
+        default=None, description="Limit of a rim's wall, between its inner and its outer radius."
+    )
     rim_speed: FastestRim | None = None
     radius_to_thickness: Flattest | None = None
 
@@ -80,8 +84,8 @@ class FlywheelProblem(StatedProblem, StatedFlywheel):
     """Flywheel: the lightest disc or rim with which a shaft keeps its speed within a coefficient of fluctuation.
 
     The torque over a cycle is a table, or that of a linkage with masses and loads. The moment of inertia follows
-    exactly, not to first order; the lightest wheel that has it stands at its limits, and the answer names those. The
-    finished wheel is verified by integrating the speed of its shaft over two cycles.
+    exactly, not just to first order; the lightest wheel with this inertia is at some limits, and the answer names them.
+    The finished wheel is verified by integrating the speed of its shaft over two cycles.
     """
 
     model_config = ConfigDict(
@@ -127,37 +131,37 @@ class FlywheelProblem(StatedProblem, StatedFlywheel):
     kind: Literal["flywheel"]
     units: Literal["si", "consistent"] = Field(
         default="si",
-        description="`si`: kg, N·m, kg·m², s, and lengths in the length unit; `consistent`: nothing is converted.",
+        description="`si`: kg, N·m, kg·m², s, and lengths in the length unit; `consistent`: no conversion.",
     )
-    torque: StatedTorque | None = Field(default=None, description="Give this, or `machine`.")
+    torque: StatedTorque | None = Field(default=None, description="Torque table; give this or `machine`.")
     machine: Machine | None = None
-    speed_rpm: Annotated[PositiveNumber, ROTATIONAL_SPEED] = Field(description="Mean over time.")
+    speed_rpm: Annotated[PositiveNumber, ROTATIONAL_SPEED] = Field(description="Shaft speed, mean over time.")
     form: Literal["disc", "rim", "any"] = Field(
-        default="disc", description="A full disc, or a ring whose arms and hub are not counted."
+        default="disc", description="A full disc, or a ring without counting arms and hub."
     )
     density: Annotated[PositiveNumber, DENSITY]
     limits: FlywheelLimits
 
     @property
     def force_units(self) -> Literal["si", "consistent"]:
-        """Those that are stated."""
+        """The given units."""
         return self.units
 
     @property
     def scale(self) -> float:
-        """The length unit in that of the inertia."""
+        """The length unit in the unit of the inertia."""
         return METRES[self.length_unit] if self.units == "si" else 1.0
 
     @property
     def forms(self) -> tuple[Literal["disc", "rim"], ...]:
-        """The forms that are asked for."""
+        """The requested forms."""
         return ("disc", "rim") if self.form == "any" else (self.form,)
 
     def contradictions(self) -> list[Contradiction]:
-        """A torque of two sources or none, tables that do not repeat, and wheels that nothing bounds."""
+        """Return a torque with two sources or none, tables that do not repeat, and wheels without bounds."""
         found = []
         if (self.torque is None) == (self.machine is None):
-            found.append(Contradiction("/torque", "give the torque as a table or by a machine, one of both"))
+            found.append(Contradiction("/torque", "give exactly one of torque and machine"))
         if self.torque is not None:
             fault = period_fault(self.torque.table, FULL_TURN * self.torque.turns)
             if fault is not None:
@@ -169,26 +173,30 @@ class FlywheelProblem(StatedProblem, StatedFlywheel):
     def _unbounded(self) -> list[Contradiction]:
         limits, found = self.limits, []
         least = limits.thickness is not None and limits.thickness.min is not None
-        # A rim of least thickness can still be as wide as it likes, with a wall the thinner.
+        # With a minimum thickness alone, a rim can still grow without bound as its wall gets thinner.
         bounding = least and ("rim" not in self.forms or limits.wall is not None)
         if not (bounding or limits.radius or limits.rim_speed or limits.radius_to_thickness):
-            detail = "unbounded: mass falls as the radius grows; limit radius, rim_speed or radius_to_thickness"
-            found.append(Contradiction("/limits", f"{detail}, or the least thickness, of a rim with its least wall"))
+            detail = "unbounded: the mass falls as the radius grows; limit radius, rim_speed or radius_to_thickness"
+            found.append(
+                Contradiction(
+                    "/limits", f"{detail}, or the minimum thickness (for a rim together with the minimum wall)"
+                )
+            )
         most = limits.thickness is not None and limits.thickness.max is not None
         if "rim" in self.forms and not (most or limits.wall):
-            detail = "unbounded: a rim is the lighter the thinner its wall; limit the greatest thickness or the wall"
+            detail = "unbounded: a rim gets lighter with a thinner wall; limit the maximum thickness or the wall"
             found.append(Contradiction("/limits", detail))
         if self.form == "disc" and limits.wall is not None:
-            found.append(Contradiction("/limits/wall", "a disc has no wall; ask for a rim, or drop the limit"))
+            found.append(Contradiction("/limits/wall", "a disc has no wall; choose a rim, or omit the limit"))
         return found
 
     def _machine_faults(self, machine: Machine) -> list[Contradiction]:
-        """Faults of the mechanism and its block, as an analysis tells them."""
-        # It brings the analysis core, for which the parsing of problems does not wait.
+        """Return the errors of the mechanism and its dynamics as the analysis reports them."""
+        # Imported here because it loads the analysis core, which parsing a problem should not wait for.
         from synthesis.analyses.weighed import weighed_faults
 
         if machine.dynamics.units != self.units:
-            detail = f"the wheel is stated in units {self.units}; state the machine in them too"
+            detail = f"the wheel is given in units {self.units}; give the machine in the same units"
             return [Contradiction("/machine/dynamics/units", detail)]
         faults = weighed_faults(machine.mechanism, machine.dynamics, self.length_unit, shaft=True)
         return [Contradiction(f"/machine{path}", detail) for path, detail in faults]

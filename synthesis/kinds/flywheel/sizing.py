@@ -1,15 +1,15 @@
 """The lightest disc or rim of a given moment of inertia within its limits.
 
-A ring of density ρ, thickness t, radii R and r has I = π ρ t (R⁴ − r⁴)/2 and m = π ρ t (R² − r²) = 2 I/(R² + r²): of
+A ring of density ρ, thickness t, radii R and r has I = π ρ t (R⁴ − r⁴)/2 and m = π ρ t (R² − r²) = 2 I/(R² + r²): for
 given inertia it is the lighter the larger its radii. With c = 2 I/(π ρ) its thickness is c/(R⁴ − r⁴), so that limits
 are
 
 * t ≥ t₁ or t ≥ R/q:  R⁴ − r⁴ ≤ c/t;
-* t ≤ t₂:  r ≤ (R⁴ − c/t₂)^¼;  of a wall w:  r ≤ R − w.
+* t ≤ t₂:  r ≤ (R⁴ − c/t₂)^¼;  for a wall w:  r ≤ R − w.
 
 Both bounds of r rise with R, and so does the mass's denominator; with r at the lower of the two, R⁴ − r⁴ rises with R
-too. So R is as large as its own limits and the least thickness allow, r as large as it may be then, and no wheel within
-the limits is lighter. A disc is r = 0.
+too. So R is the largest that its own limits and the minimum thickness permit, r the largest for this R, and no wheel
+within the limits is lighter. A disc has r = 0.
 """
 
 from __future__ import annotations
@@ -19,13 +19,13 @@ from collections.abc import Callable
 from typing import NamedTuple
 
 HALVINGS = 200
-"""Times that a range of radii is halved: until its ends are neighbours among the numbers."""
+"""Number of bisections of a range of radii: until its ends are neighbouring floating-point numbers."""
 
 
 class Bounds(NamedTuple):
-    """Limits in the unit of the inertia; None where there is none.
+    """Limits in the unit of the inertia; None without a limit.
 
-    ``radius`` is the greatest by a limit of its own or of the rim's speed.
+    ``radius`` is the smaller of the radius limit and the one from the rim speed.
     """
 
     radius: float | None
@@ -44,22 +44,24 @@ class Wheel(NamedTuple):
 
 
 def lightest(inertia: float, density: float, bounds: Bounds, *, rim: bool) -> Wheel | None:
-    """The lightest wheel of a moment of inertia; None where the limits allow none.
+    """Find the lightest wheel of a moment of inertia; None if the limits permit none.
 
     Parameters
     ----------
     inertia, density : float
         Positive.
     bounds : Bounds
-        At least one of them bounds the radius (of a rim the least thickness does with a wall only), and of a rim one
-        its inner radius.
+        At least one of them bounds the radius (for a rim, the minimum thickness only together with a wall), and one the
+        inner radius of a rim.
     """
     c = 2.0 * inertia / (math.pi * density)
 
     def inner(radius: float) -> float:
-        """The greatest inner radius; negative where the wheel would be too thick."""
+        """Return the greatest inner radius; negative if the wheel would be too thick."""
         if not rim:
+            # The slack keeps a disc exactly at the thickness limit feasible.
             return 0.0 if bounds.thickest is None or radius**4 * bounds.thickest >= c * (1.0 - 1e-12) else -1.0
+        # The inner radius that the minimum wall leaves.
         widest = radius - (bounds.wall or 0.0)
         if bounds.thickest is None:
             return widest
@@ -68,6 +70,7 @@ def lightest(inertia: float, density: float, bounds: Bounds, *, rim: bool) -> Wh
 
     def too_thin(radius: float) -> bool:
         open_ = inner(radius)
+        # The minimum thickness, directly or by the ratio to the radius.
         least = max(bounds.thinnest or 0.0, radius / bounds.flattest if bounds.flattest is not None else 0.0)
         return open_ >= 0.0 and (radius**4 - open_**4) * least > c
 
@@ -82,9 +85,10 @@ def lightest(inertia: float, density: float, bounds: Bounds, *, rim: bool) -> Wh
 
 
 def _largest(too_thin: Callable[[float], bool], limit: float | None, c: float) -> float | None:
-    """The largest radius at which the wheel is not too thin, up to its limit; None where there is no end to it."""
+    """Return the largest radius, up to its limit, at which the wheel is not too thin; None if it is unbounded."""
     if limit is not None and not too_thin(limit):
         return limit
+    # c**0.2 has the dimension of a length and is about the radius of a compact wheel.
     high = limit if limit is not None else c**0.2
     while limit is None and not too_thin(high):
         high *= 2.0

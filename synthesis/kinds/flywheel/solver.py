@@ -1,4 +1,4 @@
-"""Flywheels: the torque over a cycle, the inertia that it asks for, and the lightest wheels that have it."""
+"""Flywheels: the torque over a cycle, the required inertia, and the lightest wheels that have it."""
 
 from __future__ import annotations
 
@@ -22,15 +22,15 @@ def solve_flywheel(problem: FlywheelProblem, progress: Progress) -> FlywheelResu
     Returns
     -------
     FlywheelResult
-        Complete wherever the torque is known: each form has one lightest wheel. Without designs where none is needed,
-        or the limits allow none; ``summary`` says which.
+        Complete whenever the torque is known: each form has one lightest wheel. Without designs if none is needed, or
+        the limits permit none; ``summary`` gives the reason.
     """
     sifting = Sifting[FlywheelDesign](problem)
     progress(0.0, "torque over a cycle")
     try:
         course = solver_course(problem)
     except UnknownTorque as error:
-        text = f"No flywheel was found: {error}."
+        text = f"No flywheel found: {error}."
         return FlywheelResult(designs=[], search=sifting.search("exact"), summary=text, fluctuation=None)
     found = flywheel.table_fluctuation(course.angle, course.demand, smooth=course.smooth)
     progress(0.3, "sizing")
@@ -40,7 +40,7 @@ def solve_flywheel(problem: FlywheelProblem, progress: Progress) -> FlywheelResu
     for form in problem.forms if asked.inertia > 0.0 else ():
         wheel = _wheel(problem, found, asked.inertia, form)
         if wheel is None:
-            said.append(f"The limits allow no {form} of the inertia that is needed.")
+            said.append(f"No {form} of the required inertia fits within the limits.")
         else:
             wheels.append(wheel)
     progress(0.5, "integrating the speed")
@@ -55,10 +55,11 @@ def solve_flywheel(problem: FlywheelProblem, progress: Progress) -> FlywheelResu
 
 
 def _asked(problem: FlywheelProblem, course: Course, found: flywheel.Fluctuation) -> Fluctuation:
-    """Inertias that the torque asks for, beside what the shaft has."""
+    """Compute the inertias that the torque requires in addition to the shaft's own."""
     speed, present = problem.speed_rpm * RAD_PER_S, problem.existing_inertia
     whole = flywheel.first_order_inertia(found.energy, speed, problem.coefficient)
     exact = flywheel.exact_inertia(found, speed, problem.coefficient)
+    # Reported torques keep the sign of the given side.
     sign = 1.0 if problem.torque is None or problem.torque.side == "demand" else -1.0
     listed = flywheel.pulses(found, float(course.angle[-1] - course.angle[0]))
     return Fluctuation.model_validate(
@@ -76,11 +77,12 @@ def _asked(problem: FlywheelProblem, course: Course, found: flywheel.Fluctuation
 def _wheel(
     problem: FlywheelProblem, found: flywheel.Fluctuation, inertia: float, form: Literal["disc", "rim"]
 ) -> FlywheelMechanism | None:
-    """The lightest wheel of a form; None where the limits allow none."""
+    """Size the lightest wheel of a form; None if the limits permit none."""
     scale, limits = problem.scale, problem.limits
     ends = flywheel.extreme_speeds(found, inertia + problem.existing_inertia, problem.speed_rpm * RAD_PER_S)
     assert ends is not None, "the inertia was found by this speed"
     radii = [] if limits.radius is None else [scale * limits.radius.max]
+    # The rim speed limit applies at the greatest speed of the cycle.
     radii += [] if limits.rim_speed is None else [limits.rim_speed.max / ends[1]]
     thickness = limits.thickness
     bounds = Bounds(
@@ -106,14 +108,14 @@ def _summary(problem: FlywheelProblem, asked: Fluctuation, sifting: Sifting[Flyw
     joule, kilogram, inertia = (" J", " kg", " kg·m²") if problem.units == "si" else ("", "", "")
     text = [f"The energy fluctuates by {asked.energy:.6g}{joule} over a cycle."]
     if asked.mean_torque < 0.0:
-        text.append("The mean torque is negative: on average the shaft is driven from the other side.")
+        text.append("The mean torque is negative: on average the other side drives the shaft.")
     if asked.inertia == 0.0:
         text.append("No flywheel is needed: the shaft keeps the coefficient without one.")
     elif sifting.passed:
         best = min(sifting.passed, key=lambda design: design.metrics.mass)
         limits = ", ".join(best.metrics.at_limits).replace("_", " ")
         text.append(
-            f"The lightest wheel is a {best.mechanism.form} of mass {best.metrics.mass:.6g}{kilogram} "
-            f"and inertia {best.metrics.inertia:.6g}{inertia}; it stands at its limits of {limits}."
+            f"The lightest wheel is a {best.mechanism.form} with a mass of {best.metrics.mass:.6g}{kilogram} "
+            f"and an inertia of {best.metrics.inertia:.6g}{inertia}. Active limits: {limits}."
         )
     return " ".join(text) + sifting.reasons()

@@ -1,8 +1,8 @@
 """Verification of flywheels: the speed of the shaft is integrated over two cycles with the finished wheel.
 
-I ω dω/dθ = T̄ − T(θ), by Runge and Kutta's method on a grid that has all rows of the table among its points, and the
-time along with it; the speed at the start is found so that the mean over time is the stated one. Mass and inertia are
-sums over thin rings, and no wheel of a grid over all that the limits allow is lighter.
+I ω dω/dθ = T̄ − T(θ) is integrated by the Runge-Kutta method on a grid that includes all rows of the table, together
+with the time; the initial speed is chosen so that the mean over time is the requested one. Mass and inertia are
+sums over thin rings, and no wheel of a grid over everything that the limits permit is lighter.
 """
 
 from __future__ import annotations
@@ -25,28 +25,28 @@ from synthesis.proof.shaft_speed import CYCLES, Run, integrated
 Real = NDArray[np.float64]
 
 GRID = 2048
-"""Equal steps of a turn, beside the rows of a table."""
+"""Equal steps of a turn, in addition to the rows of a table."""
 
 KEPT = 1e-6
-"""Share by which the integrated coefficient may be above the stated one."""
+"""Share by which the integrated coefficient may exceed the requested one."""
 
 REPEATS = 1e-7
-"""Share of the speed by which it may be another one after a cycle: the method's error at corners of the torque."""
+"""Share of the speed by which it may differ after a cycle: the method's error at corners of the torque."""
 
 RINGS = 64
-"""Rings of the sums, each by Gauss's rule of three points, which is exact for cubic integrands."""
+"""Number of rings in the sums, each by Gauss's rule of three points, which is exact for cubic integrands."""
 
 SAMPLED = 400
-"""Radii, inside and outside, of the wheels that are compared."""
+"""Number of radii, inner and outer, of the wheels that are compared."""
 
 NO_LIGHTER = 1e-6
-"""Share by which a compared wheel may be lighter: that of the coefficient, twice."""
+"""Share by which a compared wheel may be lighter: twice the share of the coefficient."""
 
 AT_LIMIT = 1e-9
-"""Share of a limit within which a wheel stands at it."""
+"""Share of a limit within which the limit counts as active."""
 
 SHOWN = 361
-"""Positions of the course in an answer."""
+"""Number of positions of the speed curve in an answer."""
 
 
 def verify_flywheel(problem: FlywheelProblem, wheel: FlywheelMechanism) -> FlywheelDesign | None:
@@ -55,14 +55,14 @@ def verify_flywheel(problem: FlywheelProblem, wheel: FlywheelMechanism) -> Flywh
     Parameters
     ----------
     problem : FlywheelProblem
-        What was asked.
+        The request.
     wheel : FlywheelMechanism
         Dimensions only.
 
     Returns
     -------
     FlywheelDesign or None
-        None where the shaft would come to a stand, or the torque of a linkage is not known by the balance of energy.
+        None if the shaft would stop, or the energy balance does not determine the torque of a linkage.
     """
     mass, inertia = _weighed(problem, wheel)
     try:
@@ -75,6 +75,7 @@ def verify_flywheel(problem: FlywheelProblem, wheel: FlywheelMechanism) -> Flywh
         return None
     coefficient = (run.greatest - run.least) / mean_speed
     rim = run.greatest * wheel.radius * problem.scale
+    # Samples per cycle.
     count = len(run.speed) // CYCLES
     checks = [
         at_most("coefficient", coefficient, problem.coefficient, slack=KEPT),
@@ -97,25 +98,26 @@ def verify_flywheel(problem: FlywheelProblem, wheel: FlywheelMechanism) -> Flywh
 
 
 def _weighed(problem: FlywheelProblem, wheel: FlywheelMechanism) -> tuple[float, float]:
-    """Mass and moment of inertia, summed over rings."""
+    """Compute mass and moment of inertia, summed over rings."""
     scale = problem.scale
     nodes, weights = np.polynomial.legendre.leggauss(3)
     edges = scale * np.linspace(wheel.inner_radius, wheel.radius, RINGS + 1)
     half = 0.5 * np.diff(edges)[:, None]
+    # Gauss nodes of every ring.
     radius = 0.5 * (edges[1:] + edges[:-1])[:, None] + half * nodes
     ring = 2.0 * math.pi * wheel.density * scale * wheel.thickness * radius * half * weights
     return float(ring.sum()), float((ring * radius**2).sum())
 
 
 def _torque(problem: FlywheelProblem) -> tuple[Real, Real, Real]:
-    """Angles of a cycle, the demand in the middle of each step, and at all of its ends."""
+    """Return angles of a cycle, the demand at the middle of each step, and at all step ends."""
     if problem.torque is not None:
         rows, turns = np.array(problem.torque.table, np.float64), problem.torque.turns
         start, period = math.radians(rows[0, 0]), 2.0 * math.pi * turns
         own, smooth = np.radians(rows[:, 0]), problem.torque.interpolation == "periodic_cubic"
         values = rows[:, 1] if problem.torque.side == "demand" else -rows[:, 1]
     else:
-        # The other half of the positions, by the balance of energy instead of the reactions.
+        # The other half of the positions, by the energy balance instead of the reactions.
         course = machine_course(problem, "virtual_work_drive", 0.5)
         own, values, smooth = course.angle, course.demand, True
         start, period = float(own[0]), float(own[-1] - own[0])
@@ -150,7 +152,7 @@ def _limits(problem: FlywheelProblem, wheel: FlywheelMechanism, rim: float) -> l
 
 
 def _at_limits(problem: FlywheelProblem, wheel: FlywheelMechanism, rim: float) -> list[Limit]:
-    """The limits at which a wheel stands."""
+    """List the active limits of a wheel."""
     names: dict[str, Limit] = {
         "radius": "radius",
         "min_thickness": "min_thickness",
@@ -169,12 +171,12 @@ def _at_limits(problem: FlywheelProblem, wheel: FlywheelMechanism, rim: float) -
 
 
 def _lightest_other(problem: FlywheelProblem, inertia: float, greatest: float, form: str) -> float:
-    """The least mass of the wheels of a grid that have the inertia and keep the limits; infinite where none does."""
+    """Return the minimum mass of a grid of wheels with this inertia within the limits; infinite if there is none."""
     scale, limits = problem.scale, problem.limits
     c = 2.0 * inertia / (math.pi * problem.density)
     widest = [] if limits.radius is None else [scale * limits.radius.max]
     widest += [] if limits.rim_speed is None else [limits.rim_speed.max / greatest]
-    # Without a limit of its own the radius goes far beyond what a wheel as thick as it is wide has.
+    # Without a radius limit the grid extends far beyond a wheel as thick as it is wide.
     outer = min(widest, default=1e3 * c**0.2) * np.geomspace(1e-3, 1.0, SAMPLED)[:, None]
     inner = outer * (np.linspace(0.0, 1.0, SAMPLED, endpoint=False) if form == "rim" else np.zeros(1))
     ring = outer**4 - inner**4
@@ -194,7 +196,7 @@ def _lightest_other(problem: FlywheelProblem, inertia: float, greatest: float, f
 
 
 def _course(problem: FlywheelProblem, run: Run) -> SpeedCurve:
-    """A cycle at equal steps."""
+    """Build the speed curve of a cycle at equal steps."""
     at = run.angle[0] + run.cycle * np.arange(SHOWN) / (SHOWN - 1)
     sign = 1.0 if problem.torque is None or problem.torque.side == "demand" else -1.0
     return SpeedCurve(

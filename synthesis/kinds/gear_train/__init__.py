@@ -17,7 +17,7 @@ def _solve(problem: GearTrainProblem, progress: Progress) -> GearTrainResult:
 
 
 def _brief(problem: GearTrainProblem) -> bool:
-    """One or two stages are all tried in no time; more of them, a stock, or trains judged by strength may be many."""
+    """Return whether the search is instant: at most two stages, without a stock and without a strength."""
     return problem.most_stages <= 2 and problem.stock is None and problem.strength is None
 
 

@@ -2,7 +2,7 @@
 
 :class:`Halves` are all choices of drivers and all choices of driven gears, whose products meet in the middle: k gears
 of n tooth numbers are only C(n+k−1, k) multisets, and the ratio does not depend on the pairing. :class:`Meshes` are all
-meshes a:b, in groups of equal centre distance for reverted trains, or in one group where the demands on the meshes
+meshes a:b, in groups of equal centre distance for reverted trains, or in one group if the constraints on the meshes
 leave so few of them that this list is shorter than the choices of drivers and driven gears.
 """
 
@@ -28,13 +28,13 @@ WINDOW_MARGIN = 1e-9
 """Share by which a window of ratios is widened, so that the rounding of its powers loses no train."""
 
 MANY_TRAINS = 10_000_000
-"""Trains of two halves from which on it pays to put them in order once more."""
+"""Number of trains of two halves above which sorting them once more saves time."""
 
 _NO_TIES = np.zeros((0, 2), np.int64)
 
 
 class Candidates(Protocol):
-    """A finite set of trains in ``steps`` parts, sizes not falling from part to part."""
+    """A finite set of trains in ``steps`` parts, with sizes that do not decrease from part to part."""
 
     @property
     def combinations(self) -> int:
@@ -45,20 +45,20 @@ class Candidates(Protocol):
         """Number of parts."""
 
     def search(self, first: int, last: int, rule: Rule, shortlist: Found) -> None:
-        """Search the parts ``first`` up to, without, ``last``."""
+        """Search the parts from ``first`` up to and without ``last``."""
 
     def least(self, part: int) -> int:
-        """A lower bound of the sizes in a part and all later ones."""
+        """Return a lower bound of the sizes in a part and all later ones."""
 
     def finish(self, first: int, rule: Rule, shortlist: Found) -> bool:
-        """Search all parts from ``first`` on at once, if that is little work; returns whether it was done."""
+        """Search all parts from ``first`` on at once if that is little work; return whether it was done."""
 
     def ties(self, ratios: list[Fraction], rule: Rule, shortlist: Found) -> int:
-        """How many trains have exactly one of these ratios; ``found`` holds a search's result."""
+        """Count the trains with exactly one of these ratios; ``shortlist`` holds a search's result."""
 
 
 class _Half(NamedTuple):
-    """Choices of a gear for each stage; rows of size u are ``starts[u]`` to ``starts[u + 1]``, by their products."""
+    """Choices of a gear for each stage; rows of size u are ``starts[u]`` to ``starts[u + 1]``, sorted by product."""
 
     teeth: Gears
     products: Integers
@@ -72,14 +72,17 @@ class Halves:
     def __init__(self, task: Task, k: int) -> None:
         self.k = k
         self.drivers = _half(task, task.drivers[:k])
+        # Equal ranges on both sides share one list: half the memory and time.
         same = all(np.array_equal(a, b) for a, b in zip(task.drivers[:k], task.driven[:k], strict=True))
         self.driven = self.drivers if same else _half(task, task.driven[:k])
+        # Every choice of drivers is combined with every choice of driven gears.
         self.combinations = len(self.drivers.products) * len(self.driven.products)
         join = max if task.largest else sum
         sizes = [(half.sizes.min(), half.sizes.max()) for half in (self.drivers, self.driven)]
         self.least_size, most = (int(join(ends)) for ends in zip(*sizes, strict=True)) if self.combinations else (0, -1)
         if task.most_total is not None:
             most = min(most, task.most_total)
+        # One part per size, so that small trains come first and the search can stop early.
         self.steps = max(0, most - self.least_size + 1)
 
     def search(self, first: int, last: int, rule: Rule, shortlist: Found) -> None:
@@ -101,19 +104,20 @@ class Halves:
         )
 
     def least(self, part: int) -> int:
-        """The size of a part."""
+        """Return the size of a part."""
         return self.least_size + part
 
     def finish(self, first: int, rule: Rule, shortlist: Found) -> bool:
-        """One pass over both lists by product, once so few trains come near that sizes need not be held apart."""
+        """Search both lists in one pass by product, if so few trains are near that sizes need no separate passes."""
         size = self.least(first)
+        # Until the shortlist is full, or for sizes that still rank, a pass would meet too many trains.
         settled = shortlist.kept[0] == len(shortlist.error) and (not rule.by_size or size > shortlist.size[-1])
         if not settled or self.combinations < MANY_TRAINS:
             return False
         near = max(
             float(shortlist.least_error[:size].min(initial=math.inf)), 0.0 if rule.by_size else shortlist.error[-1]
         )
-        # The products are spread over some powers of e: about so many pairs are as near as that.
+        # The products spread over a few powers of e: about this many pairs are as near as ``near``.
         if self.combinations * near > FEW_TRAINS:
             return False
         orders = [np.argsort(half.products, kind="stable") for half in (self.drivers, self.driven)]
@@ -134,9 +138,10 @@ class Halves:
         return True
 
     def ties(self, ratios: list[Fraction], rule: Rule, shortlist: Found) -> int:
-        """Products that are in exactly one of the ratios."""
+        """Count the products in exactly one of the ratios."""
         order = np.argsort(self.driven.products, kind="stable")
         driven, products = self.driven.teeth[order], self.driven.products[order]
+        # Exact fractions: a train ties if its reduced ratio is one of the given.
         count, drivers = 0, (self.drivers.teeth, self.drivers.products)
         for ratio in ratios:
             fraction = ratio.numerator, ratio.denominator
@@ -148,6 +153,7 @@ def _half(task: Task, values: tuple[Integers, ...]) -> _Half:
     flat = np.concatenate(values)
     starts = np.concatenate([[0], np.cumsum([len(v) for v in values])])
     rows = np.empty((0, len(values)), np.int16)
+    # The first pass only counts, so that the second can write into an array of the right size.
     number = kernels.tuples(flat, starts, task.stock, task.ordered, rows)
     rows = np.empty((number, len(values)), np.int16)
     kernels.tuples(flat, starts, task.stock, task.ordered, rows)
@@ -162,9 +168,9 @@ def _half(task: Task, values: tuple[Integers, ...]) -> _Half:
 
 @dataclass(frozen=True, eq=False)
 class Meshes:
-    """Trains of one mesh for each of k stages; all from one group.
+    """Trains of one mesh for each of k stages, all from one group.
 
-    In the intervals ``distances[row]`` are those that a mesh can have, where coaxial meshes have to agree.
+    ``distances[row]`` are the intervals of distances that a mesh can have, for coaxial meshes that must agree.
     """
 
     k: int
@@ -188,15 +194,15 @@ class Meshes:
         self._combine(first, last, rule, shortlist, _NO_TIES)
 
     def least(self, part: int) -> int:
-        """Bound of a group."""
+        """Return the bound of a group."""
         return int(self.least_size[part])
 
     def finish(self, first: int, rule: Rule, shortlist: Found) -> bool:
-        """Groups are gone through one by one."""
+        """Return False: groups are searched one by one."""
         return False
 
     def ties(self, ratios: list[Fraction], rule: Rule, shortlist: Found) -> int:
-        """Trains of the ratios, met once more."""
+        """Count the trains of the ratios in a second pass over all groups."""
         shortlist.ties[0] = 0
         fractions = np.array([(ratio.numerator, ratio.denominator) for ratio in ratios], np.int64)
         self._combine(0, self.steps, rule, shortlist, fractions)
@@ -208,13 +214,13 @@ class Meshes:
 
 
 def coaxial_meshes(task: Task, k: int) -> Meshes:
-    """Reverted trains: groups of equal centre distance, of equal pitch × (a + b); of fitted meshes one group."""
+    """List reverted trains: groups of equal pitch × (a + b), thus equal distance; one group of fitted meshes."""
     pitches = len(task.pitches) if task.fit is None or task.fit.shares_distance else 1
     return _grouped(task, k, [_meshes(task, i, pitches, task.meshes(i)) for i in range(k)], coaxial=True)
 
 
 def few_meshes(task: Task, k: int, reach: tuple[float, float], tolerance: float) -> Meshes | None:
-    """Trains of meshes that can still lead to the target, where they are few; None where they are many.
+    """List trains of the meshes that can still reach the target, if they are few; None if they are many.
 
     If every stage ratio is within ``reach``, a stage of a train near enough has at least T (1 − t) / reach₁^(k−1).
     """
@@ -224,6 +230,7 @@ def few_meshes(task: Task, k: int, reach: tuple[float, float], tolerance: float)
         return None
     low, high = reach
     ratio = float(task.target)
+    # The other k − 1 stages can contribute at most (least) their extreme ratios.
     least = ratio * (1.0 - tolerance) / high ** (k - 1) * (1.0 - WINDOW_MARGIN)
     most = ratio * (1.0 + tolerance) / low ** (k - 1) * (1.0 + WINDOW_MARGIN)
     a, b, mark = _meshes(task, 0, 1, task.allowed)
@@ -234,15 +241,16 @@ def few_meshes(task: Task, k: int, reach: tuple[float, float], tolerance: float)
 
 
 def _few_fitted(task: Task, k: int) -> Meshes | None:
-    """Trains of fitted meshes, where all stages but one have few choices."""
+    """List trains of fitted meshes, if all stages except one have few choices."""
     stages = [_meshes(task, i, 1, task.meshes(i)) for i in range(k)]
     counts = [len(stage[0]) for stage in stages]
+    # Only the choices of all stages but the last are enumerated; the last is found by bisection.
     choices = math.prod(counts[:-1]) if task.ordered else math.comb(counts[0] + k - 2, k - 1)
     return _grouped(task, k, stages, coaxial=False) if choices <= FEW_TRAINS else None
 
 
 def stage_reach(task: Task, k: int) -> list[tuple[Fraction, Fraction]]:
-    """Least and greatest ratio of each stage's allowed meshes; empty where a stage has none."""
+    """Return the least and greatest ratio of each stage's allowed meshes; empty if a stage has none."""
     reaches = []
     for i in range(k):
         a, b, _ = _meshes(task, i, 1, task.stages(k, i))
@@ -256,7 +264,7 @@ def stage_reach(task: Task, k: int) -> list[tuple[Fraction, Fraction]]:
 
 
 def _meshes(task: Task, stage: int, pitches: int, allowed: NDArray[np.bool_]) -> tuple[Integers, Integers, Integers]:
-    """Allowed meshes of a stage, each with each of the first so many pitches."""
+    """List the allowed meshes of a stage, each with each of the first ``pitches`` pitches."""
     drivers, driven = task.drivers[stage], task.driven[stage]
     at = np.argwhere(allowed[np.ix_(drivers, driven)])
     a, b = drivers[at[:, 0]], driven[at[:, 1]]
@@ -264,7 +272,8 @@ def _meshes(task: Task, stage: int, pitches: int, allowed: NDArray[np.bool_]) ->
 
 
 def _grouped(task: Task, k: int, stages: list[tuple[Integers, Integers, Integers]], coaxial: bool) -> Meshes:
-    """Order the meshes of the stages by group, stage and ratio."""
+    """Sort the meshes of the stages by group, stage and ratio."""
+    # Interchangeable stages share one list.
     listed = stages if task.ordered else stages[:1]
     a, b, mark = (np.concatenate([stage[column] for stage in listed]) for column in range(3))
     stage = np.repeat(np.arange(len(listed)), [len(one[0]) for one in listed])
@@ -278,16 +287,20 @@ def _grouped(task: Task, k: int, stages: list[tuple[Integers, Integers, Integers
     a, b, mark, stage, key = (column[order] for column in (a, b, mark, stage, key))
     distances = np.ascontiguousarray(ends[order])
     ratio = b / a
+    # One group per distance.
     keys = np.unique(key)
     places = np.arange(len(listed) + 1)
-    # Rows are unique in (key, stage) order: the start of each stage of each group by one search over both.
+    # Rows are sorted by (key, stage): one search over both finds the start of each stage of each group.
     joined = np.searchsorted(key * (len(listed) + 1) + stage, keys[:, None] * (len(listed) + 1) + places[None, :])
+    # A group without a mesh for every stage holds no train.
     complete = (np.diff(joined, axis=1) > 0).all(axis=1)
     joined = joined[complete]
     size = np.maximum(a, b) if task.largest else a + b
     least = np.array([_least_size(size, group, task.largest, k) for group in joined], np.int64)
     if task.most_total is not None and not task.largest:
         joined, least = joined[least <= task.most_total], least[least <= task.most_total]
+    # Rising bounds let the search stop as soon as no smaller train can follow.
+    # Groups in rising order of their smallest train allow an early stop.
     rising = np.argsort(least, kind="stable")
     groups = np.ascontiguousarray(joined[rising], np.int64)
     counts = np.diff(groups, axis=1)
@@ -299,7 +312,7 @@ def _grouped(task: Task, k: int, stages: list[tuple[Integers, Integers, Integers
 
 
 def _least_size(size: Integers, group: Integers, largest: bool, k: int) -> int:
-    """A lower bound of the sizes of a group's trains."""
+    """Return a lower bound of the sizes of a group's trains."""
     least = [int(size[start:end].min()) for start, end in itertools.pairwise(group)]
     if largest:
         return max(least)

@@ -1,9 +1,9 @@
-"""Which trains carry a stated power: in which order of their stages, with which modules and over which faces.
+"""Selection of the trains that carry a given power: the order of their stages, their modules and their faces.
 
-The search orders trains by error or size whatever they carry. They are judged in that order, so that the first that
-carry the power are the best that do, and where all trains of the search were judged there is no other. Those behind
-them are judged too, up to a limit, for the ties and the Pareto set. What a train has to carry is the power at the speed
-of each of its shafts; a mesh carries more of it the faster it turns.
+The search ranks trains by error or size without regard to strength. They are judged in that order, so that the first
+that carry the power are the best that do; if all trains of the search were judged there is no other. Trains behind
+them are judged too, up to a limit, for the ties and the Pareto set. A train has to carry the power at the speed
+of each of its shafts; a mesh carries more power the faster it turns.
 """
 
 from __future__ import annotations
@@ -35,14 +35,14 @@ from synthesis.model.gear_strength import (
 from synthesis.outcome.exhaustive import pareto
 
 FIRST_JUDGED, MOST_JUDGED = 64, 1024
-"""Trains that are judged at first, and at most."""
+"""Number of trains judged at first, and at most."""
 
 MOST_TRIED = 10_000
-"""Orders of stages, pairings and idlers of all trains together after which no further train is judged."""
+"""Number of stage orders, pairings and idlers of all trains together after which no further train is judged."""
 
 
 class Borne(NamedTuple):
-    """A train as it carries the power: its stages, whose least faces are yet to be found, and its idlers."""
+    """A train that carries the power: its stages, whose minimum faces are yet to be computed, and its idlers."""
 
     train: Train
     stages: list[Stage]
@@ -50,18 +50,18 @@ class Borne(NamedTuple):
 
 
 class Made(NamedTuple):
-    """A train that carries the power, and how it is made."""
+    """A train that carries the power, and its mechanism."""
 
     train: Train
     mechanism: GearTrainMechanism
 
 
 class Judged(NamedTuple):
-    """What became of the trains of a search.
+    """Result of judging the trains of a search.
 
-    ``borne`` are the best that carry the power, ``front`` the Pareto set of all judged that do. ``failed`` of those
-    that rank before the last of them do not; the ``strongest`` of all carries so many W (0: not known, of trains with
-    idlers). ``every``: the search has no trains but the ``judged``.
+    ``borne`` are the best trains that carry the power, ``front`` the Pareto set of all judged ones that do. ``failed``
+    counts the trains ranked above the last of them that do not; ``strongest`` is the greatest power in W that any train
+    carries (0: unknown, for trains with idlers). ``every``: the search has no trains besides the ``judged``.
     """
 
     borne: list[Made]
@@ -74,7 +74,7 @@ class Judged(NamedTuple):
 
 @dataclass
 class Bearing:
-    """What the meshes of a problem carry; each is judged once."""
+    """Judges the power that the meshes of a problem carry; each mesh is judged once."""
 
     problem: GearTrainProblem
     task: Task
@@ -85,7 +85,7 @@ class Bearing:
     _choices: Known = field(default_factory=dict)
 
     def carrying(self, train: Train) -> Borne | None:
-        """The first arrangement of a train that carries the power; None where none does."""
+        """Return the first arrangement of a train that carries the power; None if none does."""
         for arranged in arrangements(self.problem, self.task, train):
             self.tried += 1
             idle = needs_idler(self.problem, len(arranged.drivers))
@@ -97,19 +97,21 @@ class Bearing:
     def _without(self, train: Train) -> Borne | None:
         stages, weakest = [], math.inf
         for choices, speed in self._loaded(train):
+            # The weakest stage limits the train; each stage may use its strongest module.
             weakest = min(weakest, max(self._power(stage, (), speed) for stage in choices))
             stages.append(self._smallest(choices, (), speed))
         self.strongest = max(self.strongest, weakest)
         return self._faced(train, stages, [])
 
     def _with_idler(self, train: Train) -> Borne | None:
-        """One stage has an idler, and needs not carry the power without."""
+        """Put an idler into one stage, which then need not carry the power without it."""
         loaded = list(self._loaded(train))
         plain = [self._smallest(choices, (), speed) for choices, speed in loaded]
         weak = {number for number, stage in enumerate(plain, 1) if stage is None}
         for idlers in idler_choices(self.problem, self.task, train):
             self.tried += 1
             place = idlers[0].stage
+            # Every other stage must carry the power as it is.
             if weak <= {place}:
                 choices, speed = loaded[place - 1]
                 stage = self._smallest(choices, (idlers[0].teeth,), speed)
@@ -119,7 +121,7 @@ class Bearing:
         return None
 
     def _loaded(self, train: Train) -> Iterator[tuple[list[Stage], float]]:
-        """The stages that a train may have in each place, and the speed of the shaft that drives them, rad/s."""
+        """Yield the possible forms of each stage, and the speed of its driving shaft, rad/s."""
         speed = self.stated.speed
         listed = choices_of(self.problem, self.task, train, self._choices)
         for choices, (driver, driven) in zip(listed, train.meshes, strict=True):
@@ -127,22 +129,23 @@ class Bearing:
             speed *= driver / driven
 
     def _smallest(self, choices: list[Stage], idlers: tuple[int, ...], speed: float) -> Stage | None:
-        """A stage with its least module that carries the power."""
+        """Return the stage with its smallest module that carries the power."""
         return next((stage for stage in choices if self._enough(self._power(stage, idlers, speed))), None)
 
     def _faced(self, train: Train, stages: list[Stage | None], idlers: list[Idler]) -> Borne | None:
-        """The train, if its stages have faces that carry the power; those are looked for where rounding decides."""
+        """Return the train if its stages have faces that carry the power; rounding cases are settled by the faces."""
         chosen = [stage for stage in stages if stage is not None]
         if len(chosen) < len(stages):
             return None
         borne = Borne(train, chosen, idlers)
         weakest = min(self._power(stage, between, speed) for stage, between, speed in self._driven(borne))
+        # Within rounding of the required power only the computed face decides.
         if weakest < self.stated.power * (1.0 + EQUAL) and None in self._faces(borne):
             return None
         return borne
 
     def made(self, borne: Borne) -> Made:
-        """A train with the least faces of its stages."""
+        """Build a train with the minimum faces of its stages."""
         faced = [
             stage.model_copy(update={"face_width": width})
             for stage, width in zip(borne.stages, self._faces(borne), strict=True)
@@ -150,11 +153,11 @@ class Bearing:
         return Made(borne.train, assembled(self.problem, borne.train, faced, borne.idlers))
 
     def _faces(self, borne: Borne) -> list[float | None]:
-        """The least face of each stage; None of one that does not carry the power."""
+        """Compute the minimum face of each stage; None for a stage that does not carry the power."""
         return [self._width(stage, between, speed) for stage, between, speed in self._driven(borne)]
 
     def _driven(self, borne: Borne) -> Iterator[tuple[Stage, tuple[int, ...], float]]:
-        """Each stage with the teeth of its idlers and the speed of the shaft that drives it, rad/s."""
+        """Yield each stage with the teeth of its idlers and the speed of its driving shaft, rad/s."""
         speed = self.stated.speed
         for number, stage in enumerate(borne.stages, 1):
             yield stage, tuple(idler.teeth for idler in borne.idlers if idler.stage == number), speed
@@ -164,12 +167,14 @@ class Bearing:
         return power >= self.stated.power * (1.0 - EQUAL)
 
     def _power(self, stage: Stage, idlers: tuple[int, ...], speed: float) -> float:
-        """The greatest power that all meshes of a stage carry."""
+        """Return the greatest power that all meshes of a stage carry."""
         return min(self._judge(mesh).carried_power(turning) for mesh, turning in _meshes(stage, idlers, speed))
 
     def _width(self, stage: Stage, idlers: tuple[int, ...], speed: float) -> float | None:
-        """The least face, in the problem's unit, over which all meshes of a stage carry the power."""
+        """Return the smallest face, in the problem's unit, at which all meshes of a stage carry the power."""
+        # Idlers add meshes with their own loads.
         meshes = _meshes(stage, idlers, speed)
+        # One face serves all meshes of a stage: their common minimum is what counts.
         loaded = [self._judge(mesh).under(self.stated.power, turning) for mesh, turning in meshes]
         width = common_width(loaded, self.stated.kept)
         return None if width is None else width / self._unit
@@ -189,14 +194,14 @@ class Bearing:
 
 
 class _Turning(NamedTuple):
-    """A mesh as a stage of its own, and which of its two gears are bent both ways."""
+    """A mesh as a stage of its own, and the flags of its two gears for bending in both directions."""
 
     alone: TrainStage
     both_ways: tuple[bool, bool]
 
 
 def _meshes(stage: Stage, idlers: tuple[int, ...], speed: float) -> Iterator[tuple[_Turning, float]]:
-    """The meshes of a stage, and how fast the first gear of each turns, rad/s."""
+    """Yield the meshes of a stage, with the speed of each mesh's first gear, rad/s."""
     gears = (stage.driver, *idlers, stage.driven)
     shifts = (0.0, 0.0) if stage.shift is None else (stage.shift.driver, stage.shift.driven)
     whole = TrainStage(stage.driver, stage.driven, stage.module, idlers)
@@ -210,13 +215,14 @@ def _meshes(stage: Stage, idlers: tuple[int, ...], speed: float) -> Iterator[tup
 
 
 def arrangements(problem: GearTrainProblem, task: Task, train: Train) -> list[Train]:
-    """A train with its stages in every order and its gears in every pairing that the demands allow.
+    """List a train with its stages in every order and its gears in every permitted pairing.
 
-    Reverted trains keep their pairing. Those of the smallest largest stage ratio come first, of them the train itself.
+    Reverted trains keep their pairing. The smallest largest stage ratio comes first, and the train itself among equals.
     """
     k = len(train.drivers)
     numbers = [(set(task.drivers[i].tolist()), set(task.driven[i].tolist()), task.stages(k, i)) for i in range(k)]
     found = set()
+    # Gears change places only between stages of one likeness.
     orders = [
         places
         for places in itertools.permutations(range(k))
@@ -239,31 +245,34 @@ def arrangements(problem: GearTrainProblem, task: Task, train: Train) -> list[Tr
 
 
 def hunts(train: Train) -> bool:
-    """Whether the teeth of every mesh have no common divisor."""
+    """Return whether the teeth of every mesh have no common divisor."""
     return all(math.gcd(*mesh) == 1 for mesh in train.meshes)
 
 
 def judged(
     problem: GearTrainProblem, task: Task, stated: CarriedPower, ranked: Callable[[int], Outcome]
 ) -> tuple[Judged, Outcome]:
-    """The best trains that carry a power, and the search with the ties of those that do.
+    """Find the best trains that carry a power, and the search result with the ties of those that do.
 
     Parameters
     ----------
     ranked : callable
-        The best so many trains of the search.
+        Returns the given number of best trains of the search.
     """
     bearing = Bearing(problem, task, stated)
     verdicts: dict[Train, Borne | None] = {}
+    # Some trains will fail: judge more than are requested.
     wanted = max(FIRST_JUDGED, problem.max_designs)
     while True:
         outcome = ranked(wanted)
         for train in outcome.trains:
             if train not in verdicts and bearing.tried < MOST_TRIED:
                 verdicts[train] = bearing.carrying(train)
+        # Fewer trains than requested: the search has no others.
         every = len(outcome.trains) < wanted
         if every or bearing.tried >= MOST_TRIED or wanted >= MOST_JUDGED:
             break
+        # Ask for more trains until enough carry the power or a limit is reached; judged ones are remembered.
         wanted *= 4
     met = [verdicts[train] for train in outcome.trains if train in verdicts]
     carry = {found.train: found for found in met if found is not None}
@@ -281,7 +290,7 @@ def judged(
 
 
 def _failed(met: list[Borne | None], wanted: int) -> int:
-    """How many do not carry the power of those that stand before the last one wanted, or of all."""
+    """Count the trains ranked above the last requested one (or of all) that fail the strength check."""
     failed = 0
     for found in met:
         if wanted == 0:
@@ -291,7 +300,7 @@ def _failed(met: list[Borne | None], wanted: int) -> int:
 
 
 def _ties(task: Task, trains: list[Train]) -> int:
-    """How many of the trains are exactly as near as the nearest of them."""
+    """Count the trains that are exactly as near as the nearest of them."""
     if not trains:
         return 0
     nearest = min(trains, key=lambda train: cmp_to_key(task.target.nearer)(train.ratio))
@@ -299,7 +308,7 @@ def _ties(task: Task, trains: list[Train]) -> int:
 
 
 def _pareto(problem: GearTrainProblem, task: Task, trains: list[Train]) -> list[Train]:
-    """Of the trains those that none is both smaller and nearer than."""
+    """Select the trains that no other train beats in both size and error."""
     near = cmp_to_key(task.target.nearer)
     within = problem.exact_tolerance or NEAR
     kept = [train for train in trains if task.target.within(train.ratio, within)]

@@ -20,71 +20,74 @@ class Stage(Answer):
     driver: int = Field(description="Teeth of the driving gear.")
     driven: int = Field(description="Teeth of the driven gear.")
     module: Length = Field(description="Module in length units.")
-    shift: OfGears | None = optional("Profile shift of both gears in modules, where teeth are fitted.")
-    centre_distance: Length | None = optional("Distance of the shafts without play, where teeth are fitted.")
-    face_width: Length | None = optional("The least with which the stage carries a stated power, or as stated.")
-    type: StageKind | None = optional("Where the stages are stated by their types.")
-    helix_angle: Angle | None = optional("Of a helical driver, positive for a right-handed one.")
-    addendum: OfGears | None = optional("Of an internal pair, modules: the ring's teeth are shortened for the pinion.")
-    shaft_angle: Angle | None = optional("Of bevel gears.")
-    diameter_quotient: float | None = optional("Of a worm: its pitch diameter over its axial module.")
-    hand: Hand | None = optional("Of a worm.")
-    friction: float | None = optional("Between a worm and its gear.")
+    shift: OfGears | None = optional("Profile shift of both gears in modules, if teeth are fitted.")
+    centre_distance: Length | None = optional("Distance of the shafts without play, if teeth are fitted.")
+    face_width: Length | None = optional("Smallest face width that carries the given power, or the given one.")
+    type: StageKind | None = optional("Type of the stage, if the stages are given by type.")
+    helix_angle: Angle | None = optional("Helix angle of a helical driver, positive for a right-handed one.")
+    addendum: OfGears | None = optional(
+        "Addenda of an internal pair in modules: the ring's teeth are shortened for the pinion."
+    )
+    shaft_angle: Angle | None = optional("Angle between the shafts of bevel gears.")
+    diameter_quotient: float | None = optional("Pitch diameter of a worm over its axial module.")
+    hand: Hand | None = optional("Hand of a worm.")
+    friction: float | None = optional("Coefficient of friction between a worm and its gear.")
 
 
 class Idler(Answer):
-    """A gear between driver and driven gear of a stage: it turns the direction round and leaves the ratio as it is."""
+    """A gear between driver and driven gear of a stage: it reverses the direction and does not change the ratio."""
 
     stage: int = Field(description="Number of the stage, from 1.")
     teeth: int
 
 
 class GearTrainMechanism(Answer):
-    """An ordinary train on fixed shafts, of external spur gears where its stages have no types."""
+    """An ordinary train on fixed shafts; of external spur gears if its stages have no types."""
 
     type: Literal["gear_train"] = "gear_train"
     stages: list[Stage]
     idlers: list[Idler] = Field(default=[])
     ratio: Ratio
-    pressure_angle: Angle = Field(default=20.0, description="Degrees.")
+    pressure_angle: Angle = Field(default=20.0, description="Pressure angle, degrees.")
 
 
 class TurningShaft(Answer):
-    """A shaft from the input's on, and how it turns.
+    """A shaft, counted from the input's on, and its rotation.
 
-    Where shafts are not parallel the sign is that of the rotation about ``axis``, which points the way of the power; a
-    bevel stage leads it away from the apex, and the axis of a worm gear is d × w, d the direction from the worm to the
-    gear and w the axis of the worm. Another side of a bevel or worm gear turns the axis round, and with it the sign.
+    If the shafts are not parallel the sign is that of the rotation about ``axis``, which points in the direction of the
+    power flow. A bevel stage leads the axis away from the apex. The axis of a worm gear is d × w, with d the direction
+    from the worm to the gear and w the axis of the worm. Placing a bevel or worm gear on the other side reverses the
+    axis, and with it the sign.
     """
 
-    speed: Ratio = Field(description="Over the input's; negative: against it.")
+    speed: Ratio = Field(description="Speed over the input's; negative: opposite to it.")
     turns: Literal["same", "opposite"] | None = Field(
-        description="As the input turns, or the other way; null where the shaft is not parallel with the input's."
+        description="Rotation relative to the input's; null if the shaft is not parallel to the input's."
     )
     axis: tuple[float, float, float] | None = optional(
-        "About which the speed is counted, the input's along z; left out where all shafts are parallel."
+        "Axis about which the speed is counted, the input's along z; omitted if all shafts are parallel."
     )
 
 
 class GearTrainMetrics(Answer):
     """Measured properties of a train."""
 
-    error: float = Field(description="Size of the ratio minus size of the demanded ratio.")
-    relative_error: float = Field(description="The error over the size of the demanded ratio.")
-    total_teeth: int = Field(description="Of drivers and driven gears, idlers not counted.")
+    error: float = Field(description="Size of the ratio minus size of the requested ratio.")
+    relative_error: float = Field(description="Error over the size of the requested ratio.")
+    total_teeth: int = Field(description="Teeth of drivers and driven gears, without idlers.")
     largest_gear: int
     largest_stage_ratio: float = Field(
-        description="Larger over smaller gear, the greatest of all stages; of a worm stage gear teeth over threads."
+        description="Greatest ratio of larger over smaller gear of any stage; for a worm stage gear teeth over threads."
     )
-    hunting_tooth: bool = Field(description="The teeth of every mesh have no common divisor.")
-    centre_distances: list[Length] = Field(description="Of the shafts of each stage, idlers in line.")
+    hunting_tooth: bool = Field(description="True if the teeth of every mesh have no common divisor.")
+    centre_distances: list[Length] = Field(description="Distance of the shafts of each stage, with idlers in line.")
     meshes: list[MeshGeometry]
-    strength: list[PairStrength] | None = optional("Stresses of every mesh, in their order, under a stated power.")
-    shafts: list[TurningShaft] | None = optional("Where the stages are stated by their types.")
+    strength: list[PairStrength] | None = optional("Stresses of every mesh in order, under the given power.")
+    shafts: list[TurningShaft] | None = optional("Rotation of the shafts, if the stages are given by type.")
 
 
 class GearTrainDesign(Answer):
-    """A gear train with the proof of its ratio."""
+    """A gear train with the verification of its ratio."""
 
     mechanism: GearTrainMechanism
     verification: Verification
@@ -92,37 +95,37 @@ class GearTrainDesign(Answer):
 
 
 class ParetoTrain(Answer):
-    """A train that none is both smaller and nearer than; with `strength` made as it carries the power."""
+    """A train that no other train beats in both size and error; with `strength`, in the form that carries the power."""
 
-    size: int = Field(description="Sum of the teeth or largest gear, as the problem measures it.")
+    size: int = Field(description="Sum of the teeth or largest gear, as chosen by the problem's `size`.")
     relative_error: float
     stages: list[Stage]
     ratio: Ratio
-    idlers: list[Idler] | None = optional("With `strength`, where the ratio takes one.")
+    idlers: list[Idler] | None = optional("With `strength`, if the ratio requires an idler.")
 
 
 class GearTrainSearch(Search):
     """The search of a finite set of trains.
 
-    ``complete``: the ranking of the designs is proven, and an empty answer is a proof. It is false where an idler could
-    not be found, where the distances that a mesh can have were searched in steps, and with `strength` where fewer
-    trains than asked for carry the power and not every train was judged.
-    ``candidates`` are the trains that stand out: the designs and those that verification refused. ``combinations`` is
+    ``complete``: the ranking of the designs is proven, and an empty answer is a proof. It is false if an idler could
+    not be found, if the distances that a mesh can have were searched in steps, and with `strength` if fewer
+    trains than requested carry the power and not every train was judged.
+    ``candidates`` counts the designs and the trains that verification refused. ``combinations`` is
     the number of trains that the search covers, most of them by bounds.
     """
 
     combinations: int
     ties: int = Field(
-        description="Trains whose error is exactly that of the nearest one, of whatever size; with `strength` of "
-        "the judged that carry the power."
+        description="Number of trains of any size whose error equals that of the nearest one; with `strength`, among "
+        "the judged trains that carry the power."
     )
-    least_error: float | None = Field(description="Relative error of the nearest train; null where there is none.")
+    least_error: float | None = Field(description="Relative error of the nearest train; null if there is none.")
     judged: int | None = optional(
-        "With `strength`: how many trains were judged, the first of the ranking, about 1000 at most."
+        "With `strength`: number of trains judged, in the order of the ranking; at most about 1000."
     )
     every_judged: bool | None = optional(
-        "Whether there are no others: `ties` and `pareto` are then those of all trains that carry the power, otherwise "
-        "of the judged that do."
+        "With `strength`: true if all trains were judged, so that `ties` and `pareto` refer to all trains that carry "
+        "the power; otherwise they refer to the judged ones only."
     )
 
 
@@ -131,6 +134,6 @@ class GearTrainResult(Result[GearTrainDesign]):
 
     search: GearTrainSearch
     pareto: list[ParetoTrain] = Field(
-        description="The Pareto set of error against size, smallest first, of the trains within the tolerance "
-        "(within 1 % where none is stated); with `strength` of the trains judged that carry the power."
+        description="Pareto set of error against size, smallest first, of the trains within the tolerance (within 1 % "
+        "by default); with `strength`, of the judged trains that carry the power."
     )

@@ -1,4 +1,4 @@
-"""Every train that keeps the demands of a task, whatever its ratio: each set of gears once, as it is paired."""
+"""Enumeration of every feasible train of a task, of any ratio: each set of gears once, in its best pairing."""
 
 from __future__ import annotations
 
@@ -15,9 +15,10 @@ from synthesis.kinds.gear_train.shortlist import Floats
 from synthesis.kinds.gear_train.task import UNLIMITED, Task
 
 GROWTH = 4
-"""By how much the room for trains grows where it was too small."""
+"""Growth factor of the array of trains if it was too small."""
 
 FIRST_ROOM = 1 << 16
+"""Number of trains for which the first array has space."""
 
 
 class EveryTrain(NamedTuple):
@@ -30,12 +31,13 @@ class EveryTrain(NamedTuple):
 
 
 def every_train(task: Task) -> EveryTrain:
-    """All trains of a task, of few stages first."""
+    """List all trains of a task, those of few stages first."""
     listed = [np.zeros((0, 3 * MOST_STAGES), np.int16), *(_of_stages(task, k) for k in task.stage_counts)]
     rows = np.concatenate(listed)
     drivers, driven = rows[:, :MOST_STAGES].astype(np.int64), rows[:, MOST_STAGES : 2 * MOST_STAGES].astype(np.int64)
     return EveryTrain(
         rows,
+        # Missing stages have zero teeth, which must not annul the products.
         np.maximum(driven, 1).prod(axis=1),
         np.maximum(drivers, 1).prod(axis=1),
         drivers.sum(axis=1) + driven.sum(axis=1),
@@ -56,14 +58,16 @@ def _of_stages(task: Task, k: int) -> Gears:
             number = _coaxial(k, *lists, rule, rows)
         else:
             number = _paired(k, halves.drivers.teeth, halves.driven.teeth, rule, rows)
+        # The compiled loop goes on counting after the array is full, so that one repetition suffices.
         if number <= room:
             return rows[:number]
+        # The count of the failed pass is the exact size needed.
         room = max(number, GROWTH * room)
 
 
 @njit(cache=True, nogil=True)
 def _paired(k: int, drivers: Gears, driven: Gears, rule: Rule, rows: Gears) -> int:
-    """All drivers with all driven gears; returns how many trains there are, and writes them while there is room."""
+    """Combine all drivers with all driven gears; return the number of trains, and write as many as fit into rows."""
     teeth, number = np.zeros(3 * MOST_STAGES, np.int64), 0
     for i in range(len(drivers)):
         for j in range(len(driven)):
@@ -88,11 +92,12 @@ def _coaxial(
     rule: Rule,
     rows: Gears,
 ) -> int:
-    """All choices of a mesh for each stage from one group of coaxial ones; as :func:`_paired`."""
+    """Combine meshes from one group of coaxial ones, one per stage; otherwise like :func:`_paired`."""
     teeth, place, number = np.zeros(3 * MOST_STAGES, np.int64), np.zeros(MOST_STAGES, np.int64), 0
     for g in range(len(groups)):
         stage, place[0] = 0, groups[g, 0]
         while stage >= 0:
+            # This stage's list is exhausted: go back one stage and advance it.
             if place[stage] >= (groups[g, stage + 1] if rule.ordered else groups[g, 1]):
                 stage -= 1
                 if stage >= 0:
@@ -100,6 +105,7 @@ def _coaxial(
                 continue
             if stage < k - 1:
                 stage += 1
+                # Interchangeable stages choose in rising order, so that each multiset occurs once.
                 place[stage] = groups[g, stage] if rule.ordered else place[stage - 1]
                 continue
             for i in range(k):

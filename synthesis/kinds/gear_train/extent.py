@@ -1,4 +1,4 @@
-"""How much a search of gear trains would cover, from the statement alone, and from where on it is refused."""
+"""Estimate of a gear train search's size from the problem alone, and the limit above which it is refused."""
 
 from __future__ import annotations
 
@@ -12,24 +12,24 @@ from synthesis.kinds.gear_train.stated_train import StatedTrain
 from synthesis.model.statement import Contradiction
 
 MOST_HALVES = 10_000_000
-"""Choices of the drivers (or of the driven gears) of all stages that a search holds at most; 0.8 GB for both."""
+"""Maximum number of choices of the drivers (or driven gears) of all stages; 0.8 GB of memory for both."""
 
 FEW_TRAINS = 20_000_000
-"""Trains that are gone through one by one, where they are no more than so many."""
+"""Maximum number of trains that are enumerated one by one."""
 
 MOST_COAXIAL = 3_000_000_000
-"""Combinations of all stages but one that a search of coaxial trains goes through at most; a minute or two."""
+"""Maximum number of combinations of all stages but one in a search of coaxial trains; a minute or two."""
 
 MOST_FITTED = 500
-"""Tooth numbers of which pairs are fitted to a range of distances; some 10⁵ pairs."""
+"""Maximum number of tooth numbers whose pairs are fitted to a range of distances; some 10⁵ pairs."""
 
 HALVES = MOST_HALVES, "choices of drivers or driven gears"
 COAXIAL = MOST_COAXIAL, "combinations of meshes"
-"""What a search holds of trains whose stages have distances of their own, and what it goes through of coaxial ones."""
+"""Limits with their units: for trains whose stages have distances of their own, and for coaxial ones."""
 
 
 def beyond_search(stated: StatedTrain) -> list[Contradiction]:
-    """A search that would hold or go through too much, of a train whose lists suit its stages."""
+    """Return a contradiction if the search is too large; the lists of the train must suit its stages."""
     k = stated.most_stages
     field = "/teeth" if stated.teeth is not None or not _is_given(stated) else "/stages"
     if stated.stock is not None:
@@ -37,17 +37,17 @@ def beyond_search(stated: StatedTrain) -> list[Contradiction]:
     else:
         widths = [high - low + 1 for low, high in stated.position_ranges()]
     if stated.shares_distance and max(widths) > MOST_FITTED:
-        detail = f"{max(widths)} tooth numbers are more than the {MOST_FITTED} whose pairs are fitted to a distance"
-        return [Contradiction(field, f"{detail} that is left open; narrow them or state the distance")]
+        detail = f"{max(widths)} tooth numbers are given; at most {MOST_FITTED} can be fitted in pairs"
+        return [Contradiction(field, f"{detail} to an open distance; narrow the range or give the distance")]
     covered, most, what = _extent(stated, widths)
     if covered <= most:
         return []
-    detail = f"about {float(covered):.0e} {what} in {k} stages are more than the {most:.0e} that a search covers"
+    detail = f"about {float(covered):.0e} {what} in {k} stages exceed the limit of {most:.0e}"
     return [Contradiction(field, f"{detail}; narrow the tooth numbers or allow fewer stages")]
 
 
 def _extent(stated: StatedTrain, widths: list[int]) -> tuple[int, int, str]:
-    """About how much a search holds or goes through, how much it may at most, and what that is.
+    """Estimate the size of a search; return it with its maximum and its unit.
 
     ``widths`` are the numbers of tooth numbers of driver and driven gear of each stage.
     """
@@ -61,7 +61,7 @@ def _extent(stated: StatedTrain, widths: list[int]) -> tuple[int, int, str]:
             return _of_shared_distances(stated), *COAXIAL
         if not stated.is_fitted:
             return 2 * meshes * math.comb(meshes + k - 2, k - 1), *COAXIAL
-        # At one distance the sums of teeth that a shift takes up; at an open one all pairs.
+        # A given distance leaves the sums of teeth that a shift can compensate; an open one leaves all pairs.
         meshes *= max(widths) if stated.shares_distance else _sums(stated)
         return math.comb(meshes + k - 2, k - 1), *COAXIAL
     if isinstance(stated.teeth, list):
@@ -70,12 +70,14 @@ def _extent(stated: StatedTrain, widths: list[int]) -> tuple[int, int, str]:
 
 
 def _of_shared_distances(stated: StatedTrain) -> int:
-    """Choices of meshes for all stages but one, of each distance of pitch circles, where all have the same gears."""
+    """Count the choices of meshes for all stages but one, over the distances, if all stages have the same gears."""
     low, high = stated.position_ranges()[0]
     numbers = stated.stocked() if stated.stock is not None else range(low, high + 1)
+    # Indicator of the available tooth numbers.
     present = np.zeros(max(numbers) + 1, np.int64)
     present[list(numbers)] = 1
     meshes: Counter[int] = Counter()
+    # The convolution counts the pairs of each sum a + b, which with the pitch determines the distance.
     for total, pairs in enumerate(np.convolve(present, present).tolist()):
         for pitch in stated.pitches() if pairs else []:
             meshes[pitch * total] += pairs
@@ -84,19 +86,20 @@ def _of_shared_distances(stated: StatedTrain) -> int:
 
 
 def _is_given(stated: StatedTrain) -> bool:
-    """Whether the stages state all of their gears."""
+    """Return whether the stages give all of their gears."""
     return all(stage.limits(name) is not None for stage in stated.stages or [] for name in GEARS)
 
 
 def _are_alike(stated: StatedTrain, stages: list[StatedStage]) -> bool:
-    """Whether gears may stand in any of the stages, so that each choice of them is met in one order only."""
+    """Return whether gears may be in any of the stages, so that each choice of them is searched in one order only."""
     ranges = stated.position_ranges()
+    # Modules or distances of their own make stages unlike although their gears are alike.
     own = stated.is_fitted and (stated.has_own_modules or isinstance(stated.centre_distance, list))
     return not own and len(set(ranges[0::2])) == len(set(ranges[1::2])) == len({s.likeness for s in stages}) == 1
 
 
 def _of_unlike_stages(stated: StatedTrain, widths: list[int]) -> int:
-    """About what a search of stages that are not alike holds or goes through: every stage's own choices."""
+    """Estimate the search of unlike stages: the product of every stage's own choices."""
     modules, pairs = len(stated.exact_modules()), list(zip(widths[0::2], widths[1::2], strict=True))
     shifted = _sums(stated) if stated.is_fitted else 1
     meshes = [min(pair) * modules * shifted for pair in pairs]
@@ -104,17 +107,17 @@ def _of_unlike_stages(stated: StatedTrain, widths: list[int]) -> int:
         meshes = [one * two * modules for one, two in pairs]
     choices = math.prod(meshes[:-1])
     if stated.reverted:
-        # Each distance has its own choices of all stages but one; it is one that every stage has.
+        # Each distance that every stage has allows its own choices of all stages but one.
         return choices if stated.is_fitted else choices * min(sum(pair) for pair in pairs) * modules
     halves = max(math.prod(widths[0::2]), math.prod(widths[1::2]))
-    # Few fitted meshes are combined instead.
+    # Few fitted meshes are combined directly instead.
     return min(halves, MOST_HALVES) if stated.is_fitted and choices <= FEW_TRAINS else halves
 
 
 def _sums(stated: StatedTrain) -> int:
-    """How many sums of teeth a fitted pair may have at one distance.
+    """Return the number of sums of teeth that a fitted pair may have at one distance.
 
-    Both gears may be shifted, and a module of distance is as long as two teeth more in the sum.
+    Both gears may be shifted, and one module of distance corresponds to two teeth more in the sum.
     """
     low, high = stated.shift_limits
     return math.ceil(4.0 * (high - low)) + 1

@@ -1,9 +1,9 @@
-"""Which meshes of a train can be fitted to its centre distances by a profile shift, with which module and which shifts.
+"""Meshes of a train that a profile shift can fit to its centre distances, with their modules and shifts.
 
-What a pair of tooth numbers can take up is known in modules, whatever train it is part of
+The sums of shifts that a pair of tooth numbers permits are known in modules, independent of the train
 (:mod:`kinematics.gear.shifting`). Stages that have a distance of their own choose for every pair the module whose pitch
-circles are nearest to it, of equally near ones the smallest; the search then meets every pair of gears once. Coaxial
-stages that have to agree on a distance keep the intervals of distances of every pair with every module.
+circles are nearest to it, and the smallest of equally near ones; the search then considers every pair of gears once.
+Coaxial stages, which must agree on a distance, keep the intervals of distances of every pair with every module.
 """
 
 from __future__ import annotations
@@ -27,7 +27,7 @@ from synthesis.kinds.gear_train.stated_stages import StatedStage
 
 
 class FittedStage(NamedTuple):
-    """A mesh as it is made; the module by its place in the list, shifts in modules."""
+    """A mesh with its module, by its place in the list, its shifts in modules, and its distance."""
 
     module: int
     shifts: tuple[float, float]
@@ -38,12 +38,12 @@ class FittedStage(NamedTuple):
 class Fit:
     """The meshes that can be fitted.
 
-    ``module[s, a, b]`` is the place of the module that a pair has in stage s (one row for all stages where they are
-    alike), −1 where none fits. ``ends[s, m, a, b]`` are the intervals of distances of a pair with module m in stage s,
-    least and greatest, filled with nan, where stages have to agree on one; empty otherwise. ``fits[s, m, a, b]`` tells
-    of stages with a distance of their own which modules fit a pair. ``modules`` are lengths.
-    ``demands[s]`` are those of a stage in the plane of rotation, in whose modules all is reckoned; ``stretch[s]`` times
-    that of the normal plane they are as long.
+    ``module[s, a, b]`` is the place of the module that a pair has in stage s (one row for all stages if they are
+    alike), −1 if none fits. ``ends[s, m, a, b]`` are the intervals of distances of a pair with module m in stage s,
+    least and greatest, padded with nan, if stages must agree on one; empty otherwise. ``fits[s, m, a, b]`` is true if
+    module m fits a pair in a stage with a distance of its own. ``modules`` are lengths.
+    ``demands[s]`` are those of a stage in the plane of rotation, the plane of all modules here; they are ``stretch[s]``
+    times as long as in the normal plane.
     """
 
     demands: tuple[Demands, ...]
@@ -56,27 +56,27 @@ class Fit:
 
     @property
     def by_stage(self) -> bool:
-        """Whether stages differ in the meshes that they may have."""
+        """True if stages differ in their permitted meshes."""
         return len(self.module) > 1
 
     @property
     def shares_distance(self) -> bool:
-        """Whether the meshes of a train have to agree on a distance."""
+        """True if the meshes of a train must agree on a distance."""
         return len(self.ends) > 0
 
     @property
     def allowed(self) -> NDArray[np.bool_]:
-        """Which pairs some stage may have."""
+        """Pairs that at least one stage may have."""
         return np.asarray((self.module >= 0).any(axis=0))
 
     def stage(self, number: int) -> int:
-        """The row of a stage, counted from 0."""
+        """Return the row of a stage, counted from 0."""
         return min(number, len(self.module) - 1)
 
     def fitted(self, drivers: tuple[int, ...], driven: tuple[int, ...], marks: tuple[int, ...]) -> list[FittedStage]:
-        """The stages of a train: modules, shifts nearest to balanced specific sliding, and distances.
+        """Fit the stages of a train: modules, shifts nearest to balanced specific sliding, and distances.
 
-        Within a range of distances it is the one nearest to that of the pitch circles, of coaxial stages to their mean.
+        Within a range of distances the one nearest to the pitch circles' is chosen; for coaxial stages, to their mean.
         """
         meshes = list(zip(drivers, driven, strict=True))
         if self.shares_distance:
@@ -90,21 +90,22 @@ class Fit:
         ]
 
     def made(self, number: int, a: int, b: int, place: int) -> FittedStage:
-        """A mesh in a stage, counted from 0, that has a distance of its own, with one of the modules that fit it."""
+        """Fit a mesh in a stage, counted from 0, with a distance of its own and one of the modules that fit it."""
         row = self.stage(number)
         return self._fitted(row, a, b, place, self._own_distance(row, a, b, place))
 
     def places(self, number: int, a: int, b: int) -> list[int]:
-        """Places of the modules that fit a mesh in such a stage, the smallest module first."""
+        """List the places of the modules that fit a mesh in such a stage, the smallest module first."""
         fits = np.flatnonzero(self.fits[self.stage(number), :, a, b])
         return sorted((int(place) for place in fits), key=self.modules.__getitem__)
 
     def _module(self, row: int, place: int) -> float:
-        """A module in the plane of rotation."""
+        """Return a module in the plane of rotation."""
         return self.modules[place] * self.stretch[row]
 
     def _own_distance(self, row: int, a: int, b: int, place: int) -> float:
         limits, demands = self.limits[row], self.demands[row]
+        # A given distance leaves no choice.
         if limits[0] == limits[1]:
             return limits[0]
         module = self._module(row, place)
@@ -112,6 +113,7 @@ class Fit:
         low = max(2.0 * demands.least_shift, self._sum_at(row, pair, limits[0] / module, -math.inf))
         high = min(2.0 * demands.most_shift, self._sum_at(row, pair, limits[1] / module, math.inf))
         sums = shift_sums.sums_that_suit(*pair, low, high, demands)
+        # Without a sum of shifts the pair runs at its standard distance, the best choice if permitted.
         if any(least <= 0.0 <= most for least, most in sums):
             return module * standard
         spans = [[module * float(shifting.with_sum(*pair, total, demands).distance) for total in span] for span in sums]
@@ -119,18 +121,19 @@ class Fit:
         return min(max(distance, limits[0]), limits[1])
 
     def _sum_at(self, row: int, pair: tuple[int, int], distance: float, beyond: float) -> float:
-        """The sum of shifts at a distance in modules, ``beyond`` where there is none."""
+        """Return the sum of shifts at a distance in modules, ``beyond`` if there is none."""
         if not math.isfinite(distance):
             return beyond
         total = float(shifting.at_distance(*pair, distance, self.demands[row]).total)
         return total if math.isfinite(total) else beyond
 
     def _fitted(self, row: int, a: int, b: int, place: int, distance: float) -> FittedStage:
-        """A mesh at its distance; the smaller gear is looked at first, whichever drives."""
+        """Fit a mesh at its distance; the smaller gear is treated first, whichever one drives."""
         small, large, demands = min(a, b), max(a, b), self.demands[row]
+        # The distance determines the sum of shifts; the split balances specific sliding.
         working = shifting.at_distance(small, large, distance / self._module(row, place), demands)
         first = float(shifting.balanced_split(small, large, working, demands))
-        # Without what rounding takes a shift beyond its limits.
+        # Clip what rounding adds to a shift beyond its limits.
         one, two = (
             min(max(shift, demands.least_shift), demands.most_shift) * self.stretch[row]
             for shift in (first, float(working.total) - first)
@@ -139,7 +142,7 @@ class Fit:
 
 
 def _common(meshes: list[NDArray[np.float64]]) -> list[tuple[float, float]]:
-    """The intervals that lists of them, filled with nan, have in common; ends that rounding parts meet."""
+    """Intersect lists of intervals, padded with nan; ends that differ only by rounding count as touching."""
     common = [(0.0, math.inf)]
     for spans in meshes:
         known = spans[np.isfinite(spans[:, 0])].tolist()
@@ -149,7 +152,7 @@ def _common(meshes: list[NDArray[np.float64]]) -> list[tuple[float, float]]:
 
 
 def _nearest(spans: list[tuple[float, float]], wanted: float) -> float:
-    """The distance in one of the intervals that is nearest to a wanted one."""
+    """Return the distance in one of the intervals that is nearest to a given one."""
     within = (
         wanted if low * (1.0 - AGREED) <= wanted <= high * (1.0 + AGREED) else min(max(wanted, low), high)
         for low, high in spans
@@ -158,7 +161,7 @@ def _nearest(spans: list[tuple[float, float]], wanted: float) -> float:
 
 
 def fit_meshes(problem: GearTrainProblem, numbers: Integers) -> Fit:
-    """The meshes of a problem whose teeth are fitted; ``numbers`` are the tooth numbers that there are."""
+    """Fit the meshes of a problem; ``numbers`` are the available tooth numbers."""
     rows = _stages_apart(problem)
     stages: list[StatedStage | None] = [None] * rows if problem.stages is None else [*problem.stages[:rows]]
     demands = tuple(demands_of(problem, stage) for stage in stages)
@@ -175,10 +178,12 @@ def fit_meshes(problem: GearTrainProblem, numbers: Integers) -> Fit:
             [module * wide * _between(pairs, *_in_modules(limits[0], module * wide), True, one) for module in modules]
             for pairs, wide, one in zip(asked, stretch, demands, strict=True)
         ]
+        # Longest list of intervals.
         most = max(span.shape[2] for row in spans for span in row)
         ends = np.full((rows, len(modules), n, n, most, 2), math.nan)
         for row, own in enumerate(spans):
             for place, span in enumerate(own):
+                # Intervals of different pairs differ in number; the rest stays nan.
                 ends[row, place, :, :, : span.shape[2]] = span
         found = np.isfinite(ends[..., 0, 0])
         chosen = np.where(found.any(axis=1), found.argmax(axis=1), -1).astype(np.int8)
@@ -187,43 +192,46 @@ def fit_meshes(problem: GearTrainProblem, numbers: Integers) -> Fit:
     every = np.zeros((rows, len(modules), n, n), np.bool_)
     for row, (low, high) in enumerate(limits):
         nearest = np.full((n, n), math.inf)
-        # Of equally near modules the smallest: they are tried in rising order.
+        # Tried in rising order, so that the smallest of equally near modules wins.
         for place in sorted(_choices(problem, row, modules), key=modules.__getitem__):
             module = modules[place] * stretch[row]
             fits = np.isfinite(_between(asked[row], low / module, high / module, False, demands[row])[..., 0, 0])
             every[row, place] = fits
             apart = np.maximum(0.0, np.maximum(low - module * standard, module * standard - high))
+            # Strictly nearer: among equals the earlier, smaller module stays.
             better = fits & (apart < nearest)
             chosen[row][better], nearest[better] = place, apart[better]
     return Fit(demands, stretch, modules, limits, chosen, np.zeros((0, 0, 0, 0, 0, 2)), every)
 
 
 def _in_modules(limits: tuple[float, float], module: float) -> tuple[float, float]:
-    """Limits of a distance in modules; none where there is no greatest."""
+    """Convert limits of a distance to modules; no limits if there is no greatest."""
     low, high = limits
     return (low / module, high / module) if math.isfinite(high) else (0.0, math.inf)
 
 
 def _makeable(demands: Demands, present: NDArray[np.bool_]) -> NDArray[np.bool_]:
-    """Pairs of gears that there are, but for those that a rack undercuts at every shift."""
+    """Return the pairs of available gears, without those that a rack undercuts at every shift."""
+    # A gear that needs more shift than permitted is undercut in every mesh.
     least = [least_shift_of_rack(z, demands.pressure_angle, demands.depth) for z in range(len(present))]
     made = present & (np.array(least) <= demands.most_shift + shifting.KEPT)
     return np.asarray(made[:, None] & made[None, :])
 
 
 def _angle(stage: StatedStage | None) -> float:
-    """Helix angle, degrees."""
+    """Return the helix angle, degrees."""
     return 0.0 if stage is None else abs(stage.helix_angle or 0.0)
 
 
 def demands_of(problem: GearTrainProblem, stage: StatedStage | None = None) -> Demands:
-    """What every mesh of a stage has to keep, in modules of the plane of rotation."""
+    """Build the constraints on every mesh of a stage, in modules of the plane of rotation."""
     phi, beta = math.radians(problem.pressure_angle), math.radians(_angle(stage))
     depth = straight_depth(phi, FULL_DEPTH_DEDENDUM)
     least, most = problem.shift_limits
     plain = Demands(phi, depth, least, most, problem.least_contact_ratio, problem.least_tip_thickness)
     if not beta:
         return plain
+    # A helical gear is cut by a rack in its normal plane: in the plane of rotation all is shortened by cos β.
     shrunk = math.cos(beta)
     return plain._replace(
         pressure_angle=math.atan(math.tan(phi) / shrunk),
@@ -236,13 +244,13 @@ def demands_of(problem: GearTrainProblem, stage: StatedStage | None = None) -> D
 
 
 def _between(asked: NDArray[np.bool_], low: float, high: float, ends: bool, demands: Demands) -> NDArray[np.float64]:
-    """Between which distances, in modules, pairs suit that are asked for."""
+    """Find the distances, in modules, between which the given pairs are sound."""
     return _sound_between(asked.tobytes(), len(asked), low, high, ends, demands)
 
 
 @lru_cache(maxsize=8)
 def _sound_between(asked: bytes, n: int, low: float, high: float, ends: bool, demands: Demands) -> NDArray[np.float64]:
-    """What pairs can take up depends on no ratio: who tries one ratio after another has it found once."""
+    """Find the intervals and cache them: they depend on no ratio, and callers try one ratio after another."""
     pairs = np.frombuffer(asked, np.bool_).reshape(n, n)
     least, most = (np.where(pairs, end, math.nan) for end in (low, high))
     found = np.asarray(shift_sums.sound_between(least, most, ends, demands))
@@ -251,14 +259,14 @@ def _sound_between(asked: bytes, n: int, low: float, high: float, ends: bool, de
 
 
 def _stages_apart(problem: GearTrainProblem) -> int:
-    """How many stages have meshes of their own: one stands for all where they are alike."""
+    """Return the number of stages with meshes of their own: 1 represents all if they are alike."""
     helical = any(_angle(stage) for stage in problem.stages or [])
     apart = isinstance(problem.centre_distance, list) or problem.has_own_modules or helical
     return problem.most_stages if apart else 1
 
 
 def _choices(problem: GearTrainProblem, stage: int, modules: tuple[float, ...]) -> list[int]:
-    """Places of the modules from which a stage chooses."""
+    """List the places of the modules from which a stage chooses."""
     if problem.has_own_modules:
         return [stage]
     return list(range(len(modules)))

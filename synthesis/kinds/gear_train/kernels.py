@@ -3,11 +3,11 @@
 A train of k stages has drivers a₁...a_k and driven gears b₁...b_k; its ratio is N/D with integers N = Πb and D = Πa.
 
 The error against the target T = T_hi + T_lo (two floats) is e = |N − T D| / (T D). N and D are below 2⁵³, the product
-T_hi·D is split without rounding (Dekker), and N minus its head is exact where the two are near each other; so e is
-good to a few units of its own last place, however small, down to about 2⁻¹⁰⁰.
+T_hi·D is split without rounding (Dekker), and N minus its head is exact if the two are near each other; so e is
+accurate to a few units of its own last place, down to about 2⁻¹⁰⁰.
 
-The results are collected in a :class:`~synthesis.kinds.gear_train.shortlist.Found`: the best trains in order, as many
-as it has room for, and the least error of each size, from which the Pareto set follows. A train is decoded only if it
+The results are collected in a :class:`~synthesis.kinds.gear_train.shortlist.Found`: the best trains in order, up to
+its capacity, and the minimum error of each size, from which the Pareto set follows. A train is decoded only if it
 could enter one of the two.
 """
 
@@ -23,10 +23,10 @@ from synthesis.kinds.gear_train.shortlist import SAME, Floats, Found, enter, wor
 Gears = NDArray[np.int16]
 
 SPLITTER = 134217729.0
-"""2²⁷ + 1: times a float of 53 bits it parts it into two of 26 bits, whose products are exact (Veltkamp, Dekker)."""
+"""2²⁷ + 1: splits a float of 53 bits into two of 26 bits, whose products are exact (Veltkamp, Dekker)."""
 
 AGREED = 1e-13
-"""Share of a distance by which the ranges of coaxial meshes may miss one another in rounding."""
+"""Share of a distance by which the intervals of coaxial meshes may miss one another by rounding."""
 
 WINDOW_MARGIN = 1e-12
 """Share by which the window of errors is widened: rounding must not lose a train, and the order is exact later."""
@@ -34,9 +34,10 @@ WINDOW_MARGIN = 1e-12
 
 @njit(cache=True, nogil=True, inline="always")
 def error_of(n: int, d: int, target: float, rest: float) -> float:
-    """Relative error of the ratio n/d."""
+    """Return the relative error of the ratio n/d."""
     x, y = float(d), target
     p = x * y
+    # Dekker's product: x·y = p + low exactly, from the halves of both factors.
     c = SPLITTER * x
     xh = c - (c - x)
     c = SPLITTER * y
@@ -48,7 +49,7 @@ def error_of(n: int, d: int, target: float, rest: float) -> float:
 
 @njit(cache=True, nogil=True)
 def divisor(a: int, b: int) -> int:
-    """Greatest common divisor."""
+    """Return the greatest common divisor."""
     while b:
         a, b = b, a % b
     return a
@@ -56,7 +57,7 @@ def divisor(a: int, b: int) -> int:
 
 @njit(cache=True, nogil=True, inline="always")
 def _window(ranked: float, front: float, tolerance: float) -> float:
-    """Error up to which hits matter, a little wide: rounding must not lose one."""
+    """Return the error up to which hits matter, slightly widened: rounding must not lose one."""
     return min(max(ranked, front), tolerance) * (1.0 + WINDOW_MARGIN) + SAME
 
 
@@ -74,19 +75,20 @@ def match(
     rule: Rule,
     shortlist: Found,
 ) -> None:
-    """Meet in the middle: all drivers × all driven gears, for the sizes from ``from_size`` up to, without, ``to_size``.
+    """Meet in the middle: all drivers × all driven gears, for sizes from ``from_size`` up to and without ``to_size``.
 
-    The rows of ``drivers`` of size u are ``driver_starts[u]`` to ``driver_starts[u + 1]``, in the order of their
-    products; ``driven`` likewise. For each pair of sizes one pass over both lists meets every pair whose error could
-    matter.
+    The rows of ``drivers`` of size u are ``driver_starts[u]`` to ``driver_starts[u + 1]``, sorted by product;
+    ``driven`` likewise. For each pair of sizes one pass over both lists finds every pair whose error could matter.
     """
     teeth = np.zeros(3 * MOST_STAGES, np.int64)
     most_drivers, most_driven = len(driver_starts) - 2, len(driven_starts) - 2
+    # The Pareto front so far: a train must be nearer than all smaller ones to enter it.
     front = np.inf
     for s in range(min(from_size, len(shortlist.least_error))):
         front = min(front, shortlist.least_error[s])
     for size in range(from_size, to_size):
         for step in range(2 * size + 1 if rule.largest else size + 1):
+            # All pairs (u, v) with u + v = size, or with max(u, v) = size if the largest gear counts.
             u = min(step, size)
             v = (2 * size - step if step > size else size) if rule.largest else size - step
             if (
@@ -101,9 +103,11 @@ def match(
             for i in range(driver_starts[u], driver_starts[u + 1]):
                 d = driver_products[i]
                 wanted = rule.target * d
+                # Both lists rise, so that the nearest driven product only moves upward.
                 while middle < end and driven_products[middle] < wanted:
                     middle += 1
                 capacity = len(shortlist.error)
+                # From the nearest product outward, first downward, until the error leaves the window.
                 for upward in range(2):
                     j = middle if upward else middle - 1
                     while start <= j < end:
@@ -141,9 +145,9 @@ def match_all(
     rule: Rule,
     shortlist: Found,
 ) -> None:
-    """As :func:`match`, for all sizes from ``from_size`` up in one pass over both lists in the order of the products.
+    """Match like :func:`match`, for all sizes from ``from_size`` up in one pass over both lists sorted by product.
 
-    It meets what comes near enough for the least of these sizes, so that it is for when little does.
+    It meets every train near enough for the smallest of these sizes, so it is only efficient if those are few.
     """
     teeth = np.zeros(3 * MOST_STAGES, np.int64)
     capacity, middle = len(shortlist.error), 0
@@ -162,6 +166,7 @@ def match_all(
                 j = driven_order[at]
                 at += 1 if upward else -1
                 if rule.by_size:
+                    # By size, larger trains cannot enter a full shortlist.
                     full = shortlist.kept[0] == capacity and from_size > shortlist.size[capacity - 1]
                     ranked = 0.0 if full else np.inf
                 else:
@@ -192,12 +197,13 @@ def count_products(
     under: int,
     rule: Rule,
 ) -> int:
-    """How many trains have exactly the ratio over/under, a reduced fraction; ``driven`` is ordered by its products."""
+    """Count the trains with exactly the ratio over/under, a reduced fraction; ``driven`` is sorted by product."""
     teeth = np.zeros(3 * MOST_STAGES, np.int64)
     count = 0
-    # Without rules for meshes every pairing is allowed, and millions need no call.
+    # Without rules for meshes every pairing is allowed, which saves millions of calls.
     any_pairing = not rule.ordered and not rule.by_mesh
     for i in range(len(driver_products)):
+        # N/D = over/under needs D divisible by the reduced denominator.
         if driver_products[i] % under != 0:
             continue
         wanted = driver_products[i] // under * over
@@ -213,15 +219,16 @@ def count_products(
 
 @njit(cache=True, nogil=True)
 def tuples(values: Integers, starts: Integers, counts: Integers, ordered: bool, rows: Gears) -> int:
-    """All choices of one value for each stage; returns their number, and writes them while ``rows`` has room.
+    """Enumerate all choices of one value for each stage; return their number, and write as many as ``rows`` can hold.
 
-    Stage i chooses from ``values[starts[i]:starts[i + 1]]``. Not ``ordered``: rising, each multiset once. Where
-    ``counts`` is not empty a value t is taken at most ``counts[t]`` times.
+    Stage i chooses from ``values[starts[i]:starts[i + 1]]``. Without ``ordered`` the choices rise, each multiset once.
+    If ``counts`` is not empty a value t occurs at most ``counts[t]`` times.
     """
     k = len(starts) - 1
     place = np.zeros(k, np.int64)
     stage, number = 0, 0
     place[0] = starts[0]
+    # Depth-first search with an explicit stack: ``place[stage]`` is the current choice of each stage.
     while stage >= 0:
         if place[stage] >= starts[stage + 1]:
             stage -= 1
@@ -249,7 +256,7 @@ def tuples(values: Integers, starts: Integers, counts: Integers, ordered: bool, 
 
 @njit(cache=True, nogil=True)
 def agree(distances: Floats, place: Integers, k: int) -> bool:
-    """Whether k meshes have a distance in common: if so, an interval of one of them begins at such a distance."""
+    """Return whether k meshes have a common distance: if so, an interval of one of them begins at such a distance."""
     for i in range(k):
         for p in range(distances.shape[1]):
             distance, agreed = distances[place[i], p, 0], 0
@@ -281,16 +288,16 @@ def combine(
     shortlist: Found,
     tied: Integers,
 ) -> None:
-    """Trains of one mesh a:b from each stage's list, for the groups ``first`` up to, without, ``last``.
+    """Combine trains of one mesh a:b from each stage's list, for the groups from ``first`` up to and without ``last``.
 
-    In a group the stages' lists are ``groups[g, i]`` to ``groups[g, i + 1]``, in the order of the ratio b/a; without
-    ``rule.ordered`` they are one list, and every multiset is met once. All stages but one are enumerated and the
-    fitting meshes of the last are found by bisection. ``least_size`` of the groups must not fall. The meshes of a train
-    agree on a distance within one of the intervals ``distances[row]`` of each. ``coaxial``: the
-    pairing is what it is, and of the places of the meshes one choice counts; else only the pairing that ``pair_up``
-    would choose counts, so that gears are met once.
+    In a group the stages' lists are ``groups[g, i]`` to ``groups[g, i + 1]``, sorted by the ratio b/a; without
+    ``rule.ordered`` they are one list, and every multiset occurs once. All stages but one are enumerated and the
+    fitting meshes of the last are found by bisection. ``least_size`` of the groups must not decrease. The meshes of a
+    train agree on a distance within one of the intervals ``distances[row]`` of each. With ``coaxial`` the
+    pairing is fixed, and of the places of the meshes one choice counts; otherwise only the pairing that ``pair_up``
+    would choose counts, so that gears occur once.
 
-    With fractions in the rows of ``tied`` nothing is entered, but the trains of exactly these ratios are counted.
+    With fractions in the rows of ``tied`` nothing is entered; the trains of exactly these ratios are counted.
     """
     teeth, canonical = np.zeros(3 * MOST_STAGES, np.int64), np.zeros(3 * MOST_STAGES, np.int64)
     place = np.zeros(MOST_STAGES + 1, np.int64)
@@ -321,6 +328,7 @@ def combine(
                 so_far *= ratio[place[i]]
                 gears += a[place[i]] + b[place[i]]
                 widest = max(widest, a[place[i]], b[place[i]])
+            # The last stage must supply the rest of the ratio: bisect for it, then search outward on both sides.
             wanted = rule.target / so_far
             low = begin if rule.ordered or k == 1 else place[k - 2]
             middle, top = low, end
@@ -339,6 +347,7 @@ def combine(
                     else:
                         ranked = shortlist.error[capacity - 1] if full else np.inf
                     if len(tied) > 0:
+                        # Counting ties: exactly the error of the best train is of interest.
                         ranked = front = shortlist.error[0]
                     if abs(ratio[j] - wanted) > _window(ranked, front, rule.tolerance) * wanted:
                         break
@@ -359,6 +368,8 @@ def combine(
                             teeth[2 * MOST_STAGES + i] = mark[place[i]]
                         sound = agree(distances, place, k) and within_limits(teeth, k, rule)
                         if sound and not coaxial and not rule.ordered:
+                            # The canonical train has drivers and driven gears sorted: its best pairing must be the
+                            # present one.
                             for i in range(2 * MOST_STAGES):
                                 canonical[i] = teeth[i]
                             sort(canonical, 0, k)
@@ -380,7 +391,8 @@ def combine(
 
 @njit(cache=True, nogil=True)
 def sort(teeth: Integers, start: int, count: int) -> None:
-    """Put some of the numbers into rising order, in place."""
+    """Sort some of the numbers in place, in rising order."""
+    # Insertion sort: there are at most four numbers.
     for i in range(start + 1, start + count):
         value, j = teeth[i], i
         while j > start and teeth[j - 1] > value:
@@ -391,7 +403,7 @@ def sort(teeth: Integers, start: int, count: int) -> None:
 
 @njit(cache=True, nogil=True)
 def same_meshes(one: Integers, other: Integers, k: int) -> bool:
-    """Whether two trains have the same meshes in any order."""
+    """Return whether two trains have the same meshes in any order."""
     used = np.zeros(MOST_STAGES, np.bool_)
     for i in range(k):
         met = False

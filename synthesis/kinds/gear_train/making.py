@@ -1,4 +1,4 @@
-"""How a train of the search is made: its modules and shifts, and an idler where it turns the wrong way."""
+"""Construction of a train from the search: its modules and shifts, and an idler if it turns in the wrong direction."""
 
 from __future__ import annotations
 
@@ -15,11 +15,11 @@ from synthesis.model.gear_answer import OfGears, Ratio
 from synthesis.model.gear_stages import OF_TYPES, ring_addenda
 
 Known = dict[tuple[int, tuple[int, int]], list[Stage]]
-"""By the row of a stage and its teeth: the stage with every module that fits it."""
+"""Stages with every module that fits, by the row of a stage and its teeth."""
 
 
 def stages_of(problem: GearTrainProblem, task: Task, train: Train) -> list[Stage]:
-    """The meshes with their modules, and with their shifts where teeth are fitted."""
+    """Build the stages with their modules, and with their shifts if teeth are fitted."""
     if task.fit is not None:
         fitted = task.fit.fitted(*train)
         return [
@@ -28,6 +28,7 @@ def stages_of(problem: GearTrainProblem, task: Task, train: Train) -> list[Stage
         ]
     stages = []
     for number, ((driver, driven), mark) in enumerate(zip(train.meshes, train.marks, strict=True)):
+        # In a reverted train every stage chooses its module (the mark); otherwise the list gives one per stage.
         place = mark if problem.reverted else min(number, len(task.modules) - 1)
         plain = Stage(driver=driver, driven=driven, module=float(task.modules[place]))
         stages.append(_typed(problem, task, number, plain))
@@ -35,7 +36,7 @@ def stages_of(problem: GearTrainProblem, task: Task, train: Train) -> list[Stage
 
 
 def _typed(problem: GearTrainProblem, task: Task, number: int, stage: Stage) -> Stage:
-    """A stage, counted from 0, with what its statement tells of it, where stages are stated one by one."""
+    """Add the requested type and its values to a stage, counted from 0, if stages are given one by one."""
     if not task.stated:
         return stage
     stated = task.stated[number]
@@ -48,9 +49,9 @@ def _typed(problem: GearTrainProblem, task: Task, number: int, stage: Stage) -> 
 
 
 def choices_of(problem: GearTrainProblem, task: Task, train: Train, known: Known) -> list[list[Stage]]:
-    """The meshes with every module that each may have beside the others', the smallest module first.
+    """List the meshes with every module that fits beside the other meshes, the smallest module first.
 
-    ``known`` are those of stages with a distance of their own that were asked for before; it is written to.
+    ``known`` caches the stages with a distance of their own; it is written to.
     """
     fit = task.fit
     if fit is None or fit.shares_distance:
@@ -78,13 +79,13 @@ def _fitted(problem: GearTrainProblem, task: Task, number: int, mesh: tuple[int,
 
 
 def mechanism_of(problem: GearTrainProblem, task: Task, train: Train) -> GearTrainMechanism | None:
-    """The train with an idler where it turns the wrong way; None where no idler keeps the demands."""
+    """Build the mechanism, with an idler if the train turns in the wrong direction; None if no idler is feasible."""
     idlers = next(idler_choices(problem, task, train), None)
     return None if idlers is None else assembled(problem, train, stages_of(problem, task, train), idlers)
 
 
 def assembled(problem: GearTrainProblem, train: Train, stages: list[Stage], idlers: list[Idler]) -> GearTrainMechanism:
-    """The mechanism of a train's stages and idlers."""
+    """Assemble the mechanism of a train's stages and idlers."""
     return GearTrainMechanism(
         stages=stages,
         idlers=idlers,
@@ -94,18 +95,19 @@ def assembled(problem: GearTrainProblem, train: Train, stages: list[Stage], idle
 
 
 def sign_of(problem: GearTrainProblem, meshes: int) -> int:
-    """Sign of the ratio of a train of so many meshes, or of the stages that are stated.
+    """Return the sign of the ratio of a train with this number of meshes, or of the given stages.
 
-    Where shafts are not parallel it is that of rotations about their axes, as a mechanism tells them.
+    If shafts are not parallel it is the sign of rotations about their axes, as a mechanism reports them.
     """
     if problem.stages is None:
         return int((-1) ** meshes)
+    # A left-handed worm reverses the axis of its gear.
     opposite = sum(stage.sense < 0 or stage.hand == "left" for stage in problem.stages)
     return int((-1) ** opposite)
 
 
 def idler_choices(problem: GearTrainProblem, task: Task, train: Train) -> Iterator[list[Idler]]:
-    """The idlers that a train may have, the most fitting first: none where it turns as demanded, else one of them."""
+    """Yield the idlers that a train may have, the best first: none if it turns as required, else one of them."""
     if not needs_idler(problem, len(train.drivers)):
         yield []
         return
@@ -115,12 +117,13 @@ def idler_choices(problem: GearTrainProblem, task: Task, train: Train) -> Iterat
 
 
 def _idlers(problem: GearTrainProblem, task: Task, train: Train, coprime: bool) -> Iterator[Idler]:
-    """Idlers that keep the demands on meshes, from the most fitting.
+    """Yield idlers that keep the constraints on meshes, the best first.
 
-    Between the sizes of the two gears of a stage an idler never interferes if they do not with one another: it is no
-    larger a mate of the smaller and no smaller a mate of the larger. The gears of its stage need not be fit to mesh
-    with one another, those of the other stages have to. ``coprime``: all meshes without a common divisor.
+    An idler between the sizes of the two gears of a stage never interferes if they do not with one another: it is no
+    larger a mate of the smaller and no smaller a mate of the larger. The gears of its stage need not mesh
+    with one another, those of the other stages must. ``coprime``: all meshes without a common divisor.
     """
+    # Gears of the stock that the train does not use.
     spare = Counter(problem.stocked()) - Counter(train.drivers + train.driven)
     for number, (driver, driven) in enumerate(train.meshes, 1):
         others = [mesh for place, mesh in enumerate(train.meshes, 1) if place != number]

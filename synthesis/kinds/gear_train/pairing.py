@@ -1,4 +1,4 @@
-"""Which trains are candidates: the rule of a search, and how the gears of a train may be paired under it, compiled.
+"""Rules for candidate trains, and the permitted pairings of the gears of a train, compiled.
 
 A train is an array of a₁...a₄ b₁...b₄ (drivers and driven gears) and marks₁...₄ of the stages, 0 for no stage.
 """
@@ -15,16 +15,17 @@ from kinematics.compiling import njit
 Integers = NDArray[np.int64]
 
 MOST_STAGES = 4
+"""Maximum number of stages of a train."""
 
 
 class Rule(NamedTuple):
-    """What makes a train a candidate and how candidates are ranked.
+    """The constraints on a candidate train, and the ranking of candidates.
 
-    ``allowed[a, b]`` tells which meshes may be, where ``by_mesh``; ``stock[t]`` how many gears of t teeth there are,
-    where ``by_stock``; where ``by_stage``, stage i may have only those of ``of_stage[i]``. ``with_idler``: in one
-    stage, of the pairs ``idled``, an idler stands between the gears, and has to mesh soundly (``sound``) with both; of
-    a stock it takes one more gear. ``most_total`` bounds the sum of all teeth. ``ordered``: stages have ranges of their
-    own, of the place i of a train's teeth from ``least[i]`` to ``most[i]``. ``by_size``: the smallest trains first,
+    With ``by_mesh``, ``allowed[a, b]`` are the permitted meshes; with ``by_stock``, ``stock[t]`` is the number of gears
+    of t teeth; with ``by_stage``, stage i may only have the meshes of ``of_stage[i]``. ``with_idler``: in one
+    stage, with a pair from ``idled``, an idler is placed between the gears and must mesh soundly (``sound``) with both;
+    it uses one more gear of a stock. ``most_total`` bounds the sum of all teeth. ``ordered``: stages have ranges of
+    their own, for place i of a train's teeth from ``least[i]`` to ``most[i]``. ``by_size``: the smallest trains first,
     else the nearest. ``largest``: the size of a train is its largest gear, else the sum of all teeth. Gears change
     places only between stages of one ``likeness``.
     """
@@ -52,7 +53,7 @@ class Rule(NamedTuple):
 
 @njit(cache=True, nogil=True)
 def within_limits(teeth: Integers, k: int, rule: Rule) -> bool:
-    """Whether there are enough gears of each tooth number, and the sum of all teeth is small enough."""
+    """Return whether there are enough gears of each tooth number, and the sum of all teeth is small enough."""
     total = 0
     for i in range(k):
         total += teeth[i] + teeth[MOST_STAGES + i]
@@ -72,7 +73,7 @@ def within_limits(teeth: Integers, k: int, rule: Rule) -> bool:
 
 @njit(cache=True, nogil=True)
 def takes_idler(teeth: Integers, k: int, rule: Rule) -> bool:
-    """Whether an idler that there is can stand in a stage, and all other stages are allowed without one."""
+    """Return whether an available idler can be placed in a stage, with all other stages allowed without one."""
     for stage in range(k):
         a, b = teeth[stage], teeth[MOST_STAGES + stage]
         others = True
@@ -84,6 +85,7 @@ def takes_idler(teeth: Integers, k: int, rule: Rule) -> bool:
             return True
         for idler in range(len(rule.stock)):
             if rule.stock[idler] > 0 and rule.sound[a, idler] and rule.sound[idler, b]:
+                # The train itself may use up the gears that the idler would need.
                 spare = rule.stock[idler]
                 for j in range(k):
                     spare -= (teeth[j] == idler) + (teeth[MOST_STAGES + j] == idler)
@@ -94,7 +96,7 @@ def takes_idler(teeth: Integers, k: int, rule: Rule) -> bool:
 
 @njit(cache=True, nogil=True)
 def may_be(teeth: Integers, k: int, rule: Rule) -> bool:
-    """Whether all stages of a train, as its gears are paired, are allowed."""
+    """Return whether all stages of a train are allowed in its present pairing."""
     if not rule.by_mesh:
         return True
     for i in range(k):
@@ -108,7 +110,7 @@ def may_be(teeth: Integers, k: int, rule: Rule) -> bool:
 
 @njit(cache=True, nogil=True)
 def widest(teeth: Integers, k: int) -> float:
-    """The largest stage ratio, larger over smaller gear; equal for equal ratios, which are rounded once."""
+    """Return the largest stage ratio, larger over smaller gear; equal ratios are exactly equal, being rounded once."""
     ratio = 1.0
     for i in range(k):
         a, b = teeth[i], teeth[MOST_STAGES + i]
@@ -118,7 +120,7 @@ def widest(teeth: Integers, k: int) -> float:
 
 @njit(cache=True, nogil=True)
 def orders(k: int) -> int:
-    """How many orders k things have."""
+    """Return the number of orders of k things."""
     count = 1
     for i in range(2, k + 1):
         count *= i
@@ -127,9 +129,10 @@ def orders(k: int) -> int:
 
 @njit(cache=True, nogil=True)
 def rearrange(teeth: Integers, start: int, k: int, order: int, moved: Integers) -> None:
-    """Write k of the numbers, from ``start`` on, in one of their orders; 0 is the one that they have."""
+    """Write k of the numbers, from ``start`` on, in one of their orders; order 0 is the present one."""
     for i in range(k):
         moved[start + i] = teeth[start + i]
+    # The digits of the order in the factorial number system select the numbers one by one.
     for i in range(k):
         rest = orders(k - 1 - i)
         chosen, order = start + i + order // rest, order % rest
@@ -141,7 +144,7 @@ def rearrange(teeth: Integers, start: int, k: int, order: int, moved: Integers) 
 
 @njit(cache=True, nogil=True)
 def in_ranges(teeth: Integers, start: int, k: int, rule: Rule) -> bool:
-    """Whether the drivers, or the driven gears, of a train lie within the ranges of their places."""
+    """Return whether the drivers, or the driven gears, of a train lie within the ranges of their places."""
     inside = True
     for i in range(start, start + k):
         inside = inside and rule.least[i] <= teeth[i] <= rule.most[i]
@@ -150,7 +153,7 @@ def in_ranges(teeth: Integers, start: int, k: int, rule: Rule) -> bool:
 
 @njit(cache=True, nogil=True)
 def among_alike(k: int, order: int, likeness: Integers, moved: Integers) -> bool:
-    """Whether an order moves things between stages that are alike only; ``moved`` is written to."""
+    """Return whether an order only moves things between like stages; ``moved`` is written to."""
     moved[:k] = likeness[:k]
     rearrange(likeness, 0, k, order, moved)
     alike = True
@@ -161,9 +164,9 @@ def among_alike(k: int, order: int, likeness: Integers, moved: Integers) -> bool
 
 @njit(cache=True, nogil=True)
 def foremost(teeth: Integers, k: int, rule: Rule, coaxial: bool) -> bool:
-    """Whether a train stands for all that have its gears in other places (``coaxial``: its meshes).
+    """Return whether a train represents all trains with its gears in other places (``coaxial``: its meshes).
 
-    Of those within the ranges it has the smallest largest stage ratio, and of such ones the smallest first numbers.
+    Among those within the ranges it has the smallest largest stage ratio, and then the smallest first numbers.
     """
     if not may_be(teeth, k, rule):
         return False
@@ -174,6 +177,7 @@ def foremost(teeth: Integers, k: int, rule: Rule, coaxial: bool) -> bool:
         if not among_alike(k, order, rule.likeness, alike) or not in_ranges(other, 0, k, rule):
             continue
         rearrange(teeth, 2 * MOST_STAGES, k, order, other)
+        # Coaxial meshes move as a whole; otherwise drivers and driven gears move independently.
         for mates in range(order if coaxial else 0, order + 1 if coaxial else count):
             rearrange(teeth, MOST_STAGES, k, mates, other)
             if not among_alike(k, mates, rule.likeness, alike):
@@ -185,6 +189,7 @@ def foremost(teeth: Integers, k: int, rule: Rule, coaxial: bool) -> bool:
                 continue
             if ratio < own:
                 return False
+            # Among equal ratios the lexicographically smallest arrangement represents the rest.
             for i in range(len(teeth)):
                 if other[i] != teeth[i]:
                     if other[i] < teeth[i]:
@@ -195,15 +200,16 @@ def foremost(teeth: Integers, k: int, rule: Rule, coaxial: bool) -> bool:
 
 @njit(cache=True, nogil=True)
 def pair_up(teeth: Integers, k: int, rule: Rule) -> bool:
-    """Bring the driven gears of a train into the order of the smallest largest stage ratio; False: none is allowed.
+    """Reorder the driven gears of a train for the smallest largest stage ratio; return False if no order is allowed.
 
-    Without ranges by place both come in rising order, and of all pairings that has the smallest largest stage ratio;
-    where it is not allowed the others are tried. With ranges every order comes by itself, and the foremost is taken.
+    Without ranges by place both come in rising order, the pairing with the smallest largest stage ratio;
+    if that is not allowed the others are tried. With ranges every order comes separately, and only the foremost counts.
     """
     if rule.ordered:
         return foremost(teeth, k, rule, False)
     if may_be(teeth, k, rule):
         return True
+    # The present order was not allowed: try all others.
     trial, best = teeth.copy(), teeth.copy()
     least = np.inf
     for order in range(1, orders(k)):

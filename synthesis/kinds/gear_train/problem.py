@@ -14,9 +14,9 @@ from synthesis.model.statement import Contradiction
 class GearTrainProblem(StatedTrain):
     """An ordinary gear train of one to four stages for a speed ratio, proven to be the best.
 
-    Every train within the ranges, or of the gears in stock, is covered in exact arithmetic. The answer is the trains in
-    the order of the ranking, the number of ties, and the Pareto set of error against size. Stages are of external spur
-    gears, or stated one by one: external, internal, helical, bevel, worm.
+    Every train within the ranges, or of the gears in stock, is covered in exact arithmetic. The answer contains the
+    best trains in the order of the ranking, the number of ties, and the Pareto set of error against size. Stages are
+    external spur gears, or given one by one: external, internal, helical, bevel, worm.
     """
 
     model_config = ConfigDict(
@@ -96,5 +96,5 @@ class GearTrainProblem(StatedTrain):
     kind: Literal["gear_train"]
 
     def contradictions(self) -> list[Contradiction]:
-        """Faults that no single field shows, and searches that would take too long."""
+        """Return contradictions that no single field shows, and searches that would take too long."""
         return contradictions_of(self)

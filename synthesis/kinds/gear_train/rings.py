@@ -1,8 +1,8 @@
-"""Which pinions run in which rings.
+"""Pinions that run in rings.
 
-A pinion runs in a ring if the ring, its teeth shortened so that they stay off the pinion's fillet, still passes the
-pinion's tips, is not reached in its own fillet, and keeps a pair of teeth in contact; and if the cutter that shapes
-the ring passes its tips too, so that it takes nothing off them.
+A pinion runs in a ring under these conditions: the ring, its teeth shortened to clear the pinion's fillet, still passes
+the pinion's tips, is not reached in its own fillet, and keeps a pair of teeth in contact; and the cutter that shapes
+the ring also passes its tips, so that it does not trim them.
 """
 
 from __future__ import annotations
@@ -17,17 +17,18 @@ from synthesis.model.mesh_limits import Real
 Pairs = NDArray[np.bool_]
 
 LEAST_CONTACT = 1.0
-"""Contact ratio of a ring with its pinion: with less there are moments in which no teeth touch."""
+"""Contact ratio of a ring with its pinion: with less there are moments without contact."""
 
 SHORTEST = 0.3
-"""Addendum of a ring's shortened teeth at least, modules."""
+"""Minimum addendum of a ring's shortened teeth, modules."""
 
 
 def run_in_rings(pinion: Real, ring: Real, angle: float) -> Pairs:
-    """Whether pinions run in rings, by their teeth; ``angle``: of pressure, radians. The arrays are of one shape."""
+    """Return which pinions run in which rings, by their teeth; ``angle`` is the pressure angle, radians."""
     found = np.zeros(pinion.shape, np.bool_)
     inside = (pinion > 0) & (ring > pinion)
     one, two = pinion[inside], ring[inside]
+    # Invalid pairs would only produce warnings and NaN.
     with np.errstate(invalid="ignore", divide="ignore"):
         short = mesh_limits.ring_addendum(one, two, angle, fillets=True)
         sound = (short >= SHORTEST) & mesh_limits.tips_clear(one, two, short, angle)
@@ -39,7 +40,7 @@ def run_in_rings(pinion: Real, ring: Real, angle: float) -> Pairs:
 
 
 def no_ring_runs(stage: StatedStage, angle: float) -> bool:
-    """Whether none of the rings that an internal stage states runs with a pinion that it states."""
+    """Return whether none of the given rings of an internal stage runs with a given pinion."""
     pairs = np.array(stage.given_pairs(), np.float64)
     if not len(pairs):
         return False

@@ -1,11 +1,11 @@
-"""The search for the best gear trains, with its proof.
+"""Search for the best gear trains, with its proof.
 
 Every number of stages is searched in turn, with its own
-:class:`~synthesis.kinds.gear_train.candidates.Candidates`. The compiled loops keep a few more trains than the number
-requested, and these are ordered in exact arithmetic. Where two errors differ by less than double precision resolves,
-the loops could have dropped a train that belongs to the answer; then the search is repeated with a larger capacity.
+:class:`~synthesis.kinds.gear_train.candidates.Candidates`. The compiled loops keep a few more trains than
+requested, and these are sorted in exact arithmetic. If two errors differ by less than double precision resolves,
+the loops may have dropped a train that belongs to the answer; then the search is repeated with a larger capacity.
 
-Without a stated tolerance the search begins within :data:`~synthesis.kinds.gear_train.stated_train.NEAR`, which leaves
+Without a given tolerance the search begins within :data:`~synthesis.kinds.gear_train.stated_train.NEAR`, which leaves
 the loops the fewest trains. All errors are searched only if that finds fewer trains than requested and the ratio is
 within reach.
 """
@@ -32,16 +32,16 @@ from synthesis.model.ratio_target import Target
 from synthesis.outcome.exhaustive import pareto
 
 ZERO_WINDOW = 1e-15
-"""Added to a tolerance, so that rounding loses no exact train where the tolerance is zero."""
+"""Addition to a tolerance, so that rounding loses no exact train at a tolerance of zero."""
 
 SPARE = 54
-"""Trains kept beyond those wanted."""
+"""Number of trains kept beyond the requested ones."""
 
 TOLD_APART = 1e-11
-"""Errors that differ by more than this share of themselves were surely ordered rightly by the loops."""
+"""Relative difference of errors above which the loops surely sorted them correctly."""
 
 PARTS = 25
-"""Parts of a search between which progress is told."""
+"""Number of parts of a search between which progress is reported."""
 
 Progress = Callable[[float, str], None]
 
@@ -55,7 +55,7 @@ class Train(NamedTuple):
 
     @property
     def ratio(self) -> Fraction:
-        """Size of input speed over output speed."""
+        """Magnitude of input speed over output speed."""
         return Fraction(math.prod(self.driven), math.prod(self.drivers))
 
     @property
@@ -64,13 +64,13 @@ class Train(NamedTuple):
         return list(zip(self.drivers, self.driven, strict=True))
 
     def size(self, largest: bool) -> int:
-        """Largest gear, or sum of all teeth."""
+        """Return the largest gear, or the sum of all teeth."""
         gears = self.drivers + self.driven
         return max(gears) if largest else sum(gears)
 
 
 class Outcome(NamedTuple):
-    """What a search found: ``trains`` in the order of the ranking, ``pareto`` by rising size."""
+    """Result of a search: ``trains`` in the order of the ranking, ``pareto`` by rising size."""
 
     trains: list[Train]
     pareto: list[Train]
@@ -81,36 +81,40 @@ class Outcome(NamedTuple):
 
 
 def search(task: Task, tolerance: Fraction | None, wanted: int, progress: Progress) -> Outcome:
-    """The ``wanted`` best trains of a task.
+    """Find the ``wanted`` best trains of a task.
 
     Parameters
     ----------
     tolerance : Fraction or None
-        Largest relative error; None: any, for a target within reach.
+        Largest relative error; None: any error, for a target within reach.
 
     Returns
     -------
     Outcome
-        ``reach``: bounds of the ratios that the meshes permit, None where there is no train at all. ``nearest``: the
-        nearest train of all where none is within the tolerance but the target is within reach.
+        ``reach``: bounds of the ratios that the meshes permit, None if there is no train at all. ``nearest``: the
+        nearest train of all, if none is within the tolerance but the target is within reach.
     """
+    # Numbers of stages without any train have no reach.
     reach = {k: _reach(task, k) for k in task.stage_counts}
     spans = [span for span in reach.values() if span is not None]
     whole = (min(low for low, _ in spans), max(high for _, high in spans)) if spans else None
     near = float(NEAR) if tolerance is None else float(tolerance) * (1.0 + WINDOW_MARGIN) + ZERO_WINDOW
+    # Numbers of stages that cannot come near the target are not searched.
     counts = tuple(k for k, span in reach.items() if span is not None and _reaches(task.target, span, near))
     outcome = _searched(task, counts, near, tolerance, wanted, progress)
     nearest = None
+    # Without a given tolerance too few trains also justify a wider search.
     few = not outcome.trains or (tolerance is None and len(outcome.trains) < wanted)
     if few and whole is not None and _reaches(task.target, whole, 0.0):
         every = tuple(k for k, span in reach.items() if span is not None)
-        progress(0.5, "few trains are that near; searching the nearest")
+        progress(0.5, "few trains are within the tolerance; searching for the nearest")
         anyhow = _searched(task, every, UNLIMITED, None, wanted, _silent)
         if tolerance is not None:
             nearest = anyhow.trains[0] if anyhow.trains else None
         elif outcome.trains:
             outcome = outcome._replace(trains=anyhow.trains)
         elif anyhow.trains:
+            # A target outside the attainable ratios gets no trains: the nearest would only be an extreme.
             whole = _attained(task, every, whole, [train.ratio for train in anyhow.trains])
             outcome = anyhow if _reaches(task.target, whole, 0.0) else outcome
     combinations = sum(_covered(task, k) for k in task.stage_counts)
@@ -126,7 +130,7 @@ class _Pass(NamedTuple):
 def _searched(
     task: Task, counts: tuple[int, ...], near: float, tolerance: Fraction | None, wanted: int, progress: Progress
 ) -> _Pass:
-    """One search of all errors up to ``near``."""
+    """Search all trains with errors up to ``near``."""
     capacity = wanted + SPARE
     rules = [task.rule(near, k) for k in counts]
     listed = [_candidates(task, k, near) for k in counts]
@@ -139,6 +143,7 @@ def _searched(
         for k, candidates, rule in zip(counts, listed, rules, strict=True):
             parts = np.linspace(0, candidates.steps, min(PARTS, candidates.steps) + 1).astype(int)
             for first, last in itertools.pairwise(parts):
+                # Later parts only hold larger trains: stop once none of them can enter.
                 if candidates.least(int(first)) > _last_size(task, shortlist) or candidates.finish(
                     int(first), rule, shortlist
                 ):
@@ -149,11 +154,12 @@ def _searched(
             done += candidates.combinations
         trains = [_train(row) for row in shortlist.teeth[: shortlist.kept[0]]]
         kept = [train for train in trains if tolerance is None or task.target.within(train.ratio, tolerance)]
-        # Trains that only the rounded tolerance let in may have taken the places of others.
+        # Trains admitted only by the rounded tolerance may have displaced others.
         crowded = len(kept) < len(trains) == capacity
         trains = order(task, kept)
         if not crowded and not _may_have_dropped(task, trains, shortlist, wanted):
             break
+        # A larger shortlist surely contains the trains in doubt.
         capacity *= 4
     ties = 0
     if trains:
@@ -168,12 +174,13 @@ def _searched(
 
 
 def _last_size(task: Task, shortlist: Found) -> float:
-    """Size beyond which no train can enter what is found: infinite until as many exact trains as are kept are met."""
+    """Return the size beyond which no train can enter: infinite until the shortlist is full of exact trains."""
     full = shortlist.kept[0] == len(shortlist.error)
     exact = task.target.rational
     if not full or exact is None or shortlist.least_error.min() > NOISE:
         return math.inf
     rows = shortlist.teeth if not task.by_size else shortlist.least_teeth[shortlist.least_error <= NOISE]
+    # By size one exact train ends the search of errors; by error all kept ones must be exact.
     settled = (all if not task.by_size else any)(_train(row).ratio == exact for row in rows)
     return float(shortlist.size.max()) if settled else math.inf
 
@@ -187,7 +194,7 @@ def _candidates(task: Task, k: int, near: float) -> Candidates:
 
 
 def _covered(task: Task, k: int) -> int:
-    """Number of trains of k stages that the search covers, however it excludes them."""
+    """Return the number of trains of k stages that the search covers, including those excluded by bounds."""
     if task.reverted:
         return coaxial_meshes(task, k).combinations
     return math.prod(_choices(task, values[:k], k) for values in (task.drivers, task.driven))
@@ -200,7 +207,7 @@ def _choices(task: Task, values: tuple[Integers, ...], k: int) -> int:
 
 
 def _reach(task: Task, k: int) -> tuple[Fraction, Fraction] | None:
-    """Bounds of the ratios of k stages; None where there is no train."""
+    """Return bounds of the ratios of k stages; None if there is no train."""
     if task.reverted:
         meshes = coaxial_meshes(task, k)
         if not meshes.steps:
@@ -210,7 +217,9 @@ def _reach(task: Task, k: int) -> tuple[Fraction, Fraction] | None:
         return None
     low, high = (math.prod(ends, start=Fraction(1)) for ends in zip(*spans, strict=True))
     if len(task.stock):
+        # The gears of the stock in rising order.
         gears = np.repeat(np.arange(len(task.stock)), task.stock).tolist()
+        # The extreme products of k gears bound the ratio of a stock, apart from the pairing rules.
         most = Fraction(math.prod(gears[-k:]), math.prod(gears[:k]))
         low, high = max(low, 1 / most), min(high, most)
     return low, high
@@ -219,10 +228,10 @@ def _reach(task: Task, k: int) -> tuple[Fraction, Fraction] | None:
 def _attained(
     task: Task, counts: tuple[int, ...], bounds: tuple[Fraction, Fraction], met: list[Fraction]
 ) -> tuple[Fraction, Fraction]:
-    """Bounds of the ratios, with that end replaced by a train's own ratio beyond which the target may lie.
+    """Tighten the bounds of the ratios by a train's own ratio, at an end beyond which the target may lie.
 
-    Meshes may each be allowed that no train has together: of a stock, of one distance, or of too many teeth. The train
-    nearest to a bound is the one whose ratio is the end; it is looked for where no train lies beyond the target.
+    Meshes may each be allowed although no train has them together: with a stock, a common distance, or too many teeth.
+    The train nearest to a bound gives the end; it is searched if no train lies beyond the target.
     """
     low, high = bounds
     extreme = partial(_searched, counts=counts, near=UNLIMITED, tolerance=None, wanted=1, progress=_silent)
@@ -234,7 +243,7 @@ def _attained(
 
 
 def _silent(fraction: float, message: str) -> None:
-    """Progress of a search beside the one that is told of."""
+    """Ignore the progress of a secondary search."""
 
 
 def _reaches(target: Target, span: tuple[Fraction, Fraction], near: float) -> bool:
@@ -250,10 +259,10 @@ def _train(row: Integers) -> Train:
 
 
 def order(task: Task, trains: Iterable[Train], hunting: Container[Train] = ()) -> list[Train]:
-    """Trains in the order of the ranking, by exact arithmetic.
+    """Sort trains in the order of the ranking, by exact arithmetic.
 
-    After error and size fewer stages, a smaller largest gear and the tooth numbers make the order definite.
-    Of trains of equal error (ranked by size: of equal size and error) those of ``hunting`` come first.
+    After error and size, fewer stages, a smaller largest gear and the tooth numbers make the order unique.
+    Among trains of equal error (ranked by size: of equal size and error) those of ``hunting`` come first.
     """
     near = cmp_to_key(task.target.nearer)
 
@@ -267,7 +276,7 @@ def order(task: Task, trains: Iterable[Train], hunting: Container[Train] = ()) -
 
 
 def _may_have_dropped(task: Task, trains: list[Train], shortlist: Found, wanted: int) -> bool:
-    """Whether a train that was left out could belong among the first ``wanted``."""
+    """Return whether a dropped train could belong among the first ``wanted``."""
     if shortlist.kept[0] < len(shortlist.error) or not trains:
         return False
     last = trains[min(wanted, len(trains)) - 1]
@@ -275,24 +284,25 @@ def _may_have_dropped(task: Task, trains: list[Train], shortlist: Found, wanted:
     if task.by_size and last.size(task.largest) != dropped.size(task.largest):
         return False
     if task.target.nearer(last.ratio, dropped.ratio) == 0:
-        # Truly tied in error: the loops order such trains by size, which is exact; equal in both are interchangeable.
+        # Exactly tied in error: the loops sort such trains by size, which is exact; equal in both, either may stay.
         return False
     error, limit = (abs(task.target.relative_error(train.ratio)) for train in (last, dropped))
     return abs(limit - error) <= TOLD_APART * limit
 
 
 def _equally_near(task: Task, ratio: Fraction) -> list[Fraction]:
-    """The ratio, and the one on the other side of a rational target, if its numbers are not beyond all trains."""
+    """List the ratio, and its mirror image at a rational target if its numbers are within reach of the trains."""
     target = task.target.rational
     if target is None or target == ratio:
         return [ratio]
+    # Equal error on the other side of the target.
     mirrored = 2 * target - ratio
     possible = mirrored > 0 and max(mirrored.numerator, mirrored.denominator) <= task.most_teeth**MOST_STAGES
     return [ratio, mirrored] if possible else [ratio]
 
 
 def _pareto(task: Task, shortlist: Found, tolerance: Fraction | None) -> list[Train]:
-    """The nearest train of each size that is nearer than all smaller ones."""
+    """Select the nearest train of each size that is nearer than all smaller ones."""
     near = cmp_to_key(task.target.nearer)
     trains = (_train(row) for row in shortlist.least_teeth[np.isfinite(shortlist.least_error)])
     within = NEAR if tolerance is None else tolerance

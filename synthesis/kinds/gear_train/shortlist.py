@@ -1,7 +1,7 @@
-"""What a search for tooth numbers has met so far: the best trains in order, and the least error of each size, compiled.
+"""Intermediate results of a tooth number search: the best trains, and the minimum error of each size, compiled.
 
-Two errors that differ by less than :data:`SAME` of themselves are taken for a tie here; the callers order what comes
-out in exact arithmetic.
+Two errors that differ by a share of less than :data:`SAME` count as a tie here; the callers sort the results in exact
+arithmetic.
 """
 
 from __future__ import annotations
@@ -17,16 +17,16 @@ from synthesis.kinds.gear_train.pairing import MOST_STAGES, Integers
 Floats = NDArray[np.float64]
 
 SAME = 1e-14
-"""Errors closer than this share of themselves count as tied in the loops: some thirty roundings."""
+"""Relative difference up to which errors count as tied in the loops: some thirty roundings."""
 
 NOISE = 1e-28
-"""Error that a train of exactly the target's ratio can show: the target's two floats are good to 2⁻¹⁰⁵."""
+"""Error that a train of exactly the target's ratio can show: the target's two floats are accurate to 2⁻¹⁰⁵."""
 
 
 class Found(NamedTuple):
-    """What a search has met so far; arrays that the kernels write to.
+    """Intermediate results of a search, as arrays that the kernels write to.
 
-    ``kept[0]`` trains stand in ``error``, ``size``, ``teeth`` in the order of the ranking; ``least_error[s]`` belongs
+    ``kept[0]`` trains are in ``error``, ``size``, ``teeth`` in the order of the ranking; ``least_error[s]`` belongs
     to the train ``least_teeth[s]`` of size s. Teeth are a₁...a₄ b₁...b₄ and marks₁...₄ of the stages, 0 for no stage.
     """
 
@@ -40,7 +40,7 @@ class Found(NamedTuple):
 
     @classmethod
     def empty(cls, capacity: int, largest_size: int) -> Found:
-        """Room for ``capacity`` best trains and for sizes up to ``largest_size``."""
+        """Create space for ``capacity`` best trains and for sizes up to ``largest_size``."""
         return cls(
             np.zeros(1, np.int64),
             np.full(capacity, np.inf),
@@ -54,7 +54,7 @@ class Found(NamedTuple):
 
 @njit(cache=True, nogil=True)
 def before(e: float, s: int, other_e: float, other_s: int, by_size: bool) -> bool:
-    """Whether a train of error e and size s ranks before another."""
+    """Return whether a train of error e and size s ranks before another."""
     if by_size and s != other_s:
         return s < other_s
     slack = SAME * (e + other_e) + NOISE
@@ -65,7 +65,7 @@ def before(e: float, s: int, other_e: float, other_s: int, by_size: bool) -> boo
 
 @njit(cache=True, nogil=True)
 def worth(e: float, s: int, shortlist: Found, by_size: bool) -> bool:
-    """Whether a train would enter the best or improve on its size."""
+    """Return whether a train would enter the best or improve on its size."""
     capacity, count = len(shortlist.error), shortlist.kept[0]
     if count < capacity or before(e, s, shortlist.error[capacity - 1], shortlist.size[capacity - 1], by_size):
         return True
@@ -74,7 +74,7 @@ def worth(e: float, s: int, shortlist: Found, by_size: bool) -> bool:
 
 @njit(cache=True, nogil=True)
 def enter(e: float, s: int, teeth: Integers, shortlist: Found, by_size: bool) -> None:
-    """Take a train in."""
+    """Insert a train."""
     if e < shortlist.least_error[s]:
         shortlist.least_error[s] = e
         for i in range(len(teeth)):
@@ -82,6 +82,7 @@ def enter(e: float, s: int, teeth: Integers, shortlist: Found, by_size: bool) ->
     capacity, count = len(shortlist.error), shortlist.kept[0]
     if count == capacity and not before(e, s, shortlist.error[capacity - 1], shortlist.size[capacity - 1], by_size):
         return
+    # Shift worse trains down by one place; the last one drops out when the list is full.
     place = min(count, capacity - 1)
     while place > 0 and before(e, s, shortlist.error[place - 1], shortlist.size[place - 1], by_size):
         shortlist.error[place] = shortlist.error[place - 1]

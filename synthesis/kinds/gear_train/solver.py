@@ -1,4 +1,4 @@
-"""Ordinary gear trains: the search, the idlers, and the verification of what is returned."""
+"""Ordinary gear trains: the search, the idlers, and the verification of the designs."""
 
 from __future__ import annotations
 
@@ -23,11 +23,11 @@ from synthesis.model.gear_strength import carrying_words, too_weak_words
 from synthesis.model.kind import Progress
 from synthesis.outcome.sifting import Sifting
 
-SEARCHED = "Which distances suit a pair is searched in steps of the sum of shifts, not proven."
+SEARCHED = "Feasible centre distances are searched in steps of the sum of shifts, so this is not proven."
 
 
 def solve_gear_train(problem: GearTrainProblem, progress: Progress) -> GearTrainResult:
-    """The best gear trains for a ratio, proven by an exhaustive search."""
+    """Find the best gear trains for a ratio, proven by an exhaustive search."""
     progress(0.0, "listing gears")
     task = gear_train_task(problem, coprime=problem.hunting_tooth == "require")
     sifting = Sifting[GearTrainDesign](problem, undriven="gears")
@@ -40,6 +40,7 @@ def solve_gear_train(problem: GearTrainProblem, progress: Progress) -> GearTrain
         made = [one.mechanism for one in borne.borne]
     for mechanism in made:
         sifting.add("idler" if mechanism is None else verify(problem, mechanism))
+    # A rejected candidate could hide a better design than those returned.
     complete = not sifting.rejected and not problem.searches_distances
     if borne is not None:
         sifting.reject("strength", borne.failed)
@@ -70,7 +71,7 @@ def _front(problem: GearTrainProblem, task: Task, outcome: Outcome) -> list[Pare
 
 
 def _borne_front(problem: GearTrainProblem, task: Task, borne: Judged) -> list[ParetoTrain]:
-    """The Pareto set of the trains that carry the power, as they carry it."""
+    """Build the Pareto set of the trains that carry the power, in the form that carries it."""
     return [
         _pareto_train(task, one.train, one.mechanism.stages, one.mechanism.ratio, one.mechanism.idlers)
         for one in borne.front
@@ -90,20 +91,20 @@ def _pareto_train(
 
 
 def _ranked(problem: GearTrainProblem, task: Task, wanted: int, progress: Progress) -> Outcome:
-    """The best so many trains of the search; those with hunting teeth first among equals where they are preferred."""
+    """Return the best trains of the search; among equals those with hunting teeth come first if preferred."""
     outcome = search(task, problem.exact_tolerance, wanted, progress)
     if problem.hunting_tooth != "prefer" or not outcome.trains:
         return outcome
     progress(0.0, "searching trains with hunting teeth")
     hunting = search(gear_train_task(problem, coprime=True), problem.exact_tolerance, wanted, progress)
-    # Of the same gears in another pairing, the one with hunting teeth stands for both.
+    # Two pairings of the same gears are represented by the one with hunting teeth.
     met = {_gears(task, train) for train in hunting.trains}
     trains = [train for train in outcome.trains if _gears(task, train) not in met]
     return outcome._replace(trains=order(task, [*trains, *hunting.trains], set(hunting.trains))[:wanted])
 
 
 def _gears(task: Task, train: Train) -> tuple[object, ...]:
-    """What tells a train from others: its meshes where the pairing is part of it, else its drivers and driven gears."""
+    """Return a train's identity: its meshes if the pairing is part of it, else its drivers and driven gears."""
     alike = task.likeness[: len(train.drivers)]
     if task.reverted:
         return tuple(sorted(zip(*train, alike, strict=True)))
@@ -118,14 +119,14 @@ def _least_error(task: Task, outcome: Outcome) -> float | None:
 def _summary(
     problem: GearTrainProblem, task: Task, outcome: Outcome, accepted: list[GearTrainDesign], borne: Judged | None
 ) -> str:
-    """One or two sentences: what was found, or why there is nothing."""
+    """Write one or two sentences: the result, or the reason why there is none."""
     number = grouped(outcome.combinations)
     if accepted and not task.by_size:
         best = accepted[0]
         stages = ", ".join(f"{s.driver}:{s.driven}" for s in best.mechanism.stages)
         error = best.metrics.relative_error
-        how = "exactly the ratio" if error == 0.0 else f"a relative error of {error:.3g}"
-        tied = "no other train is as near" if outcome.ties == 1 else f"{grouped(outcome.ties)} trains are as near"
+        how = "exactly the requested ratio" if error == 0.0 else f"a relative error of {error:.3g}"
+        tied = "no other train is as close" if outcome.ties == 1 else f"{grouped(outcome.ties)} trains are as close"
         if borne is not None:
             return f"{stages} has {how}. {carrying_words(borne.failed)} {_scope(problem, number)}"
         return f"{stages} has {how}; {tied}. {_scope(problem, number)}"
@@ -143,37 +144,37 @@ def _summary(
     if borne is not None and borne.failed and problem.strength is not None:
         return too_weak_words(problem.strength, borne.failed, borne.every, borne.strongest)
     if problem.searches_distances:
-        return f"No such train was found: {_why_none(problem, task, outcome)}. {SEARCHED}"
-    return f"There is no such train: {_why_none(problem, task, outcome)}."
+        return f"No train found: {_why_none(problem, task, outcome)}. {SEARCHED}"
+    return f"No such train exists: {_why_none(problem, task, outcome)}."
 
 
 def _scope(problem: GearTrainProblem, number: str) -> str:
-    """What the answer is the best of, and whether that is proven."""
+    """Describe the scope of the answer: the trains among which it is the best, and whether that is proven."""
     if problem.searches_distances:
-        return f"It is the best of all {number} trains of the tooth numbers stated. {SEARCHED}"
+        return f"It is the best of all {number} trains with the given tooth numbers. {SEARCHED}"
     own = any(stage.limits(name) is not None for stage in problem.stages or [] for name in GEARS)
-    besides = ", the gears that stages state standing as they are" if own and problem.teeth is not None else ""
-    return f"Proven over all {number} trains of the tooth numbers stated{besides}."
+    besides = ", with the gears given by stages unchanged" if own and problem.teeth is not None else ""
+    return f"Proven over all {number} trains with the given tooth numbers{besides}."
 
 
 def _why_none(problem: GearTrainProblem, task: Task, outcome: Outcome) -> str:
-    """The reason why the search is empty, as the end of a sentence."""
+    """Explain why the search is empty, as the end of a sentence."""
     if not task.stage_counts:
         if problem.reverted and problem.demanded_sign < 0 and problem.most_stages < 3:
-            return "a reverted train of two stages turns input and output alike; allow three stages"
+            return "in a reverted train of two stages, input and output turn in the same direction; allow three stages"
         if problem.stock is not None:
-            return f"a stock of {sum(problem.stocked().values())} gears is too small for a train of the kind asked"
-        return "no number of stages fits the demands"
+            return f"a stock of {sum(problem.stocked().values())} gears is too small for such a train"
+        return "no number of stages satisfies the constraints"
     if outcome.reach is None:
-        return "no two gears make a stage that keeps the demands"
+        return "no two gears form a stage that satisfies the constraints"
     low, high = outcome.reach
     if outcome.nearest is not None:
         error = task.target.relative_error(outcome.nearest.ratio)
         meshes = ", ".join(f"{a}:{b}" for a, b in outcome.nearest.meshes)
-        return f"the nearest of all, {meshes}, has a relative error of {error:.3g}, beyond the tolerance"
+        return f"the nearest train, {meshes}, has a relative error of {error:.3g}, which exceeds the tolerance"
     if task.target.compared(high) > 0 or task.target.compared(low) < 0:
         return (
-            f"the ratio {float(task.target):.6g} is out of reach, the meshes allowed give {float(low):.6g} to "
+            f"the ratio {float(task.target):.6g} is out of reach; the permitted meshes give {float(low):.6g} to "
             f"{float(high):.6g} in {max(task.stage_counts)} stages"
         )
-    return "no gears keep all demands together"
+    return "no combination of gears satisfies all constraints"

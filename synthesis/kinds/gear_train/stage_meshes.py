@@ -1,8 +1,8 @@
-"""Which gears may mesh in stages that are stated one by one, and at which distances such meshes stand.
+"""Permitted meshes of stages that are given one by one, and the distances of such meshes.
 
-The pitch cones of bevel gears have to be less than flat, and rings are those of
-:func:`~synthesis.kinds.gear_train.rings.run_in_rings`. Whether other gears dig into one another is looked at where that
-is refused.
+The pitch cones of bevel gears must have less than a flat angle, and rings are checked by
+:func:`~synthesis.kinds.gear_train.rings.run_in_rings`. Interference between other gears is only checked if it is
+refused.
 """
 
 from __future__ import annotations
@@ -22,11 +22,11 @@ from synthesis.kinds.gear_train.rings import Pairs, run_in_rings
 from synthesis.kinds.gear_train.stated_stages import StatedStage
 
 SAME_DISTANCE = 1e-13
-"""Share of a distance within which those of stages with different helix angles are one, in rounding."""
+"""Relative difference up to which distances of stages with different helix angles are equal, to rounding."""
 
 
 def sound_meshes(problem: GearTrainProblem, stage: StatedStage, most: int) -> Pairs:
-    """Which gears of up to ``most`` teeth may be driver and driven gear of a stage; of shape (most + 1, most + 1)."""
+    """Return the permitted pairs of driver and driven gear of a stage, up to ``most`` teeth; (most + 1, most + 1)."""
     if stage.type == "internal":
         return _in_rings(problem, stage, most)
     if stage.type == "bevel":
@@ -37,12 +37,13 @@ def sound_meshes(problem: GearTrainProblem, stage: StatedStage, most: int) -> Pa
 
 
 def _outside(problem: GearTrainProblem, stage: StatedStage, most: int) -> Pairs:
-    """Spur and helical gears; of fitted ones the fit tells which are sound."""
+    """Return permitted pairs of spur and helical gears; fitted ones are checked by the fit."""
     a, b = np.ogrid[: most + 1, : most + 1]
     sound = np.minimum(a, b) > 0
     if problem.interference == "report" or problem.is_fitted:
         return sound
     beta = math.radians(stage.helix_angle or 0.0)
+    # Interference is decided in the transverse plane, in which the addendum shrinks by cos β.
     angle = math.atan(math.tan(math.radians(problem.pressure_angle)) / math.cos(beta))
     largest = [largest_gear(n, angle, math.cos(beta)) if n else 0 for n in range(most + 1)]
     bound = np.array([most if n is None else n for n in largest])
@@ -56,7 +57,7 @@ def _in_rings(problem: GearTrainProblem, stage: StatedStage, most: int) -> Pairs
 
 
 def _bevel(problem: GearTrainProblem, stage: StatedStage, most: int) -> Pairs:
-    """Pairs that have cones; of the teeth asked for alone, as each is made."""
+    """Return pairs that have cones; only given teeth are checked, since each pair is constructed."""
     sigma = math.radians(stage.or_usual("shaft_angle"))
     found = np.zeros((most + 1, most + 1), np.bool_)
     for driver, driven in stage.given_pairs():
@@ -80,7 +81,7 @@ def _worms(problem: GearTrainProblem, stage: StatedStage, most: int) -> Pairs:
 def distance_keys(
     stages: Sequence[StatedStage], pitch: Integers, stage: Integers, a: Integers, b: Integers
 ) -> Integers:
-    """Whole numbers that are equal for meshes of equal distance, without shift.
+    """Compute whole numbers that are equal for meshes of equal distance without shift.
 
     Parameters
     ----------
@@ -90,10 +91,13 @@ def distance_keys(
     internal = np.array([one.type == "internal" for one in stages])[stage]
     whole = pitch * np.where(internal, np.abs(b - a), a + b)
     angles = np.abs(np.array([one.helix_angle or 0.0 for one in stages]))
+    # Equal helix angles scale all distances alike, so that integers suffice.
     if (angles == angles[0]).all():
         return np.asarray(whole, np.int64)
+    # A helical pair's distance is m (a + b) / (2 cos β).
     apart = whole / np.cos(np.radians(angles))[stage]
     order = np.argsort(apart, kind="stable")
+    # Sorted distances that differ by more than rounding begin a new key.
     new = np.diff(apart[order], prepend=-1.0) > SAME_DISTANCE * apart[order]
     keys = np.empty(len(apart), np.int64)
     keys[order] = np.cumsum(new)

@@ -1,4 +1,4 @@
-"""Stages that are stated one by one: of which type each is, and which of its gears are given."""
+"""Stages that are given one by one: the type of each, and its given gears."""
 
 from __future__ import annotations
 
@@ -13,10 +13,10 @@ from synthesis.model.gear_statement import FEWEST_TEETH, MOST_TEETH
 from synthesis.model.statement import Count, Range
 
 MOST_GIVEN = 12_000
-"""Pairs of gears of a bevel or worm stage, of which each is made, at most."""
+"""Maximum number of gear pairs of a bevel or worm stage; each pair is constructed."""
 
 KEPT_APART = ("face_width",)
-"""Fields that do not make stages unlike, as the gears do not: those of stages that are alike may change places."""
+"""Fields that, like the gears, do not make stages unlike: like stages may exchange their gears."""
 
 GEARS: tuple[Literal["driver"], Literal["driven"]] = ("driver", "driven")
 """The gears of a stage, in the order of the power."""
@@ -33,93 +33,99 @@ class StageTeethRange(Range):
 
 
 class StatedStage(StageForm):
-    """One stage of a train: its type, what belongs to that, and the gears that are given."""
+    """One stage of a train: its type, the values of that type, and its given gears."""
 
     type: StageKind = Field(description=StageForm.model_fields["type"].description)
     ring: Literal["driver", "driven"] | None = Field(
-        default=None, description="Which gear of an internal stage is the ring; the driven one where left out."
+        default=None, description="The gear of an internal stage that is the ring; by default the driven one."
     )
     driver: StageTeeth | StageTeethRange | None = Field(
         default=None,
-        description="Teeth of the driving gear, or a range of them, in place of `teeth`; of a worm its threads, 1 to "
-        f"{MOST_THREADS}. Bevel and worm stages need it.",
+        description="Teeth of the driving gear, or a range of them, in place of `teeth`; for a worm its threads, 1 to "
+        f"{MOST_THREADS}. Required for bevel and worm stages.",
     )
     driven: StageTeeth | StageTeethRange | None = Field(
-        default=None, description="Teeth of the driven gear, likewise. Bevel and worm stages need it."
+        default=None, description="Teeth of the driven gear, likewise. Required for bevel and worm stages."
     )
 
     @property
     def is_parallel(self) -> bool:
-        """Whether its shafts are parallel."""
+        """True if its shafts are parallel."""
         return self.type not in CROSSING
 
     @property
     def sense(self) -> int:
-        """How its shafts turn: +1 alike, −1 opposite ways; 0 where they are not parallel."""
+        """Relative sense of its shafts: +1 same, −1 opposite; 0 if they are not parallel."""
         if not self.is_parallel:
             return 0
         return 1 if self.type == "internal" else -1
 
     @property
     def likeness(self) -> tuple[Any, ...]:
-        """What stages have in common whose gears may change places, whether or not what is usual is written."""
+        """Common values of stages whose gears may change places; explicit and default values are equal."""
         ring = (self.ring or "driven") if self.type == "internal" else None
         return (self.type, ring, *(self.or_usual(name) for name in OF_TYPES if name not in KEPT_APART))
 
     def limits(self, name: Literal["driver", "driven"]) -> tuple[int, int] | None:
-        """Fewest and most teeth of a gear, where they are stated here."""
+        """Return the fewest and most teeth of a gear, if they are given here."""
         stated = getattr(self, name)
         if stated is None:
             return None
         return (stated.min, stated.max) if isinstance(stated, StageTeethRange) else (stated, stated)
 
     def fewest_teeth(self, pressure_angle: float, rounding: float) -> int:
-        """Fewest teeth that a rack does not undercut, 2 cos β / sin² φ_t rounded up; ``pressure_angle`` in degrees."""
+        """Return the fewest teeth without undercut by a rack, 2 cos β / sin² φ_t rounded up; degrees."""
         beta = math.radians(self.helix_angle or 0.0)
         transverse = math.atan(math.tan(math.radians(pressure_angle)) / math.cos(beta))
         return math.ceil(2.0 * math.cos(beta) / math.sin(transverse) ** 2 * (1.0 - rounding))
 
     def faults(self) -> list[tuple[str, str]]:
-        """What contradicts itself, by the path below the stage."""
+        """Return contradictions, by the path below the stage."""
         faults = self.faults_of_type()
         if self.ring is not None and self.type != "internal":
-            faults.append(("/ring", "only an internal stage has a ring; leave it out"))
+            faults.append(("/ring", "only an internal stage has a ring; omit it"))
         if self.type == "internal":
             faults += self._wrong_ring()
         for name, least, most in self._bounds():
             limits = self.limits(name)
             if limits is None:
                 if not self.is_parallel:
-                    faults.append((f"/{name}", f"state it; a stage that is {self.type} is given"))
+                    faults.append((f"/{name}", f"required for a {self.type} stage"))
                 continue
             if limits[0] < least or limits[1] > most:
                 of = "threads" if most == MOST_THREADS else "teeth"
                 faults.append((f"/{name}", f"expected {least} to {most} {of}"))
         if not self.is_parallel and self._pairs() > MOST_GIVEN:
             faults.append(
-                ("/driven", f"more than {MOST_GIVEN} pairs of a stage that is {self.type}; narrow the ranges")
+                ("/driven", f"more than {MOST_GIVEN} pairs of gears for a {self.type} stage; narrow the ranges")
             )
         return faults
 
     def _wrong_ring(self) -> list[tuple[str, str]]:
-        """Whether no ring that is stated here has more teeth than any pinion that is."""
+        """Check that some given ring has more teeth than some given pinion."""
         pinion, ring = self.limits("driver"), self.limits("driven")
         if self.ring == "driver":
             pinion, ring = ring, pinion
         if pinion is None or ring is None or ring[1] > pinion[0]:
             return []
         which = self.ring or "driven"
-        return [("", f"the {which} gear is the ring, which has more teeth than its pinion; `ring` states which it is")]
+        return [
+            (
+                "",
+                f"the {which} gear is the ring and needs more teeth than its pinion; set `ring` if it is the "
+                "other gear",
+            )
+        ]
 
     def given_pairs(self) -> list[tuple[int, int]]:
-        """The pairs of driver and driven gear, where both are stated here and they are few; otherwise none."""
+        """List the pairs of driver and driven gear, if both are given here and they are few; otherwise none."""
         one, two = self.limits("driver"), self.limits("driven")
         if one is None or two is None or self._pairs() > MOST_GIVEN:
             return []
         return [(a, b) for a in range(one[0], one[1] + 1) for b in range(two[0], two[1] + 1)]
 
     def _pairs(self) -> int:
-        """How many pairs the ranges that are stated here leave."""
+        """Return the number of pairs within the ranges given here."""
         limits = self.limits("driver"), self.limits("driven")
         return math.prod(high - low + 1 for low, high in (one for one in limits if one is not None))
 
@@ -132,5 +138,5 @@ class StatedStage(StageForm):
 
 
 def sense_of(stages: list[StatedStage]) -> int:
-    """How input and output of stages turn: +1 alike, −1 opposite ways; 0 where the shafts are not all parallel."""
+    """Return the relative sense of input and output: +1 same, −1 opposite; 0 if not all shafts are parallel."""
     return math.prod(stage.sense for stage in stages)

@@ -1,6 +1,6 @@
-"""What is asked of a gear train: the fields of its problem, and what follows from them.
+"""Requirements on a gear train: the fields of its problem, and the values that follow from them.
 
-The problem of the kind adds its name, its examples, and what contradicts itself.
+The problem of the kind adds its name, its examples, and its contradictions.
 """
 
 from __future__ import annotations
@@ -30,98 +30,102 @@ from synthesis.model.ratio_target import Target, decimal, parse_target
 from synthesis.model.statement import Count, Flag, PositiveLength, Range, StatedProblem, Statement
 
 FINEST_PITCHES = 10**9
-"""Modules are compared as whole multiples of their common measure, at most so many of it."""
+"""Modules are compared as whole multiples of their common measure; this is the largest multiple."""
 
 ROUNDING = 1e-12
 """Share by which a limit of teeth is lowered before it is rounded up: at 30° it is 8, not the 9 of a rounded sine."""
 
 NEAR = Fraction(1, 100)
-"""Relative error up to which trains are of interest where no tolerance is stated: those of the Pareto set, and those
-among which the smallest are sought. Of all trains whatever their error the smallest would be no answer to a ratio."""
+"""Relative error up to which trains are of interest if no tolerance is given: those of the Pareto set, and those among
+which the smallest are sought. The smallest of all trains, with any error, would be no answer to a ratio."""
 
 DEFAULT_MOST_TEETH = 100
+"""Maximum number of teeth if none is given."""
 
 USUAL_STAGES = 3
-"""Stages of a train at most, where nothing is said of them."""
+"""Maximum number of stages of a train if none is given."""
 
 USUAL_SHIFT = (-0.5, 1.0)
-"""Profile shifts, in modules, that a stated centre distance may call for where no limits are stated."""
+"""Profile shifts, in modules, permitted for a given centre distance if no limits are given."""
 
 USUAL_CONTACT_RATIO, USUAL_TIP_THICKNESS = 1.2, 0.25
-"""Least contact ratio, and least thickness of the tips in modules, of teeth that are fitted to a distance."""
+"""Minimum contact ratio, and minimum tip thickness in modules, of teeth that are fitted to a distance."""
 
 
 class TeethRange(Range):
     """Fewest and most teeth of a gear."""
 
     min: ToothNumber | None = Field(
-        default=None, description="Left out: the fewest that no mate can undercut at the pressure angle (18 at 20°)."
+        default=None,
+        description="Default: the fewest teeth that no mate can undercut at the pressure angle (18 at 20°).",
     )
     max: ToothNumber = DEFAULT_MOST_TEETH
 
 
 class StockedGear(Statement):
-    """A gear in stock, and how many there are of it."""
+    """A gear in stock, and the number of such gears."""
 
     teeth: ToothNumber
     count: Annotated[Count, Field(ge=1, le=100)] = 1
 
 
 class StatedTrain(StatedProblem):
-    """The demands on an ordinary gear train of one to four stages for a speed ratio."""
+    """The constraints on an ordinary gear train of one to four stages for a speed ratio."""
 
     ratio: ExactRatio = Field(
-        description="Input speed over output speed; negative: they turn in opposite directions. A number is taken as "
-        "the decimal that is written; a text is kept exact: 127/50, pi, e, sqrt(2), products and quotients of them."
+        description="Input speed over output speed; negative: opposite directions. A number is interpreted as the "
+        "decimal that is written; text is exact: 127/50, pi, e, sqrt(2), products and quotients of them."
     )
     direction: Literal["any", "same", "opposite"] = Field(
         default="any",
-        description="How input and output turn. With `any` a positive ratio states the size only and no idler is used. "
-        "An idler has teeth within the ranges of the other gears, or is one more gear of the stock; of its stage the "
-        "two meshes with it keep the demands on meshes, and driver and driven gear the limit of the stage ratio.",
+        description="Relative direction of input and output. With `any` a positive ratio only gives the magnitude and "
+        "no "
+        "idler is used. An idler has teeth within the ranges of the other gears, or is one more gear of the stock; in "
+        "its stage the two meshes with it satisfy the mesh constraints, and driver and driven gear the stage ratio "
+        "limit.",
     )
     max_stages: Annotated[Count, Field(ge=1, le=4)] | None = Field(
-        default=None, description=f"{USUAL_STAGES} where left out; not beside `stages`."
+        default=None, description=f"Default {USUAL_STAGES}; not together with `stages`."
     )
     stages: list[StatedStage] | None = Field(
         default=None,
         min_length=1,
         max_length=4,
         description="The stages from the input on, each with its type, in place of `max_stages`: a train has all of "
-        "them, "
-        "in this order, and no idlers. Only trains of parallel shafts have a direction. Where `teeth` has no `min`, "
-        "helical gears have the fewest that no rack undercuts in their normal plane.",
+        "them, in this order, and no idlers. Only trains of parallel shafts have a direction. If `teeth` has no `min`, "
+        "helical gears have at least the teeth that no rack undercuts in their normal plane.",
     )
     teeth: TeethRange | Annotated[list[TeethRange], Field(min_length=2, max_length=8)] | None = Field(
         default=None,
         description="Range of tooth numbers; or one range for each position: driver and driven gear of stage 1, 2, ... "
-        "Gears that a stage states stand as they are; the range of their position has to hold them. "
-        f"Left out, without a stock: the fewest that no mate can undercut to {DEFAULT_MOST_TEETH}.",
+        "Gears given by a stage are unchanged; the range of their position must contain them. Default without a "
+        f"stock: from the fewest teeth that no mate can undercut to {DEFAULT_MOST_TEETH}.",
     )
     stock: list[ToothNumber | StockedGear] | None = Field(
         default=None,
         min_length=1,
         max_length=500,
-        description="The gears that there are, in place of `teeth`; a number that stands twice is two gears.",
+        description="The available gears, in place of `teeth`; a number listed twice means two gears.",
     )
     max_stage_ratio: Annotated[float, Field(strict=True, ge=1.0, le=1e6)] | None = Field(
-        default=None, description="Larger over smaller gear of every stage, at most."
+        default=None, description="Maximum ratio of larger over smaller gear in every stage."
     )
     max_total_teeth: Annotated[Count, Field(ge=6, le=8 * MOST_TEETH)] | None = Field(
-        default=None, description="Sum of the teeth of all drivers and driven gears, at most."
+        default=None, description="Maximum sum of the teeth of all drivers and driven gears."
     )
     hunting_tooth: Literal["any", "prefer", "require"] = Field(
         default="any",
-        description="Whether the teeth of every mesh shall have no common divisor, so that each tooth meets every "
-        "other; `prefer` puts such trains first among those of equal error (or equal size and error).",
+        description="Whether the teeth of every mesh must have no common divisor, so that each tooth meets every "
+        "other; "
+        "`prefer` ranks such trains first among those of equal error (or equal size and error).",
     )
     reverted: Flag = Field(
         default=False, description="Every stage has the same centre distance, so that output and input can be coaxial."
     )
     module: Module | Annotated[list[Module], Field(min_length=1, max_length=8)] | None = Field(
         default=None,
-        description="Module in length units, 1 if left out; a list: for a reverted train what every stage may choose "
-        "from, otherwise the modules of stage 1, 2, ...",
+        description="Module in length units, default 1; a list: for a reverted train the choices of every stage, "
+        "otherwise the modules of stage 1, 2, ...",
     )
     diametral_pitch: Annotated[Pitch, INVERSE_LENGTH] | None = Field(
         default=None, description="Teeth per length unit of pitch diameter, in place of the module."
@@ -131,66 +135,70 @@ class StatedTrain(StatedProblem):
         min_length=1,
         max_length=8,
         description="Modules from which every stage may choose, reverted or not, in place of `module`. With this field "
-        "or one of the four that follow, the teeth of every mesh are fitted: only meshes count that a profile shift "
+        "or one of the next four, the teeth of every mesh are fitted: only meshes count that a profile shift "
         "within its limits makes sound.",
     )
     centre_distance: PositiveLength | DistanceRange | Annotated[list[PositiveLength], Field(max_length=4)] | None = (
         Field(
             default=None,
-            description="Of every stage: one distance, or the least and the greatest; or a list of the distances of "
-            "stage 1, 2, ... The profile shifts give it without play. Such trains have no idlers.",
+            description="Centre distance of every stage: one distance, or a minimum and a maximum; or a list of the "
+            "distances of stage 1, 2, ... The profile shifts make the distance free of play. Such trains have no "
+            "idlers.",
         )
     )
     shift: ShiftRange | None = Field(
         default=None,
-        description=f"Profile shift of every gear, in modules. Left out: {USUAL_SHIFT[0]} to {USUAL_SHIFT[1]} with a "
-        "stated centre distance, none without.",
+        description=f"Profile shift of every gear, in modules. Default: {USUAL_SHIFT[0]} to {USUAL_SHIFT[1]} with a "
+        "given centre distance, none without.",
     )
     min_contact_ratio: ContactRatio | None = Field(
-        default=None, description=f"Of every mesh; {USUAL_CONTACT_RATIO} where teeth are fitted."
+        default=None,
+        description=f"Minimum contact ratio of every mesh; default {USUAL_CONTACT_RATIO} if teeth are fitted.",
     )
     min_tip_thickness: TipThickness | None = Field(
-        default=None, description=f"Of every gear, in modules; {USUAL_TIP_THICKNESS} where teeth are fitted."
+        default=None,
+        description=f"Minimum tip thickness of every gear, in modules; default {USUAL_TIP_THICKNESS} if teeth are "
+        "fitted.",
     )
-    pressure_angle: PressureAngle = Field(default=20.0, description="Degrees.")
+    pressure_angle: PressureAngle = Field(default=20.0, description="Pressure angle, degrees.")
     strength: CarriedPower | None = Field(
         default=None,
-        description="What every mesh has to carry, under the torque and at the speed of its stage: each stage has the "
-        "least of its modules with which a face of at most `max_face_width` modules does, and the least such face; "
-        "trains that do not are not returned. A first estimate.",
+        description="Power that every mesh must carry, at the torque and speed of its stage. Each stage gets the "
+        "smallest of its modules for which a face of at most `max_face_width` modules suffices, and the smallest such "
+        "face; trains that fail are not returned. A first estimate.",
     )
     interference: Literal["report", "refuse"] = Field(
         default="report",
-        description="Whether meshes in which one gear would dig into the other are only told (with the profile shift "
-        "that would save them) or not used at all.",
+        description="Whether interfering meshes are only reported (with the profile shift that would avoid the "
+        "interference) or not used at all.",
     )
     tolerance: Annotated[float, Field(strict=True, ge=0.0, lt=1.0)] | None = Field(
         default=None,
-        description="Relative error of the ratio, at most. Left out: the nearest trains, whatever their error, for a "
-        "ratio within reach.",
+        description="Maximum relative error of the ratio. Default: the nearest trains with any error, for a ratio "
+        "within reach.",
     )
     rank_by: Literal["error", "size"] = Field(
         default="error",
-        description="`error`: the nearest first, of equally near ones the smallest. `size`: of the trains within the "
-        "tolerance, or within 1 % where none is stated, the smallest first.",
+        description="`error`: the nearest first, and the smallest of equally near ones. `size`: the smallest first, of "
+        "the trains within the tolerance, or within 1 % by default.",
     )
     size: Literal["total_teeth", "largest_gear"] = "total_teeth"
 
     @property
     def target(self) -> Target:
-        """Size of the demanded ratio, exact."""
+        """Magnitude of the requested ratio, exact."""
         return parse_target(self.ratio)[1]
 
     @property
     def demanded_sign(self) -> int:
-        """+1: input and output turn alike; −1: opposite; 0: any."""
+        """Required direction: +1 same, −1 opposite, 0 any."""
         if parse_target(self.ratio)[0] < 0:
             return -1
         return {"any": 0, "same": 1, "opposite": -1}[self.direction]
 
     @property
     def exact_tolerance(self) -> Fraction | None:
-        """The tolerance as the decimal that was written; :data:`NEAR` for the smallest trains if none was."""
+        """The tolerance as the decimal that was written; by default :data:`NEAR` for the smallest trains."""
         if self.tolerance is None:
             return NEAR if self.rank_by == "size" else None
         return decimal(self.tolerance)
@@ -207,30 +215,32 @@ class StatedTrain(StatedProblem):
 
     @property
     def most_stages(self) -> int:
-        """Stages of a train at most; exactly so many where they are stated one by one."""
+        """Maximum number of stages of a train; the exact number if they are given one by one."""
         if self.stages is not None:
             return len(self.stages)
         return USUAL_STAGES if self.max_stages is None else self.max_stages
 
     @property
     def are_parallel(self) -> bool:
-        """Whether all shafts are parallel."""
+        """True if all shafts are parallel."""
         return all(stage.is_parallel for stage in self.stages or [])
 
     def position_ranges(self) -> list[tuple[int, int]]:
-        """Fewest and most teeth of driver and driven gear of each stage up to ``most_stages``."""
+        """Return the fewest and most teeth of driver and driven gear of each stage up to ``most_stages``."""
+        # A single range holds for the drivers and driven gears of all stages.
         stated = self.ranges if isinstance(self.teeth, list) else self.ranges * (2 * self.most_stages)
         if self.stages is None:
             return [(self.fewest_teeth if r.min is None else r.min, r.max) for r in stated]
         limits = []
         for stage, (one, two) in zip(self.stages, zip(stated[0::2], stated[1::2], strict=True), strict=True):
+            # Limits of the stage take precedence over the ranges of the problem.
             fewest = stage.fewest_teeth(self.pressure_angle, ROUNDING)
             usual = [(fewest if r.min is None else r.min, r.max) for r in (one, two)]
             limits += [stage.limits("driver") or usual[0], stage.limits("driven") or usual[1]]
         return limits
 
     def stocked(self) -> dict[int, int]:
-        """How many gears of each tooth number are in stock."""
+        """Count the gears of each tooth number in stock."""
         counts: dict[int, int] = {}
         for gear in self.stock or []:
             teeth, count = (gear.teeth, gear.count) if isinstance(gear, StockedGear) else (gear, 1)
@@ -239,13 +249,13 @@ class StatedTrain(StatedProblem):
 
     @property
     def fitting_fields(self) -> list[str]:
-        """The fields that are stated of those with which teeth are fitted."""
+        """The given fields that require fitted teeth."""
         names = "modules", "centre_distance", "shift", "min_contact_ratio", "min_tip_thickness"
         return [name for name in names if getattr(self, name) is not None]
 
     @property
     def is_fitted(self) -> bool:
-        """Whether the teeth of every mesh are fitted to a distance, or have to be sound without."""
+        """True if the teeth of every mesh are fitted to a distance, or must be sound without one."""
         return bool(self.fitting_fields)
 
     @property
@@ -257,16 +267,16 @@ class StatedTrain(StatedProblem):
 
     @property
     def least_contact_ratio(self) -> float:
-        """The contact ratio that a fitted mesh has at least."""
+        """Minimum contact ratio of a fitted mesh."""
         return USUAL_CONTACT_RATIO if self.min_contact_ratio is None else self.min_contact_ratio
 
     @property
     def least_tip_thickness(self) -> float:
-        """The thickness that the tips of a fitted mesh have at least, modules."""
+        """Minimum tip thickness of a fitted mesh, modules."""
         return USUAL_TIP_THICKNESS if self.min_tip_thickness is None else self.min_tip_thickness
 
     def distance_limits(self, stage: int) -> tuple[float, float]:
-        """Least and greatest centre distance of a stage, counted from 0; 0 and infinity where none is stated."""
+        """Return the least and greatest centre distance of a stage, counted from 0; 0 and infinity by default."""
         stated = self.centre_distance
         if isinstance(stated, DistanceRange):
             return stated.min, stated.max
@@ -277,30 +287,31 @@ class StatedTrain(StatedProblem):
 
     @property
     def has_own_modules(self) -> bool:
-        """Whether the list of modules is one for each stage, not a choice."""
+        """True if the list of modules is one for each stage, not a choice."""
         return isinstance(self.module, list) and not self.reverted
 
     def modules_of(self, stage: int) -> list[float]:
-        """The modules that a stage, counted from 0, may have."""
+        """List the modules that a stage, counted from 0, may have."""
         listed = [float(module) for module in self.exact_modules()]
         return [listed[stage]] if self.has_own_modules else listed
 
     @property
     def shares_distance(self) -> bool:
-        """Whether fitted stages have to agree on a distance that is not stated as one number."""
+        """True if fitted stages must agree on a distance that is not given as one number."""
         return self.is_fitted and self.reverted and not isinstance(self.centre_distance, float)
 
     @property
     def searches_distances(self) -> bool:
-        """Whether the sums of shifts that suit a pair are searched in steps, not decided: no distance is given.
+        """True if the sums of shifts that suit a pair are searched in steps: no single distance is given.
 
-        At a stated distance, or without shift, a pair has one sum, and whether it suits is decided.
+        At a given distance, or without shift, a pair has one sum, and its suitability is decided exactly.
         """
+        # A range leaves the distance open.
         open_distance = self.centre_distance is None or isinstance(self.centre_distance, DistanceRange)
         return self.is_fitted and open_distance and self.shift_limits != (0.0, 0.0)
 
     def exact_modules(self) -> list[Fraction]:
-        """The stated modules, exact."""
+        """List the given modules, exact."""
         if self.modules is not None:
             return [decimal(module) for module in self.modules]
         if self.diametral_pitch is not None:
@@ -309,8 +320,9 @@ class StatedTrain(StatedProblem):
         return [decimal(module) for module in stated]
 
     def pitches(self) -> list[int]:
-        """The modules as the smallest whole numbers that are in proportion to them."""
+        """Return the modules as the smallest whole numbers in the same proportion."""
         modules = self.exact_modules()
+        # Bring all modules to a common denominator, then reduce.
         unit = math.lcm(*(module.denominator for module in modules))
         whole = [int(module * unit) for module in modules]
         return [pitch // math.gcd(*whole) for pitch in whole]

@@ -1,4 +1,4 @@
-"""A gear-train problem as the search takes it: tooth numbers by position, allowed meshes, exact modules."""
+"""A gear-train problem in the form of the search: tooth numbers by position, allowed meshes, exact modules."""
 
 from __future__ import annotations
 
@@ -20,23 +20,23 @@ from synthesis.model.gear_statement import MOST_TEETH
 from synthesis.model.ratio_target import Target, decimal
 
 UNLIMITED = 1e9
-"""A tolerance that no train misses: ratios and targets are within 1e9 of 1."""
+"""A tolerance that every train meets: ratios and targets are within a factor of 1e9 of 1."""
 
 
 @dataclass(frozen=True, eq=False)
 class Task:
-    """What is searched.
+    """Input of the search.
 
-    ``drivers[i]``, ``driven[i]`` are the tooth numbers of stage i, rising; where stages are ``ordered`` they have their
-    own, else the same. ``stock[t]`` is empty without a stock. ``pitches`` are the modules
-    in a unit in which all are whole numbers. ``fit`` tells of meshes whose teeth are fitted to their distances.
+    ``drivers[i]``, ``driven[i]`` are the tooth numbers of stage i, rising; ``ordered`` stages have their own,
+    otherwise all have the same. ``stock[t]`` is empty without a stock. ``pitches`` are the modules
+    in a unit in which all are whole numbers. ``fit`` holds the meshes whose teeth are fitted to their distances.
 
-    Of stages that are ``stated`` one by one, ``own[i]`` tells which gears may mesh in stage i, unless all are alike,
-    and gears change places only between stages of one ``likeness``.
+    For stages that are given one by one (``stated``), ``own[i]`` are the permitted meshes of stage i, unless all are
+    alike, and gears change places only between stages of one ``likeness``.
 
     Trains of ``idler_counts`` stages need one of the ``idlers`` in a stage. Its driver and driven gear do not mesh with
-    one another, only with the idler: ``sound[a, b]`` tells which gears may mesh, ``idled[a, b]`` between which an idler
-    can stand, ``allowed[a, b]`` which may be a stage without one.
+    one another, only with the idler: ``sound[a, b]`` are the permitted meshes, ``idled[a, b]`` the pairs between which
+    an idler can be placed, ``allowed[a, b]`` the pairs that form a stage without one.
     """
 
     target: Target
@@ -68,22 +68,22 @@ class Task:
         return len(self.allowed) - 1
 
     def meshes(self, stage: int) -> NDArray[np.bool_]:
-        """Which gears may mesh in a stage, counted from 0."""
+        """Return the permitted meshes of a stage, counted from 0."""
         sound = self.own[stage] if self.own else self.allowed
         return sound if self.fit is None else np.asarray(sound & (self.fit.module[self.fit.stage(stage)] >= 0))
 
     def distance_keys(self, mark: Integers, stage: Integers, a: Integers, b: Integers) -> Integers:
-        """Whole numbers that are equal for meshes a:b of equal distance; ``mark``: the place of the module of each."""
+        """Compute whole numbers that are equal for meshes a:b of equal distance; ``mark``: the module's place."""
         if not self.stated:
             return np.asarray(self.pitches[mark] * (a + b))
         return distance_keys(self.stated, self.pitches[mark], stage, a, b)
 
     def stages(self, k: int, stage: int) -> NDArray[np.bool_]:
-        """Driver and driven gear that a stage, counted from 0, of a train of k stages may have."""
+        """Return the permitted pairs of driver and driven gear of a stage, counted from 0, in a train of k stages."""
         return self.allowed | self.idled if k in self.idler_counts else self.meshes(stage)
 
     def rule(self, tolerance: float, k: int) -> Rule:
-        """The task for the compiled loops over trains of k stages."""
+        """Build the rule of the compiled loops over trains of k stages."""
         head, rest = self.target.parts()
         stocked = len(self.stock) > 0
         by_stage = (self.fit is not None and self.fit.by_stage) or bool(self.own)
@@ -112,7 +112,7 @@ class Task:
 
 
 def _in_places(numbers: list[int]) -> Integers:
-    """One number for each driver and driven gear, as the teeth of a train stand in the compiled loops."""
+    """Place one number for each driver and driven gear in the order of the compiled loops."""
     placed = np.zeros(2 * MOST_STAGES, np.int64)
     k = len(numbers) // 2
     placed[:k], placed[MOST_STAGES : MOST_STAGES + k] = numbers[:k], numbers[k:]
@@ -120,7 +120,8 @@ def _in_places(numbers: list[int]) -> Integers:
 
 
 def gear_train_task(problem: GearTrainProblem, coprime: bool) -> Task:
-    """The task of a problem; ``coprime``: only meshes without a common divisor."""
+    """Build the task of a problem; ``coprime``: only meshes without a common divisor."""
+    # With a stock all positions choose from the same gears.
     counts = problem.stocked()
     if counts:
         numbers = np.array(sorted(counts), np.int64)
@@ -133,6 +134,7 @@ def gear_train_task(problem: GearTrainProblem, coprime: bool) -> Task:
         stock[teeth] = count
     drivers, driven = tuple(positions[0::2]), tuple(positions[1::2])
     fit = fit_meshes(problem, np.unique(np.concatenate(positions))) if problem.is_fitted else None
+    # Without any constraint on meshes the compiled loops need no table look-ups.
     demanding = problem.max_stage_ratio is not None or problem.interference == "refuse"
     by_mesh = coprime or demanding or fit is not None or problem.stages is not None
     sound = _sound_meshes(problem, most, coprime)
@@ -144,7 +146,8 @@ def gear_train_task(problem: GearTrainProblem, coprime: bool) -> Task:
     idlers = np.unique(np.concatenate(positions)) if counts else np.arange(min(v[0] for v in positions), most + 1)
     allowed, idled = sound & limited, np.zeros_like(sound)
     if idler_counts:
-        # Counted in floats, which the matrix product of whole numbers is not made for.
+        # In floats, because the matrix product of integers is slow.
+        # An idler can stand between a and b if some idler meshes soundly with both.
         before, after = sound[:, idlers].astype(np.float32), sound[idlers].astype(np.float32)
         idled = (before @ after > 0.0) & limited
     own = _own_meshes(problem, most, sound, limited)
@@ -170,7 +173,7 @@ def gear_train_task(problem: GearTrainProblem, coprime: bool) -> Task:
         stock=stock,
         reverted=problem.reverted,
         modules=modules,
-        # Shifted meshes are not told apart by their pitch circles: all are in one group.
+        # Pitch circles do not distinguish shifted meshes: all are in one group.
         pitches=np.array(problem.pitches() if _stands_on_pitch_circles(problem) else [0] * len(modules), np.int64),
         stage_counts=stage_counts,
         most_total=problem.max_total_teeth,
@@ -186,42 +189,42 @@ def gear_train_task(problem: GearTrainProblem, coprime: bool) -> Task:
 def _own_meshes(
     problem: GearTrainProblem, most: int, sound: NDArray[np.bool_], limited: NDArray[np.bool_]
 ) -> tuple[NDArray[np.bool_], ...]:
-    """Which gears may mesh in each of the stages that are stated one by one; ``sound`` as spur gears are."""
+    """Return the permitted meshes of each stage that is given one by one; ``sound`` as for spur gears."""
     rows: dict[StatedStage, NDArray[np.bool_]] = {}
     for stage in problem.stages or []:
         if stage not in rows:
             meshing = sound & sound_meshes(problem, stage, most)
-            # The threads of a worm are not the teeth of a gear.
+            # The stage ratio limit does not apply: the threads of a worm are not teeth.
             rows[stage] = meshing if stage.type == "worm" else meshing & limited
     return tuple(rows[stage] for stage in problem.stages or [])
 
 
 def _likeness(problem: GearTrainProblem) -> tuple[int, ...]:
-    """A number for each stage, equal for those whose gears may change places."""
+    """Return a number for each stage, equal for those whose gears may change places."""
     known = [stage.likeness for stage in problem.stages or []]
     numbers = [known.index(one) for one in known]
     return (*numbers, *([0] * (MOST_STAGES - len(numbers))))
 
 
 def _stands_on_pitch_circles(problem: GearTrainProblem) -> bool:
-    """Whether coaxial meshes agree on a distance if and only if their pitch circles do."""
+    """Return whether coaxial meshes agree on a distance if and only if their pitch circles do."""
     if not problem.is_fitted:
         return True
     return problem.shares_distance and problem.shift_limits == (0.0, 0.0) and max(problem.pitches()) <= FINEST_PITCHES
 
 
 def needs_idler(problem: GearTrainProblem, stages: int) -> bool:
-    """Whether a train of so many external stages turns the wrong way without an idler; stated stages never do."""
+    """Return whether an external train of this many stages needs an idler; stages given one by one never do."""
     return problem.stages is None and problem.demanded_sign == (1 if stages % 2 else -1)
 
 
 def _stage_counts(problem: GearTrainProblem, stocked: int | None) -> tuple[int, ...]:
-    """Numbers of stages that the direction and the stock permit."""
+    """List the numbers of stages that the direction and the stock permit."""
     counts = []
     fewest = 2 if problem.reverted else 1
     for k in range(fewest if problem.stages is None else problem.most_stages, problem.most_stages + 1):
         idler = needs_idler(problem, k)
-        # An idler in one stage of a reverted train would spread its shafts, and stages with a distance have no room.
+        # An idler would spread the shafts of a reverted train, and stages with a distance have no space for it.
         if (idler and (problem.reverted or problem.is_fitted)) or (stocked is not None and stocked < 2 * k + idler):
             continue
         counts.append(k)
@@ -229,7 +232,7 @@ def _stage_counts(problem: GearTrainProblem, stocked: int | None) -> tuple[int, 
 
 
 def _sound_meshes(problem: GearTrainProblem, most: int, coprime: bool) -> NDArray[np.bool_]:
-    """Which gears may mesh with one another."""
+    """Return the permitted meshes."""
     a, b = np.ogrid[: most + 1, : most + 1]
     sound = np.minimum(a, b) > 0
     if coprime:
@@ -242,15 +245,16 @@ def _sound_meshes(problem: GearTrainProblem, most: int, coprime: bool) -> NDArra
 
 
 def _within_stage_ratio(problem: GearTrainProblem, most: int) -> NDArray[np.bool_]:
-    """Which gears may be driver and driven gear of a stage, for the limit of its ratio."""
+    """Return the pairs of driver and driven gear within the limit of the stage ratio."""
     a, b = np.ogrid[: most + 1, : most + 1]
     if problem.max_stage_ratio is None:
         return np.minimum(a, b) >= 0
+    # Exact fractions: a ratio exactly at the limit is allowed.
     limit = decimal(problem.max_stage_ratio)
     mate = np.array([min(most, math.floor(n * limit)) for n in range(most + 1)])
     return np.asarray(np.maximum(a, b) <= mate[np.minimum(a, b)], np.bool_)
 
 
 def _usable(values: Integers, allowed: NDArray[np.bool_], mates: Integers) -> Integers:
-    """Tooth numbers that have an allowed mate."""
+    """Return the tooth numbers that have an allowed mate."""
     return values[allowed[mates][:, values].any(axis=0)]

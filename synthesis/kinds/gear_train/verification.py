@@ -1,6 +1,6 @@
-"""The proof of a gear train: speeds followed from mesh to mesh, meshes drawn up from the tooth numbers.
+"""Verification of a gear train: speeds followed from mesh to mesh, meshes constructed from the tooth numbers.
 
-Nothing of the search is taken over. The ratio comes from the speeds of the shafts, exact fractions; its error from the
+Nothing from the search is used. The ratio comes from the speeds of the shafts, exact fractions; its error from the
 target's enclosure between rational numbers; distances, contact and interference from the geometry of the teeth.
 """
 
@@ -25,23 +25,23 @@ from synthesis.model.ratio_target import decimal
 from synthesis.proof.checks import tolerated
 
 DISTANCE_TOLERANCE = 1e-12
-"""Share of a centre distance by which equal ones may differ in rounding."""
+"""Share of a centre distance by which equal ones may differ by rounding."""
 
 FITTED = 1e-9
-"""Share of a module, or of a contact ratio, by which a fitted mesh may miss a demand in rounding."""
+"""Share of a module, or of a contact ratio, by which a fitted mesh may miss a constraint by rounding."""
 
 PARALLEL = 1e-12
-"""By how much the cosine of the angle between parallel axes may differ from 1 in rounding."""
+"""Deviation from 1 by rounding of the cosine of the angle between parallel axes."""
 
 AXIS_DIGITS = 15
-"""Decimals to which axes are told: right angles are right."""
+"""Decimals to which axes are reported, so that right angles are exact."""
 
 ENCLOSURE_BITS = 256
-"""Width of the target's enclosure; errors of trains are told to some sixty digits."""
+"""Width of the target's enclosure in bits; errors of trains are accurate to some sixty digits."""
 
 
 def driven_train(mechanism: GearTrainMechanism) -> OrdinaryTrain:
-    """The mechanism for the analysis core; raises DimensionError for gears that do not exist."""
+    """Build the mechanism for the analysis core; raises DimensionError for impossible gears."""
     idlers: dict[int, list[int]] = {}
     for idler in mechanism.idlers:
         idlers.setdefault(idler.stage, []).append(idler.teeth)
@@ -53,7 +53,7 @@ def driven_train(mechanism: GearTrainMechanism) -> OrdinaryTrain:
 
 
 def verify(problem: GearTrainProblem, mechanism: GearTrainMechanism) -> GearTrainDesign | None:
-    """Drive a train and measure it; None where its gears cannot be made at all."""
+    """Drive a train and measure it; None if its gears cannot be made at all."""
     try:
         train = driven_train(mechanism)
     except DimensionError:
@@ -90,12 +90,12 @@ def verify(problem: GearTrainProblem, mechanism: GearTrainMechanism) -> GearTrai
 
 
 def _widest(stage: TrainStage) -> float:
-    """Larger over smaller number of teeth, or of a worm's threads."""
+    """Return the larger over the smaller number of teeth, or of a worm's threads."""
     return max(stage.driver, stage.driven) / min(stage.driver, stage.driven)
 
 
 def _errors(problem: GearTrainProblem, ratio: Fraction) -> tuple[Fraction, Fraction]:
-    """Relative error of the ratio, for the two ends of the target's enclosure."""
+    """Return the relative error of the ratio, for the two ends of the target's enclosure."""
     low, high = problem.target.enclosure(ENCLOSURE_BITS)
     return ratio / high - 1, ratio / low - 1
 
@@ -106,12 +106,12 @@ def _ratio_checks(
     train: OrdinaryTrain,
     errors: tuple[Fraction, Fraction],
 ) -> list[Check]:
-    """Ratio, error and direction, in exact fractions."""
+    """Check ratio, error and direction, in exact fractions."""
     stated = mechanism.ratio.exact
     checks = [Check(name="ratio", passed=stated == train.ratio and mechanism.ratio.value == float(stated))]
     tolerance = problem.exact_tolerance
     if tolerance is not None:
-        # Compared as fractions, so that a train exactly at the tolerance passes whatever the rounding.
+        # Compared as fractions, so that a train exactly at the tolerance passes in spite of rounding.
         worst = max(abs(error) for error in errors)
         passed = worst <= tolerance
         checks.append(Check(name="ratio_error", passed=passed, value=float(worst), limit=float(tolerance)))
@@ -123,7 +123,7 @@ def _ratio_checks(
 def _gear_checks(
     problem: GearTrainProblem, mechanism: GearTrainMechanism, train: OrdinaryTrain, metrics: GearTrainMetrics
 ) -> list[Check]:
-    """Numbers of stages and teeth, the stock, and the largest stage ratio."""
+    """Check the numbers of stages and teeth, the stock, and the largest stage ratio."""
     count = len(train.stages)
     checks = [tolerated("stages", count, problem.most_stages)]
     if problem.stock is not None:
@@ -151,7 +151,7 @@ def _gear_checks(
 def _type_checks(
     problem: GearTrainProblem, mechanism: GearTrainMechanism, train: OrdinaryTrain, metrics: GearTrainMetrics
 ) -> list[Check]:
-    """Stages of the types that are stated, with what belongs to them, and rings in which their pinions run."""
+    """Check the types of stages that are given, with their values, and that pinions run in their rings."""
     if problem.stages is None:
         return []
     stated = len(problem.stages) == len(mechanism.stages) and all(
@@ -166,7 +166,7 @@ def _type_checks(
 
 
 def _as_stated(stated: StatedStage, made: Stage) -> bool:
-    """Whether a stage has everything that its statement says, and its ring in the stated place."""
+    """Return whether a stage has all requested values, and its ring in the requested place."""
     said = {name: getattr(stated, name) for name in ("type", *OF_TYPES)}
     ring = made.driver if stated.ring == "driver" else made.driven
     return all(value is None or getattr(made, name) == value for name, value in said.items()) and (
@@ -175,7 +175,7 @@ def _as_stated(stated: StatedStage, made: Stage) -> bool:
 
 
 def _shafts(train: OrdinaryTrain) -> list[TurningShaft]:
-    """The shafts from the input's on, from the speeds that were followed, about the axes that they have."""
+    """Describe the shafts from the input's on, by the followed speeds about their axes."""
     speeds = [Fraction(1), *(stage[-1] for stage in train.speeds)]
     first, shafts = train.axes[0], []
     for speed, axis in zip(speeds, train.axes, strict=True):
@@ -183,13 +183,14 @@ def _shafts(train: OrdinaryTrain) -> list[TurningShaft]:
         turns = None
         if abs(along) > 1.0 - PARALLEL:
             turns = "same" if along * speed > 0 else "opposite"
+        # Adding 0.0 turns a rounded −0.0 into 0.0.
         told = None if train.is_parallel else tuple(float(round(part, AXIS_DIGITS)) + 0.0 for part in axis)
         shafts.append(TurningShaft(speed=Ratio.of(speed), turns=turns, axis=told))
     return shafts
 
 
 def _mesh_checks(problem: GearTrainProblem, metrics: GearTrainMetrics) -> list[Check]:
-    """Coaxial shafts, hunting teeth and interference, as far as they are demanded."""
+    """Check coaxial shafts, hunting teeth and interference, if required."""
     checks = []
     if problem.reverted:
         distances = metrics.centre_distances
@@ -203,7 +204,7 @@ def _mesh_checks(problem: GearTrainProblem, metrics: GearTrainMetrics) -> list[C
 
 
 def _fit_checks(problem: GearTrainProblem, mechanism: GearTrainMechanism, metrics: GearTrainMetrics) -> list[Check]:
-    """What fitted teeth have to keep, from the geometry of the meshes at the distance that the shifts make."""
+    """Check fitted teeth, from the geometry of the meshes at the distance that results from the shifts."""
     least_shift, most_shift = problem.shift_limits
     shifts = [x for stage in mechanism.stages if stage.shift for x in (stage.shift.driver, stage.shift.driven)]
     tips, apart, chosen = [], [], []
@@ -214,6 +215,7 @@ def _fit_checks(problem: GearTrainProblem, mechanism: GearTrainMechanism, metric
         if mesh.tip_thickness is not None:
             tips += [mesh.tip_thickness.driver / stage.module, mesh.tip_thickness.driven / stage.module]
         chosen.append(stage.module in problem.modules_of(number))
+    # The weakest mesh decides.
     ratio = min(mesh.contact_ratio for mesh in metrics.meshes)
     return [
         Check(name="module", passed=all(chosen)),
@@ -230,7 +232,7 @@ def _fit_checks(problem: GearTrainProblem, mechanism: GearTrainMechanism, metric
 def _strength(
     problem: GearTrainProblem, mechanism: GearTrainMechanism, train: OrdinaryTrain
 ) -> list[PairStrength] | None:
-    """Stresses of every mesh over its stage's face, from the speeds of the shafts; None where no power is stated."""
+    """Compute the stresses of every mesh over its stage's face, from the shaft speeds; None without a given power."""
     stated = problem.strength
     if stated is None:
         return None
@@ -238,6 +240,7 @@ def _strength(
     for made, stage, speeds in zip(mechanism.stages, train.stages, train.speeds, strict=True):
         for place, speed in enumerate(speeds[:-1]):
             contact = stage_contact(stage, place, train.pressure_angle, unit)
+            # Idlers are bent in both directions.
             idle = place > 0, place + 1 < len(stage.gears) - 1
             turning = abs(float(speed)) * stated.speed
             loaded = Loaded(contact, stated.power, turning, idle, helix_angle=stage.helix_angle)
@@ -248,7 +251,7 @@ def _strength(
 def _strength_checks(
     problem: GearTrainProblem, mechanism: GearTrainMechanism, metrics: GearTrainMetrics
 ) -> list[Check]:
-    """Safeties of all gears, and faces as wide as they may be."""
+    """Check the safeties of all gears, and the face widths."""
     stated = problem.strength
     if stated is None or metrics.strength is None:
         return []

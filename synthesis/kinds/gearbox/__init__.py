@@ -1,4 +1,4 @@
-"""Gearboxes of several speeds: structures, tooth numbers, and the proof that they are the best."""
+"""Gearboxes of several speeds: structures, tooth numbers, and the proof that they are optimal."""
 
 from __future__ import annotations
 

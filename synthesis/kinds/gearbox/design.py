@@ -12,7 +12,7 @@ from synthesis.model.gear_answer import GearPairTeeth
 
 
 class GearboxStage(Answer):
-    """The pairs between two neighbouring shafts, slowest first; all have one tooth sum."""
+    """The pairs between two neighbouring shafts, slowest first; all have the same tooth sum."""
 
     characteristic: int = Field(description="Steps of the progression from one pair to the next.")
     pairs: list[GearPairTeeth]
@@ -27,19 +27,19 @@ class GearboxMechanism(Answer):
     input_speed: RotationalSpeed
     stages: list[GearboxStage]
     module: Length
-    pressure_angle: Angle = Field(description="Degrees.")
+    pressure_angle: Angle = Field(description="Pressure angle, degrees.")
 
 
 class SpindleSpeed(Answer):
-    """A speed of the spindle beside its nominal value."""
+    """A speed of the spindle and its nominal value."""
 
     speed: RotationalSpeed
     nominal: RotationalSpeed
     error: float = Field(description="speed/nominal − 1.")
     standard: RotationalSpeed | None = Field(
-        description="The rounded preferred number, where the speeds are of a series."
+        description="The rounded preferred number, if the speeds belong to a series."
     )
-    engaged: list[int] = Field(description="The pair that is engaged in each stage, from 0.")
+    engaged: list[int] = Field(description="The engaged pair of each stage, counted from 0.")
 
 
 class ShaftSpeeds(Answer):
@@ -55,14 +55,15 @@ class GearboxMetrics(Answer):
     max_error: float = Field(description="Largest |ln(speed/nominal)|.")
     tooth_sum: int = Field(description="Sum of the tooth sums of all stages.")
     torque: float = Field(
-        description="Input speed over lowest speed, summed over the shafts between input and spindle: their loads."
+        description="Input speed over lowest speed, summed over the shafts between input and spindle: a measure of "
+        "their loads."
     )
     speeds: list[SpindleSpeed]
-    shafts: list[ShaftSpeeds] = Field(description="The nodes of the ray diagram.")
+    shafts: list[ShaftSpeeds] = Field(description="Speeds of every shaft: the nodes of the ray diagram.")
 
 
 class GearboxDesign(Answer):
-    """A gearbox with the proof of its speeds."""
+    """A gearbox with the verification of its speeds."""
 
     mechanism: GearboxMechanism
     verification: Verification
@@ -70,17 +71,17 @@ class GearboxDesign(Answer):
 
 
 class StructureVerdict(Answer):
-    """A structure that was tried: its least error, or null where no teeth within the limits serve."""
+    """A structure that was tried: its minimum error, or null if no teeth within the limits are feasible."""
 
     formula: str
     max_error: float | None
-    tooth_sum: int | None = Field(description="The least tooth sum with that error.")
+    tooth_sum: int | None = Field(description="The smallest tooth sum with that error.")
 
 
 class GearboxResult(Result[GearboxDesign]):
     """Machine-tool gearboxes.
 
-    The designs are the Pareto set of error against tooth sum of every structure, in order of the ranking.
+    The designs are the Pareto sets of error against tooth sum of all structures, in the order of the ranking.
     """
 
     progression_ratio: float

@@ -1,13 +1,13 @@
-"""The least error of a gearbox for every tooth sum: stages combined, the admitted error widened run by run.
+"""Minimum error of a gearbox for every tooth sum: stages combined, with an admitted error that grows run by run.
 
 A choice of teeth for a stage enters by three numbers, its middle c, half width h and tooth sum
 (:mod:`synthesis.kinds.gearbox.stages`). All stages but one or two are combined; the best partner of each combination
 among the remaining stages is found by bisection.
 
-Most combinations have an error far above the least, because gearboxes with large tooth sums come much closer than the
-tolerance asks. The first run therefore admits only a small share of the tolerated error. The errors that it finds are
-upper bounds, one for each tooth sum, for the next run with a larger share, until a run admits the whole tolerance. Each
-run is exact within its bounds, and the last admits everything that could be better.
+Most combinations have an error far above the minimum, because gearboxes with large tooth sums come much closer than the
+tolerance requires. The first run therefore admits only a small share of the tolerated error. The errors that it finds
+are upper bounds, one for each tooth sum, for the next run with a larger share, until a run admits the whole tolerance.
+Each run is exact within its bounds, and the last admits everything that could be better.
 """
 
 from __future__ import annotations
@@ -22,13 +22,13 @@ from numpy.typing import NDArray
 from synthesis.kinds.gearbox.stages import SAME, Options, Real, Whole, worth_having
 
 PARTS = (256.0, 128.0, 64.0, 32.0, 16.0, 8.0, 4.0, 2.0, 1.0)
-"""The runs look at the tolerated error over these."""
+"""Divisors of the tolerated error, run by run."""
 
 MOST_JOINED = 4
-"""Stages of which all but one are put together; of more all but two."""
+"""Maximum number of stages of which all but one are combined; with more, all but two."""
 
 HELD = 1_000_000
-"""Combinations that are gathered before those not worth having are left out."""
+"""Number of combinations that are gathered before the dominated ones are removed."""
 
 
 class Choice(NamedTuple):
@@ -40,7 +40,7 @@ class Choice(NamedTuple):
 
 
 class _Rest(NamedTuple):
-    """What the stages that are not yet put together can at least and at most add."""
+    """Bounds of the contribution of the stages that are not yet combined."""
 
     half: float
     size: int
@@ -49,7 +49,7 @@ class _Rest(NamedTuple):
 
 
 def best_choices(stages: list[Options], level: float, widest: float, progress: Callable[[float], None]) -> list[Choice]:
-    """For every total tooth sum the choice of least error, where it is less than for all smaller sums.
+    """Find for every total tooth sum the choice of minimum error, if it is smaller than for all smaller sums.
 
     Parameters
     ----------
@@ -58,9 +58,9 @@ def best_choices(stages: list[Options], level: float, widest: float, progress: C
     level : float
         L, the logarithm of the lowest speed over the input's.
     widest : float
-        Largest error that is tolerated.
+        Maximum tolerated error.
     progress : callable
-        Told the share that is done, roughly.
+        Receives the approximate share that is done.
     """
     if not all(stage.count for stage in stages):
         return []
@@ -68,6 +68,7 @@ def best_choices(stages: list[Options], level: float, widest: float, progress: C
     front: list[Choice] = []
     for run, part in enumerate(PARTS):
         bound = np.full(most + 1, widest / part)
+        # A smaller gearbox with this error makes the same error at a larger sum useless.
         for choice in front:
             bound[choice.size :] = np.minimum(bound[choice.size :], choice.error)
         front = _run(stages, _Wanted(level, bound), _part_of(progress, run / len(PARTS), (run + 1) / len(PARTS)))
@@ -75,20 +76,21 @@ def best_choices(stages: list[Options], level: float, widest: float, progress: C
 
 
 class _Wanted(NamedTuple):
-    """L, and the largest error worth looking at by total tooth sum, which falls with it."""
+    """L, and the largest useful error by total tooth sum, which does not rise with it."""
 
     level: float
     bound: Real
 
     def allows(self, middle: Real, half: Real, size: Whole, rest: _Rest) -> NDArray[np.bool_]:
-        """Which choices can, with the best that the other stages may add, stay within the bounds."""
+        """Return the choices that can stay within the bounds, with the best contribution of the other stages."""
+        # |Σ c − L| + Σ h ≤ bound, with the extreme middles of the remaining stages.
         room = self.bound[size + rest.size] - half - rest.half + SAME
         short = middle - self.level
         return np.asarray((room >= 0.0) & (short + rest.low <= room) & (short + rest.high >= -room), np.bool_)
 
 
 def _part_of(progress: Callable[[float], None], start: float, end: float) -> Callable[[float], None]:
-    """Progress through a part of the work."""
+    """Return a progress callback for a part of the work."""
 
     def told(share: float) -> None:
         progress(start + share * (end - start))
@@ -97,13 +99,13 @@ def _part_of(progress: Callable[[float], None], start: float, end: float) -> Cal
 
 
 def _run(stages: list[Options], wanted: _Wanted, progress: Callable[[float], None]) -> list[Choice]:
-    """The front within the bounds, exactly."""
+    """Compute the front within the bounds, exactly."""
     for k, stage in enumerate(stages):
         others = _rest([*stages[:k], *stages[k + 1 :]])
         stages = [*stages[:k], _allowed(stage, wanted, others), *stages[k + 1 :]]
         if not stages[k].count:
             return []
-    # The stage of most choices is never multiplied out: its partners are found by bisection.
+    # The stage with the most choices is never multiplied out: its partners are found by bisection.
     order = sorted(range(len(stages)), key=lambda k: stages[k].count)
     split = len(stages) - 1 - (len(stages) > MOST_JOINED)
     parts = [[stages[k] for k in order[:split]], [stages[k] for k in order[split:]]]
@@ -131,7 +133,7 @@ def _rest(stages: list[Options]) -> _Rest:
 
 
 def _nothing() -> Options:
-    """No stage at all, in the one way there is."""
+    """Return the single choice of no stage at all."""
     zero = np.zeros(1)
     return Options(zero, zero, np.zeros(1, np.int64), np.zeros((1, 0), np.int64), (), 1)
 
@@ -144,13 +146,14 @@ def _allowed(stage: Options, wanted: _Wanted, rest: _Rest) -> Options:
 
 
 def _together(one: Options, other: Options, wanted: _Wanted, rest: _Rest, progress: Callable[[float], None]) -> Options:
-    """All choices worth having for the stages of two sets of options together."""
+    """Combine the undominated choices of two sets of options."""
     pairs = np.zeros((0, 2), np.int64)
     gathered, held = [pairs], 0
     step = max(1, HELD // other.count)
     for start in range(0, one.count, step):
         progress(start / one.count)
         rows = np.arange(start, min(start + step, one.count))
+        # Middles and half widths of independent stages add up.
         c, h = one.middle[rows, None] + other.middle, one.half[rows, None] + other.half
         at, to = np.nonzero(wanted.allows(c, h, one.size[rows, None] + other.size, rest))
         gathered.append(np.stack((rows[at], to), axis=1))
@@ -174,10 +177,10 @@ def _sums(one: Options, other: Options, pairs: Whole) -> tuple[Real, Real, Whole
 
 
 def _front(one: Options, other: Options, wanted: _Wanted) -> list[Choice]:
-    """The best of every total tooth sum.
+    """Find the best choice of every total tooth sum.
 
-    For each choice of the first stages the best partner of one tooth sum has its middle next to the one wanted: of
-    those below it the one of least h − c, of those above it the one of least h + c.
+    For each choice of the first stages the best partner of one tooth sum has its middle next to the required one: the
+    one of least h − c below it, or the one of least h + c above it.
     """
     best: dict[int, tuple[float, int, int]] = {}
     for size in np.unique(other.size).tolist():
@@ -186,8 +189,10 @@ def _front(one: Options, other: Options, wanted: _Wanted) -> list[Choice]:
         c, h = other.middle[rows], other.half[rows]
         level = _Rest(float(h.min()), size, float(c[0]), float(c[-1]))
         firsts = np.flatnonzero(wanted.allows(one.middle, one.half, one.size, level))
+        # The middle that the partner should have for zero error.
         needed = wanted.level - one.middle[firsts]
         at = np.searchsorted(c, needed)
+        # Running minima from both ends answer "the best partner below/above" for every position at once.
         below, above = _running_least(h - c), _running_least((h + c)[::-1])
         for partner, there in (
             (below[np.maximum(at - 1, 0)], at > 0),
@@ -216,13 +221,13 @@ def _front(one: Options, other: Options, wanted: _Wanted) -> list[Choice]:
 
 
 def _running_least(values: Real) -> Whole:
-    """For every place the place of the least value up to it."""
+    """Return for every place the place of the least value up to it."""
     least = np.minimum.accumulate(values)
     return np.asarray(np.maximum.accumulate(np.where(values <= least, np.arange(len(values)), 0)), np.int64)
 
 
 def _firsts(total: Whole, error: Real) -> Whole:
-    """The place of least error for each total."""
+    """Return the place of least error for each total."""
     order = np.lexsort((error, total))
     _, first = np.unique(total[order], return_index=True)
     return order[first]

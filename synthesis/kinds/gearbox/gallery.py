@@ -1,7 +1,7 @@
-"""Its examples as a person looks for them, in their order."""
+"""Examples of the kind gearbox for the gallery, in order of presentation."""
 
 from __future__ import annotations
 
 from synthesis.model.kind import Named
 
-GALLERY = (Named("Lathe spindle", "Change a speed", "Six speeds from 25 to 800 rev/min, in even ratios."),)
+GALLERY = (Named("Lathe spindle", "Change a speed", "Six speeds from 25 to 800 rev/min in geometric progression."),)

@@ -1,4 +1,4 @@
-"""The best machine-tool gearboxes: for every structure the tooth numbers of least deviation for their size."""
+"""The best machine-tool gearboxes: for every structure the tooth numbers of minimum deviation for their size."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ FIXED = Group(1, 1)
 
 
 class _Toothed(NamedTuple):
-    """A structure with its teeth, and what it is ranked by."""
+    """A structure with its teeth and its ranking criteria."""
 
     error: float
     size: int
@@ -41,23 +41,24 @@ class _Toothed(NamedTuple):
 
 
 def solve_gearbox(problem: GearboxProblem, progress: Progress) -> GearboxResult:
-    """The Pareto set of deviation against tooth sum over all structures, each gearbox verified.
+    """Find the Pareto set of deviation against tooth sum over all structures, each gearbox verified.
 
     Parameters
     ----------
     problem : GearboxProblem
-        A statement without contradictions.
+        A problem without contradictions.
     progress : callable
-        Told how many structures are done.
+        Receives the share of structures that are done.
 
     Returns
     -------
     GearboxResult
-        Complete where no gearbox within the limits has a smaller deviation at the same tooth sum: that is unless the
-        statement lets in gearboxes without a structural formula.
+        Complete if no gearbox within the limits has a smaller deviation at the same tooth sum: unless the problem
+        permits gearboxes without a structural formula.
     """
     tried = _structures(problem)
     ratio = problem.speeds.progression_ratio
+    # The teeth do not depend on the order of the stages: structures with equal groups share one search.
     kinds = {tuple(sorted(structure)): structure for structure in tried}
     covered, choices = 0, {}
     for k, groups in enumerate(kinds):
@@ -89,7 +90,7 @@ def solve_gearbox(problem: GearboxProblem, progress: Progress) -> GearboxResult:
 
 
 def _structures(problem: GearboxProblem) -> list[Structure]:
-    """The structures to search: all of them, or those with the stated pairs in the stated order."""
+    """List the structures to search: all of them, or those with the given pairs in the given order."""
     if problem.structure is None:
         candidates = structures(problem.speeds.count, problem.max_pairs)
         return [(FIXED, *structure) for structure in candidates] if problem.fixed_stage else candidates
@@ -100,13 +101,14 @@ def _structures(problem: GearboxProblem) -> list[Structure]:
         for at in order:
             groups[at] = Group(stated[at], characteristic)
             characteristic *= stated[at]
+        # Fixed stages keep their given places between the others.
         several = iter([groups[at] for at in range(len(stated))])
         candidates.append(tuple(FIXED if pairs == 1 else next(several) for pairs in problem.structure))
     return candidates
 
 
 def _limits(problem: GearboxProblem) -> StageLimits:
-    """The limits on the teeth of a stage."""
+    """Build the limits on the teeth of a stage."""
     return StageLimits(
         (problem.teeth.min, problem.teeth.max),
         (problem.tooth_sum.min, problem.tooth_sum.max),
@@ -119,10 +121,11 @@ def _limits(problem: GearboxProblem) -> StageLimits:
 def _choices(
     problem: GearboxProblem, groups: tuple[Group, ...], ratio: float, progress: Callable[[float], None]
 ) -> tuple[list[Choice], int]:
-    """Pareto choices of teeth for stages in the order of ``groups``, and how many combinations they stand for."""
+    """Find Pareto choices of teeth for stages in the order of ``groups``, and the number of combinations covered."""
     progress(0.0)
     limits = _limits(problem)
     widest = problem.stage_ratio.max / problem.stage_ratio.min * math.exp(2.0 * problem.widest)
+    # The ratios of a stage spread more than the stage ratio limits permit: no teeth can serve.
     if any(spread(group, ratio) > widest for group in groups):
         return [], 0
     known: dict[Group, Options] = {}
@@ -130,17 +133,18 @@ def _choices(
         if group not in known:
             known[group] = stage_options(group, ratio, problem.widest, limits)
     stages = [known[group] for group in groups]
+    # L: the lowest speed relative to the input, the target of the summed middles.
     level = math.log(problem.speeds.min / problem.input_speed)
     front = best_choices(stages, level, problem.widest, progress)
     return front, math.prod(stage.covered for stage in stages)
 
 
 def _ordered(choice: Choice, groups: tuple[Group, ...], orders: Iterable[Structure]) -> _Toothed:
-    """The order of the stages that loads the shafts between input and spindle least, of those that are allowed."""
+    """Choose, among the permitted orders of the stages, the one that loads the intermediate shafts least."""
     gearboxes = []
     for structure in orders:
         rest = list(zip(groups, choice.stages, strict=True))
-        # Equal groups may have different teeth; the faster one stands nearer to the input.
+        # Equal groups may have different teeth; the faster one is placed nearer to the input.
         rest.sort(key=lambda item: -min(item[1][1]) / item[1][0])
         placed = []
         for group in structure:
@@ -155,7 +159,7 @@ def _ordered(choice: Choice, groups: tuple[Group, ...], orders: Iterable[Structu
 
 
 def _design(problem: GearboxProblem, gearbox: _Toothed) -> GearboxDesign:
-    """A gearbox of the front as a verified design."""
+    """Build a gearbox of the front as a verified design."""
     stages = []
     for group, (total, drivers) in zip(gearbox.structure, gearbox.stages, strict=True):
         pairs = [GearPairTeeth(driver=z, driven=total - z) for z in drivers]
@@ -187,13 +191,14 @@ def _verdict(structure: Structure, front: list[Choice]) -> StructureVerdict:
 
 
 def _unsearched(problem: GearboxProblem, tried: list[Structure]) -> str:
-    """Which gearboxes of the statement have no structural formula and were not searched, in words; empty for none.
+    """Describe the gearboxes without a structural formula that were not searched; empty if there are none.
 
-    A stage of a prime number of pairs beside others has one characteristic. One of 4 or 6 may have two: {0, 1, 4, 5}
-    with {0, 2} makes the steps 0 to 7 too (de Bruijn, On number systems, Nieuw Arch. Wisk. 4, 1956).
+    In a gearbox of several stages a stage with a prime number of pairs has one characteristic. One of 4 or 6 may have
+    two: {0, 1, 4, 5} with {0, 2} makes the steps 0 to 7 too (de Bruijn, On number systems, Nieuw Arch. Wisk. 4, 1956).
     """
     if problem.widest > problem.structured:
-        return " Beyond a quarter of a step gearboxes need not have a structure; those without one were not searched."
+        return " At this tolerance, above a quarter of a step, gearboxes without a structural formula exist; they "
+        "were not searched."
     several = [[group.pairs for group in structure if group.pairs > 1] for structure in tried]
     if any(len(pairs) > 1 and max(pairs) > 3 for pairs in several):
         return " Stages of four or six pairs with two characteristics were not searched."
@@ -201,19 +206,20 @@ def _unsearched(problem: GearboxProblem, tried: list[Structure]) -> str:
 
 
 def _summary(problem: GearboxProblem, tried: list[Structure], passed: list[GearboxDesign], covered: int) -> str:
-    """What the search covered and what is best, in one sentence."""
+    """Write the coverage of the search and the best gearbox in one sentence."""
     count, combinations = problem.speeds.count, counted(covered, "combination")
     if not tried:
         return f"{count} speeds cannot be made by stages of 2 to {problem.max_pairs} pairs."
     if not passed:
         return (
-            f"None of {counted(len(tried), 'structure')} with {combinations} of tooth numbers keeps all {count} speeds "
+            f"No gearbox ({counted(len(tried), 'structure')}, {combinations} of tooth numbers) keeps all {count} "
+            "speeds "
             f"within {100.0 * problem.widest:.3g} % and the limits."
         )
     first = passed[0]
     error = first.metrics.max_error
     kept = f"within {100.0 * error:.3g} %" if error else "exactly"
     return (
-        f"{first.mechanism.formula} keeps {count} speeds {kept}, the best of {counted(len(tried), 'structure')} with "
+        f"{first.mechanism.formula} keeps {count} speeds {kept}: the best of {counted(len(tried), 'structure')} and "
         f"{combinations} of tooth numbers."
     )

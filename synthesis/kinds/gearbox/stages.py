@@ -1,19 +1,19 @@
-"""Tooth numbers of one stage of a machine-tool gearbox, and how stages add up to the errors of all speeds.
+"""Tooth numbers of one stage of a machine-tool gearbox, and the sum of stages in the errors of all speeds.
 
 With equal modules all pairs of a stage have the same tooth sum. Let d = ln(driver/driven) − k x ln φ for pair k of a
-stage: were the steps exact, d would be the same for all its pairs. The logarithm of a spindle speed over its nominal
-value is the sum of the engaged pairs' d, less L = ln(n₁/n_input). Over all speeds these sums reach from the sum of the
+stage: with exact steps d would be the same for all its pairs. The logarithm of a spindle speed over its nominal
+value is the sum of the engaged pairs' d, less L = ln(n₁/n_input). Over all speeds these sums range from the sum of the
 least d of each stage to the sum of the greatest, so that with the middle c and half width h of each stage::
 
     largest |ln(n/n_nominal)| = |Σ c − L| + Σ h
 
 A choice of teeth thus enters by c, h and its tooth sum alone. It is dominated by a choice c', h' of the same or a
-smaller tooth sum where |c − c'| + h' ≤ h, whatever the other stages are. Dominated choices are left out; the best
-gearbox is never lost by that.
+smaller tooth sum if |c − c'| + h' ≤ h, for any other stages. Removing dominated choices never loses the best
+gearbox.
 
-For a given tooth sum of one stage few choices have to be made at all. Let δ be the least d of a choice. Taking for each
+For a given tooth sum of one stage only few choices are needed. Let δ be the least d of a choice. Taking for each
 pair the smallest d that is not below δ gives an interval from least to greatest d that lies within that of the choice,
-and so dominates it. It is enough to let δ run through the d of all drivers and pairs.
+and so dominates it. It suffices to let δ run through the d of all drivers and pairs.
 """
 
 from __future__ import annotations
@@ -32,13 +32,13 @@ Real = NDArray[np.float64]
 Whole = NDArray[np.int64]
 
 SAME = 1e-13
-"""Middles and half widths that differ by less are equal: sums of a few logarithms, rounded."""
+"""Difference below which middles and half widths are equal: sums of a few rounded logarithms."""
 
 
 class StageLimits(NamedTuple):
     """Limits on the teeth of one stage; ratios are driven speed over driving speed, angles radians.
 
-    ``cluster`` is the least difference between the largest and the next driver of three or more pairs.
+    ``cluster`` is the minimum difference between the largest and the next driver of three or more pairs.
     """
 
     teeth: tuple[int, int]
@@ -50,14 +50,14 @@ class StageLimits(NamedTuple):
 
 @dataclass(frozen=True)
 class Options:
-    """Choices worth having of one stage or several, smallest tooth sum first.
+    """Undominated choices of one or several stages, smallest tooth sum first.
 
     Attributes
     ----------
     middle, half, size : ndarray, shape (n,)
         c, h and the tooth sum.
     picks : ndarray, shape (n, stages)
-        For each stage the row of ``teeth`` that is taken.
+        The chosen row of ``teeth`` for each stage.
     teeth : tuple of (sum, drivers) arrays
         By stage: tooth sums (m,), and teeth of the drivers (m, pairs).
     """
@@ -71,12 +71,12 @@ class Options:
 
     @property
     def count(self) -> int:
-        """How many choices there are."""
+        """Number of choices."""
         return len(self.middle)
 
 
 def stage_options(group: Group, ratio: float, widest: float, limits: StageLimits) -> Options:
-    """All choices worth having for one stage.
+    """List all undominated choices for one stage.
 
     Parameters
     ----------
@@ -85,7 +85,7 @@ def stage_options(group: Group, ratio: float, widest: float, limits: StageLimits
     ratio : float
         Progression ratio φ.
     widest : float
-        Largest half width that can be of use, below half a step: the tolerated error.
+        Largest useful half width, below half a step: the tolerated error.
     limits : StageLimits
         Teeth, tooth sums and ratios allowed.
     """
@@ -110,20 +110,22 @@ def stage_options(group: Group, ratio: float, widest: float, limits: StageLimits
 
 
 def sound_drivers(total: int, limits: StageLimits) -> Whole:
-    """Teeth of the drivers that make a pair of this tooth sum, in rising order."""
+    """Return the teeth of the drivers of sound pairs with this tooth sum, in rising order."""
     own = np.arange(max(limits.teeth[0], total - limits.teeth[1]), min(limits.teeth[1], total - limits.teeth[0]) + 1)
     quotient = own / np.maximum(total - own, 1)
+    # Interference is decided for standard teeth.
     sound = external_sound(own.astype(np.float64), (total - own).astype(np.float64), limits.pressure_angle)
     least, most = limits.ratio[0] * (1.0 - SAME), limits.ratio[1] * (1.0 + SAME)
     return np.asarray(own[(quotient >= least) & (quotient <= most) & sound], np.int64)
 
 
 def _narrowest(own: Whole, level: Real, step: float, pairs: int, cluster: int) -> tuple[Real, Real, Whole]:
-    """For every d of a driver as the least: least and greatest d of the narrowest choice (n,), and its drivers (n, p).
+    """Find for every d of a driver as the least the narrowest choice: its least and greatest d (n,), drivers (n, p).
 
-    With a least difference between the two largest drivers the largest is moved up where it must be: it and the one
-    below it are still the smallest that there are.
+    With a minimum difference between the two largest drivers, the largest is moved up if necessary: it and the one
+    below it are still the smallest possible.
     """
+    # Every d of a driver in the place of any pair is tried as the least one.
     least = np.concatenate([level - k * step for k in range(pairs)])
     places = [np.searchsorted(level, least + (k * step - SAME)) for k in range(pairs)]
     if pairs > 2 and cluster:
@@ -136,20 +138,21 @@ def _narrowest(own: Whole, level: Real, step: float, pairs: int, cluster: int) -
 
 
 def worth_having(middle: Real, half: Real, size: Whole) -> Whole:
-    """Rows that no other row of at most their size can replace, smallest first."""
+    """Select the rows that no other row of at most their size dominates, smallest first."""
     order = np.lexsort((half, middle, size))
     ends = np.flatnonzero(np.diff(size[order], append=np.iinfo(np.int64).max)) + 1
-    # Those kept, by rising middle, for the sizes up to here.
+    # The rows kept so far, by rising middle, for the sizes up to here.
     kept, c, h = np.zeros(0, np.int64), np.zeros(0), np.zeros(0)
     chosen = [kept]
     for own in np.split(order, ends[:-1]):
         if not len(own):
             break
         left, right = half[own] - middle[own], half[own] + middle[own]
-        # Of equals the first stays.
+        # The first of several equal rows is kept.
         replaced = (_least_before(left) <= left + SAME) | (_least_after(right) < right - SAME)
         if len(kept):
             at = np.searchsorted(c, middle[own], side="right")
+            # Dominated by a smaller size: |c − c'| + h' ≤ h, split into c' ≤ c and c' > c.
             replaced |= np.append(_least_before(h - c), (h - c).min())[at] <= left + SAME
             replaced |= np.append(np.minimum.accumulate((h + c)[::-1])[::-1], np.inf)[at] <= right + SAME
         new = own[~replaced]
@@ -161,10 +164,10 @@ def worth_having(middle: Real, half: Real, size: Whole) -> Whole:
 
 
 def _least_before(values: Real) -> Real:
-    """For every place the least of the values before it; infinite for the first."""
+    """Return for every place the minimum of the values before it; infinite for the first."""
     return np.concatenate(([np.inf], np.minimum.accumulate(values)[:-1]))
 
 
 def _least_after(values: Real) -> Real:
-    """For every place the least of the values after it; infinite for the last."""
+    """Return for every place the minimum of the values after it; infinite for the last."""
     return _least_before(values[::-1])[::-1]

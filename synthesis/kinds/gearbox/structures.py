@@ -1,4 +1,4 @@
-"""Structures of machine-tool gearboxes: how many pairs in which stage, and what steps they make.
+"""Structures of machine-tool gearboxes: the number of pairs in every stage, and the steps between them.
 
 A gearbox of z speeds has stages of p₁, p₂, ... pairs with p₁ p₂ ... = z. In one stage neighbouring pairs differ by one
 step of the progression, characteristic 1; in the next by as many steps as the first has pairs; and so on, so that every
@@ -14,7 +14,7 @@ from typing import NamedTuple
 
 
 class Group(NamedTuple):
-    """The pairs between two shafts: how many, and the steps from one to the next."""
+    """The pairs between two shafts: their number, and the steps from one to the next."""
 
     pairs: int
     characteristic: int
@@ -24,18 +24,19 @@ Structure = tuple[Group, ...]
 
 
 def formula(structure: Structure) -> str:
-    """The structural formula, e.g. ``3(1) 2(3)``; a single pair has no characteristic."""
+    """Return the structural formula, e.g. ``3(1) 2(3)``; a single pair has no characteristic."""
     return " ".join(
         str(group.pairs) if group.pairs == 1 else f"{group.pairs}({group.characteristic})" for group in structure
     )
 
 
 def structures(count: int, most: int) -> list[Structure]:
-    """All structures of ``count`` speeds with 2 to ``most`` pairs in a stage."""
+    """List all structures of ``count`` speeds with 2 to ``most`` pairs in a stage."""
     orders = []
     for factors in _factorizations(count, most):
         for order in itertools.permutations(range(len(factors))):
             characteristic, groups = 1, {}
+            # The order in which characteristics are assigned is independent of the order of the shafts.
             for at in order:
                 groups[at] = Group(factors[at], characteristic)
                 characteristic *= factors[at]
@@ -44,7 +45,7 @@ def structures(count: int, most: int) -> list[Structure]:
 
 
 def _factorizations(count: int, most: int) -> list[tuple[int, ...]]:
-    """Ordered factorizations into factors 2 to ``most``."""
+    """List ordered factorizations into factors 2 to ``most``."""
     if count == 1:
         return [()]
     factorizations = []
@@ -55,5 +56,5 @@ def _factorizations(count: int, most: int) -> list[tuple[int, ...]]:
 
 
 def spread(group: Group, ratio: float) -> float:
-    """Quotient of the fastest and slowest ratio of a stage, φ^((p − 1) x)."""
+    """Return the quotient of the fastest and slowest ratio of a stage, φ^((p − 1) x)."""
     return math.exp((group.pairs - 1) * group.characteristic * math.log(ratio))

@@ -1,4 +1,4 @@
-"""A finished machine-tool gearbox measured against its problem, from its tooth numbers alone, in exact fractions."""
+"""Verification of a finished machine-tool gearbox, from its tooth numbers alone, in exact fractions."""
 
 from __future__ import annotations
 
@@ -13,16 +13,17 @@ from synthesis.model.answer import Check, Verification
 from synthesis.model.ratio_target import decimal
 
 ROUNDING = 1e-12
-"""Logarithms of the speeds are rounded by some 1e-15 on each side."""
+"""Slack for the logarithms of the speeds, which are rounded by some 1e-15 on each side."""
 
 
 def verify(problem: GearboxProblem, mechanism: GearboxMechanism) -> Verification:
-    """Every demand on a gearbox, measured."""
+    """Check every constraint on a gearbox."""
     stages = _teeth(mechanism)
     errors = _errors(problem, mechanism)
     sums = [{driver + driven for driver, driven in pairs} for pairs in stages]
     every = [pair for pairs in stages for pair in pairs]
     low, high = problem.teeth.min, problem.teeth.max
+    # Driven speed over driving speed is driver over driven teeth.
     ratios = [Fraction(*pair) for pair in every]
     meshes = (Mesh.standard(pair, mechanism.module, math.radians(mechanism.pressure_angle)) for pair in every)
     least, most = problem.stage_ratio.min, problem.stage_ratio.max
@@ -60,7 +61,7 @@ def verify(problem: GearboxProblem, mechanism: GearboxMechanism) -> Verification
 
 
 def measure(problem: GearboxProblem, mechanism: GearboxMechanism, standard: list[float] | None) -> GearboxMetrics:
-    """Speeds of all shafts, deviations and loads."""
+    """Measure speeds of all shafts, deviations and loads."""
     stages = _teeth(mechanism)
     nominal = problem.speeds.nominal
     speeds = spindle_speeds(decimal(mechanism.input_speed), stages)
@@ -75,6 +76,7 @@ def measure(problem: GearboxProblem, mechanism: GearboxMechanism, standard: list
     return GearboxMetrics(
         max_error=max(_errors(problem, mechanism)),
         tooth_sum=sum(sum(pairs[0]) for pairs in stages),
+        # The lowest speed of a shaft has the highest torque.
         torque=sum(mechanism.input_speed / shaft.speeds[0] for shaft in shafts[1:-1]),
         speeds=[
             SpindleSpeed(
@@ -95,7 +97,7 @@ def _teeth(mechanism: GearboxMechanism) -> list[list[tuple[int, int]]]:
 
 
 def _errors(problem: GearboxProblem, mechanism: GearboxMechanism) -> list[float]:
-    """|ln(speed/nominal)| of every speed, both in rising order."""
+    """Compute |ln(speed/nominal)| of every speed, both in rising order."""
     speeds = spindle_speeds(decimal(mechanism.input_speed), _teeth(mechanism))
     if len(speeds) != problem.speeds.count:
         return []

@@ -1,4 +1,4 @@
-"""Indexing drives: Geneva drives and ratchets, sized, drawn, and proved by driving their geometry."""
+"""Indexing drives: Geneva drives and ratchets, sized, drawn, and verified by driving their geometry."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ def _solve(problem: IndexingProblem, progress: Progress) -> IndexingResult:
 
 
 def _brief(problem: IndexingProblem) -> bool:
-    """All but drag links follow in closed form."""
+    """Return whether the answer is in closed form: all drives except those with drag links."""
     return problem.driver == "crank"
 
 

@@ -16,46 +16,46 @@ Complex = NDArray[np.complex128]
 Real = NDArray[np.float64]
 
 MOVING, RESTING = 173, 61
-"""Positions of an index, none of them those of which the disc was made, and of a rest."""
+"""Number of positions of an index, different from those of which the disc was made, and of a rest."""
 
 FREE = 721
-"""Positions of a rest in which it is asked how near the rollers come to the wheel."""
+"""Number of positions of a rest at which the distance of the rollers from the wheel is measured."""
 
 FINE = 1.0 / 60.0
 """Longest straight piece of an outline, in center distances."""
 
 TRIED = 0.005
-"""Angle, radians, by which a resting wheel is turned to see whether the disc holds it, beside its play."""
+"""Angle, radians, by which a resting wheel is turned beyond its play to test whether the disc holds it."""
 
 ON_SIDE = 1e-9
-"""Share of a length within which a corner lies on a line or a circle."""
+"""Share of a length within which a corner counts as on a line or a circle."""
 
 
 @dataclass(frozen=True)
 class Measured:
-    """What the outlines of a drive have, in length units but for ``locked``.
+    """Measurements on the outlines of a drive, in length units except for ``locked``.
 
     Attributes
     ----------
     roller : float
         Least distance of the roller's center from the wheel over an index.
     passing : float
-        The same of all rollers while they are in no slot: over a rest, and over the index of another one. On a sphere
-        the diameter of the roller where it comes no nearer.
+        The same for all rollers outside slots: over a rest, and over the index of another one. On a sphere the diameter
+        of the roller if it comes no nearer.
     overlap : float
-        Greatest depth of the wheel in the disc over an index and a rest; 0 where they stay apart.
+        Greatest depth of the wheel in the disc over an index and a rest; 0 if they stay separate.
     locked : float
-        Share of the rest over which the wheel cannot turn either way.
+        Share of the rest over which the wheel cannot turn in either direction.
     locked_angle : float
         The same in degrees of the crank.
     play : float
         Degrees by which the wheel can be turned in the middle of a rest.
     wall, web : float
-        From a slot to a locking arc; between neighbouring slots.
+        Distances from a slot to a locking arc, and between neighbouring slots.
     inmost : float
-        From the wheel's axis to the nearest point of a slot.
+        Distance from the wheel's axis to the nearest point of a slot.
     outmost : float
-        From the wheel's axis to the farthest point of its outline: of a ring, of its slots.
+        Distance from the wheel's axis to the farthest point of its outline; for a ring, of its slots.
     neck : float
         Least radius of the disc about the crank's axis.
     size : float
@@ -81,6 +81,7 @@ def measured(design: IndexingDesign, half: float) -> Measured:
     mechanism = design.mechanism
     if not isinstance(mechanism, GenevaMechanism):
         return Measured(**measured_on_sphere(mechanism))
+    # In an internal drive the crank and the wheel's slots face the other way.
     c, sense = mechanism.center_distance, 1.0 if mechanism.type == "geneva_external" else -1.0
     outline = np.array(mechanism.profile.x) + 1j * np.array(mechanism.profile.y)
     stations = np.arange(mechanism.stations)
@@ -91,12 +92,14 @@ def measured(design: IndexingDesign, half: float) -> Measured:
     turn = np.angle(roller)
 
     def deepest(crank: Real, wheel: Real) -> Real:
-        """Greatest depth in each position: crank angles from the middle of an index, directions of slot 0."""
+        """Return the greatest depth in each position: crank angles from mid-index, directions of slot 0."""
         seen = (points * np.exp(1j * wheel)[:, None] - c) * (-sense * np.exp(-1j * crank))[:, None]
         return np.asarray(depth(mechanism.disc, seen).max(axis=1))
 
+    # From the exit of one roller to the entry of the next.
     rest = np.linspace(half, 2.0 * math.pi / mechanism.rollers - half, RESTING)
     still = np.full(RESTING, turn[-1])
+    # Play is measured at mid-rest, farthest from entry and exit.
     middle = float(rest[RESTING // 2])
     play = play_of(lambda by: deepest(np.full_like(by, middle), still[0] + by), math.pi / mechanism.stations)
     tried = TRIED + play
@@ -118,35 +121,36 @@ def measured(design: IndexingDesign, half: float) -> Measured:
 
 
 def _passing(mechanism: GenevaMechanism, outline: Complex, alpha: Real, turn: Real) -> float:
-    """The least distance of rollers that are in no slot; ``alpha`` and ``turn`` of the index of the first."""
+    """Return the least distance of rollers outside slots; ``alpha`` and ``turn`` are those of the first's index."""
     c, sense = mechanism.center_distance, 1.0 if mechanism.type == "geneva_external" else -1.0
     half, pitch = float(alpha[-1]), 2.0 * math.pi / mechanism.rollers
     rest = np.linspace(half, pitch - half, FREE)
+    # All crank angles at which the first roller is in no slot: the rest, and the indexes of the other rollers.
     crank = np.concatenate([rest, *(alpha + pitch * k for k in range(1, mechanism.rollers))])
     others = pitch * np.arange(mechanism.rollers)[:, None]
     wheel = np.concatenate([np.full(FREE, turn[-1]), np.tile(turn, mechanism.rollers - 1)])
     at_rest = (rest + others[1:]).ravel()
     crank, wheel = np.append(crank, at_rest), np.append(wheel, np.full(len(at_rest), turn[-1]))
     places = np.asarray((c - sense * mechanism.crank_radius * np.exp(1j * crank)) * np.exp(-1j * wheel), np.complex128)
-    # A roller that is farther from the wheel's circle than its own width is nowhere near.
+    # A roller farther from the wheel's circle than its own diameter cannot be near the wheel.
     apart = sense * (np.abs(places) - mechanism.wheel_radius)
     sampled = distance(outline, places[apart < mechanism.roller_diameter])
-    # Corners that the path passes between two positions: a circle about the crank's axis.
+    # Corners that the path passes between two sampled positions: the path is a circle about the crank's axis.
     seen = (outline * np.exp(1j * turn[-1]) - c) * -sense
     passed = np.mod(np.angle(seen) - half, pitch) <= pitch - 2.0 * half
     return min(sampled, float(np.abs(np.abs(seen[passed]) - mechanism.crank_radius).min(initial=math.inf)))
 
 
 def _walls(mechanism: GenevaMechanism, outline: Complex, arcs: Complex) -> dict[str, float]:
-    """Wall, web and inmost point, by the corners of the outline."""
+    """Measure wall, web and innermost point by the corners of the outline."""
     half_slot, step = 0.5 * mechanism.slot_width, math.pi / mechanism.stations
     on_arc = np.abs(np.abs(outline - arcs[0]) - mechanism.locking_arc_radius) < ON_SIDE * mechanism.locking_arc_radius
     from_slot = np.abs(outline.imag)
-    # Slot 0, of which all points are within half its width of its axis; and the one after it.
+    # Slot 0, with all points within half its width of its axis; and the next one.
     near = (from_slot <= half_slot * (1.0 + ON_SIDE)) & (outline.real > 0.0)
     slot = outline[near]
     if not (on_arc.any() and near.any()):
-        # An outline without slots or arcs where they are told to be.
+        # An outline without slots or arcs at the reported places.
         return {"wall": 0.0, "web": 0.0, "inmost": 0.0}
     return {
         "wall": float(from_slot[on_arc].min()) - half_slot,

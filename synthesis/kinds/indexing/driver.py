@@ -1,7 +1,7 @@
-"""The drag link with which a Geneva drive has the least peak acceleration at a steady input.
+"""The drag link with which a Geneva drive has the minimum peak acceleration at a constant input speed.
 
-Lengths over the ground and the output's angle in the middle of the index are drawn at random, what breaks a demand is
-dropped, and the best few descend by Nelder and Mead's method; there are no more than these four numbers.
+Lengths over the ground and the output's angle at mid-index are sampled at random, infeasible ones are
+dropped, and the best few are refined by the Nelder-Mead method, which suffices for these four numbers.
 """
 
 from __future__ import annotations
@@ -19,29 +19,29 @@ from synthesis.kinds.indexing.problem import IndexingProblem
 Real = NDArray[np.float64]
 
 DRAWN, TRIED = 20000, 4
-"""Drag links that are drawn, and those that descend."""
+"""Number of sampled drag links, and of those that are refined."""
 
 TURN = 120
-"""Positions of a turn in which drawn ones are looked at."""
+"""Number of positions of a turn at which sampled ones are evaluated."""
 
 SAMPLED = 241
-"""Positions of an index in which the descent looks at one."""
+"""Number of positions of an index at which the refinement evaluates one."""
 
 LONGEST = 5.0
 """Longest link over the ground."""
 
 BROKEN, ALLOWED = 1e4, 1e2
-"""What a link costs that breaks a demand, times how far; and the cost below which one is taken, to be judged later."""
+"""Cost per unit of a violated constraint; and the cost below which a link is accepted, to be verified later."""
 
 ROUGH = 0.02
-"""Of a turn by which a rest in few positions may be off."""
+"""Permitted error of a dwell share in few positions, as a share of a turn."""
 
 KEPT = 1e-6
-"""Share by which the search keeps away from the limit of the transmission angle."""
+"""Share by which the search stays away from its limits."""
 
 
 def best_course(problem: IndexingProblem, geneva: Geneva) -> Course | None:
-    """The best course of a drag link before a drive; None where none of those tried keeps the demands."""
+    """Find the best course of a drag link before a drive; None if no tried one keeps the constraints."""
     rng = np.random.default_rng(problem.seed)
     lengths = rng.uniform(1.05, LONGEST, (DRAWN, 3))
     phases = rng.uniform(0.0, 2.0 * math.pi, DRAWN)
@@ -51,6 +51,7 @@ def best_course(problem: IndexingProblem, geneva: Geneva) -> Course | None:
     if not len(lengths):
         return None
     peaks, rests = _roughly(geneva, lengths, phases)
+    # Links outside the dwell limits are ranked last instead of dropped: the refinement may still bring them in.
     peaks = peaks + np.abs(peaks).max() * (_outside(problem, rests) > ROUGH)
     found: tuple[float, Course] | None = None
     for number in np.argsort(peaks)[:TRIED]:
@@ -71,12 +72,12 @@ def _course(geneva: Geneva, x: Real) -> Course:
 
 
 def _turns(lengths: Real) -> NDArray[np.bool_]:
-    """Whether the links turn through, the ground of length 1 being the shortest (Grashof)."""
+    """Return whether the links rotate fully, the ground of length 1 being the shortest (Grashof)."""
     return np.asarray((lengths > 1.0).all(axis=-1) & (1.0 + 2.0 * lengths.max(axis=-1) < lengths.sum(axis=-1)))
 
 
 def _outside(problem: IndexingProblem, rest: float | Real) -> Real:
-    """By how much a dwell share is outside what is stated."""
+    """Return the excess of a dwell share over its limits."""
     stated = problem.constraints.dwell_share
     low = 0.0 if stated is None or stated.min is None else stated.min * (1.0 + KEPT)
     high = 1.0 if stated is None or stated.max is None else stated.max * (1.0 - KEPT)
@@ -84,19 +85,22 @@ def _outside(problem: IndexingProblem, rest: float | Real) -> Real:
 
 
 def _roughly(geneva: Geneva, lengths: Real, phases: Real) -> tuple[Real, Real]:
-    """Peak accelerations in positions of a turn, those outside the index left out, and shares of these."""
+    """Estimate peak accelerations within the index from positions of a turn, and the dwell shares."""
     angle = 2.0 * math.pi * np.arange(TURN) / TURN
     turned = DragLink(*(lengths[:, k, None] for k in range(3))).turned(angle)
     crank = np.mod(turned.s - phases[:, None] + math.pi, 2.0 * math.pi) - math.pi
     wheel = geneva.motion(crank)
     acceleration = wheel.a * turned.v**2 + wheel.v * turned.a
+    # Outside the index the wheel rests and has no acceleration.
     moves = np.abs(crank) <= geneva.half
     return np.where(moves, np.abs(acceleration), 0.0).max(axis=1), 1.0 - moves.mean(axis=1)
 
 
 def _cost(problem: IndexingProblem, geneva: Geneva, x: Real, wanted: float) -> float:
-    """The peak acceleration, or how far demands are broken."""
+    """Return the peak acceleration, or a penalty for violated constraints."""
     lengths = x[:3]
+    # Penalties are ordered: impossible links cost most, then poor transmission, then dwell and steadiness.
+    # Distance outside the box of permitted link lengths.
     over = max(0.0, float(lengths.max()) - LONGEST) + max(0.0, 1.0 + KEPT - float(lengths.min()))
     if over > 0.0 or not _turns(lengths):
         return BROKEN * (2.0 + over)

@@ -1,8 +1,8 @@
 """Torque and pin force of an index at steady speed of the crank.
 
 The wheel takes T = J ω² φ'' + T_L; without friction the crank gives M = T φ', and the roller presses on the side of its
-slot with F = T/ρ, square to the slot, at its distance ρ from the wheel's axis (Norton, *Design of Machinery*, ch. 11).
-Where F is negative it is the slot's other side that holds the wheel back.
+slot with F = T/ρ, normal to the slot, at its distance ρ from the wheel's axis (Norton, *Design of Machinery*, ch. 11).
+If F is negative the other side of the slot decelerates the wheel.
 """
 
 from __future__ import annotations
@@ -21,12 +21,12 @@ Real = NDArray[np.float64]
 
 
 ALIKE = 1e-9
-"""Share by which one peak may be above another that is as high."""
+"""Relative difference up to which two peaks count as equal, so that the first is reported."""
 
 
 @dataclass(frozen=True)
 class Load:
-    """What the wheel carries, and how fast the crank turns (rad/s)."""
+    """Load of the wheel, and speed of the crank (rad/s)."""
 
     inertia: float
     torque: float
@@ -34,7 +34,7 @@ class Load:
 
 
 def arm(drive: Geneva, angle: Real, size: float) -> Real:
-    """Distance of the roller from the wheel's axis; ``size`` is the center distance, or the sphere's radius."""
+    """Return the distance of the roller from the wheel's axis; ``size``: center distance or sphere radius."""
     if drive.drive == "geneva_spherical":
         sine, cosine = math.sin(math.atan(drive.ratio)), math.cos(math.atan(drive.ratio))
         return np.asarray(size * np.hypot(cosine, sine * np.sin(angle)))
@@ -43,12 +43,12 @@ def arm(drive: Geneva, angle: Real, size: float) -> Real:
 
 
 def wheel_torque(course: Course, load: Load, angle: Real) -> Real:
-    """Torque on the wheel at angles (radians) of the input."""
+    """Return the torque on the wheel at angles (radians) of the input."""
     return np.asarray(load.inertia * load.speed**2 * course.motion(angle).a + load.torque)
 
 
 def pin_force(course: Course, load: Load, angle: Real, size: float) -> Real:
-    """Force of the roller on the slot's side at angles of the input."""
+    """Return the force of the roller on the slot's side at angles of the input."""
     return np.asarray(wheel_torque(course, load, angle) / arm(course.geneva, course.crank(angle).s, size))
 
 
@@ -66,13 +66,15 @@ class Peaks:
 
 
 def peaks(course: Course, load: Load, size: float) -> Peaks:
-    """The greatest of motion and forces; ``size`` in the unit of torque over force.
+    """Find the peaks of motion and forces; ``size`` in the unit of torque over force.
 
     ``acceleration_at`` is the input's angle from the entry.
     """
     start, end = course.start, course.end
+    # The motion is symmetrical about mid-index; its derivatives are smooth on each half.
     breaks = [start, 0.5 * (start + end), end]
     acceleration = extremes(lambda at: course.motion(at).a, breaks)
+    # Of two equal peaks the positive one is reported, independent of rounding.
     at = acceleration.at_greatest
     if abs(acceleration.least) > acceleration.greatest * (1.0 + ALIKE):
         at = acceleration.at_least

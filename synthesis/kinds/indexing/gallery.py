@@ -1,4 +1,4 @@
-"""Its examples as a person looks for them, in their order."""
+"""Examples of the kind indexing for the gallery, in order of presentation."""
 
 from __future__ import annotations
 
@@ -6,9 +6,9 @@ from synthesis.model.kind import Named
 
 GALLERY = (
     Named("Geneva wheel, six stations", "Lift and rest", "A step of 60° for each turn of the crank."),
-    Named("Geneva wheel, eight stations", "Lift and rest", "Between shafts and walls of given sizes."),
+    Named("Geneva wheel, eight stations", "Lift and rest", "The smallest for given shafts and walls."),
     Named("Inner Geneva wheel", "Lift and rest", "The wheel around its crank: long steps, short rests."),
     Named("Spherical Geneva wheel", "Lift and rest", "Steps about an axis that crosses that of the crank."),
-    Named("Geneva wheel behind a drag link", "Lift and rest", "Other times of step and rest with the same wheel."),
-    Named("Ratchet", "Lift and rest", "Thirty-six stops against a load that wants to turn back."),
+    Named("Geneva wheel behind a drag link", "Lift and rest", "Different times of step and rest with the same wheel."),
+    Named("Ratchet", "Lift and rest", "Thirty-six stops against a load that would turn it back."),
 )

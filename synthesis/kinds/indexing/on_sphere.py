@@ -1,6 +1,6 @@
 """Distances of a finished spherical drive, measured in space: the wheel's edges against the cap of the crank.
 
-The crank's axis is x, the wheel's z; in the middle of an index the roller stands above x, at the angle of its cone.
+The crank's axis is x, the wheel's z; in the middle of an index the roller is above x, at the angle of its cone.
 """
 
 from __future__ import annotations
@@ -17,17 +17,17 @@ from synthesis.kinds.indexing.polygons import play_of
 Real = NDArray[np.float64]
 
 MOVING, RESTING, AROUND = 173, 61, 97
-"""Positions of an index and of a rest, and points of each edge of the wheel."""
+"""Number of positions of an index and of a rest, and of points of each edge of the wheel."""
 
 FREE = 721
-"""Positions of a rest in which it is asked how near the roller comes to the wheel."""
+"""Number of positions of a rest at which the distance of the roller from the wheel is measured."""
 
 TRIED = 0.005
-"""Angle, radians, by which a resting wheel is turned to see whether the cap holds it, beside its play."""
+"""Angle, radians, by which a resting wheel is turned beyond its play to test whether the cap holds it."""
 
 
 def measured_on_sphere(mechanism: SphericalGenevaMechanism) -> dict[str, float]:
-    """The quantities of :class:`synthesis.kinds.indexing.clearance.Measured`, by name."""
+    """Measure the quantities of :class:`synthesis.kinds.indexing.clearance.Measured`, by name."""
     radius, cone = mechanism.sphere_radius, math.radians(mechanism.cone_angle)
     half_slot, step = 0.5 * mechanism.slot_width, math.pi / mechanism.stations
     edges = _edges(mechanism)
@@ -35,6 +35,7 @@ def measured_on_sphere(mechanism: SphericalGenevaMechanism) -> dict[str, float]:
     roller = np.stack(
         [np.full(MOVING, math.cos(cone)), math.sin(cone) * np.sin(alpha), math.sin(cone) * np.cos(alpha)], -1
     )
+    # The slot follows the roller: its azimuth about the wheel's axis.
     turn = np.arctan2(roller[:, 1], roller[:, 0])
     rest = np.linspace(0.5 * math.pi, 1.5 * math.pi, RESTING)
     still = np.full(RESTING, turn[-1])
@@ -51,7 +52,7 @@ def measured_on_sphere(mechanism: SphericalGenevaMechanism) -> dict[str, float]:
     apart = max(float(inside(alpha, turn).max()), float(inside(rest, still).max()), 0.0)
     locked = float(held.mean())
     end = math.radians(mechanism.slot_end_angle)
-    # The roller is a cylinder about a radius: in the middle of the slot, and before its end.
+    # The roller is a cylinder about a radius: it runs in the middle of the slot, and stops before its end.
     above = radius * math.tan(end - float(np.arcsin(roller[:, 2]).max())) + half_slot
     middles = radius * np.array([[math.cos(end) * math.cos(k), math.cos(end) * math.sin(k)] for k in (0.0, 2.0 * step)])
     hollows = radius * _hollow(mechanism, 0)
@@ -75,13 +76,13 @@ def measured_on_sphere(mechanism: SphericalGenevaMechanism) -> dict[str, float]:
 
 
 def _passing(mechanism: SphericalGenevaMechanism, wheel: float) -> float:
-    """The least distance of the axis of the roller from the resting wheel, up to the roller's diameter.
+    """Return the least distance of the roller's axis from the resting wheel, up to the roller's diameter.
 
-    The roller is a cylinder about a radius that goes below the plane of the rim. Edges are seen along it.
+    The roller is a cylinder about a radius that goes below the plane of the rim. Edges are seen along its axis.
     """
     radius, cone = mechanism.sphere_radius, math.radians(mechanism.cone_angle)
     alpha = np.linspace(0.5 * math.pi, 1.5 * math.pi, FREE)
-    # The wheel is above the plane of its rim: from a roller that is lower than its own width nothing is near.
+    # The wheel is above the plane of its rim: a roller lower than its own diameter is near nothing.
     alpha = alpha[-radius * math.sin(cone) * np.cos(alpha) < mechanism.roller_diameter]
     axis = np.stack(
         [np.full(len(alpha), math.cos(cone)), math.sin(cone) * np.sin(alpha), math.sin(cone) * np.cos(alpha)], -1
@@ -91,19 +92,19 @@ def _passing(mechanism: SphericalGenevaMechanism, wheel: float) -> float:
     )
     beside = np.cross(axis, up)
     least = mechanism.roller_diameter
-    # The slots that the roller leaves and comes to lie beside one hollow.
+    # The slots that the roller leaves and reaches lie on the two sides of one hollow.
     for line in _lines(mechanism, (0, -1, 1)):
         x = line[:, 0] * math.cos(wheel) - line[:, 1] * math.sin(wheel)
         y = line[:, 0] * math.sin(wheel) + line[:, 1] * math.cos(wheel)
         places = radius * np.stack([x, y, line[:, 2]])
-        # What is on the other half of the sphere is not beside the roller, but behind it.
+        # Points on the other half of the sphere are behind the roller, not next to it.
         before = axis @ places > 0.0
         least = min(least, _nearest(up @ places + 1j * (beside @ places), before[:, 1:] & before[:, :-1]))
     return least
 
 
 def _nearest(lines: NDArray[np.complex128], counted: NDArray[np.bool_]) -> float:
-    """The least distance of the origin from lines of straight pieces, shape (m, n), of which some count."""
+    """Return the least distance of the origin from polylines, shape (m, n), of which only some pieces count."""
     start, piece = lines[:, :-1], np.diff(lines, axis=1)
     length = np.abs(piece) ** 2
     along = np.clip((-start * piece.conj()).real / np.where(length > 0.0, length, 1.0), 0.0, 1.0)
@@ -111,7 +112,7 @@ def _nearest(lines: NDArray[np.complex128], counted: NDArray[np.bool_]) -> float
 
 
 def _hollow(mechanism: SphericalGenevaMechanism, station: int) -> Real:
-    """The edge of the hollow after a slot, unit vectors above the rim in the wheel's frame, shape (AROUND, 3)."""
+    """Return the edge of the hollow after a slot, unit vectors above the rim in the wheel's frame, (AROUND, 3)."""
     angle = math.radians(mechanism.locking_arc_angle)
     around = np.linspace(0.0, math.pi, AROUND)
     axis = math.pi * (2 * station + 1) / mechanism.stations
@@ -121,12 +122,12 @@ def _hollow(mechanism: SphericalGenevaMechanism, station: int) -> Real:
 
 
 def _edges(mechanism: SphericalGenevaMechanism) -> Real:
-    """Points of the wheel's edges on the sphere: hollows, the sides of slots, the rim between; unit vectors."""
+    """Return points of the wheel's edges on the sphere: hollows, the sides of slots, the rim between; unit vectors."""
     return np.concatenate(_lines(mechanism, range(mechanism.stations)))
 
 
 def _lines(mechanism: SphericalGenevaMechanism, stations: Iterable[int]) -> list[Real]:
-    """The edges at some slots, each in its order."""
+    """List the edges at some slots, each in its order."""
     half_slot = 0.5 * mechanism.slot_width / mechanism.sphere_radius
     up = np.linspace(0.0, math.radians(mechanism.slot_end_angle), AROUND)
     listed = []
@@ -144,10 +145,10 @@ def _lines(mechanism: SphericalGenevaMechanism, stations: Iterable[int]) -> list
 
 
 def _depth(edges: Real, crank: Real, wheel: Real, cap: float, offset: float) -> Real:
-    """Greatest depth, radians, of the wheel's edges in the cap, in each position: negative where they are apart."""
+    """Return the greatest depth, radians, of the wheel's edges in the cap at each position; negative if separate."""
     cosine, sine = np.cos(wheel)[:, None], np.sin(wheel)[:, None]
     x, y = cosine * edges[:, 0] - sine * edges[:, 1], sine * edges[:, 0] + cosine * edges[:, 1]
     from_axis = np.arccos(np.clip(x, -1.0, 1.0))
-    # The roller stands at (sin α, cos α) of (y, z); the cap is on the other side, beyond its plane.
+    # The roller is at (sin α, cos α) of (y, z); the cap is on the other side, beyond its plane.
     towards = np.sin(crank)[:, None] * y + np.cos(crank)[:, None] * edges[:, 2]
     return np.asarray(np.minimum(cap - from_axis, -towards - offset).max(axis=1))

@@ -1,4 +1,4 @@
-"""Geneva drives in the plane: their dimensions from a center distance, and what keeps that from being smaller."""
+"""Geneva drives in the plane: their dimensions from a center distance, and the constraints on its minimum."""
 
 from __future__ import annotations
 
@@ -14,15 +14,16 @@ from synthesis.kinds.indexing.design import DragLinkDriver, GenevaMechanism, Loc
 from synthesis.kinds.indexing.problem import IndexingProblem
 
 FEW = 9
-"""Rays in which a crescent is measured to size it."""
+"""Number of rays in which a crescent is measured to size it."""
 
 
 def wheel_of(problem: IndexingProblem, drive: Geneva, center_distance: float) -> Wheel:
-    """The wheel of a drive; its locking arc is NaN where the wall leaves none."""
+    """Build the wheel of a drive; its locking arc is NaN if the wall leaves none."""
     internal = problem.drive == "geneva_internal"
     step, radius = math.pi / problem.stations, drive.ratio * center_distance
     half_slot = 0.5 * (problem.roller + problem.clearances.slot)
     entry = center_distance * abs(1.0 - drive.signed * complex(math.cos(drive.half), math.sin(drive.half)))
+    # The rim goes through the entering roller's far side.
     reach = math.hypot(entry, 0.5 * problem.roller)
     end = center_distance + radius + problem.slot_room if internal else center_distance - radius - problem.slot_room
     lock = _lock(internal, step, center_distance, reach, half_slot + problem.wall)
@@ -30,19 +31,21 @@ def wheel_of(problem: IndexingProblem, drive: Geneva, center_distance: float) ->
 
 
 def _lock(internal: bool, step: float, center_distance: float, reach: float, apart: float) -> float:
-    """Radius of locking arcs that come as near as ``apart`` to the axes of the slots."""
+    """Compute the radius of locking arcs at the distance ``apart`` from the axes of the slots."""
     foot = math.hypot(center_distance * math.cos(step), apart)
+    # The arc is nearest to the slot's axis at the foot of the perpendicular, if that is on the wheel.
     if (foot <= reach) != internal:
         lock = center_distance * math.sin(step) - apart
         return lock if lock > 0.0 else math.nan
     if apart >= reach * math.sin(step):
         return math.nan
+    # Otherwise the arc's corner on the rim is nearest: the law of cosines for its radius.
     beside = step - math.asin(apart / reach)
     return math.sqrt(reach**2 + center_distance**2 - 2.0 * reach * center_distance * math.cos(beside))
 
 
 def margins(problem: IndexingProblem, drive: Geneva, center_distance: float) -> dict[str, float]:
-    """By how much a drive is larger than each of its walls asks; NaN or negative where it is too small.
+    """Compute by how much a drive exceeds each of its wall constraints; NaN or negative if it is too small.
 
     The disc is at least as large as the roller.
     """
@@ -50,7 +53,7 @@ def margins(problem: IndexingProblem, drive: Geneva, center_distance: float) -> 
     shaft = 0.5 * problem.crank_shaft_diameter
     disc = wheel.lock - problem.clearances.locking
     found = {
-        # Not a number where any of them is.
+        # NaN if any of them is.
         "locking_disc": float(np.min([disc - shaft, disc - 0.5 * problem.roller, wheel.land])),
         "web": wheel.web - problem.wall,
     }
@@ -64,7 +67,7 @@ def margins(problem: IndexingProblem, drive: Geneva, center_distance: float) -> 
 
 
 def _thickness(problem: IndexingProblem, drive: Geneva, wheel: Wheel) -> float:
-    """By how much the crescent of an internal drive is thicker than a wall where it is thinnest."""
+    """Compute by how much the crescent of an internal drive is thicker than a wall at its thinnest place."""
     if not drawable(wheel, problem.clearances.locking):
         return math.nan
     found = crescent(wheel, drive, problem.clearances.locking, problem.relief, FEW)
@@ -72,24 +75,24 @@ def _thickness(problem: IndexingProblem, drive: Geneva, wheel: Wheel) -> float:
 
 
 def drawable(wheel: Wheel, gap: float) -> bool:
-    """Whether the outline exists: arcs that cut the wheel between the slots, and slots that end before its axis."""
+    """Return whether the outline exists: arcs that cut the wheel between slots, and slots that end before its axis."""
     return wheel.lock > gap and wheel.land > 0.0 and wheel.slot_end > wheel.half_slot and wheel.web > 0.0
 
 
 def size_of(problem: IndexingProblem, wheel: Wheel, crank_radius: float) -> float:
-    """The extent: of an external drive along the line of both axes, of a ring its diameter."""
+    """Compute the extent: for an external drive along the line of both axes, for a ring its diameter."""
     if wheel.internal:
         return 2.0 * ring_radius(problem, wheel)
     return wheel.reach + wheel.center_distance + crank_radius + 0.5 * problem.roller
 
 
 def ring_radius(problem: IndexingProblem, wheel: Wheel) -> float:
-    """The outside of a ring, a wall beyond the ends of its slots."""
+    """Compute the outer radius of a ring, one wall beyond the ends of its slots."""
     return wheel.slot_end + wheel.half_slot + problem.wall
 
 
 def mechanism_of(problem: IndexingProblem, course: Course, wheel: Wheel, rollers: int) -> GenevaMechanism:
-    """All dimensions and outlines of a drive that can be drawn."""
+    """Build all dimensions and outlines of a drive that can be drawn."""
     drive = course.geneva
     assert drive.drive != "geneva_spherical"
     gap = problem.clearances.locking
@@ -114,12 +117,13 @@ def mechanism_of(problem: IndexingProblem, course: Course, wheel: Wheel, rollers
 
 
 def _driver(course: Course, center_distance: float) -> DragLinkDriver | None:
-    """The drag link to scale: its output is as long as the crank."""
+    """Scale the drag link: its output is as long as the crank."""
     link = course.link
     if link is None:
         return None
+    # Lengths are relative to the ground; the output must equal the crank radius.
     ground = course.geneva.ratio * center_distance / float(link.output)
-    # The line from the input's pivot to the crank's axis points to the wheel, where an external crank's index is.
+    # The line from the input's pivot to the crank's axis points to the wheel, the direction of an external index.
     towards = 0.0 if course.geneva.drive == "geneva_external" else math.pi
     return DragLinkDriver(
         input_pivot=(center_distance + ground, 0.0),

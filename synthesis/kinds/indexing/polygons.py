@@ -1,4 +1,4 @@
-"""What is measured on outlines alone: how deep a wheel is in a disc, and how near points come to a polygon."""
+"""Measurements on outlines alone: the depth of a wheel in a disc, and the distance of points from a polygon."""
 
 from __future__ import annotations
 
@@ -15,21 +15,21 @@ Real = NDArray[np.float64]
 
 
 ON_ARC = 1e-9
-"""Share of a radius within which a corner lies on an arc."""
+"""Share of a radius within which a corner counts as on an arc."""
 
 HALVINGS, EVENLY = 24, 48
-"""Of half a station, for the play of a locked wheel; and its steps in which it is asked where the wheel is held."""
+"""Number of halvings of half a station, for the play of a locked wheel, and of even steps at which it is tested."""
 
 
 def closed(outline: Complex) -> Complex:
-    """An outline with its first corner again at its end."""
+    """Return an outline with its first corner repeated at its end."""
     return np.append(outline, outline[:1])
 
 
 def split(outline: Complex, longest: float, arcs: Complex, radius: float) -> Complex:
-    """The corners of a closed outline, with points between on its edges that are longer than ``longest``.
+    """Return the corners of a closed outline, with points in between on edges longer than ``longest``.
 
-    Edges of arcs of a radius about given centers are left alone: the points between would not be on the arc.
+    Edges of arcs of a radius about given centers are left unchanged: points in between would not be on the arc.
     """
     corners = closed(outline)
     on_arc = np.any(np.abs(np.abs(corners[:, None] - arcs) - radius) < ON_ARC * radius, axis=1)
@@ -42,7 +42,7 @@ def split(outline: Complex, longest: float, arcs: Complex, radius: float) -> Com
 
 
 def depth(disc: LockingDisc, points: Complex) -> Real:
-    """How far points of the crank's frame are inside a disc, along the ray from its axis; negative outside."""
+    """Measure the depth of points of the crank's frame in a disc, along the ray from its axis; negative outside."""
     angle = np.radians(disc.angle)
     outer, inner = np.array(disc.outer_radius), np.array(disc.inner_radius)
     whole = not inner.any()
@@ -61,23 +61,24 @@ def depth(disc: LockingDisc, points: Complex) -> Real:
 
 
 def _edge(first: Real, second: Real, before: Real, after: Real) -> Real:
-    """Distance of the edge between two corners along rays between them."""
+    """Return the distance of the edge between two corners along rays between them."""
+    # The ray through the origin meets the chord where both triangles share its length.
     whole = first * np.sin(before) + second * np.sin(after)
     with np.errstate(invalid="ignore", divide="ignore"):
         return np.where(whole > 0.0, first * second * np.sin(before + after) / whole, 0.0)
 
 
 def play_of(deepest: Callable[[Real], Real], step: float) -> float:
-    """By how much a locked wheel can be turned, radians; up to half a station, where nothing holds it.
+    """Measure the angle by which a locked wheel can be turned, radians; half a station if nothing holds it.
 
     Parameters
     ----------
     deepest : callable
-        How deep the wheel is in the disc when it is turned by angles, shape (k,).
+        Depth of the wheel in the disc when it is turned by angles, shape (k,).
     step : float
         Half the angle between stations: there a slot faces the disc, which may fit into it.
     """
-    # Beyond the first angle at which it is held it may be free again.
+    # The angles rise densely from zero: beyond the first held angle the wheel may be free again.
     tried = step * np.unique(np.concatenate([2.0 ** -np.arange(HALVINGS), np.arange(1, EVENLY) / EVENLY]))
     within = np.nonzero(deepest(tried) > 0.0)[0]
     if not len(within):
@@ -94,7 +95,7 @@ def play_of(deepest: Callable[[Real], Real], step: float) -> float:
 
 
 def distance(outline: Complex, points: Complex) -> float:
-    """The least distance of points, shape (m,), from the edges of a closed outline."""
+    """Return the least distance of points, shape (m,), from the edges of a closed outline."""
     start = outline
     edge = np.roll(outline, -1) - outline
     apart = points[:, None] - start

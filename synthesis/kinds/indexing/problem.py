@@ -1,4 +1,4 @@
-"""Indexing: a wheel that is turned from station to station and held between, by one drive or another."""
+"""Indexing: a wheel that is turned from station to station and held in between, by one of several drives."""
 
 from __future__ import annotations
 
@@ -30,77 +30,87 @@ from synthesis.model.statement import (
 )
 
 MOST_STATIONS, MOST_STOPS = 48, 720
-"""Of a Geneva wheel, which is all slots beyond; of a ratchet."""
+"""Maximum number of stations of a Geneva wheel, which would be all slots beyond; and of stops of a ratchet."""
 
 FEWEST_TEETH, MOST_GROUPS = 12, 4
-"""Of a ratchet wheel with straight backs; of pawls that are staggered."""
+"""Minimum number of teeth of a ratchet wheel with straight backs; maximum number of groups of staggered pawls."""
 
 NEAR_ONE = 0.999
-"""Crank radius over center distance up to which a plane drive is taken: at 1 the roller comes to the wheel's axis."""
+"""Maximum crank radius over center distance of a plane drive: at 1 the roller would reach the wheel's axis."""
 
 AS_TYPED = 1e-5
-"""Share by which a crank may differ from that of shock-free entry to be it: six digits of a number that is typed."""
+"""Share by which a crank may differ from that of shock-free entry and still count as it: six typed digits."""
 
 MOST_ROLLERS = 5
-"""On a crank."""
+"""Maximum number of rollers on a crank."""
 
 LEAST_ROOM, MOST_ROOM = 0.01, 3.0
-"""Least clearance at the end of a slot, and beside the disc, and greatest of any, in roller diameters."""
+"""Minimum clearance at the end of a slot and at the disc, and maximum of any clearance, in roller diameters."""
 
 TRANSMISSION = 40.0
-"""Least transmission angle of a drag link where none is stated, degrees."""
+"""Default minimum transmission angle of a drag link, degrees."""
 
 Share = Annotated[float, Field(strict=True, gt=0.0, lt=1.0, allow_inf_nan=False)]
 
 
 class DwellShare(Range):
-    """Least and greatest share of the time in which the wheel rests."""
+    """Minimum and maximum share of the time in which the wheel rests."""
 
     min: Share | None = None
     max: Share | None = None
 
 
 class IndexingConstraints(Statement):
-    """What a drive must keep."""
+    """Constraints on a drive."""
 
     dwell_share: DwellShare | None = None
     peak_acceleration: Annotated[PositiveNumber, ACCELERATION] | None = Field(
-        default=None, description="The wheel's greatest, by the crank's angle."
+        default=None, description="Maximum acceleration of the wheel, with respect to the crank's angle."
     )
     drive_torque: Annotated[PositiveNumber, TORQUE] | None = Field(
-        default=None, description="The greatest torque on the crank, either way."
+        default=None, description="Maximum torque on the crank in either direction."
     )
     pin_force: Annotated[PositiveNumber, FORCE] | None = Field(
-        default=None, description="The greatest force between roller and slot."
+        default=None, description="Maximum force between roller and slot."
     )
     size: PositiveLength | None = Field(
         default=None,
-        description="The greatest extent: along the line of both axes, or the diameter of a ring or sphere.",
+        description="Maximum extent: along the line of both axes, or the diameter of a ring or sphere.",
     )
     steady_share: Share | None = Field(
         default=None,
-        description="The least share of an index, of the input's angle, in which the wheel has nine tenths of its "
+        description="Minimum share of an index, in input angle, in which the wheel has at least nine tenths of its "
         "greatest speed.",
     )
     min_transmission_angle: Annotated[float, Field(strict=True, ge=0.0, le=80.0, allow_inf_nan=False), ANGLE] | None = (
-        Field(default=None, description="Of a drag link, between coupler and output; 40 degrees where it is left out.")
+        Field(
+            default=None,
+            description="Minimum transmission angle of a drag link, between coupler and output; default 40 degrees.",
+        )
     )
-    shock_free: Flag = Field(default=True, description="The roller must enter along the slot, the wheel being at rest.")
+    shock_free: Flag = Field(
+        default=True, description="Whether the roller must enter along the slot, with the wheel at rest."
+    )
 
 
 class Clearances(Statement):
-    """Room between the parts."""
+    """Clearances between the parts."""
 
-    slot: Annotated[NonNegative, LENGTH] = Field(default=0.0, description="Width of the slot beyond the roller's.")
+    slot: Annotated[NonNegative, LENGTH] = Field(
+        default=0.0, description="Width of the slot minus the roller's diameter."
+    )
     locking: Annotated[NonNegative, LENGTH] = Field(
-        default=0.0, description="Radius of the wheel's locking arcs beyond the disc's."
+        default=0.0, description="Radius of the wheel's locking arcs minus the disc's."
     )
     slot_end: PositiveLength | None = Field(
-        default=None, description="Of the roller at its deepest from the end of the slot; a twentieth of its diameter."
+        default=None,
+        description="Clearance of the roller at its deepest from the end of the slot; default a twentieth of its "
+        "diameter.",
     )
     relief: PositiveLength | None = Field(
         default=None,
-        description="Of the disc from the passing wheel, beside the locking arc; a twentieth of the roller's diameter.",
+        description="Clearance of the disc from the passing wheel, outside the locking arc; default a twentieth of "
+        "the roller's diameter.",
     )
 
 
@@ -109,35 +119,37 @@ class Ratcheting(Statement):
 
     count: Annotated[Count, Field(ge=1, le=16)] | None = Field(
         default=None,
-        description="Of all pawls; left out, one design for each number that gives the stations with some number of "
-        "teeth.",
+        description="Number of all pawls; by default, one design for each number that gives the stations with some "
+        "number of teeth.",
     )
     overlap: Annotated[Count, Field(ge=1, le=4)] = Field(
-        default=1, description="Pawls that hold the wheel at once and share its load."
+        default=1, description="Number of pawls that hold the wheel at the same time and share its load."
     )
-    wheel_radius: PositiveLength | None = Field(default=None, description="To the tips; left out, the smallest.")
+    wheel_radius: PositiveLength | None = Field(default=None, description="Radius to the tips; default: the smallest.")
     tooth_height: PositiveLength | None = Field(
-        default=None, description="A third of the pitch where it is left out, or what few teeth need."
+        default=None, description="Tooth height; default a third of the pitch, or more for few teeth."
     )
     length: PositiveLength | None = Field(
-        default=None, description="From the face of the held tooth to the pawl's pivot; the wheel's radius if left out."
+        default=None,
+        description="Distance from the face of the held tooth to the pawl's pivot; default: the wheel's radius.",
     )
-    friction: NonNegative = Field(default=0.15, description="Coefficient between tooth and pawl.")
+    friction: NonNegative = Field(default=0.15, description="Coefficient of friction between tooth and pawl.")
     face_angle: Annotated[float, Field(strict=True, ge=0.0, le=60.0, allow_inf_nan=False), ANGLE] | None = Field(
-        default=None, description="Of a tooth's face from the radius, leaning over; left out, the least that locks."
+        default=None,
+        description="Angle of a tooth's face from the radius, leaning over; default: the smallest that locks.",
     )
     reserve: Annotated[float, Field(strict=True, ge=0.0, le=30.0, allow_inf_nan=False), ANGLE] = Field(
-        default=2.0, description="Of the locking angle beyond the angle of friction."
+        default=2.0, description="Reserve of the locking angle beyond the friction angle."
     )
 
 
 class IndexingProblem(StatedProblem):
-    """Indexing: a wheel turned from station to station by a crank's roller, and locked between; or held by pawls.
+    """Indexing: a wheel turned from station to station by a crank's roller, and locked in between; or held by pawls.
 
     External, internal and spherical Geneva drives, and ratchets. Motion, torque and pin force follow in closed form;
-    without a size the smallest is found whose walls and forces keep what is stated. Every answer is proved by its own
-    outlines: the roller is driven through the slots, the disc past the wheel, teeth under pawls, and forces follow from
-    reactions and energy.
+    without a given size the smallest is found whose walls and forces satisfy the constraints. Every answer is verified
+    by its own outlines: the roller is driven through the slots, the disc past the wheel, teeth under pawls, and forces
+    follow from reactions and energy.
     """
 
     model_config = ConfigDict(
@@ -217,63 +229,70 @@ class IndexingProblem(StatedProblem):
         default="si", description="`si`: N, N·m, kg·m², and lengths in the length unit; `consistent`: no conversion."
     )
     drive: Literal["geneva_external", "geneva_internal", "geneva_spherical", "ratchet"] = Field(
-        description="Wheel beside the crank, ring about it, or a hemisphere whose axis crosses the crank's at a right "
-        "angle; or a toothed wheel that pawls hold against turning back."
+        description="Wheel next to the crank, ring around it, or a hemisphere whose axis crosses the crank's at a "
+        "right "
+        "angle; or a toothed wheel that pawls hold against turning back.",
     )
     driver: Literal["crank", "drag_link"] = Field(
         default="crank",
-        description="What turns steadily: the crank with the roller, or the input of a drag link whose output is that "
-        "crank, found for the least peak acceleration of a plane Geneva drive.",
+        description="The part that turns at constant speed: the crank with the roller, or the input of a drag link "
+        "whose "
+        "output is that crank, found for the minimum peak acceleration of a plane Geneva drive.",
     )
     stations: Annotated[Count, Field(ge=3, le=MOST_STOPS)] = Field(
-        description=f"Up to {MOST_STATIONS} of a Geneva drive; of a ratchet the places of a turn at which it is held."
+        description=f"Number of stations, up to {MOST_STATIONS} for a Geneva drive; for a ratchet the number of stops "
+        "in a turn."
     )
     rollers: Annotated[Count, Field(ge=1, le=MOST_ROLLERS)] | None = Field(
         default=None,
-        description="On the crank, in equal steps; left out, one design for each number with which the wheel rests.",
+        description="Rollers on the crank, equally spaced; default: one design for each number with which the wheel "
+        "rests.",
     )
     center_distance: PositiveLength | None = Field(
-        default=None, description="Of a drive in the plane; left out, the smallest is found."
+        default=None, description="Center distance of a drive in the plane; default: the smallest is found."
     )
     sphere_radius: PositiveLength | None = Field(
-        default=None, description="Of a spherical drive, to the middle of the roller; left out, the smallest is found."
+        default=None,
+        description="Radius of a spherical drive to the middle of the roller; default: the smallest is found.",
     )
     crank_radius: PositiveLength | None = Field(
         default=None,
-        description="Of a drive in the plane; left out, or where it differs by 1e-5 of it, that of shock-free entry.",
+        description="Crank radius of a drive in the plane; default, and within 1e-5 of it: that of shock-free entry.",
     )
-    roller_diameter: PositiveLength | None = Field(default=None, description="Of a Geneva drive.")
+    roller_diameter: PositiveLength | None = Field(default=None, description="Roller diameter of a Geneva drive.")
     wall_thickness: PositiveLength | None = Field(
         default=None,
-        description="Between slot and locking arc; between the ends of slots, and of these from the bore, it is the "
-        "least. Half of the roller's diameter where it is not stated. Of a ratchet: of a tooth at its foot, and above "
-        "the bore.",
+        description="Thickness between slot and locking arc; between the ends of slots, and between them and the "
+        "bore, it "
+        "is the minimum. Default: half of the roller's diameter. For a ratchet: of a tooth at its foot, and above the "
+        "bore.",
     )
-    pawls: Ratcheting | None = Field(default=None, description="Of a ratchet.")
+    pawls: Ratcheting | None = Field(default=None, description="Pawls and teeth of a ratchet.")
     wheel_shaft_diameter: Annotated[NonNegative, LENGTH] = Field(default=0.0, description="The bore of the wheel.")
     crank_shaft_diameter: Annotated[NonNegative, LENGTH] = Field(
-        default=0.0, description="Of what passes through the wheel's plane beside an external wheel; 0: overhung."
+        default=0.0, description="Diameter of the crank's shaft through the plane of an external wheel; 0: overhung."
     )
     clearances: Clearances = Clearances()
     speed_rpm: Annotated[PositiveNumber, ROTATIONAL_SPEED] | None = Field(
-        default=None, description="Of the crank of a Geneva drive, steady."
+        default=None, description="Constant speed of the crank of a Geneva drive."
     )
     load_inertia: Annotated[NonNegative, INERTIA] = Field(
-        default=0.0, description="About the wheel's axis, with the wheel's own."
+        default=0.0, description="Moment of inertia about the wheel's axis, including the wheel."
     )
     load_torque: Annotated[NonNegative, TORQUE] = Field(
-        default=0.0, description="Against the wheel's motion, while it moves; what a ratchet holds."
+        default=0.0,
+        description="Torque against the wheel's motion, while it moves; for a ratchet the torque that it holds.",
     )
     constraints: IndexingConstraints = IndexingConstraints()
 
     @property
     def force_units(self) -> Literal["si", "consistent"]:
-        """Those that are stated."""
+        """The given units."""
         return self.units
 
     @property
     def oscillating(self) -> bool:
-        """Displacements are angles of the wheel."""
+        """True: displacements are angles of the wheel."""
         return True
 
     @property
@@ -284,24 +303,24 @@ class IndexingProblem(StatedProblem):
 
     @property
     def crank_speed(self) -> float:
-        """Of a Geneva drive, rad/s."""
+        """Speed of the crank of a Geneva drive, rad/s."""
         assert self.speed_rpm is not None
         return self.speed_rpm * math.pi / 30.0
 
     @property
     def transmission_angle(self) -> float:
-        """The least of a drag link, degrees."""
+        """Minimum transmission angle of a drag link, degrees."""
         stated = self.constraints.min_transmission_angle
         return TRANSMISSION if stated is None else stated
 
     @property
     def scale(self) -> float:
-        """The length unit in that of torque over force."""
+        """The length unit in the unit of torque over force."""
         return METRES[self.length_unit] if self.units == "si" else 1.0
 
     @property
     def spherical(self) -> bool:
-        """Whether the axes cross."""
+        """True if the axes cross."""
         return self.drive == "geneva_spherical"
 
     @property
@@ -322,31 +341,32 @@ class IndexingProblem(StatedProblem):
         return 0.05 * self.roller if stated is None else stated
 
     def contradictions(self) -> list[Contradiction]:
-        """Fields of another drive, rollers that leave no rest, and cranks that reach no slot."""
+        """Return fields of another drive, rollers that leave no rest, and cranks that reach no slot."""
         if self.drive == "ratchet":
             return self._ratchet_faults()
         found = [
-            Contradiction(f"/{name}", f"{self.drive} has one; state it")
+            Contradiction(f"/{name}", f"required for {self.drive}")
             for name in ("roller_diameter", "speed_rpm")
             if getattr(self, name) is None
         ]
         if self.stations > MOST_STATIONS:
-            found.append(Contradiction("/stations", f"a Geneva drive has up to {MOST_STATIONS}"))
+            found.append(Contradiction("/stations", f"a Geneva drive has at most {MOST_STATIONS} stations"))
         if self.pawls is not None:
-            found.append(Contradiction("/pawls", f"{self.drive} has none; leave it out"))
+            found.append(Contradiction("/pawls", f"not applicable to {self.drive}; omit it"))
         if found:
             return found
+        # From here on the roller and the speed are known to be given.
         found += self._driver_faults()
+        # A spherical drive has a sphere radius instead of lengths in the plane.
         foreign = ("center_distance", "crank_radius") if self.spherical else ("sphere_radius",)
         found += [
-            Contradiction(f"/{name}", f"{self.drive} has none; leave it out")
+            Contradiction(f"/{name}", f"not applicable to {self.drive}; omit it")
             for name in foreign
             if getattr(self, name) is not None
         ]
+        # The default crank enters the slots without shock.
         if not self.constraints.shock_free and self.crank_radius is None:
-            detail = (
-                "only a larger crank than that of shock-free entry enters with one; state its radius, or leave it out"
-            )
+            detail = "only a crank larger than that of shock-free entry has a shock; give its radius, or omit this"
             found.append(Contradiction("/constraints/shock_free", detail))
         if not self.spherical and self.crank_radius is not None:
             found += self._crank_faults(self.crank_radius)
@@ -354,20 +374,22 @@ class IndexingProblem(StatedProblem):
                 return found
         most = self.most_rollers
         if self.rollers is not None and self.rollers > most:
-            detail = f"with {self.stations} stations the wheel rests with at most {most} of them"
+            detail = f"with {self.stations} stations the wheel only rests with at most {most} rollers"
             if self.drive != "geneva_external":
-                detail = f"what locks the wheel of {self.drive} stands opposite one roller"
+                detail = f"with {self.drive} the locking part is opposite the roller; only one roller is possible"
             found.append(Contradiction("/rollers", detail))
+        # Only in an external drive do the slots stay clear of the crank's axis.
         if self.drive != "geneva_external" and self.crank_shaft_diameter > 0.0:
-            detail = f"slots of {self.drive} pass the crank's axis: its crank is overhung; leave it out"
+            detail = f"slots of {self.drive} pass the crank's axis, so its crank is overhung; omit this"
             found.append(Contradiction("/crank_shaft_diameter", detail))
         if self.drive == "geneva_internal" and self.wheel_shaft_diameter > 0.0:
-            detail = "a ring has no bore: the crank turns inside it; leave it out"
+            detail = "a ring has no bore, since the crank turns inside it; omit this"
             found.append(Contradiction("/wheel_shaft_diameter", detail))
+        # Smaller clearances would be lost in the steps of the outlines.
         for name in ("slot_end", "relief"):
             stated = getattr(self.clearances, name)
             if stated is not None and stated < LEAST_ROOM * self.roller:
-                detail = f"must be at least {LEAST_ROOM:g} roller diameters, which outlines of finite steps tell apart"
+                detail = f"must be at least {LEAST_ROOM:g} roller diameters, the resolution of the outlines"
                 found.append(Contradiction(f"/clearances/{name}", detail))
         for name in ("slot", "locking", "slot_end", "relief"):
             stated = getattr(self.clearances, name)
@@ -378,12 +400,13 @@ class IndexingProblem(StatedProblem):
 
     @property
     def most_rollers(self) -> int:
-        """How many rollers leave the wheel a rest."""
+        """Maximum number of rollers that leave the wheel a rest."""
         if self.driver == "drag_link":
             return 1
         if self.drive != "geneva_external":
             return 1
         step = math.pi / self.stations
+        # Half of an index as a share of half a turn.
         index = (math.asin(min(1.0, math.sin(step) / self.crank_ratio)) - step) / math.pi
         return min(MOST_ROLLERS, max(1, math.ceil(1.0 / index - 1e-9) - 1))
 
@@ -391,18 +414,19 @@ class IndexingProblem(StatedProblem):
     def crank_ratio(self) -> float:
         """Crank radius over center distance of a drive in the plane.
 
-        A crank that is stated to some digits of that of shock-free entry is that one, unless a shock is allowed.
+        A crank equal to that of shock-free entry to some digits counts as that one, unless a shock is allowed.
         """
         least = math.sin(math.pi / self.stations)
         if self.crank_radius is None or self.center_distance is None:
             return least
+        # Rounded input must not count as a crank with a shock.
         ratio = self.crank_radius / self.center_distance
         return ratio if ratio > least * (1.0 + (AS_TYPED if self.constraints.shock_free else 0.0)) else least
 
     def _driver_faults(self) -> list[Contradiction]:
         if self.driver == "crank":
             if self.constraints.min_transmission_angle is not None:
-                detail = "a crank has none; ask for a drag link, or leave it out"
+                detail = "a crank has no transmission angle; choose a drag link, or omit this"
                 return [Contradiction("/constraints/min_transmission_angle", detail)]
             return []
         if self.spherical:
@@ -420,37 +444,39 @@ class IndexingProblem(StatedProblem):
             "speed_rpm": self.speed_rpm,
         }
         found = [
-            Contradiction(f"/{name}", "a ratchet has none; leave it out")
+            Contradiction(f"/{name}", "not applicable to a ratchet; omit it")
             for name, value in foreign.items()
             if value is not None
         ]
         for name in ("crank_shaft_diameter", "load_inertia", "clearances"):
             if name in stated and getattr(self, name) != type(self).model_fields[name].default:
-                found.append(Contradiction(f"/{name}", "a ratchet has none; leave it out"))
+                found.append(Contradiction(f"/{name}", "not applicable to a ratchet; omit it"))
         if self.driver != "crank":
             found.append(Contradiction("/driver", "a drag link drives plane Geneva drives only"))
+        # The motion of a ratchet follows its drive, so limits on the motion do not apply.
         for name in ("dwell_share", "peak_acceleration", "drive_torque", "steady_share", "min_transmission_angle"):
             if getattr(self.constraints, name) is not None:
-                found.append(Contradiction(f"/constraints/{name}", "a ratchet has none; leave it out"))
+                found.append(Contradiction(f"/constraints/{name}", "not applicable to a ratchet; omit it"))
         if not self.constraints.shock_free:
-            found.append(Contradiction("/constraints/shock_free", "a ratchet has no entry; leave it out"))
+            found.append(Contradiction("/constraints/shock_free", "a ratchet has no entry; omit this"))
         if self.wall_thickness is None:
-            found.append(Contradiction("/wall_thickness", "state how thick a tooth is at its foot"))
+            found.append(Contradiction("/wall_thickness", "required: the thickness of a tooth at its foot"))
+        # No pair of tooth and pawl numbers stops at all stations.
         if not self.teeth_choices:
-            detail = f"no number of teeth from {FEWEST_TEETH} on has so many stops with this number of pawls"
+            detail = f"no number of teeth from {FEWEST_TEETH} on gives these stations with this number of pawls"
             found.append(Contradiction("/pawls/count", detail))
         return found
 
     @property
     def pawl(self) -> Ratcheting:
-        """What is stated of pawls, or what holds where nothing is."""
+        """The requested pawls, or the defaults."""
         return self.pawls or Ratcheting()
 
     @property
     def teeth_choices(self) -> list[tuple[int, int]]:
         """Numbers of teeth and of pawls whose stops are the stations, those with the fewest pawls first.
 
-        Pawls in g groups, staggered by a g-th of a pitch, stop z teeth at g z places; each group has the pawls that
+        Pawls in g groups, staggered by 1/g of a pitch, stop z teeth at g z places; each group has the pawls that
         share the load.
         """
         shared = self.pawl.overlap
@@ -463,10 +489,11 @@ class IndexingProblem(StatedProblem):
 
     def _crank_faults(self, radius: float) -> list[Contradiction]:
         if self.center_distance is None:
-            return [Contradiction("/crank_radius", "state the center distance with it, or leave both to be found")]
+            return [Contradiction("/crank_radius", "give the center distance as well, or omit both")]
+        # The crank of shock-free entry is the smallest that reaches a slot.
         least = self.center_distance * math.sin(math.pi / self.stations)
         most = NEAR_ONE * self.center_distance
         if not least * (1.0 - AS_TYPED) <= radius <= most:
-            detail = f"must be from {least:.9g}, where it enters without shock, to {most:.9g}: a smaller crank reaches"
+            detail = f"must be between {least:.9g} (entry without shock) and {most:.9g}: a smaller crank reaches"
             return [Contradiction("/crank_radius", f"{detail} no slot, a larger one the wheel's axis")]
         return []

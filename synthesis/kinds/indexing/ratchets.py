@@ -1,4 +1,4 @@
-"""Ratchets: for each number of teeth and pawls that gives the stops, the wheel of the stated size or the smallest."""
+"""Ratchets: for each number of teeth and pawls that gives the stops, the wheel of given or minimum size."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ from synthesis.model.linkages import to_point
 from synthesis.outcome.sifting import NUMERICAL, Sifting
 
 STEEP = 1.6
-"""Height of few teeth over that at which the straight back of a tooth would no longer fall towards its foot."""
+"""Factor on the minimum height of few teeth, at which the straight back would no longer fall towards its foot."""
 
 UNPROVEN = NUMERICAL | {
     "equal_stops",
@@ -40,10 +40,10 @@ UNPROVEN = NUMERICAL | {
     "falls_in",
     "no_face_locks",
 }
-"""Reasons that rest on rounding, or on what is chosen here: with one of them an empty answer is no proof."""
+"""Reasons that rest on rounding, or on values chosen here: with one of them an empty answer is no proof."""
 
 NO_FACE = "no_face_locks"
-"""Reason where the pawl is too short for any face to draw it in."""
+"""Reason if the pawl is too short for any face to draw it in."""
 
 
 def solve_ratchet(problem: IndexingProblem, progress: Progress) -> IndexingResult:
@@ -52,8 +52,8 @@ def solve_ratchet(problem: IndexingProblem, progress: Progress) -> IndexingResul
     Returns
     -------
     IndexingResult
-        One design for each number of pawls: each has one wheel of the stated size, or one smallest; complete unless one
-        is rejected for what may rest on a height or length that is not stated.
+        One design for each number of pawls: each has one wheel of the given size, or one smallest; complete unless one
+        is rejected for a reason that may depend on a height or length that is not given.
     """
     sifting = Sifting[IndexingDesign | RatchetDesign](problem)
     progress(0.0, "sizing")
@@ -68,21 +68,22 @@ def solve_ratchet(problem: IndexingProblem, progress: Progress) -> IndexingResul
 
 
 def _proven(problem: IndexingProblem, sifting: Sifting[IndexingDesign | RatchetDesign]) -> bool:
-    """Whether no other choice of what is not stated could have kept what those that are rejected break."""
+    """Return whether no other choice of omitted values could have satisfied the failed checks."""
     stated = problem.pawl
     if stated.tooth_height is None or stated.length is None:
-        # A height and a length are chosen here, and every demand depends on them.
+        # A height and a length are chosen here, and every constraint depends on them.
         return not sifting.rejected
     unproven = UNPROVEN if stated.wheel_radius is not None else UNPROVEN | {"locking_angle"}
     return not unproven & sifting.rejected.keys()
 
 
 def wheel_of(problem: IndexingProblem, teeth: int, radius: float) -> Ratchet | None:
-    """The wheel of a radius with its pawl; None where no face angle draws the pawl in."""
+    """Build the wheel of a radius with its pawl; None if no face angle draws the pawl in."""
     stated, pitch = problem.pawl, 2.0 * math.pi / teeth
     height = stated.tooth_height
     if height is None:
         height = radius * max(pitch / 3.0, STEEP * (1.0 - math.cos(pitch)))
+    # A pawl as long as the radius is the usual proportion.
     length = radius if stated.length is None else stated.length
     if not height < 0.9 * radius:
         return None
@@ -94,12 +95,13 @@ def wheel_of(problem: IndexingProblem, teeth: int, radius: float) -> Ratchet | N
 
 
 def _wanted(problem: IndexingProblem) -> float:
-    """The least locking angle, radians."""
+    """Return the minimum locking angle, radians."""
     return math.atan(problem.pawl.friction) + math.radians(problem.pawl.reserve)
 
 
 def tooth_force(problem: IndexingProblem, wheel: Ratchet) -> float:
-    """Of each pawl that holds, at the middle of the face and square to it."""
+    """Return the force of each holding pawl, at the middle of the face and normal to it."""
+    # Lever of a force normal to the face.
     arm = problem.scale * wheel.middle * math.cos(wheel.face)
     return problem.load_torque / (problem.pawl.overlap * arm)
 
@@ -124,7 +126,7 @@ def _smallest(problem: IndexingProblem, teeth: int) -> tuple[float, SizedBy] | N
     if problem.constraints.pin_force is not None:
         names.append("pin_force")
     if problem.pawl.face_angle is not None:
-        # A face that is sought has this angle at any size.
+        # A face that is found has this angle at any size.
         names.append("locking_angle")
     least: dict[str, float] = {}
     for name in names:
@@ -133,13 +135,13 @@ def _smallest(problem: IndexingProblem, teeth: int) -> tuple[float, SizedBy] | N
             least[name] = found
         elif name != "locking_angle":
             return None
-        # A face that locks at no size is told by its check.
+        # A face that locks at no size is reported by its check.
     setting = max(least, key=lambda name: least[name])
     return least[setting], cast(SizedBy, setting)
 
 
 def _candidate(problem: IndexingProblem, choice: tuple[int, int]) -> RatchetDesign | str:
-    """The ratchet of a number of teeth and pawls, verified; the reason where there is none."""
+    """Build the ratchet of a number of teeth and pawls, verified; the reason if there is none."""
     teeth, pawls = choice
     radius, sized_by = problem.pawl.wheel_radius, None
     if radius is None:
@@ -179,7 +181,8 @@ def _candidate(problem: IndexingProblem, choice: tuple[int, int]) -> RatchetDesi
 
 
 def _placed(wheel: Ratchet, count: int, overlap: int) -> list[Pawl]:
-    """Pawls as evenly round the wheel as whole pitches let them stand, their groups staggered."""
+    """Place pawls around the wheel as evenly as whole pitches permit, with their groups staggered."""
+    # Pawls of one group act together, different groups stop at different fractions of a pitch.
     groups, placed = count // overlap, []
     for number in range(count):
         stagger = number % groups
@@ -198,7 +201,7 @@ def _placed(wheel: Ratchet, count: int, overlap: int) -> list[Pawl]:
 def _summary(problem: IndexingProblem, sifting: Sifting[IndexingDesign | RatchetDesign], complete: bool) -> str:
     best = sifting.passed[0] if sifting.passed else None
     if not isinstance(best, RatchetDesign):
-        told = "None exists" if complete else "None was found"
+        told = "None exists" if complete else "None found"
         return f"{told}: {sifting.listed()}."
     mechanism, metrics, unit = best.mechanism, best.metrics, problem.length_unit
     pawls = "one pawl" if len(mechanism.pawls) == 1 else f"{len(mechanism.pawls)} pawls"

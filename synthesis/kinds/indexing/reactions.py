@@ -1,4 +1,4 @@
-"""The motion and forces of an index by another route than the closed forms: by the path of the roller.
+"""Motion and forces of an index by a route other than the closed forms: from the path of the roller.
 
 Seen along the wheel's axis the roller is a point z(α) of the complex plane about that axis, and the slot is the ray
 through it, so that the wheel's angle is arg z: φ' = Im(z'/z), and so on for higher derivatives of log z. The force on
@@ -32,11 +32,11 @@ class Driven:
     Attributes
     ----------
     place : complex128, shape (n,)
-        The roller seen along the wheel's axis, which is the origin; the crank stands at +x.
+        The roller seen along the wheel's axis, which is the origin; the crank's axis is on +x.
     turn : float, shape (n,)
         Direction of the slot, radians.
     motion : Motion
-        The wheel's angle from the middle, positive the way it turns, and its derivatives.
+        The wheel's angle from the middle, positive in its direction of rotation, and its derivatives.
     wheel_torque, pin_force, drive_torque : float, shape (n,)
     """
 
@@ -49,7 +49,7 @@ class Driven:
 
 
 def driven_link(mechanism: GenevaMechanism, angle: Real) -> MechanismMotion:
-    """The drag link of a mechanism as the analysis core drives it, over angles of its input, radians."""
+    """Drive the drag link of a mechanism by the analysis core, over angles of its input, radians."""
     link = mechanism.drag_link
     assert link is not None
     pivots = complex(*link.input_pivot), complex(mechanism.center_distance)
@@ -59,7 +59,7 @@ def driven_link(mechanism: GenevaMechanism, angle: Real) -> MechanismMotion:
 
 
 def crank_motion(mechanism: GenevaMechanism | SphericalGenevaMechanism, angle: Real) -> Motion:
-    """The crank's angle from the middle of the index, and its derivatives by the input's angle (radians).
+    """Compute the crank's angle from the middle of the index, and its derivatives by the input's angle (radians).
 
     A drag link is driven by the analysis core; otherwise the crank is the input.
     """
@@ -83,11 +83,12 @@ def driven(mechanism: GenevaMechanism | SphericalGenevaMechanism, load: Load, sc
         Its dimensions only.
     load : Load
     scale : float
-        The length unit in that of torque over force.
+        The length unit in the unit of torque over force.
     angle : float, shape (n,)
-        Of the input, radians: from the middle of the index where the crank is it, otherwise the drag link's own.
+        Input angles, radians: from the middle of the index for a crank, otherwise the drag link's own.
     """
     place, rates = _path(mechanism, crank_motion(mechanism, angle))
+    # Derivatives of log z from those of z.
     first, second, third = (rate / place for rate in rates)
     sense = -1.0 if mechanism.type == "geneva_external" else 1.0
     motion = Motion(
@@ -98,15 +99,15 @@ def driven(mechanism: GenevaMechanism | SphericalGenevaMechanism, load: Load, sc
     )
     torque = load.inertia * load.speed**2 * motion.a + load.torque
     force = torque / (scale * np.abs(place))
-    # The unit square to the slot, the way the wheel turns.
+    # The unit vector normal to the slot, in the wheel's direction of rotation.
     along = sense * 1j * place / np.abs(place)
-    # Power of the force at the roller's own velocity; the component along the slot does nothing.
+    # Power of the force at the roller's own velocity; the component along the slot does no work.
     drive = force * scale * (along.conj() * rates[0]).real
     return Driven(place, np.angle(place), motion, torque, force, drive)
 
 
 def _path(mechanism: GenevaMechanism | SphericalGenevaMechanism, crank: Motion) -> tuple[Complex, list[Complex]]:
-    """The roller seen along the wheel's axis, and its three derivatives by the input's angle."""
+    """Compute the roller seen along the wheel's axis, and its three derivatives by the input's angle."""
     place, (first, second, third) = _circle(mechanism, crank.s)
     return place, [
         first * crank.v,
@@ -116,7 +117,7 @@ def _path(mechanism: GenevaMechanism | SphericalGenevaMechanism, crank: Motion) 
 
 
 def _circle(mechanism: GenevaMechanism | SphericalGenevaMechanism, alpha: Real) -> tuple[Complex, list[Complex]]:
-    """The roller and its derivatives by the crank's own angle."""
+    """Compute the roller and its derivatives by the crank's own angle."""
     if isinstance(mechanism, SphericalGenevaMechanism):
         cone = math.radians(mechanism.cone_angle)
         near, aside = mechanism.sphere_radius * math.cos(cone), mechanism.sphere_radius * math.sin(cone)

@@ -1,7 +1,7 @@
-"""The smallest drive: every wall and the pin force grow kinder with the size, so that the largest least size is it.
+"""The smallest drive: every margin of walls and pin force grows with the size, so that the largest minimum decides.
 
-So does what is measured on outlines alone: beside a clearance that stays, a larger wheel has less play and is held for
-longer. Where the smallest drive by its walls breaks one of these, the size is found at which it no longer does.
+So do measurements on outlines alone: with a constant clearance a larger wheel has less play and is held for
+longer. If the smallest drive by its walls fails one of these checks, the size is found at which it passes.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ from synthesis.kinds.indexing.problem import IndexingProblem
 from synthesis.model.statement import ABSURD
 
 HALVINGS = 70
-"""Of an interval that is a thousand times as wide as the least size: to rounding."""
+"""Number of bisections of an interval a thousand times as wide as the minimum size: to rounding."""
 
 
 OUTGROWN: dict[str, SizedBy] = {
@@ -27,14 +27,14 @@ OUTGROWN: dict[str, SizedBy] = {
     "locked_at_rest": "locked_rest",
     "roller_clears_wheel": "passing_roller",
 }
-"""Checks on outlines that a larger drive may keep, and what they are called as demands that set a size."""
+"""Checks on outlines that a larger drive may pass, with their names as constraints that determine the size."""
 
 LARGEST, GROWN_TO = 256.0, 1e-6
-"""Times the least size by walls up to which a drive is made larger for these; and the share to which that is known."""
+"""Maximum enlargement over the minimum size by walls, and relative accuracy of the enlarged size."""
 
 
 def smallest(problem: IndexingProblem, course: Course, load: Load) -> tuple[float, SizedBy] | None:
-    """The least center distance or sphere radius, and the demand that sets it; None where none up to 1e9 will do."""
+    """Find the minimum center distance or sphere radius, and the constraint that sets it; None if none up to 1e9."""
     drive = course.geneva
     least: dict[str, float] = {}
     for name in _margins(problem, drive, ABSURD):
@@ -44,7 +44,7 @@ def smallest(problem: IndexingProblem, course: Course, load: Load) -> tuple[floa
         least[name] = found
     limit = problem.constraints.pin_force
     if limit is not None:
-        # At steady speed the force falls as the size grows.
+        # At constant speed the force falls as the size grows.
         least["pin_force"] = peaks(course, load, problem.scale).pin_force / limit
     setting = max(least, key=lambda name: least[name])
     return least[setting], cast(SizedBy, setting)
@@ -53,20 +53,19 @@ def smallest(problem: IndexingProblem, course: Course, load: Load) -> tuple[floa
 def outgrown(
     least: tuple[float, SizedBy], of_size: Callable[[float, SizedBy], IndexingDesign | str]
 ) -> IndexingDesign | str:
-    """The smallest verified drive whose wheel is held and passed as is demanded.
+    """Find the smallest verified drive whose wheel is held and passed as required.
 
     Parameters
     ----------
     least : (float, str)
-        The least size by walls and force, and what sets it.
+        The minimum size by walls and force, and the constraint that sets it.
     of_size : callable
-        The verified drive of a size, and of what is told to set it.
+        Returns the verified drive of a size, with the constraint that is reported to set it.
 
     Returns
     -------
     IndexingDesign or str
-        That of the least size where it has nothing else to complain of, or where no size up to ``LARGEST`` times as
-        large mends it.
+        The drive of minimum size if it fails no other check, or if no size up to ``LARGEST`` times as large helps.
     """
     design = of_size(*least)
     lacking = _lacking(design)
@@ -74,6 +73,7 @@ def outgrown(
         return design
     low = high = least[0]
     sized_by = least[1]
+    # Double the size until all checks pass, then bisect.
     while lacking:
         low, high, sized_by = high, 2.0 * high, OUTGROWN[lacking[0]]
         if high > LARGEST * least[0]:
@@ -92,7 +92,7 @@ def outgrown(
 
 
 def _lacking(design: IndexingDesign | str) -> list[str] | None:
-    """The checks that a design breaks; None where there is none, or one that no larger drive keeps is among them."""
+    """List the failed checks of a design; None if there is no design, or if size cannot repair one of them."""
     if isinstance(design, str):
         return None
     broken = [check.name for check in design.verification.checks if not check.passed]
@@ -108,15 +108,16 @@ def _margin(problem: IndexingProblem, drive: Geneva, name: str, size: float) -> 
 
 
 def least_size(margin: Callable[[float], float], first: float) -> float | None:
-    """The least size with a positive margin, which grows with the size, by halving; None where none up to 1e9 has one.
+    """Find the least size with a positive margin, which grows with the size, by bisection; None if none up to 1e9.
 
     Parameters
     ----------
     margin : callable
-        Of a size; not a number where it is too small to have one.
+        Margin of a size; NaN if the size is too small to have one.
     first : float
-        A size to begin with.
+        Initial size.
     """
+    # Double until the margin is positive, then bisect between the last two sizes.
     kept = low = first
     while not margin(kept) > 0.0:
         low, kept = kept, 2.0 * kept

@@ -1,4 +1,4 @@
-"""Indexing drives: for each number of rollers the drive of the stated size, or the smallest that keeps the demands."""
+"""Indexing drives: for each number of rollers the drive of given size, or the smallest within the constraints."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ from synthesis.model.kind import Progress
 from synthesis.outcome.sifting import NUMERICAL, Sifting
 
 SHOWN = 361
-"""Positions of a program."""
+"""Number of positions of a program."""
 
 UNPROVEN = NUMERICAL | {
     "no_drag_link_found",
@@ -55,15 +55,16 @@ UNPROVEN = NUMERICAL | {
 """Reasons that rest on outlines of finite steps or on rounding: with one of them an empty answer is no proof."""
 
 STEADY_SAMPLES = 4001
-"""Positions of an index in which it is asked whether the wheel is steady."""
+"""Number of positions of an index at which the steadiness of the wheel is evaluated."""
 
 METHODS = {"crank": "closed_form", "drag_link": "random draws and descent"}
-"""How answers are found, by driver."""
+"""Search methods of answers, by driver."""
 
 NO_DRAG_LINK = "no_drag_link_found"
-"""Reason where no drag link that was tried keeps the demands."""
+"""Reason if no tried drag link keeps the constraints."""
 
 NOT_DRAWABLE = "no_room_for_walls"
+"""Reason if the walls leave no valid outline."""
 
 
 def solve_indexing(problem: IndexingProblem, progress: Progress) -> IndexingResult:
@@ -72,8 +73,8 @@ def solve_indexing(problem: IndexingProblem, progress: Progress) -> IndexingResu
     Returns
     -------
     IndexingResult
-        One design for each number of rollers that keeps the demands; complete, since each number has one drive of the
-        stated size, or one smallest. ``summary`` says what is in the way where there is none.
+        One design for each number of rollers that keeps the constraints; complete, since each number has one drive of
+        the given size, or one smallest. ``summary`` gives the obstacle if there is none.
     """
     if problem.drive == "ratchet":
         return solve_ratchet(problem, progress)
@@ -83,7 +84,7 @@ def solve_indexing(problem: IndexingProblem, progress: Progress) -> IndexingResu
     sifting.sift(numbers, partial(_candidate, problem))
     progress(1.0, "verified")
     designs = sifting.designs(lambda found: found)
-    # The best drag link is sought, not enumerated.
+    # The best drag link is searched, not enumerated.
     complete = problem.driver == "crank" and not UNPROVEN & sifting.rejected.keys()
     return IndexingResult(
         designs=designs,
@@ -95,16 +96,18 @@ def solve_indexing(problem: IndexingProblem, progress: Progress) -> IndexingResu
 def _drive(problem: IndexingProblem) -> Geneva:
     assert problem.drive != "ratchet"
     if problem.spherical:
+        # Spherical drives have no other crank.
         return Geneva.shock_free(problem.drive, problem.stations)
     return Geneva(problem.drive, problem.stations, problem.crank_ratio)
 
 
 def _candidate(problem: IndexingProblem, rollers: int) -> IndexingDesign | str:
-    """The drive with a number of rollers, verified; the reason where it cannot be drawn."""
+    """Build the drive with a number of rollers, verified; the reason if it cannot be drawn."""
     drive = _drive(problem)
     course = Course(drive) if problem.driver == "crank" else best_course(problem, drive)
     if course is None:
         return NO_DRAG_LINK
+    # A given size is used as it is; otherwise the smallest is searched.
     stated = problem.sphere_radius if problem.spherical else problem.center_distance
     if stated is not None:
         return _of_size(problem, course, rollers, stated, None)
@@ -121,7 +124,7 @@ def _load(problem: IndexingProblem) -> Load:
 def _of_size(
     problem: IndexingProblem, course: Course, rollers: int, size: float, sized_by: SizedBy | None
 ) -> IndexingDesign | str:
-    """The drive of a size, verified; the reason where it cannot be drawn."""
+    """Build the drive of a size, verified; the reason if it cannot be drawn."""
     drive, load = course.geneva, _load(problem)
     if problem.spherical:
         hemisphere = sphere.hemisphere_of(problem, size)
@@ -135,11 +138,13 @@ def _of_size(
         if not plane.drawable(wheel, problem.clearances.locking):
             return NOT_DRAWABLE
         walls = {"wall": wheel.wall, "web": wheel.web, "size": plane.size_of(problem, wheel, drive.ratio * size)}
+        # A ring has no bore.
         free = math.inf if wheel.internal else wheel.slot_end - wheel.half_slot - 0.5 * problem.wheel_shaft_diameter
         mechanism = plane.mechanism_of(problem, course, wheel, rollers)
     metrics = _metrics(problem, course, load, size, walls, undercut=free < 0.0 or walls["web"] < 0.0, sized_by=sized_by)
     start, end = course.start, course.end
     angle = np.linspace(start, end, SHOWN)
+    # Samples to plot.
     motion, torque = course.motion(angle), wheel_torque(course, load, angle)
     index = math.degrees(end - start)
     design = IndexingDesign(
@@ -177,8 +182,10 @@ def _metrics(
     greatest, drive, link = peaks(course, load, problem.scale * size), course.geneva, course.link
     acceleration, at = greatest.acceleration, greatest.acceleration_at
     if link is None:
+        # With a constant crank speed, the peak is known in closed form.
         at = drive.half - drive.peak_angle
         acceleration = abs(float(drive.motion(np.array(at - drive.half)).a))
+    # Share of the index at nearly constant speed.
     evenly = course.motion(np.linspace(course.start, course.end, STEADY_SAMPLES)).v
     return IndexingMetrics(
         peak_velocity=greatest.velocity,
@@ -202,12 +209,12 @@ def _metrics(
 def _summary(problem: IndexingProblem, sifting: Sifting[IndexingDesign | RatchetDesign], complete: bool) -> str:
     best = sifting.passed[0] if sifting.passed else None
     if not isinstance(best, IndexingDesign):
-        told = "None exists" if complete else "None was found"
+        told = "None exists" if complete else "None found"
         return f"{told}: {sifting.listed()}."
     metrics, unit = best.metrics, problem.length_unit
     size = f"its size is {metrics.size:.6g} {unit}"
     if metrics.sized_by is not None:
-        size = f"the smallest has the size {metrics.size:.6g} {unit}, set by its {metrics.sized_by.replace('_', ' ')}"
+        size = f"the smallest size is {metrics.size:.6g} {unit}, set by its {metrics.sized_by.replace('_', ' ')}"
     turned = "crank" if problem.driver == "crank" else "drag link's input"
     return (
         f"The wheel turns during {best.index_angle:.6g}° of the {turned} and rests for "

@@ -1,8 +1,8 @@
-"""Geneva drives on a sphere: their dimensions from its radius, and what keeps that from being smaller.
+"""Geneva drives on a sphere: their dimensions from its radius, and the constraints on its minimum.
 
 The wheel's axis is z and its rim lies in the plane z = 0; the crank's axis is a direction of that plane. Slots lie on
-meridians, from the rim up to the latitude that the roller comes to, π/n and some room. A locking hollow is what a cone
-about the crank's axis cuts off; its edge lies in a plane, which seen along z is a chord of the rim.
+meridians, from the rim up to the latitude that the roller reaches, π/n plus a clearance. A locking hollow is cut by a
+cone about the crank's axis; its edge lies in a plane, which seen along z is a chord of the rim.
 """
 
 from __future__ import annotations
@@ -19,13 +19,13 @@ from synthesis.kinds.indexing.problem import IndexingProblem
 Complex = NDArray[np.complex128]
 
 PASSES = 4001
-"""Positions of half an index in which it is asked how far the rim comes."""
+"""Number of positions of half an index at which the reach of the rim is evaluated."""
 
 LEAST_CAP = 0.15
-"""Of the cap's radius the least share at which it ends, so that it locks over a rest but for its ends."""
+"""Minimum distance of the cap's end as a share of its radius, so that it locks over a rest except at its ends."""
 
 STEPS = 12
-"""Steps of the outline over half a slot's end, and over a land."""
+"""Number of outline steps over half a slot's end, and over a land."""
 
 
 @dataclass(frozen=True)
@@ -39,7 +39,7 @@ class Hemisphere:
     slot_end : float
         Latitude of the center of a slot's end.
     lock : float
-        Angle from the crank's axis to the edge of a locking hollow; NaN where the wall leaves none.
+        Angle from the crank's axis to the edge of a locking hollow; NaN if the wall leaves none.
     """
 
     stations: int
@@ -55,21 +55,22 @@ class Hemisphere:
 
     @property
     def wall(self) -> float:
-        """From a hollow to the side of a slot: they are nearest at the rim."""
+        """Distance from a hollow to the side of a slot: they are nearest at the rim."""
         return self.radius * math.sin(self.step - self.lock) - self.half_slot
 
     @property
     def web(self) -> float:
-        """Between the ends of neighbouring slots."""
+        """Distance between the ends of neighbouring slots."""
         return 2.0 * (self.radius * math.cos(self.slot_end) * math.sin(self.step) - self.half_slot)
 
     @property
     def rim_passes(self) -> float:
-        """How far the rim comes into the half of a cap that is opposite the roller, from the crank's axis.
+        """Reach of the rim into the half of a cap opposite the roller, from the crank's axis.
 
-        Before the middle of an index the corner between rim and hollow, at the azimuth η, is in it by sin η sin(−α).
+        Before the middle of an index the corner between rim and hollow, at the azimuth η, reaches sin η sin(−α).
         """
         alpha = np.linspace(-0.5 * math.pi, 0.0, PASSES)
+        # Azimuth of the corner while the slot follows the roller.
         corner = np.arctan(math.tan(self.step) * np.sin(alpha)) + self.step - self.lock
         return self.radius * max(0.0, float((-np.sin(alpha) * np.sin(corner)).max()))
 
@@ -80,7 +81,7 @@ class Hemisphere:
 
     @property
     def outline(self) -> Complex:
-        """The wheel seen along its axis, slot 0 along x; closed by its first point."""
+        """The wheel seen along its axis, slot 0 along x; a closed polygon without a repeated point."""
         turn = np.linspace(0.0, 0.5 * math.pi, STEPS + 1)
         flat = math.sin(self.slot_end)
         middle = self.radius * math.cos(self.slot_end)
@@ -94,7 +95,7 @@ class Hemisphere:
 
 
 def hemisphere_of(problem: IndexingProblem, radius: float) -> Hemisphere:
-    """The wheel of a sphere's radius."""
+    """Build the wheel of a sphere's radius."""
     step, half_slot = math.pi / problem.stations, 0.5 * (problem.roller + problem.clearances.slot)
     apart = (half_slot + problem.wall) / radius
     lock = step - math.asin(apart) if apart < 1.0 else math.nan
@@ -102,7 +103,7 @@ def hemisphere_of(problem: IndexingProblem, radius: float) -> Hemisphere:
 
 
 def margins(problem: IndexingProblem, radius: float) -> dict[str, float]:
-    """By how much a sphere is larger than each of its walls asks; NaN or negative where it is too small."""
+    """Compute by how much a sphere exceeds each of its wall constraints; NaN or negative if it is too small."""
     wheel = hemisphere_of(problem, radius)
     cap = wheel.lock - problem.clearances.locking / radius
     return {
@@ -113,7 +114,7 @@ def margins(problem: IndexingProblem, radius: float) -> dict[str, float]:
 
 
 def drawable(problem: IndexingProblem, wheel: Hemisphere) -> bool:
-    """Whether the outline exists."""
+    """Return whether the outline exists."""
     gap = problem.clearances.locking / wheel.radius
     return (
         wheel.lock > gap
@@ -125,7 +126,7 @@ def drawable(problem: IndexingProblem, wheel: Hemisphere) -> bool:
 
 
 def mechanism_of(problem: IndexingProblem, wheel: Hemisphere) -> SphericalGenevaMechanism:
-    """All dimensions and the outline of a drive that can be drawn."""
+    """Build all dimensions and the outline of a drive that can be drawn."""
     outline = wheel.outline
     return SphericalGenevaMechanism(
         stations=problem.stations,

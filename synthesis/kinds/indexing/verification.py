@@ -1,6 +1,6 @@
-"""The proof of a Geneva drive: its roller is driven through its slots, its disc past its wheel.
+"""Verification of a Geneva drive: its roller is driven through its slots, its disc past its wheel.
 
-Nothing is taken over from the solver but the answer: motion and forces follow from the roller's path
+Nothing but the answer is used: motion and forces follow from the roller's path
 (:mod:`synthesis.kinds.indexing.reactions`), walls and distances from the outlines, the work of the crank from an
 integral.
 """
@@ -26,26 +26,26 @@ from synthesis.proof.checks import at_least, at_most, tolerated
 Real = NDArray[np.float64]
 
 AGREES = 1e-9
-"""Relative difference of closed forms from the driven geometry: rounding."""
+"""Relative difference of closed forms from the driven geometry that is attributed to rounding."""
 
 NODES = 96
-"""Of Gauss's rule over half an index, for the work of the crank."""
+"""Number of nodes of Gauss's rule over half an index, for the work of the crank."""
 
 SAMPLED = 4001
-"""Positions at which peaks are looked for."""
+"""Number of positions at which peaks are searched."""
 
 BELOW = 1e-5
-"""Share by which a peak may be above the greatest sample."""
+"""Share by which a peak may exceed the greatest sample."""
 
 AS_TOLD = 1e-6
-"""Degrees by which a told transmission angle may differ from that of the driven drag link."""
+"""Degrees by which a reported transmission angle may differ from that of the driven drag link."""
 
 LOCKED = 0.5
-"""Share of a rest over which the disc must hold the wheel both ways; at the ends of a rest one side is about to free
-it."""
+"""Minimum share of a rest over which the disc must hold the wheel in both directions; at the ends of a rest one side is
+about to release it."""
 
 MOST_PLAY = 0.1
-"""Share of half the angle between stations by which a locked wheel may turn: beyond it the wheel is not held."""
+"""Maximum play of a locked wheel, as a share of half the angle between stations: beyond it the wheel is not held."""
 
 
 def verify_indexing(problem: IndexingProblem, design: IndexingDesign) -> IndexingDesign:
@@ -54,14 +54,14 @@ def verify_indexing(problem: IndexingProblem, design: IndexingDesign) -> Indexin
     Parameters
     ----------
     problem : IndexingProblem
-        What was asked.
+        The request.
     design : IndexingDesign
         The answer; its checks are replaced.
 
     Returns
     -------
     IndexingDesign
-        With the checks of what was measured, and the angle over which the wheel is held.
+        With the checks of the measurements, and the angle over which the wheel is held.
     """
     load = Load(problem.load_inertia, problem.load_torque, problem.crank_speed)
     span = _span(design)
@@ -69,6 +69,7 @@ def verify_indexing(problem: IndexingProblem, design: IndexingDesign) -> Indexin
     crank = crank_motion(design.mechanism, span[0] + np.radians(design.program.angle)).s
     outlines = measured(design, 0.5 * float(crank[-1] - crank[0]))
     sampled = driven(design.mechanism, load, problem.scale, np.linspace(*span, SAMPLED))
+    # Sampled independently of the program in the answer.
     steady = steady_share(sampled.motion.v)
     checks = [
         tolerated("reaches_next_station", _station_error(design, drive), AGREES),
@@ -84,19 +85,19 @@ def verify_indexing(problem: IndexingProblem, design: IndexingDesign) -> Indexin
 
 
 def _span(design: IndexingDesign) -> tuple[float, float]:
-    """The input's angles, radians, as a roller enters and as it leaves."""
+    """Return the input's angles, radians, at the entry and the exit of a roller."""
     link = getattr(design.mechanism, "drag_link", None)
     start = math.radians(-0.5 * design.index_angle if link is None else link.entry_angle)
     return start, start + math.radians(design.index_angle)
 
 
 def _station_error(design: IndexingDesign, drive: Driven) -> float:
-    """By how much the wheel's turn differs from the angle between stations, radians."""
+    """Return the difference of the wheel's rotation from the angle between stations, radians."""
     return abs(float(drive.motion.s[-1] - drive.motion.s[0]) - 2.0 * math.pi / design.mechanism.stations)
 
 
 def _off(told: list[float], found: Real) -> float:
-    """Greatest difference as a share of the greatest value; 0 where all is 0."""
+    """Return the greatest difference as a share of the greatest value; 0 if all are 0."""
     size = max(float(np.abs(found).max()), float(np.abs(told).max()))
     return float(np.abs(np.array(told) - found).max()) / size if size > 0.0 else 0.0
 
@@ -117,20 +118,22 @@ def _agreement(design: IndexingDesign, drive: Driven) -> list[Check]:
 
 
 def _energy(problem: IndexingProblem, design: IndexingDesign, load: Load, span: tuple[float, float]) -> list[Check]:
-    """The work of the input over the first half of an index is the wheel's energy and the work against its load."""
+    """Check that the input's work over the first half of an index equals the wheel's energy and work against load."""
+    # Gauss quadrature over the first half of the index.
     nodes, weights = np.polynomial.legendre.leggauss(NODES)
     start, half = span[0], 0.5 * (span[1] - span[0])
     through = driven(design.mechanism, load, problem.scale, start + 0.5 * half * (nodes + 1.0))
     work = 0.5 * half * float(weights @ through.drive_torque)
     ends = driven(design.mechanism, load, problem.scale, np.array([start, start + half])).motion
     gained = 0.5 * load.inertia * load.speed**2 * float(ends.v[1] ** 2 - ends.v[0] ** 2)
+    # Kinetic energy plus the work against the load.
     gained += load.torque * float(ends.s[1] - ends.s[0])
     size = max(abs(work), abs(gained))
     return [tolerated("energy_balance", abs(work - gained) / size if size > 0.0 else 0.0, AGREES)]
 
 
 def _peaks(design: IndexingDesign, found: Driven) -> list[Check]:
-    """No sample is above a peak, and the greatest is nearly as high."""
+    """Check that no sample exceeds a peak, and that the greatest is nearly as high."""
     metrics = design.metrics
     beside = [
         (metrics.peak_velocity, found.motion.v),
@@ -144,6 +147,7 @@ def _peaks(design: IndexingDesign, found: Driven) -> list[Check]:
     for peak, values in beside:
         most = float(np.abs(values).max())
         if peak > 0.0:
+            # Both directions share one number: above by rounding, below by the sampling.
             above = (most - peak) / peak
             worst = max(worst, above / AGREES, -above / BELOW)
     return [at_most("peaks", worst, 1.0)]
@@ -152,8 +156,9 @@ def _peaks(design: IndexingDesign, found: Driven) -> list[Check]:
 def _walls(problem: IndexingProblem, design: IndexingDesign, found: Measured) -> list[Check]:
     mechanism, metrics = design.mechanism, design.metrics
     size = metrics.size
-    # Coordinates are rounded by the size of the drive, whatever that of the roller.
+    # Coordinates are rounded in proportion to the drive, not to the roller.
     rounding = AGREES * max(1.0, size / mechanism.roller_diameter)
+    # Errors of lengths are shares of the size.
     told = max(abs(found.wall - metrics.wall), abs(found.web - metrics.web)) / size
     checks = [
         tolerated("walls_as_told", told, AGREES),
@@ -193,6 +198,7 @@ def _constraints(problem: IndexingProblem, design: IndexingDesign, drive: Driven
     if stated.shock_free:
         checks.append(tolerated("shock_free_entry", abs(float(drive.motion.v[0])), AGREES))
     if stated.dwell_share is not None:
+        # Each roller turns the wheel once per turn of the crank.
         share = 1.0 - design.mechanism.rollers * design.index_angle / 360.0
         if stated.dwell_share.min is not None:
             checks.append(at_least("min_dwell_share", share, stated.dwell_share.min))
@@ -218,9 +224,10 @@ def _constraints(problem: IndexingProblem, design: IndexingDesign, drive: Driven
 
 
 def _transmission_angle(design: IndexingDesign) -> float:
-    """The least of the drag link, degrees: pin and pivots in line, both ways, by the law of cosines."""
+    """Measure the drag link's least transmission angle, degrees: with the input aligned with the ground."""
     assert isinstance(design.mechanism, GenevaMechanism)
     link = design.mechanism.drag_link
     assert link is not None
+    # The angle is extreme where crank and ground align.
     moved = driven_link(design.mechanism, np.array([0.0, math.pi]))
     return math.degrees(float(np.arcsin(np.abs(moved.sines["coupler"]).min())))

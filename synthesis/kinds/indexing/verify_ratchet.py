@@ -1,8 +1,8 @@
-"""The proof of a ratchet: its outline is turned under its pawls, and the forces of held teeth are summed.
+"""Verification of a ratchet: its outline is turned under its pawls, and the forces of held teeth are summed.
 
-From the outline's corners, the pivots and the noses alone: where and by how many pawls the wheel is held in a turn;
-that a pawl is drawn in from every point of a face; the torque that the pawls take together; how far a passing tooth
-lifts a pawl, and that it falls to the foot.
+From the outline's corners, the pivots and the noses alone: the stops of a turn and the number of pawls at each;
+that a pawl is drawn in from every point of a face; the total torque of the pawls; the lift of a pawl by a passing
+tooth, and that it falls to the foot.
 """
 
 from __future__ import annotations
@@ -24,16 +24,16 @@ Complex = NDArray[np.complex128]
 Real = NDArray[np.float64]
 
 AGREES = 1e-9
-"""Relative difference of closed forms from the outline: rounding."""
+"""Relative difference of closed forms from the outline that is attributed to rounding."""
 
 AS_TOLD = 1e-6
-"""Degrees by which told angles may differ from those of the outline."""
+"""Degrees by which reported angles may differ from those of the outline."""
 
 HALVINGS = 50
-"""Of a pitch, for the angle at which a tip leaves the nose."""
+"""Number of bisections of a pitch, for the angle at which a tip leaves the nose."""
 
 ON_FACE, RIDDEN = 33, 121
-"""Points of a face, and positions of a pitch."""
+"""Number of points of a face, and of positions of a pitch."""
 
 
 def verify_ratchet(problem: IndexingProblem, design: RatchetDesign) -> RatchetDesign:
@@ -64,7 +64,7 @@ def verify_ratchet(problem: IndexingProblem, design: RatchetDesign) -> RatchetDe
 
 
 def _corners(mechanism: RatchetMechanism) -> tuple[Complex, Complex]:
-    """Feet and tips in turn round the wheel, as the first pawl holds it."""
+    """Return feet and tips in turn around the wheel, as the first pawl holds it."""
     outline = np.array(mechanism.profile.x) + 1j * np.array(mechanism.profile.y)
     return outline[0::2], outline[1::2]
 
@@ -77,12 +77,14 @@ def _pawls(mechanism: RatchetMechanism) -> tuple[Complex, Complex]:
 
 
 def _stops(mechanism: RatchetMechanism, feet: Complex, noses: Complex) -> list[Check]:
-    """The wheel's angles at which some foot is at a nose: equally spaced, each by as many pawls as are told."""
+    """Check the wheel's angles with a foot at a nose: equally spaced, each held by the reported number of pawls."""
     turns = np.mod(np.angle(noses[:, None] / feet), 2.0 * math.pi)
     off = float(np.abs(np.abs(noses)[:, None] - np.abs(feet)).max()) / mechanism.wheel_radius
     step = 2.0 * math.pi / mechanism.stations
+    # Index of the stop at which a foot meets a nose.
     number = np.round(turns / step)
     off = max(off, float(np.abs(turns - number * step).max()))
+    # Number of pawls at every stop.
     held = np.bincount(np.mod(number.astype(int), mechanism.stations).ravel(), minlength=mechanism.stations)
     return [
         tolerated("equal_stops", off, AGREES),
@@ -91,8 +93,8 @@ def _stops(mechanism: RatchetMechanism, feet: Complex, noses: Complex) -> list[C
 
 
 def _locking(feet: Complex, tips: Complex, pivots: Complex, noses: Complex) -> float:
-    """Least angle, degrees, from the line to the pivot to the face's normal, towards the wheel, over the held face."""
-    # As the first pawl holds the first tooth.
+    """Measure the least angle, degrees, from the pivot's line to the face's normal, over the held face."""
+    # With the first tooth held by the first pawl.
     points = feet[0] + (tips[0] - feet[0]) * np.linspace(0.0, 1.0, ON_FACE)
     normal = (tips[0] - feet[0]) * -1j
     to_pivot = pivots[0] - points
@@ -101,7 +103,7 @@ def _locking(feet: Complex, tips: Complex, pivots: Complex, noses: Complex) -> f
 
 
 def _torque_error(problem: IndexingProblem, design: RatchetDesign, feet: Complex, tips: Complex) -> float:
-    """The moment of the told force at the middle of each held face, against the torque."""
+    """Compare the moment of the reported force at the middle of each held face with the torque."""
     middle, along = 0.5 * (feet[0] + tips[0]), (tips[0] - feet[0]) / abs(tips[0] - feet[0])
     push = 1j * along * design.metrics.tooth_force
     moment = problem.scale * (middle.conjugate() * push).imag * design.mechanism.overlap
@@ -110,7 +112,7 @@ def _torque_error(problem: IndexingProblem, design: RatchetDesign, feet: Complex
 
 
 def _ride_error(mechanism: RatchetMechanism, overtravel: float) -> float:
-    """The nose's circle cut with the edges of the turning outline, against the closed form, radians."""
+    """Compare the nose's circle cut with the edges of the turning outline to the closed form, radians."""
     wheel = Ratchet(
         mechanism.teeth,
         mechanism.wheel_radius,
@@ -122,12 +124,13 @@ def _ride_error(mechanism: RatchetMechanism, overtravel: float) -> float:
     angle = start + pitch * (np.arange(RIDDEN) + 0.5) / RIDDEN
     outline = np.array(mechanism.profile.x) + 1j * np.array(mechanism.profile.y)
     pivots, noses = _pawls(mechanism)
-    # The back that comes to the first foot from the tip behind it, and those beside it.
+    # The back that comes to the first foot from the tip behind it, and its neighbours.
     corners = np.roll(outline, 5)[:8]
     begin = corners[:-1] * np.exp(1j * angle)[:, None] - pivots[0]
     edge = np.diff(corners) * np.exp(1j * angle)[:, None]
     a, b = np.abs(edge) ** 2, (begin * edge.conj()).real
     c = np.abs(begin) ** 2 - abs(noses[0] - pivots[0]) ** 2
+    # Discriminant of the circle's intersection with the line of each edge.
     square = b * b - a * c
     root = np.sqrt(np.maximum(square, 0.0))
     lifts = []
@@ -142,7 +145,7 @@ def _ride_error(mechanism: RatchetMechanism, overtravel: float) -> float:
 def _told(
     mechanism: RatchetMechanism, metrics: RatchetMetrics, tips: Complex, pivots: Complex, noses: Complex
 ) -> list[Check]:
-    """Where the held tip leaves the circle of the nose, by bisection, and how far it has lifted the pawl there."""
+    """Check, by bisection, the angle at which the held tip leaves the nose's circle, and the pawl's lift there."""
     nose = noses[0] - pivots[0]
     low, high = 0.0, 2.0 * math.pi / mechanism.teeth
     for _ in range(HALVINGS):
@@ -159,6 +162,6 @@ def _told(
 
 
 def _falls_in(mechanism: RatchetMechanism, feet: Complex, tips: Complex) -> bool:
-    """Whether a nose off the tip finds the space behind it open: the back falls all the way to the foot."""
+    """Return whether a nose off the tip finds the space behind it open: the back falls all the way to the foot."""
     back = np.roll(tips, 1) - feet
     return bool((back * feet.conj()).real.min() > 0.0) and len(feet) == mechanism.teeth

@@ -12,7 +12,7 @@ from synthesis.model.gear_answer import GearPairTeeth, Ratio
 
 
 class LayshaftGear(Answer):
-    """A forward gear; without teeth it is direct drive."""
+    """A forward gear; without teeth it is the direct drive."""
 
     layshaft: int | None
     mainshaft: int | None
@@ -32,11 +32,11 @@ class LayshaftMechanism(Answer):
     """A layshaft gearbox of a vehicle."""
 
     type: Literal["layshaft_gearbox"] = "layshaft_gearbox"
-    head: GearPairTeeth = Field(description="From the input shaft to the layshaft.")
+    head: GearPairTeeth = Field(description="Pair from the input shaft to the layshaft.")
     gears: list[LayshaftGear]
     reverse: ReverseGear | None
     module: Length
-    pressure_angle: Angle = Field(description="Degrees.")
+    pressure_angle: Angle = Field(description="Pressure angle, degrees.")
     centre_distance: Length
 
 
@@ -46,14 +46,16 @@ class LayshaftMetrics(Answer):
     max_error: float = Field(description="Largest relative error of a gear.")
     errors: list[float] = Field(description="Relative error of each forward gear, with its sign; reverse comes last.")
     tooth_sum: int
-    interfering: list[GearPairTeeth] = Field(description="Pairs whose standard teeth interfere; they need a shift.")
+    interfering: list[GearPairTeeth] = Field(
+        description="Pairs whose standard teeth interfere; they need a profile shift."
+    )
     contact_ratios: list[float] = Field(
-        description="Of the head pair, the forward gears with teeth, and reverse's two."
+        description="Contact ratios of the head pair, the forward gears with teeth, and the two meshes of reverse."
     )
 
 
 class LayshaftDesign(Answer):
-    """A layshaft gearbox with the proof of its ratios."""
+    """A layshaft gearbox with the verification of its ratios."""
 
     mechanism: LayshaftMechanism
     verification: Verification
@@ -61,7 +63,7 @@ class LayshaftDesign(Answer):
 
 
 class ParetoLayshaft(Answer):
-    """The least error that a tooth sum allows, where no smaller sum allows it."""
+    """The minimum error at a tooth sum, if no smaller sum reaches it."""
 
     tooth_sum: int
     max_error: float

@@ -1,4 +1,4 @@
-"""Its examples as a person looks for them, in their order."""
+"""Examples of the kind layshaft_gearbox for the gallery, in order of presentation."""
 
 from __future__ import annotations
 

@@ -14,7 +14,7 @@ class LayshaftProblem(StatedProblem):
     """Layshaft gearbox of a vehicle: tooth numbers for given gears and reverse, with one tooth sum for all pairs.
 
     A head pair turns the layshaft; each gear is a pair from there to the main shaft, in constant mesh. A gear of ratio
-    1 is direct drive. Reverse has an idler. Every tooth sum, head pair and gear pair within the limits is covered.
+    1 is the direct drive. Reverse has an idler. Every tooth sum, head pair and gear pair within the limits is covered.
     """
 
     model_config = ConfigDict(
@@ -40,29 +40,32 @@ class LayshaftProblem(StatedProblem):
         min_length=1, max_length=12, description="Input over output speed of the forward gears, first gear first."
     )
     reverse: Annotated[float, Field(strict=True, gt=0.05, le=50.0)] | None = Field(
-        default=None, description="Size of the ratio of the reverse gear. Left open: there is none."
+        default=None, description="Magnitude of the reverse gear's ratio. Default: no reverse."
     )
-    direct: Flag = Field(default=True, description="A gear of ratio 1 joins input and main shaft, without gears.")
+    direct: Flag = Field(
+        default=True, description="Whether a gear of ratio 1 couples input and main shaft directly, without teeth."
+    )
     teeth: ToothRange = ToothRange(min=18, max=80)
-    tooth_sum: ToothRange = Field(default=ToothRange(min=50, max=110), description="Of every pair.")
+    tooth_sum: ToothRange = Field(default=ToothRange(min=50, max=110), description="Tooth sum of every pair.")
     interference: Literal["refuse", "report"] = Field(
-        default="refuse", description="Pairs whose standard teeth would interfere are not used, or used and told."
+        default="refuse", description="Pairs with interfering standard teeth: refused, or used and reported."
     )
     tolerance: Annotated[float, Field(strict=True, ge=0.0, lt=1.0)] | None = Field(
-        default=None, description="Largest relative error of any gear. Left open: the best there is."
+        default=None, description="Maximum relative error of any gear. Default: the best possible."
     )
-    module: Module = Field(default=1.0, description="Of all gears, in the length unit.")
-    pressure_angle: CommonPressureAngle = Field(default=20.0, description="Degrees.")
+    module: Module = Field(default=1.0, description="Module of all gears, in the length unit.")
+    pressure_angle: CommonPressureAngle = Field(default=20.0, description="Pressure angle, degrees.")
     rank_by: Literal["error", "size"] = Field(
-        default="error", description="Least largest error first, or least tooth sum within the tolerance first."
+        default="error",
+        description="error: smallest maximum error first. size: smallest tooth sum within the tolerance first.",
     )
 
     def contradictions(self) -> list[Contradiction]:
-        """Limits the wrong way round, gears out of order or stated twice."""
+        """Return reversed limits, and gears out of order or given twice."""
         contradictions = tooth_faults(self.teeth, self.tooth_sum)
         for k, (before, after) in enumerate(zip(self.ratios, self.ratios[1:], strict=False), start=1):
             if after >= before:
-                contradictions.append(Contradiction(f"/ratios/{k}", "must be below the gear before it"))
+                contradictions.append(Contradiction(f"/ratios/{k}", "must be below the ratio of the previous gear"))
         if self.rank_by == "size" and self.tolerance is None:
             contradictions.append(Contradiction("/tolerance", "ranking by size needs a tolerance for the ratios"))
         if self.tooth_sum.max > MOST_TOOTH_SUM:

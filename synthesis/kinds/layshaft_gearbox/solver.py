@@ -1,8 +1,8 @@
 """The best layshaft gearboxes: every tooth sum and head pair, and for each the nearest pair for every gear.
 
-Once tooth sum S and head pair a, b are chosen, the gears no longer depend on each other: of the pairs c, d = S − c the
-ratio (b/a)(S − c)/c falls with c, so that the nearest to a demanded ratio is one of the two c next to the real solution
-S/(1 + t a/b). Reverse takes the nearest of all pairs that do not touch each other and leave room for an idler.
+Once tooth sum S and head pair a, b are chosen, the gears are independent: for pairs c, d = S − c the
+ratio (b/a)(S − c)/c falls with c, so that the nearest to a requested ratio is one of the two c next to the real
+solution S/(1 + t a/b). Reverse uses the nearest of all pairs that do not touch each other and leave space for an idler.
 """
 
 from __future__ import annotations
@@ -38,11 +38,11 @@ Real = NDArray[np.float64]
 Whole = NDArray[np.int64]
 
 ERROR_TOLERANCE = 1e-12
-"""Errors nearer to each other than this are compared as exact fractions."""
+"""Difference of errors below which they are compared as exact fractions."""
 
 
 class _Box(NamedTuple):
-    """Teeth of a gearbox with its largest error, exact; None for direct drive, and where there is no reverse."""
+    """Teeth of a gearbox with its largest error, exact; None for direct drive, and without reverse."""
 
     error: Fraction
     size: int
@@ -52,7 +52,7 @@ class _Box(NamedTuple):
 
 
 class _Level(NamedTuple):
-    """The best of one tooth sum: largest error by head pair, with the teeth of the layshaft by gear, and of reverse."""
+    """The best of one tooth sum: largest error by head pair, with the layshaft teeth of every gear and of reverse."""
 
     heads: Whole
     error: Real
@@ -62,14 +62,14 @@ class _Level(NamedTuple):
 
 
 def solve_layshaft_gearbox(problem: LayshaftProblem, progress: Progress) -> LayshaftResult:
-    """The best layshaft gearboxes, each verified.
+    """Find the best layshaft gearboxes, each verified.
 
     Parameters
     ----------
     problem : LayshaftProblem
-        A statement without contradictions.
+        A problem without contradictions.
     progress : callable
-        Told how many tooth sums are done.
+        Receives the share of tooth sums that are done.
 
     Returns
     -------
@@ -101,8 +101,9 @@ def solve_layshaft_gearbox(problem: LayshaftProblem, progress: Progress) -> Lays
 
 
 def _level(problem: LayshaftProblem, size: int) -> _Level:
-    """The best pair of every gear for each head pair of one tooth sum."""
+    """Find the best pair of every gear for each head pair of one tooth sum."""
     low, high = problem.teeth.min, problem.teeth.max
+    # Both gears of a pair must be within the limits: c and S − c.
     own = np.arange(max(low, size - high), min(high, size - low) + 1)
     if problem.interference == "refuse" and len(own):
         angle = math.radians(problem.pressure_angle)
@@ -119,6 +120,7 @@ def _level(problem: LayshaftProblem, size: int) -> _Level:
             chosen.append(None)
             continue
         covered *= len(own)
+        # The real solution lies between two tooth numbers: compare the errors of both.
         after = np.searchsorted(own, size / (1.0 + ratio / turned))
         near = [own[np.clip(after + step, 0, len(own) - 1)] for step in (-1, 0)]
         errors = [np.abs(turned * (size - c) / c / ratio - 1.0) for c in near]
@@ -139,11 +141,13 @@ def _level(problem: LayshaftProblem, size: int) -> _Level:
 
 
 def _reverse_pairs(problem: LayshaftProblem, size: int) -> tuple[Whole, Whole, Whole]:
-    """Gears on layshaft and main shaft that pass each other, with the smallest sound idler to reach both."""
+    """List gears on layshaft and main shaft that clear each other, with the smallest sound idler that reaches both."""
     low, high = problem.teeth.min, problem.teeth.max
     counts = np.arange(low, high + 1)
     one, other = (side.reshape(-1) for side in np.meshgrid(counts, counts, indexing="ij"))
+    # The idler must bridge the gap: half the sum of all three diameters is at least the distance.
     idler = np.maximum(low, -((one + other - size) // 2))
+    # Tips extend one module beyond each pitch circle.
     kept = (0.5 * (size - one - other) - 2.0 >= PASSING) & (idler <= high)
     one, idler, other = one[kept], idler[kept], other[kept]
     if problem.interference == "refuse":
@@ -155,12 +159,14 @@ def _reverse_pairs(problem: LayshaftProblem, size: int) -> tuple[Whole, Whole, W
 
 
 def _sound_idler(counts: Whole, one: Whole, idler: Whole, other: Whole, angle: float) -> Whole:
-    """The smallest idler from ``idler`` on that interferes with neither gear; beyond the range where there is none.
+    """Return the smallest idler from ``idler`` on that interferes with neither gear; beyond the range if none exists.
 
     An idler can be too small for a large mate and too large for a small one: for each mate the sound ones are those
-    between two limits, since z₁ (4 − 2 z₂ sin² φ) ≤ z₂² sin² φ − 4, and the same turned round, are monotonic in z₂.
+    between two limits, since z₁ (4 − 2 z₂ sin² φ) ≤ z₂² sin² φ − 4, and the same with z₁ and z₂ exchanged, are
+    monotonic in z₂.
     """
     real = counts.astype(np.float64)
+    # Table of all pairs of tooth numbers, evaluated once.
     sound = external_sound(real[:, None], real[None, :], angle)
     least = np.where(sound.any(axis=1), counts[sound.argmax(axis=1)], counts[-1] + 1)
     most = counts[-1] - sound[:, ::-1].argmax(axis=1)
@@ -171,10 +177,11 @@ def _sound_idler(counts: Whole, one: Whole, idler: Whole, other: Whole, angle: f
 
 
 def _of_level(problem: LayshaftProblem, size: int, level: _Level, count: int) -> list[_Box]:
-    """The best gearboxes of one tooth sum, one for each head pair."""
+    """Select the best gearboxes of one tooth sum, one for each head pair."""
     if not len(level.heads):
         return []
     most = min(count, len(level.heads))
+    # Candidates within rounding of the last place are compared exactly.
     limit = np.partition(level.error, most - 1)[most - 1]
     boxes = []
     for k in np.flatnonzero(level.error <= limit + ERROR_TOLERANCE).tolist():
@@ -194,7 +201,7 @@ def _of_level(problem: LayshaftProblem, size: int, level: _Level, count: int) ->
 
 
 def _design(problem: LayshaftProblem, box: _Box) -> LayshaftDesign:
-    """A choice of teeth as a verified design."""
+    """Build a choice of teeth as a verified design."""
     ratios = layshaft_ratios(box.head, box.gears, box.reverse)
     reverse = None
     if box.reverse is not None and ratios.reverse is not None:
@@ -221,14 +228,14 @@ def _design(problem: LayshaftProblem, box: _Box) -> LayshaftDesign:
 
 
 def _outlined(box: _Box) -> ParetoLayshaft:
-    """A gearbox of the Pareto set as the answer has it."""
+    """Build a gearbox of the Pareto set as the answer reports it."""
     head = GearPairTeeth(driver=box.head[0], driven=box.head[1])
     return ParetoLayshaft(tooth_sum=box.size, max_error=float(box.error), head=head)
 
 
 def _summary(problem: LayshaftProblem, passed: list[LayshaftDesign], boxes: list[_Box], covered: int) -> str:
-    """What the search covered and what is best, in one sentence."""
-    searched = f"{counted(covered, 'combination')} of tooth numbers covered"
+    """Write the coverage of the search and the best gearbox in one sentence."""
+    searched = f"{counted(covered, 'combination')} of tooth numbers searched"
     if passed:
         first = passed[0]
         return (
@@ -236,6 +243,6 @@ def _summary(problem: LayshaftProblem, passed: list[LayshaftDesign], boxes: list
             f"{100.0 * first.metrics.max_error:.3g} %; {searched}."
         )
     if not boxes:
-        return f"The limits leave no gearbox: {searched}."
+        return f"No gearbox keeps the limits; {searched}."
     nearest = 100.0 * float(boxes[0].error)
-    return f"No gearbox keeps all ratios within the tolerance: the best is off by {nearest:.3g} %; {searched}."
+    return f"No gearbox keeps all ratios within the tolerance: the best has an error of {nearest:.3g} %; {searched}."

@@ -1,4 +1,4 @@
-"""A finished layshaft gearbox measured against its problem: its power paths as trains of meshes on fixed axes."""
+"""Verification of a finished layshaft gearbox: its power paths as trains of meshes on fixed axes."""
 
 from __future__ import annotations
 
@@ -16,11 +16,11 @@ from synthesis.model.ratio_target import decimal
 from synthesis.outcome.exhaustive import within_tolerance
 
 PASSING = 1e-9
-"""Room between the tips of reverse gears on layshaft and main shaft, in modules, that is no touch."""
+"""Clearance between the tips of reverse gears on layshaft and main shaft, in modules, that counts as no contact."""
 
 
 def verify(problem: LayshaftProblem, mechanism: LayshaftMechanism) -> Verification:
-    """Every demand on a layshaft gearbox, measured."""
+    """Check every constraint on a layshaft gearbox."""
     errors = _errors(problem, mechanism)
     sums = {one + other for one, other in _coaxial_pairs(mechanism)}
     teeth = [z for pair in _meshing_pairs(mechanism) for z in pair]
@@ -44,7 +44,7 @@ def verify(problem: LayshaftProblem, mechanism: LayshaftMechanism) -> Verificati
 
 
 def measure(problem: LayshaftProblem, mechanism: LayshaftMechanism) -> LayshaftMetrics:
-    """Errors of the gears and the geometry of the meshes."""
+    """Measure the errors of the gears and the geometry of the meshes."""
     errors = _errors(problem, mechanism)
     assert errors is not None
     return LayshaftMetrics(
@@ -57,7 +57,7 @@ def measure(problem: LayshaftProblem, mechanism: LayshaftMechanism) -> LayshaftM
 
 
 def _errors(problem: LayshaftProblem, mechanism: LayshaftMechanism) -> list[Fraction] | None:
-    """Relative errors of all gears, reverse last; None where a gear is missing or states another ratio than it has."""
+    """Compute the relative errors of all gears, reverse last; None if a gear is missing or reports a wrong ratio."""
     demanded = [decimal(ratio) for ratio in problem.ratios]
     if len(mechanism.gears) != len(demanded) or (mechanism.reverse is None) != (problem.reverse is None):
         return None
@@ -87,7 +87,7 @@ def _errors(problem: LayshaftProblem, mechanism: LayshaftMechanism) -> list[Frac
 
 
 def _coaxial_pairs(mechanism: LayshaftMechanism) -> list[tuple[int, int]]:
-    """Pairs between input or main shaft and layshaft."""
+    """List the pairs between input or main shaft and layshaft."""
     head = mechanism.head.driver, mechanism.head.driven
     return [head, *((g.layshaft, g.mainshaft) for g in mechanism.gears if g.layshaft and g.mainshaft)]
 
@@ -99,14 +99,16 @@ def _meshing_pairs(mechanism: LayshaftMechanism) -> list[tuple[int, int]]:
 
 
 def _reverse_fits(mechanism: LayshaftMechanism) -> bool:
-    """The reverse gears of layshaft and main shaft pass each other, and the idler's centre has a place on both."""
+    """Return whether the reverse gears clear each other, and the idler's centre has a place for both meshes."""
     back = mechanism.reverse
     if back is None:
         return False
     apart = mechanism.centre_distance / mechanism.module
     one, other, idler = (0.5 * z for z in (back.layshaft, back.mainshaft, back.idler))
     passing = apart - (one + 1.0) - (other + 1.0) >= PASSING
+    # Distances of the idler's axis from the two shafts.
     reach = one + idler, idler + other
+    # The triangle inequality of the three shaft axes.
     return passing and sum(reach) >= apart and abs(reach[0] - reach[1]) <= apart
 
 

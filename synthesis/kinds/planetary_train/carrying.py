@@ -1,7 +1,7 @@
-"""Which planetary trains carry a stated power: with which module and over which faces.
+"""Selection of the planetary trains that carry a given power, with their modules and face widths.
 
-The search orders trains by error or size whatever they carry. They are judged in that order, so that the first that
-carry the power are the best that do, and where all trains of the search were judged there is no other.
+The search ranks trains by error or size without regard to strength. They are judged in that order, so that the first
+that carry the power are the best that do; if all trains of the search were judged there is no other.
 """
 
 from __future__ import annotations
@@ -36,7 +36,7 @@ from synthesis.model.ratio_target import decimal
 from synthesis.outcome.exhaustive import first_within, pareto
 
 MOST_JUDGED = 1024
-"""Trains that are judged at most."""
+"""Maximum number of trains that are judged."""
 
 
 class Borne(NamedTuple):
@@ -48,16 +48,17 @@ class Borne(NamedTuple):
 
     @property
     def error(self) -> Fraction:
-        """Of the ratio."""
+        """Relative error of the ratio."""
         return self.candidate.error
 
 
 class Judged(NamedTuple):
-    """What became of the trains of a search.
+    """Result of judging the trains of a search.
 
-    ``best`` are the best that carry the power, ``front`` the Pareto set of all judged that do, of which ``ties`` have
-    the least error. ``failed`` of those that rank before the last of the best do not; the ``strongest`` of all carries
-    so many W. ``every``: the search has no trains but the ``judged``; ``proven``: no train is better than the best.
+    ``best`` are the best trains that carry the power, ``front`` the Pareto set of all judged ones that do, of which
+    ``ties`` have the minimum error. ``failed`` counts the trains ranked above the last of the best that do not;
+    ``strongest`` is the greatest power in W that any train carries. ``every``: the search has no trains besides the
+    ``judged``; ``proven``: no train is better than the best.
     """
 
     best: list[Borne]
@@ -72,17 +73,17 @@ class Judged(NamedTuple):
 
 @dataclass
 class Listing:
-    """The trains of a problem: tables of tooth numbers with the members that input, output and fixed are."""
+    """The trains of a problem: tables of tooth numbers with their input, output and fixed members."""
 
     problem: PlanetaryProblem
     _searches: list[tuple[Arrangement, list[SetTable], Roles]] = field(default_factory=list)
 
     def add(self, arrangement: Arrangement, tables: list[SetTable], roles: Roles) -> None:
-        """Note the trains of one choice of members."""
+        """Add the trains of one choice of members."""
         self._searches.append((arrangement, tables, roles))
 
     def nearest(self, largest: int | None = None) -> list[Candidate]:
-        """The first :data:`MOST_JUDGED` within the tolerance, nearest first; of those up to a size, in half modules."""
+        """List the nearest trains within the tolerance, at most :data:`MOST_JUDGED`, up to a size in half modules."""
         found: list[Candidate] = []
         for arrangement, tables, roles in self._searches:
             kept = tables if largest is None else [_up_to(table, largest) for table in tables]
@@ -91,9 +92,10 @@ class Listing:
         return first_within(sorted(found), self.problem.tolerance, MOST_JUDGED)
 
     def smallest(self) -> tuple[list[Candidate], int]:
-        """As many of the smallest within the tolerance, all up to the size told, and that size."""
+        """List the smallest trains within the tolerance, complete up to the returned size."""
         sizes = sorted({int(size) for _, tables, _ in self._searches for table in tables for size in table.size})
         low, high, found = 0, len(sizes), list[Candidate]()
+        # Bisect for the largest size up to which the list is complete.
         while low < high:
             middle = (low + high) // 2
             some = self.nearest(sizes[middle])
@@ -101,7 +103,7 @@ class Listing:
                 low, found = middle + 1, some
             else:
                 high = middle
-        # Where already the first size that has any has more, those of it that are nearest.
+        # If even the first size with any train has more of them, use its nearest ones.
         found = found or self.nearest(sizes[low])
         return sorted(found, key=lambda candidate: (candidate.size, candidate)), sizes[low - 1] if low else 0
 
@@ -112,7 +114,7 @@ def _up_to(table: SetTable, largest: int) -> SetTable:
 
 
 def mesh_loads(arrangement: Arrangement, candidate: Candidate, torque: float, speed: float) -> list[MeshLoad]:
-    """Loads of all meshes without losses, N m and rad/s, under a torque on the input that turns so fast.
+    """Compute the loads of all meshes without losses, N m and rad/s, for a torque and a speed of the input.
 
     With A the coefficients of the speed equations, A ω = 0, forces f of the meshes turn the bodies by Aᵀ f.
     """
@@ -122,6 +124,7 @@ def mesh_loads(arrangement: Arrangement, candidate: Candidate, torque: float, sp
     for row, mesh in zip(turning, train.meshes, strict=True):
         for body, coefficient in mesh.equation().items():
             row[place[body]] = coefficient
+    # Unit rows complete the system: one body driven, one held; for the forces, one driven out and one held.
     driving, driven, held = (np.eye(len(place))[place[body]] for body in candidate.roles)
     stated = np.zeros(len(place))
     stated[-2] = speed
@@ -137,7 +140,7 @@ def mesh_loads(arrangement: Arrangement, candidate: Candidate, torque: float, sp
 
 
 class _Toothed(NamedTuple):
-    """A mesh by its teeth: numbers, addenda, whether the second is a ring, module and who is bent both ways."""
+    """A mesh by its teeth: numbers, addenda, whether the second is a ring, module, and bending in both directions."""
 
     teeth: tuple[int, int]
     addenda: tuple[float, float]
@@ -148,7 +151,7 @@ class _Toothed(NamedTuple):
 
 @dataclass
 class Bearing:
-    """What the meshes of a problem carry; each is judged once."""
+    """Judges the power that the meshes of a problem carry; each mesh is judged once."""
 
     problem: PlanetaryProblem
     stated: PlanetPower
@@ -156,24 +159,25 @@ class Bearing:
     _judges: dict[_Toothed, Judge] = field(default_factory=dict)
 
     def carrying(self, candidate: Candidate) -> Borne | None:
-        """A train with its least module that carries the power, faces yet to be found; None where no module does."""
+        """Return a train with its smallest module that carries the power, without faces yet; None if none does."""
         arrangement = ARRANGEMENTS[candidate.arrangement]
         loads = self._loads(candidate)
         for module in self.problem.listed_modules:
             if not self._fits(arrangement, candidate, module):
                 continue
+            # Modules come in rising order, so that the first that carries is the smallest.
             mechanism = mechanism_of(self.problem, candidate, module)
             judges = list(self._judged(arrangement, mechanism, loads))
             share = min(judge.carried_power(speed) / power for _, judge, power, speed in judges)
             self.strongest = max(self.strongest, share * self.stated.power)
-            # Where rounding decides, the faces are looked for.
+            # Within rounding of the required power the computed faces decide.
             sure = share >= 1.0 + EQUAL or (share >= 1.0 - EQUAL and self._faces(arrangement, judges) is not None)
             if sure:
                 return Borne(candidate, mechanism, candidate.size * decimal(module))
         return None
 
     def made(self, borne: Borne) -> Borne:
-        """The same train with the least faces of its planes."""
+        """Return the same train with the minimum faces of its planes."""
         arrangement = ARRANGEMENTS[borne.candidate.arrangement]
         judges = list(self._judged(arrangement, borne.mechanism, self._loads(borne.candidate)))
         faces = {"face_widths": self._faces(arrangement, judges)}
@@ -184,7 +188,7 @@ class Bearing:
         return mesh_loads(arrangement, candidate, self.stated.power / self.stated.speed, self.stated.speed)
 
     def _fits(self, arrangement: Arrangement, candidate: Candidate, module: float) -> bool:
-        """Whether size and room are kept with a module; the search has looked at the ones that are kept best."""
+        """Return whether a module keeps size and clearance; the search only checked the most favourable ones."""
         problem = self.problem
         if len(problem.listed_modules) == 1 or (problem.max_size is None and problem.min_clearance == 0.0):
             return True
@@ -198,8 +202,9 @@ class Bearing:
     def _judged(
         self, arrangement: Arrangement, mechanism: PlanetaryMechanism, loads: Sequence[MeshLoad]
     ) -> Iterator[tuple[int, Judge, float, float]]:
-        """Plane, stresses, power of one copy and speed of every mesh that carries something."""
+        """Yield plane, stresses, power of one copy and speed of every loaded mesh."""
         teeth = [(mechanism.teeth[one], mechanism.teeth[other]) for one, other in arrangement.meshes]
+        # The most loaded copy carries more than its equal share.
         share = self.stated.sharing(self.problem.planets) / self.problem.planets
         rows = arrangement.meshes, teeth, loads, powers(loads, teeth, share), both_ways(arrangement, loads)
         for mesh, pair, load, power, ways in zip(*rows, strict=True):
@@ -222,7 +227,7 @@ class Bearing:
     def _faces(
         self, arrangement: Arrangement, judges: list[tuple[int, Judge, float, float]]
     ) -> list[float | None] | None:
-        """The least face of each plane, in the problem's unit, None of one without load; None where one has none."""
+        """Compute the minimum face of each plane (None if unloaded), in the problem's unit; None if one has none."""
         faces: list[float | None] = []
         for plane in range(planes_of(arrangement)):
             meshes = [judge.under(power, speed) for at, judge, power, speed in judges if at == plane]
@@ -238,7 +243,7 @@ class Bearing:
 
 
 def judged(problem: PlanetaryProblem, stated: PlanetPower, listing: Listing) -> Judged:
-    """The best trains of a listing that carry a power."""
+    """Find the best trains of a listing that carry a power."""
     bearing = Bearing(problem, stated)
     listed, by_size = listing.nearest(), problem.rank_by == "size"
     every, reached = len(listed) < MOST_JUDGED, 0
@@ -255,9 +260,11 @@ def judged(problem: PlanetaryProblem, stated: PlanetPower, listing: Listing) -> 
     best = (_one_a_size(ranked) if by_size else ranked)[: problem.max_designs]
     whole = len(best) == problem.max_designs
     last = max((listed.index(one.candidate) for one in best), default=-1) if whole else len(listed) - 1
+    # With one module, size and error do not depend on strength: the first that carry are surely the best.
     if len(problem.listed_modules) == 1:
         settled = True
     elif by_size:
+        # With several, a smaller module could make an unlisted train smaller than the last of the best.
         settled = whole and best[-1].size <= reached * decimal(problem.listed_modules[0])
     else:
         settled = whole and best[-1].error < listed[-1].error
@@ -275,5 +282,5 @@ def judged(problem: PlanetaryProblem, stated: PlanetPower, listing: Listing) -> 
 
 
 def _one_a_size(ranked: list[Borne]) -> list[Borne]:
-    """The first of each size."""
+    """Return the first train of each size."""
     return [one for k, one in enumerate(ranked) if k == 0 or one.size != ranked[k - 1].size]

@@ -1,4 +1,4 @@
-"""Planetary trains as answers: tooth numbers, members and places of the planets, and what was measured on them."""
+"""Planetary trains as answers: tooth numbers, members and places of the planets, and the measurements on them."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from synthesis.model.gear_strength import PairStrength
 
 
 class PlanetPlaces(Answer):
-    """Where the copies of a planet stand: ``steps`` times 1/``divisions`` of a turn after the first one."""
+    """Places of the copies of a planet: ``steps`` times 1/``divisions`` of a turn after the first one."""
 
     divisions: int
     steps: list[int]
@@ -25,19 +25,20 @@ class PlanetaryMechanism(Answer):
     type: Literal["planetary_train"] = "planetary_train"
     arrangement: str
     teeth: dict[str, int]
-    planets: int = Field(description="Copies of each planet.")
-    places: dict[str, PlanetPlaces] = Field(description="By planet.")
+    planets: int = Field(description="Number of copies of each planet.")
+    places: dict[str, PlanetPlaces] = Field(description="Places of the copies, by planet.")
     module: Length
-    pressure_angle: Angle = Field(description="Degrees.")
+    pressure_angle: Angle = Field(description="Pressure angle, degrees.")
     addendum: dict[str, float] = Field(
-        description="Addendum by gear, in modules: 1, or less for a ring whose full teeth would dig into its planets."
+        description="Addendum by gear, in modules: 1, or less for a ring whose full teeth would interfere with its "
+        "planets."
     )
     input: str
     output: str
     fixed: str
     ratio: Ratio
     face_widths: list[Length | None] | None = optional(
-        "The least with which the gears of each plane carry a stated power; null of a plane that carries nothing."
+        "Smallest face width of each plane that carries the given power; null for an unloaded plane."
     )
 
 
@@ -48,37 +49,41 @@ class MeshContact(Answer):
     contact_ratio: float
     centre_distance: Length
     fillet_interference: bool = Field(
-        description="Whether contact goes below an involute as rack and cutter leave it: into a fillet, or, of an "
-        "undercut gear, to where nothing is left of it."
+        description="True if contact leaves the involute that rack and cutter produce: into a fillet or, for an "
+        "undercut gear, into the region without flank."
     )
     tip_depth: Length = Field(
-        description="How deep a tip digs into its mate, found by putting it where it comes to and trying all positions "
-        "of the tools that cut the mate; 0 of tips that run free."
+        description="Depth of tip interference with the mating teeth, found by trying all positions of the tools that "
+        "cut the mate; 0 for tips that run free."
     )
     strength: PairStrength | None = optional(
-        "Stresses of one copy under a stated power; left out of a mesh that carries nothing."
+        "Stresses of one copy under the given power; omitted for an unloaded mesh."
     )
 
 
 class PlanetaryMetrics(Answer):
-    """Measured properties that were not demanded; powers are shares of the input power."""
+    """Measured properties that were not requested; powers are shares of the input power."""
 
     error: float = Field(description="Relative error of the ratio, with its sign.")
     size: Length = Field(description="Largest pitch diameter around the axis, planets included.")
-    total_teeth: int = Field(description="Of one copy of every gear.")
-    speeds: dict[str, float] = Field(description="Speed of every body where the input has 1; planets absolute too.")
-    efficiency: float = Field(description="With the stated efficiency of each mesh; 0 where the train locks itself.")
-    self_locking: bool = Field(description="The input cannot drive the output, whatever its torque.")
+    total_teeth: int = Field(description="Teeth of one copy of every gear.")
+    speeds: dict[str, float] = Field(
+        description="Speed of every body relative to the input's; absolute for planets too."
+    )
+    efficiency: float = Field(
+        description="Efficiency with the given efficiency of each mesh; 0 if the train is self-locking."
+    )
+    self_locking: bool = Field(description="True if no input torque can drive the output.")
     rolling_power: float = Field(description="Largest power of a mesh relative to its carrier, without losses.")
     branch_power: float = Field(description="Largest power between a row and a member, without losses.")
-    circulating_power: bool = Field(description="A warning: a member carries more power than is put in.")
-    least_room: Length | None = Field(description="Least room between tips of gears that do not mesh.")
+    circulating_power: bool = Field(description="Warning: a member carries more power than the input.")
+    least_room: Length | None = Field(description="Minimum clearance between tips of gears that do not mesh.")
     meshes: list[MeshContact]
-    undercut: list[str] = Field(description="Gears whose flanks a generating rack would undercut.")
+    undercut: list[str] = Field(description="Gears whose flanks a generating rack undercuts.")
 
 
 class PlanetaryDesign(Answer):
-    """A planetary train with the proof of what it does."""
+    """A planetary train with its verification."""
 
     mechanism: PlanetaryMechanism
     verification: Verification
@@ -96,30 +101,31 @@ class ParetoPlanetaryTrain(Answer):
     ratio: Ratio
     error: float = Field(description="Relative error of the ratio, with its sign.")
     size: Length
-    module: Length | None = optional("With `strength`: that with which it carries the power.")
-    face_widths: list[Length | None] | None = optional("With `strength`: of each plane.")
+    module: Length | None = optional("With `strength`: module with which the train carries the power.")
+    face_widths: list[Length | None] | None = optional("With `strength`: face width of each plane.")
 
 
 class PlanetarySearch(Search):
-    """The search of a finite set of trains; with `strength` `complete` is false where better trains may be unjudged."""
+    """The search of a finite set of trains; with `strength`, `complete` is false if better trains may be unjudged."""
 
-    judged: int | None = optional("With `strength`: how many trains were judged, the first of the ranking.")
+    judged: int | None = optional("With `strength`: number of trains judged, in the order of the ranking.")
     every_judged: bool | None = optional(
-        "Whether the search has no others within the tolerance: `ties` and `pareto` are then those of all trains that "
-        "carry the power, otherwise of the judged that do."
+        "True if all trains within the tolerance were judged, so that `ties` and `pareto` refer to all trains that "
+        "carry "
+        "the power; otherwise they refer to the judged ones only."
     )
 
 
 class PlanetaryResult(Result[PlanetaryDesign]):
     """Planetary trains, best first.
 
-    ``ties`` counts the trains that have the least error of all, whatever their size; with `strength` of the judged that
+    ``ties`` counts the trains of any size that have the minimum error; with `strength`, among the judged ones that
     carry the power.
     """
 
     search: PlanetarySearch
     ties: int
     pareto: list[ParetoPlanetaryTrain] = Field(
-        description="The Pareto set of error against size, smallest first; with `strength` of the trains judged that "
+        description="Pareto set of error against size, smallest first; with `strength`, of the judged trains that "
         "carry the power."
     )

@@ -1,4 +1,4 @@
-"""Every sound train of a problem, whatever its ratio, as exact quotients of whole numbers."""
+"""Enumeration of every feasible train of a problem, of any ratio, as exact quotients of integers."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ from synthesis.kinds.planetary_train.tooth_numbers import ToothNumbers, Whole
 class SoundTrains:
     """The trains of one arrangement and choice of members: N and D of the ratios N/D, and teeth of one copy of all.
 
-    Where two planet sets are coupled, every row of the one stands with every row of the other. N and D may be 0.
+    If two planet sets are coupled, every row of one is combined with every row of the other. N and D may be 0.
     """
 
     arrangement: str
@@ -31,7 +31,7 @@ class SoundTrains:
     total: Whole
 
     def candidate(self, row: int) -> Candidate:
-        """One train, as it is ranked for its own ratio."""
+        """Build one train, ranked for its own ratio."""
         places = [row] if len(self.tables) == 1 else list(divmod(row, len(self.tables[1].size)))
         teeth = tuple(gear for table, at in zip(self.tables, places, strict=True) for gear in table.row(at))
         size = max(int(table.size[at]) for table, at in zip(self.tables, places, strict=True))
@@ -40,7 +40,7 @@ class SoundTrains:
 
 
 def every_train(problem: PlanetaryProblem) -> Iterator[SoundTrains]:
-    """The trains of every arrangement and choice of members that the statement leaves; locked ones have none."""
+    """Yield the trains of every arrangement and choice of members that the problem permits; locked ones have none."""
     for arrangement in problem.arrangements:
         numbers = [
             ToothNumbers(arrangement, planets, demands_of(problem, arrangement)) for planets in arrangement.planet_sets
@@ -69,9 +69,11 @@ def _coupled(arrangement: Arrangement, tables: tuple[SetTable, ...], roles: Role
         over, under = (
             evaluated(part, table.values, len(table.size)) for part in train_value(arrangement.name, planets).form
         )
+        # Train values are reduced, so that the products below stay exact in double precision.
         common = np.gcd(over.astype(np.int64), under.astype(np.int64))
         parts.append((over / common, under / common))
     first, second = (len(table.size) for table in tables)
+    # Row i·n + j combines row i of the first set with row j of the second.
     one = tuple(np.repeat(part, second) for part in parts[0])
     other = tuple(np.tile(part, first) for part in parts[1])
     over, under = coupling.quotient((one[0], one[1]), (other[0], other[1]))

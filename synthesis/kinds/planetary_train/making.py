@@ -1,4 +1,4 @@
-"""What a planetary train that the search has found is made of, and what the search demands of tooth numbers."""
+"""Construction of a planetary train from a search candidate, and the search's constraints on tooth numbers."""
 
 from __future__ import annotations
 
@@ -16,16 +16,17 @@ from synthesis.model import mesh_limits
 from synthesis.model.gear_answer import Ratio
 
 SHORTEST = 0.5
-"""Modules that are left of a ring's addendum at least where it is shortened without being demanded."""
+"""Minimum remaining addendum, in modules, of a ring that is shortened although this is not required."""
 
 
 def demands_of(problem: PlanetaryProblem, arrangement: Arrangement, module: float | None = None) -> Demands:
-    """The demands on tooth numbers of one arrangement, lengths in half modules; of a module, or of any listed one."""
+    """Build an arrangement's constraints on tooth numbers, in half modules, for a module or for any listed one."""
     listed = problem.listed_modules if module is None else [module]
     return Demands(
         {gear.name: problem.teeth.limits(gear.name, gear.internal) for gear in arrangement.gears},
         problem.planets,
         problem.spacing == "equal",
+        # The most favourable module of the list counts: the finest for size, the coarsest for clearance.
         math.radians(problem.pressure_angle),
         problem.min_contact_ratio,
         problem.least_room(listed[-1]),
@@ -35,7 +36,7 @@ def demands_of(problem: PlanetaryProblem, arrangement: Arrangement, module: floa
 
 
 def mechanism_of(problem: PlanetaryProblem, candidate: Candidate, module: float) -> PlanetaryMechanism:
-    """The dimensions of a train with a module."""
+    """Build the mechanism of a train with a module."""
     arrangement = ARRANGEMENTS[candidate.arrangement]
     known = dict(candidate.teeth)
     teeth = {gear: known[gear] for gear in arrangement.gear_names}
@@ -56,20 +57,21 @@ def mechanism_of(problem: PlanetaryProblem, candidate: Candidate, module: float)
 
 
 def _places(problem: PlanetaryProblem, arrangement: Arrangement, teeth: dict[str, int]) -> dict[str, PlanetPlaces]:
-    """Equal angles, or the places where planets can be put in that are nearest to equal angles."""
+    """Place the planets at equal angles, or at the assembly positions nearest to equal angles."""
     count = problem.planets
     places = {}
     for planets in arrangement.planet_sets:
         whole = count
         if problem.spacing == "nearest":
             whole = int(divisions(arrangement, planets, {gear: np.array([z]) for gear, z in teeth.items()})[0]) or count
+        # Rounded k/n of the divisions, in integers.
         steps = [(2 * k * whole + count) // (2 * count) for k in range(count)]
         places.update({planet: PlanetPlaces(divisions=whole, steps=steps) for planet in planets})
     return places
 
 
 def _addendum(problem: PlanetaryProblem, arrangement: Arrangement, teeth: dict[str, int], gear: str) -> float:
-    """A module, or what is left of a ring that is shortened: for its planets, and where it can for their fillets."""
+    """Return one module, or the remaining addendum of a ring that is shortened for its planets and their fillets."""
     if not arrangement.places[gear].internal:
         return 1.0
     mates = [np.array([float(teeth[mate])]) for mate in arrangement.meshing(gear)]
@@ -81,6 +83,7 @@ def _addendum(problem: PlanetaryProblem, arrangement: Arrangement, teeth: dict[s
 
     if problem.fillets == "report":
         return shortened(fillets=False)
+    # Shortening for fillets costs contact: it is only done if enough remains.
     short = shortened(fillets=True)
     contact = min(float(mesh_limits.internal_contact(mate, ring, np.array([short]), angle)[0]) for mate in mates)
     keeps = problem.fillets == "refuse" or (short >= SHORTEST and contact >= problem.min_contact_ratio)

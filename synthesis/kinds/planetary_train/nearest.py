@@ -1,10 +1,10 @@
 """The trains of an arrangement whose ratio is nearest to a target: by error, and for every size.
 
-Numerator and denominator of every ratio are whole numbers that double precision holds exactly; only their quotient is
+Numerator and denominator of every ratio are integers that double precision holds exactly; only their quotient is
 rounded, by 1e-16 of itself. Errors that differ by less than :data:`ERROR_TOLERANCE` are compared as exact fractions, so
 that rounding never decides the order.
 
-Trains of one planet set are ranked over all its sound tooth numbers. Where two sets are coupled, each enters the ratio
+Trains of one planet set are ranked over all its sound tooth numbers. If two sets are coupled, each enters the ratio
 by one number, its train value x, and for a fixed x₁ the ratio is a quotient of two linear functions of x₂. On the
 projective line such a function is one-to-one, so that the error grows monotonically to both sides of the x₂ that would
 meet the target: the k nearest values of x₂ on each side contain the k best partners of x₁.
@@ -39,11 +39,11 @@ Roles = tuple[str, str, str]
 """Input, output and fixed member."""
 
 ERROR_TOLERANCE = 1e-12
-"""Errors nearer to each other than this are compared exactly; quotients of whole numbers are rounded by 2e-16."""
+"""Difference of errors below which they are compared exactly; quotients of integers are rounded by 2e-16."""
 
 
 class Candidate(NamedTuple):
-    """A train that is sound, with the exact ratio and what it is ranked by."""
+    """A sound train, with the exact ratio and its ranking criteria."""
 
     error: Fraction
     size: int
@@ -58,8 +58,8 @@ class Candidate(NamedTuple):
 class Nearest:
     """The best trains of one arrangement and choice of members.
 
-    ``best`` in order of error, size and number of teeth; ``by_size`` the one of least error of each size; ``ties`` how
-    many have the least error of all.
+    ``best`` in order of error, size and number of teeth; ``by_size`` the train of minimum error of each size; ``ties``
+    the number of trains with the minimum error of all.
     """
 
     best: list[Candidate] = field(default_factory=list)
@@ -96,20 +96,20 @@ class SetTable:
 
     @cached_property
     def by_size(self) -> tuple[Whole, Whole, Whole]:
-        """Order by size, where each size begins in it, and the sizes."""
+        """Order by size, the start of each size in it, and the sizes."""
         order = np.argsort(self.size, kind="stable")
         sizes, starts = np.unique(self.size[order], return_index=True)
         return order, starts, sizes
 
     def row(self, at: int) -> tuple[tuple[str, int], ...]:
-        """Teeth of one row."""
+        """Return the teeth of one row."""
         return tuple((gear, int(array[at])) for gear, array in self.teeth.items())
 
 
 def nearest(
     arrangement: Arrangement, tables: Sequence[SetTable], roles: Roles, target: Fraction, count: int
 ) -> Nearest | None:
-    """The ``count`` best trains, and the best of each size; None where a planet set takes no part in the ratio."""
+    """Find the ``count`` best trains, and the best of each size; None if a planet set does not affect the ratio."""
     if any(len(table.size) == 0 for table in tables):
         return Nearest()
     if len(tables) == 1:
@@ -120,18 +120,19 @@ def nearest(
 
 
 def _errors(over: Real, under: Real, target: Fraction) -> Real:
-    """Relative errors; infinite where the ratio has the other direction or there is none."""
+    """Compute relative errors; infinite if the ratio has the other direction or does not exist."""
     with np.errstate(divide="ignore", invalid="ignore"):
         share = over / under / float(target)
     return np.where(np.isfinite(share) & (share > 0.0), np.abs(share - 1.0), np.inf)
 
 
 def _exact_errors(over: Real, under: Real, target: Fraction) -> tuple[list[Fraction], list[Fraction], Whole]:
-    """Distinct ratios and their errors, and which of them each quotient is."""
+    """Return distinct ratios and their errors, and the index of each quotient among them."""
     whole = over.astype(np.int64), under.astype(np.int64)
     common = np.gcd(*whole)
     reduced = np.stack([part // common for part in whole], axis=-1)
     distinct, which = np.unique(reduced, axis=0, return_inverse=True)
+    # Few distinct ratios occur among many trains: fractions are built once for each.
     ratios = [Fraction(int(a), int(b)) for a, b in distinct]
     return ratios, [abs(ratio / target - 1) for ratio in ratios], which.reshape(-1)
 
@@ -142,7 +143,7 @@ def _ranks(errors: list[Fraction]) -> Whole:
 
 
 def _of_one_set(name: str, table: SetTable, roles: Roles, form: RatioForm, target: Fraction, count: int) -> Nearest:
-    """The nearest trains where one planet set gives the ratio: all its tooth numbers evaluated."""
+    """Find the nearest trains if one planet set determines the ratio, by evaluating all its tooth numbers."""
     nearest_trains = Nearest()
     if not form.over:
         return nearest_trains
@@ -178,12 +179,14 @@ def _of_one_set(name: str, table: SetTable, roles: Roles, form: RatioForm, targe
         ]
         return listed, int(np.count_nonzero(rank == rank.min()))
 
+    # Everything within rounding of the last place is ranked exactly, so that the cut is exact.
     most = min(count, possible)
     limit = np.partition(errors, most - 1)[most - 1]
     nearest_trains.best, nearest_trains.ties = candidates(
         np.flatnonzero(errors <= limit + ERROR_TOLERANCE), "error", most
     )
     order, starts, sizes = table.by_size
+    # Smallest error of each size; everything within rounding of it is ranked exactly.
     least = np.minimum.reduceat(errors[order], starts)
     close = errors[order] <= np.repeat(least, np.diff([*starts, size])) + ERROR_TOLERANCE
     listed, _ = candidates(order[close & np.isfinite(errors[order])], "size", len(sizes))
@@ -192,7 +195,7 @@ def _of_one_set(name: str, table: SetTable, roles: Roles, form: RatioForm, targe
 
 
 class TrainValue(NamedTuple):
-    """The two members besides the carrier of a planet set, the carrier, and ω_one/ω_other past it as n/d."""
+    """The two members besides the carrier of a planet set, the carrier, and ω_one/ω_other relative to it as n/d."""
 
     one: str
     other: str
@@ -202,7 +205,7 @@ class TrainValue(NamedTuple):
 
 @cache
 def train_value(name: str, planets: tuple[str, ...]) -> TrainValue:
-    """Train value of a planet set with two members besides its carrier."""
+    """Compute the train value of a planet set with two members besides its carrier."""
     arrangement = ARRANGEMENTS[name]
     lines = set_rows(arrangement, planets)
     carrier = arrangement.carriers[planets[0]]
@@ -212,15 +215,16 @@ def train_value(name: str, planets: tuple[str, ...]) -> TrainValue:
 
 
 class TrainValues:
-    """The train values n/d of a set's rows in rising order; equal ones stand together, those of fewest teeth first.
+    """The train values n/d of a set's rows in rising order; equal ones are adjacent, those of fewest teeth first.
 
-    ``rows`` is the order, ``over``, ``under`` and ``value`` are n, d and n/d in it, and ``starts`` where each distinct
-    value begins.
+    ``rows`` is the order, ``over``, ``under`` and ``value`` are n, d and n/d in it, and ``starts`` the start of each
+    distinct value.
     """
 
     def __init__(self, table: SetTable, form: RatioForm) -> None:
         size = len(table.size)
         whole = [evaluated(part, table.values, size).astype(np.int64) for part in form]
+        # A positive denominator makes equal values equal pairs.
         common = np.gcd(*whole) * np.where(whole[1] < 0, -1, 1)
         over, under = (part // common for part in whole)
         value = over / under
@@ -231,11 +235,11 @@ class TrainValues:
         self.starts = np.flatnonzero(np.concatenate(([True], np.diff(self.value) != 0.0)))
 
     def part(self, at: Whole) -> tuple[Real, Real]:
-        """n and d at places of the order."""
+        """Return n and d at places of the order."""
         return self.over[at], self.under[at]
 
     def members(self, start: int) -> Whole:
-        """Rows with the value that begins at a place."""
+        """Return the rows with the value that begins at a place."""
         after = np.searchsorted(self.starts, start, side="right")
         end = self.starts[after] if after < len(self.starts) else len(self.rows)
         return self.rows[start:end]
@@ -243,18 +247,18 @@ class TrainValues:
 
 @dataclass(frozen=True)
 class Coupling:
-    """How the train values of two sets make the ratio; coefficients of d₁d₂, n₁d₂, d₁n₂, n₁n₂ for x = n/d."""
+    """The ratio as a function of two sets' train values; coefficients of d₁d₂, n₁d₂, d₁n₂, n₁n₂ for x = n/d."""
 
     over: tuple[int, int, int, int]
     under: tuple[int, int, int, int]
 
     @classmethod
     def of(cls, arrangement: Arrangement, roles: Roles) -> Coupling | None:
-        """The coupling of an arrangement of two sets; None where the ratio does not depend on one of them."""
+        """Derive the coupling of an arrangement of two sets; None if the ratio does not depend on one of them."""
         rows = []
         for k, planets in enumerate(arrangement.planet_sets):
             value = train_value(arrangement.name, planets)
-            # ω_one/ω_other past the carrier is n/d: d (ω_one − ω_c) = n (ω_other − ω_c).
+            # ω_one/ω_other relative to the carrier is n/d: d (ω_one − ω_c) = n (ω_other − ω_c).
             rows.append(mesh_row(value.one, value.other, value.carrier, (f"d{k}", f"n{k}"), 1))
         form = ratio_form(rows, *roles)
         if not (form.over and form.under) or not any(len(term) == 2 for term in (*form.over, *form.under)):
@@ -264,27 +268,27 @@ class Coupling:
 
     @property
     def hangs_on_second(self) -> bool:
-        """Whether the ratio (a + b x₁ + (c + d x₁) x₂)/(e + f x₁ + (g + h x₁) x₂) changes with x₂.
+        """True if the ratio (a + b x₁ + (c + d x₁) x₂)/(e + f x₁ + (g + h x₁) x₂) changes with x₂.
 
-        It does not where (a + b x₁)(g + h x₁) = (c + d x₁)(e + f x₁) for all x₁: a factor in which x₂ stands cancels.
+        It does not if (a + b x₁)(g + h x₁) = (c + d x₁)(e + f x₁) for all x₁: then the factor with x₂ cancels.
         """
         (a, b, c, d), (e, f, g, h) = self.over, self.under
         return (a * g, a * h + b * g, b * h) != (c * e, c * f + d * e, d * f)
 
     def quotient(self, one: tuple[Real, Real], other: tuple[Real, Real]) -> tuple[Real, Real]:
-        """Numerator and denominator of the ratio for train values n/d of both sets."""
+        """Return numerator and denominator of the ratio for train values n/d of both sets."""
         products = (one[1] * other[1], one[0] * other[1], one[1] * other[0], one[0] * other[0])
         over, under = (sum(c * p for c, p in zip(side, products, strict=True)) for side in (self.over, self.under))
         return np.asarray(over, np.float64), np.asarray(under, np.float64)
 
     def partner(self, one: tuple[Real, Real], target: float) -> Real:
-        """The x₂ that would give the target with each x₁."""
+        """Return the x₂ that would give the target with each x₁."""
         a, b, c, d = (o - target * u for o, u in zip(self.over, self.under, strict=True))
         with np.errstate(divide="ignore", invalid="ignore"):
             return np.nan_to_num(-(a * one[1] + b * one[0]) / (c * one[1] + d * one[0]))
 
     def swapped(self) -> Coupling:
-        """The same coupling with the sets in the other order."""
+        """Return the same coupling with the sets in the other order."""
 
         def turned(side: tuple[int, int, int, int]) -> tuple[int, int, int, int]:
             return side[0], side[2], side[1], side[3]
@@ -311,7 +315,7 @@ class _TwoSets:
         self._sides = [table.train_values for table in tables]
 
     def nearest(self, count: int) -> Nearest:
-        """The best trains and the best of each size."""
+        """Find the best trains and the best of each size."""
         nearest_trains = Nearest()
         pairs, errors = self._near_pairs(count)
         if not len(errors):
@@ -324,7 +328,7 @@ class _TwoSets:
             (exact[w], *self._least(a, b), a, b, w)
             for a, b, w in zip(kept[0].tolist(), kept[1].tolist(), which.tolist(), strict=True)
         )
-        # Each pair of values gives at least one train, and none better than the pair's own least size and teeth.
+        # Each pair of values gives at least one train, and none better than the pair's own minimum size and teeth.
         nearest_trains.best = sorted(
             candidate
             for error, _, _, a, b, w in ranked[:count]
@@ -342,13 +346,14 @@ class _TwoSets:
         return nearest_trains
 
     def _near_pairs(self, count: int) -> tuple[Whole, Real]:
-        """Pairs of distinct train values among which the ``count`` best are, and their errors."""
+        """Return pairs of distinct train values that include the ``count`` best, and their errors."""
         one, other = self._sides
         firsts, values = one.starts, other.value[other.starts]
         at = np.searchsorted(values, self._coupling.partner(one.part(firsts), float(self._target)))
-        # One more on each side, for a neighbour that rounding put on the wrong side.
+        # One more on each side, because rounding may put a neighbour on the wrong side.
         width = count + 1
         steps = range(-width, width) if 2 * width <= len(values) else range(len(values))
+        # The projective line is closed: neighbours beyond one end continue at the other.
         chosen = np.concatenate([(at + step) % len(values) for step in steps])
         pairs = np.stack([np.tile(firsts, len(steps)), other.starts[chosen]])
         errors = _errors(*self._coupling.quotient(one.part(pairs[0]), other.part(pairs[1])), self._target)
@@ -356,7 +361,7 @@ class _TwoSets:
         return pairs[:, kept], errors[kept]
 
     def _least(self, a: int, b: int) -> tuple[int, int]:
-        """Size and teeth of the smallest train with a pair of train values."""
+        """Return size and teeth of the smallest train with a pair of train values."""
         rows = [side.members(at) for side, at in zip(self._sides, (a, b), strict=True)]
         size = max(int(table.size[row[0]]) for table, row in zip(self._tables, rows, strict=True))
         total = 0
@@ -365,7 +370,7 @@ class _TwoSets:
         return size, total
 
     def _members(self, a: int, b: int, error: Fraction, ratio: Fraction, count: int) -> list[Candidate]:
-        """The smallest trains with a pair of train values."""
+        """List the smallest trains with a pair of train values."""
         rows = [side.members(at).tolist() for side, at in zip(self._sides, (a, b), strict=True)]
         candidates = [self._candidate(one, other, error, ratio) for one, other in itertools.product(*rows)]
         return sorted(candidates)[:count]
@@ -383,7 +388,7 @@ class _TwoSets:
         )
 
     def _best_of_size(self, size: int, swap: bool) -> Candidate | None:
-        """The train of least error of which one set has this size and the other no more."""
+        """Find the train of minimum error with this size in one set and at most this size in the other."""
         first, second = reversed(self._sides) if swap else self._sides
         coupling = self._coupling.swapped() if swap else self._coupling
         large, small = np.flatnonzero(first.size == size), np.flatnonzero(second.size <= size)

@@ -15,28 +15,28 @@ from synthesis.model.ratio_target import parse_target
 from synthesis.model.statement import Contradiction, Count, PositiveLength, StatedProblem, Statement
 
 MOST_COMBINATIONS = 2 * 10**8
-"""Combinations of independent tooth numbers in one planet set at most: what a search of minutes covers."""
+"""Maximum number of combinations of independent tooth numbers in one planet set: a search of minutes."""
 
 IRRATIONAL = 512
-"""Bits to which an irrational ratio is taken. Two ratios of planetary trains differ by more than 2^-100, so that this
-ranks them as the number itself would."""
+"""Bits of precision of an irrational ratio. Two ratios of planetary trains differ by more than 2^-100, so that this
+ranks them like the number itself."""
 
 TOUCH = 1e-9
-"""Room between gears, in modules, that is rounding: less is a touch, and a demanded room short of it by less is met."""
+"""Clearance in modules that is attributed to rounding: less is contact, and a shortfall by less passes."""
 
 
 class PlanetaryTeeth(Statement):
     """Tooth numbers to choose from."""
 
-    min: RangedTeeth = Field(default=17, description="Fewest teeth of any gear.")
-    max: RangedTeeth = Field(default=100, description="Most teeth of a gear with external teeth.")
-    ring_max: RangedTeeth = Field(default=200, description="Most teeth of a ring.")
+    min: RangedTeeth = Field(default=17, description="Minimum number of teeth of any gear.")
+    max: RangedTeeth = Field(default=100, description="Maximum number of teeth of an external gear.")
+    ring_max: RangedTeeth = Field(default=200, description="Maximum number of teeth of a ring.")
     gears: dict[str, ToothRange] = Field(
-        default={}, description="Other limits for single gears by name, e.g. sun, planet, ring; see the arrangement."
+        default={}, description="Separate limits for single gears by name, e.g. sun, planet, ring; see the arrangement."
     )
 
     def limits(self, gear: str, internal: bool) -> tuple[int, int]:
-        """Fewest and most teeth of a gear."""
+        """Return the fewest and most teeth of a gear."""
         own = self.gears.get(gear)
         if own is not None:
             return own.min, own.max
@@ -46,8 +46,8 @@ class PlanetaryTeeth(Statement):
 class PlanetaryProblem(StatedProblem):
     """Planetary train: the best tooth numbers of an epicyclic arrangement for a speed ratio, proven to be the best.
 
-    Every design is coaxial, can be assembled with its planets in their places, has room between all gears, and teeth
-    without interference. Members that are not stated are tried in every part.
+    Every design is coaxial, can be assembled with its planets in their places, and has clearance between all gears and
+    teeth without interference. Members that are not given are tried in every role.
     """
 
     model_config = ConfigDict(
@@ -105,92 +105,97 @@ class PlanetaryProblem(StatedProblem):
         "two_stage",
         "simpson",
         "bevel_differential",
-    ] = Field(default="auto", description="Which gears there are and which mesh; auto compares all of them.")
+    ] = Field(default="auto", description="Arrangement of gears and meshes; auto compares all of them.")
     planets: Annotated[Count, Field(ge=1, le=12)] = Field(
-        default=3, description="Planets of each kind around the axis."
+        default=3, description="Number of planets of each kind around the axis."
     )
     spacing: Literal["equal", "nearest"] = Field(
         default="equal",
-        description="equal: planets at equal angles. nearest: as near to that as the teeth allow them to be put in.",
+        description="equal: planets at equal angles. nearest: as close to equal angles as assembly permits.",
     )
     input: str | None = Field(
-        default=None, description="The driven-in member, e.g. sun, ring, carrier. Left open: all are tried."
+        default=None, description="Driving member, e.g. sun, ring, carrier. Default: all are tried."
     )
-    output: str | None = Field(default=None, description="The member taken off. Left open: all are tried.")
-    fixed: str | None = Field(default=None, description="The member held. Left open: all are tried.")
+    output: str | None = Field(default=None, description="Output member. Default: all are tried.")
+    fixed: str | None = Field(default=None, description="Fixed member. Default: all are tried.")
     teeth: PlanetaryTeeth = PlanetaryTeeth()
     module: Module = Field(default=1.0, description="Module of all gears, in the length unit.")
     modules: list[Module] | None = Field(
         default=None,
         min_length=1,
         max_length=20,
-        description="In place of `module`, with `strength`: a train has the least of them with which it carries.",
+        description="In place of `module`, with `strength`: each train gets the smallest that carries the power.",
     )
-    pressure_angle: CommonPressureAngle = Field(default=20.0, description="Degrees.")
+    pressure_angle: CommonPressureAngle = Field(default=20.0, description="Pressure angle, degrees.")
     tolerance: Annotated[float, Field(strict=True, ge=0.0, lt=1.0)] | None = Field(
-        default=None, description="Largest relative error of the ratio. Left open: the best there is."
+        default=None, description="Maximum relative error of the ratio. Default: the best possible."
     )
     max_size: PositiveLength | None = Field(
-        default=None, description="Largest pitch diameter around the axis, planets included, in the length unit."
+        default=None, description="Maximum pitch diameter around the axis, planets included, in the length unit."
     )
     min_clearance: Annotated[float, LENGTH, Field(strict=True, ge=0.0, le=1e9)] = Field(
-        default=0.0, description="Least room between the tips of gears that do not mesh, in the length unit."
+        default=0.0, description="Minimum clearance between the tips of gears that do not mesh, in the length unit."
     )
     min_contact_ratio: Annotated[float, Field(strict=True, ge=1.0, lt=2.0)] = Field(
-        default=1.2, description="Least contact ratio of a mesh."
+        default=1.2, description="Minimum contact ratio of a mesh."
     )
     fillets: Literal["shorten", "report", "refuse"] = Field(
         default="shorten",
         description="Contact in the fillets that a rack (ISO 53, profile A) leaves on external gears, and the usual "
-        "cutter of 20 teeth on rings; every mesh tells what there is of it. shorten: the teeth of rings are shortened "
-        "until they do not reach into the fillets of their planets, where the contact ratio allows it. report: teeth "
-        "are as long as flanks without fillets let them be. refuse: as shorten, and trains in which any such contact "
-        "is left, or rings that the cutter trims, are no answer.",
+        "cutter of 20 teeth on rings; every mesh reports it. shorten: the teeth of rings are shortened until they "
+        "clear "
+        "the fillets of their planets, if the contact ratio permits it. report: teeth are as long as flanks without "
+        "fillets permit. refuse: as shorten, but trains with any remaining fillet contact, or with rings that the "
+        "cutter "
+        "trims, are rejected.",
     )
     strength: PlanetPower | None = Field(
         default=None,
-        description="A power that every mesh carries, by a first estimate: a train has the least of its modules with "
-        "which a face of at most `max_face_width` modules does, and of each plane the least such face; trains that do "
-        f"not carry it are no answer. Losses are not counted. Spur gears only. {PAIRS}",
+        description="Power that every mesh must carry, by a first estimate. Each train gets the smallest of its "
+        "modules "
+        "for which a face of at most `max_face_width` modules suffices, and each plane the smallest such face; trains "
+        f"that fail are rejected. Losses are not included. Spur gears only. {PAIRS}",
     )
     mesh_efficiency: Annotated[float, Field(strict=True, gt=0.5, le=1.0)] = Field(
         default=0.99, description="Efficiency of one mesh on fixed axes, for the efficiency of the train."
     )
     rank_by: Literal["error", "size"] = Field(
         default="error",
-        description="error: least error, then least size. size: of each size within the tolerance the least error.",
+        description="error: smallest error, then smallest size. size: for each size the smallest error within the "
+        "tolerance.",
     )
 
     @property
     def target(self) -> Fraction:
-        """The demanded ratio; an irrational one to :data:`IRRATIONAL` bits."""
+        """The requested ratio; an irrational one to :data:`IRRATIONAL` bits."""
+        # An irrational target is replaced by the middle of its enclosure.
         sign, target = parse_target(self.ratio)
         low, high = target.enclosure(IRRATIONAL)
         return sign * (target.rational or (low + high) / 2)
 
     @property
     def arrangements(self) -> list[Arrangement]:
-        """The arrangements to compare: those that have the stated members."""
+        """The arrangements to compare: those that have the given members."""
         if self.arrangement != "auto":
             return [ARRANGEMENTS[self.arrangement]]
         stated = {member for member in (self.input, self.output, self.fixed) if member is not None}
         return [row for row in self._every_arrangement() if stated <= set(row.members)]
 
     def _every_arrangement(self) -> list[Arrangement]:
-        """Those that `auto` stands for: with a power those of spur gears."""
+        """List the arrangements of `auto`: with a power only those of spur gears."""
         return [row for row in ARRANGEMENTS.values() if self.strength is None or not row.bevel]
 
     @property
     def listed_modules(self) -> list[float]:
-        """The modules that there are, the least first."""
+        """The permitted modules, the smallest first."""
         return [self.module] if self.modules is None else sorted(self.modules)
 
     def least_room(self, module: float) -> float:
-        """Least room between gears of a module that do not mesh, in modules."""
+        """Return the minimum clearance between gears of a module that do not mesh, in modules."""
         return max(self.min_clearance / module - TOUCH, TOUCH)
 
     def roles(self, arrangement: Arrangement) -> list[tuple[str, str, str]]:
-        """Every choice of input, output and fixed member that the statement leaves."""
+        """List every choice of input, output and fixed member that the problem permits."""
         stated = self.input, self.output, self.fixed
         members = arrangement.members
         return [
@@ -203,18 +208,18 @@ class PlanetaryProblem(StatedProblem):
         ]
 
     def contradictions(self) -> list[Contradiction]:
-        """Unknown members and gears, one member in two parts, limits the wrong way round."""
+        """Return unknown members and gears, members with two roles, and reversed limits."""
         return [*self._members(), *self._limits(), *self._extent(), *self._power()]
 
     def _power(self) -> list[Contradiction]:
-        """A power that is stated wrongly, and modules that nothing decides between."""
+        """Check the power, and that it decides between several modules."""
         contradictions = []
         if self.modules is not None:
             if self.strength is None:
-                detail = "only a power decides between modules; state strength, or one module"
+                detail = "choosing between modules needs a power; give strength, or one module"
                 contradictions.append(Contradiction("/modules", detail))
             if self.module != 1.0:
-                contradictions.append(Contradiction("/modules", "drop module, or state it alone"))
+                contradictions.append(Contradiction("/modules", "omit module, or omit modules"))
             if len(set(self.modules)) < len(self.modules):
                 contradictions.append(Contradiction("/modules", "lists a module twice; each is a choice"))
         if self.strength is None:
@@ -222,7 +227,9 @@ class PlanetaryProblem(StatedProblem):
         wrong = [*self.strength.faults(), *self.strength.faults_of_planets(self.planets)]
         contradictions += [Contradiction(f"/strength{path}", detail) for path, detail in wrong]
         if self.arrangement == "bevel_differential":
-            contradictions.append(Contradiction("/strength", "only spur teeth are judged, not those of bevel gears"))
+            contradictions.append(
+                Contradiction("/strength", "strength is estimated for spur gears only, not for bevel gears")
+            )
         return contradictions
 
     def _members(self) -> list[Contradiction]:
@@ -234,9 +241,9 @@ class PlanetaryProblem(StatedProblem):
             if member is not None and member not in known:
                 contradictions.append(Contradiction(f"/{part}", f"expected one of {', '.join(known)}, got {member!r}"))
             elif member is not None and member in list(parts.values())[:k]:
-                contradictions.append(Contradiction(f"/{part}", f"{member} already has another part"))
+                contradictions.append(Contradiction(f"/{part}", f"{member} already has another role"))
         if not contradictions and not self.arrangements:
-            contradictions.append(Contradiction("/input", "no arrangement has all the stated members"))
+            contradictions.append(Contradiction("/input", "no arrangement has all the given members"))
         return contradictions
 
     def _limits(self) -> list[Contradiction]:
@@ -265,7 +272,8 @@ class PlanetaryProblem(StatedProblem):
                     count *= max(0, high - low + 1)
                 if count > MOST_COMBINATIONS:
                     detail = (
-                        f"{row.name} would have {count:.2g} combinations of teeth, more than {MOST_COMBINATIONS:.0e}"
+                        f"{row.name} has {count:.2g} combinations of teeth, more than the limit of "
+                        f"{MOST_COMBINATIONS:.0e}"
                     )
                     return [Contradiction("/teeth", f"{detail}; narrow the limits, or give limits for single gears")]
         return []

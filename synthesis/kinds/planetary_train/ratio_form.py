@@ -1,6 +1,6 @@
 """The speed ratio of an arrangement as a quotient of polynomials in its tooth numbers.
 
-With one member held and one driven at speed 1, there are as many speed equations as unknown speeds. By Cramer's rule
+With one member fixed and one driven at speed 1, there are as many speed equations as unknown speeds. By Cramer's rule
 the ratio input over output is a quotient of two determinants whose entries are tooth numbers; both are expanded once,
 and then evaluated for millions of tooth numbers at a time.
 """
@@ -25,26 +25,27 @@ Row = dict[str, Polynomial]
 
 
 class RatioForm(NamedTuple):
-    """Ratio = over / under, without common factors that are numbers or single tooth numbers."""
+    """Ratio = over / under, without common factors that are integers or single tooth numbers."""
 
     over: Polynomial
     under: Polynomial
 
 
 def mesh_row(first: str, second: str, carrier: str, names: tuple[str, str], sense: int) -> Row:
-    """N1 (ω1 − ωc) − σ N2 (ω2 − ωc) = 0 for tooth numbers with these names."""
+    """Return the row N1 (ω1 − ωc) − σ N2 (ω2 − ωc) = 0 for tooth numbers with these names."""
     one: Polynomial = {(names[0],): 1}
     other: Polynomial = {(names[1],): -sense}
     return {first: one, second: other, carrier: _sum([(-1, one), (-1, other)])}
 
 
 def ratio_form(rows: Sequence[Row], driver: str, driven: str, held: str) -> RatioForm:
-    """Speed of ``driver`` over that of ``driven``, ``held`` at rest; no terms where the train is locked."""
+    """Derive the speed of ``driver`` over that of ``driven``, ``held`` at rest; no terms if the train is locked."""
     bodies = dict.fromkeys(body for row in rows for body in row)
     unknown = [body for body in bodies if body not in (driver, held)]
     if len(unknown) != len(rows):
         raise ValueError(f"expected {len(unknown)} equations for {', '.join(unknown)}, got {len(rows)}")
     matrix = [[row.get(body, {}) for body in unknown] for row in rows]
+    # Cramer's rule for the speed of the driven member; the driver's speed 1 goes to the right-hand side.
     at = unknown.index(driven)
     right = [{term: -c for term, c in row.get(driver, {}).items()} for row in rows]
     swapped = [[*line[:at], value, *line[at + 1 :]] for line, value in zip(matrix, right, strict=True)]
@@ -53,13 +54,13 @@ def ratio_form(rows: Sequence[Row], driver: str, driven: str, held: str) -> Rati
 
 @cache
 def arrangement_form(name: str, driver: str, driven: str, held: str) -> RatioForm:
-    """Ratio of a known arrangement between three of its members."""
+    """Derive the ratio of a known arrangement between three of its members."""
     row = ARRANGEMENTS[name]
     return ratio_form([line for planets in row.planet_sets for line in set_rows(row, planets)], driver, driven, held)
 
 
 def set_rows(arrangement: Arrangement, planets: tuple[str, ...]) -> list[Row]:
-    """Speed equations of the meshes of one planet set."""
+    """Build the speed equations of the meshes of one planet set."""
     rows = []
     for one, other in arrangement.meshes:
         bodies = arrangement.places[one].body, arrangement.places[other].body
@@ -71,7 +72,7 @@ def set_rows(arrangement: Arrangement, planets: tuple[str, ...]) -> list[Row]:
 
 
 def evaluated(polynomial: Polynomial, values: Mapping[str, NDArray[np.float64]], size: int) -> NDArray[np.float64]:
-    """Values of a polynomial at arrays of tooth numbers; whole numbers, exact below 2^53."""
+    """Evaluate a polynomial at arrays of tooth numbers; integers, exact below 2^53."""
     total = np.zeros(size)
     for term, coefficient in polynomial.items():
         product = np.full(size, float(coefficient))
@@ -82,7 +83,7 @@ def evaluated(polynomial: Polynomial, values: Mapping[str, NDArray[np.float64]],
 
 
 def exact(polynomial: Polynomial, values: Mapping[str, int]) -> int:
-    """Value of a polynomial at one set of tooth numbers."""
+    """Evaluate a polynomial at one set of tooth numbers."""
     total = 0
     for term, coefficient in polynomial.items():
         product = coefficient
@@ -93,7 +94,7 @@ def exact(polynomial: Polynomial, values: Mapping[str, int]) -> int:
 
 
 def _determinant(matrix: Sequence[Sequence[Polynomial]]) -> Polynomial:
-    """Expansion along the first row; the matrices are small and mostly empty."""
+    """Expand along the first row; the matrices are small and sparse."""
     if not matrix:
         return {(): 1}
     parts = []
@@ -120,11 +121,12 @@ def _sum(parts: Iterable[tuple[int, Polynomial]]) -> Polynomial:
 
 
 def _reduced(over: Polynomial, under: Polynomial) -> RatioForm:
-    """Both without the whole number and the monomial that divide every term of both."""
+    """Divide both by the integer and the monomial that divide every term of both."""
     terms = [*over, *under]
     if not over or not under:
         return RatioForm({}, {})
     common = list(terms[0])
+    # The common monomial: the intersection of all terms as multisets of factors.
     for term in terms[1:]:
         rest, kept = list(term), []
         for name in common:
@@ -132,6 +134,7 @@ def _reduced(over: Polynomial, under: Polynomial) -> RatioForm:
                 rest.remove(name)
                 kept.append(name)
         common = kept
+    # Common integer factor of all coefficients.
     number = gcd(*over.values(), *under.values())
 
     def divided(polynomial: Polynomial) -> Polynomial:

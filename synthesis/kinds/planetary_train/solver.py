@@ -1,7 +1,7 @@
-"""The best planetary trains for a ratio, over all arrangements and members that the statement leaves open.
+"""The best planetary trains for a ratio, over all arrangements and members that the problem leaves open.
 
-Every planet set's sound tooth numbers are listed once; every choice of members then ranks the trains that they make. As
-nothing is sampled, an answer is the best there is, and an empty one is a proof.
+Every planet set's sound tooth numbers are listed once; every choice of members then ranks the resulting trains. As
+nothing is sampled, the answer is optimal, and an empty answer is a proof.
 """
 
 from __future__ import annotations
@@ -34,14 +34,14 @@ from synthesis.outcome.sifting import Sifting
 
 
 def solve_planetary_train(problem: PlanetaryProblem, progress: Progress) -> PlanetaryResult:
-    """The best planetary trains for a ratio, each verified.
+    """Find the best planetary trains for a ratio, each verified.
 
     Parameters
     ----------
     problem : PlanetaryProblem
-        A statement without contradictions.
+        A problem without contradictions.
     progress : callable
-        Told how many arrangements and choices of members are done.
+        Receives the share of arrangements and choices of members that are done.
 
     Returns
     -------
@@ -55,6 +55,7 @@ def solve_planetary_train(problem: PlanetaryProblem, progress: Progress) -> Plan
         numbers = [
             ToothNumbers(arrangement, planets, demands_of(problem, arrangement)) for planets in arrangement.planet_sets
         ]
+        # Only coupled sets need train values.
         coupled = len(numbers) > 1
         tables = [
             SetTable(each.teeth, each.size, train_value(arrangement.name, planets).form if coupled else None)
@@ -66,14 +67,14 @@ def solve_planetary_train(problem: PlanetaryProblem, progress: Progress) -> Plan
             ranking.take(numbers, nearest(arrangement, tables, members, problem.target, problem.max_designs))
             listing.add(arrangement, tables, members)
     if problem.strength is not None:
-        progress(1.0, "judging what the trains carry")
+        progress(1.0, "judging the strength of the trains")
         return ranking.result_of(judged(problem, problem.strength, listing))
     progress(1.0, "done")
     return ranking.result()
 
 
 class _Ranking:
-    """What has been found so far over all arrangements and members."""
+    """Accumulates the best trains over all arrangements and members."""
 
     def __init__(self, problem: PlanetaryProblem) -> None:
         self._problem = problem
@@ -84,7 +85,7 @@ class _Ranking:
         self._sifting = Sifting[PlanetaryDesign](problem)
 
     def take(self, numbers: list[ToothNumbers], nearest: Nearest | None) -> None:
-        """Note the best trains of one choice of members; None where a planet set takes no part in it."""
+        """Record the best trains of one choice of members; None if a planet set does not affect its ratio."""
         if nearest is None:
             self._idle += 1
             return
@@ -98,17 +99,18 @@ class _Ranking:
                 self._by_size[size] = candidate
 
     def _count(self, numbers: list[ToothNumbers]) -> None:
-        """Note the combinations of one choice of members: those of its planet sets with each other."""
+        """Count the combinations of one choice of members: those of its planet sets with each other."""
         self._sound += math.prod(each.count for each in numbers)
         before, after = 1, math.prod(each.combinations for each in numbers)
         for each in numbers:
             after //= max(each.combinations, 1)
             for reason, fallen in each.rejected.items():
+                # A combination rejected in one set stands for all its combinations with the other sets.
                 self._sifting.reject(reason, before * fallen * after)
             before *= each.count
 
     def result(self) -> PlanetaryResult:
-        """The verified answer."""
+        """Build the verified answer."""
         problem = self._problem
         by_size = [self._by_size[size] for size in sorted(self._by_size)]
         ranked = self._best if problem.rank_by == "error" else by_size
@@ -129,7 +131,7 @@ class _Ranking:
         )
 
     def result_of(self, borne: Judged) -> PlanetaryResult:
-        """The verified answer where a power decides: the best of the trains that carry it."""
+        """Build the verified answer for a given power: the best of the trains that carry it."""
         problem, sifting = self._problem, self._sifting
         sifting.reject("strength", borne.failed)
         made = [one.mechanism for one in borne.best]
@@ -147,35 +149,35 @@ class _Ranking:
         )
 
     def _too_weak(self, borne: Judged) -> str:
-        """That trains are near enough and none carries the power; empty where that is not so."""
+        """Explain that trains are near enough but none carries the power; empty otherwise."""
         stated = self._problem.strength
         if borne.best or not borne.failed or stated is None:
             return ""
         return too_weak_words(stated, borne.failed, borne.every, borne.strongest)
 
     def _summary(self, ties: int) -> str:
-        """What the search covered and what is best, in one sentence."""
+        """Write the coverage of the search and the best train in one sentence."""
         problem, sifting = self._problem, self._sifting
-        covered = f"{counted(sifting.candidates, 'combination')} of tooth numbers and members covered"
+        covered = f"{counted(sifting.candidates, 'combination')} of tooth numbers and members searched"
         if sifting.passed:
             first = sifting.passed[0]
             exact = "exactly" if first.metrics.error == 0 else f"with an error of {100.0 * first.metrics.error:.4g} %"
-            alike = f"; {grouped(ties)} trains have the least error" if problem.rank_by == "error" and ties > 1 else ""
+            alike = f"; {grouped(ties)} trains have this error" if problem.rank_by == "error" and ties > 1 else ""
             name = first.mechanism.arrangement.replace("_", " ")
             return f"The {name} arrangement reaches {as_stated(problem.ratio)} {exact}; {covered}{alike}."
         if self._idle and not sifting.candidates:
-            return "With these members a planet set takes no part in the ratio; state a simpler arrangement."
+            return "With these members a planet set does not affect the ratio; choose a simpler arrangement."
         if not self._sound:
-            return f"No train fits within the limits: {covered} ({sifting.listed() or 'the limits leave none'})."
+            return f"No train keeps the limits: {covered} ({sifting.listed() or 'the limits permit none'})."
         if not self._best:
             direction = "the same" if problem.target > 0 else "the opposite"
-            return f"No train turns input and output in {direction} direction with these members; {covered}."
+            return f"With these members no train turns input and output in {direction} direction; {covered}."
         near = self._best[0]
         teeth = ", ".join(f"{gear} {count}" for gear, count in near.teeth)
         return (
-            f"No train is within the tolerance: {covered}. The nearest ratio is {float(near.ratio):.6g} by "
+            f"No train is within the tolerance: {covered}. The nearest ratio is {float(near.ratio):.6g}, by "
             f"{near.arrangement} ({teeth}; {' to '.join(near.roles[:2])}, "
-            f"{near.roles[2]} fixed), an error of {100.0 * float(near.error):.4g} %."
+            f"{near.roles[2]} fixed), with an error of {100.0 * float(near.error):.4g} %."
         )
 
 
@@ -190,19 +192,19 @@ def _design(problem: PlanetaryProblem, mechanism: PlanetaryMechanism) -> Planeta
 
 
 def _holds(problem: PlanetaryProblem, mechanism: PlanetaryMechanism) -> bool:
-    """Whether a train passes its checks, the tolerance apart: a smaller train may be less exact than was asked."""
+    """Return whether a train passes its checks except the tolerance: a smaller train may be less exact."""
     verification = verify(problem.model_copy(update={"tolerance": None}), mechanism)
     return verification.passed
 
 
 def _borne_pareto(problem: PlanetaryProblem, borne: Borne) -> ParetoPlanetaryTrain:
-    """A train of the Pareto set as it carries the power."""
+    """Build a train of the Pareto set in the form that carries the power."""
     made = {"module": borne.mechanism.module, "face_widths": borne.mechanism.face_widths}
     return _pareto(problem, borne.candidate, borne.candidate.size * borne.mechanism.module).model_copy(update=made)
 
 
 def _pareto(problem: PlanetaryProblem, candidate: Candidate, size: float) -> ParetoPlanetaryTrain:
-    """A train of the Pareto set as the answer has it."""
+    """Build a train of the Pareto set as the answer reports it."""
     driving, driven, fixed = candidate.roles
     return ParetoPlanetaryTrain(
         arrangement=candidate.arrangement,

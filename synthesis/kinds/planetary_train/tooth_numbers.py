@@ -1,11 +1,11 @@
 """All sound tooth numbers of one planet set, found by trying every combination of its independent gears.
 
-Gears are chosen one after the other. Where a planet meshes with a second sun or ring, coaxiality gives its teeth. Every
-other condition (limits, sound teeth, assembly, room) rejects combinations as soon as all its gears are chosen, for
-whole blocks at a time. Lengths are in half modules, so that a pin's distance from the axis is a whole number: s + p or
+Gears are chosen one after the other. If a planet meshes with a second sun or ring, coaxiality gives its teeth. Every
+other condition (limits, sound teeth, assembly, clearance) rejects combinations as soon as all its gears are chosen, for
+whole blocks at a time. Lengths are in half modules, so that a pin's distance from the axis is an integer: s + p or
 r − p.
 
-Assembly: the places where a planet set can be put in are the multiples of 1/M of a turn, with M the greatest common
+Assembly: a planet set can be assembled at the multiples of 1/M of a turn, with M the greatest common
 divisor of ±S ± R for two gears about the axis on one planet gear (or on two that mesh), and of
 (z₂ c₁ − z₁ c₂)/gcd(z₁, z₂) for two gears z₁, z₂ of a stepped planet, c the teeth of their rings or, taken negative,
 of their suns.
@@ -31,17 +31,17 @@ Block = dict[str, Whole]
 """Teeth by gear, one array each, of combinations that passed so far."""
 
 ROUNDING = 1e-12
-"""Share of half a turn within which two planets stand opposite each other, where they cannot touch."""
+"""Share of half a turn within which two planets are opposite each other and cannot touch."""
 
 MAX_BLOCK = 1 << 17
-"""Combinations that are tested at once: large enough for the arrays' overhead, small enough for the cache."""
+"""Number of combinations tested at once: large enough for the arrays' overhead, small enough for the cache."""
 
 
 class Demands(NamedTuple):
-    """What sound tooth numbers must satisfy.
+    """Constraints on sound tooth numbers.
 
     ``limits`` are the fewest and most teeth by gear, ``least_room`` is in modules, ``largest`` a pitch diameter in
-    modules. ``clear_fillets``: contact in fillets is refused, and so are rings that their cutter trims.
+    modules. ``clear_fillets`` refuses contact in fillets, and rings that their cutter trims.
     """
 
     limits: dict[str, tuple[int, int]]
@@ -70,9 +70,9 @@ class ToothNumbers:
     size : ndarray
         Largest pitch diameter around the axis, in modules.
     combinations : int
-        How many combinations of the independent gears were covered.
+        Number of combinations of the independent gears that were covered.
     rejected : Counter
-        How many of them fell by which condition, the first that they met.
+        Number of rejected combinations by condition, the first that each one fails.
     """
 
     def __init__(self, arrangement: Arrangement, planets: tuple[str, ...], demands: Demands) -> None:
@@ -93,7 +93,7 @@ class ToothNumbers:
 
     @property
     def count(self) -> int:
-        """How many sound combinations there are."""
+        """Number of sound combinations."""
         return len(self.size)
 
     @property
@@ -101,13 +101,15 @@ class ToothNumbers:
         return {gear.name for gear in self._arrangement.gears if gear.body in self._planets}
 
     def _grown(self, block: Block, step: int, rows: int) -> Iterator[Block]:
-        """Every combination that goes on from a block, by the next independent gear."""
+        """Yield every combination that extends a block by the next independent gear."""
         if step == len(self._free):
             yield block
             return
         gear = self._free[step]
         values = np.arange(self.combinations and self._demands.limits[gear][0], self._demands.limits[gear][1] + 1)
+        # Split the rows, so that the extended block stays within MAX_BLOCK.
         at_once = max(1, MAX_BLOCK // len(values))
+        # Rules that only involve earlier gears were applied already.
         before = frozenset(block)
         for start in range(0, rows, at_once):
             part = {name: array[start : start + at_once] for name, array in block.items()}
@@ -120,7 +122,7 @@ class ToothNumbers:
                 yield from self._grown(wide, step + 1, left)
 
     def _closed(self, block: Block) -> Block:
-        """The block with the suns and rings whose teeth follow from coaxiality."""
+        """Add the suns and rings whose teeth follow from coaxiality."""
         for planet, (own, first) in self._distance.items():
             if own in block and first in block:
                 for gear, mate in self._arrangement.central_meshes(planet)[1:]:
@@ -134,7 +136,8 @@ class ToothNumbers:
         return block
 
     def _cut(self, block: Block, before: frozenset[str], step: int) -> Block:
-        """Combinations of a block that pass the conditions on its new gears."""
+        """Keep the combinations of a block that pass the conditions on its new gears."""
+        # Every rejected row stands for all its extensions by the gears still to be chosen.
         ways = int(np.prod(self._counts[step + 1 :], dtype=object))
         for rule in self._rules:
             if rule.gears <= block.keys() and not rule.gears <= before:
@@ -146,7 +149,7 @@ class ToothNumbers:
         return block
 
     def distance(self, block: Block, planet: str) -> Whole:
-        """A pin's distance from the axis, in half modules; the side gear's pitch radius in a bevel differential."""
+        """Return a pin's distance from the axis, half modules; a bevel differential's side gear pitch radius."""
         own, first = self._distance[planet]
         if self._arrangement.bevel:
             return block[first]
@@ -165,7 +168,7 @@ class ToothNumbers:
 
 
 def divisions(arrangement: Arrangement, planets: tuple[str, ...], block: Block) -> Whole:
-    """M of each combination: a planet set can stand at multiples of 1/M of a turn; 0 where it can stand anywhere."""
+    """Return M of each combination: a set can be at multiples of 1/M of a turn; 0 if it can be anywhere."""
     total = np.zeros(len(next(iter(block.values()))), np.int64)
     for _, form in _assembly_forms(arrangement, planets):
         total = np.gcd(total, form(block))
@@ -218,7 +221,7 @@ def _larger(one: str, other: str) -> Callable[[Block], Mask]:
 
 
 def _reach_rules(numbers: ToothNumbers) -> list[_Rule]:
-    """Size, and planets that mesh must reach each other."""
+    """Build the rules for size, and for planets that mesh: they must reach each other."""
     arrangement, largest = numbers._arrangement, numbers._demands.largest
     rules = []
     for planet in numbers._planets:
@@ -243,6 +246,7 @@ def _reach_rules(numbers: ToothNumbers) -> list[_Rule]:
             def reached(block: Block, pair: tuple[str, str] = (one, other), ends: tuple[str, str] = bodies) -> Mask:
                 near, far = (numbers.distance(block, planet) for planet in ends)
                 apart = block[pair[0]] + block[pair[1]]
+                # The triangle inequality of axis, pin and pin.
                 return np.asarray((np.abs(near - far) <= apart) & (apart <= near + far), np.bool_)
 
             rules.append(_Rule("not_coaxial", gears, reached))
@@ -252,7 +256,8 @@ def _reach_rules(numbers: ToothNumbers) -> list[_Rule]:
 def _assembly_forms(
     arrangement: Arrangement, planets: tuple[str, ...]
 ) -> list[tuple[frozenset[str], Callable[[Block], Whole]]]:
-    """Whole numbers that must be divisible by n for n planets at equal angles, with the gears that they need."""
+    """Return integers that n must divide for n planets at equal angles, with the gears on which they depend."""
+    # The phase of a gear's teeth depends on the signed teeth of its mates.
     phases = _phases(arrangement, planets)
     forms: list[tuple[frozenset[str], Callable[[Block], Whole]]] = []
     for (sign, gear), *others in phases.values():
@@ -283,9 +288,9 @@ def _assembly_forms(
 
 
 def _phases(arrangement: Arrangement, planets: tuple[str, ...]) -> dict[str, list[tuple[int, str]]]:
-    """For each planet gear the signed suns and rings that its phase at an angle is a multiple of.
+    """Return for each planet gear the signed suns and rings of which its phase at an angle is a multiple.
 
-    A gear without a sun or ring takes over, with the opposite sign, what the planet gear says that it meshes with.
+    A gear without a sun or ring takes the phases of the planet gear that it meshes with, with the opposite sign.
     """
     own = [gear.name for gear in arrangement.gears if gear.body in planets]
     meshing: dict[str, list[tuple[int, str]]] = {gear: [] for gear in own}
@@ -301,9 +306,9 @@ def _phases(arrangement: Arrangement, planets: tuple[str, ...]) -> dict[str, lis
 
 
 def addendum_of_ring(planet: Real, ring: Real, angle: float, fillets: bool) -> Real:
-    """Addendum of a ring for a planet, modules: its full teeth, or shortened ones that do not dig into the planet.
+    """Return a ring's addendum for a planet, modules: full teeth, or shortened ones that do not dig into the planet.
 
-    ``fillets``: nor into the planet's fillet, and so that the usual cutter takes nothing off their flanks.
+    ``fillets``: they also clear the planet's fillet, and the usual cutter does not trim their flanks.
     """
     addendum = mesh_limits.ring_addendum(planet, ring, angle, fillets)
     return np.minimum(addendum, mesh_limits.untrimmed_addendum(ring, angle)) if fillets else addendum
@@ -329,7 +334,7 @@ def _mesh_rules(numbers: ToothNumbers) -> list[_Rule]:
                 return True, block[planet].astype(np.float64), block[ring].astype(np.float64)
             first, second = block[one].astype(np.float64), block[other].astype(np.float64)
             if arrangement.bevel:
-                # Bevel teeth are those of spur gears with the teeth of the back cones (Tredgold; Norton, Sec. 9.7).
+                # Bevel teeth act like spur gears with the teeth of the back cones (Tredgold; Norton, Sec. 9.7).
                 length = np.hypot(first, second)
                 return False, first * length / second, second * length / first
             return False, first, second
@@ -366,7 +371,7 @@ def _mesh_rules(numbers: ToothNumbers) -> list[_Rule]:
 
 
 def _room_rules(numbers: ToothNumbers) -> list[_Rule]:
-    """Room between gears that do not mesh: copies of a planet, different planets, planets and suns or rings."""
+    """Build the clearance rules: copies of a planet, different planets, planets and suns or rings."""
     arrangement, demands = numbers._arrangement, numbers._demands
     own = [gear for gear in arrangement.gears if gear.body in numbers._planets]
     need = 2.0 * demands.least_room
@@ -392,6 +397,7 @@ def _room_rules(numbers: ToothNumbers) -> list[_Rule]:
             ) -> Mask:
                 distance = numbers.distance(block, planet)
                 if internal:
+                    # Tip circles: pitch radius plus an addendum of one module, which is 2 half modules.
                     room = block[mate] - 2 - (distance + block[name] + 2)
                 else:
                     room = distance - block[name] - 2 - block[mate] - 2
@@ -421,10 +427,12 @@ def _copies_rule(numbers: ToothNumbers, one: str, other: str, need: float) -> _R
         ahead = np.zeros(len(near))
         if linking is not None:
             apart = (block[linking[0]] + block[linking[1]]).astype(np.float64)
+            # Law of cosines: the angle at the axis between two planets that mesh.
             ahead = np.arccos(np.clip((near**2 + far**2 - apart**2) / (2.0 * near * far), -1.0, 1.0))
         tips = block[one] + block[other] + 4.0
         kept = np.ones(len(near), np.bool_)
         for turn in _offsets(numbers, block, here != there and not meshing):
+            # Distance of the pins at this offset, again by the law of cosines.
             between = np.sqrt(np.maximum(near**2 + far**2 - 2.0 * near * far * np.cos(ahead - turn), 0.0))
             kept &= between - tips >= need
         return kept
@@ -433,7 +441,7 @@ def _copies_rule(numbers: ToothNumbers, one: str, other: str, need: float) -> _R
 
 
 def _link(arrangement: Arrangement, here: str, there: str) -> tuple[str, str]:
-    """The gears by which two planets mesh."""
+    """Return the gears by which two planets mesh."""
     for pair in arrangement.meshes:
         if {arrangement.places[gear].body for gear in pair} == {here, there}:
             return pair
@@ -441,7 +449,7 @@ def _link(arrangement: Arrangement, here: str, there: str) -> tuple[str, str]:
 
 
 def _offsets(numbers: ToothNumbers, block: Block, own_copy: bool) -> Iterator[Real]:
-    """Angles from a planet to the copies of another, radians; its own copy's angle 0 only where asked for."""
+    """Yield angles from a planet to the copies of another, radians; angle 0 only if ``own_copy``."""
     demands = numbers._demands
     count = demands.planets
     if own_copy:
@@ -453,12 +461,13 @@ def _offsets(numbers: ToothNumbers, block: Block, own_copy: bool) -> Iterator[Re
     total = divisions(numbers._arrangement, numbers._planets, block)
     total = np.where(total == 0, count, total)
     for k in range(1, count):
+        # The nearest assembly position may be rounded up or down: both must be clear.
         for rounded in (k * total // count, -(-k * total // count)):
             yield 2.0 * np.pi * rounded / total
 
 
 def _bevel_clear(planet: Whole, side: Real, count: int, numbers: ToothNumbers, block: Block, need: float) -> Mask:
-    """Room between bevel planets' large ends, in half modules, as for :func:`kinematics.gear.assembly.gaps`."""
+    """Test the clearance of bevel planets' large ends, half modules, like :func:`kinematics.gear.assembly.gaps`."""
     narrowest = np.min(np.stack([np.minimum(turn, 2.0 * np.pi - turn) for turn in _offsets(numbers, block, False)]), 0)
     half = np.where(narrowest < np.pi * (1.0 - ROUNDING), side * np.tan(np.minimum(0.5 * narrowest, 1.57)), np.inf)
     return np.asarray(2.0 * (half - planet - 2.0 * side / np.hypot(side, planet)) >= need, np.bool_)

@@ -1,9 +1,9 @@
-"""A finished planetary train measured against its problem, from its tooth numbers alone.
+"""Verification of a finished planetary train, from its tooth numbers alone.
 
 The ratio comes from the speed equations in exact fractions, coaxiality from exact centre distances, assembly from
-trying every tooth of every planet at its place, room from the coordinates of the pins, and the meshes from the geometry
-of their teeth. Whether tips run free of the teeth as rack and cutter leave them is found by trying all positions of
-these tools. Nothing that the solver computed is read.
+trying every tooth of every planet at its place, clearance from the coordinates of the pins, and the meshes from the
+geometry of their teeth. Tip interference with the teeth that rack and cutter leave is found by trying all positions of
+these tools. No result of the solver is used.
 """
 
 from __future__ import annotations
@@ -33,22 +33,23 @@ from synthesis.outcome.exhaustive import within_tolerance
 from synthesis.proof.checks import at_least, at_most, tolerated
 
 SIZE_SLACK = 1e-12
-"""Relative slack of the size, which is a whole number of half modules but for the rounding of one product."""
+"""Relative slack of the size, an integer number of half modules except for the rounding of one product."""
 
 
 TOUCHED = 1e-6
-"""Modules by which tips may seem to dig into flanks that touch, as the positions of the tools are tried in steps."""
+"""Apparent tip interference, in modules, of flanks that touch: the positions of the tools are tried in steps."""
 
 ROUNDED = 1e-9
-"""Share by which a safety or a face may miss its limit in rounding."""
+"""Share by which a safety or a face may miss its limit by rounding."""
 
 
 def verify(problem: PlanetaryProblem, mechanism: PlanetaryMechanism) -> Verification:
-    """Every demand on a planetary train, measured."""
+    """Check every constraint on a planetary train."""
     arrangement = ARRANGEMENTS[mechanism.arrangement]
     coaxial = is_coaxial(arrangement, mechanism.teeth)
     checks = [_ratio(problem, mechanism, arrangement), _limits(problem, mechanism, arrangement)]
     checks.append(Check(name="coaxial", passed=coaxial))
+    # Without coaxial gears there are no pin distances to measure.
     if coaxial:
         checks += _strength_checks(problem, mechanism)
         checks += [_assembly(mechanism, arrangement), _clearance(problem, mechanism, arrangement)]
@@ -60,7 +61,7 @@ def verify(problem: PlanetaryProblem, mechanism: PlanetaryMechanism) -> Verifica
 
 
 def _strengths(problem: PlanetaryProblem, mechanism: PlanetaryMechanism) -> list[PairStrength | None]:
-    """Stresses of every mesh over the faces, from its torques and speeds without losses in exact fractions."""
+    """Compute the stresses of every mesh over the faces, from lossless torques and speeds in exact fractions."""
     arrangement, stated = ARRANGEMENTS[mechanism.arrangement], problem.strength
     train = arrangement.train(mechanism.teeth)
     members = mechanism.input, mechanism.output, mechanism.fixed
@@ -83,7 +84,7 @@ def _strengths(problem: PlanetaryProblem, mechanism: PlanetaryMechanism) -> list
 
 
 def _strength_checks(problem: PlanetaryProblem, mechanism: PlanetaryMechanism) -> list[Check]:
-    """Safeties of all gears that are judged, and faces as wide as they may be."""
+    """Check the safeties of all judged gears, and the face widths."""
     stated = problem.strength
     if stated is None:
         return []
@@ -104,13 +105,13 @@ def _strength_checks(problem: PlanetaryProblem, mechanism: PlanetaryMechanism) -
 
 
 def exact_ratio_of(mechanism: PlanetaryMechanism) -> Fraction | None:
-    """The ratio by the speed equations; None where the train is locked or the output does not turn."""
+    """Compute the ratio by the speed equations; None if the train is locked or the output does not turn."""
     train = ARRANGEMENTS[mechanism.arrangement].train(mechanism.teeth)
     return speed_ratio(train, mechanism.input, mechanism.output, [mechanism.fixed])
 
 
 def size_of(mechanism: PlanetaryMechanism) -> float:
-    """Largest pitch diameter around the axis, planets included, in modules; for coaxial gears."""
+    """Compute the largest pitch diameter around the axis, planets included, in modules; for coaxial gears."""
     arrangement, teeth = ARRANGEMENTS[mechanism.arrangement], mechanism.teeth
     reach = [float(teeth[gear.name]) for gear in arrangement.gears if gear.internal]
     distances = pin_distances(arrangement, teeth)
@@ -122,7 +123,7 @@ def size_of(mechanism: PlanetaryMechanism) -> float:
 
 
 def measure(problem: PlanetaryProblem, mechanism: PlanetaryMechanism) -> PlanetaryMetrics:
-    """What is worth knowing of a coaxial train besides its checks."""
+    """Measure the properties of a coaxial train that its checks do not cover."""
     arrangement = ARRANGEMENTS[mechanism.arrangement]
     train = arrangement.train(mechanism.teeth)
     turning = speeds(train, {mechanism.fixed: 0, mechanism.input: 1}).values
@@ -170,11 +171,12 @@ def measure(problem: PlanetaryProblem, mechanism: PlanetaryMechanism) -> Planeta
 
 
 def _ratio(problem: PlanetaryProblem, mechanism: PlanetaryMechanism, arrangement: Arrangement) -> Check:
-    """The stated ratio is that of the teeth, it has the demanded direction, and it is within the tolerance."""
+    """Check that the reported ratio is that of the teeth, with the requested direction, within the tolerance."""
     ratio = exact_ratio_of(mechanism)
     members = (mechanism.input, mechanism.output, mechanism.fixed)
     if ratio is None or members not in problem.roles(arrangement):
         return Check(name="ratio", passed=False)
+    # Exact fractions, so the error is not rounded.
     error = abs(ratio / problem.target - 1)
     passed = (
         ratio == mechanism.ratio.exact and ratio * problem.target > 0 and within_tolerance(error, problem.tolerance)
@@ -183,7 +185,7 @@ def _ratio(problem: PlanetaryProblem, mechanism: PlanetaryMechanism, arrangement
 
 
 def _limits(problem: PlanetaryProblem, mechanism: PlanetaryMechanism, arrangement: Arrangement) -> Check:
-    """Tooth numbers within their limits; planets and module as stated."""
+    """Check the tooth numbers against their limits; planets and module must be as requested."""
     within = all(
         low <= mechanism.teeth[gear.name] <= high
         for gear in arrangement.gears
@@ -201,11 +203,12 @@ def _turns(mechanism: PlanetaryMechanism) -> dict[str, list[Fraction]]:
 
 
 def _assembly(mechanism: PlanetaryMechanism, arrangement: Arrangement) -> Check:
-    """Every copy of every planet set can be put in at its place; none stands where another does."""
+    """Check that every copy of every planet set can be assembled at its place, and that no two coincide."""
     turns = _turns(mechanism)
     passed = True
     for members in arrangement.planet_sets:
         places = turns[members[0]]
+        # Planets of one set sit on one carrier: their copies share the same places.
         alike = all(turns[planet] == places for planet in members)
         passed &= alike and len({turn % 1 for turn in places}) == mechanism.planets
         passed &= all(fits_at(arrangement, mechanism.teeth, members, turn) for turn in places)
@@ -217,8 +220,9 @@ def _gaps(mechanism: PlanetaryMechanism, arrangement: Arrangement) -> list[Gap]:
 
 
 def _clearance(problem: PlanetaryProblem, mechanism: PlanetaryMechanism, arrangement: Arrangement) -> Check:
-    """Least room between tips of gears that do not mesh."""
+    """Check the minimum clearance between tips of gears that do not mesh."""
     rooms = _gaps(mechanism, arrangement)
+    # Room is in modules.
     least = min((gap.room for gap in rooms), default=math.inf)
     return Check(
         name="clearance",
@@ -230,10 +234,11 @@ def _clearance(problem: PlanetaryProblem, mechanism: PlanetaryMechanism, arrange
 
 
 def _gear(mechanism: PlanetaryMechanism, arrangement: Arrangement, name: str, mate: str | None = None) -> Gear:
-    """A gear; of bevel gears the spur gear with the teeth of the back cone (Tredgold; Norton, Sec. 9.7)."""
+    """Build a gear; for bevel gears the spur gear with the teeth of the back cone (Tredgold; Norton, Sec. 9.7)."""
     teeth: float = mechanism.teeth[name]
     if arrangement.bevel:
         meshed = mechanism.teeth[mate or arrangement.meshing(name)[0]]
+        # The back cone has z/cos δ teeth, with tan δ the ratio of the teeth.
         teeth *= math.hypot(teeth, meshed) / meshed
     return Gear(
         teeth,
@@ -245,9 +250,10 @@ def _gear(mechanism: PlanetaryMechanism, arrangement: Arrangement, name: str, ma
 
 
 def _toothed(mechanism: PlanetaryMechanism, arrangement: Arrangement) -> dict[tuple[str, str], Mesh]:
-    """Every mesh with its teeth."""
+    """Build every mesh with its teeth."""
     meshes = {}
     for first, second in arrangement.meshes:
+        # A ring is always the gear of its mesh.
         pinion, gear = (second, first) if arrangement.places[first].internal else (first, second)
         meshes[first, second] = Mesh(
             _gear(mechanism, arrangement, pinion, gear), _gear(mechanism, arrangement, gear, pinion)
@@ -256,12 +262,13 @@ def _toothed(mechanism: PlanetaryMechanism, arrangement: Arrangement) -> dict[tu
 
 
 def _apart(arrangement: Arrangement, pair: tuple[str, str], mesh: Mesh) -> float:
-    """Distance of the axes of a mesh; bevel axes meet."""
+    """Return the distance of the axes of a mesh; bevel axes intersect."""
     return 0.0 if arrangement.bevel else mesh.centre_distance
 
 
 def _meshes(problem: PlanetaryProblem, mechanism: PlanetaryMechanism, arrangement: Arrangement) -> list[Check]:
-    """Interference and contact ratio of all meshes."""
+    """Check the interference and the contact ratio of all meshes."""
+    # Impossible teeth fail as interference.
     try:
         meshes: Mapping[tuple[str, str], Mesh] = _toothed(mechanism, arrangement)
     except DimensionError:
@@ -272,9 +279,11 @@ def _meshes(problem: PlanetaryProblem, mechanism: PlanetaryMechanism, arrangemen
         at_least("contact_ratio", least, problem.min_contact_ratio),
     ]
     if problem.fillets == "refuse":
+        # The worst mesh decides.
         depth, reached = 0.0, False
         for mesh in meshes.values():
             depth, reached = max(depth, _tip_depth(mesh)), reached or reaches_fillet(mesh)
+        # Touching flanks appear to overlap by the step of the tool positions.
         limit = TOUCHED * mechanism.module
         rings = [shaped_ring(mesh) for mesh in meshes.values() if mesh.gear.internal]
         checks += [
@@ -292,5 +301,5 @@ def _meshes(problem: PlanetaryProblem, mechanism: PlanetaryMechanism, arrangemen
 
 @lru_cache(maxsize=1024)
 def _tip_depth(mesh: Mesh) -> float:
-    """How deep tips dig into the teeth that the rack and the usual cutter leave; 0 where they run free."""
+    """Measure how deep tips dig into the teeth that the rack and the usual cutter leave; 0 if they run free."""
     return max(0.0, tip_depth(mesh, shaped_ring(mesh).cutter_teeth if mesh.gear.internal else 0))

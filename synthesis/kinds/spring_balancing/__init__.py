@@ -1,4 +1,4 @@
-"""Spring balancing: springs with which gravity and steady loads ask for as little drive as can be."""
+"""Spring balancing: springs that minimize the drive against gravity and steady loads."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ def _solve(problem: SpringBalancingProblem, progress: Progress) -> SpringBalanci
 
 
 def _brief(problem: SpringBalancingProblem) -> bool:
-    """Ends are searched for where the program is not convex."""
+    """Return whether the program is convex for all springs, so that no ends are searched."""
     return all(spring.convex for spring in problem.springs)
 
 

@@ -1,9 +1,9 @@
-"""Zero-free-length springs with both ends open: the best places, proved by branching on the first end's.
+"""Zero-free-length springs with both ends open: the best places, proven by branching on the area of the first end.
 
-In the program the corners of both ends are taken in pairs. That bounds what such a spring can do, the closer the
-smaller the area of its first end is; at one point it is exact. So the area is cut in two again and again, the part with
-the lowest bound first, until no part promises more than what has been found. Found is the best of the second end and
-the rate for a given first end, and the other way round, in turns.
+In the program the corners of both ends are taken in pairs. That bounds the effect of such a spring, the tighter the
+smaller the area of its first end is; at one point it is exact. So the area is halved again and again, the part with
+the lowest bound first, until no part promises more than the best springs found. Those come from alternation: the best
+second end and rate for a given first end, and vice versa.
 """
 
 from __future__ import annotations
@@ -25,20 +25,20 @@ Complex = NDArray[np.complex128]
 Places = list[list[Complex]]
 
 NODES = 250
-"""Parts that are looked at, at most."""
+"""Maximum number of parts that are solved."""
 
 GAP = 1e-3
-"""Share of the value that the bound is brought within."""
+"""Target share of the value by which the bound may be below it."""
 
 TURNS = 4
-"""Turns of the ends, one given and the other sought."""
+"""Maximum number of alternations between the ends, one given and the other optimized."""
 
 ON_LINE = 1e-12
-"""Distance from a cut, as a share of the area's size, at which a corner lies on it."""
+"""Distance from a cut, as a share of the area's size, at which a corner counts as on it."""
 
 
 class Branched(NamedTuple):
-    """The best springs, their value, the bound, and whether it is reached; infeasible where none keep their limits."""
+    """The best springs, their value, the bound, and whether it is reached; infeasible if none keep their limits."""
 
     status: Literal["solved", "infeasible", "failed"]
     springs: list[Spring]
@@ -48,13 +48,14 @@ class Branched(NamedTuple):
 
 
 def solved_at(setting: Setting, places: Places, *, bounded: bool = True) -> Best:
-    """The program of all springs with their ends between corners."""
+    """Solve the program of all springs with their ends between corners."""
     effects = [effects_of(setting, spring, ends) for spring, ends in zip(setting.problem.springs, places, strict=True)]
     return best(setting.fixed, effects, setting.problem.norm, bounded=bounded)
 
 
 def branched(setting: Setting, places: Places, report: Callable[[float], None]) -> Branched:
-    """The best springs with their ends between corners; those of springs that are not superposed are given."""
+    """Find the best springs with their ends between corners; ends of springs that are not superposed are given."""
+    # Springs with one open end are convex and need no branching.
     open_both = [n for n, ends in enumerate(places) if ends and min(len(end) for end in ends) > 1]
     whole = solved_at(setting, places)
     if not open_both or whole.status != "solved":
@@ -63,9 +64,10 @@ def branched(setting: Setting, places: Places, report: Callable[[float], None]) 
     order = count()
     parts = [(whole.bound, next(order), places, whole)]
     value, springs, looked = np.inf, list[Spring](), 1
-    least = np.inf  # bound of all parts that are not looked into any more
+    least = np.inf  # bound of all discarded parts
     while parts:
         bound, _, mine, relaxed = heapq.heappop(parts)
+        # The lowest bound is near enough to the best value: it bounds all remaining parts.
         if _near(value, bound) or looked > NODES:
             least = min(least, bound)
             break
@@ -73,6 +75,7 @@ def branched(setting: Setting, places: Places, report: Callable[[float], None]) 
         if reached.value < value:
             value, springs = reached.value, springs_of(setting, given, reached.parameters)
         report(min(looked / NODES, 1.0))
+        # Halve the end whose relaxation is farthest from a single spring: there the bound gains most.
         wide = max(open_both, key=lambda n: _spread(mine[n], relaxed.parameters[n]))
         for half in _halves(mine[wide][0]):
             child = [*mine]
@@ -82,7 +85,7 @@ def branched(setting: Setting, places: Places, report: Callable[[float], None]) 
             if found.status == "failed":
                 least = min(least, bound)
             if found.status == "solved" and found.bound < value:
-                # No part promises less than the whole of which it is one.
+                # A part cannot promise less than the whole that contains it.
                 heapq.heappush(parts, (max(found.bound, bound), next(order), child, found))
     if not np.isfinite(value):
         return Branched("failed" if np.isfinite(least) else "infeasible", [], value, least, proved=False)
@@ -91,12 +94,12 @@ def branched(setting: Setting, places: Places, report: Callable[[float], None]) 
 
 
 def _near(value: float, bound: float) -> bool:
-    """Whether a value is proved to be the least, but for the gap."""
+    """Return whether a value is proven to be the minimum, to the gap."""
     return np.isfinite(value) and value - bound <= left_open(value, GAP)
 
 
 def _alternated(setting: Setting, places: Places, relaxed: Best, open_both: Sequence[int]) -> tuple[Best, Places]:
-    """The best from the middle of a relaxation on: an end given, the other sought, in turns over the whole areas."""
+    """Improve from the middle of a relaxation: one end given, the other optimized, in turns over the whole areas."""
     springs = setting.problem.springs
     areas = [setting.places(spring) for spring in springs]
     fixed, side = {n: centres(places[n], np.maximum(relaxed.parameters[n], 0.0))[0] for n in open_both}, 0
@@ -115,7 +118,7 @@ def _alternated(setting: Setting, places: Places, relaxed: Best, open_both: Sequ
 
 
 def _spread(ends: Sequence[Complex], rates: Real) -> float:
-    """How far a relaxation is from one spring: what its rates at pairs of corners are off those of their centres."""
+    """Measure how far a relaxation is from one spring: the deviation of its rates at pairs from their centres."""
     table = np.maximum(rates, 0.0).reshape(len(ends[0]), len(ends[1]))
     whole = float(table.sum())
     if not whole > 0.0:
@@ -124,12 +127,14 @@ def _spread(ends: Sequence[Complex], rates: Real) -> float:
     one, other = centres(ends, np.maximum(rates, 0.0))
     off = float(np.abs(((ends[0] - one).conj() @ table) @ (ends[1] - other)))
     twisted = float(np.abs(((ends[0] - one) @ table) @ (ends[1] - other)))
+    # The last term decides between relaxations that are exact already.
     return off + twisted + 1e-6 * whole * size**2
 
 
 def _halves(corners: Complex) -> tuple[Complex, Complex]:
-    """A convex area cut across its longest way; a line in its middle."""
+    """Cut a convex area across its longest diagonal; a line in its middle."""
     apart = np.abs(corners[:, None] - corners)
+    # The two corners with the greatest distance.
     one, other = np.unravel_index(int(np.argmax(apart)), apart.shape)
     middle = 0.5 * (corners[one] + corners[other])
     along = (corners[other] - corners[one]) / max(float(apart[one, other]), 1e-300)

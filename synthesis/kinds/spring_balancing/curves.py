@@ -1,4 +1,4 @@
-"""The drive over the motion, without springs and with them: for drawings."""
+"""The drive over the motion, without springs and with them, for drawings."""
 
 from __future__ import annotations
 
@@ -16,13 +16,14 @@ from synthesis.kinds.spring_balancing.verification import machine_of_answer
 Real = NDArray[np.float64]
 
 POSITIONS = 361
+"""Number of positions of a curve."""
 
 ROUNDING = 1e-9
-"""Share of the peak before that is drawn as zero after."""
+"""Share of the unbalanced peak below which the balanced drive is drawn as zero."""
 
 
 class DriveCurves(NamedTuple):
-    """Over inputs (radians, or lengths along the slide): the drive before and after; NaN where it is not known."""
+    """The drive before and after over inputs (radians, or lengths along the slide); NaN where it is unknown."""
 
     at: Real
     before: Real
@@ -30,7 +31,7 @@ class DriveCurves(NamedTuple):
 
 
 def drive_curves(problem: SpringBalancingProblem, design: SprungDesign) -> DriveCurves:
-    """The curves of a linkage and of its design."""
+    """Compute the curves of a linkage and of its design."""
     task = driven_task(problem.mechanism, problem.dynamics, problem.length_unit, problem.motion)
     at = np.linspace(task.start, task.end, POSITIONS)
     before, after = (

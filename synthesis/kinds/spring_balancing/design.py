@@ -1,4 +1,4 @@
-"""Linkages with the springs that balance them as answers."""
+"""Linkages with their balancing springs as answers."""
 
 from __future__ import annotations
 
@@ -21,63 +21,65 @@ class SprungLinkage(Answer):
 
 
 class FoundEnd(Answer):
-    """Where a spring holds."""
+    """The place of a spring's end."""
 
     link: str
-    point: Point = Field(description="In the reference configuration.")
+    point: Point = Field(description="Point in the reference configuration.")
 
 
 class FoundSpring(Answer):
     """A spring of the answer: between two ends, or a torsion spring between two links."""
 
-    number: int = Field(description="Of the spring in the statement, from 0.")
+    number: int = Field(description="Number of the spring in the problem, from 0.")
     ends: tuple[FoundEnd, FoundEnd] | None = optional()
     rate: Stiffness | None = optional()
     free_length: Length | None = optional()
     preload: Force | None = optional("Tension at the free length.")
-    min_length: Length | None = optional("Over the motion.")
-    max_length: Length | None = optional("Over the motion.")
-    max_force: Force | None = optional("Over the motion, of pull or push.")
+    min_length: Length | None = optional("Minimum length over the motion.")
+    max_length: Length | None = optional("Maximum length over the motion.")
+    max_force: Force | None = optional("Maximum magnitude of the force over the motion.")
     links: tuple[str, str] | None = optional()
     torsion: TorsionStiffness | None = optional()
-    free_angle: Angle | None = optional("Rotation of the second link against the first, without torque.")
-    max_torque: Torque | None = optional("Over the motion.")
+    free_angle: Angle | None = optional(
+        "Rotation of the second link relative to the first at which there is no torque."
+    )
+    max_torque: Torque | None = optional("Maximum torque over the motion.")
 
 
 class SpringMetrics(Answer):
-    """What the drive has to do with the springs and without; a force where the input slides."""
+    """The drive with the springs and without; a force if the input slides."""
 
-    value: float = Field(description="What is left of the drive, as a share of what it was: of its peak, or its rms.")
-    bound: float | None = optional("No springs that are asked for leave less. Left out where that is not known.")
-    gap: float | None = optional("How far the value is above the bound, as a share of it.")
+    value: float = Field(description="Remaining share of the unbalanced drive: of its peak, or its rms.")
+    bound: float | None = optional("Lower bound for all springs within the limits. Omitted if it is unknown.")
+    gap: float | None = optional("Excess of the value over the bound, as a share of the value.")
     exact: bool = Field(
-        description="Whether the drive vanishes, but for rounding; at rest with steady loads the energy is constant."
+        description="True if the drive vanishes, to rounding; at rest with steady loads the energy is then constant."
     )
-    drive: Torque = Field(description="Greatest, with the springs.")
-    unbalanced_drive: Torque = Field(description="Greatest, without.")
-    rms_drive: Torque = Field(description="Root of the mean square over the motion, with the springs.")
+    drive: Torque = Field(description="Peak drive with the springs.")
+    unbalanced_drive: Torque = Field(description="Peak drive without springs.")
+    rms_drive: Torque = Field(description="Root mean square of the drive over the motion, with the springs.")
     unbalanced_rms_drive: Torque
     energy_variation: float | None = optional(
-        "Of the potential energy of all bodies, steady loads and springs over the motion, as a share of what it is "
-        "without the springs sought. Left out where loads have no potential or the linkage moves."
+        "Variation of the potential energy of all bodies, steady loads and springs over the motion, as a share of that "
+        "without the requested springs. Omitted if loads have no potential or the linkage moves."
     )
 
 
 class SprungDesign(Answer):
-    """A linkage with its springs, and the proof of what they do."""
+    """A linkage with its springs and its verification."""
 
     mechanism: SprungLinkage
     dynamics: dict[str, Any] = Field(
-        description="The whole block `dynamics` with the springs in it, as `POST /v1/analyses` takes it."
+        description="The whole block `dynamics` including the springs, in the form of `POST /v1/analyses`."
     )
-    springs: list[FoundSpring] = Field(description="Springs that do better not to be there are left out.")
+    springs: list[FoundSpring] = Field(description="The springs; those that would not improve the balance are omitted.")
     warnings: list[str]
     verification: Verification
     metrics: SpringMetrics
 
 
 class SpringBalancingResult(Result[SprungDesign]):
-    """Springs that balance a linkage, those that leave the least drive first.
+    """Springs that balance a linkage, the smallest remaining drive first.
 
-    Where the search is complete no springs that are asked for leave less than the bound of the first design.
+    If the search is complete, no springs within the limits leave less than the bound of the first design.
     """

@@ -1,19 +1,19 @@
-"""What springs do to the drive: all of it is linear once their ends are known.
+"""Effects of springs on the drive: all are linear once the ends are known.
 
-With the length L of a spring over the input q, L' = dL/dq, its tension is k (L − L₀) + P, and it asks the drive for
+With the length L of a spring over the input q, L' = dL/dq, its tension is k (L − L₀) + P, and its share of the drive is
 
     k L L' − k L₀ L' + P L',
 
-linear in the rate k, in k L₀ and in the preload P; a torsion spring over the rotation φ for κ φ φ' − κ φ₀ φ'. Without a
-free length it is ½ k (L²)', and there the ends may be sought as well: for an end p = Σ λ_v p_v between corners fixed in
-one link, and q fixed in another,
+linear in the rate k, in k L₀ and in the preload P; for a torsion spring over the rotation φ it is κ φ φ' − κ φ₀ φ'.
+Without a free length it is ½ k (L²)', and then the ends can be optimized as well: for an end p = Σ λ_v p_v between
+corners fixed in one link, and q fixed in another,
 
     |q − p|² = Σ λ_v |q − p_v|² − Σ λ_v |p − p_v|²,
 
 of which the last sum never changes. So a spring at p is a set of springs of the rates μ_v = λ_v k at the corners, and
 the best place within an area is found with the rate (potential energies of zero-free-length springs add up to one such
-spring: Herder, *Energy-free Systems*, 2001). With both ends open the corners are taken in pairs, and μ_uv ≥ 0 holds all
-that such springs can do, and more: a bound.
+spring: Herder, *Energy-free Systems*, 2001). With both ends open the corners are taken in pairs, and μ_uv ≥ 0 contains
+all such springs, and more: a bound.
 """
 
 from __future__ import annotations
@@ -39,14 +39,14 @@ Real = NDArray[np.float64]
 Complex = NDArray[np.complex128]
 
 GRID = 2880
-"""Positions of the motion on which peaks and means are taken, or its steps where these are more."""
+"""Number of positions of the motion for peaks and means; the motion's steps if these are more."""
 
 MET = 1e-9
-"""Length of a spring, as a share of the size, at which its ends have met and its force has no direction."""
+"""Length of a spring, as a share of the size, at which its ends coincide and its force has no direction."""
 
 
 class Carrier(NamedTuple):
-    """A link over positions, by which its points go: place + turn · z, and both for a unit of the input's motion."""
+    """A link over positions; its points are place + turn · z, with both also per unit of the input's motion."""
 
     place: Complex
     turn: Complex
@@ -54,26 +54,26 @@ class Carrier(NamedTuple):
     turn_rate: Complex
 
     def points(self, of: Complex) -> tuple[Complex, Complex]:
-        """Points of the reference over positions, shape (len(of), N), and their rates."""
+        """Return points of the reference over positions, shape (len(of), N), and their rates."""
         z = np.asarray(of)[:, None]
         return self.place + self.turn * z, self.place_rate + self.turn_rate * z
 
 
 class Effects(NamedTuple):
-    """The parameters of a spring, K of them: what each does to the drive by positions, and the limits of all.
+    """The K parameters of a spring: their effects on the drive by positions, and their limits.
 
     Attributes
     ----------
     drive : float, shape (K, N)
-        By units of the parameters.
+        Drive per unit of each parameter.
     rows, limits : float, shapes (R, K), (R,)
         rows · x ≤ limits.
     stiff : float, shape (K,)
-        How much each counts as a rate.
+        Cost of each parameter as a rate.
     spans : complex, shape (K, N), or None
-        From end to end of springs at the corners, where lengths or forces of their sum are limited.
+        Vectors from end to end of springs at the corners, if lengths or forces of their sum are limited.
     longest, strongest : float
-        Limits of that sum as a length, and as a force; infinite where there are none.
+        Limits of that sum as a length, and as a force; infinite without a limit.
     """
 
     drive: Real
@@ -86,18 +86,18 @@ class Effects(NamedTuple):
 
 
 class Setting:
-    """A linkage over the motion of a problem, and what springs between its links do; in the unit of its forces.
+    """A linkage over the motion of a problem, and the effects of springs between its links, in units of its forces.
 
     Attributes
     ----------
     at : float, shape (N,)
         Positions at which all forces are known.
     fixed : float, shape (N,)
-        The drive without the springs that are sought.
+        The drive without the requested springs.
     parts : float
         The greatest sum of the magnitudes of all parts of that drive.
     size : float
-        Of the linkage.
+        Size of the linkage.
     """
 
     def __init__(self, problem: SpringBalancingProblem) -> None:
@@ -122,7 +122,7 @@ class Setting:
         return float(np.abs(self.fixed).max(initial=0.0))
 
     def places(self, spring: SoughtSpring) -> list[Complex]:
-        """The corners of the areas of both ends of a spring, one of a given end; none of a torsion spring."""
+        """List the corners of the areas of both ends of a spring, one for a given end; none for a torsion spring."""
         machine = self.task.machine
         return [
             hull(np.array([place_on(machine.mechanism, end.link, corner, machine.scale) for corner in end.corners]))
@@ -130,23 +130,24 @@ class Setting:
         ]
 
     def thinned(self, count: int) -> Setting:
-        """The same on so many of its positions, spread evenly."""
+        """Return the same setting on ``count`` of its positions, spread evenly."""
         few = copy(self)
         kept = np.unique(np.linspace(0, len(self.at) - 1, count).astype(int))
         few.at, few.fixed = self.at[kept], self.fixed[kept]
         few._known = np.zeros_like(self._known)
         few._known[np.flatnonzero(self._known)[kept]] = True
+        # Cached carriers belong to the full set of positions.
         few._carriers = {}
         return few
 
     def carrier(self, link: str) -> Carrier:
-        """A link over the known positions."""
+        """Return a link over the known positions."""
         if link not in self._carriers:
             self._carriers[link] = _carrier(self._paced, link, self._known)
         return self._carriers[link]
 
     def lengths(self, spring: SoughtSpring, ends: Sequence[complex]) -> Real:
-        """The lengths of a spring between two points."""
+        """Compute the lengths of a spring between two points."""
         assert spring.ends is not None
         one, other = (
             self.carrier(end.link).points(np.array([at]))[0][0] for end, at in zip(spring.ends, ends, strict=True)
@@ -154,7 +155,7 @@ class Setting:
         return np.asarray(np.abs(other - one))
 
     def rotation(self, links: tuple[str, str]) -> tuple[Real, Real]:
-        """The rotation of the second link against the first from the reference, and its rate."""
+        """Compute the rotation of the second link relative to the first from the reference, and its rate."""
         spring = torsion_spring(self.task.machine.mechanism, links)
         turned = spring.rotation(self._paced)[self._known]
         rates = [np.broadcast_to(self._paced.spins[link][1], self._known.shape)[self._known] for link in links]
@@ -173,11 +174,12 @@ def _carrier(now: Places, link: str, known: NDArray[np.bool_]) -> Carrier:
 
 
 def hull(points: Complex) -> Complex:
-    """The corners of the convex hull of points, counter-clockwise; two of a line, one of a place."""
+    """Return the corners of the convex hull of points, counter-clockwise; two for a line, one for a point."""
     distinct = sorted({complex(z) for z in points}, key=lambda z: (z.real, z.imag))
     if len(distinct) < 3:
         return np.array(distinct)
     chains: list[list[complex]] = []
+    # Andrew's monotone chain: lower and upper hull in one pass each over the sorted points.
     for ordered in (distinct, distinct[::-1]):
         chain: list[complex] = []
         for z in ordered:
@@ -189,7 +191,7 @@ def hull(points: Complex) -> Complex:
 
 
 def effects_of(setting: Setting, spring: SoughtSpring, ends: Sequence[Complex]) -> Effects:
-    """A spring whose ends are between corners (the unit of forces); only a superposed spring may have several."""
+    """Compute the effects of a spring with ends between corners; only a superposed spring may have several."""
     if spring.links is not None:
         return _turning(setting, spring)
     assert spring.ends is not None
@@ -203,7 +205,7 @@ def effects_of(setting: Setting, spring: SoughtSpring, ends: Sequence[Complex]) 
 
 
 class _Rows:
-    """Limits of the parameters as they come."""
+    """Collects the linear limits of parameters."""
 
     def __init__(self, count: int) -> None:
         self.count = count
@@ -225,13 +227,14 @@ class _Rows:
 
 
 def _superposed(setting: Setting, spring: SoughtSpring, span: Complex, along: Real) -> Effects:
-    """Rates at the pairs of corners."""
+    """Compute the effects of rates at the pairs of corners."""
     count, scale = len(span), setting.task.machine.scale
     kept = _Rows(count)
     for n in range(count):
         kept.at_most([-1.0 if k == n else 0.0 for k in range(count)])
     ones = np.ones(count)
     kept.between(ones.tolist(), *spring.rates)
+    # Without a free length the deflection is the length.
     lengths = [limit for limit in (spring.max_length, spring.max_deflection) if limit is not None]
     longest = scale * min(lengths, default=np.inf)
     strongest = np.inf if spring.max_force is None else spring.max_force
@@ -239,6 +242,7 @@ def _superposed(setting: Setting, spring: SoughtSpring, span: Complex, along: Re
         limited = span if np.isfinite(min(longest, strongest)) else None
         return Effects(along, kept.matrix, np.array(kept.limits), ones, limited, longest, strongest)
     length = np.abs(span[0])
+    # A single spring beyond its length limit cannot exist at all: its rate must be zero.
     if length.max() > longest * (1.0 + MET):
         kept.at_most([1.0])
     if np.isfinite(strongest):
@@ -247,9 +251,9 @@ def _superposed(setting: Setting, spring: SoughtSpring, span: Complex, along: Re
 
 
 def free_limits(spring: SoughtSpring, scale: float, length: Real) -> tuple[float, float]:
-    """The least free length and the greatest of a spring that has these lengths; the first is above where none will do.
+    """Compute the range of free lengths of a spring with these lengths; the minimum exceeds the maximum if none fits.
 
-    An extension spring is nowhere shorter, a compression spring nowhere longer, and none goes beyond its stroke.
+    An extension spring is never shorter, a compression spring never longer, and none exceeds its stroke.
     """
     least, most = spring.free_lengths
     low, high = float(length.min()), float(length.max())
@@ -265,26 +269,29 @@ def free_limits(spring: SoughtSpring, scale: float, length: Real) -> tuple[float
 
 
 def _single(setting: Setting, spring: SoughtSpring, span: Complex, along: Real) -> Effects:
-    """Rate, rate times free length, and preload."""
+    """Compute the effects of rate, rate times free length, and preload."""
     scale = setting.task.machine.scale
     length = np.abs(span)
     low, high = float(length.min()), float(length.max())
+    # L' = (L²)'/(2 L); a spring of no length has no direction.
     lengthening = along / np.where(length > 0.0, length, 1.0)
     kept = _Rows(3)
     kept.between([1.0, 0.0, 0.0], *spring.rates)
     kept.between([0.0, 0.0, 1.0], *spring.preloads)
+    # Free length limits are linear in rate and rate × free length: low · k ≤ k L₀ ≤ high · k.
     shortest, free = free_limits(spring, scale, length)
     none = shortest > free * (1.0 + MET)
     kept.at_most([shortest, -1.0, 0.0])
     kept.at_most([-max(free, shortest), 1.0, 0.0])
     if spring.max_force is not None:
+        # The tension is monotonic in the length: its extremes are at the shortest and the longest.
         for end in (low, high):
             kept.at_most([end, -1.0, 1.0], spring.max_force)
             kept.at_most([-end, 1.0, -1.0], spring.max_force)
     least = 0.0 if spring.min_length is None else scale * spring.min_length
     most = np.inf if spring.max_length is None else scale * spring.max_length
     if none or low < max(least * (1.0 - MET), MET * setting.size) or high > most * (1.0 + MET):
-        # At these places there can be no such spring.
+        # No such spring is possible at these places.
         kept.at_most([1.0, 0.0, 0.0])
         kept.at_most([0.0, 0.0, 1.0])
     drive = np.stack([along, -lengthening, lengthening])
@@ -292,7 +299,7 @@ def _single(setting: Setting, spring: SoughtSpring, span: Complex, along: Real) 
 
 
 def _turning(setting: Setting, spring: SoughtSpring) -> Effects:
-    """Rate, and rate times free angle."""
+    """Compute the effects of rate, and rate times free angle."""
     assert spring.links is not None
     rotation, rate = setting.rotation(spring.links)
     kept = _Rows(2)

@@ -1,4 +1,4 @@
-"""Potential energy of a linkage that is held at rest: of its weights, steady loads and springs. No force is in it."""
+"""Potential energy of a linkage held at rest: of its weights, steady loads and springs. It involves no forces."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ Real = NDArray[np.float64]
 
 
 def has_potential(block: DynamicsBlock) -> bool:
-    """Whether all loads are steady: constant torques, and forces that keep their direction."""
+    """Return whether all loads are steady: constant torques, and forces of constant direction."""
     for load in block.loads:
         course = load.torque if load.force is None else load.force
         if course is None or course.constant is None or (load.force is not None and load.frame == "link"):
@@ -24,7 +24,7 @@ def has_potential(block: DynamicsBlock) -> bool:
 
 
 def potential(machine: Machine, block: DynamicsBlock, now: Places) -> tuple[Real, float]:
-    """Energy over positions, up to a constant, and the greatest part of it; the block is one that has a potential."""
+    """Compute the energy over positions, up to a constant, and its greatest part, for a block with a potential."""
     gravity = np.asarray(machine.gravity)
     parts: list[Real] = [np.zeros(now.smooth.shape)]
     for link, part in machine.bodies.items():
@@ -39,6 +39,7 @@ def potential(machine: Machine, block: DynamicsBlock, now: Places) -> tuple[Real
             continue
         assert load.force is not None
         assert isinstance(load.force.constant, tuple)
+        # A constant force has the potential −F·r.
         force = np.asarray(complex(*load.force.constant))
         if load.joint is not None:
             place = now.joints[load.joint][0]
@@ -56,18 +57,18 @@ def potential(machine: Machine, block: DynamicsBlock, now: Places) -> tuple[Real
 
 
 def lengths(spring: Spring, now: Places) -> Real:
-    """The length of a spring over positions."""
+    """Compute the length of a spring over positions."""
     first, second = (now.point(link, at)[0] for link, at in zip(spring.links, spring.places, strict=True))
     return np.asarray(np.abs(second - first))
 
 
 def tension(spring: Spring, length: Real) -> Real:
-    """The pull of a spring at rest, as if it bore both."""
+    """Compute the tension of a spring at rest as if it were two-sided."""
     return np.asarray(spring.rate * (length - spring.free_length) + spring.preload)
 
 
 def _stored(spring: Spring, length: Real) -> Real:
-    """½ T²/k, or without a rate T L."""
+    """Return ½ T²/k, or T L without a rate."""
     pull = tension(spring, length)
     if spring.one_sided == "pull":
         pull = np.maximum(pull, 0.0)

@@ -1,4 +1,4 @@
-"""What is wrong with a linkage that springs are to balance: as an analysis tells it, and what springs need besides."""
+"""Errors of a linkage to be balanced by springs: those of an analysis, and the additional requirements of springs."""
 
 from __future__ import annotations
 
@@ -13,13 +13,13 @@ from synthesis.model.dynamics import DynamicsBlock, LengthUnit
 from synthesis.model.motions import Sweep
 
 FAR = 1e4
-"""Distance of an end from the linkage, in sizes of it, beyond which it is a typing error."""
+"""Distance of an end from the linkage, in sizes of it, beyond which a typing error is assumed."""
 
 
 def spring_faults(
     stated: dict[str, Any], dynamics: DynamicsBlock, unit: LengthUnit, motion: Sweep, springs: Sequence[SoughtSpring]
 ) -> list[tuple[str, str]]:
-    """Faults of a mechanism, what it weighs and carries, its motion and the sought springs, by their fields."""
+    """Return errors of a mechanism, its masses and loads, its motion and the requested springs, by their fields."""
     mechanism, faults = driven_faults(stated, dynamics, unit, motion)
     if mechanism is None:
         return faults
@@ -28,9 +28,9 @@ def spring_faults(
     pulled = dynamics.gravity is not None and dynamics.gravity.magnitude > 0.0
     moved = motion.rate != 0.0 or motion.acceleration != 0.0
     if not dynamics.loads and not dynamics.springs and not (weighs and (pulled or moved)):
-        detail = "nothing is to be balanced: state gravity with what the links weigh, or a load"
+        detail = "there is nothing to balance: give gravity with masses of the links, or a load"
         faults.append(("/dynamics/gravity" if weighs else "/dynamics/bodies", detail))
-    no_link = f"no link; they are {', '.join(mechanism.links)}"
+    no_link = f"not a link; the links are {', '.join(mechanism.links)}"
     places = [complex(z) for z in mechanism.joints.values()]
     size = max(abs(a - b) for a in places for b in places) or 1.0
     for n, spring in enumerate(springs):
@@ -50,6 +50,6 @@ def spring_faults(
             for corner in end.corners:
                 if min(abs(place_on(mechanism, end.link, corner) - place) for place in places) > FAR * size:
                     field = "point" if end.point is not None else "within"
-                    faults.append((f"/springs/{n}/ends/{k}/{field}", "this is nowhere near the linkage"))
+                    faults.append((f"/springs/{n}/ends/{k}/{field}", "too far from the linkage"))
                     break
     return faults

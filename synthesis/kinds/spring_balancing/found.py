@@ -1,4 +1,4 @@
-"""Springs as they were found: ends, rate, free length and preload from the parameters of a program."""
+"""Springs that were found: ends, rate, free length and preload from the parameters of a program."""
 
 from __future__ import annotations
 
@@ -16,13 +16,13 @@ Real = NDArray[np.float64]
 Complex = NDArray[np.complex128]
 
 ABSENT = 1e-7
-"""Effect of a spring on the drive, as a share of what is to be balanced, with which it may as well be left out."""
+"""Effect of a spring on the drive, as a share of the unbalanced drive, below which it may be omitted."""
 
 
 class Spring(NamedTuple):
-    """A spring in the unit of forces, its ends in the reference; of a torsion spring the free angle, radians.
+    """A spring in units of forces, its ends in the reference; for a torsion spring the free angle, radians.
 
-    ``ends`` is empty of a torsion spring.
+    ``ends`` is empty for a torsion spring.
     """
 
     number: int
@@ -33,16 +33,17 @@ class Spring(NamedTuple):
 
 
 def centres(corners: Sequence[Complex], rates: Real) -> tuple[complex, ...]:
-    """The centres of the rates at pairs of corners, for both ends."""
+    """Return the centres of the rates at pairs of corners, for both ends."""
     whole = float(rates.sum())
     if not whole > 0.0:
         return tuple(complex(end.mean()) for end in corners)
+    # Share of the whole rate at each pair of corners.
     table = rates.reshape(len(corners[0]), len(corners[1])) / whole
     return complex(table.sum(axis=1) @ corners[0]), complex(table.sum(axis=0) @ corners[1])
 
 
 def springs_of(setting: Setting, places: Sequence[Sequence[Complex]], parameters: Sequence[Real]) -> list[Spring]:
-    """The springs of parameters; of each spring one end at most may have several corners."""
+    """Build the springs of parameters; each spring may have several corners at one end at most."""
     found = []
     for n, (spring, ends, own) in enumerate(zip(setting.problem.springs, places, parameters, strict=True)):
         if spring.links is not None:
@@ -58,6 +59,7 @@ def springs_of(setting: Setting, places: Sequence[Sequence[Complex]], parameters
             rate, by, preload = max(float(own[0]), 0.0), float(own[1]), float(own[2])
             low, high = free_limits(spring, setting.task.machine.scale, setting.lengths(spring, at))
             free = min(max(by / rate if rate > 0.0 else low, low), high)
+            # A negligible preload above the minimum is the program's tolerance.
             if preload - spring.preloads[0] <= ABSENT * rate * setting.size:
                 preload = spring.preloads[0]
             found.append(Spring(n, at, rate, free, float(np.clip(preload, *spring.preloads))))
@@ -70,7 +72,7 @@ def _rated(stated: SoughtSpring, spring: Spring) -> Spring:
 
 
 def parameters_of(setting: Setting, spring: Spring) -> tuple[list[Complex], Real]:
-    """Where a found spring holds, and its parameters in the program of given ends."""
+    """Return the ends of a found spring, and its parameters in the program of given ends."""
     stated = setting.problem.springs[spring.number]
     ends = [np.array([end]) for end in spring.ends]
     if stated.links is not None:
@@ -81,19 +83,19 @@ def parameters_of(setting: Setting, spring: Spring) -> tuple[list[Complex], Real
 
 
 def drive_of(setting: Setting, spring: Spring) -> Real:
-    """What a found spring asks of the drive, (N,)."""
+    """Compute a found spring's share of the drive, (N,)."""
     ends, own = parameters_of(setting, spring)
     return np.asarray(own @ effects_of(setting, setting.problem.springs[spring.number], ends).drive)
 
 
 def value_of(setting: Setting, springs: Sequence[Spring]) -> float:
-    """What springs leave of the drive, as a share."""
+    """Return the remaining share of the drive with springs."""
     left = setting.fixed + sum((drive_of(setting, spring) for spring in springs), np.zeros(len(setting.fixed)))
     return size_of(left, setting.problem.norm) / size_of(setting.fixed, setting.problem.norm)
 
 
 def _needed(setting: Setting, springs: list[Spring]) -> list[Spring]:
-    """The springs that do something, or are not free to be left out."""
+    """Select the springs that have an effect, or may not be omitted."""
     kept = []
     for spring in springs:
         stated = setting.problem.springs[spring.number]
@@ -104,7 +106,7 @@ def _needed(setting: Setting, springs: list[Spring]) -> list[Spring]:
 
 
 def listed(setting: Setting, springs: Sequence[Spring]) -> list[dict[str, Any]]:
-    """The springs as the block ``dynamics`` takes them."""
+    """List the springs in the form of the block ``dynamics``."""
     scale, stated = setting.task.machine.scale, setting.problem.springs
     written: list[dict[str, Any]] = []
     for spring in springs:

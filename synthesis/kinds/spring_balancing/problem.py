@@ -23,7 +23,7 @@ LEVER: dict[str, Any] = {
     "motion": {"from": -60.0, "to": 80.0},
     "dynamics": {"gravity": {}, "bodies": {"lever": {"mass": 5.0, "cg": [300.0, 0.0]}}},
 }
-"""A lever with a weight, of the examples."""
+"""A lever with a weight, used by the examples."""
 
 ROCKER: dict[str, Any] = {
     "mechanism": {
@@ -42,7 +42,7 @@ ROCKER: dict[str, Any] = {
         "loads": [{"joint": "B", "force": {"constant": [0.0, -40.0]}}],
     },
 }
-"""A lifting linkage with its weights and a load, of the examples."""
+"""A lifting linkage with its weights and a load, used by the examples."""
 
 
 class Holding(Sweep):
@@ -50,16 +50,16 @@ class Holding(Sweep):
 
     @property
     def rate(self) -> float:
-        """Input speed, rad/s (length unit/s of a driven slider); 0 where none is stated."""
+        """Input speed, rad/s (length unit/s for a driven slider); 0 by default."""
         return 0.0 if self.speed is None and self.speed_rpm is None else super().rate
 
 
 class SpringBalancingProblem(StatedProblem):
-    """Spring balancing: springs with which a linkage needs as little drive as can be for what it weighs and carries.
+    """Spring balancing: springs that minimize the drive of a linkage under its weights and loads.
 
-    Rates, preloads and free lengths at given ends, and one open end of a zero-free-length spring, are the best there
-    are, with a proven bound; so are both ends of such springs where the bound is reached. Ends of other springs are
-    searched for. Where springs balance a linkage at rest exactly, the energy of all that it carries is constant.
+    Rates, preloads and free lengths at given ends, and one open end of a zero-free-length spring, are optimal with a
+    proven bound; so are both open ends of such springs if the bound is reached. Ends of other springs are searched. If
+    springs balance a linkage at rest exactly, the energy of all that it carries is constant.
     """
 
     model_config = ConfigDict(
@@ -133,29 +133,30 @@ class SpringBalancingProblem(StatedProblem):
     )
 
     kind: Literal["spring_balancing"]
-    mechanism: dict[str, Any] = Field(description="A linkage, as in `POST /v1/analyses`.")
+    mechanism: dict[str, Any] = Field(description="Linkage, as in `POST /v1/analyses`.")
     motion: Holding = Field(
         default=Holding(),
-        description="By default a full turn, of a driven slider from toggle to toggle; without a speed at rest.",
+        description="Motion; by default a full turn, or for a driven slider from toggle to toggle; at rest without a "
+        "speed.",
     )
-    dynamics: DynamicsBlock = Field(description="What it weighs and carries, as in `POST /v1/analyses`.")
-    springs: list[SoughtSpring] = Field(min_length=1, max_length=6, description="The springs that are sought.")
+    dynamics: DynamicsBlock = Field(description="Masses and loads of the linkage, as in `POST /v1/analyses`.")
+    springs: list[SoughtSpring] = Field(min_length=1, max_length=6, description="The springs to be found.")
     norm: Literal["max", "rms"] = Field(
         default="max",
-        description="Whether the peak of the drive over the motion is made least, or the root of its mean square.",
+        description="Whether the peak of the drive over the motion is minimized, or its root mean square.",
     )
 
     @property
     def force_units(self) -> Literal["si", "consistent"]:
-        """Forces are in these units."""
+        """Unit system of the forces."""
         return self.dynamics.units
 
     def contradictions(self) -> list[Contradiction]:
-        """What is wrong with the linkage and what it carries, and with where springs are to hold."""
+        """Return errors in the linkage and its loads, and in the places of the springs' ends."""
         if self.dynamics.friction is not None:
-            detail = "the best springs are known without friction only; leave it out"
+            detail = "the best springs can only be computed without friction; omit it"
             return [Contradiction("/dynamics/friction", detail)]
-        # It brings the analysis core, for which the parsing of problems does not wait.
+        # Imported here because it loads the analysis core, which parsing a problem should not wait for.
         from synthesis.kinds.spring_balancing.faults import spring_faults
 
         faults = self.motion.faults() or spring_faults(

@@ -1,10 +1,10 @@
-"""The best parameters of springs at given corners: a convex program, with a bound that no others go below.
+"""The best parameters of springs at given corners: a convex program, with a lower bound for all parameters.
 
-The drive is linear in the parameters, so that its peak over positions is made least by a linear program, and the root
-of its mean square by a second-order cone. Peaks are taken on a few positions of the grid, to which those are added at
-which the answer exceeds what it was promised; as positions make a program only harder, its dual value bounds all. Where
-nothing is left but rounding, the balance is exact: the parameters are then found again by linear algebra, and of all
-exact ones those of the least rates.
+The drive is linear in the parameters, so that its peak over positions is minimized by a linear program, and its root
+mean square by a second-order cone. Peaks are taken on a few positions of the grid, to which those are added at
+which the answer exceeds the promised value; as further positions only raise the optimum, its dual value bounds all. If
+only rounding remains, the balance is exact: the parameters are then recomputed by linear algebra, and the exact
+ones with the smallest rates are chosen.
 """
 
 from __future__ import annotations
@@ -24,38 +24,38 @@ Real = NDArray[np.float64]
 Norm = Literal["max", "rms"]
 
 FIRST, MOST_ADDED = 72, 6
-"""Positions that the program begins with, and peaks beyond its promise that are added at once."""
+"""Number of positions of the first program, and of peaks above the promised value that are added at once."""
 
 ROUNDS = 12
-"""Programs that are solved at most."""
+"""Maximum number of programs solved."""
 
 CLOSE = 1e-5
 """Share of the value by which the grid may exceed the program when nothing more is added."""
 
 TOLERANCE = 1e-7
-"""Share of the unbalanced drive and of the dual value by which the bound is less than this: the solver's tolerance."""
+"""Share of the unbalanced drive and of the dual value by which the bound is reduced: the solver's tolerance."""
 
 OPEN = 3.0 * TOLERANCE
-"""Difference of value and bound that the solver's tolerance leaves: near an exact balance no share of the value."""
+"""Difference of value and bound within the solver's tolerance: near an exact balance it is no share of the value."""
 
 NEARLY = 1e-4
-"""Value from which on an exact balance is looked for."""
+"""Value below which an exact balance is tried."""
 
 EXACT = 1e-10
-"""Share of the unbalanced drive that is left by rounding."""
+"""Share of the unbalanced drive that is attributed to rounding."""
 
 INDEPENDENT = 1e-10
-"""Singular value, as a share of the largest, below which parameters do the same."""
+"""Singular value, as a share of the largest, below which parameters are dependent."""
 
 FAR = 1e7
-"""Limit in effects of what is to be balanced beyond which it is none."""
+"""Limit, in units of the unbalanced drive, above which it cannot bind."""
 
 KEPT = 1e-9
-"""Share of a limit by which parameters may be beyond it: rounding."""
+"""Share of a limit by which parameters may exceed it by rounding."""
 
 
 class Best(NamedTuple):
-    """Parameters, the value that they reach on the grid, and the bound; infeasible where no parameters keep the limits.
+    """Parameters, their value on the grid, and the bound; infeasible if no parameters keep the limits.
 
     Values are shares of the drive without springs, in the norm.
     """
@@ -67,10 +67,11 @@ class Best(NamedTuple):
 
 
 NOTHING = Best("failed", [], np.inf, 0.0)
+"""Result without parameters."""
 
 
 class _Scaled(NamedTuple):
-    """The whole program in units in which each parameter changes the drive by as much as is to be balanced."""
+    """The whole program in units in which each parameter changes the drive by as much as the unbalanced drive."""
 
     fixed: Real
     drive: Real
@@ -81,33 +82,34 @@ class _Scaled(NamedTuple):
     cones: list[tuple[slice, Effects]]
 
     def left(self, x: Real) -> Real:
-        """The drive with the springs, (N,)."""
+        """Return the drive with the springs, (N,)."""
         return np.asarray(self.fixed + x @ self.drive)
 
 
 def size_of(values: Real, norm: Norm) -> float:
-    """The norm of a drive over positions."""
+    """Compute the norm of a drive over positions."""
     return float(np.abs(values).max()) if norm == "max" else float(np.sqrt((values**2).mean()))
 
 
 def left_open(value: float, share: float) -> float:
-    """How far the bound of a proved optimum may be below the value: a share of it, or what the solver leaves."""
+    """Return the permitted gap of a proven optimum: a share of the value, or the solver's tolerance."""
     return max(share * value, OPEN)
 
 
 def best(fixed: Real, effects: Sequence[Effects], norm: Norm, *, bounded: bool = True) -> Best:
-    """The best parameters of springs, with the bound.
+    """Find the best parameters of springs, with the bound.
 
     Parameters
     ----------
     fixed : float, shape (N,)
         The drive without springs.
     effects : sequence of Effects
-        Of each spring.
+        Effects of each spring.
     norm : {"max", "rms"}
     bounded : bool
-        Whether the exact and the least stiff of the best are wanted too; otherwise the value alone.
+        Whether the exact parameters and the softest of the best are also computed; otherwise the value alone.
     """
+    # The unbalanced drive is the unit of all values.
     whole = size_of(fixed, norm)
     if not whole > 0.0:
         return NOTHING
@@ -115,12 +117,14 @@ def best(fixed: Real, effects: Sequence[Effects], norm: Norm, *, bounded: bool =
     used = np.unique(np.linspace(0, len(fixed) - 1, FIRST).astype(int)).tolist()
     held = list(used)
     bound, value, x = 0.0, np.inf, None
+    # Without a need for the bound three rounds locate the optimum well enough.
     for _ in range(ROUNDS if bounded else 3):
         found = _solved(scaled, norm, used, held, None)
         if found.status == "infeasible":
             return Best("infeasible", [], np.inf, np.inf)
         if found.status != "solved":
             break
+        # More positions only raise the optimum, so the best of all dual values is valid.
         bound = max(bound, found.dual - TOLERANCE * (1.0 + abs(found.dual)))
         mine = found.x[:-1]
         left = scaled.left(mine)
@@ -164,14 +168,14 @@ def _scaled(fixed: Real, effects: Sequence[Effects], whole: float) -> _Scaled:
 
 
 def _in_rates(part: Effects, units: Real) -> Real:
-    """What parameters cost as rates: of each spring the one of the most effect by its unit costs 1."""
+    """Return the cost of parameters as rates: for each spring the parameter of most effect per unit costs 1."""
     rated = part.stiff > 0.0
     least_unit = float(units[rated].min(initial=np.inf))
     return np.asarray(np.where(rated, part.stiff * units / least_unit, 0.0))
 
 
 def _solved(scaled: _Scaled, norm: Norm, used: list[int], held: list[int], most: float | None) -> Solution:
-    """The program on positions; with ``most`` the least rates that leave no more than that."""
+    """Solve the program on positions; with ``most``, minimize the rates that leave at most that value."""
     count = len(scaled.units)
     rows = [*_linear(scaled), *_lengths(scaled, held)]
     if norm == "max":
@@ -198,7 +202,7 @@ def _solved(scaled: _Scaled, norm: Norm, used: list[int], held: list[int], most:
 
 
 def _linear(scaled: _Scaled) -> list[Rows]:
-    """Limits of the parameters; two that meet are an equation."""
+    """Build the limits of the parameters; two opposite ones form an equation."""
     matrix = np.concatenate([scaled.rows, np.zeros((len(scaled.rows), 1))], axis=1)
     paired, second = np.zeros(len(matrix), bool), np.zeros(len(matrix), bool)
     for n in range(len(matrix) - 1):
@@ -214,7 +218,7 @@ def _linear(scaled: _Scaled) -> list[Rows]:
 
 
 def _lengths(scaled: _Scaled, held: list[int]) -> list[Rows]:
-    """Lengths and forces of springs whose end is sought: |Σ μ s| ≤ L Σ μ and |Σ μ s| ≤ F at positions."""
+    """Build length and force limits of springs with an open end: |Σ μ s| ≤ L Σ μ and |Σ μ s| ≤ F at positions."""
     rows, count = [], len(scaled.units)
     for own, part in scaled.cones:
         assert part.spans is not None
@@ -228,14 +232,14 @@ def _lengths(scaled: _Scaled, held: list[int]) -> list[Rows]:
                 matrix[0::3, own] = -scaled.units[own]
             else:
                 offset[0::3] = 1.0
-            # All rows of a cone in the unit of its largest entry.
+            # All rows of a cone are scaled by its largest entry.
             unit = max(float(np.abs(matrix).max()), float(offset.max()), 1e-300)
             rows.append(Rows("second_order", matrix / unit, offset / unit, 3))
     return rows
 
 
 def _excess(scaled: _Scaled, x: Real) -> list[Real]:
-    """By how much of their limits lengths and forces of springs with a sought end are beyond them, by positions."""
+    """Compute the relative excess of lengths and forces of springs with an open end over their limits, by position."""
     found = []
     for own, part in scaled.cones:
         assert part.spans is not None
@@ -254,7 +258,7 @@ def _beyond(scaled: _Scaled, x: Real) -> float:
 
 
 def _hold(scaled: _Scaled, x: Real, held: list[int]) -> bool:
-    """Add the positions at which lengths and forces are beyond their limits the most."""
+    """Add the positions at which lengths and forces exceed their limits most; return whether any were added."""
     grown = False
     for part in _excess(scaled, x):
         at = int(np.argmax(part))
@@ -265,7 +269,7 @@ def _hold(scaled: _Scaled, x: Real, held: list[int]) -> bool:
 
 
 def _add(left: Real, promised: float, used: list[int]) -> bool:
-    """Add the positions of the highest peaks beyond what the program has promised."""
+    """Add the positions of the highest peaks above the promised value; return whether any were added."""
     grown = False
     high = left > promised * (1.0 + 0.1 * CLOSE) + 1e-12
     peaks = np.flatnonzero((left >= np.roll(left, 1)) & (left >= np.roll(left, -1)) & high)
@@ -277,7 +281,7 @@ def _add(left: Real, promised: float, used: list[int]) -> bool:
 
 
 def _finished(scaled: _Scaled, norm: Norm, used: list[int], held: list[int], x: Real, value: float) -> Real:
-    """The exact parameters where there are such, and of all that are as good those of the least rates."""
+    """Replace the parameters by exact ones if possible, otherwise by equally good ones of minimum rates."""
     if value <= NEARLY:
         exact = _exact(scaled, x)
         if exact is not None:
@@ -292,14 +296,16 @@ def _finished(scaled: _Scaled, norm: Norm, used: list[int], held: list[int], x: 
 
 
 def _exact(scaled: _Scaled, x: Real) -> Real | None:
-    """Parameters near some that leave nothing but rounding; None where there are none within the limits."""
+    """Find parameters near ``x`` that leave only rounding; None if there are none within the limits."""
     _, values, by = np.linalg.svd(np.linalg.qr(scaled.drive.T, mode="r"), full_matrices=True)
     rank = int((values > INDEPENDENT * values[0]).sum())
     nearer = x
     for _ in range(2):
+        # The second pass removes the rounding of the first.
         nearer = nearer - np.linalg.lstsq(scaled.drive.T, scaled.left(nearer), rcond=INDEPENDENT)[0]
     if np.abs(scaled.left(nearer)).max() > EXACT:
         return None
+    # Directions that do not change the drive: move along them to the smallest rates.
     same = by[rank:]
     if scaled.cones or not len(same):
         return nearer if _within(scaled, nearer) else None

@@ -1,8 +1,8 @@
-"""Springs with open ends of which the program is not convex: a search from many places, without proof.
+"""Springs with open ends whose program is not convex: a search from many places, without proof.
 
-At given ends the program has its optimum. From the best of many places the ends are moved by sequential programs: what
-a small way towards each corner of an area does to the drive, and to the limits, is added to the program as a further
-parameter, within a trust region that shrinks where a step is no gain.
+At given ends the program has its optimum. From the best of many places the ends are moved by sequential programs: the
+effect of a small step towards each corner of an area on the drive and on the limits is added to the program as a
+further parameter, within a trust region that shrinks if a step is no gain.
 """
 
 from __future__ import annotations
@@ -22,36 +22,36 @@ Real = NDArray[np.float64]
 Complex = NDArray[np.complex128]
 
 POSITIONS = 120
-"""Positions of the motion that the search looks at."""
+"""Number of positions of the motion used by the search."""
 
 STARTS, REFINED = 40, 6
-"""Places that are tried, and the best of them that are moved from."""
+"""Number of places that are tried, and of the best of them that are refined."""
 
 STEPS = 24
-"""Steps from a place at most."""
+"""Maximum number of steps from a place."""
 
 WIDEST, NARROWEST = 0.4, 1e-5
-"""Shares of the way to the corners that a step may go: at first, and where it ends."""
+"""Maximum step as a share of the distance to the corners, and minimum at which the refinement ends."""
 
 NUDGE = 1e-6
-"""Share of the way to a corner by which derivatives are taken."""
+"""Share of the distance to a corner by which derivatives are taken."""
 
 GAIN = 1e-7
-"""Share of the value that a step must gain."""
+"""Minimum relative gain of a step."""
 
 ALIKE = 0.02
-"""Share of the linkage's size, and of a rate, within which springs are the same."""
+"""Share of the linkage's size, and of a rate, within which springs are duplicates."""
 
 
 class Tried(NamedTuple):
-    """Places of the ends that are searched for, and the best parameters there."""
+    """Places of the searched ends, and the best parameters there."""
 
     points: tuple[complex, ...]
     best: Best
 
 
 class Search:
-    """The search among the places of some ends of the springs of a problem."""
+    """The search for the places of some ends of a problem's springs."""
 
     def __init__(self, setting: Setting) -> None:
         self.setting, self.few = setting, setting.thinned(POSITIONS)
@@ -60,27 +60,28 @@ class Search:
         self.moved = [
             (n, k)
             for n, spring in enumerate(springs)
+            # Of a superposable spring one searched end suffices: the other is then convex.
             for k in ([0] if spring.superposed else [0, 1])
             if spring.ends is not None and not spring.convex and len(self.areas[n][k]) > 1
         ]
 
     def places(self, points: Sequence[complex]) -> Places:
-        """The corners of all ends, with those that are searched for at points."""
+        """Return the corners of all ends, with the searched ones at given points."""
         places = [list(ends) for ends in self.areas]
         for (n, k), at in zip(self.moved, points, strict=True):
             places[n][k] = np.array([at])
         return places
 
     def tried(self, points: Sequence[complex]) -> Tried:
-        """The best parameters at places."""
+        """Find the best parameters at places."""
         return Tried(tuple(points), solved_at(self.few, self.places(points), bounded=False))
 
     def drawn(self, rng: np.random.Generator) -> tuple[complex, ...]:
-        """Places at random in the areas."""
+        """Sample random places in the areas."""
         return tuple(complex(rng.dirichlet(np.ones(len(self.areas[n][k]))) @ self.areas[n][k]) for n, k in self.moved)
 
     def refined(self, start: Tried) -> Tried:
-        """The best places near some."""
+        """Find the best places near a start."""
         at, way = start, WIDEST
         for _ in range(STEPS):
             if way < NARROWEST or at.best.value <= EXACT:
@@ -98,12 +99,13 @@ class Search:
         return [effects_of(self.few, spring, ends) for spring, ends in zip(springs, self.places(points), strict=True)]
 
     def _stepped(self, at: Tried, way: float) -> tuple[complex, ...] | None:
-        """Places a step further, by the program with the ways to the corners as parameters."""
+        """Return places a step further, from the program with the steps towards the corners as parameters."""
         here = self._effects(at.points)
         drives, rows, corners = [], [], []
         for m, (n, k) in enumerate(self.moved):
             for corner in self.areas[n][k]:
                 moved = [*at.points]
+                # One-sided difference towards a corner, so that the point stays inside the area.
                 moved[m] += NUDGE * (complex(corner) - moved[m])
                 there = self._effects(moved)[n]
                 own = at.best.parameters[n]
@@ -125,7 +127,7 @@ class Search:
 
     @staticmethod
     def _joined(here: Sequence[Effects], drives: Real, shifts: Real, ends: list[int], way: float) -> Effects:
-        """All springs and the ways of their ends as one."""
+        """Join all springs and the steps of their ends to one set of effects."""
         count, more = sum(len(part.drive) for part in here), len(ends)
         rows, at = np.zeros((len(shifts), count + more)), 0
         first = 0
@@ -134,6 +136,7 @@ class Search:
             first, at = first + len(part.rows), at + len(part.drive)
         rows[:, count:] = shifts
         ways = np.zeros((more + max(ends) + 1, count + more))
+        # Steps are non-negative, and those of one end add up to at most the trust region.
         ways[:more, count:] = -np.eye(more)
         for column, end in enumerate(ends):
             ways[more + end, count + column] = 1.0
@@ -144,7 +147,7 @@ class Search:
 
 
 def searched(setting: Setting, report: Callable[[float], None]) -> list[list[Spring]]:
-    """Springs by their value, the least first, and different ones."""
+    """Search for springs; return distinct ones, sorted by value."""
     search = Search(setting)
     rng = np.random.default_rng(setting.problem.seed)
     middle = tuple(complex(search.areas[n][k].mean()) for n, k in search.moved)
@@ -159,6 +162,7 @@ def searched(setting: Setting, report: Callable[[float], None]) -> list[list[Spr
             springs = springs_of(setting, places, last.parameters)
             found.append((value_of(setting, springs), springs))
         report(0.3 + 0.7 * (n + 1) / REFINED)
+    # Several starts often converge to the same springs.
     different: list[list[Spring]] = []
     for _, springs in sorted(found, key=lambda one: one[0]):
         if not any(_alike(setting, springs, other) for other in different):

@@ -1,4 +1,4 @@
-"""Spring balancing: the best springs by programs or by search, each verified by driving what is answered."""
+"""Spring balancing: the best springs by programs or by search, each verified by driving the answer."""
 
 from __future__ import annotations
 
@@ -14,10 +14,10 @@ from synthesis.model.kind import Progress, part_of
 from synthesis.outcome.sifting import Sifting
 
 LEAST_POSITIONS = 5
-"""Positions at which the forces must be known for the motion to be one."""
+"""Minimum number of positions with known forces for a motion to count."""
 
 NOTHING = 1e-12
-"""Drive as a share of the magnitudes of its parts that is nothing: rounding."""
+"""Drive as a share of the magnitudes of its parts that counts as zero: rounding."""
 
 
 def solve_spring_balancing(problem: SpringBalancingProblem, progress: Progress) -> SpringBalancingResult:
@@ -26,7 +26,7 @@ def solve_spring_balancing(problem: SpringBalancingProblem, progress: Progress) 
     Returns
     -------
     SpringBalancingResult
-        Complete where the springs are proved to be the best, or that there are none.
+        Complete if the springs are proven to be the best, or none exist.
     """
     progress(0.0, "measuring the linkage")
     setting = Setting(problem)
@@ -34,7 +34,7 @@ def solve_spring_balancing(problem: SpringBalancingProblem, progress: Progress) 
     if len(setting.at) < LEAST_POSITIONS:
         return _answer(sifting, "exact", "The mechanism cannot be held over this motion.", complete=False)
     if not setting.peak > NOTHING * setting.parts:
-        text = "The drive is zero without springs: nothing is to be balanced."
+        text = "The drive is zero without springs; there is nothing to balance."
         return _answer(sifting, "exact", text, complete=True)
     report = part_of(progress, 0.1, 0.8)
     places = [setting.places(spring) for spring in problem.springs]
@@ -42,7 +42,7 @@ def solve_spring_balancing(problem: SpringBalancingProblem, progress: Progress) 
         method = "convex" if all(spring.convex for spring in problem.springs) else "branch_and_bound"
         best = branched(setting, places, partial(_reported, report))
         if best.status == "infeasible":
-            text = "None exists: no springs that are asked for keep their limits over this motion."
+            text = "None exists: no such springs keep their limits over this motion."
             return _answer(sifting, method, text, complete=True)
         found, bound, proved = [best.springs] if best.status == "solved" else [], best.bound, best.proved
     else:
@@ -71,13 +71,13 @@ def _answer(sifting: Sifting[SprungDesign], method: str, summary: str, *, comple
 
 def _summary(sifting: Sifting[SprungDesign], proved: bool) -> str:
     if not sifting.passed:
-        return f"No design was found.{sifting.reasons()}"
+        return f"No design found.{sifting.reasons()}"
     metrics = min(sifting.passed, key=lambda design: design.metrics.value).metrics
     if metrics.exact:
         energy = "" if metrics.energy_variation is None else " and the potential energy constant"
-        return f"The springs balance it exactly: the drive is zero{energy} over the motion."
-    said = f"The drive is brought to {metrics.value:.4g} of what it was"
+        return f"The springs balance the linkage exactly: the drive is zero{energy} over the motion."
+    said = f"The springs reduce the drive to {metrics.value:.4g} of its unbalanced value"
     if metrics.bound is None:
-        return f"{said}, the least that was found; that no springs leave less is not proved."
-    known = f"no springs that are asked for bring it below {metrics.bound:.4g}"
-    return f"{said}; {known}." if proved else f"{said}; {known}, and what lies between is open."
+        return f"{said}. This is the best found, not a proven minimum."
+    known = f"no such springs reduce it below {metrics.bound:.4g}"
+    return f"{said}; {known}." if proved else f"{said}; {known}. The values in between are undecided."

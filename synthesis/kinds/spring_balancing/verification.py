@@ -1,8 +1,8 @@
-"""The proof of springs: the answer driven over the grid, and its drive from the reactions of all joints.
+"""Verification of springs: drive the answer over the grid, and compute its drive from all joint reactions.
 
-Mechanism and block are read from the answer as ``POST /v1/analyses`` would read them, springs and all; the programs had
-the springs' share from lengths and their rates. Where the balance is exact the potential energy is constant, a third
-route without a force in it.
+Mechanism and block are read from the answer as ``POST /v1/analyses`` would read them, including springs, while the
+programs computed the springs' share from lengths and their rates. If the balance is exact, the potential energy is
+constant, a third route without any force.
 """
 
 from __future__ import annotations
@@ -39,29 +39,29 @@ Real = NDArray[np.float64]
 Complex = NDArray[np.complex128]
 
 GAP = 5e-3
-"""Share of the value that a proved bound may be below it; near an exact balance it is the solver's tolerance."""
+"""Maximum share of the value by which a proven bound may be below it; near an exact balance the solver's tolerance."""
 
 AGREEMENT = 1e-6
 """Share of the peak by which two routes to the drive may differ."""
 
 VANISHES = 1e-9
-"""Drive, and variation of the potential energy, as a share of what they were, that is nothing."""
+"""Share of the unbalanced drive, and of its energy variation, that counts as zero."""
 
 ROUNDING = 1e-14
-"""Share of the greatest part of the energy that a sum of them may be off."""
+"""Share of the greatest part of the energy by which a sum of the parts may be off."""
 
 KEPT = 1e-4
-"""Share of a limit by which a spring may be beyond it between the positions that the program has looked at."""
+"""Share of a limit by which a spring may exceed it between the positions of the program."""
 
 STILL = ("rate", "free_length", "preload")
-"""Limits of what a spring is at all positions; these are kept but for rounding."""
+"""Limits that do not depend on the position; these are kept to rounding."""
 
 SLENDER = 4.0
-"""Free length over diameter from which a compression spring buckles."""
+"""Free length over diameter above which a compression spring buckles."""
 
 
 class Held(NamedTuple):
-    """A machine over the grid: where all is known, the reactions, the drive by energy, and the places."""
+    """A machine over the grid: the known positions, the reactions, the drive by energy, and the places."""
 
     known: NDArray[np.bool_]
     found: Reactions
@@ -70,16 +70,16 @@ class Held(NamedTuple):
 
     @property
     def drive(self) -> Real:
-        """The drive of the reactions where it is known."""
+        """The drive from the reactions at the known positions."""
         return np.asarray(self.found.drive[self.known])
 
 
 def verify_springs(
     setting: Setting, springs: Sequence[Spring], bound: float | None, *, proved: bool
 ) -> SprungDesign | str:
-    """A linkage with its springs, measured; the reason where no machine can be made of the answer.
+    """Measure a linkage with its springs; return the reason if no machine can be built from the answer.
 
-    ``bound`` is what no springs go below, where that is known, and ``proved`` tells whether it is reached.
+    ``bound`` is the lower bound for all springs, if known, and ``proved`` is true if it is reached.
     """
     problem, task = setting.problem, setting.task
     answer, block = answer_of(setting, springs)
@@ -91,6 +91,7 @@ def verify_springs(
     before, after = (_held(setting, one, grid) for one in (task.machine, machine))
     if not after.known.any() or not np.array_equal(after.known, before.known):
         return "spring_without_direction"
+    # The value is measured on the reactions, not taken from the program.
     first, last = size_of(before.drive, problem.norm), size_of(after.drive, problem.norm)
     peaks = [float(np.abs(one.drive).max()) for one in (before, after)]
     value = last / first
@@ -134,7 +135,7 @@ def verify_springs(
 
 
 def answer_of(setting: Setting, springs: Sequence[Spring]) -> tuple[SprungLinkage, dict[str, Any]]:
-    """Mechanism and block of an answer."""
+    """Build mechanism and block of an answer."""
     stated = setting.problem.dynamics.model_dump(mode="json", by_alias=True, exclude_defaults=True)
     block = {**stated, "springs": [*stated.get("springs", []), *listed(setting, springs)]}
     skeleton = Skeleton.model_validate(skeleton_of(setting.task.machine.mechanism))
@@ -142,7 +143,7 @@ def answer_of(setting: Setting, springs: Sequence[Spring]) -> tuple[SprungLinkag
 
 
 def machine_of_answer(problem: SpringBalancingProblem, mechanism: SprungLinkage, block: dict[str, Any]) -> Machine:
-    """The machine that mechanism and block of an answer make, read as an analysis reads them.
+    """Build the machine of an answer's mechanism and block, read like in an analysis.
 
     Raises
     ------
@@ -161,7 +162,7 @@ def _held(setting: Setting, machine: Machine, grid: Real) -> Held:
 
 
 def _variation(setting: Setting, machine: Machine, before: Held, after: Held, block: DynamicsBlock) -> float | None:
-    """The range of the potential energy over what it was; None where there is none, or the motion has gaps."""
+    """Measure the range of the potential energy as a share of the unbalanced one; None without one, or with gaps."""
     stated = setting.problem.dynamics
     if setting.task.speed != 0.0 or setting.task.acceleration != 0.0 or not has_potential(stated):
         return None
@@ -174,7 +175,7 @@ def _variation(setting: Setting, machine: Machine, before: Held, after: Held, bl
 
 
 def _told(setting: Setting, spring: Spring, load: Any, after: Held) -> FoundSpring:
-    """A spring in the units of the answer, measured over the motion."""
+    """Describe a spring in the units of the answer, measured over the motion."""
     scale, stated = setting.task.machine.scale, setting.problem.springs[spring.number]
     if isinstance(load, TorsionSpring):
         torque = load.rate * (load.rotation(after.now)[after.known] - load.free)
@@ -203,20 +204,21 @@ def _told(setting: Setting, spring: Spring, load: Any, after: Held) -> FoundSpri
 
 
 def _present(problem: SpringBalancingProblem, told: Sequence[FoundSpring]) -> list[Check]:
-    """How many of the springs that may not be left out are missing."""
+    """Check that no required spring is missing."""
     demanded = {n for n, spring in enumerate(problem.springs) if spring.demanded}
     missing = demanded - {spring.number for spring in told}
     return [tolerated("demanded_springs", float(len(missing)), 0.0)] if demanded else []
 
 
 def _limits(problem: SpringBalancingProblem, told: Sequence[FoundSpring]) -> list[Check]:
-    """Every sort of limit that is stated, each as the largest share of it that a spring takes.
+    """Check every given limit, each by the largest share of it that a spring uses.
 
-    Free angles may be of either sign; how far the farthest is outside of its limits is told in radians.
+    Free angles may have either sign; the greatest excess over their limits is reported in radians.
     """
     shares: dict[str, list[float]] = {}
     outside_of: list[float] = []
 
+    # A share above 1 exceeds the limit.
     def most(name: str, value: float | None, limit: float | None) -> None:
         if value is not None and limit is not None:
             shares.setdefault(name, []).append(value / limit if limit > 0.0 else np.inf if value > 0.0 else 0.0)
@@ -230,6 +232,7 @@ def _limits(problem: SpringBalancingProblem, told: Sequence[FoundSpring]) -> lis
         low, high = asked.rates
         least("rate", spring.rate if asked.links is None else spring.torsion, low)
         most("rate", spring.rate if asked.links is None else spring.torsion, high)
+        # Torsion springs have angles and torques instead of lengths and forces.
         if asked.links is not None:
             assert spring.free_angle is not None
             lowest, highest = asked.free_angles
@@ -244,11 +247,14 @@ def _limits(problem: SpringBalancingProblem, told: Sequence[FoundSpring]) -> lis
         least("min_length", spring.min_length, asked.min_length)
         most("max_length", spring.max_length, asked.max_length)
         most("max_force", spring.max_force, asked.max_force)
+        # Deflection counts in both directions from the free length.
         free = spring.free_length or 0.0
         longest, shortest = spring.max_length or 0.0, spring.min_length or 0.0
         most("max_deflection", max(longest - free, free - shortest), asked.max_deflection)
+        # An extension spring must never be shorter than its free length.
         if asked.form == "extension" and free > 0.0:
             least("extension", shortest, free)
+        # A compression spring must never be longer than its free length.
         if asked.form == "compression":
             most("compression", longest, free)
     checks = [
@@ -259,7 +265,7 @@ def _limits(problem: SpringBalancingProblem, told: Sequence[FoundSpring]) -> lis
 
 
 def _places(setting: Setting, springs: Sequence[Spring]) -> list[Check]:
-    """How far ends are outside of where they may be, as a share of the linkage's size."""
+    """Check the greatest distance of ends from their permitted areas, as a share of the linkage's size."""
     off = [
         outside(corners, end) / setting.size
         for spring in springs
@@ -274,20 +280,22 @@ def _asked(setting: Setting, spring: Spring) -> SoughtSpring:
 
 
 def outside(corners: Complex, place: complex) -> float:
-    """How far a place is outside of the convex area between corners in order, counter-clockwise; of a line, from it."""
+    """Measure the distance of a place from the convex area of corners in counter-clockwise order, or from a line."""
+    # Project the place onto each edge and keep within the edge.
     ways = np.roll(corners, -1) - corners
     reached = ((place - corners) * ways.conj()).real / np.abs(ways) ** 2
     nearest = corners + np.clip(reached, 0.0, 1.0) * ways
+    # Inside if the place is to the left of every edge.
     inside = len(corners) > 2 and bool((((place - corners) * ways.conj()).imag >= 0.0).all())
     return 0.0 if inside else float(np.abs(place - nearest).min())
 
 
 def _gaps(before: Held) -> list[str]:
-    """Where the linkage cannot be held."""
+    """Describe the positions at which the linkage cannot be held."""
     known, count = int(before.known.sum()), len(before.known)
     if known == count:
         return []
-    return [f"motion: the drive is known at {known} of {count} positions; at the others nothing is said"]
+    return [f"motion: the drive is known at {known} of {count} positions; the others are not assessed"]
 
 
 def _warnings(problem: SpringBalancingProblem, told: Sequence[FoundSpring]) -> list[str]:
@@ -296,5 +304,5 @@ def _warnings(problem: SpringBalancingProblem, told: Sequence[FoundSpring]) -> l
         diameter = problem.springs[spring.number].diameter
         if diameter is not None and (spring.free_length or 0.0) > SLENDER * diameter:
             slender = (spring.free_length or 0.0) / diameter
-            said.append(f"springs/{spring.number}: {slender:.3g} times as long as wide; guide it, or it buckles")
+            said.append(f"springs/{spring.number}: {slender:.3g} times as long as wide; it buckles unless it is guided")
     return said

@@ -10,7 +10,7 @@ from synthesis.model.kind import Kind, Progress
 __all__ = ["KIND"]
 
 FEW = 5_000_000
-"""Series of trains of a unit each that are gone through in a fraction of a second."""
+"""Number of series of trains that are searched in a fraction of a second."""
 
 
 def _solve(problem: TrainSeriesProblem, progress: Progress) -> TrainSeriesResult:
@@ -20,7 +20,7 @@ def _solve(problem: TrainSeriesProblem, progress: Progress) -> TrainSeriesResult
 
 
 def _brief(problem: TrainSeriesProblem) -> bool:
-    """Series of few trains are all looked at in no time."""
+    """Return whether the search is instant: the series are few."""
     return problem.combinations <= FEW
 
 

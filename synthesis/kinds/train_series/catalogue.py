@@ -1,7 +1,7 @@
-"""All trains that a unit can be, in the order of their ratios.
+"""All trains that a unit can be, sorted by ratio.
 
-Trains of one ratio and one number of teeth make an *entry*: the search tells them apart by nothing else, and only what
-is returned is made of the trains themselves.
+Trains of one ratio and one number of teeth make an *entry*: the search does not distinguish them, and only returned
+series are built from the trains themselves.
 """
 
 from __future__ import annotations
@@ -30,11 +30,11 @@ Whole = NDArray[np.int64]
 Real = NDArray[np.float64]
 
 GREATEST = 1e9
-"""Ratios of a unit beyond it, or below its inverse, are left out: no ratio may be stated that large."""
+"""Maximum ratio of a unit, and inverse of the minimum: no larger ratio may be requested."""
 
 
 class Batch(NamedTuple):
-    """Trains of a unit: their ratios over/under, the sums of their teeth, and what makes one of them, by its row."""
+    """Trains of a unit: their ratios over/under, the sums of their teeth, and the builder of one by its row."""
 
     over: Whole
     under: Whole
@@ -43,9 +43,9 @@ class Batch(NamedTuple):
 
 
 class Catalogue(NamedTuple):
-    """The entries of a unit, by rising ratio and number of teeth.
+    """The entries of a unit, sorted by ratio and number of teeth.
 
-    ``over``/``under`` are reduced, the sign with ``over``; ``value`` is the quotient. The trains of entry e are the
+    ``over``/``under`` are reduced, with the sign in ``over``; ``value`` is the quotient. The trains of entry e are the
     rows ``starts[e]`` to ``starts[e + 1]`` of ``trains``, pairs of batch and row.
     """
 
@@ -59,21 +59,21 @@ class Catalogue(NamedTuple):
 
     @property
     def counts(self) -> Whole:
-        """How many trains each entry has."""
+        """Number of trains of each entry."""
         return np.diff(self.starts)
 
     def ratio(self, entry: int) -> Fraction:
-        """Input speed over output speed, exact."""
+        """Return input speed over output speed, exact."""
         return Fraction(int(self.over[entry]), int(self.under[entry]))
 
     def train(self, row: int) -> Any:
-        """The mechanism of a row of ``trains``; None where an idler is needed and there is none."""
+        """Build the mechanism of a row of ``trains``; None if it needs an idler and there is none."""
         batch, at = self.trains[row]
         return self.batches[batch].made(int(at))
 
 
 def catalogue_of(unit: Any, length_unit: str) -> Catalogue:
-    """The trains of a consistent unit."""
+    """Build the catalogue of a consistent unit."""
     problem = problem_of(unit, Fraction(1), length_unit)
     batches = list(_ordinary(problem) if isinstance(problem, GearTrainProblem) else _planetary(problem))
     parts = [_reduced(batch, k) for k, batch in enumerate(batches)]
@@ -84,6 +84,7 @@ def catalogue_of(unit: Any, length_unit: str) -> Catalogue:
     order = np.lexsort((row, batch, under, over, total, value))
     over, under, total, batch, row = (column[order] for column in (over, under, total, batch, row))
     new = np.ones(len(over), np.bool_)
+    # Sorted neighbours with equal reduced ratio and teeth form one entry.
     new[1:] = (np.diff(over) != 0) | (np.diff(under) != 0) | (np.diff(total) != 0)
     firsts = np.flatnonzero(new)
     return Catalogue(
@@ -98,8 +99,9 @@ def catalogue_of(unit: Any, length_unit: str) -> Catalogue:
 
 
 def _reduced(batch: Batch, number: int) -> tuple[Whole, Whole, Whole, Whole, Whole]:
-    """What turns of a batch, its fractions reduced: over, under, total, the batch and the row."""
+    """Reduce the fractions of a batch, without locked trains: over, under, total, the batch and the row."""
     with np.errstate(divide="ignore", invalid="ignore"):
+        # Locked trains give 0/0 or x/0 and are dropped by the comparison.
         size = np.abs(batch.over / batch.under)
     row = np.flatnonzero((size <= GREATEST) & (size >= 1.0 / GREATEST))
     over, under = batch.over[row], batch.under[row]
@@ -126,9 +128,9 @@ def _ordinary(problem: GearTrainProblem) -> Iterator[Batch]:
         parts = (tuple(numbers[start : start + k]) for start in (0, MOST_STAGES, 2 * MOST_STAGES))
         return ordinary_mechanism(problem, task, Train(*parts))
 
-    # A stage turns the direction round; with an idler, which a stated direction may need, it does not.
+    # Every external stage reverses the direction; an idler, which a given direction may need, restores it.
     count = np.count_nonzero(every.rows[:, :MOST_STAGES], axis=1)
-    # Stages that are stated one by one turn as they do.
+    # Stages that are given one by one determine the direction themselves.
     wanted = problem.demanded_sign if problem.stages is None else sense_of(problem.stages)
     sign = np.where(count % 2, -1, 1) if wanted == 0 else np.full(len(count), wanted)
     yield Batch(sign * every.over, every.under, every.total, made)

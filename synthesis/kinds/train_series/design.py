@@ -1,4 +1,4 @@
-"""Trains in series as answers: the units, the ratio of all of them, and what was measured."""
+"""Trains in series as answers: the units, the overall ratio, and the measurements."""
 
 from __future__ import annotations
 
@@ -23,23 +23,23 @@ class TrainSeriesMechanism(Answer):
 
 
 class TrainSeriesMetrics(Answer):
-    """Measured properties of a series; those of its units have the unit's own input for 1."""
+    """Measured properties of a series; those of its units are relative to the unit's own input."""
 
     error: float = Field(description="Relative error of the ratio, with its sign.")
-    total_teeth: int = Field(description="Of one copy of every gear; idlers not counted.")
+    total_teeth: int = Field(description="Teeth of one copy of every gear, without idlers.")
     speeds: list[float] = Field(
-        description="Of the shafts where the input has 1: the input, between units, the output."
+        description="Speeds of the shafts relative to the input: the input, the shafts between units, the output."
     )
     efficiency: float | None = Field(
-        description="Of all units, with the stated efficiency of each mesh; null with ordinary gears, whose losses are "
-        "told by their analysis."
+        description="Efficiency of all units, with the given efficiency of each mesh; null with ordinary gears, whose "
+        "losses are reported by their analysis."
     )
-    self_locking: bool = Field(description="The input cannot drive the output, whatever its torque.")
+    self_locking: bool = Field(description="True if no input torque can drive the output.")
     units: list[PlanetaryMetrics | GearTrainMetrics]
 
 
 class TrainSeriesDesign(Answer):
-    """Trains in series with the proof of what they do."""
+    """Trains in series with their verification."""
 
     mechanism: TrainSeriesMechanism
     verification: Verification
@@ -47,7 +47,7 @@ class TrainSeriesDesign(Answer):
 
 
 class ParetoSeries(Answer):
-    """A series that none is both smaller and nearer than."""
+    """A series that no other series beats in both size and error."""
 
     total_teeth: int
     error: float = Field(description="Relative error of the ratio, with its sign.")
@@ -58,13 +58,13 @@ class ParetoSeries(Answer):
 class TrainSeriesSearch(Search):
     """The search of a finite set of series.
 
-    ``candidates`` are the series that stand out: the designs and those that verification refused. ``combinations`` is
+    ``candidates`` counts the designs and the series that verification refused. ``combinations`` is
     the number of series that the search covers, most of them by bounds.
     """
 
     combinations: int
-    ties: int = Field(description="Series whose error is exactly that of the nearest one, whatever their size.")
-    least_error: float | None = Field(description="Relative error of the nearest series; null where there is none.")
+    ties: int = Field(description="Number of series of any size whose error equals that of the nearest one.")
+    least_error: float | None = Field(description="Relative error of the nearest series; null if there is none.")
 
 
 class TrainSeriesResult(Result[TrainSeriesDesign]):
@@ -72,6 +72,6 @@ class TrainSeriesResult(Result[TrainSeriesDesign]):
 
     search: TrainSeriesSearch
     pareto: list[ParetoSeries] = Field(
-        description="The Pareto set of error against the number of teeth, smallest first, of the series within the "
-        "tolerance (within 1 % where none is stated)."
+        description="Pareto set of error against the number of teeth, smallest first, of the series within the "
+        "tolerance (within 1 % by default)."
     )

@@ -14,13 +14,13 @@ from synthesis.model.ratio_target import Target, decimal, parse_target
 from synthesis.model.statement import Contradiction, StatedProblem
 
 MOST_TRAINS = 50_000_000
-"""Trains of a planetary unit at most, by the tooth numbers that can be chosen freely; most of them are not sound."""
+"""Maximum number of trains of a planetary unit, by its independent tooth numbers; most of them are not sound."""
 
 MOST_ORDINARY = 5_000_000
-"""Trains of a unit of ordinary gears at most: all of them are held."""
+"""Maximum number of trains of a unit of ordinary gears: all of them are kept in memory."""
 
 MOST_HALF, LEAST_HALF = 2_000_000_000, 100_000_000
-"""Series of the units on the two sides of the search at most, counted as the trains are: minutes, at worst."""
+"""Maximum number of series of the units on the larger and on the smaller side of the search: minutes at worst."""
 
 SET: dict[str, Any] = {
     "type": "planetary_train",
@@ -36,8 +36,8 @@ SET: dict[str, Any] = {
 class TrainSeriesProblem(StatedProblem):
     """Trains in series: two to four trains, each driving the next, for a speed ratio; proven to be the best.
 
-    Every unit has its own demands and its own held member. All trains of all units are covered in exact arithmetic, so
-    that an empty answer is a proof.
+    Every unit has its own constraints and its own fixed member. All trains of all units are covered in exact
+    arithmetic, so that an empty answer is a proof.
     """
 
     model_config = ConfigDict(
@@ -64,28 +64,29 @@ class TrainSeriesProblem(StatedProblem):
         'number or an exact expression such as "127/50", "pi", "-sqrt(2)".'
     )
     units: Units = Field(
-        description="The trains, from the input on: statements of planetary_train or gear_train with `type` in place "
-        "of `kind`, without ratio, tolerance and ranking. Units that are stated alike may change places: of their "
-        "series the one is listed that has the larger ratio first."
+        description="The trains, from the input on: problems of planetary_train or gear_train with `type` in place "
+        "of `kind`, without ratio, tolerance and ranking. Equal units may change places: only the series with the "
+        "larger "
+        "ratio first is listed."
     )
     tolerance: Annotated[float, Field(strict=True, ge=0.0, lt=1.0)] | None = Field(
-        default=None, description="Largest relative error of the ratio. Left open: the best there is."
+        default=None, description="Maximum relative error of the ratio. Default: the best possible."
     )
     rank_by: Literal["error", "size"] = Field(
         default="error",
-        description="`error`: the nearest first, of equally near ones the smallest. `size`: of the series within the "
-        "tolerance the smallest first, of equally small ones the nearest. Size is the number of teeth of all units, of "
-        "one copy of every gear.",
+        description="`error`: the nearest first, and the smallest of equally near ones. `size`: the smallest series "
+        "within the tolerance first, and the nearest of equally small ones. Size is the number of teeth of all units, "
+        "with one copy of every gear.",
     )
 
     @property
     def sign(self) -> int:
-        """+1: input and output turn alike; −1: opposite."""
+        """Direction: +1 same, −1 opposite."""
         return parse_target(self.ratio)[0]
 
     @property
     def target(self) -> Target:
-        """Size of the demanded ratio, exact."""
+        """Magnitude of the requested ratio, exact."""
         return parse_target(self.ratio)[1]
 
     @property
@@ -95,16 +96,16 @@ class TrainSeriesProblem(StatedProblem):
 
     @property
     def alike(self) -> list[int]:
-        """For every unit the first that is stated like it."""
+        """For every unit the first unit that is equal to it."""
         return [self.units.index(unit) for unit in self.units]
 
     @property
     def combinations(self) -> int:
-        """About how many series there are, at most; of a consistent problem."""
+        """Estimated maximum number of series of a consistent problem."""
         return math.prod(trains_of(unit, self.length_unit) for unit in self.units)
 
     def contradictions(self) -> list[Contradiction]:
-        """Faults of the units, an order that needs a tolerance, and searches that would take hours."""
+        """Return errors of the units, a ranking that needs a tolerance, and searches that would take hours."""
         faults = [
             Contradiction(f"/units/{k}{fault.path}", fault.detail)
             for k, unit in enumerate(self.units)
@@ -119,23 +120,24 @@ class TrainSeriesProblem(StatedProblem):
         faults = []
         for k, (unit, count) in enumerate(zip(self.units, counts, strict=True)):
             most, way = (
-                (MOST_ORDINARY, "state its stages as units of their own")
+                (MOST_ORDINARY, "make its stages separate units")
                 if unit.type == "gear_train"
-                else (MOST_TRAINS, "state an arrangement and its members")
+                else (MOST_TRAINS, "give an arrangement and its members")
             )
             if count > most:
-                detail = f"about {count:.0e} trains are more than the {most:.0e} of a unit"
+                detail = f"about {count:.0e} trains exceed the limit of {most:.0e} per unit"
                 faults.append(Contradiction(f"/units/{k}/teeth", f"{detail}; narrow the tooth numbers, or {way}"))
+        # The search needs one split of the units with both sides within their limits.
         if not faults and not any(
             least <= LEAST_HALF and most <= MOST_HALF for least, most in map(sorted, _halves(counts))
         ):
-            detail = f"about {math.prod(counts):.0e} series are more than a search covers"
-            faults.append(Contradiction("/units", f"{detail}; narrow the tooth numbers, or state members"))
+            detail = f"about {math.prod(counts):.0e} series are too many for the search"
+            faults.append(Contradiction("/units", f"{detail}; narrow the tooth numbers, or give members"))
         return faults
 
 
 def _halves(counts: list[int]) -> list[tuple[int, int]]:
-    """The numbers of series of some units and of all others, for every choice of them."""
+    """List the numbers of series of some units and of the others, for every split."""
     n = len(counts)
     return [
         (

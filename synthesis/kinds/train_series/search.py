@@ -1,10 +1,10 @@
 """The search for the series nearest to a ratio, exhaustive by meeting in the middle.
 
-The ratio of a series is the product of those of its units. The products of some units stand in rising order; for every
+The ratio of a series is the product of those of its units. The products of some units are sorted; for every
 product p of the others, those that are near enough lie around T/p, where T is the target, and are found by bisection.
-Errors in double precision say which series may matter, a little wide; what they leave is ordered in exact arithmetic.
+Errors in double precision select the series that may matter, slightly widened; these are sorted in exact arithmetic.
 
-Units that are stated alike may change places: of their series the one counts whose entries do not rise.
+Equal units may change places: only the series whose entries do not rise counts.
 """
 
 from __future__ import annotations
@@ -24,20 +24,20 @@ from synthesis.model.ratio_target import Target
 from synthesis.outcome.exhaustive import pareto
 
 STORED = 1 << 21
-"""Products that are held in order at most; the others are gone through in blocks."""
+"""Maximum number of sorted products in memory; the others are processed in blocks."""
 
 BLOCK = 1 << 18
-"""Products that are looked up at once."""
+"""Number of products that are looked up at once."""
 
 MARGIN = 1e-13
 """Error by which a window is widened: the products of a few floats are off by some 1e-15 of themselves."""
 
 WIDER = 10.0
-"""By how much the window of errors grows from one step of the Pareto set to the next."""
+"""Growth factor of the window of errors from one step of the Pareto search to the next."""
 
 
 class Series(NamedTuple):
-    """A series by the entry of each unit, with what it is ranked by."""
+    """A series by the entry of each unit, with its ranking criteria."""
 
     entries: tuple[int, ...]
     ratio: Fraction
@@ -46,9 +46,9 @@ class Series(NamedTuple):
 
 @dataclass(frozen=True)
 class Found:
-    """What a search met: the best in the order of the ranking, the Pareto set, and how many are as near as the nearest.
+    """Result of a search: the best series in the order of the ranking, the Pareto set, and the number of ties.
 
-    ``nearest`` is the nearest of all, whatever the tolerance; None where no series turns the right way.
+    ``nearest`` is the nearest series of all, within the tolerance or not; None if no series has the direction.
     """
 
     best: list[Series]
@@ -58,7 +58,7 @@ class Found:
 
 
 class _Half(NamedTuple):
-    """Products of some units' ratios: their values, teeth, and the entry of each unit, a row a unit."""
+    """Products of some units' ratios: their values, teeth, and the entry of each unit, one row per unit."""
 
     value: Real
     total: Whole
@@ -72,9 +72,9 @@ class Search:
     ----------
     catalogues : sequence of Catalogue
     alike : sequence of int
-        For every unit the first that is stated like it.
+        For every unit the first unit that is equal to it.
     target : Target
-        Size of the demanded ratio.
+        Magnitude of the requested ratio.
     sign : int
         Its direction.
     """
@@ -82,13 +82,14 @@ class Search:
     def __init__(self, catalogues: Sequence[Catalogue], alike: Sequence[int], target: Target, sign: int) -> None:
         self._catalogues, self._alike = catalogues, alike
         self._target, self._sign = target, sign
+        # Number of orders of equal units in which one series can occur.
         self._swaps = math.prod(math.factorial(alike.count(first)) for first in set(alike))
         self._wanted = sign * float(target)
         self._near = cmp_to_key(target.nearer)
 
     @property
     def combinations(self) -> int:
-        """How many series there are; those that differ in the places of units that are stated alike are one."""
+        """Number of series; those that only differ in the places of equal units count once."""
         counts = [len(catalogue.trains) for catalogue in self._catalogues]
         return math.prod(
             math.comb(counts[first] + self._alike.count(first) - 1, self._alike.count(first))
@@ -96,9 +97,10 @@ class Search:
         )
 
     def found(self, tolerance: Fraction | None, near: Fraction, count: int, by_size: bool) -> Found:
-        """The ``count`` best series within the tolerance, and the Pareto set of those with errors up to ``near``."""
+        """Find the ``count`` best series within the tolerance, and the Pareto set with errors up to ``near``."""
         if any(len(catalogue.value) == 0 for catalogue in self._catalogues):
             return Found([], [], 0, None)
+        # First an error bound by bisection, then all series within it.
         limit = self._error_of_nearest(count)
         if limit is None:
             return Found([], [], 0, None)
@@ -113,7 +115,7 @@ class Search:
         return Found(best[:count], front, ties, nearest)
 
     def rows(self, one: Series) -> Iterator[tuple[int, ...]]:
-        """The trains of a series, by their rows in the catalogues: every choice of trains of its entries."""
+        """Yield the trains of a series, by their rows in the catalogues: every choice of trains of its entries."""
         choices = [
             range(int(catalogue.starts[e]), int(catalogue.starts[e + 1]))
             for catalogue, e in zip(self._catalogues, one.entries, strict=True)
@@ -124,7 +126,7 @@ class Search:
 
     @property
     def _neighbours(self) -> list[tuple[int, int]]:
-        """Pairs of units that are stated alike, with no such one between."""
+        """Pairs of consecutive equal units."""
         places: dict[int, int] = {}
         pairs = []
         for k, first in enumerate(self._alike):
@@ -134,24 +136,26 @@ class Search:
         return pairs
 
     def _trains(self, one: Series) -> int:
-        """How many series of trains have these entries."""
+        """Count the series of trains with these entries."""
         count = 1
         for first in set(self._alike):
             own = [e for e, same in zip(one.entries, self._alike, strict=True) if same == first]
             for entry in set(own):
                 repeated = own.count(entry)
                 trains = int(self._catalogues[first].counts[entry])
+                # Equal units in the same entry: multisets of its trains.
                 count *= math.comb(trains + repeated - 1, repeated)
         return count
 
     def _halves(self, most_total: int | None) -> tuple[list[int], Iterator[_Half], list[int], _Half]:
-        """The units that are gone through, their products in blocks, those that are held, and their products in order.
+        """Split the units: those processed in blocks with their products, and those held with their sorted products.
 
         ``most_total`` bounds the teeth of all units together.
         """
         allowed = [np.arange(len(catalogue.value)) for catalogue in self._catalogues]
         if most_total is not None:
             least = [int(catalogue.total.min()) for catalogue in self._catalogues]
+            # Each unit may only have the teeth that the minimum of the others leaves.
             rest = most_total - sum(least)
             allowed = [
                 np.flatnonzero(catalogue.total <= own + rest)
@@ -161,6 +165,7 @@ class Search:
         sizes = [len(one) for one in allowed]
         choices = [[k for k in range(n) if chosen >> k & 1] for chosen in range(1, (1 << n) - 1)]
         products = [math.prod(sizes[k] for k in units) for units in choices]
+        # Hold the largest set of units that fits into memory, so that the fewest products are processed.
         fitting = [place for place, product in enumerate(products) if product <= STORED]
         place = (
             max(fitting, key=products.__getitem__) if fitting else min(range(len(products)), key=products.__getitem__)
@@ -177,7 +182,7 @@ class Search:
         return through, blocks, held, ordered
 
     def _products(self, units: list[int], allowed: list[Whole], start: int, end: int) -> _Half:
-        """The products of a range of choices, the last unit's entries running fastest."""
+        """Compute the products of a range of choices, with the last unit's entries varying fastest."""
         rest = np.arange(start, end)
         entries = np.zeros((len(units), end - start), np.int64)
         for place in range(len(units) - 1, -1, -1):
@@ -195,10 +200,11 @@ class Search:
         return _Half(value, total, entries)
 
     def _error_of_nearest(self, count: int) -> float | None:
-        """An error that at least ``count`` series do not exceed, infinite where there are not so many; None: no series.
+        """Return an error that at least ``count`` series do not exceed, infinite if there are fewer; None: no series.
 
-        Of every product that is gone through the neighbours of its wanted partner on both sides are looked at.
+        For every processed product the neighbours of its ideal partner on both sides are evaluated.
         """
+        # Equal units are met in every order: each series may be counted that many times.
         needed, width = count * self._swaps, 1
         while True:
             _, blocks, _, held = self._halves(None)
@@ -216,20 +222,23 @@ class Search:
                 return float(least.max())
             if width >= len(held.value):
                 return math.inf if len(least) else None
+            # Too few partners with the right sign: widen the neighbourhood.
             width = min(2 * width, len(held.value))
 
     def _within(self, error: float, most_total: int | None) -> Whole:
-        """The entries of all series with errors up to a limit and with so many teeth at most, a column a series."""
+        """List the entries of all series with errors up to a limit and at most this many teeth, one column each."""
         through, blocks, held_units, held = self._halves(most_total)
         found = [np.zeros((len(self._catalogues), 0), np.int64)]
         low, high = max(0.0, 1.0 - error - MARGIN), 1.0 + error + MARGIN
         for block in blocks:
             wanted = self._wanted / block.value
+            # A negative product reverses the window.
             ends = np.sort(np.stack([low * wanted, high * wanted]), axis=0)
             first = np.searchsorted(held.value, ends[0], side="left")
             last = np.searchsorted(held.value, ends[1], side="right")
             near = np.maximum(last - first, 0)
             which = np.repeat(np.arange(len(near)), near)
+            # Expand the ranges first..last of all products into one flat list of places.
             place = np.arange(len(which)) - np.repeat(np.cumsum(near) - near, near) + first[which]
             entries = np.zeros((len(self._catalogues), len(which)), np.int64)
             entries[through], entries[held_units] = block.entries[:, which], held.entries[:, place]
@@ -242,12 +251,12 @@ class Search:
         return np.concatenate(found, axis=1)
 
     def _ranked(self, entries: Whole) -> list[Series]:
-        """Series in the order of error and size, exact; of equal ones those of the larger ratios first come first."""
+        """Sort series by error and size, exactly; among equal ones those with the larger ratios first come first."""
         listed = self._measured(entries)
         return sorted(listed, key=lambda one: (self._near(abs(one.ratio)), one.total, [-e for e in one.entries]))
 
     def _measured(self, entries: Whole) -> list[Series]:
-        """Series of entries with their exact ratios and teeth."""
+        """Build the series of entries with their exact ratios and teeth."""
         total = np.zeros(entries.shape[1], np.int64)
         for catalogue, own in zip(self._catalogues, entries, strict=True):
             total += catalogue.total[own]
@@ -266,10 +275,10 @@ class Search:
         return listed
 
     def _front(self, nearest: Series, near: Fraction) -> list[Series]:
-        """The Pareto set of error against size, with errors up to ``near``, by rising size.
+        """Search the Pareto set of error against size, with errors up to ``near``, by rising size.
 
-        It is found from its end: beyond the nearest series of fewest teeth there is nothing. Then come larger errors
-        with fewer teeth, and a window that has grown tenfold is searched for what has fewer teeth than all before.
+        It begins at the nearest series of fewest teeth. Then follow larger errors with fewer teeth: a window that has
+        grown tenfold is searched for series with fewer teeth than all before.
         """
         if not self._target.within(abs(nearest.ratio), near):
             return []
@@ -286,7 +295,7 @@ class Search:
         return pareto(rising, lambda one: self._near(abs(one.ratio)))
 
     def _smallest(self, tolerance: Fraction, count: int) -> list[Series]:
-        """The series of fewest teeth within a tolerance, of equally small ones the nearest first."""
+        """Find the series of fewest teeth within a tolerance, the nearest of equally small ones first."""
         least, most = (sum(int(end(catalogue.total)) for catalogue in self._catalogues) for end in (np.min, np.max))
         reach = 1
         while True:
@@ -300,4 +309,5 @@ class Search:
                 return sorted(
                     listed, key=lambda one: (one.total, self._near(abs(one.ratio)), [-e for e in one.entries])
                 )
+            # Double the bound on the teeth until enough series are found.
             reach *= 2

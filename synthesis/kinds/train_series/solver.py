@@ -1,4 +1,4 @@
-"""The best series of trains for a ratio: all trains of every unit, the search over their products, the proof."""
+"""The best series of trains for a ratio: all trains of every unit, the search over their products, verification."""
 
 from __future__ import annotations
 
@@ -28,24 +28,25 @@ from synthesis.model.ratio_target import as_stated
 from synthesis.outcome.sifting import Sifting
 
 MOST_TRIED = 1000
-"""Series that are looked at beyond those asked for, where some cannot be made."""
+"""Number of series tried beyond the requested ones if some cannot be made."""
 
 
 def solve_train_series(problem: TrainSeriesProblem, progress: Progress) -> TrainSeriesResult:
-    """The best series of trains for a ratio, each verified.
+    """Find the best series of trains for a ratio, each verified.
 
     Parameters
     ----------
     problem : TrainSeriesProblem
-        A statement without contradictions.
+        A problem without contradictions.
     progress : callable
-        Told which unit's trains are listed.
+        Receives the unit whose trains are being listed.
 
     Returns
     -------
     TrainSeriesResult
-        Complete unless a unit's teeth are fitted to distances that are searched in steps, or an idler was not found.
+        Complete unless a unit's teeth are fitted to distances that are searched in steps, or no idler was found.
     """
+    # Equal units share one catalogue.
     listed: dict[int, Catalogue] = {}
     for k, first in enumerate(problem.alike):
         progress(0.5 * k / len(problem.units), f"unit {k + 1}: tooth numbers")
@@ -76,7 +77,7 @@ def solve_train_series(problem: TrainSeriesProblem, progress: Progress) -> Train
         found = search.found(tolerance, near, wanted, problem.rank_by == "size")
         progress(0.9, "verifying")
         sifting.sift(untried(found.best), made, problem.max_designs)
-        # Those that cannot be made leave room for others behind them.
+        # Series that cannot be made leave places for others behind them.
         enough = len(sifting.passed) >= problem.max_designs
         if enough or len(found.best) < wanted or len(met) >= MOST_TRIED:
             break
@@ -98,7 +99,7 @@ def solve_train_series(problem: TrainSeriesProblem, progress: Progress) -> Train
 
 
 def _searched(problem: TrainSeriesProblem) -> bool:
-    """Whether the distances that a unit's gears may have are searched in steps, not proven."""
+    """Return whether the feasible distances of a unit's gears are searched in steps, so that nothing is proven."""
     units = (problem_of(unit, Fraction(1), problem.length_unit) for unit in problem.units)
     return any(isinstance(unit, GearTrainProblem) and unit.searches_distances for unit in units)
 
@@ -113,7 +114,7 @@ def _mechanism(catalogues: list[Catalogue], rows: tuple[int, ...], one: Series) 
 def _pareto(
     problem: TrainSeriesProblem, search: Search, catalogues: list[Catalogue], one: Series
 ) -> ParetoSeries | None:
-    """A series of the Pareto set, the first of its trains that can be made."""
+    """Build a series of the Pareto set from the first of its trains that can be made."""
     for rows in search.rows(one):
         mechanism = _mechanism(catalogues, rows, one)
         design = None if mechanism is None else verify(problem, mechanism)
@@ -134,8 +135,8 @@ def _summary(
     catalogues: list[Catalogue],
     accepted: list[TrainSeriesDesign],
 ) -> str:
-    """One or two sentences: what was found, or why there is nothing."""
-    covered = f"{counted(search.combinations, 'series', 'series')} covered"
+    """Write one or two sentences: the result, or the reason why there is none."""
+    covered = f"{counted(search.combinations, 'series', 'series')} searched"
     if accepted:
         first = accepted[0]
         parts = " × ".join(f"{unit.ratio.value:.6g}" for unit in first.mechanism.units).replace("-", "−")
@@ -146,18 +147,18 @@ def _summary(
             else f"is {ratio:.8g} instead of {as_stated(problem.ratio)}, "
             f"an error of {100.0 * first.metrics.error:.4g} %"
         ).replace("-", "−")
-        alike = f"; {counted(found.ties, 'series', 'series')} have the least error" if found.ties > 1 else ""
+        alike = f"; {counted(found.ties, 'series', 'series')} have this error" if found.ties > 1 else ""
         return f"{parts} {exact}; {covered}{alike}."
     for k, catalogue in enumerate(catalogues, 1):
         if not len(catalogue.value):
-            return f"There is no such series: no train keeps the demands on unit {k}."
+            return f"No such series exists: no train satisfies the constraints of unit {k}."
     if found.nearest is None:
         direction = "the same" if problem.sign > 0 else "the opposite"
-        return f"There is no such series: none turns input and output in {direction} direction; {covered}."
+        return f"No such series exists: none turns input and output in {direction} direction; {covered}."
     if found.best:
         return f"No series passed the verification; {covered}."
     error = abs(problem.target.relative_error(abs(found.nearest.ratio)))
     return (
-        f"There is no such series: the nearest of all has the ratio {float(found.nearest.ratio):.6g}, an error of "
+        f"No such series exists: the nearest has the ratio {float(found.nearest.ratio):.6g}, an error of "
         f"{100.0 * error:.4g} %; {covered}."
     )

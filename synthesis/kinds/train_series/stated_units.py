@@ -1,7 +1,6 @@
-"""The units of a series: the statements of their kinds, without what the series states for all of them.
+"""The units of a series: the problems of their kinds, without the fields that the series gives for all of them.
 
-The fields are those of the problems of the kinds themselves, so that whatever a train of one of them may be asked, a
-unit may be asked too.
+The fields are those of the problems of the kinds themselves, so that a unit may have every constraint of its kind.
 """
 
 from __future__ import annotations
@@ -18,29 +17,30 @@ from synthesis.kinds.planetary_train.problem import PlanetaryProblem
 from synthesis.model.statement import Contradiction, StatedProblem, Statement
 
 OF_THE_SERIES = {*StatedProblem.model_fields, "ratio", "tolerance", "rank_by", "size", "strength"}
-"""Fields of a problem that no unit has: what the series is asked, how its answers are ordered, and a power, as it
-reaches a unit through those before it."""
+"""Fields of a problem that no unit has: the ratio and ranking of the series, and a power, which reaches a unit through
+the units before it."""
 
 OF_A_POWER = {"planetary_train": {"modules"}}
-"""Fields of a kind that no unit of it has, as only a power decides what they leave open."""
+"""Fields of a kind that its units lack, since only a power decides between their values."""
 
 USUAL_STAGES = 1
-"""Stages of a unit of ordinary gears, where they are not stated: more of them are more units."""
+"""Default number of stages of a unit of ordinary gears: further stages are further units."""
 
 Trains = GearTrainProblem | PlanetaryProblem
-"""The problems of which units are made."""
+"""The problems that units consist of."""
 
 PROBLEMS: dict[str, type[Trains]] = {"planetary_train": PlanetaryProblem, "gear_train": GearTrainProblem}
 
 
 def _unit(name: str, kind: str, words: str) -> Any:
-    """The statement of a unit: the fields of the problem of its kind that are its own."""
+    """Create the model of a unit: the fields of its kind's problem without those of the series."""
     fields: dict[str, Any] = {"type": (Literal[kind], ...)}
     for field, info in PROBLEMS[kind].model_fields.items():
         if field not in OF_THE_SERIES | OF_A_POWER.get(kind, set()):
+            # A shallow copy, so that the description of the kind's own field stays unchanged.
             info = copy.copy(info)
             if field == "max_stages":
-                info.description = f"{USUAL_STAGES} where left out; not beside `stages`."
+                info.description = f"Default {USUAL_STAGES}; not together with `stages`."
             fields[field] = (info.annotation, info)
     return create_model(name, __base__=Statement, __module__=__name__, __doc__=words, **fields)
 
@@ -49,13 +49,13 @@ if TYPE_CHECKING:
     Unit = Any
 else:
     PlanetaryUnit = _unit(
-        "PlanetaryUnit", "planetary_train", "A planetary train of a series, with the demands of its kind."
+        "PlanetaryUnit", "planetary_train", "A planetary train of a series, with the constraints of its kind."
     )
     GearTrainUnit = _unit(
         "GearTrainUnit",
         "gear_train",
-        "An ordinary gear train of a series, with the demands of its kind; of one stage where `max_stages` is left "
-        "out. Without a direction it has no idler: its number of stages decides which way it turns.",
+        "An ordinary gear train of a series, with the constraints of its kind; by default of one stage. Without a "
+        "direction it has no idler: its number of stages determines its direction.",
     )
 
     def _tag(statement: Any) -> str | None:
@@ -70,15 +70,15 @@ else:
             custom_error_message=f"type must be given and be one of: {', '.join(PROBLEMS)}",
         ),
     ]
-    """A unit of a series; the field ``type`` tells of which kind."""
+    """A unit of a series; the field ``type`` is its kind."""
 
 Units = Annotated[list[Unit], Field(min_length=2, max_length=4)]
 
 
 def problem_of(unit: Any, ratio: Fraction, length_unit: str) -> Any:
-    """The problem of a unit's kind for exactly this ratio, a :data:`Trains`; of ordinary gears for its size.
+    """Build the problem of a unit's kind for exactly this ratio, a :data:`Trains`; for ordinary gears its magnitude.
 
-    The direction of ordinary gears is demanded by a field of its own.
+    The direction of ordinary gears is given by a field of its own.
     """
     asked = abs(ratio) if unit.type == "gear_train" else ratio
     stated = {field: getattr(unit, field) for field in type(unit).model_fields if field != "type"}
@@ -90,14 +90,16 @@ def problem_of(unit: Any, ratio: Fraction, length_unit: str) -> Any:
 
 
 def contradictions_of(unit: Any, length_unit: str) -> list[Contradiction]:
-    """What contradicts itself in a unit, by field of it."""
+    """Return the contradictions of a unit, by its fields."""
     faults: list[Contradiction] = problem_of(unit, Fraction(1), length_unit).contradictions()
     if unit.type == "gear_train" and unit.hunting_tooth == "prefer":
-        detail = "a series has no trains of equal error to choose from in a unit; state any or require"
+        detail = "a unit of a series has no trains of equal error to prefer from; choose any or require"
         faults.append(Contradiction("/hunting_tooth", detail))
     if unit.type == "gear_train":
         faults += [
-            Contradiction(f"/stages/{number}/type", f"a series has parallel shafts; a {stage.type} stage has not")
+            Contradiction(
+                f"/stages/{number}/type", f"all shafts of a series are parallel; those of a {stage.type} stage are not"
+            )
             for number, stage in enumerate(unit.stages or [])
             if not stage.is_parallel
         ]
@@ -105,7 +107,7 @@ def contradictions_of(unit: Any, length_unit: str) -> list[Contradiction]:
 
 
 def trains_of(unit: Any, length_unit: str) -> int:
-    """About how many trains a consistent unit can be, at most."""
+    """Estimate the maximum number of trains of a consistent unit."""
     problem: Trains = problem_of(unit, Fraction(1), length_unit)
     if isinstance(problem, GearTrainProblem):
         return _ordinary_trains(problem)
@@ -121,7 +123,7 @@ def trains_of(unit: Any, length_unit: str) -> int:
 
 
 def _ordinary_trains(problem: GearTrainProblem) -> int:
-    """Choices of drivers times choices of driven gears; of coaxial trains those of the meshes of equal distance."""
+    """Estimate the choices of drivers times those of driven gears; for coaxial trains, meshes of equal distance."""
     total = 0
     for k in range(1 if problem.stages is None else problem.most_stages, problem.most_stages + 1):
         if problem.stock is not None:
@@ -130,7 +132,7 @@ def _ordinary_trains(problem: GearTrainProblem) -> int:
         else:
             widths = [high - low + 1 for low, high in problem.position_ranges()[: 2 * k]]
         if problem.reverted:
-            # Of the meshes of one distance there are as many as tooth numbers, of every module.
+            # Each distance has about as many meshes as there are tooth numbers, for every module.
             one = widths[0] if problem.stages is None else max(widths)
             total += one ** (k + 1) * len(problem.exact_modules()) ** k if k > 1 else 0
         elif isinstance(problem.teeth, list) or problem.stages is not None:

@@ -1,8 +1,8 @@
-"""A finished series measured against its problem, from its tooth numbers alone.
+"""Verification of a finished series, from its tooth numbers alone.
 
-All units are one list of meshes: the output of one is the body of the next one's input, what is held is the ground. The
-speed equations of this one train give the ratio in exact fractions. What each unit has to keep is measured as its own
-kind does, for the ratio that the unit has.
+All units form one list of meshes: the output of one is the body of the next one's input, fixed members are the ground.
+The speed equations of this one train give the ratio in exact fractions. The constraints of each unit are measured by
+its own kind, for the ratio that the unit has.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ from synthesis.model.answer import Check, Verification
 
 
 def joined(mechanism: TrainSeriesMechanism) -> Train:
-    """All units as one train; the shafts between them are the bodies ``shaft_0``, ``shaft_1``, ..."""
+    """Join all units to one train; the shafts between them are the bodies ``shaft_0``, ``shaft_1``, ..."""
     meshes: list[Mesh] = []
     planets: set[str] = set()
     for k, unit in enumerate(mechanism.units):
@@ -46,7 +46,7 @@ def joined(mechanism: TrainSeriesMechanism) -> Train:
 
 
 def _ordinary(unit: GearTrainMechanism, number: int, driving: str, driven: str) -> list[Mesh]:
-    """Meshes of ordinary gears on shafts that stand still."""
+    """Build the meshes of ordinary gears on fixed shafts."""
     meshes = []
     stages = driven_train(unit).stages
     shaft = driving
@@ -61,7 +61,7 @@ def _ordinary(unit: GearTrainMechanism, number: int, driving: str, driven: str) 
 
 
 def verify(problem: TrainSeriesProblem, mechanism: TrainSeriesMechanism) -> TrainSeriesDesign | None:
-    """Drive a series and measure it; None where gears of a unit cannot be made at all, or do not stand on its axis."""
+    """Drive a series and measure it; None if gears of a unit cannot be made at all, or are not coaxial with it."""
     turning = speeds(joined(mechanism), {"shaft_0": 1})
     shafts = [turning.values[f"shaft_{k}"] for k in range(len(mechanism.units) + 1)]
     known = [speed for speed in shafts if speed]
@@ -82,6 +82,7 @@ def verify(problem: TrainSeriesProblem, mechanism: TrainSeriesMechanism) -> Trai
         metrics.append(measured[1])
         checks += [check.model_copy(update={"name": f"unit_{k}_{check.name}"}) for check in measured[0].checks]
     planetary = [one for one in metrics if isinstance(one, PlanetaryMetrics)]
+    # Ordinary gears report their losses in their own analysis.
     efficiency = None
     if len(planetary) == len(metrics):
         efficiency = 1.0
@@ -104,7 +105,7 @@ def verify(problem: TrainSeriesProblem, mechanism: TrainSeriesMechanism) -> Trai
 def _ratio(
     problem: TrainSeriesProblem, mechanism: TrainSeriesMechanism, ratio: Fraction
 ) -> tuple[Fraction, list[Check]]:
-    """Relative error of the ratio, and whether ratio, direction and tolerance are kept, in exact fractions."""
+    """Compute the relative error of the ratio, and check ratio, direction and tolerance, in exact fractions."""
     signed = ratio * problem.sign
     low, high = problem.target.enclosure(512)
     error = signed / ((low + high) / 2) - 1
@@ -121,7 +122,7 @@ def _ratio(
 
 
 def _unit(problem: Any, unit: Any) -> tuple[Verification, PlanetaryMetrics | GearTrainMetrics] | None:
-    """What the unit's own kind finds, asked for exactly the ratio that the unit has."""
+    """Verify the unit by its own kind, for exactly the ratio that the unit has."""
     if isinstance(unit, PlanetaryMechanism):
         verification = verify_planetary(problem, unit)
         coaxial = all(check.passed for check in verification.checks if check.name == "coaxial")
