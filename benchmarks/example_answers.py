@@ -5,7 +5,7 @@
 
 Two revisions that print the same line for an example give the same answer to it, bit for bit. A digest covers every
 number of the answer in its order (dimensions, metrics, values of checks, counts), booleans, and words without spaces,
-such as the type of a mechanism or the name of a check. It leaves out sentences, which may be reworded.
+such as the type of a mechanism, the name of a check or a fraction. It leaves out sentences, which may be reworded.
 
 The exit status is 1 where a comparable answer differs from the file given by ``--compare``, or is missing in it.
 """
@@ -28,7 +28,7 @@ from synthesis.dispatch import solve
 from synthesis.registry import KINDS, parse_problem
 
 GALLERY = Path(__file__).parents[1] / "docs" / "gallery"
-WORD = re.compile(r"[A-Za-z0-9_.\-]+")
+WORD = re.compile(r"[A-Za-z0-9_.:/\-]+")
 DIGEST_LENGTH = 16
 
 FORCE_RANKINGS = {"drive_torque", "joint_force", "shaking_force", "shaking_moment", "power", "joint_force_index"}
@@ -95,8 +95,8 @@ def compare_digests(lines: dict[str, str], earlier: dict[str, str]) -> list[str]
 
 def read_digests(path: Path) -> dict[str, str]:
     """Return the lines of an earlier run by the names of their statements."""
-    parted = (line.split(maxsplit=1) for line in path.read_text("utf-8").splitlines())
-    return {name: rest for name, rest in parted}
+    lines = path.read_text("utf-8").splitlines()
+    return {line.split()[0]: line.split(maxsplit=1)[1] for line in lines}
 
 
 def main() -> int:
