@@ -5,12 +5,14 @@ from hypothesis import settings
 
 from tests import campaign
 from tests.cluster import backend
+from tests.support import cpu_time
 
 settings.register_profile("repeatable", deadline=None, derandomize=True)
 settings.load_profile("repeatable")
 
 
 def pytest_addoption(parser):
+    cpu_time.add_options(parser)
     parser.addoption(
         "--backend",
         choices=backend.NAMES,
@@ -28,6 +30,7 @@ def pytest_addoption(parser):
 def pytest_configure(config):
     backend.choose(config.getoption("--backend"))
     campaign.choose(config.getoption("--campaign-share"))
+    config.pluginmanager.register(cpu_time.CpuTimePlugin(config), "cpu-time")
 
 
 def pytest_collection_modifyitems(config, items):
