@@ -20,23 +20,33 @@ def pytest_addoption(parser):
         help="what the service runs on: SQLite and workers of its own, or PostgreSQL, Celery and a broker",
     )
     parser.addoption(
-        "--campaign-share",
+        "--campaign-minutes",
         type=float,
-        default=campaign.DEFAULT_SHARE,
-        help="the share of the random cases of each campaign that are tried; 1 for all",
+        default=campaign.DEFAULT_MINUTES,
+        help="how long a campaign may take; inf for all cases",
     )
 
 
 def pytest_configure(config):
     backend.choose(config.getoption("--backend"))
-    campaign.choose(config.getoption("--campaign-share"))
+    campaign.choose_budget(config.getoption("--campaign-minutes"))
     config.pluginmanager.register(cpu_time.CpuTimePlugin(config), "cpu-time")
 
 
-def pytest_collection_modifyitems(config, items):
-    items[:], left_out = campaign.thinned(items)
-    if left_out:
-        config.hook.pytest_deselected(items=left_out)
+@pytest.hookimpl(trylast=True)
+def pytest_collection_modifyitems(items):
+    """Cases that a mark deselects are gone by now."""
+    campaign.BUDGET.share_out(items)
+
+
+@pytest.hookimpl(tryfirst=True)
+def pytest_runtest_setup(item):
+    if item.get_closest_marker("campaign") is not None:
+        campaign.BUDGET.begin(item)
+
+
+def pytest_runtest_teardown(item):
+    campaign.BUDGET.end(item)
 
 
 @pytest.fixture(scope="session", autouse=True)
