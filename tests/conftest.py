@@ -3,9 +3,12 @@
 import pytest
 from hypothesis import settings
 
-from tests import campaign
-from tests.cluster import backend
-from tests.support import cpu_time
+# Assertions of shared code are explained as those of tests are.
+pytest.register_assert_rewrite("tests.support")
+
+from tests import campaign  # noqa: E402
+from tests.cluster import backend  # noqa: E402
+from tests.support import cpu_time  # noqa: E402
 
 settings.register_profile("repeatable", deadline=None, derandomize=True)
 settings.load_profile("repeatable")

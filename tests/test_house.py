@@ -120,6 +120,27 @@ def test_who_parses_problems_waits_for_no_solver(module: str) -> None:
     assert run.stdout.split() == []
 
 
+def test_no_test_imports_another_test_or_a_benchmark() -> None:
+    """Shared code is in tests/support, or in a module of a folder of tests that is no test itself."""
+    wrong = {
+        (path.relative_to(ROOT).as_posix(), name)
+        for path in (ROOT / "tests").rglob("*.py")
+        for name in imports(path)
+        if name.startswith("benchmarks") or (name.startswith("tests.") and re.search(r"\.test_", name))
+    }
+    assert wrong == set()
+
+
+def test_no_benchmark_imports_a_test() -> None:
+    wrong = {
+        (path.relative_to(ROOT).as_posix(), name)
+        for path in (ROOT / "benchmarks").rglob("*.py")
+        for name in imports(path)
+        if name.startswith("tests.") and re.search(r"\.test_", name)
+    }
+    assert wrong == set()
+
+
 def test_what_a_benchmark_imports_is_there() -> None:
     def check(path: Path) -> None:
         for node in ast.walk(ast.parse(path.read_text("utf-8"))):

@@ -5,6 +5,7 @@ from service.jobs.schema import metadata
 from tests.cluster.backend import CHOSEN
 from tests.service.running import SCRIPTED, RunningServer
 from tests.support import cpu_time
+from tests.support.service.analyses import analyse as analyse  # a fixture
 
 
 @pytest.fixture(scope="session")

@@ -2,8 +2,6 @@
 
 import re
 import socket
-import subprocess
-import sys
 import time
 
 import httpx
@@ -13,31 +11,15 @@ from service.access.gate import Gate, NoKey
 from service.access.keys import KeyStore, TenantExists, digest
 from service.jobs.database import connect, upgrade
 from tests.campaign import further
-from tests.service.running import PROBLEM, REAL, SCRIPTED, RunningServer, environment, until
+from tests.service.running import PROBLEM, SCRIPTED, RunningServer, until
 from tests.service.scripted_server import GATED, INSTANT
+from tests.support.service.access import client_with, keys, made, post
 
 pytestmark = pytest.mark.slow
 
 NOWHERE = "01K6WM2B7Q3W9Z0V5N8XJ4R1TD"
 ORIGIN = "https://studio.example"
 QUEUE = 20
-
-
-def keys(folder, *arguments, **settings):
-    return subprocess.run(
-        [sys.executable, *REAL, "keys", *arguments],
-        env=environment(folder, **settings),
-        cwd=folder,
-        capture_output=True,
-        text=True,
-        timeout=60,
-    )
-
-
-def made(folder, tenant, *more):
-    done = keys(folder, "create", tenant, *more)
-    assert done.returncode == 0, done.stderr
-    return done.stdout.strip()
 
 
 @pytest.fixture(scope="module")
@@ -54,15 +36,6 @@ def shared(tmp_path_factory):
     for client in server.clients.values():
         client.close()
     assert server.stop() == 0
-
-
-def client_with(server, key):
-    return httpx.Client(base_url=server.url, timeout=30.0, headers={"Authorization": f"Bearer {key}"})
-
-
-def post(client, seed=INSTANT, wait=20, **headers):
-    sent = {**headers, **({"Prefer": f"wait={wait}"} if wait else {})}
-    return client.post("/v1/jobs", json={"problem": {**PROBLEM, "seed": seed}}, headers=sent)
 
 
 def operations(server):

@@ -9,8 +9,8 @@ from service.api.batch_schemas import EXAMPLE, MOST_SAMPLES
 from tests.campaign import further
 from tests.service.running import PROBLEM, SCRIPTED, SOON_S, RunningServer, until
 from tests.service.scripted_server import BRIEF, BROKEN, DIES_ONCE, GATED, GREEDY, INSTANT
-from tests.service.test_access import client_with
-from tests.service.test_access import made as made_key
+from tests.support.service.access import client_with
+from tests.support.service.access import made as made_key
 
 pytestmark = pytest.mark.slow
 

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from tests.service.answers import finished
-from tests.service.test_cam_springs import FAST, check, designed, refused
+from tests.support.service.cam_springs import FAST, check, designed, refused
 
 Answer = dict[str, Any]
 

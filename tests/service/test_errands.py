@@ -13,11 +13,7 @@ from typing import Any
 import pytest
 
 from service.jobs.errands import Errands, GivenUp, Gone, Lost
-
-
-async def never() -> bool:
-    """A client that waits."""
-    return False
+from tests.support.service.errands import never
 
 
 async def at_once() -> bool:

@@ -12,9 +12,9 @@ from synthesis.registry import KINDS
 from tests.service.answers import finished
 from tests.service.stated.row import Row, changed
 from tests.service.stated.tables import ELSEWHERE, NO_EFFECT, TABLES
-from tests.service.test_stated import hashed
 from tests.statements import fields
 from tests.support.loops import check_each
+from tests.support.service.stated import hashed
 
 Statement = dict[str, Any]
 

@@ -10,10 +10,10 @@ from typing import Any
 
 import pytest
 
-from benchmarks.fit.verdict import violations
 from synthesis.kinds.motion.design import MotionResult
 from tests.campaign import further
 from tests.service.answers import finished
+from tests.support.fit.verdict import violations
 
 pytestmark = pytest.mark.slow
 

@@ -20,10 +20,10 @@ from service.outlines import DrawingError
 from service.outlines.faults import Malformed, NoOutline, Unsuitable
 from tests.service.drawn_files import dxf, page
 from tests.service.running import RunningServer, workers_of
-from tests.service.test_errands import never
-from tests.service.test_hostile_drawings import HOSTILE, everything, mutated
-from tests.service.test_imports import TABLES, blob, found, picture, read
-from tests.service.test_outlines import SHAPES
+from tests.support.service.errands import never
+from tests.support.service.hostile_drawings import HOSTILE, everything, mutated
+from tests.support.service.imports import TABLES, blob, found, picture, read
+from tests.support.service.outlines import SHAPES
 
 REFUSED = (400, 413, 415, 422)
 SOON_S = 30.0

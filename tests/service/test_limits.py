@@ -1,7 +1,6 @@
 """What bounds a service: its queue, how long it keeps jobs, and how long a client may keep it waiting."""
 
 import contextlib
-import json
 import re
 import socket
 import time
@@ -12,6 +11,7 @@ import pytest
 
 from tests.service.running import PROBLEM, REACHED_S, SCRIPTED, RunningServer, until
 from tests.service.scripted_server import BRIEF, GATED, INSTANT
+from tests.support.service.limits import HALVES, WHOLE
 
 pytestmark = pytest.mark.slow
 
@@ -106,21 +106,6 @@ def is_healthy(connection):
     while not received.endswith(b'{"status":"ok"}'):
         received += connection.recv(65536)
     return received.startswith(b"HTTP/1.1 200")
-
-
-BODY = json.dumps({"problem": {**PROBLEM, "seed": INSTANT}}).encode()
-HEAD = b"POST /v1/jobs HTTP/1.1\r\nHost: localhost\r\nContent-Type: application/json\r\n"
-WHOLE = HEAD + b"Content-Length: %d\r\n\r\n" % len(BODY) + BODY
-HALVES = {
-    "nothing": b"",
-    "half a line": b"GET /heal",
-    "half a head": HEAD + b"X-Slow",
-    "no body": HEAD + b"Content-Length: 500\r\n\r\n",
-    "half a body": WHOLE[:-10],
-    "a chunk and no end": HEAD + b"Transfer-Encoding: chunked\r\n\r\n5\r\nhello\r\n",
-    "a request and a half": b"GET /healthz HTTP/1.1\r\nHost: localhost\r\n\r\n" + HEAD,
-    "a refused head and no body": HEAD.replace(b"json", b"xml") + b"Content-Length: 500\r\n\r\n",
-}
 
 
 def until_closed(connection, began):

@@ -12,8 +12,8 @@ from synthesis.model.manufacture import Manufacture
 from synthesis.registry import examples
 from tests.service.answers import finished
 from tests.service.stated.linkages import BOTH_OPEN, DRIVEN, MOTION, PATH, QUICK_RETURN, TOLERATED
-from tests.service.test_space import TURNS
 from tests.statements import fields
+from tests.support.service.space import TURNS
 
 OPEN = {**MOTION, **BOTH_OPEN}
 BLOCK = {

@@ -4,11 +4,11 @@ import copy
 
 import pytest
 
-from benchmarks.room_cases import ANSWERED, REFUSED, size_of, star
 from synthesis.model.linkage_statement import LinkageProblem
 from synthesis.registry import KINDS, examples
 from tests.campaign import further
 from tests.service.answers import finished
+from tests.support.problems.room_cases import ANSWERED, REFUSED, size_of, star
 
 LINKAGES = [name for name, kind in KINDS.items() if issubclass(kind.problem, LinkageProblem)]
 

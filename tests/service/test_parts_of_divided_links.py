@@ -22,7 +22,7 @@ from service.parts.sizes import NotMade, PartsQuery
 from synthesis.dispatch import solve
 from synthesis.registry import parse_problem
 from tests.service.answers import finished
-from tests.service.test_parts import bill, parts, refused
+from tests.support.service.parts import bill, parts, refused
 
 WHITWORTH: dict[str, Any] = {
     "kind": "quick_return", "mechanism": "whitworth", "time_ratio": 1.4, "stroke": 100.0, "length_unit": "mm",

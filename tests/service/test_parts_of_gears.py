@@ -15,9 +15,9 @@ from kinematics.gear.teeth import involute
 from service.parts.extra import installed
 from tests.campaign import further
 from tests.service.answers import finished
-from tests.service.test_parts import bill, parts, refused
+from tests.support.service.parts import bill, parts, refused
+from tests.support.service.parts_of_gears import BEVELS, PAIR, SET, WORM
 
-PAIR = {"kind": "gear_train", "ratio": "7/3", "max_stages": 1, "max_designs": 1, "module": 2.0}
 SIZES = {"bore": 10, "thickness": 5, "face_width": 14, "clearance": 0.1}
 
 
@@ -172,9 +172,6 @@ def test_a_reverted_train_comes_back_to_its_axis(client: Any) -> None:
     assert b"stands in the upper plate alone" in files["README.txt"]
 
 
-SET = {"kind": "planetary_train", "ratio": "4", "max_designs": 1, "arrangement": "simple", "teeth": {"max": 80}}
-
-
 @pytest.fixture(scope="module")
 def trains(server: Any) -> dict[str, dict[str, Any]]:
     """Simple sets by what is held, and where their first designs are."""
@@ -296,10 +293,6 @@ def test_a_layshaft_gearbox_has_its_first_gear_keyed_and_the_others_free(client:
     assert "gear_reverse_idler" in rows
 
 
-WORM = {"kind": "gear_train", "ratio": 20, "max_designs": 1, "module": 1.5,
-        "stages": [{"type": "worm", "driver": 2, "driven": 40, "hand": "left"}]}  # fmt: skip
-
-
 def assembled(client: Any, problem: dict[str, Any]) -> tuple[str, dict[str, Any], dict[str, Any]]:
     """Where a design is, itself, and its assembly at nine inputs."""
     job = finished(client, problem)
@@ -340,10 +333,6 @@ def test_a_worm_crosses_under_its_gear_at_the_centre_distance(client: Any) -> No
     picture = client.get(f"{place}/assembly.svg")
     assert picture.status_code == 200
     assert picture.text.startswith("<svg")
-
-
-BEVELS = {"kind": "gear_train", "ratio": "3/2", "max_designs": 1, "module": 2.0,
-          "stages": [{"type": "bevel", "driver": 20, "driven": 30, "shaft_angle": 75.0}]}  # fmt: skip
 
 
 def test_bevel_gears_meet_at_the_apex_with_true_teeth(client: Any) -> None:

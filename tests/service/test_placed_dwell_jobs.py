@@ -14,7 +14,7 @@ from synthesis.registry import examples
 from tests.campaign import further
 from tests.service.answers import finished
 from tests.service.stated.linkages import WEIGHED
-from tests.synthesis.test_triad_dwells import ELSEWHERE, built
+from tests.support.synthesis.triad_dwells import ELSEWHERE, built
 
 UNEQUAL = {**examples("dwell")[2], "max_designs": 1}
 HIGH = {

@@ -15,7 +15,8 @@ from tests.campaign import further
 from tests.service.answers import finished
 from tests.service.stated.linkages import FITTED as SIX
 from tests.statements import fields
-from tests.synthesis.test_space import LID
+from tests.support.service.space import TURNS
+from tests.support.synthesis.space import LID
 
 pytestmark = pytest.mark.slow
 
@@ -38,14 +39,6 @@ POINTS = {
         {"x": 0.2, "y": 3.0},
     ],
     "rounds": 1,
-    "max_designs": 3,
-}
-TURNS = {
-    "kind": "function",
-    "pairs": [
-        {"input": x, "output": y} for x, y in ((0.0, 0.0), (20.0, 9.0), (40.0, 20.0), (60.0, 34.0), (80.0, 50.0))
-    ],
-    "zeros": None,
     "max_designs": 3,
 }
 CORNER = {"polygon": [[500.0, 300.0], [560.0, 300.0], [560.0, 380.0]]}

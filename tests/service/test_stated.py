@@ -13,13 +13,12 @@ from hypothesis import strategies as st
 from pydantic import BaseModel, ValidationError
 
 from service import stated
-from service.api.idempotency import repeatable
-from service.api.schemas import JobRequest
 from synthesis.model.statement import StatedProblem
 from synthesis.registry import KINDS, parse_problem
 from tests.campaign import further
 from tests.service.answers import finished
 from tests.statements import drawn
+from tests.support.service.stated import hashed
 
 DRAWS, PATIENT = 40, 2000
 """Values that are drawn for a field until one of them is taken; most fields of a spring exclude others."""
@@ -39,12 +38,6 @@ def explicit(value: Any) -> Any:
     if isinstance(value, dict):
         return {name: explicit(entry) for name, entry in value.items()}
     return [explicit(entry) for entry in value] if isinstance(value, list | tuple) else None
-
-
-def hashed(statement: dict[str, Any]) -> str:
-    request = repeatable(["key"], JobRequest.model_validate({"problem": statement}))
-    assert request is not None
-    return request.request_hash
 
 
 def keeps(statement: dict[str, Any]) -> StatedProblem:

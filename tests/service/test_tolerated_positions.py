@@ -6,7 +6,7 @@ import pytest
 
 from tests.campaign import further
 from tests.service.answers import drawn, finished
-from tests.synthesis.test_drawn_poses import LID, ZONES, planted_slider
+from tests.support.synthesis.drawn_poses import LID, ZONES, planted_slider
 
 pytestmark = pytest.mark.slow
 

@@ -12,7 +12,7 @@ from opentelemetry.proto.collector.trace.v1.trace_service_pb2 import ExportTrace
 
 from tests.service.running import SCRIPTED, RunningServer, until
 from tests.service.scripted_server import INSTANT
-from tests.service.test_access import client_with, made, post
+from tests.support.service.access import client_with, made, post
 
 pytestmark = pytest.mark.slow
 

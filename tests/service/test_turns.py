@@ -13,8 +13,8 @@ from service.jobs.turns import ASK_PERIOD_S, PATIENCE_S, Turns
 from synthesis.registry import KINDS, parse_problem
 from tests.service.running import PROBLEM, REACHED_S, SCRIPTED, SOON_S, RunningServer, until
 from tests.service.scripted_server import GATED, INSTANT, NATIVE, STEPS
-from tests.service.test_access import client_with, post
-from tests.service.test_access import made as made_key
+from tests.support.service.access import client_with, post
+from tests.support.service.access import made as made_key
 
 pytestmark = pytest.mark.slow
 

@@ -22,7 +22,7 @@ from synthesis.analyses import parse_request
 from synthesis.analyses.linkage import LinkageAnalysis
 from synthesis.mechanisms import MechanismError
 from tests.kinematics.mechanism_sampling import EVERY
-from tests.kinematics.test_branches import on_whole_numbers
+from tests.support.kinematics.branches import on_whole_numbers
 
 REFUSED = (ValidationError, MechanismError, KinematicsError)
 

@@ -5,11 +5,11 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from benchmarks.sixbars.motion import SIXBARS, anyhow, false_claim, sound, within_a_box
 from synthesis.dispatch import solve
 from synthesis.kinds.motion import branch_rows as rows
 from synthesis.kinds.motion.chain_kernels import MAKES, O4, Q1, Q2, A, B, J, signed_sine
 from synthesis.registry import parse_problem
+from tests.support.sixbars.motion import SIXBARS, anyhow, false_claim, sound, within_a_box
 
 INF = np.inf
 LIMITS = {

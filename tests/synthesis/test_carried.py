@@ -12,8 +12,8 @@ import pytest
 from synthesis.model.linkage_answer import LinkageDesign
 from synthesis.proof.carried import carried, ease
 from tests.campaign import further
+from tests.support.synthesis.motion_search import ORDINARY, run
 from tests.synthesis.planted import plant
-from tests.synthesis.test_motion_search import ORDINARY, run
 
 DENSE = 400_001
 """Inputs of the brute-force drive."""

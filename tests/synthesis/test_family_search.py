@@ -3,13 +3,13 @@
 import numpy as np
 import pytest
 
-from benchmarks.demands import path_constraints
 from kinematics.linkage.fourbar import OPEN, Fourbar, positions
 from synthesis.dispatch import solve
 from synthesis.fit.chart import CRANK_ROCKER, natural
 from synthesis.kinds.path.curve_descent import UNLIMITED_PIVOTS, descend
 from synthesis.registry import parse_problem
 from tests.campaign import further
+from tests.support.demands import path_constraints
 
 
 def planted(n, seed):

@@ -5,14 +5,14 @@ import math
 import numpy as np
 import pytest
 
-from benchmarks.demands import function_constraints
-from benchmarks.demands.planted import box
 from synthesis import parse_problem
 from synthesis.kinds.function.limits import GeneratorLimits
 from synthesis.kinds.function.problem import FunctionProblem
 from synthesis.kinds.function.solver import solve_function
 from synthesis.kinds.function.task import function_task
 from tests.campaign import further, sampled
+from tests.support.demands import function_constraints
+from tests.support.demands.planted import box
 from tests.synthesis.function_tasks import silent
 
 

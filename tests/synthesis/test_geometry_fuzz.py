@@ -4,10 +4,10 @@ import math
 
 import pytest
 
-from benchmarks.geometry_cases import case
-from benchmarks.geometry_fuzz import run, tally
 from synthesis.model.statement import TINY
 from synthesis.registry import KINDS, parse_problem
+from tests.support.problems.geometry_cases import case
+from tests.support.problems.geometry_fuzz import run, tally
 
 
 @pytest.mark.fuzz

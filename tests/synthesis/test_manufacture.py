@@ -20,7 +20,7 @@ from tests.campaign import further
 from tests.kinematics.variation_twin import crank_rocker, slider
 from tests.oracles import made_linkages
 from tests.service.stated.linkages import BOTH_OPEN, FITTED, MOTION, PATH, TOLERATED
-from tests.service.test_space import TURNS
+from tests.support.service.space import TURNS
 
 Statement = dict[str, Any]
 

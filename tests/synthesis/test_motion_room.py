@@ -8,10 +8,6 @@ from typing import Any
 import numpy as np
 import pytest
 
-from benchmarks.fit import sliders
-from benchmarks.fit.motion import GROUPS, statement
-from benchmarks.fit.task import generator
-from benchmarks.fit.verdict import violations
 from synthesis.dispatch import solve
 from synthesis.fit.room_margins import margins_of
 from synthesis.kinds.motion import slider_search
@@ -27,6 +23,10 @@ from synthesis.kinds.motion.verification import demanded, verify
 from synthesis.proof.room import judged_by_room
 from synthesis.registry import parse_problem
 from tests.campaign import further
+from tests.support.fit import sliders
+from tests.support.fit.motion import GROUPS, statement
+from tests.support.fit.task import generator
+from tests.support.fit.verdict import violations
 
 POSITIONS = [
     {"x": 0.0, "y": 0.0, "angle": 0.0},

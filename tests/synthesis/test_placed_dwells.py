@@ -23,7 +23,7 @@ from synthesis.model.statement import ContradictionError
 from synthesis.outcome.front import front_of
 from synthesis.registry import parse_problem
 from tests.campaign import further
-from tests.synthesis.test_dwell import assert_measured, rocker, slider
+from tests.support.synthesis.dwell import assert_measured, rocker, slider
 
 TASKS: dict[str, dict[str, Any]] = {
     "unequal": {

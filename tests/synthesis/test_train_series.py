@@ -8,8 +8,6 @@ from typing import Any
 
 import pytest
 
-from benchmarks.independent.train_series import best_series, statements
-from benchmarks.train_series import same
 from kinematics.gear.planetary import speeds
 from synthesis.dispatch import solve
 from synthesis.kinds.train_series import solver
@@ -17,6 +15,8 @@ from synthesis.kinds.train_series.design import TrainSeriesMechanism
 from synthesis.kinds.train_series.verification import joined, verify
 from synthesis.registry import examples, parse_problem
 from tests.campaign import further, sampled
+from tests.support.independent.train_series import best_series, statements
+from tests.support.problems.train_series import same
 
 SET: dict[str, Any] = {
     "type": "planetary_train",
