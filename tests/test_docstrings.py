@@ -1,4 +1,4 @@
-"""The examples in the docstrings of the libraries give what they show."""
+"""The examples in the docstrings of the libraries and of the oracles give what they show."""
 
 from __future__ import annotations
 
@@ -15,7 +15,8 @@ MIN_EXAMPLES = 35
 
 def test_examples_in_docstrings() -> None:
     """Only modules with examples are imported."""
-    files = [path for package in ("kinematics", "synthesis") for path in sorted((ROOT / package).rglob("*.py"))]
+    folders = ("kinematics", "synthesis", "tests/oracles")
+    files = [path for package in folders for path in sorted((ROOT / package).rglob("*.py"))]
     modules = [
         ".".join(path.relative_to(ROOT).with_suffix("").parts)
         for path in files
