@@ -157,7 +157,7 @@ def test_designs_are_told_as_they_are_made_and_still_drawn(client):
     assert report.status_code == 200, report.text
     assert "Manufacture: worst case: max error" in report.text
     assert "Yield: low" in report.text
-    again = finished(client, job["problem"])
+    again = finished(client, job["problem"], fresh=True)
     assert again["result"] == job["result"]
 
 
