@@ -112,6 +112,7 @@ def test_the_page_names_no_more_files_that_a_kind_edits_than_it_may_take() -> No
     assert 0 < len(for_others) <= MOST_EDITED
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("module", ["synthesis.registry", "service.app"])
 def test_who_parses_problems_waits_for_no_solver(module: str) -> None:
     """Compiled kernels and solvers are imported by those who solve, in processes of their own."""

@@ -231,6 +231,7 @@ def random_tasks(count: int) -> list[Any]:
     return list(tasks(count, seed=5))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("number", further(range(RANDOM), range(ALWAYS)))
 def test_solids_in_motion_agree(number: int) -> None:
     verdict = judged(*random_tasks(ALWAYS if number < ALWAYS else RANDOM)[number])

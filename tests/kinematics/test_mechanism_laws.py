@@ -27,7 +27,6 @@ def test_constraints_hold(name: str) -> None:
     closes(name, 1, DESIGNS[name], INPUTS)
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("name", list(CLASS_THREE))
 def test_constraints_hold_for_many_class_three(name: str) -> None:
     closes(name, 2, 100, 100)

@@ -15,8 +15,6 @@ from tests.service.running import PROBLEM, SCRIPTED, RunningServer, until
 from tests.service.scripted_server import GATED, INSTANT
 from tests.support.service.access import client_with, keys, made, post
 
-pytestmark = pytest.mark.slow
-
 NOWHERE = "01K6WM2B7Q3W9Z0V5N8XJ4R1TD"
 ORIGIN = "https://studio.example"
 QUEUE = 20
@@ -50,6 +48,7 @@ def ask(client, method, path, job_id, headers=None):
     return client.request(method.upper(), url, headers=headers, **body)
 
 
+@pytest.mark.slow
 def test_every_operation_needs_a_key(shared):
     assert len(operations(shared)) >= 10
     for method, path in operations(shared):
@@ -95,6 +94,7 @@ def test_what_is_open_stays_open(shared):
         assert httpx.get(shared.url + path).status_code == 200
 
 
+@pytest.mark.slow
 def test_another_tenants_job_is_like_none(shared):
     ours, theirs = shared.clients["acme"], shared.clients["globex"]
     about_jobs = [(method, path) for method, path in operations(shared) if "{job_id}" in path]
@@ -124,6 +124,7 @@ def test_another_tenants_running_job_is_not_cancelled(shared):
     until(lambda: ours.get(f"/v1/jobs/{job['id']}").json()["status"] == "succeeded")
 
 
+@pytest.mark.slow
 def test_lists_are_of_ones_own_jobs(shared):
     created = {name: {post(client).json()["id"] for _ in range(3)} for name, client in shared.clients.items()}
     for name, client in shared.clients.items():
@@ -171,6 +172,7 @@ def test_a_key_is_in_no_log_no_metric_and_no_file(shared):
     assert "acme" not in httpx.get(f"{shared.url}/metrics").text
 
 
+@pytest.mark.slow
 def test_a_further_key_is_of_the_same_tenant_and_a_revoked_one_is_refused(shared):
     assert "exists" in keys(shared.folder, "create", "acme").stderr
     further = made(shared.folder, "acme", "--further")
@@ -188,6 +190,7 @@ def test_a_further_key_is_of_the_same_tenant_and_a_revoked_one_is_refused(shared
     assert shared.clients["acme"].get("/v1/jobs").status_code == 200
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("tenant", further(["", "a b", "x" * 101, "a\nb", "é"], ["a b", "é"]))
 def test_a_tenant_has_a_plain_name(tmp_path, tenant):
     done = keys(tmp_path, "create", tenant)
@@ -195,6 +198,7 @@ def test_a_tenant_has_a_plain_name(tmp_path, tenant):
     assert "Traceback" not in done.stderr
 
 
+@pytest.mark.slow
 @pytest.mark.campaign
 def test_a_key_has_its_rate(tmp_path):
     key, other = made(tmp_path, "acme"), made(tmp_path, "globex")
@@ -243,6 +247,7 @@ def test_web_pages_may_not_use_it_unless_told(scripted):
     assert scripted.client.options("/v1/jobs", headers={"Origin": ORIGIN}).status_code == 405
 
 
+@pytest.mark.slow
 @pytest.mark.campaign
 def test_without_keys_it_listens_on_this_machine_only(tmp_path):
     server = RunningServer(tmp_path, SCRIPTED, workers=1, host="0.0.0.0", cors_origins="*")
@@ -262,6 +267,7 @@ def test_without_keys_it_listens_on_this_machine_only(tmp_path):
         assert server.stop() == 0
 
 
+@pytest.mark.slow
 @pytest.mark.campaign
 def test_with_keys_it_listens_where_it_is_told_even_when_all_are_revoked(tmp_path):
     made(tmp_path, "acme")
@@ -333,6 +339,7 @@ def test_the_keys_are_read_once_a_second(engine):
     assert len(reads) <= 2
 
 
+@pytest.mark.slow
 def test_a_queue_that_one_tenant_has_filled_is_full_for_no_other(shared):
     acme, globex = shared.clients["acme"], shared.clients["globex"]
     gate = shared.folder / "open"

@@ -10,6 +10,7 @@ from tests.support.service.hostile_drawings import HOSTILE, everything, mutated
 from tests.support.service.outlines import SHAPES
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("what", further(HOSTILE, list(HOSTILE)[::3]))
 def test_hostile_drawings_are_refused_soon(client, what):
     make, status = HOSTILE[what]
@@ -20,6 +21,7 @@ def test_hostile_drawings_are_refused_soon(client, what):
     assert client.get("/healthz").status_code == 200
 
 
+@pytest.mark.slow
 def test_mutated_drawings_are_read_or_refused(client):
     svg = page("".join(SHAPES) + '<circle r="4"/>', width="9mm", viewBox="0 0 9 9")
     r12, r2018 = dxf(everything, dxfversion="R12"), dxf(everything, dxfversion="R2018")

@@ -109,6 +109,7 @@ AT_ONCE = {
 """What takes no second to make and to read; the others are tried by the campaign."""
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "what", [pytest.param(name, marks=[] if name in AT_ONCE else pytest.mark.campaign) for name in SPOILT]
 )

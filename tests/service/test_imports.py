@@ -313,6 +313,7 @@ def test_an_outline_that_is_drawn_as_dxf_comes_back(client):
     assert places(curve) == pytest.approx(outline, abs=1e-6)
 
 
+@pytest.mark.slow
 def test_the_coupler_curve_of_a_design_comes_back_from_its_own_drawing(client):
     problem = {
         "kind": "motion",
@@ -449,6 +450,7 @@ def test_holes_strokes_and_specks_of_a_picture(client):
 # What it is for: statements that take the curves as they come.
 
 
+@pytest.mark.slow
 def test_an_imported_curve_is_a_path(client):
     # Four points of an SVG polyline are met exactly.
     drawing = page('<polyline points="0,60 10,45 25,40 40,48"/>', **PAGE)

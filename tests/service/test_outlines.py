@@ -15,6 +15,7 @@ def corners(outline):
     return np.array(outline["polygon"])
 
 
+@pytest.mark.slow
 def test_the_units_and_the_page_of_an_svg(client):
     drawing = page(
         '<rect id="frame" x="20" y="10" width="100" height="40"/>',

@@ -25,6 +25,7 @@ def jobs(server: Any) -> dict[str, str]:
     return found
 
 
+@pytest.mark.slow
 def test_the_zip_has_an_outline_of_each_plate_with_holes_where_the_joints_are(client: Any, jobs: Any) -> None:
     files = parts(client, jobs["fourbar"], **SIZES)
     skeleton = client.get(jobs["fourbar"].rsplit("/designs")[0]).json()["result"]["designs"][0]["mechanism"]["skeleton"]
@@ -118,6 +119,7 @@ def test_bad_values_are_refused_by_their_path(client: Any, jobs: Any, field: str
     assert [fault["path"] for fault in answer["errors"]] == [f"/query/{field}"]
 
 
+@pytest.mark.slow
 def test_too_wide_links_are_refused_with_the_scale_that_works(client: Any, jobs: Any) -> None:
     answer = refused(client, jobs["fourbar"], 422, width=60)
     (fault,) = answer["errors"]
@@ -130,6 +132,7 @@ def test_too_wide_links_are_refused_with_the_scale_that_works(client: Any, jobs:
     assert width == pytest.approx(60.0 / scale, rel=0.01)
 
 
+@pytest.mark.slow
 def test_a_mechanism_of_unit_size_is_refused_with_a_scale(client: Any) -> None:
     tiny = {"kind": "motion", "max_designs": 1, "length_unit": "mm",
             "positions": [{"x": 0.01 * p["x"], "y": 0.01 * p["y"], "angle": p["angle"]} for p in THREE]}  # fmt: skip

@@ -55,6 +55,7 @@ TASKS = {
 }
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", further(list(TASKS), list(TASKS)[:2]))
 def test_dwells_are_solved_drawn_and_driven(client, name):
     problem = TASKS[name]

@@ -18,8 +18,6 @@ from tests.statements import fields
 from tests.support.service.space import TURNS
 from tests.support.synthesis.space import LID
 
-pytestmark = pytest.mark.slow
-
 STEP = math.radians(0.25)
 """Of the input, at which shapes are looked at."""
 
@@ -133,6 +131,7 @@ KEPT = {
 SLOW = ("obstacles", "cycle")
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", further(KEPT, [name for name in KEPT if name not in SLOW]))
 def test_designs_fit_into_their_room(client, name):
     problem, space = KEPT[name]
@@ -222,6 +221,7 @@ def test_every_field_of_a_space_has_a_row():
     assert fields(Space.model_json_schema()).keys() == ROWS.keys()
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", further(ROWS, list(QUICK)[::2]))
 def test_a_field_of_a_space_makes_another_answer(client, name):
     # Where a body lies differs from where it is to lie only in a fit.
@@ -356,6 +356,7 @@ WITH_MORE = {
 """What else a motion can state."""
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "name", further(WITH_MORE, ["tolerances and a slider", "slider", "constraints", "layout", "four positions"])
 )
@@ -376,6 +377,7 @@ def test_a_room_is_kept_beside_other_demands(client, name):
         assert nearest >= 5.0
 
 
+@pytest.mark.slow
 def test_designs_that_fail_are_measured_too(client):
     problem = {
         **with_space(LID, obstacles=[SHELF]),

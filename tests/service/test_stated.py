@@ -84,6 +84,7 @@ def test_every_field_alone_is_kept(kind: str) -> None:
         keeps(changed)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("kind", KINDS)
 @given(seed=st.integers(0, 2**32))
 def test_fields_together_are_kept(kind: str, seed: int) -> None:

@@ -33,7 +33,6 @@ def test_every_file_of_the_folder_is_served():
     assert not [name for name in studio_files() if name.startswith("types/")]
 
 
-@pytest.mark.slow
 def test_a_file_is_served_with_its_type_and_the_policy(client):
     def check(name):
         answer = client.get(path_of(name))

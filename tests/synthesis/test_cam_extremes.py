@@ -174,6 +174,7 @@ def test_rounding_leaves_a_least_radius_its_digits(seed: int, number: int) -> No
     assert design.metrics.min_convex_radius == pytest.approx(3.0, rel=5e-7)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("follower", "minimize", "rounded"),
     further(

@@ -236,7 +236,6 @@ def test_what_breaks_a_constraint_fails(name: str) -> None:
 CLASSES = ["crank_rocker", "double_crank", "double_rocker", "non_grashof"]
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize(
     ("name", "wanted"),
     often(

@@ -200,6 +200,7 @@ def test_distances_both_ways_are_those_of_brute_force():
     assert metrics.curve_distance == pytest.approx(far, rel=1e-3)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "size", [1.0, pytest.param(1e-5, marks=pytest.mark.campaign), pytest.param(1e5, marks=pytest.mark.campaign)]
 )

@@ -38,6 +38,7 @@ def test_a_slider_uses_the_tolerances(seed: int) -> None:
     assert result.designs
 
 
+@pytest.mark.slow
 def test_a_fourbar_with_a_driver_dyad_uses_the_tolerances() -> None:
     problem: Statement = {"kind": "motion", "positions": LID, "driver_dyad": True, "constraints": ZONES}
     designs = solve(parse_problem(problem)).designs

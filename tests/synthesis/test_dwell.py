@@ -109,6 +109,7 @@ def test_limits_of_the_client_are_kept() -> None:
         assert design.metrics.link_ratio <= 6.0 * (1.0 + 1e-6)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("kind", "fields"),
     [

@@ -146,7 +146,6 @@ TWO = [
 ]
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("names", [*TWO, *THREE], ids="-".join)
 def test_every_way_of_stating_a_dyad_finds_the_planted_one(names: tuple[str, ...]) -> None:
     rng = np.random.default_rng(4)

@@ -28,6 +28,7 @@ def test_members_of_a_family_are_moved_into_narrow_limits(number):
     assert task.answered(solve_function(parse_problem(task.statement), silent))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("mechanism", ["fourbar", "slider_crank"])
 @pytest.mark.parametrize("criterion", further(["minimax", "least_squares"], ["minimax"]))
 def test_an_approximation_keeps_regions_of_its_own_place_without_loss(mechanism, criterion):

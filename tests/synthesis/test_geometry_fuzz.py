@@ -20,6 +20,7 @@ def test_whatever_is_stated_is_answered_or_refused(kind):
     assert counted.results["refused"] >= 10
 
 
+@pytest.mark.slow
 def test_a_case_is_made_again_by_its_number():
     assert case("motion", 7) == case("motion", 7) != case("motion", 8)
 

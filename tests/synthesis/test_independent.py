@@ -35,7 +35,6 @@ WAVES = ("simple_harmonic", "cycloidal", "double_harmonic", "half_harmonic_start
 LAWS = sorted({*AT_REST, *POLYNOMIALS, *FAMILY, *MIRRORED, *WAVES, "half_cycloidal_start", "half_cycloidal_end"})
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("name", further(LAWS, list(LAWS)[::2]))
 def test_the_laws_written_out_are_motions(name: str) -> None:
     """From nothing to one, without a jump, and each derivative that of the one before, between sixteenths."""

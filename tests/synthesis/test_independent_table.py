@@ -88,6 +88,7 @@ def test_every_check_of_all_kinds_is_compared() -> None:
             assert name is None or f"checks.{name}" in COMPARED["motion"], f"{name} in {path.name}"
 
 
+@pytest.mark.slow
 def test_names_from_elsewhere_are_few() -> None:
     found = {}
     for path in [*(SOURCES / "proof").rglob("*.py"), *(SOURCES / "kinds").rglob("*.py")]:

@@ -64,6 +64,7 @@ def answered(name: str) -> tuple[DwellProblem, DwellResult]:
     return problem, solve_dwell(problem, lambda *_: None)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", further(list(TASKS), ["unequal"]))
 def test_dwells_are_where_and_as_long_as_they_are_told(name: str) -> None:
     problem, result = answered(name)

@@ -134,6 +134,7 @@ def test_parts_are_hulls_of_joints_and_the_body():
     ]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("dyad", "side"),
     further([("PR", "output_side"), ("RP", "output_side"), ("PR", "input_side")], [("PR", "input_side")]),

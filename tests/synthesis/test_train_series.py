@@ -99,6 +99,7 @@ def test_the_pareto_set_has_no_smaller_and_nearer_series() -> None:
         assert any(size <= mine[0] and error <= mine[1] * (1 + 1e-12) for size, error in front)
 
 
+@pytest.mark.slow
 def test_the_smallest_series_within_a_tolerance() -> None:
     result = solved(20, SET, SET, tolerance=2e-3, rank_by="size", max_designs=30)
     keys = [(design.metrics.total_teeth, abs(design.metrics.error)) for design in result.designs]

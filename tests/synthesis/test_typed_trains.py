@@ -26,6 +26,7 @@ from tests.support.synthesis.typed_trains import BEVEL, HELICAL, INTERNAL, State
 WORM: Statement = {"type": "worm", "driver": 2, "driven": 40}
 
 
+@pytest.mark.slow
 def test_a_brute_force_finds_the_same() -> None:
     tasks = typed_trains.statements(60, 5)
     small = [
