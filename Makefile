@@ -1,5 +1,6 @@
 # make serve   start the service on http://127.0.0.1:8000 (MECHSYNTH_HOST, MECHSYNTH_PORT, ... change it); with
 #              MECHSYNTH_CAD=1 also the libraries that make solids of parts
+# make quick   the tests that take less than a second of CPU each, of all or of TESTS=...
 # make test    ruff, mypy, import-linter and the whole pytest suite but the browser's: see test-browser
 # make test-faults  what becomes of jobs when processes are killed, with figures
 # make test-cluster  the service on PostgreSQL, RabbitMQ and Redis (installed where they are missing and we are root)
@@ -105,7 +106,7 @@ MINUTES := 6
 BROWSER_MINUTES := $(if $(filter inf,$(MINUTES)),inf,$(shell expr $(MINUTES) / 4 + 1))
 
 campaign: $(STAMP) $(MULTIBODY) chromium
-	$(BIN)/pytest -m "campaign and not browser and not cad" --campaign-minutes $(MINUTES) $(SPREAD) $(shell grep -rlE campaign tests --include='test_*.py' --exclude-dir=cad)
+	$(BIN)/pytest -m "campaign and not browser and not cad" --campaign-minutes $(MINUTES) $(SPREAD) $(BESIDES)
 	$(BIN)/pytest -m "campaign and browser" --campaign-minutes $(BROWSER_MINUTES) tests/browser
 
 fuzz: $(STAMP)
@@ -128,9 +129,9 @@ format: $(STAMP) $(NODE)
 	$(BIN)/ruff format .
 	cd service/studio && ../../tests/node/node_modules/.bin/prettier --print-width 120 --write '*.js'
 
-# The inner loop: everything but the tests marked slow.
+# The inner loop: everything but the tests marked slow, or the TESTS that are named: make quick TESTS=tests/synthesis
 quick: $(STAMP)
-	$(BIN)/pytest -m "not slow and $(APART)" -q $(SPREAD) $(BESIDES)
+	$(BIN)/pytest -m "not slow and $(APART)" -q $(SPREAD) $(BESIDES) $(TESTS)
 
 bench: $(STAMP)
 	$(BIN)/python -m benchmarks.analysis
