@@ -64,6 +64,7 @@ def test_rates_are_those_of_differences(limited):
     assert met > 30
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("draw", "seed"), [pytest.param(within_a_box, 3, marks=pytest.mark.campaign), (anyhow, 1)])
 def test_what_arrives_does_so_on_one_branch_in_order(draw, seed):
     task = draw(np.random.default_rng(seed))

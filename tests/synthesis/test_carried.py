@@ -47,6 +47,7 @@ def confirm(design: LinkageDesign, stated: list[dict[str, Any]]) -> None:
     assert metrics.body_turn_ratio >= 1.0 - 1e-9
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("n", further([2, 3, 4, 5], [3]))
 def test_designs_say_what_a_dense_drive_finds(n: int) -> None:
     rng = np.random.default_rng(n)

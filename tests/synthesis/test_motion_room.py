@@ -153,6 +153,7 @@ def test_a_planted_slider_crank_is_answered_in_its_room(number: int) -> None:
         assert violations(stated, design) == []
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("over", further(["used", "cycle"], ["cycle"]))
 def test_slider_cranks_that_are_left_out_of_a_room_would_fail_in_it(over: str) -> None:
     """The sweep says so too, and of the others that some fit."""

@@ -82,6 +82,7 @@ def test_dwells_are_where_and_as_long_as_they_are_told(name: str) -> None:
     assert result.search.candidates == result.search.accepted + sum(result.search.rejected.values())
 
 
+@pytest.mark.slow
 def test_what_larger_transmission_angles_cost_is_in_the_front() -> None:
     _, result = answered("unequal")
     front = front_of(result.designs)
