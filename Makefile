@@ -1,12 +1,13 @@
 # make serve   start the service on http://127.0.0.1:8000 (MECHSYNTH_HOST, MECHSYNTH_PORT, ... change it); with
 #              MECHSYNTH_CAD=1 also the libraries that make solids of parts
+# make quick   the tests that take less than a second of CPU each, of all or of TESTS=...
 # make test    ruff, mypy, import-linter and the whole pytest suite but the browser's: see test-browser
 # make test-faults  what becomes of jobs when processes are killed, with figures
 # make test-cluster  the service on PostgreSQL, RabbitMQ and Redis (installed where they are missing and we are root)
 # make test-browser  drive the studio in the system's Chromium, check its types and its accessibility, and run a
 #              generated TypeScript client in node (Chromium and node are installed where they are missing and we are root)
 # make test-cad  the tests of solids, in an environment of their own with the extra cad (.venv-cad, a gigabyte)
-# make campaign  the checks with thousands of random problems: three hundredths of them, or all with SHARE=1 (independent
+# make campaign  checks with thousands of random problems, as many as fit into MINUTES, or all with MINUTES=inf (independent
 #              multibody programs are installed for them), and the studio's kinds on a phone
 # make fuzz    hundreds of requests of each operation, and of absurd problems of each kind; half an hour. FUZZED=100000
 #              posts so many spoilt analyses, and a twentieth as many jobs
@@ -54,23 +55,21 @@ test: $(STAMP)
 	@$(MAKE) --no-print-directory -j2 check suite
 
 suite: $(STAMP)
-	$(BIN)/pytest -m "$(APART)" $(SPREAD) $(BESIDES)
+	$(BIN)/pytest -m "$(APART)" --check-marks $(SPREAD) $(BESIDES)
 
-# The same tests of the service on PostgreSQL and Celery with RabbitMQ, and with Redis, side by side: the real servers,
-# on free ports. What only PostgreSQL has a part in is tried beside one of the two brokers.
-ON_STORE := tests/service/test_store.py tests/service/test_batch_store.py tests/service/test_upgrade.py \
-    tests/service/test_idempotency.py tests/cluster/test_schema.py
-ON_KEYS := tests/service/test_limits.py tests/service/test_access.py
-ON_BROKER := $(addprefix tests/service/test_,turns.py jobs_api.py events.py faults.py batches.py) \
-    $(filter-out $(ON_STORE),$(wildcard tests/cluster/test_*.py))
+# The tests of the service on PostgreSQL and Celery: the real servers, on free ports. Each file runs beside one of the
+# two brokers; what the broker decides (deployments, restarts, faults) runs beside both.
+BY_BROKER := tests/cluster/test_deployment.py tests/cluster/test_restarts.py tests/service/test_faults.py
+ON_RABBITMQ := $(addprefix tests/service/test_,jobs_api.py turns.py store.py upgrade.py idempotency.py) tests/cluster/test_schema.py
+ON_REDIS := $(addprefix tests/service/test_,batches.py batch_store.py events.py limits.py access.py)
 
 test-cluster: $(STAMP) engines
 	@$(MAKE) --no-print-directory -j2 --output-sync=target cluster-rabbitmq cluster-redis
 
-cluster-rabbitmq: BESIDE := $(ON_STORE)
-cluster-redis: BESIDE := $(ON_KEYS)
+cluster-rabbitmq: OF_ONE_BROKER := $(ON_RABBITMQ)
+cluster-redis: OF_ONE_BROKER := $(ON_REDIS)
 cluster-rabbitmq cluster-redis: cluster-%:
-	$(BIN)/pytest -m "not embedded" -s -q --backend postgres+$* $(ON_BROKER) $(BESIDE)
+	$(BIN)/pytest -m "not embedded" -s -q --backend postgres+$* $(BY_BROKER) $(OF_ONE_BROKER)
 
 engines:
 	@{ ls /usr/lib/postgresql/*/bin/postgres && test -x /usr/sbin/rabbitmq-server && test -x /usr/bin/redis-server; } \
@@ -103,11 +102,13 @@ $(VENV)/.cad-tests: requirements-dev.lock requirements-cad.lock tests/cad/mesh.l
 	$(call install,requirements-dev.lock -r requirements-cad.lock -r tests/cad/mesh.lock)
 	@touch $@
 
-SHARE := 0.03
+# How long the random cases may take, in minutes; a quarter of it is the browser's.
+MINUTES := 6
+BROWSER_MINUTES := $(if $(filter inf,$(MINUTES)),inf,$(shell expr $(MINUTES) / 4 + 1))
 
 campaign: $(STAMP) $(MULTIBODY) chromium
-	$(BIN)/pytest -m "campaign and not browser and not cad" --campaign-share $(SHARE) $(SPREAD) $(shell grep -rlE campaign tests --include='test_*.py' --exclude-dir=cad)
-	$(BIN)/pytest -m "campaign and browser" --campaign-share $(SHARE) tests/browser
+	$(BIN)/pytest -m "campaign and not browser and not cad" --campaign-minutes $(MINUTES) $(SPREAD) $(BESIDES)
+	$(BIN)/pytest -m "campaign and browser" --campaign-minutes $(BROWSER_MINUTES) tests/browser
 
 # Spoilt analyses, and a twentieth as many jobs, that are posted to a server under a limit of memory.
 FUZZED := 5000
@@ -133,9 +134,9 @@ format: $(STAMP) $(NODE)
 	$(BIN)/ruff format .
 	cd service/studio && ../../tests/node/node_modules/.bin/prettier --print-width 120 --write '*.js'
 
-# The inner loop: everything but the tests marked slow.
+# The inner loop: everything but the tests marked slow, or the TESTS that are named: make quick TESTS=tests/synthesis
 quick: $(STAMP)
-	$(BIN)/pytest -m "not slow and $(APART)" -q $(SPREAD) $(BESIDES)
+	$(BIN)/pytest -m "not slow and $(APART)" -q $(SPREAD) $(BESIDES) $(TESTS)
 
 bench: $(STAMP)
 	$(BIN)/python -m benchmarks.analysis

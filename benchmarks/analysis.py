@@ -21,7 +21,6 @@ import numpy as np
 from numpy.typing import NDArray
 from pydantic_core import to_json
 
-from benchmarks.mechanisms import STATED
 from kinematics.linkage import slider_crank
 from kinematics.linkage.batch import sweep
 from kinematics.linkage.fourbar import closed_form as fourbar
@@ -31,6 +30,7 @@ from kinematics.linkage.slider_crank import kernels as slider_sweeps
 from kinematics.linkage.slider_crank.closed_form import SliderCrank
 from synthesis.analyses import parse_request
 from tests.kinematics import twins
+from tests.support.problems.given_mechanisms import STATED
 
 REPEATS = 9
 

@@ -25,10 +25,10 @@ import numpy as np
 from kinematics.linkage.planar.mechanism import Mechanism
 from tests.kinematics import mechanism_sampling as sampling
 from tests.kinematics.mechanism_sampling import EVERY, RATIOS, take
-from tests.kinematics.test_branches import ELIMINATED, same_branches
-from tests.kinematics.test_circuits_from_other_links import TURNED, same_circuits
-from tests.kinematics.test_peaucellier_branches import same_cell
 from tests.oracles.elimination import Undecided
+from tests.support.kinematics.branches import ELIMINATED, same_branches
+from tests.support.kinematics.circuits_from_other_links import TURNED, same_circuits
+from tests.support.kinematics.peaucellier_branches import same_cell
 
 TURNS = {0.5: 2, 2.0 / 3.0: 3}
 """Turns of the input after which a geared fivebar repeats; one for the other ratios."""

@@ -23,7 +23,7 @@ from typing import Any
 
 import numpy as np
 
-from benchmarks.limited_forces import KINDS, LADEN, PLATE, SPEED_RPM, limited
+from benchmarks.limited_forces import KINDS, limited
 from kinematics.dynamics import Machine, Places, body, reactions
 from kinematics.dynamics.dyads import dyad_forces
 from kinematics.dynamics.fourbar import DRIVE, Fourbars, Weights, peaks
@@ -37,6 +37,7 @@ from synthesis.outcome.forces import shaped
 from tests.kinematics.dynamics.dyad_twin import Twin
 from tests.kinematics.dynamics.machines import differences, masses
 from tests.kinematics.mechanism_sampling import CHAIN, EVERY, take
+from tests.support.problems.limited_forces import LADEN, PLATE, SPEED_RPM
 
 POSITIONS = 72
 DYADIC_ROWS = (

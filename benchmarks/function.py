@@ -21,8 +21,8 @@ from synthesis.dispatch import solve
 from synthesis.kinds.function.design import FunctionResult
 from synthesis.kinds.function.solver import warm_up
 from synthesis.registry import parse_problem
+from tests.support.synthesis.function_optimality import CLASSICAL, RANGES
 from tests.synthesis.function_tasks import CASES, holds, measured, pairs_of, planted_fourbar, scaled_pairs, task_of
-from tests.synthesis.test_function_optimality import CLASSICAL, RANGES
 
 CRITERIA = ("precision", "least_squares", "minimax")
 

@@ -24,11 +24,11 @@ from typing import Any
 
 import httpx
 
-from benchmarks.fuzz_bodies import LAYOUT
-from benchmarks.mechanisms import STATED
 from synthesis.analyses.cam import EXAMPLE
 from tests.service.running import RunningServer
 from tests.service.test_access import made
+from tests.support.problems.fuzz_bodies import LAYOUT
+from tests.support.problems.given_mechanisms import STATED
 
 POINTS = 1000
 """Of a heavy cam's profile."""

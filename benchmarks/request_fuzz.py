@@ -26,9 +26,9 @@ from typing import Any
 
 import httpx
 
-from benchmarks.fuzz_bodies import BLOCKS, analysis_corpus, job_corpus, spoil
 from synthesis.registry import example
 from tests.service.running import RunningServer
+from tests.support.problems.fuzz_bodies import BLOCKS, analysis_corpus, job_corpus, spoil
 
 SLOW_S = 5.0
 """An answer that takes longer is an offence."""

@@ -36,12 +36,13 @@ import httpx
 
 from benchmarks import http_load
 from benchmarks.http_load import Load
-from benchmarks.mechanisms import STATED
 from synthesis.analyses import families
 from synthesis.registry import KINDS
-from tests.service import hostile, test_hostile_bodies
+from tests.service import hostile
 from tests.service.running import START_S, RunningServer, alive, until
-from tests.service.test_limits import HALVES
+from tests.support.problems.given_mechanisms import STATED
+from tests.support.service.hostile_bodies import ENORMOUS, INVALID, MALFORMED
+from tests.support.service.limits import HALVES
 
 PROBLEM_5_26 = {
     "kind": "motion",
@@ -234,8 +235,8 @@ def half_open(server: RunningServer) -> tuple[float, list[float]]:
 
 def hostile_times(server: RunningServer) -> list[tuple[float, float, str]]:
     """Seconds to each refusal by the clock and of the server's processor, with the body's name."""
-    bodies = {name: body for name, (body, _) in test_hostile_bodies.INVALID.items()}
-    bodies |= test_hostile_bodies.MALFORMED | test_hostile_bodies.ENORMOUS
+    bodies = {name: body for name, (body, _) in INVALID.items()}
+    bodies |= MALFORMED | ENORMOUS
     for kind in KINDS:
         bodies |= dict(hostile.of_kind(kind))
     asked = {name: http_load.request("POST", "/v1/jobs", body) for name, body in bodies.items()}

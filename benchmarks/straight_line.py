@@ -16,7 +16,7 @@ from synthesis.dispatch import solve
 from synthesis.kinds.straight_line.problem import LINE_MECHANISMS
 from synthesis.registry import parse_problem
 from tests.cases import load
-from tests.synthesis.test_straight_line import norton_path
+from tests.support.synthesis.straight_line import norton_path
 
 
 def solved(**fields: Any) -> tuple[Any, float]:

@@ -1,8 +1,8 @@
 """Trains in series against a brute force, and the times of searches: ``python -m benchmarks.train_series``.
 
 Random statements of two and three units are solved and gone through by a loop that knows nothing of the solver
-(:mod:`benchmarks.independent.train_series`): the least error, how many series have it, the fewest teeth of these, the
-number of all series, and whether there is one at all, have to be the same. Times are CPU seconds of one process.
+(:mod:`tests.support.independent.train_series`): the least error, how many series have it, the fewest teeth of these,
+the number of all series, and whether there is one at all, have to be the same. Times are CPU seconds of one process.
 """
 
 from __future__ import annotations
@@ -12,10 +12,11 @@ import time
 from random import Random
 from typing import Any
 
-from benchmarks.independent.train_series import Best, best_series, statements
 from synthesis.dispatch import solve
 from synthesis.kinds.train_series.design import TrainSeriesResult
 from synthesis.registry import parse_problem
+from tests.support.independent.train_series import best_series, statements
+from tests.support.problems.train_series import same
 
 SIMPLE: dict[str, Any] = {
     "type": "planetary_train",
@@ -37,23 +38,6 @@ TIMED: list[tuple[str, dict[str, Any]]] = [
     ("Wolfrom and gears", {"ratio": "-5000", "units": [{"type": "planetary_train", "arrangement": "wolfrom",
         "input": "sun", "output": "ring_2", "fixed": "ring_1", "teeth": {"max": 50, "ring_max": 120}}, GEARS]}),
 ]  # fmt: skip
-
-
-def same(result: TrainSeriesResult, best: Best) -> bool:
-    """Whether solver and brute force agree on the optimum, and on whether there is one."""
-    if best.error is None:
-        return not result.designs and result.search.complete and result.search.combinations == best.combinations
-    if not result.designs:
-        return False
-    first = result.designs[0]
-    return (
-        result.search.complete
-        and first.verification.passed
-        and result.search.combinations == best.combinations
-        and result.search.ties == best.ties
-        and abs(abs(first.metrics.error) - float(best.error)) <= 1e-12 * max(1e-3, float(best.error))
-        and first.metrics.total_teeth == best.total
-    )
 
 
 def main() -> None:

@@ -1,36 +1,43 @@
-"""How much of a campaign is run: a share of its random cases, the first by seed, and one of 24 of its listed ones.
+"""The time budget of a campaign, and what a test of it tries within its part.
 
-With ``--campaign-share 1`` it is all of them.
+``--campaign-minutes`` is how long the campaign may take; ``inf`` tries everything. Every test of the campaign tries
+its first case, whatever the budget. It goes on with its further cases until they have used its part of the budget;
+the rest is skipped with that reason. Loops over random cases inside a test are shortened in proportion.
 """
 
 from __future__ import annotations
 
 import math
-from collections import Counter
+import os
+from collections import defaultdict
 from collections.abc import Iterable
+from time import monotonic
 from typing import Any
 
 import pytest
 
-DEFAULT_SHARE = 0.05
-"""Of random cases. Those left out are of the same sorts."""
+DEFAULT_MINUTES = 15.0
+"""Without the option; tests outside the campaign take their number of random cases from it."""
 
-LISTED = 24
-"""One of so many listed cases of a test is run; the others, too, are of the same sorts."""
+WHOLE_MINUTES = 300.0
+"""Duration of the whole campaign on two cores, in minutes; the random cases inside a test are a share by it."""
 
-_share = DEFAULT_SHARE
+MAX_FURTHER_SHARE = 0.5
+"""Share of the budget for further cases. The first case of each test takes the other half."""
+
+_budget_minutes = DEFAULT_MINUTES
 
 
-def choose(share: float) -> None:
-    """Take this share of every campaign from now on; before the tests are collected."""
-    global _share
-    if not 0.0 < share <= 1.0:
-        raise ValueError(f"a share of a campaign lies between 0 and 1, not at {share}")
-    _share = share
+def choose_budget(minutes: float) -> None:
+    """Set the budget of every campaign from now on; before the tests are collected."""
+    global _budget_minutes
+    if not minutes > 0.0:
+        raise ValueError(f"the budget of a campaign must be positive, got {minutes} minutes")
+    _budget_minutes = minutes
 
 
 def further(values: Iterable[Any], always: Iterable[Any]) -> list[Any]:
-    """Parameters of a test: it is tried with those of ``always`` in every run, with the others in the campaign.
+    """Return parameters of a test: those of ``always`` are tried in every run, the others in the campaign.
 
     A tuple is the values of several parameters.
     """
@@ -43,20 +50,45 @@ def further(values: Iterable[Any], always: Iterable[Any]) -> list[Any]:
 
 
 def sampled(cases: int) -> int:
-    """How many of so many random cases are to be tried: at least one."""
-    return math.ceil(_share * cases)
+    """Return how many random cases a loop tries within the budget: at least one, at most all."""
+    return math.ceil(min(1.0, _budget_minutes / WHOLE_MINUTES) * cases)
 
 
-def thinned(items: Iterable[pytest.Item]) -> tuple[list[pytest.Item], list[pytest.Item]]:
-    """Tests to be run, and those left out: one of 24 cases that a test has in the campaign, unless all are run."""
-    kept: list[pytest.Item] = []
-    left_out: list[pytest.Item] = []
-    seen: Counter[str] = Counter()
-    for item in items:
-        test, _, case = item.nodeid.partition("[")
-        if not case or _share == 1.0 or item.get_closest_marker("campaign") is None:
-            kept.append(item)
-            continue
-        (left_out if seen[test] % LISTED else kept).append(item)
-        seen[test] += 1
-    return kept, left_out
+class Budget:
+    """Time that the cases of each campaign test have used in this process."""
+
+    def __init__(self) -> None:
+        self._allowance_s = math.inf
+        self._first: dict[str, str] = {}
+        self._used: dict[str, float] = defaultdict(float)
+        self._begun: dict[str, float] = {}
+
+    def share_out(self, items: Iterable[pytest.Item]) -> None:
+        """Give each test with further cases the same part of the budget."""
+        counts: dict[str, int] = defaultdict(int)
+        for item in items:
+            if item.get_closest_marker("campaign") is not None:
+                test = item.nodeid.partition("[")[0]
+                self._first.setdefault(test, item.nodeid)
+                counts[test] += 1
+        tests = sum(count > 1 for count in counts.values())
+        processes = int(os.environ.get("PYTEST_XDIST_WORKER_COUNT", "1"))
+        if tests:
+            self._allowance_s = MAX_FURTHER_SHARE * 60.0 * _budget_minutes * processes / tests
+
+    def begin(self, item: pytest.Item) -> None:
+        """Skip a further case of a test that has used its part; otherwise start its clock."""
+        test = item.nodeid.partition("[")[0]
+        if self._first.get(test, item.nodeid) != item.nodeid and self._used[test] >= self._allowance_s:
+            pytest.skip(f"a campaign of {_budget_minutes:g} minutes leaves no time for it")
+        self._begun[item.nodeid] = monotonic()
+
+    def end(self, item: pytest.Item) -> None:
+        """Stop the clock of a case. The first case of a test is not counted."""
+        begun = self._begun.pop(item.nodeid, None)
+        test = item.nodeid.partition("[")[0]
+        if begun is not None and self._first.get(test) != item.nodeid:
+            self._used[test] += monotonic() - begun
+
+
+BUDGET = Budget()

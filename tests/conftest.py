@@ -3,14 +3,19 @@
 import pytest
 from hypothesis import settings
 
-from tests import campaign
-from tests.cluster import backend
+# Assertions of shared code are explained as those of tests are.
+pytest.register_assert_rewrite("tests.support")
+
+from tests import campaign  # noqa: E402
+from tests.cluster import backend  # noqa: E402
+from tests.support import cpu_time  # noqa: E402
 
 settings.register_profile("repeatable", deadline=None, derandomize=True)
 settings.load_profile("repeatable")
 
 
 def pytest_addoption(parser):
+    cpu_time.add_options(parser)
     parser.addoption(
         "--backend",
         choices=backend.NAMES,
@@ -18,22 +23,33 @@ def pytest_addoption(parser):
         help="what the service runs on: SQLite and workers of its own, or PostgreSQL, Celery and a broker",
     )
     parser.addoption(
-        "--campaign-share",
+        "--campaign-minutes",
         type=float,
-        default=campaign.DEFAULT_SHARE,
-        help="the share of the random cases of each campaign that are tried; 1 for all",
+        default=campaign.DEFAULT_MINUTES,
+        help="how long a campaign may take; inf for all cases",
     )
 
 
 def pytest_configure(config):
     backend.choose(config.getoption("--backend"))
-    campaign.choose(config.getoption("--campaign-share"))
+    campaign.choose_budget(config.getoption("--campaign-minutes"))
+    config.pluginmanager.register(cpu_time.CpuTimePlugin(config), "cpu-time")
 
 
-def pytest_collection_modifyitems(config, items):
-    items[:], left_out = campaign.thinned(items)
-    if left_out:
-        config.hook.pytest_deselected(items=left_out)
+@pytest.hookimpl(trylast=True)
+def pytest_collection_modifyitems(items):
+    """Cases that a mark deselects are gone by now."""
+    campaign.BUDGET.share_out(items)
+
+
+@pytest.hookimpl(tryfirst=True)
+def pytest_runtest_setup(item):
+    if item.get_closest_marker("campaign") is not None:
+        campaign.BUDGET.begin(item)
+
+
+def pytest_runtest_teardown(item):
+    campaign.BUDGET.end(item)
 
 
 @pytest.fixture(scope="session", autouse=True)

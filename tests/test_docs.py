@@ -14,6 +14,7 @@ import pytest
 from synthesis.analyses import parse_request
 from synthesis.model.sixbars import IN_WORDS
 from synthesis.registry import parse_problem
+from tests.support.loops import check_each
 
 ROOT = Path(__file__).parents[1]
 PAGES = [ROOT / "README.md", *sorted((ROOT / "docs").rglob("*.md"))]
@@ -122,13 +123,15 @@ def exists(name: str) -> bool:
     return any(module.exists() and word.search(module.read_text("utf-8")) for module in modules)
 
 
-@pytest.mark.parametrize("page", PAGES, ids=lambda page: str(page.relative_to(ROOT)))
-def test_every_path_that_a_page_names_exists(page: Path) -> None:
-    text = page.read_text(encoding="utf-8")
-    assert [name for name in PATH.findall(text) if not exists(name)] == []
-    assert [link for link, _ in LINK.findall(text) if not (page.parent / link).exists()] == []
-    named = [(page.parent / link if link else page, place) for link, place in LINK.findall(text) if place]
-    assert [(str(to), place) for to, place in named if to.suffix == ".md" and place not in anchors(to)] == []
+def test_every_path_that_a_page_names_exists() -> None:
+    def check(page: Path) -> None:
+        text = page.read_text(encoding="utf-8")
+        assert [name for name in PATH.findall(text) if not exists(name)] == []
+        assert [link for link, _ in LINK.findall(text) if not (page.parent / link).exists()] == []
+        named = [(page.parent / link if link else page, place) for link, place in LINK.findall(text) if place]
+        assert [(str(to), place) for to, place in named if to.suffix == ".md" and place not in anchors(to)] == []
+
+    check_each(PAGES, check)
 
 
 def test_the_door_for_python_costs_nothing_until_it_is_used() -> None:

@@ -18,6 +18,7 @@ from synthesis.analyses import FAMILIES
 from synthesis.model.kind import Kind
 from synthesis.model.mechanism_types import models_within
 from synthesis.registry import KINDS
+from tests.support.loops import check_each
 
 ROOT = Path(__file__).parents[1]
 FOLDERS = sorted(folder for folder in (ROOT / "synthesis" / "kinds").iterdir() if (folder / "__init__.py").exists())
@@ -111,6 +112,7 @@ def test_the_page_names_no_more_files_that_a_kind_edits_than_it_may_take() -> No
     assert 0 < len(for_others) <= MOST_EDITED
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("module", ["synthesis.registry", "service.app"])
 def test_who_parses_problems_waits_for_no_solver(module: str) -> None:
     """Compiled kernels and solvers are imported by those who solve, in processes of their own."""
@@ -119,11 +121,34 @@ def test_who_parses_problems_waits_for_no_solver(module: str) -> None:
     assert run.stdout.split() == []
 
 
-@pytest.mark.parametrize("path", sorted((ROOT / "benchmarks").rglob("*.py")), ids=lambda path: path.stem)
-def test_what_a_benchmark_imports_is_there(path: Path) -> None:
-    for node in ast.walk(ast.parse(path.read_text("utf-8"))):
-        if isinstance(node, ast.ImportFrom) and node.module and node.module.partition(".")[0] in OURS:
-            module = importlib.import_module(node.module)
-            for alias in node.names:
-                known = hasattr(module, alias.name) or importlib.util.find_spec(f"{node.module}.{alias.name}")
-                assert known, f"{path}: no {alias.name} in {node.module}"
+def test_no_test_imports_another_test_or_a_benchmark() -> None:
+    """Shared code is in tests/support, or in a module of a folder of tests that is no test itself."""
+    wrong = {
+        (path.relative_to(ROOT).as_posix(), name)
+        for path in (ROOT / "tests").rglob("*.py")
+        for name in imports(path)
+        if name.startswith("benchmarks") or (name.startswith("tests.") and re.search(r"\.test_", name))
+    }
+    assert wrong == set()
+
+
+def test_no_benchmark_imports_a_test() -> None:
+    wrong = {
+        (path.relative_to(ROOT).as_posix(), name)
+        for path in (ROOT / "benchmarks").rglob("*.py")
+        for name in imports(path)
+        if name.startswith("tests.") and re.search(r"\.test_", name)
+    }
+    assert wrong == set()
+
+
+def test_what_a_benchmark_imports_is_there() -> None:
+    def check(path: Path) -> None:
+        for node in ast.walk(ast.parse(path.read_text("utf-8"))):
+            if isinstance(node, ast.ImportFrom) and node.module and node.module.partition(".")[0] in OURS:
+                module = importlib.import_module(node.module)
+                for alias in node.names:
+                    known = hasattr(module, alias.name) or importlib.util.find_spec(f"{node.module}.{alias.name}")
+                    assert known, f"no {alias.name} in {node.module}"
+
+    check_each(sorted((ROOT / "benchmarks").rglob("*.py")), check)

@@ -17,9 +17,9 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from benchmarks.demands.task import Task
 from synthesis.dispatch import compile_kind, solve
 from synthesis.registry import parse_problem
+from tests.support.demands.task import Task
 
 NO_ROWS = {"__main__", "task", "planted"}
 """Modules of the package that are no rows."""
@@ -27,7 +27,7 @@ NO_ROWS = {"__main__", "task", "planted"}
 
 def rows() -> list[str]:
     """Names of all rows."""
-    package = importlib.import_module(__package__ or "benchmarks.demands")
+    package = importlib.import_module("tests.support.demands")
     return sorted(module.name for module in pkgutil.iter_modules(package.__path__) if module.name not in NO_ROWS)
 
 
@@ -39,7 +39,7 @@ def main() -> None:
     parser.add_argument("--seed", type=int, default=0)
     parser.add_argument("--verbose", action="store_true", help="a line for each task")
     given = parser.parse_args()
-    row = importlib.import_module(f"{__package__}.{given.row}")
+    row = importlib.import_module(f"tests.support.demands.{given.row}")
     tasks: Iterator[Task] = row.tasks(given.count, given.seed)
     met, walls, spent = 0, [], []
     missed = []

@@ -18,10 +18,10 @@ from typing import NamedTuple
 
 import numpy as np
 
-from benchmarks.fit.task import Task
-from benchmarks.fit.verdict import violations
 from synthesis.dispatch import compile_kind, solve
 from synthesis.registry import parse_problem
+from tests.support.fit.task import Task
+from tests.support.fit.verdict import violations
 
 NO_ROWS = {"__main__", "linkage", "room", "task", "verdict"}
 """Modules of the package that are no rows."""
@@ -39,7 +39,7 @@ class _Run(NamedTuple):
 
 def rows() -> list[str]:
     """Names of all rows."""
-    package = importlib.import_module(__package__ or "benchmarks.fit")
+    package = importlib.import_module("tests.support.fit")
     return sorted(module.name for module in pkgutil.iter_modules(package.__path__) if module.name not in NO_ROWS)
 
 
@@ -52,7 +52,7 @@ def main() -> None:
     parser.add_argument("--first", type=int, default=0, help="number of the first task that is solved")
     parser.add_argument("--verbose", action="store_true", help="a line for each task")
     given = parser.parse_args()
-    row = importlib.import_module(f"{__package__}.{given.row}")
+    row = importlib.import_module(f"tests.support.fit.{given.row}")
     groups: dict[str, list[_Run]] = defaultdict(list)
     warm = False
     for task in row.tasks(given.count, given.seed):

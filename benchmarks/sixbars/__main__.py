@@ -1,4 +1,4 @@
-"""Print a row of :mod:`benchmarks.sixbars`."""
+"""Print a row of :mod:`tests.support.sixbars`."""
 
 from __future__ import annotations
 
@@ -6,8 +6,8 @@ import argparse
 import importlib
 import pkgutil
 
-import benchmarks.sixbars as package
-from benchmarks.sixbars.spread import Spread
+import tests.support.sixbars as package
+from tests.support.sixbars.spread import Spread
 
 NO_ROWS = {"__main__", "driven", "spread"}
 """Modules of the package that are no rows."""

@@ -30,7 +30,7 @@ def require_countable(entities: Iterable[Any], shown: Shown) -> None:
         Also for blocks that lie too deep in one another, or in themselves.
     """
     if _Counter(shown).count(entities, 0) > MOST_ELEMENTS:
-        raise Unsuitable(f"The drawing has more than {MOST_ELEMENTS} entities, those of blocks counted each time.")
+        raise Unsuitable(f"The drawing has more than {MOST_ELEMENTS} entities, counting each insertion of a block.")
 
 
 def grid_of(insert: Any) -> tuple[int, int]:

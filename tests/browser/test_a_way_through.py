@@ -10,9 +10,9 @@ from ezdxf import recover
 
 from service.parts.extra import installed
 from tests.browser.conftest import DESKTOP, Studio
-from tests.browser.test_studio import stated
-from tests.browser.test_taking_home import taken
 from tests.service.running import until
+from tests.support.browser.studio import stated
+from tests.support.browser.taking_home import taken
 
 pytestmark = [pytest.mark.browser, pytest.mark.timeout(400)]
 

@@ -3,14 +3,13 @@
 import pytest
 
 from synthesis.registry import KINDS, examples
-from tests.browser.test_form import OPEN_ALL
-from tests.browser.test_studio import PLAIN, drawn, state, unfold
 from tests.campaign import further
-from tests.service.running import ROOT, until
+from tests.service.running import until
+from tests.support.browser.accessibility import violations
+from tests.support.browser.form import OPEN_ALL
+from tests.support.browser.studio import PLAIN, drawn, state, unfold
 
 pytestmark = [pytest.mark.browser, pytest.mark.timeout(300)]
-
-AXE = ROOT / "tests" / "node" / "node_modules" / "axe-core" / "axe.min.js"
 
 CASES = {
     "motion": PLAIN,
@@ -24,26 +23,6 @@ OTHERS = {"function": 2, "dwell": 1}
 WIDE, NARROW = (1360, 1000), (390, 844)
 
 TABS = ("task", "answers", "explore", "files", "jobs", "plots", "numbers")
-
-RUN = """async () => {
-  const found = await axe.run(document, {resultTypes: ["violations"]});
-  return {
-    checked: found.passes.length,
-    violations: found.violations.map(one => ({
-      rule: one.id, impact: one.impact, help: one.help, where: one.nodes.slice(0, 4).map(node => node.target.join(" ")),
-    })),
-  };
-}"""
-
-
-def violations(page):
-    """What axe-core finds; its rules come in by the debugger, so the page's policy stays as it is."""
-    assert AXE.exists(), "make test-browser installs what this needs of node"
-    if not page.evaluate("typeof axe === 'object'"):
-        page.evaluate(f"{AXE.read_text()}; undefined")
-    found = page.evaluate(RUN)
-    assert found["checked"] > 10
-    return found["violations"]
 
 
 @pytest.mark.parametrize("kind", further(KINDS, CASES))

@@ -9,12 +9,12 @@ from PIL import Image, ImageChops
 
 from service.parts.extra import installed
 from tests.browser.conftest import SCREENS
-from tests.browser.test_accessibility import violations
-from tests.browser.test_studio import state
-from tests.browser.test_taking_home import taken as taken_of_design
 from tests.service.running import until
-from tests.service.test_parts import MOTION
-from tests.service.test_parts_of_gearboxes import BOX
+from tests.support.browser.accessibility import violations
+from tests.support.browser.studio import state
+from tests.support.browser.taking_home import taken as taken_of_design
+from tests.support.service.parts import MOTION
+from tests.support.service.parts_of_gearboxes import BOX
 
 pytestmark = [pytest.mark.browser, pytest.mark.timeout(400)]
 

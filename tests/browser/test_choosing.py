@@ -5,9 +5,9 @@ import pytest
 
 from synthesis.registry import examples
 from tests.browser.conftest import ANSWERED, PUT
-from tests.browser.test_accessibility import violations
-from tests.browser.test_studio import state
 from tests.service.running import until
+from tests.support.browser.accessibility import violations
+from tests.support.browser.studio import state
 
 pytestmark = [pytest.mark.browser, pytest.mark.timeout(300)]
 

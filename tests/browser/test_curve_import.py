@@ -5,11 +5,11 @@ import math
 import numpy as np
 import pytest
 
-from tests.browser.test_accessibility import violations
-from tests.browser.test_studio import PLAIN, state, stated
 from tests.service.drawn_files import dxf
 from tests.service.drawn_files import page as svg
-from tests.service.test_imports import blob, picture
+from tests.support.browser.accessibility import violations
+from tests.support.browser.studio import PLAIN, state, stated
+from tests.support.service.imports import blob, picture
 
 pytestmark = [pytest.mark.browser, pytest.mark.timeout(300)]
 

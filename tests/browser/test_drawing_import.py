@@ -4,12 +4,12 @@ import numpy as np
 import pytest
 import shapely
 
-from tests.browser.test_accessibility import violations
-from tests.browser.test_room import field
-from tests.browser.test_studio import PLAIN, state, stated
 from tests.service.drawn_files import dxf
 from tests.service.drawn_files import page as svg
-from tests.synthesis.test_space import LID
+from tests.support.browser.accessibility import violations
+from tests.support.browser.room import field
+from tests.support.browser.studio import PLAIN, state, stated
+from tests.support.synthesis.space import LID
 
 pytestmark = [pytest.mark.browser, pytest.mark.timeout(300)]
 

@@ -6,9 +6,9 @@ import re
 import pytest
 
 from synthesis.registry import examples
-from tests.browser.test_motion_view import number, solved
-from tests.browser.test_studio import drag, stated
 from tests.service.running import until
+from tests.support.browser.motion_view import number, solved
+from tests.support.browser.studio import drag, stated
 
 pytestmark = pytest.mark.browser
 

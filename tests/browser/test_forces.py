@@ -7,15 +7,15 @@ from functools import partial
 import numpy as np
 import pytest
 
-from tests.browser import test_studio
 from tests.browser.conftest import PUT
-from tests.browser.test_accessibility import violations
-from tests.browser.test_studio import PLAIN
 from tests.service.running import until
+from tests.support.browser import studio as studio_steps
+from tests.support.browser.accessibility import violations
+from tests.support.browser.studio import PLAIN
 
 pytestmark = pytest.mark.browser
 
-solved = partial(test_studio.solved, shown=".moving .force")
+solved = partial(studio_steps.solved, shown=".moving .force")
 
 STEEL = {"density": 7800.0, "thickness": 10.0, "width": 2.0}
 BLOCK = {
@@ -188,7 +188,7 @@ def test_where_a_force_is_not_determined_there_is_a_gap_with_its_reason(open_stu
 def test_a_block_that_does_not_fit_a_design_is_told_so(studio):
     page = studio.page
     block = {**BLOCK, "point_masses": [{"joint": "Z", "mass": 1.0}]}
-    test_studio.solved(studio, {**PLAIN, "dynamics": block}, shown=".moving .live .link")
+    studio_steps.solved(studio, {**PLAIN, "dynamics": block}, shown=".moving .live .link")
     page.click("#tab-plots")
     page.wait_for_selector(".borne .error")
     assert "/dynamics/point_masses/0/joint: no joint of the mechanism" in page.inner_text(".borne .error")
@@ -197,7 +197,7 @@ def test_a_block_that_does_not_fit_a_design_is_told_so(studio):
 def test_a_load_is_stated_on_the_drawing_and_a_fault_is_told_at_its_field(open_studio, server):
     studio = open_studio(reduced_motion="reduce")
     page = studio.page
-    test_studio.solved(studio, PLAIN, shown=".moving .live .link")
+    studio_steps.solved(studio, PLAIN, shown=".moving .live .link")
     page.click("#tab-plots")
     page.locator("#forces summary").first.press("Enter")
     assert "not known until that is stated" in page.inner_text(".borne")
@@ -292,7 +292,7 @@ def test_the_line_of_a_slide_pushes_its_pin_as_the_pin_pushes_its_link(open_stud
 def test_a_slide_that_drives_has_a_force_over_its_place(open_studio, server):
     studio = open_studio(reduced_motion="reduce")
     page = studio.page
-    test_studio.solved(studio, {**PUSHED, "dynamics": {"links": STEEL, "speed": 500.0}}, shown=".moving .live .link")
+    studio_steps.solved(studio, {**PUSHED, "dynamics": {"links": STEEL, "speed": 500.0}}, shown=".moving .live .link")
     page.wait_for_selector(".moving .force", state="attached")
     extremes = forces_of(studio, server)["dynamics"]["extremes"]["drive"]
     page.click("#tab-plots")

@@ -5,16 +5,11 @@ import re
 import pytest
 
 from synthesis.registry import KINDS, example, examples
-from tests.browser.test_studio import PLAIN, state, stated
 from tests.service.running import until
+from tests.support.browser.form import OPEN_ALL
+from tests.support.browser.studio import PLAIN, state, stated
 
 pytestmark = pytest.mark.browser
-
-OPEN_ALL = """() => {
-  for (let rounds = 0; rounds < 8; rounds++) {
-    for (const one of document.querySelectorAll("#fields details")) one.dispatchEvent(new Event("reveal"));
-  }
-}"""
 
 
 def at(path):

@@ -11,10 +11,10 @@ import pytest
 
 from synthesis.registry import examples
 from tests.browser.conftest import DESKTOP, Studio
-from tests.browser.test_accessibility import violations
-from tests.browser.test_form import OPEN_ALL
-from tests.browser.test_studio import drawn, state
 from tests.service.running import until
+from tests.support.browser.accessibility import violations
+from tests.support.browser.form import OPEN_ALL
+from tests.support.browser.studio import drawn, state
 from tools.studio.messages import messages, spoken
 
 pytestmark = [pytest.mark.browser, pytest.mark.timeout(400)]

@@ -3,9 +3,9 @@
 import pytest
 
 from tests.browser.conftest import ANSWERED
-from tests.browser.test_accessibility import violations
-from tests.browser.test_studio import stated
 from tests.service.running import until
+from tests.support.browser.accessibility import violations
+from tests.support.browser.studio import stated
 
 pytestmark = [pytest.mark.browser, pytest.mark.timeout(300)]
 

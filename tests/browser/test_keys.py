@@ -3,9 +3,9 @@
 import pytest
 
 from tests.browser.conftest import Studio
-from tests.browser.test_studio import PLAIN, drawn, state
 from tests.service.running import RunningServer, until
-from tests.service.test_access import made
+from tests.support.browser.studio import PLAIN, drawn, state
+from tests.support.service.access import made
 
 pytestmark = pytest.mark.browser
 

@@ -4,10 +4,10 @@ import pytest
 
 from synthesis.registry import KINDS, examples
 from tests.browser.conftest import ANSWERED
-from tests.browser.test_studio import PLAIN, state
-from tests.browser.test_taking_home import EXAMPLES
 from tests.campaign import further
 from tests.service.running import until
+from tests.support.browser.studio import PLAIN, state
+from tests.support.browser.taking_home import EXAMPLES
 
 pytestmark = [pytest.mark.browser, pytest.mark.timeout(300)]
 

@@ -8,7 +8,7 @@ import pytest
 
 from synthesis.registry import KINDS, example, examples
 from tests.browser.conftest import DESKTOP, Studio
-from tests.browser.test_studio import PLAIN, state, stated
+from tests.support.browser.studio import PLAIN, state, stated
 
 pytestmark = [pytest.mark.browser, pytest.mark.timeout(300)]
 

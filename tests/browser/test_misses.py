@@ -4,7 +4,7 @@ import pytest
 
 from synthesis.registry import examples
 from tests.browser.conftest import ANSWERED
-from tests.browser.test_studio import state, stated
+from tests.support.browser.studio import state, stated
 
 pytestmark = [pytest.mark.browser, pytest.mark.timeout(300)]
 

@@ -2,36 +2,22 @@
 
 import math
 import re
-from functools import partial
 
 import pytest
 
 from synthesis.registry import examples
-from tests.browser import test_studio
-from tests.browser.test_studio import PLAIN
 from tests.service.running import until
+from tests.support.browser import studio as studio_steps
+from tests.support.browser.motion_view import motion_of, number, solved
+from tests.support.browser.studio import PLAIN
 
 pytestmark = pytest.mark.browser
-
-solved = partial(test_studio.solved, shown=".moving .live .link")
 
 TIMED = examples("path")[1]
 """A crank-rocker through five points; its right cognate is one too, with the same crank angles."""
 
 
-def motion_of(studio, server, number=0, steps=240):
-    job = re.search(r"#job=(\w+)", studio.page.url).group(1)
-    answer = server.client.get(f"/v1/jobs/{job}/designs/{number}/motion", params={"steps": steps})
-    assert answer.status_code == 200
-    return answer.json()
-
-
 NUMBER = r"−?[\d.]+(?:·10[⁻⁰¹²³⁴⁵⁶⁷⁸⁹]+)?"
-PLAIN_DIGITS = str.maketrans("−⁻⁰¹²³⁴⁵⁶⁷⁸⁹", "--0123456789")
-
-
-def number(text):
-    return float(text.translate(PLAIN_DIGITS).replace("·10", "e").rstrip("°"))
 
 
 def curve(page, selector):
@@ -67,7 +53,7 @@ def test_nothing_below_moves_while_the_motion_plays(studio, problem, width):
     page = studio.page
     page.set_viewport_size({"width": width, "height": 900})
     solved(studio, problem)
-    until(lambda: test_studio.drawn(page), 90, "the drawing")
+    until(lambda: studio_steps.drawn(page), 90, "the drawing")
     places = page.evaluate("""async () => {
       const below = ["#scrub", "#solve", ".player button", ".columns", ".checks li:last-child", ".plot:last-child svg"];
       const places = Object.fromEntries(below.map(one => [one, new Set()]));

@@ -6,27 +6,19 @@ import pytest
 
 from synthesis.registry import KINDS, examples
 from tests.browser.conftest import ANSWERED
-from tests.browser.test_accessibility import violations
-from tests.browser.test_studio import PLAIN, drag, state, stated
 from tests.campaign import further
 from tests.service.running import until
+from tests.support.browser.accessibility import violations
+from tests.support.browser.opening import FIRST_S, MOVES
+from tests.support.browser.studio import PLAIN, drag, state, stated
 
 pytestmark = [pytest.mark.browser, pytest.mark.timeout(300)]
-
-FIRST_S = 1.5
-"""Until the first machine moves, on a server that has served the page before."""
 
 REQUESTS = 10
 """At most, for all that the page consists of when it has been opened."""
 
 BUSY = 4.0
 """So many times as long as that on a machine that does other things too."""
-
-MOVES = """() => {
-  const link = document.querySelector(".moving .live .link")?.getAttribute("d");
-  window.firstLink ??= link;
-  return link && link !== window.firstLink ? performance.now() / 1000 : 0;
-}"""
 
 
 def test_a_machine_moves_when_the_page_opens(studio):

@@ -5,8 +5,8 @@ import re
 import pytest
 
 from tests.browser.conftest import PUT
-from tests.browser.test_accessibility import violations
-from tests.browser.test_studio import state
+from tests.support.browser.accessibility import violations
+from tests.support.browser.studio import state
 
 pytestmark = [pytest.mark.browser, pytest.mark.timeout(300)]
 

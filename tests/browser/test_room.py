@@ -9,9 +9,10 @@ import shapely
 
 from synthesis.registry import KINDS, example
 from tests.browser.conftest import PUT
-from tests.browser.test_accessibility import violations
-from tests.browser.test_studio import LINKAGES, state, stated, unfold
-from tests.synthesis.test_space import LID
+from tests.support.browser.accessibility import violations
+from tests.support.browser.room import field
+from tests.support.browser.studio import LINKAGES, state, stated
+from tests.support.synthesis.space import LID
 
 pytestmark = [pytest.mark.browser, pytest.mark.timeout(300)]
 
@@ -54,11 +55,6 @@ class Pointer:
 def take(page, role, tool):
     page.select_option("#room-role", role)
     page.get_by_role("button", name=tool, exact=True).click()
-
-
-def field(page, path):
-    unfold(page)
-    return page.locator(f'[data-path="/problem/space/{path}"]')
 
 
 def loop(skeleton, inputs):

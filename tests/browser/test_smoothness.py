@@ -6,9 +6,9 @@ from itertools import pairwise
 import pytest
 
 from synthesis.registry import example, examples
-from tests.browser.test_opening import FIRST_S, MOVES
-from tests.browser.test_studio import PLAIN, state
 from tests.service.running import until
+from tests.support.browser.opening import FIRST_S, MOVES
+from tests.support.browser.studio import PLAIN, state
 
 pytestmark = [pytest.mark.browser, pytest.mark.timeout(300)]
 

@@ -5,7 +5,7 @@ import math
 import pytest
 
 from synthesis.registry import KINDS, examples
-from tests.browser.test_studio import drag, state, stated
+from tests.support.browser.studio import drag, state, stated
 
 pytestmark = pytest.mark.browser
 

@@ -7,24 +7,20 @@ import json
 import re
 import zipfile
 from html.parser import HTMLParser
-from pathlib import Path
 from xml.etree import ElementTree
 
 import pytest
 from ezdxf import recover
 from PIL import Image, ImageChops
-from playwright.sync_api import TimeoutError
 
 from service.parts.extra import installed
 from synthesis.registry import KINDS
 from tests.browser.numbers import told_as_answered
-from tests.browser.test_studio import drawn, stated, unfold, written
 from tests.service.running import until
+from tests.support.browser.studio import drawn, stated, unfold, written
+from tests.support.browser.taking_home import EXAMPLES, taken
 
 pytestmark = pytest.mark.browser
-
-# The example of each kind that is soon solved, where that is not the first.
-EXAMPLES = {"motion": 3, "path": 1, "function": 2, "dwell": 1}
 
 # A field of each kind that is changed in the form: its path, what is typed or chosen, and what is stated then.
 FIELDS = {
@@ -87,16 +83,6 @@ class Words(HTMLParser):
 
     def handle_data(self, data):
         self.words.append(data)
-
-
-def taken(page, name):
-    page.click("#tab-files")
-    try:
-        with page.expect_download(timeout=90_000) as waiting:
-            page.locator("#downloads").get_by_role("button", name=name, exact=True).click()
-    except TimeoutError as error:
-        raise AssertionError(f"{name}: {page.inner_text('#downloads')}") from error
-    return Path(waiting.value.path())
 
 
 def check_svg(path, job):

@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 from PIL import Image
 
-from tests.browser.test_studio import PLAIN, drag, solved, state, stated
 from tests.service.running import until
+from tests.support.browser.studio import PLAIN, drag, solved, state, stated
 
 pytestmark = [pytest.mark.browser, pytest.mark.timeout(300)]
 

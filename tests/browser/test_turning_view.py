@@ -6,9 +6,9 @@ import re
 import pytest
 
 from synthesis.registry import examples
-from tests.browser.test_motion_view import motion_of, number
-from tests.browser.test_studio import solved
 from tests.service.running import until
+from tests.support.browser.motion_view import motion_of, number
+from tests.support.browser.studio import solved
 
 pytestmark = pytest.mark.browser
 

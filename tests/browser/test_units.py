@@ -5,7 +5,7 @@ import pytest
 from service.api.measures import measures
 from service.units import symbols
 from synthesis.registry import KINDS, examples, parse_problem
-from tests.browser.test_studio import PLAIN, state
+from tests.support.browser.studio import PLAIN, state
 
 pytestmark = pytest.mark.browser
 

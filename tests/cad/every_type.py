@@ -11,13 +11,13 @@ from tests.service.stated.linkages import MOTION as THREE
 from tests.service.stated.sixbars import DWELL as PLACED_DWELL
 from tests.service.stated.sixbars import FUNCTION
 from tests.service.stated.sixbars import PATH as OPEN_PATH
-from tests.service.test_parts import MOTION, SLIDER
-from tests.service.test_parts_of_barrels import BARREL
-from tests.service.test_parts_of_cams import PROBLEMS as DRIVES
-from tests.service.test_parts_of_gears import BEVELS, PAIR, SET, WORM
-from tests.service.test_parts_of_sphericals import SPHERICAL
-from tests.service.test_sixbar_jobs import TASK as SIXBAR_MOTION
-from tests.service.test_sixbar_paths import TASK as SIXBAR_PATH
+from tests.support.service.parts import MOTION, SLIDER
+from tests.support.service.parts_of_barrels import BARREL
+from tests.support.service.parts_of_cams import PROBLEMS as DRIVES
+from tests.support.service.parts_of_gears import BEVELS, PAIR, SET, WORM
+from tests.support.service.parts_of_sphericals import SPHERICAL
+from tests.support.service.sixbar_jobs import TASK as SIXBAR_MOTION
+from tests.support.service.sixbar_paths import TASK as SIXBAR_PATH
 
 Key = tuple[str, str]
 """A kind of problem and a type of mechanism."""

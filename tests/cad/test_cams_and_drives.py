@@ -26,8 +26,8 @@ from synthesis.registry import parse_problem
 from tests.cad.meshes import looked_through, meshed, places
 from tests.cad.orders import order
 from tests.cad.readers import assert_valid_3mf, assert_valid_glb
-from tests.service.test_parts_of_barrels import BARREL
-from tests.service.test_parts_of_cams import PROBLEMS
+from tests.support.service.parts_of_barrels import BARREL
+from tests.support.service.parts_of_cams import PROBLEMS
 
 pytestmark = [pytest.mark.cad, pytest.mark.timeout(600), pytest.mark.xdist_group("cams_and_drives")]
 

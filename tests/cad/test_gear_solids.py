@@ -23,7 +23,7 @@ from synthesis.dispatch import solve
 from synthesis.registry import parse_problem
 from tests.cad.meshes import looked_through, meshed
 from tests.cad.readers import assert_valid_glb
-from tests.service.test_parts_of_gears import PAIR, SET
+from tests.support.service.parts_of_gears import PAIR, SET
 
 pytestmark = [pytest.mark.cad, pytest.mark.timeout(300), pytest.mark.xdist_group("gear_solids")]
 

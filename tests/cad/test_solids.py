@@ -29,8 +29,8 @@ from tests.cad.meshes import looked_through, meshed
 from tests.cad.orders import order
 from tests.cad.readers import assert_valid_3mf, assert_valid_glb
 from tests.service.stated.linkages import DWELL, LINE, STEERING
-from tests.service.test_parts import MOTION, SLIDER
-from tests.service.test_parts_of_geared_linkages import planted
+from tests.support.service.parts import MOTION, SLIDER
+from tests.support.service.parts_of_geared_linkages import planted
 
 pytestmark = [pytest.mark.cad, pytest.mark.timeout(300), pytest.mark.xdist_group("solids")]
 

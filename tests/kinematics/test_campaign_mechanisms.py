@@ -10,9 +10,9 @@ import pytest
 from tests.campaign import sampled
 from tests.kinematics import mechanism_sampling as sampling
 from tests.kinematics.mechanism_sampling import EVERY, RATIOS, take
-from tests.kinematics.test_branches import ELIMINATED, TYPES, check, degenerate, same_branches
-from tests.kinematics.test_circuits_from_other_links import TURNED, same_circuits
-from tests.kinematics.test_mechanism_laws import closes, orders
+from tests.support.kinematics.branches import ELIMINATED, TYPES, check, degenerate, same_branches
+from tests.support.kinematics.circuits_from_other_links import TURNED, same_circuits
+from tests.support.kinematics.mechanism_laws import closes, orders
 
 pytestmark = [pytest.mark.campaign, pytest.mark.timeout(600)]
 

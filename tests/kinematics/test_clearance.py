@@ -292,6 +292,7 @@ def test_nothing_in_the_way_is_passed_over(name):
             assert found.least <= 1e-5 * abs(normal) * (1.0 + 1e-6)
 
 
+@pytest.mark.slow
 def test_free_inputs_are_free_and_nearly_all_of_them():
     part = bars(CRANK_ROCKER)[1]
     inputs = np.linspace(0.0, 2.0 * np.pi, 20001)

@@ -49,12 +49,14 @@ def _run(folder: Path, compiler: str, constant: int) -> list[int]:
     return [int(word) for word in ended.stdout.split()]
 
 
+@pytest.mark.slow
 def test_a_kernel_follows_the_files_that_it_inlines(tmp_path: Path) -> None:
     assert _run(tmp_path, "kinematics.compiling", 1) == [20, 0]
     assert _run(tmp_path, "kinematics.compiling", 1) == [20, 1]
     assert _run(tmp_path, "kinematics.compiling", 2) == [30, 0]
 
 
+@pytest.mark.slow
 def test_the_compiler_alone_does_not(tmp_path: Path) -> None:
     assert _run(tmp_path, "numba", 1) == [20, 0]
     assert _run(tmp_path, "numba", 2) == [20, 1]  # the reason for the digest; where it fails, the digest can go
@@ -85,6 +87,7 @@ def test_every_kernel_of_the_project_is_compiled_so() -> None:
     assert direct == {Path("kinematics/compiling.py")}
 
 
+@pytest.mark.slow
 def test_what_is_installed_keeps_its_kernels_in_the_users_cache_folder(tmp_path: Path) -> None:
     installed, home = tmp_path / "site-packages", tmp_path / "home"
     package = installed / "synthesis"
@@ -137,6 +140,7 @@ def test_no_kernel_may_round_otherwise_than_by_the_rules() -> None:
         njit(fastmath={"contract"})
 
 
+@pytest.mark.slow
 def test_no_kernel_is_compiled_by_importing_solvers(tmp_path: Path) -> None:
     """Whoever solves one kind of problem does not wait for the kernels of what the solver does not call."""
     program = (

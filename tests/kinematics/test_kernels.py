@@ -24,19 +24,12 @@ from kinematics.linkage.slider_crank import closed_form as slider_module
 from kinematics.linkage.slider_crank.closed_form import SliderCrank
 from tests.kinematics import twins
 from tests.kinematics.sampling import random_fourbars, signs
+from tests.support.kinematics.kernels import random_slider_cranks
 
 AGREED = 1e-12
 """Share of the size of a value by which kernel and twin may differ, for each unit of the sensitivity at hand."""
 
 RATES = (0.8, -0.6, 0.9)
-
-
-def random_slider_cranks(rng: np.random.Generator, n: int, scale: float = 1.0) -> SliderCrank:
-    pivot, point = (scale * (rng.normal(size=n) + 1j * rng.normal(size=n)) for _ in range(2))
-    angle = rng.uniform(-np.pi, np.pi, n)
-    crank, coupler = (scale * np.exp(rng.uniform(np.log(0.1), np.log(3.0), n)) for _ in range(2))
-    on_slide = pivot + scale * np.exp(1j * angle) * (rng.normal(size=n) + 1j * rng.uniform(-1.5, 1.5, n))
-    return SliderCrank(pivot, on_slide, angle, crank, coupler, point)
 
 
 def scaled_fourbars(rng: np.random.Generator, n: int, scale: float = 1.0) -> Fourbar:

@@ -10,12 +10,12 @@ from typing import Any
 import numpy as np
 import pytest
 
-from benchmarks.layout import Task, drive_of, judged, tasks
 from kinematics.errors import DimensionError
 from kinematics.linkage import Fourbar, GearPair, Mechanism, Slide, TopologyError, catalogue
 from kinematics.linkage.layout import Layout, laid_out
 from kinematics.linkage.layout.parts import parts_of
 from tests.campaign import further
+from tests.support.problems.layout import Task, drive_of, judged, tasks
 
 TURN = 2.0 * math.pi
 
@@ -231,6 +231,7 @@ def random_tasks(count: int) -> list[Any]:
     return list(tasks(count, seed=5))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("number", further(range(RANDOM), range(ALWAYS)))
 def test_solids_in_motion_agree(number: int) -> None:
     verdict = judged(*random_tasks(ALWAYS if number < ALWAYS else RANDOM)[number])

@@ -9,6 +9,7 @@ import pytest
 
 from kinematics.errors import DimensionError
 from kinematics.linkage.layout.planes import MOST_PLATES, Spindle, in_the_way, reach, stacked
+from tests.support.loops import check_each
 
 Pairs = list[tuple[int, int]]
 
@@ -53,8 +54,7 @@ def drawn(rng: np.random.Generator) -> tuple[int, Pairs, list[Spindle], list[lis
     return count, sorted((joined_pairs | crossing) - {tuple(mesh) for mesh in meshes}), pins, meshes
 
 
-@pytest.mark.parametrize("seed", range(300))
-def test_none_is_better(seed: int) -> None:
+def check_none_is_better(seed: int) -> None:
     count, apart, pins, meshes = drawn(np.random.default_rng(seed))
     planes = stacked(count, apart, pins, meshes)
     every = arrangements(count, apart, meshes)
@@ -68,14 +68,21 @@ def test_none_is_better(seed: int) -> None:
     assert length(planes) == min(length(other) for other in every if merit(other, pins) == best)
 
 
-@pytest.mark.parametrize("seed", range(100))
-def test_what_a_pin_reaches(seed: int) -> None:
+def test_none_is_better() -> None:
+    check_each(range(300), check_none_is_better)
+
+
+def check_what_a_pin_reaches(seed: int) -> None:
     count, apart, pins, meshes = drawn(np.random.default_rng(seed))
     planes = stacked(count, apart, pins, meshes)
     for pin in pins:
         assert set(range(reach(planes, pin)[0], reach(planes, pin)[1] + 1)) == filled(planes, pin)
         for plate in range(count):
             assert in_the_way(planes, pin, plate) == (planes[plate] in filled(planes, pin))
+
+
+def test_what_a_pin_reaches() -> None:
+    check_each(range(100), check_what_a_pin_reaches)
 
 
 def test_a_double_crank_on_one_base_is_never_free_but_on_two_bases_it_is() -> None:

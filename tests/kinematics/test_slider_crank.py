@@ -20,8 +20,8 @@ from kinematics.linkage.slider_crank.closed_form import (
 )
 from tests.cases import Case, cases
 from tests.kinematics.sampling import signs
-from tests.kinematics.test_kernels import random_slider_cranks
 from tests.oracles.differences import derivative
+from tests.support.kinematics.kernels import random_slider_cranks
 
 ASSEMBLY = {"open": OPEN, "crossed": CROSSED}
 N = 5000

@@ -4,12 +4,15 @@ from service.jobs.database import connect, upgrade
 from service.jobs.schema import metadata
 from tests.cluster.backend import CHOSEN
 from tests.service.running import SCRIPTED, RunningServer
+from tests.support import cpu_time
+from tests.support.service.analyses import analyse as analyse  # a fixture
 
 
 @pytest.fixture(scope="session")
 def server(tmp_path_factory):
     """The real service, as an operator would run it."""
     running = RunningServer(tmp_path_factory.mktemp("server"), workers=2, reserve=0)
+    cpu_time.shared_servers.add(running.process.pid)
     yield running
     assert running.stop() == 0
 
@@ -18,6 +21,7 @@ def server(tmp_path_factory):
 def scripted(tmp_path_factory):
     """The real service with one worker, whose solver does what a problem's seed says."""
     running = RunningServer(tmp_path_factory.mktemp("scripted"), SCRIPTED, workers=1)
+    cpu_time.shared_servers.add(running.process.pid)
     yield running
     assert running.stop() == 0
 

@@ -2,8 +2,6 @@
 
 import re
 import socket
-import subprocess
-import sys
 import time
 
 import httpx
@@ -13,31 +11,13 @@ from service.access.gate import Gate, NoKey
 from service.access.keys import KeyStore, TenantExists, digest
 from service.jobs.database import connect, upgrade
 from tests.campaign import further
-from tests.service.running import PROBLEM, REAL, SCRIPTED, RunningServer, environment, until
+from tests.service.running import PROBLEM, SCRIPTED, RunningServer, until
 from tests.service.scripted_server import GATED, INSTANT
-
-pytestmark = pytest.mark.slow
+from tests.support.service.access import client_with, keys, made, post
 
 NOWHERE = "01K6WM2B7Q3W9Z0V5N8XJ4R1TD"
 ORIGIN = "https://studio.example"
 QUEUE = 20
-
-
-def keys(folder, *arguments, **settings):
-    return subprocess.run(
-        [sys.executable, *REAL, "keys", *arguments],
-        env=environment(folder, **settings),
-        cwd=folder,
-        capture_output=True,
-        text=True,
-        timeout=60,
-    )
-
-
-def made(folder, tenant, *more):
-    done = keys(folder, "create", tenant, *more)
-    assert done.returncode == 0, done.stderr
-    return done.stdout.strip()
 
 
 @pytest.fixture(scope="module")
@@ -56,15 +36,6 @@ def shared(tmp_path_factory):
     assert server.stop() == 0
 
 
-def client_with(server, key):
-    return httpx.Client(base_url=server.url, timeout=30.0, headers={"Authorization": f"Bearer {key}"})
-
-
-def post(client, seed=INSTANT, wait=20, **headers):
-    sent = {**headers, **({"Prefer": f"wait={wait}"} if wait else {})}
-    return client.post("/v1/jobs", json={"problem": {**PROBLEM, "seed": seed}}, headers=sent)
-
-
 def operations(server):
     """Every operation under /v1, as the service itself lists them."""
     paths = server.client.get("/openapi.json").json()["paths"]
@@ -77,6 +48,7 @@ def ask(client, method, path, job_id, headers=None):
     return client.request(method.upper(), url, headers=headers, **body)
 
 
+@pytest.mark.slow
 def test_every_operation_needs_a_key(shared):
     assert len(operations(shared)) >= 10
     for method, path in operations(shared):
@@ -122,6 +94,7 @@ def test_what_is_open_stays_open(shared):
         assert httpx.get(shared.url + path).status_code == 200
 
 
+@pytest.mark.slow
 def test_another_tenants_job_is_like_none(shared):
     ours, theirs = shared.clients["acme"], shared.clients["globex"]
     about_jobs = [(method, path) for method, path in operations(shared) if "{job_id}" in path]
@@ -151,6 +124,7 @@ def test_another_tenants_running_job_is_not_cancelled(shared):
     until(lambda: ours.get(f"/v1/jobs/{job['id']}").json()["status"] == "succeeded")
 
 
+@pytest.mark.slow
 def test_lists_are_of_ones_own_jobs(shared):
     created = {name: {post(client).json()["id"] for _ in range(3)} for name, client in shared.clients.items()}
     for name, client in shared.clients.items():
@@ -198,6 +172,7 @@ def test_a_key_is_in_no_log_no_metric_and_no_file(shared):
     assert "acme" not in httpx.get(f"{shared.url}/metrics").text
 
 
+@pytest.mark.slow
 def test_a_further_key_is_of_the_same_tenant_and_a_revoked_one_is_refused(shared):
     assert "exists" in keys(shared.folder, "create", "acme").stderr
     further = made(shared.folder, "acme", "--further")
@@ -215,6 +190,7 @@ def test_a_further_key_is_of_the_same_tenant_and_a_revoked_one_is_refused(shared
     assert shared.clients["acme"].get("/v1/jobs").status_code == 200
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("tenant", further(["", "a b", "x" * 101, "a\nb", "é"], ["a b", "é"]))
 def test_a_tenant_has_a_plain_name(tmp_path, tenant):
     done = keys(tmp_path, "create", tenant)
@@ -222,6 +198,7 @@ def test_a_tenant_has_a_plain_name(tmp_path, tenant):
     assert "Traceback" not in done.stderr
 
 
+@pytest.mark.slow
 @pytest.mark.campaign
 def test_a_key_has_its_rate(tmp_path):
     key, other = made(tmp_path, "acme"), made(tmp_path, "globex")
@@ -270,6 +247,7 @@ def test_web_pages_may_not_use_it_unless_told(scripted):
     assert scripted.client.options("/v1/jobs", headers={"Origin": ORIGIN}).status_code == 405
 
 
+@pytest.mark.slow
 @pytest.mark.campaign
 def test_without_keys_it_listens_on_this_machine_only(tmp_path):
     server = RunningServer(tmp_path, SCRIPTED, workers=1, host="0.0.0.0", cors_origins="*")
@@ -289,6 +267,7 @@ def test_without_keys_it_listens_on_this_machine_only(tmp_path):
         assert server.stop() == 0
 
 
+@pytest.mark.slow
 @pytest.mark.campaign
 def test_with_keys_it_listens_where_it_is_told_even_when_all_are_revoked(tmp_path):
     made(tmp_path, "acme")
@@ -360,6 +339,7 @@ def test_the_keys_are_read_once_a_second(engine):
     assert len(reads) <= 2
 
 
+@pytest.mark.slow
 def test_a_queue_that_one_tenant_has_filled_is_full_for_no_other(shared):
     acme, globex = shared.clients["acme"], shared.clients["globex"]
     gate = shared.folder / "open"

@@ -16,7 +16,7 @@ from service.parts.answer import AssemblyView
 from service.parts.extra import installed
 from synthesis.registry import examples
 from tests.service.answers import SVG, finished
-from tests.service.test_parts import DRIVEN, MOTION, SIZES, SLIDER, parts, refused
+from tests.support.service.parts import DRIVEN, MOTION, SIZES, SLIDER, parts, refused
 
 CASES = {"fourbar": MOTION, "slider": SLIDER, "driven": DRIVEN}
 

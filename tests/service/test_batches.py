@@ -9,10 +9,8 @@ from service.api.batch_schemas import EXAMPLE, MOST_SAMPLES
 from tests.campaign import further
 from tests.service.running import PROBLEM, SCRIPTED, SOON_S, RunningServer, until
 from tests.service.scripted_server import BRIEF, BROKEN, DIES_ONCE, GATED, GREEDY, INSTANT
-from tests.service.test_access import client_with
-from tests.service.test_access import made as made_key
-
-pytestmark = pytest.mark.slow
+from tests.support.service.access import client_with
+from tests.support.service.access import made as made_key
 
 UNFINISHED = ("queued", "running")
 LARGE = 1000  # points of a path; it may have no more
@@ -49,6 +47,7 @@ def table(client, batch):
     return [dict(zip(read["columns"], row, strict=True)) for row in read["rows"]]
 
 
+@pytest.mark.slow
 @pytest.mark.embedded
 def test_a_batch_has_the_answers_of_its_problems(client):
     done = finished(client, post(client, {**EXAMPLE, "reuse": False, "label": "a grid"}))
@@ -84,6 +83,7 @@ def test_a_batch_has_the_answers_of_its_problems(client):
     assert kept == [row for row, is_beaten in zip(rows, beaten, strict=True) if not is_beaten]
 
 
+@pytest.mark.slow
 @pytest.mark.embedded
 def test_a_batch_of_gears_shows_errors_and_teeth(client):
     """Two stages of few teeth are above or below their ratios: of the errors the size counts, not the sign."""
@@ -108,6 +108,7 @@ def test_a_batch_of_gears_shows_errors_and_teeth(client):
     assert [row[0] for row in nearest["rows"]] == [min(rows, key=lambda row: abs(row["relative_error"]))["/ratio"]]
 
 
+@pytest.mark.slow
 @pytest.mark.embedded
 def test_equal_problems_are_answered_from_the_store(client):
     problem = {**EXAMPLE["problem"], "seed": 11}
@@ -146,6 +147,7 @@ def test_equal_problems_are_answered_from_the_store(client):
     assert cached(many)[1] == [results[0]] * 40, "whatever becomes of the batches that it was taken from"
 
 
+@pytest.mark.slow
 @pytest.mark.embedded
 def test_a_hypercube_and_a_zip(client):
     drawn = {
@@ -183,6 +185,7 @@ def test_a_hypercube_and_a_zip(client):
     assert values == [(170, -45), (180, -44.5), (190, -44)]
 
 
+@pytest.mark.slow
 @pytest.mark.embedded
 def test_a_sample_that_contradicts_itself_fails_alone(client):
     body = {
@@ -199,6 +202,7 @@ def test_a_sample_that_contradicts_itself_fails_alone(client):
     assert error["detail"] == failed["failure"]
 
 
+@pytest.mark.slow
 def test_a_broken_sample_fails_and_the_others_do_not(scripted):
     seeds = [INSTANT, BROKEN, GREEDY, *range(BRIEF, BRIEF + 5)]
     done = finished(scripted.client, post(scripted.client, stated(*seeds)))
@@ -209,6 +213,7 @@ def test_a_broken_sample_fails_and_the_others_do_not(scripted):
     assert "secret" not in rows[1]["failure"]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("moment", further(["before", "after"], ["after"]))
 @pytest.mark.parametrize("write", ["store", "begun"])
 def test_a_worker_may_die_at_any_write(scripted, moment, write):
@@ -219,6 +224,7 @@ def test_a_worker_may_die_at_any_write(scripted, moment, write):
     assert len({row["job"] for row in table(scripted.client, done)}) == 30
 
 
+@pytest.mark.slow
 def test_a_worker_that_dies_takes_no_sample_with_it(scripted):
     (scripted.folder / "died").unlink(missing_ok=True)
     done = finished(scripted.client, post(scripted.client, stated(INSTANT, INSTANT + 1 + BRIEF, DIES_ONCE)))
@@ -226,6 +232,7 @@ def test_a_worker_that_dies_takes_no_sample_with_it(scripted):
     assert (done["succeeded"], done["failed"]) == (3, 0)
 
 
+@pytest.mark.slow
 def test_a_batch_is_followed_and_cancelled_and_removed(scripted):
     gate = scripted.folder / "open"
     gate.unlink(missing_ok=True)
@@ -272,6 +279,7 @@ def test_the_same_request_has_one_batch(scripted):
     assert (other.status_code, other.json()["type"]) == (409, "/problems/idempotency-key-reused")
 
 
+@pytest.mark.slow
 def test_single_jobs_do_not_wait_for_the_end_of_a_batch(scripted):
     batch = post(scripted.client, stated(*range(BRIEF, BRIEF + 400)))
     until(lambda: get(scripted.client, batch)["done"] > 0, SOON_S, "its begin")
@@ -295,6 +303,7 @@ def test_jobs_and_batches_are_listed_by_themselves(scripted):
     assert not any(job["id"] in ids for job in listed)
 
 
+@pytest.mark.slow
 @pytest.mark.campaign
 @pytest.mark.embedded
 def test_a_batch_outlives_its_server(tmp_path):
@@ -454,6 +463,7 @@ def test_a_front_is_of_metrics_of_the_batch(scripted, query):
     assert scripted.client.get(f"/v1/batches/{batch['id']}/front?least=size").json()["rows"] == []
 
 
+@pytest.mark.slow
 def test_a_batch_of_large_problems_is_taken_at_once(scripted):
     """They lie far off the right place, which fails each: only what the statement is by itself is looked at."""
     points = {"kind": "path", "points": [{"x": 1.0 * n, "y": 0.1 * n * n} for n in range(LARGE)]}

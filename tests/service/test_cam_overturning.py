@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from tests.service.answers import finished
-from tests.service.test_cam_springs import FAST, check, designed, refused
+from tests.support.service.cam_springs import FAST, check, designed, refused
 
 Answer = dict[str, Any]
 
@@ -46,6 +46,7 @@ def test_the_moment_is_that_of_the_table(client: httpx.Client, follower: Answer)
         assert check(design, "overturning_on_profile")["value"] == pytest.approx(found, rel=1e-3)
 
 
+@pytest.mark.slow
 def test_a_limit_makes_the_cam_larger_and_a_free_offset_smaller(client: httpx.Client) -> None:
     first = designed(client, LOAD, follower=ROLLER)
     limit = 0.7 * first["metrics"]["overturning_moment"]

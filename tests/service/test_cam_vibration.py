@@ -11,7 +11,7 @@ from scipy.integrate import solve_ivp
 
 from tests.service.answers import finished
 from tests.service.stated.cams import CAM
-from tests.service.test_cam_springs import FAST, designed, refused
+from tests.support.service.cam_springs import FAST, designed, refused
 
 LOAD = {"mass": 0.5, "spring_rate": 8.0, "preload": 60.0}
 

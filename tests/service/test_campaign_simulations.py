@@ -26,7 +26,7 @@ from service.simulation.weights import Weights
 from synthesis.dispatch import solve
 from synthesis.registry import example, parse_problem
 from tests.campaign import sampled
-from tests.service.test_parts import MOTION, SLIDER
+from tests.support.service.parts import MOTION, SLIDER
 
 pytestmark = [pytest.mark.campaign, pytest.mark.timeout(600)]
 

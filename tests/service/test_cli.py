@@ -9,8 +9,6 @@ import pytest
 from tests.campaign import further
 from tests.service.running import REAL, environment
 
-pytestmark = pytest.mark.slow
-
 
 def mechsynth(folder, *arguments, program=REAL, **settings):
     return subprocess.run(
@@ -36,6 +34,7 @@ def test_the_command_line_is_read_without_heavy_imports():
     assert done.returncode == 0, done.stderr
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("name", "value"),
     [("port", "none"), ("port", "70000"), ("workers", "0"), ("log_level", "loud"), ("job_timeout_s", "-1"),
@@ -48,6 +47,7 @@ def test_a_setting_that_cannot_be_used(tmp_path, name, value):
     assert len(done.stderr.splitlines()) == 1
 
 
+@pytest.mark.slow
 def test_a_port_in_use(tmp_path):
     with socket.create_server(("127.0.0.1", 0)) as other:
         done = mechsynth(tmp_path, "serve", port=other.getsockname()[1])
@@ -56,18 +56,21 @@ def test_a_port_in_use(tmp_path):
     assert "Traceback" not in done.stderr
 
 
+@pytest.mark.slow
 def test_a_host_that_is_nowhere(tmp_path):
     done = mechsynth(tmp_path, "serve", host="300.1.2.3")
     assert done.returncode == 1
     assert "MECHSYNTH_HOST" in done.stderr
 
 
+@pytest.mark.slow
 def test_a_data_folder_in_use(server, tmp_path):
     done = mechsynth(tmp_path, "serve", data_dir=server.folder / "data")
     assert done.returncode == 1
     assert "another server" in done.stderr
 
 
+@pytest.mark.slow
 def test_a_database_in_use(server, tmp_path):
     (tmp_path / "link").symlink_to(server.folder / "data" / "mechsynth.sqlite3")
     for path in (server.folder / "data" / "mechsynth.sqlite3", tmp_path / "link"):
@@ -76,6 +79,7 @@ def test_a_database_in_use(server, tmp_path):
         assert "another server uses the same database" in done.stderr
 
 
+@pytest.mark.slow
 def test_a_data_folder_that_cannot_be(tmp_path):
     (tmp_path / "file").touch()
     done = mechsynth(tmp_path, "serve", data_dir=tmp_path / "file")
@@ -83,6 +87,7 @@ def test_a_data_folder_that_cannot_be(tmp_path):
     assert "MECHSYNTH_DATA_DIR" in done.stderr
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "url",
     further(
@@ -98,6 +103,7 @@ def test_a_database_that_cannot_be(tmp_path, url):
     assert "Traceback" not in done.stderr
 
 
+@pytest.mark.slow
 @pytest.mark.campaign
 def test_the_demo_prints_and_draws(tmp_path):
     done = mechsynth(tmp_path, "demo", "--output", "out/demo.svg")
@@ -110,6 +116,7 @@ def test_the_demo_prints_and_draws(tmp_path):
     assert not list((tmp_path / "var").iterdir()), "nothing stays behind"
 
 
+@pytest.mark.slow
 def test_the_demo_fails_when_the_service_does(tmp_path):
     done = mechsynth(tmp_path, "demo", max_queued="none")
     assert done.returncode == 1

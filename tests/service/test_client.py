@@ -17,8 +17,6 @@ from tests.campaign import further
 from tests.service.running import PROBLEM, REAL, SCRIPTED, RunningServer, environment, until
 from tests.service.scripted_server import BROKEN, GATED, INSTANT, NATIVE, STEPS
 
-pytestmark = pytest.mark.slow
-
 
 @pytest.fixture(scope="module")
 def real(server):
@@ -102,6 +100,7 @@ def test_a_failed_or_cancelled_job_is_told_as_such(ours):
     cancelling.join()  # the wait may end before the answer to the request does
 
 
+@pytest.mark.slow
 def test_a_wait_is_given_up_from_another_thread(ours, scripted):
     cancel = threading.Event()
     with pytest.raises(JobFailed) as failed:
@@ -125,6 +124,7 @@ def test_who_is_told_how_far_a_job_is_may_give_it_up(ours, scripted):
     scripted.reaches(job["id"], "cancelled")
 
 
+@pytest.mark.slow
 def test_many_jobs_are_waited_for_on_one_loop(ours, scripted):
     async def program():
         async with AsyncClient(scripted.url) as client:
@@ -171,6 +171,7 @@ def test_a_task_that_is_cancelled_cancels_its_job(ours, scripted):
     scripted.reaches(job["id"], "cancelled")
 
 
+@pytest.mark.slow
 def test_lists_are_read_page_by_page(ours):
     created = [ours.submit(stated(INSTANT)).id for _ in range(25)]
     listed = []
@@ -181,6 +182,7 @@ def test_lists_are_read_page_by_page(ours):
     assert listed == created[::-1]
 
 
+@pytest.mark.slow
 @pytest.mark.campaign
 def test_a_restart_of_the_service_is_survived(tmp_path):
     server = RunningServer(tmp_path, SCRIPTED, workers=1)
@@ -221,6 +223,7 @@ def solve(folder, url, *arguments, stdin=None, **settings):
     )
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("kind", ["motion", "gear_train"])
 def test_the_command_prints_the_answer_and_writes_the_drawings(server, tmp_path, kind):
     (tmp_path / "task.json").write_text(json.dumps(example(kind)))
@@ -241,6 +244,7 @@ def test_the_command_prints_the_answer_and_writes_the_drawings(server, tmp_path,
         assert drawn == server.client.get(f"/v1/jobs/{job['id']}/designs/{n}.svg").content
 
 
+@pytest.mark.slow
 def test_every_kind_can_be_printed(real):
     from rich.console import Console
 
@@ -263,6 +267,7 @@ def test_every_kind_can_be_printed(real):
                     assert any(row[1:4] == [check["name"], verdict, amount] for row in cells), check
 
 
+@pytest.mark.slow
 def test_the_command_takes_the_body_of_a_request_from_standard_input(server, tmp_path):
     body = json.dumps({"problem": example("gear_train"), "label": "piped"})
     done = solve(tmp_path, server.url, "-", "--forms", "csv", "--output", "tables", stdin=body)
@@ -271,6 +276,7 @@ def test_the_command_takes_the_body_of_a_request_from_standard_input(server, tmp
     assert server.client.get("/v1/jobs?limit=1").json()["jobs"][0]["label"] == "piped"
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("content", "says"),
     further(
@@ -292,6 +298,7 @@ def test_the_command_says_what_is_wrong(server, tmp_path, content, says):
     assert "Traceback" not in done.stderr
 
 
+@pytest.mark.slow
 def test_the_command_cancels_its_job_when_interrupted(scripted, tmp_path):
     (scripted.folder / "open").unlink(missing_ok=True)
     (tmp_path / "task.json").write_text(json.dumps(stated(GATED)))

@@ -13,8 +13,6 @@ from service.cli import main
 from service.sources import problem_of
 from synthesis.registry import parse_problem
 
-pytestmark = pytest.mark.slow
-
 TRAIN = {"kind": "gear_train", "ratio": "7/3", "max_stages": 1, "max_designs": 2}
 FOURBAR = {
     "type": "fourbar",

@@ -10,7 +10,7 @@ import pytest
 
 from tests.service.answers import finished
 from tests.service.stated.cams import CAM
-from tests.service.test_cam_springs import FAST, designed, refused
+from tests.support.service.cam_springs import FAST, designed, refused
 
 Answer = dict[str, Any]
 

@@ -16,8 +16,6 @@ from service.connections import IDLE_S, MOST_AHEAD, MOST_HEAD_BYTES, ImpatientPr
 from service.metrics import Metrics
 from service.telemetry import Telemetry
 
-pytestmark = pytest.mark.slow
-
 IDLE_HERE_S = 1
 REQUEST = b"GET / HTTP/1.1\r\nHost: x\r\n\r\n"
 is_blocked, has_sent = threading.Event(), threading.Event()

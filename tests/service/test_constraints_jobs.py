@@ -6,7 +6,7 @@ import pytest
 
 from synthesis.registry import example
 from tests.service.answers import finished
-from tests.synthesis.test_constraints import TIMED_PATH
+from tests.support.synthesis.constraints import TIMED_PATH
 
 STATED = {
     "max_link_ratio": 1e4,

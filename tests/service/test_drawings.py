@@ -13,7 +13,7 @@ from service.api.computation import draw_in_turn
 from service.api.errors import Refusal
 from service.jobs.request_pool import Busy, GivenUp
 from synthesis.registry import example
-from tests.service.test_request_pool import never
+from tests.support.service.request_pool import never
 
 
 @pytest.mark.parametrize(

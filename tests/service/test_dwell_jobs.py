@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from tests.service.answers import finished
-from tests.service.test_analyses import assert_as_documented
+from tests.support.service.analyses import assert_as_documented
 
 TASKS = {
     "dwell_rocker": {"mechanism": "pseudo_arc", "output": {"type": "rocker", "swing": 60.0}},

@@ -14,9 +14,9 @@ from scipy.optimize import brentq
 
 from synthesis.analyses.linkage import LinkageAnalysis
 from tests.cases import Case, cases
-from tests.service.test_dynamics import BLOCK, CRANK, OTHER_TYPES, Statement, asked, refused
-from tests.service.test_dynamics_literature import analysed, stated
-from tests.service.test_dynamics_loads import ALONE
+from tests.support.service.dynamics import BLOCK, CRANK, OTHER_TYPES, Statement, asked, refused
+from tests.support.service.dynamics_literature import analysed, stated
+from tests.support.service.dynamics_loads import ALONE
 
 SPEED = 12.0
 TURN = {"from": 0.0, "to": 360.0, "steps": 360, "speed": SPEED}

@@ -13,7 +13,7 @@ import httpx
 import pytest
 
 from tests.cases import Case, cases
-from tests.service.test_dynamics_literature import analysed
+from tests.support.service.dynamics_literature import analysed
 
 Statement = dict[str, Any]
 

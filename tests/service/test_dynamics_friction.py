@@ -9,7 +9,7 @@ import httpx
 import numpy as np
 import pytest
 
-from tests.service.test_dynamics import BLOCK, CRANK, OTHER_TYPES, TURN, Statement, agrees, asked, refused
+from tests.support.service.dynamics import BLOCK, CRANK, OTHER_TYPES, TURN, Statement, agrees, asked, refused
 
 LONG_CRANK = {
     "type": "slider_crank",

@@ -15,7 +15,7 @@ import numpy as np
 import pytest
 
 from synthesis.analyses.linkage import LinkageAnalysis
-from tests.service.test_dynamics import CRANK, OTHER_TYPES
+from tests.support.service.dynamics import CRANK, OTHER_TYPES
 
 Statement = dict[str, Any]
 Path = tuple[str | int, ...]

@@ -14,21 +14,10 @@ import numpy as np
 import pytest
 from scipy.interpolate import CubicSpline
 
-from tests.service.test_dynamics import OTHER_TYPES, Statement, agrees, asked, refused
+from tests.support.service.dynamics import OTHER_TYPES, Statement, agrees, asked, refused
+from tests.support.service.dynamics_loads import ALONE, REACH
 
 Real = np.ndarray
-
-REACH = 0.1
-"""Metres: the length of the crank."""
-
-ALONE = {
-    "type": "skeleton",
-    "skeleton": {
-        "joints": {"O2": [0.0, 0.0], "P": [1e3 * REACH, 0.0]},
-        "links": [{"name": "ground", "joints": ["O2"]}, {"name": "input", "joints": ["O2", "P"]}],
-        "input_link": "input",
-    },
-}
 ENGINE = OTHER_TYPES["slider_crank"]
 TURN = {"from": 0.0, "to": 360.0, "steps": 72, "speed": 5.0}
 

@@ -9,7 +9,7 @@ import httpx
 import numpy as np
 import pytest
 
-from tests.service.test_dynamics import asked
+from tests.support.service.dynamics import asked
 
 Statement = dict[str, Any]
 

@@ -21,8 +21,6 @@ from service.jobs.store import JobStore
 from tests.service.running import SCRIPTED, SOON_S, RunningServer, until
 from tests.service.scripted_server import GATED, INSTANT, NATIVE, STEPS
 
-pytestmark = pytest.mark.slow
-
 NOWHERE = "01K6WM2B7Q3W9Z0V5N8XJ4R1TD"
 
 
@@ -142,6 +140,7 @@ def test_head_does_not_wait_for_the_end(scripted, gate):
     assert answer.headers["content-type"].startswith("text/event-stream")
 
 
+@pytest.mark.slow
 @pytest.mark.campaign
 def test_two_hundred_listeners_see_one_end_each(scripted, gate):
     job = scripted.post(STEPS)
@@ -169,6 +168,7 @@ def test_two_hundred_listeners_see_one_end_each(scripted, gate):
     assert all(of_one[-1].final for of_one in seen)
 
 
+@pytest.mark.slow
 def test_listeners_that_leave_are_no_defect(scripted, gate):
     job = scripted.post(GATED)
     before = scripted.log().count("Traceback")
@@ -180,6 +180,7 @@ def test_listeners_that_leave_are_no_defect(scripted, gate):
     assert scripted.log().count("Traceback") == before
 
 
+@pytest.mark.slow
 @pytest.mark.campaign
 def test_a_stopping_server_ends_the_streams_and_the_next_one_resumes_them(tmp_path):
     server = RunningServer(tmp_path, SCRIPTED, workers=1)
@@ -349,6 +350,7 @@ def test_silence_is_broken_by_comments(store, monkeypatch):
     assert events_of(chunks[-1].decode())[0].final
 
 
+@pytest.mark.slow
 def test_listeners_wait_while_the_store_does_not_answer(store):
     job = new_job(store)
     summaries = store.summaries

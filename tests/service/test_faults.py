@@ -41,8 +41,6 @@ from tests.service.scripted_server import (
     STEPS,
 )
 
-pytestmark = pytest.mark.slow
-
 TIMEOUT_S = 8.0
 LATE = (str(Path(__file__).with_name("late_server.py")),)
 
@@ -77,6 +75,7 @@ def restarting(tmp_path):
         running.kill()
 
 
+@pytest.mark.slow
 @pytest.mark.campaign
 def test_a_job_in_native_code_is_cancelled(server):
     job = server.post(NATIVE)
@@ -94,6 +93,7 @@ def test_a_job_in_native_code_is_cancelled(server):
     assert server.client.get(f"/v1/jobs/{job['id']}").status_code == 404
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "seed",
     further([PYTHON, NUMBA, LAPACK, CONVEX], [PYTHON, CONVEX]),
@@ -112,6 +112,7 @@ def test_a_job_is_cancelled_whatever_it_computes(patient, seed):
     assert patient.post(INSTANT, wait=30)["status"] == "succeeded"
 
 
+@pytest.mark.slow
 def test_a_job_whose_worker_is_suspended_is_cancelled(server):
     job = server.post(NATIVE)
     server.reaches(job["id"], "running")
@@ -121,6 +122,7 @@ def test_a_job_whose_worker_is_suspended_is_cancelled(server):
     until(lambda: not alive(worker), SOON_S, "the end of the computation")
 
 
+@pytest.mark.slow
 def test_a_queued_job_is_cancelled_and_never_runs(server):
     gate = server.folder / "open"
     gate.unlink(missing_ok=True)
@@ -136,6 +138,7 @@ def test_a_queued_job_is_cancelled_and_never_runs(server):
     assert server.job(second["id"])["started_at"] is None
 
 
+@pytest.mark.slow
 def test_a_job_whose_worker_dies_is_tried_again(server):
     job = server.post(DIES_ONCE, wait=20)
     assert job["status"] == "succeeded"
@@ -143,6 +146,7 @@ def test_a_job_whose_worker_dies_is_tried_again(server):
     assert stored(server.folder, job["id"], "attempt") == 2
 
 
+@pytest.mark.slow
 def test_a_worker_that_dies_idle_harms_nobody(server):
     server.post(INSTANT, wait=20)
     (worker,) = server.workers()
@@ -151,6 +155,7 @@ def test_a_worker_that_dies_idle_harms_nobody(server):
     server.reaches(server.post(INSTANT)["id"], "succeeded", 60.0)
 
 
+@pytest.mark.slow
 def test_a_job_that_takes_too_long_fails(server):
     job = server.post(NATIVE, wait=20)
     assert job["status"] == "failed"
@@ -159,6 +164,7 @@ def test_a_job_that_takes_too_long_fails(server):
     assert server.post(INSTANT, wait=20)["status"] == "succeeded"
 
 
+@pytest.mark.slow
 def test_a_sample_that_takes_too_long_fails_by_itself(server):
     body = {"problem": PROBLEM, "vary": [{"field": "/seed", "values": [INSTANT, NATIVE, INSTANT]}], "reuse": False}
     place = server.client.post("/v1/batches", json=body).raise_for_status().headers["location"]
@@ -172,6 +178,7 @@ def test_a_sample_that_takes_too_long_fails_by_itself(server):
     assert (error["type"], error["instance"]) == ("/problems/timeout", f"/v1/jobs/{rows[1]['job']}")
 
 
+@pytest.mark.slow
 def test_only_the_time_of_the_solver_counts_against_a_job(server):
     """The store is away for longer than a job may take, from before the solver ends."""
     gate = server.folder / "open"
@@ -186,6 +193,7 @@ def test_only_the_time_of_the_solver_counts_against_a_job(server):
     assert stored(server.folder, job["id"], "attempt") == 1
 
 
+@pytest.mark.slow
 def test_a_job_that_takes_too_much_memory_fails(server):
     job = server.post(GREEDY, wait=20)
     assert (job["status"], job["error"]["type"]) == ("failed", "/problems/out-of-memory")
@@ -200,6 +208,7 @@ def test_a_defect_of_the_solver_fails_the_job_and_is_not_shown(server):
     assert "secret" in server.log(), "the log is where the defect must be found"
 
 
+@pytest.mark.slow
 def test_a_lane_survives_what_nobody_foresaw(server):
     (server.folder / "lane-fault").touch()
     job = server.post(INSTANT, wait=20)
@@ -208,6 +217,7 @@ def test_a_lane_survives_what_nobody_foresaw(server):
     assert server.post(INSTANT, wait=20)["status"] == "succeeded"
 
 
+@pytest.mark.slow
 def test_a_lane_survives_that_no_process_can_be_had(server):
     server.post(INSTANT, wait=20)
     (worker,) = server.workers()
@@ -217,6 +227,7 @@ def test_a_lane_survives_that_no_process_can_be_had(server):
     assert not (server.folder / "no-process").exists()
 
 
+@pytest.mark.slow
 def test_a_job_that_comes_while_an_idle_worker_dies_runs_in_the_next_one(server):
     (server.folder / "late-call").touch()
     job = server.post(INSTANT, wait=20)
@@ -269,6 +280,7 @@ def test_cancelling_at_any_moment_leaves_one_end(server):
     assert server.post(INSTANT, wait=20)["status"] == "succeeded"
 
 
+@pytest.mark.slow
 @pytest.mark.campaign
 def test_a_killed_server_leaves_no_worker_and_loses_no_job(restarting, tmp_path):
     server = restarting()
@@ -288,6 +300,7 @@ def test_a_killed_server_leaves_no_worker_and_loses_no_job(restarting, tmp_path)
     assert server.stop() == 0
 
 
+@pytest.mark.slow
 @pytest.mark.embedded
 @pytest.mark.campaign
 @pytest.mark.parametrize("begun", [True, False], ids=["in our lines", "before our lines"])
@@ -308,6 +321,7 @@ def test_a_server_that_is_killed_leaves_no_worker_that_was_starting(tmp_path, be
         until(lambda: not alive(worker), SOON_S, "the end of the worker")
 
 
+@pytest.mark.slow
 @pytest.mark.campaign
 def test_a_stopped_server_puts_its_running_job_back(restarting, tmp_path):
     server = restarting()
@@ -322,6 +336,7 @@ def test_a_stopped_server_puts_its_running_job_back(restarting, tmp_path):
     assert stored(tmp_path, job["id"], "crashes") == 0
 
 
+@pytest.mark.slow
 @pytest.mark.campaign
 def test_a_stopping_server_answers_those_who_wait(restarting):
     server = restarting()
@@ -335,6 +350,7 @@ def test_a_stopping_server_answers_those_who_wait(restarting):
     assert server.process.wait(5.0) == 0
 
 
+@pytest.mark.slow
 @pytest.mark.campaign
 @pytest.mark.embedded
 def test_a_service_whose_workers_cannot_start_is_not_ready(tmp_path):

@@ -12,7 +12,7 @@ import pytest
 from synthesis.registry import example, examples
 from tests.cases import Case, cases
 from tests.service.answers import finished
-from tests.service.test_dynamics_literature import stated
+from tests.support.service.dynamics_literature import stated
 
 RAD_PER_S = math.pi / 30.0
 PULSE = {"table": [[0.0, 0.0], [120.0, 300.0], [240.0, 0.0]]}

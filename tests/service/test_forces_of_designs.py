@@ -42,6 +42,7 @@ def forces_of(client, job, n, body=None, steps=360):
     return answer.json()
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("problem", [MOTION, QUICK_RETURN, ACKERMANN, DWELL, PARALLEL], ids=lambda x: x["kind"])
 def test_every_design_has_its_forces_as_an_analysis_of_the_skeleton_finds_them(client, problem):
     job, found = designs(client, {**problem, "dynamics": BLOCK, "max_designs": 2})

@@ -5,9 +5,7 @@ import cmath
 import numpy as np
 import pytest
 
-from tests.service.test_analyses import EXAMPLE, SIXBAR, analyse, joint
-
-__all__ = ["analyse"]
+from tests.support.service.analyses import EXAMPLE, SIXBAR, joint
 
 FOURBAR = EXAMPLE["mechanism"]
 EVERYTHING = ["cognates", "centrodes", "curvature", "coupler_curve"]

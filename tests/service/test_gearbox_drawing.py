@@ -16,7 +16,7 @@ from service.render.gears.gearbox_layout import BoxGear, BoxLayout, gearbox_layo
 from synthesis.dispatch import solve
 from synthesis.registry import example, parse_problem
 from tests.campaign import further
-from tests.service.test_gear_drawing import assert_involute
+from tests.support.service.gear_drawing import assert_involute
 
 TASKS: dict[str, dict[str, Any]] = {
     "six_speeds": example("gearbox"),

@@ -10,12 +10,10 @@ from typing import Any
 
 import pytest
 
-from benchmarks.fit.verdict import violations
 from synthesis.kinds.motion.design import MotionResult
 from tests.campaign import further
 from tests.service.answers import finished
-
-pytestmark = pytest.mark.slow
+from tests.support.fit.verdict import violations
 
 PAGE = Path(__file__).parents[2] / "docs" / "space.md"
 
@@ -41,6 +39,7 @@ def floats(value: Any) -> Any:
     return float(value) if isinstance(value, int) else value
 
 
+@pytest.mark.slow
 def test_a_lid_is_carried_past_the_frame(client: Any) -> None:
     hatch, _ = stated()
     result = MotionResult.model_validate(finished(client, {**hatch, "max_designs": 4})["result"])
@@ -54,6 +53,7 @@ def test_a_lid_is_carried_past_the_frame(client: Any) -> None:
     assert result.designs[0].metrics.min_transmission_angle > 50.0
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("beside", further(["constraints", "layout"], ["constraints"]))
 def test_other_demands_are_kept_beside_the_room(client: Any, beside: str) -> None:
     hatch, _ = stated()
@@ -74,6 +74,7 @@ def test_other_demands_are_kept_beside_the_room(client: Any, beside: str) -> Non
             assert design.layout.count <= 3
 
 
+@pytest.mark.slow
 @pytest.mark.campaign
 def test_a_beam_that_leaves_no_room_is_told_with_what_comes_nearest(client: Any) -> None:
     hatch, beam = stated()

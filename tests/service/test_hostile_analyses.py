@@ -10,11 +10,11 @@ from typing import Any
 import httpx
 import pytest
 
-from benchmarks.fuzz_bodies import BLOCKS, analysis_corpus, spoil
 from service.answers.numerical import refuse_numerical_errors
 from service.refusals import Refusal
 from synthesis.analyses import families
 from tests.service.running import until
+from tests.support.problems.fuzz_bodies import BLOCKS, analysis_corpus, spoil
 
 FOURBAR = {
     "type": "fourbar",

@@ -20,10 +20,10 @@ from service.outlines import DrawingError
 from service.outlines.faults import Malformed, NoOutline, Unsuitable
 from tests.service.drawn_files import dxf, page
 from tests.service.running import RunningServer, workers_of
-from tests.service.test_hostile_drawings import HOSTILE, everything, mutated
-from tests.service.test_imports import TABLES, blob, found, picture, read
-from tests.service.test_outlines import SHAPES
-from tests.service.test_request_pool import never
+from tests.support.service.hostile_drawings import HOSTILE, everything, mutated
+from tests.support.service.imports import TABLES, blob, found, picture, read
+from tests.support.service.outlines import SHAPES
+from tests.support.service.request_pool import never
 
 REFUSED = (400, 413, 415, 422)
 SOON_S = 30.0
@@ -109,6 +109,7 @@ AT_ONCE = {
 """What takes no second to make and to read; the others are tried by the campaign."""
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "what", [pytest.param(name, marks=[] if name in AT_ONCE else pytest.mark.campaign) for name in SPOILT]
 )

@@ -9,27 +9,17 @@ import numpy as np
 import pytest
 import shapely
 from ezdxf.math import BSpline
-from PIL import Image, ImageDraw
 from scipy.interpolate import CubicSpline
 
 from tests.service.answers import finished
 from tests.service.drawn_files import dxf, page
+from tests.support.service.imports import TABLES, blob, found, picture, read
 
 SVG = "image/svg+xml"
 DXF = "image/vnd.dxf"
 CSV = "text/csv"
 PNG = "image/png"
 PAGE = {"width": "100mm", "height": "100mm", "viewBox": "0 0 100 100"}
-
-
-def read(client, content, media_type="application/octet-stream", **query):
-    return client.post("/v1/imports", content=content, headers={"Content-Type": media_type}, params=query)
-
-
-def found(client, content, media_type="application/octet-stream", **query):
-    answer = read(client, content, media_type, **query)
-    assert answer.status_code == 200, answer.text
-    return answer.json()
 
 
 def only(client, content, media_type="application/octet-stream", **query):
@@ -323,6 +313,7 @@ def test_an_outline_that_is_drawn_as_dxf_comes_back(client):
     assert places(curve) == pytest.approx(outline, abs=1e-6)
 
 
+@pytest.mark.slow
 def test_the_coupler_curve_of_a_design_comes_back_from_its_own_drawing(client):
     problem = {
         "kind": "motion",
@@ -342,21 +333,6 @@ def test_the_coupler_curve_of_a_design_comes_back_from_its_own_drawing(client):
     lined = shapely.LineString(np.stack([dense.real, dense.imag], axis=1))
     z = places(coupler)
     assert shapely.distance(lined, shapely.points(z.real, z.imag)).max() < 1e-6 * np.abs(z).max()
-
-
-# Tables.
-
-TABLES = {
-    "named": "x,y\n0,1.5\n2,-3\n",
-    "not named": "0,1.5\n2,-3\n",
-    "Windows": "\ufeffx,y\r\n0,1.5\r\n2,-3\r\n",
-    "semicolons and decimal commas": "x;y\n0;1,5\n2,0;-3\n",
-    "tabs": "x\ty\n0\t1.5\n2\t-3\n",
-    "blanks": "0   1.5\n 2 -3\n",
-    "quoted": '"x","y"\n"0","1.5"\n"2","-3"\n',
-    "remarked": "# a path\nx,y  # in mm\n0,1.5\n2,-3e0\n2,-3\n",
-    "columns in another order": "t,y,x\n7,1.5,0\n8,-3,2\n",
-}
 
 
 @pytest.mark.parametrize("what", TABLES)
@@ -399,31 +375,6 @@ def test_a_table_with_a_unit_with_several_curves_and_with_one_that_comes_back(cl
 )
 def test_tables_that_are_none(client, table, status, word):
     assert word in str(refused(client, table.encode(), status, CSV))
-
-
-# Pictures.
-
-
-def picture(size, draw, finer=8, mode="L", ground=255, colours=None, **options):
-    """A PNG picture, with grey rims where it was drawn finer; with a palette of so many colours."""
-    image = Image.new(mode, (size * finer, size * finer), ground)
-    draw(ImageDraw.Draw(image), finer)
-    if finer > 1:
-        image = image.resize((size, size), Image.Resampling.BOX)
-    if colours is not None:
-        image = image.convert("RGB").quantize(colours)
-    file = io.BytesIO()
-    image.save(file, "PNG", **options)
-    return file.getvalue()
-
-
-def blob(fill=0):
-    """An ellipse about (60, 80) of a picture 200 high, with y down, half as high as wide."""
-
-    def draw(pen, k):
-        pen.ellipse([20 * k, 60 * k, 100 * k - 1, 100 * k - 1], fill=fill)
-
-    return draw
 
 
 def ellipse_about(centre, rx, ry, curve):
@@ -499,6 +450,7 @@ def test_holes_strokes_and_specks_of_a_picture(client):
 # What it is for: statements that take the curves as they come.
 
 
+@pytest.mark.slow
 def test_an_imported_curve_is_a_path(client):
     # Four points of an SVG polyline are met exactly.
     drawing = page('<polyline points="0,60 10,45 25,40 40,48"/>', **PAGE)

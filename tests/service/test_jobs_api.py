@@ -10,8 +10,6 @@ from service.api.schemas import Job, JobList
 from tests.service.running import PROBLEM
 from tests.service.scripted_server import GATED
 
-pytestmark = pytest.mark.slow
-
 # Everything is chosen, so that there is one design and nothing to search.
 SOLVED = {
     **PROBLEM,
@@ -29,6 +27,7 @@ def solved(server):
     return job
 
 
+@pytest.mark.slow
 def test_a_job_is_accepted_and_found_again(server, client):
     answer = client.post("/v1/jobs", json={"problem": PROBLEM})
     assert answer.status_code == 202
@@ -128,6 +127,7 @@ def test_an_id_of_no_job(client, method, job_id, suffix):
     assert answer.headers["content-type"] == "application/problem+json"
 
 
+@pytest.mark.slow
 def test_a_design_is_drawn(client, solved):
     answer = client.get(f"/v1/jobs/{solved['id']}/designs/0.svg")
     assert answer.status_code == 200
@@ -149,6 +149,7 @@ def test_a_design_that_is_not_there(client, solved, number, suffix):
     assert answer.headers["content-type"] == "application/problem+json"
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("what", ["0.svg", "0/motion"])
 def test_a_design_of_an_unfinished_job(scripted, what):
     (scripted.folder / "open").unlink(missing_ok=True)

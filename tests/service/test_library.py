@@ -13,8 +13,6 @@ from mechsynth import AsyncClient, Cancelled, Client, InvalidProblem, JobFailed,
 from tests.service.running import PROBLEM, ROOT, environment
 from tests.service.scripted_server import BROKEN, STEPS
 
-pytestmark = pytest.mark.slow
-
 ASKED = Motion(
     positions=[Position(x=0.0, y=0.0, angle=0.0), Position(x=10.0, y=5.0, angle=30.0)], max_designs=2, seed=3
 )
@@ -103,6 +101,7 @@ def test_many_problems_are_waited_for_on_a_loop(server):
     assert told[-1] == 1.0
 
 
+@pytest.mark.slow
 def test_who_asks_a_service_loads_no_solver(server, tmp_path):
     program = (
         "import sys\n"
@@ -117,6 +116,7 @@ def test_who_asks_a_service_loads_no_solver(server, tmp_path):
     assert (run.returncode, run.stdout.split(), run.stderr) == (0, [], "")
 
 
+@pytest.mark.slow
 def test_the_examples_of_the_page_run(server):
     page = ROOT / "docs" / "library.md"
     outcome = doctest.testfile(str(page), module_relative=False, globs={"url": server.url})

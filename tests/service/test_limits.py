@@ -1,7 +1,6 @@
 """What bounds a service: its queue, how long it keeps jobs, and how long a client may keep it waiting."""
 
 import contextlib
-import json
 import re
 import socket
 import time
@@ -12,8 +11,7 @@ import pytest
 
 from tests.service.running import PROBLEM, REACHED_S, SCRIPTED, RunningServer, until
 from tests.service.scripted_server import BRIEF, GATED, INSTANT
-
-pytestmark = pytest.mark.slow
+from tests.support.service.limits import HALVES, WHOLE
 
 REQUEST_S = 10.0  # how long a connection may take up, whatever the code says
 
@@ -29,6 +27,7 @@ def post(server, seed, **headers):
     return server.client.post("/v1/jobs", json={"problem": {**PROBLEM, "seed": seed}}, headers=headers)
 
 
+@pytest.mark.slow
 def test_a_full_queue_refuses_until_it_has_room(server):
     gate = server.folder / "open"
     gate.unlink(missing_ok=True)
@@ -50,6 +49,7 @@ def test_a_full_queue_refuses_until_it_has_room(server):
     assert server.sample("mechsynth_http_rejections_total", reason="queue-full") == refused_before + 1
 
 
+@pytest.mark.slow
 def test_the_shares_of_a_batch_take_places_of_the_queue(server):
     """Of which there are three."""
     gate = server.folder / "open"
@@ -73,6 +73,7 @@ def test_the_shares_of_a_batch_take_places_of_the_queue(server):
     assert post(server, INSTANT).status_code == 202
 
 
+@pytest.mark.slow
 @pytest.mark.campaign
 def test_finished_jobs_are_removed_when_their_time_is_over(tmp_path):
     kept_s = 2.0
@@ -108,21 +109,6 @@ def is_healthy(connection):
     return received.startswith(b"HTTP/1.1 200")
 
 
-BODY = json.dumps({"problem": {**PROBLEM, "seed": INSTANT}}).encode()
-HEAD = b"POST /v1/jobs HTTP/1.1\r\nHost: localhost\r\nContent-Type: application/json\r\n"
-WHOLE = HEAD + b"Content-Length: %d\r\n\r\n" % len(BODY) + BODY
-HALVES = {
-    "nothing": b"",
-    "half a line": b"GET /heal",
-    "half a head": HEAD + b"X-Slow",
-    "no body": HEAD + b"Content-Length: 500\r\n\r\n",
-    "half a body": WHOLE[:-10],
-    "a chunk and no end": HEAD + b"Transfer-Encoding: chunked\r\n\r\n5\r\nhello\r\n",
-    "a request and a half": b"GET /healthz HTTP/1.1\r\nHost: localhost\r\n\r\n" + HEAD,
-    "a refused head and no body": HEAD.replace(b"json", b"xml") + b"Content-Length: 500\r\n\r\n",
-}
-
-
 def until_closed(connection, began):
     """Everything that the server sends until it closes, and how long that took."""
     received = b""
@@ -132,6 +118,7 @@ def until_closed(connection, began):
     return received, time.monotonic() - began
 
 
+@pytest.mark.slow
 @pytest.mark.campaign
 def test_half_open_connections_end_while_honest_clients_are_served(server):
     """Nine hundred connections that send half a request, and one that sends a byte now and then."""
@@ -176,6 +163,7 @@ def unread(server):
         yield beside.submit(until_left, server)
 
 
+@pytest.mark.slow
 @pytest.mark.campaign
 def test_each_sort_of_half_open_connection_ends_in_time(server, unread):
     before = server.sample("mechsynth_http_rejections_total", reason="request-timeout")

@@ -90,6 +90,7 @@ def test_the_curve_goes_through_the_targets(kind: str) -> None:
     assert design.verification.passed
 
 
+@pytest.mark.slow
 def test_units_are_those_of_the_problem() -> None:
     assert drawing("fourbar", "in").header["$INSUNITS"] == 1
 

@@ -12,8 +12,8 @@ from synthesis.model.manufacture import Manufacture
 from synthesis.registry import examples
 from tests.service.answers import finished
 from tests.service.stated.linkages import BOTH_OPEN, DRIVEN, MOTION, PATH, QUICK_RETURN, TOLERATED
-from tests.service.test_space import TURNS
 from tests.statements import fields
+from tests.support.service.space import TURNS
 
 OPEN = {**MOTION, **BOTH_OPEN}
 BLOCK = {
@@ -157,7 +157,7 @@ def test_designs_are_told_as_they_are_made_and_still_drawn(client):
     assert report.status_code == 200, report.text
     assert "Manufacture: worst case: max error" in report.text
     assert "Yield: low" in report.text
-    again = finished(client, job["problem"])
+    again = finished(client, job["problem"], fresh=True)
     assert again["result"] == job["result"]
 
 

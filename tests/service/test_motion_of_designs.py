@@ -9,7 +9,7 @@ import pytest
 from service.answers import designs
 from service.api.errors import Refusal
 from tests.service.running import PROBLEM
-from tests.service.test_analyses import assert_as_documented, joint
+from tests.support.service.analyses import assert_as_documented, joint
 
 
 @pytest.fixture(scope="module")

@@ -6,8 +6,6 @@ import pytest
 
 from synthesis.registry import examples
 
-pytestmark = pytest.mark.slow
-
 
 @pytest.fixture(scope="module")
 def job(server):
@@ -21,12 +19,14 @@ def job(server):
     return answer["id"]
 
 
+@pytest.mark.slow
 def test_drawings_are_numbered_from_one(client, job):
     for number in (0, 1):
         drawing = client.get(f"/v1/jobs/{job}/designs/{number}.svg").text
         assert set(re.findall(r"lid, design (\d+)", drawing)) == {str(number + 1)}
 
 
+@pytest.mark.slow
 def test_the_report_is_numbered_from_one(client, job):
     report = client.get(f"/v1/jobs/{job}/report.html", params={"designs": 5}).text
     assert re.findall(r"<h2>Design (\d+)", report) == ["1", "2"]
@@ -34,6 +34,7 @@ def test_the_report_is_numbered_from_one(client, job):
     assert set(re.findall(r"lid, design (\d+)", report)) == {"1", "2"}
 
 
+@pytest.mark.slow
 def test_files_are_named_from_one(client, job):
     parts = client.get(f"/v1/jobs/{job}/designs/1/parts", params={"process": "laser"})
     assert parts.status_code == 200, parts.text

@@ -4,11 +4,11 @@ import copy
 
 import pytest
 
-from benchmarks.room_cases import ANSWERED, REFUSED, size_of, star
 from synthesis.model.linkage_statement import LinkageProblem
 from synthesis.registry import KINDS, examples
 from tests.campaign import further
 from tests.service.answers import finished
+from tests.support.problems.room_cases import ANSWERED, REFUSED, size_of, star
 
 LINKAGES = [name for name, kind in KINDS.items() if issubclass(kind.problem, LinkageProblem)]
 
@@ -46,7 +46,6 @@ def test_more_corners_than_a_body_holds(client, kind):
     assert "values" in answer.json()["detail"]
 
 
-@pytest.mark.slow
 @pytest.mark.timeout(400)
 @pytest.mark.parametrize(("kind", "name"), further([(kind, name) for kind in LINKAGES for name in ANSWERED], QUICK))
 def test_a_room_that_leaves_little_is_answered_with_what_is_missing(client, kind, name):

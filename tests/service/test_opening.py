@@ -11,8 +11,6 @@ from tools.studio.opening import opening
 
 FILE = Path(service.__file__).parent / "studio" / "opening.json"
 
-pytestmark = pytest.mark.slow
-
 
 def compared(kept, now, size, at=""):
     """Equal but for rounding, and for what is nothing beside the size of the linkage."""
@@ -30,12 +28,14 @@ def compared(kept, now, size, at=""):
         assert now == pytest.approx(kept, rel=1e-4, abs=1e-6 * size), at
 
 
+@pytest.mark.slow
 def test_the_page_opens_with_the_services_own_answer(client):
     kept = json.loads(FILE.read_text("utf-8"))
     joints = np.array(list(kept["design"]["mechanism"]["skeleton"]["joints"].values()))
     compared(kept, opening(client), float(np.ptp(joints)))
 
 
+@pytest.mark.slow
 def test_another_answer_would_be_found_out():
     kept = json.loads(FILE.read_text("utf-8"))
     other = json.loads(FILE.read_text("utf-8"))

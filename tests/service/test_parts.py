@@ -2,26 +2,18 @@
 
 from __future__ import annotations
 
-import csv
 import io
-import zipfile
 from itertools import pairwise
 from typing import Any
 
 import ezdxf
-import httpx
 import pytest
 
 from service.parts.extra import installed
 from tests.service.answers import finished
+from tests.support.service.parts import DRIVEN, MOTION, SIZES, SLIDER, THREE, bill, parts, refused
 
 pytestmark = pytest.mark.xdist_group("parts")
-
-THREE = [{"x": 0.0, "y": 0.0, "angle": 0.0}, {"x": 40.0, "y": 15.0, "angle": -25.0},
-         {"x": 75.0, "y": 5.0, "angle": -60.0}]  # fmt: skip
-MOTION = {"kind": "motion", "positions": THREE, "max_designs": 1, "length_unit": "mm"}
-SLIDER = {**MOTION, "output_side": {"dyad": "PR", "slide_angle": 15.0}}
-SIZES = {"width": 15, "pin": 5, "thickness": 4, "clearance": 0.2}
 
 
 @pytest.fixture(scope="module")
@@ -33,25 +25,7 @@ def jobs(server: Any) -> dict[str, str]:
     return found
 
 
-def parts(client: httpx.Client, place: str, **query: Any) -> dict[str, bytes]:
-    answer = client.get(f"{place}/parts", params=query)
-    assert answer.status_code == 200, answer.text
-    assert answer.headers["content-type"] == "application/zip"
-    with zipfile.ZipFile(io.BytesIO(answer.content)) as archive:
-        return {name: archive.read(name) for name in archive.namelist()}
-
-
-def bill(files: dict[str, bytes]) -> dict[str, dict[str, str]]:
-    return {row["part"]: row for row in csv.DictReader(io.StringIO(files["bom.csv"].decode()))}
-
-
-def refused(client: httpx.Client, place: str, status: int, **query: Any) -> Any:
-    answer = client.get(f"{place}/parts", params=query)
-    assert answer.status_code == status, answer.text
-    assert answer.headers["content-type"] == "application/problem+json"
-    return answer.json()
-
-
+@pytest.mark.slow
 def test_the_zip_has_an_outline_of_each_plate_with_holes_where_the_joints_are(client: Any, jobs: Any) -> None:
     files = parts(client, jobs["fourbar"], **SIZES)
     skeleton = client.get(jobs["fourbar"].rsplit("/designs")[0]).json()["result"]["designs"][0]["mechanism"]["skeleton"]
@@ -145,6 +119,7 @@ def test_bad_values_are_refused_by_their_path(client: Any, jobs: Any, field: str
     assert [fault["path"] for fault in answer["errors"]] == [f"/query/{field}"]
 
 
+@pytest.mark.slow
 def test_too_wide_links_are_refused_with_the_scale_that_works(client: Any, jobs: Any) -> None:
     answer = refused(client, jobs["fourbar"], 422, width=60)
     (fault,) = answer["errors"]
@@ -157,6 +132,7 @@ def test_too_wide_links_are_refused_with_the_scale_that_works(client: Any, jobs:
     assert width == pytest.approx(60.0 / scale, rel=0.01)
 
 
+@pytest.mark.slow
 def test_a_mechanism_of_unit_size_is_refused_with_a_scale(client: Any) -> None:
     tiny = {"kind": "motion", "max_designs": 1, "length_unit": "mm",
             "positions": [{"x": 0.01 * p["x"], "y": 0.01 * p["y"], "angle": p["angle"]} for p in THREE]}  # fmt: skip
@@ -193,9 +169,6 @@ def test_the_block_of_the_problem_says_what_is_left_out(client: Any) -> None:
     assert (rows["link_input"]["width"], rows["link_input"]["thickness"]) == ("18", "7")
     assert rows["link_input"]["holes"] == "2 x 6.2"
     assert "second_base" in rows
-
-
-DRIVEN = {**MOTION, "input_side": {"dyad": "PR"}}
 
 
 @pytest.mark.cad

@@ -29,8 +29,8 @@ from service.parts.sizes import PartsQuery
 from service.parts.workshop import Workshop
 from synthesis.dispatch import solve
 from synthesis.registry import parse_problem
-from tests.service.test_parts import MOTION, SLIDER
-from tests.service.test_request_pool import never
+from tests.support.service.parts import MOTION, SLIDER
+from tests.support.service.request_pool import never
 
 PLACES = st.lists(st.tuples(st.integers(-9, 9), st.integers(-9, 9)), min_size=1, max_size=6)
 

@@ -24,10 +24,9 @@ from service.parts.sizes import PartsQuery
 from synthesis.dispatch import solve
 from synthesis.registry import parse_problem
 from tests.service.answers import finished
-from tests.service.test_parts import bill, parts, refused
-from tests.service.test_parts_of_cams import CAM
+from tests.support.service.parts import bill, parts, refused
+from tests.support.service.parts_of_barrels import BARREL
 
-BARREL: dict[str, Any] = {**CAM, "follower": {"type": "barrel_roller", "roller_radius": 8.0}, "rotation": "cw"}
 SIZES = {"pin": 6, "width": 18, "thickness": 4, "clearance": 0.1, "scale": 1.0}
 
 

@@ -22,7 +22,7 @@ from service.parts.sizes import NotMade, PartsQuery
 from synthesis.dispatch import solve
 from synthesis.registry import parse_problem
 from tests.service.answers import finished
-from tests.service.test_parts import bill, parts, refused
+from tests.support.service.parts import bill, parts, refused
 
 WHITWORTH: dict[str, Any] = {
     "kind": "quick_return", "mechanism": "whitworth", "time_ratio": 1.4, "stroke": 100.0, "length_unit": "mm",
@@ -59,6 +59,7 @@ def keyed(content: bytes) -> tuple[complex, float]:
     return centre, float(np.angle(key))
 
 
+@pytest.mark.slow
 def test_the_lever_is_cut_as_two_plates_that_are_keyed_alike(server: Any) -> None:
     client = server.client
     place = f"/v1/jobs/{finished(client, WHITWORTH)['id']}/designs/0"
@@ -127,6 +128,7 @@ def test_a_plate_on_the_other_side_of_the_base_would_be_in_the_way(part: str, pl
     assert any(part in pair.parts for pair in overlaps(replace(whole, parts=tuple(moved)), 24))
 
 
+@pytest.mark.slow
 def test_the_least_scale_is_told_where_the_pins_are_too_thick() -> None:
     with pytest.raises(NotMade, match=r"fit at scale [\d.]+ or more") as refusal:
         assembly(2.5, pin=8.0)

@@ -16,7 +16,7 @@ from ezdxf.math import bulge_center
 from synthesis.registry import examples
 from tests.service.answers import finished
 from tests.service.stated.shafts import FLYWHEEL
-from tests.service.test_parts import bill, parts, refused
+from tests.support.service.parts import bill, parts, refused
 
 
 def plate(text: bytes) -> shapely.Polygon:

@@ -14,12 +14,9 @@ from service.parts.sizes import PartsQuery
 from synthesis.dispatch import solve
 from synthesis.registry import examples, parse_problem
 from tests.service.answers import finished
-from tests.service.test_parts import bill, parts, refused
-from tests.service.test_parts_of_gears import PAIR
-
-BOX = {"kind": "gearbox", "input_speed": 200.0, "speeds": {"min": 100.0, "ratio": 1.6, "count": 3}, "structure": [3],
-       "tooth_sum": {"min": 60, "max": 90}, "max_designs": 1}  # fmt: skip
-"""Two gears that slide together, and one by itself."""
+from tests.support.service.parts import bill, parts, refused
+from tests.support.service.parts_of_gearboxes import BOX
+from tests.support.service.parts_of_gears import PAIR
 
 
 @pytest.fixture(scope="module")

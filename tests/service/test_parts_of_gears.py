@@ -15,9 +15,9 @@ from kinematics.gear.teeth import involute
 from service.parts.extra import installed
 from tests.campaign import further
 from tests.service.answers import finished
-from tests.service.test_parts import bill, parts, refused
+from tests.support.service.parts import bill, parts, refused
+from tests.support.service.parts_of_gears import BEVELS, PAIR, SET, WORM
 
-PAIR = {"kind": "gear_train", "ratio": "7/3", "max_stages": 1, "max_designs": 1, "module": 2.0}
 SIZES = {"bore": 10, "thickness": 5, "face_width": 14, "clearance": 0.1}
 
 
@@ -38,6 +38,7 @@ def corners(outline: Any) -> np.ndarray:
     return np.array([complex(x, y) for x, y, *_ in outline.get_points("xyb")])
 
 
+@pytest.mark.slow
 def test_a_gear_is_cut_with_its_true_teeth_and_its_keyway(client: Any, pair: str) -> None:
     files = parts(client, pair, **SIZES)
     stage = client.get(pair.rsplit("/designs")[0]).json()["result"]["designs"][0]["mechanism"]["stages"][0]
@@ -147,6 +148,7 @@ def test_bad_values_of_gears_are_refused_by_their_path(client: Any, pair: str, f
     assert [fault["path"] for fault in answer["errors"]] == [f"/query/{field}"]
 
 
+@pytest.mark.slow
 def test_a_refusal_says_what_works(client: Any, pair: str) -> None:
     (fault,) = refused(client, pair, 422, bore=40)["errors"]
     words = fault["detail"].split()
@@ -172,9 +174,6 @@ def test_a_reverted_train_comes_back_to_its_axis(client: Any) -> None:
     assert b"is held only by the upper plate" in files["README.txt"]
 
 
-SET = {"kind": "planetary_train", "ratio": "4", "max_designs": 1, "arrangement": "simple", "teeth": {"max": 80}}
-
-
 @pytest.fixture(scope="module")
 def trains(server: Any) -> dict[str, dict[str, Any]]:
     """Simple sets by what is held, and where their first designs are."""
@@ -193,6 +192,7 @@ def centres(space: ezdxf.layouts.Modelspace) -> list[complex]:
     return [complex(one.dxf.center.x, one.dxf.center.y) for one in space.query("CIRCLE")]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("held", further(["ring", "carrier", "sun"], ["ring"]))
 def test_planets_stand_where_the_teeth_want_them(client: Any, trains: Any, held: str) -> None:
     mechanism = trains[held]["mechanism"]
@@ -236,6 +236,7 @@ def test_the_face_width_of_a_plane_is_that_of_the_answer(client: Any) -> None:
     assert rows["gear_1_driver"]["thickness"] == rows["gear_1_driven"]["thickness"] == "21"
 
 
+@pytest.mark.slow
 def test_a_ring_and_its_web_are_two_sheets_with_pins_through_the_rim(client: Any) -> None:
     job = finished(client, {"kind": "gear_train", "ratio": "3", "stages": [{"type": "internal"}], "max_designs": 1})
     place = f"/v1/jobs/{job['id']}/designs/0"
@@ -296,10 +297,6 @@ def test_a_layshaft_gearbox_has_its_first_gear_keyed_and_the_others_free(client:
     assert "gear_reverse_idler" in rows
 
 
-WORM = {"kind": "gear_train", "ratio": 20, "max_designs": 1, "module": 1.5,
-        "stages": [{"type": "worm", "driver": 2, "driven": 40, "hand": "left"}]}  # fmt: skip
-
-
 def assembled(client: Any, problem: dict[str, Any]) -> tuple[str, dict[str, Any], dict[str, Any]]:
     """Where a design is, itself, and its assembly at nine inputs."""
     job = finished(client, problem)
@@ -342,10 +339,7 @@ def test_a_worm_crosses_under_its_gear_at_the_centre_distance(client: Any) -> No
     assert picture.text.startswith("<svg")
 
 
-BEVELS = {"kind": "gear_train", "ratio": "3/2", "max_designs": 1, "module": 2.0,
-          "stages": [{"type": "bevel", "driver": 20, "driven": 30, "shaft_angle": 75.0}]}  # fmt: skip
-
-
+@pytest.mark.slow
 def test_bevel_gears_meet_at_the_apex_with_true_teeth(client: Any) -> None:
     place, design, view = assembled(client, BEVELS)
     (one, along, first), (other, away, second) = axis(view, "shaft_1"), axis(view, "shaft_2")
@@ -388,6 +382,7 @@ def test_crossing_stages_among_others_are_refused_with_the_reason(client: Any) -
     assert "single-stage trains" in refused(client, f"/v1/jobs/{job['id']}/designs/0", 409)["detail"]
 
 
+@pytest.mark.slow
 def test_the_axles_of_a_ravigneaux_set_are_as_thick_as_its_sun_lets_them(client: Any) -> None:
     problem = {"kind": "planetary_train", "ratio": -4, "arrangement": "ravigneaux", "fixed": "ring", "max_designs": 1}
     place = f"/v1/jobs/{finished(client, problem)['id']}/designs/0"

@@ -24,18 +24,8 @@ from service.parts.spherical import ON_ROLLER, WHEEL, SphericalMotion
 from synthesis.dispatch import solve
 from synthesis.registry import parse_problem
 from tests.service.answers import finished
-from tests.service.test_parts import bill, parts, refused
-
-SPHERICAL: dict[str, Any] = {
-    "kind": "indexing",
-    "drive": "geneva_spherical",
-    "stations": 4,
-    "sphere_radius": 50.0,
-    "roller_diameter": 10.0,
-    "speed_rpm": 100.0,
-    "load_inertia": 0.01,
-}
-
+from tests.support.service.parts import bill, parts, refused
+from tests.support.service.parts_of_sphericals import SPHERICAL
 
 BALL = Loop((0j, 10.0 + 0.0j, 10.0j), (0.0, math.tan(math.pi / 8.0), 0.0))
 WHOLE = 2.0 / 3.0 * math.pi * 10.0**3

@@ -14,7 +14,7 @@ from synthesis.registry import examples
 from tests.campaign import further
 from tests.service.answers import finished
 from tests.service.stated.linkages import WEIGHED
-from tests.synthesis.test_triad_dwells import ELSEWHERE, built
+from tests.support.synthesis.triad_dwells import ELSEWHERE, built
 
 UNEQUAL = {**examples("dwell")[2], "max_designs": 1}
 HIGH = {
@@ -55,6 +55,7 @@ TASKS = {
 }
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", further(list(TASKS), list(TASKS)[:2]))
 def test_dwells_are_solved_drawn_and_driven(client, name):
     problem = TASKS[name]

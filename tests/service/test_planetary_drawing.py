@@ -66,6 +66,7 @@ def test_teeth_of_all_copies_stand_in_spaces(stated: dict[str, Any]) -> None:
     assert contacts >= len(arrangement.meshes) * design.mechanism.planets
 
 
+@pytest.mark.slow
 def test_sheet_dxf_and_table_of_a_planetary_train() -> None:
     design, problem = solved(**TRAINS[0])
     drawn = ElementTree.fromstring(exported(design, problem, "A & <b>", "svg"))

@@ -13,7 +13,7 @@ from service.simulation.query import NotSimulated
 from synthesis.mechanisms.skeleton import assembled_skeleton
 from synthesis.model.stated_linkage import StatedSkeleton
 from tests.service.answers import finished
-from tests.service.test_parts import MOTION, SLIDER
+from tests.support.service.parts import MOTION, SLIDER
 
 BASE = "0123456789ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz_-"
 

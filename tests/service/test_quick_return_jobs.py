@@ -19,6 +19,7 @@ def solved(client, problem):
     return job
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("example", EXAMPLES, ids=("fourbar", "auto", "positions", "layout"))
 def test_examples_are_solved_drawn_and_driven(client, example):
     job = solved(client, example)

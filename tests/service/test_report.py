@@ -158,7 +158,6 @@ def test_a_design_that_fails_a_check_is_shown_to_fail():
     assert "✗ failed" in text
 
 
-@pytest.mark.slow
 def test_the_report_by_http(server, client):
     label = '<script>alert("x")</script> & "hinge"'
     job = server.post(wait=20, problem=examples("motion")[3], label=label)

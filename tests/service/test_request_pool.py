@@ -14,11 +14,7 @@ import pytest
 
 from service.jobs.request_pool import Busy, GivenUp, Gone, Limits, Lost, RequestPool
 from service.jobs.request_queue import Call, RequestQueue
-
-
-async def never() -> bool:
-    """A client that waits."""
-    return False
+from tests.support.service.request_pool import never
 
 
 async def at_once() -> bool:

@@ -58,6 +58,7 @@ def test_what_is_old_is_removed_portion_by_portion(monkeypatch):
     assert stores.old == {"jobs": 0, "batches": 0}
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("fails", [(), ("tidy",), ("jobs",), ("batches",), ("tidy", "jobs", "batches")])
 def test_what_fails_stands_in_nothing_elses_way(monkeypatch, fails):
     stores = Stores(fails)

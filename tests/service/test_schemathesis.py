@@ -12,7 +12,7 @@ import pytest
 from service.app import api_document
 from synthesis.registry import example
 from tests.service.running import RunningServer
-from tests.service.test_access import client_with, made
+from tests.support.service.access import client_with, made
 
 QUICKLY_SOLVED = ("motion", "gear_train", "planetary_train", "cam", "function", "straight_line")
 SOLIDS = ("make_parts", "export_assembly_step", "export_assembly_glb")

@@ -17,7 +17,7 @@ import shapely
 
 from synthesis.registry import example
 from tests.service.answers import finished
-from tests.service.test_parts import MOTION, SLIDER
+from tests.support.service.parts import MOTION, SLIDER
 
 HOSTILE = 'a"<b>&--%s \\"\'\'\'"""; end Machine; {x}\n\x07é -->'
 WEIGHED = {

@@ -11,14 +11,14 @@ from typing import Any
 import numpy as np
 import pytest
 
-from benchmarks.sixbars.planted_functions import planted
 from synthesis.kinds.function import by_type
 from synthesis.kinds.function.design import FunctionResult
 from synthesis.model.answer import Search
 from tests.campaign import further
 from tests.oracles.loops import Loops
 from tests.service.answers import finished
-from tests.service.test_analyses import assert_as_documented
+from tests.support.service.analyses import assert_as_documented
+from tests.support.sixbars.planted_functions import planted
 
 SINE: dict[str, Any] = {
     "kind": "function",

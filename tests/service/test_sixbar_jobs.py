@@ -14,8 +14,6 @@ import numpy as np
 import pytest
 from scipy.optimize import least_squares
 
-from benchmarks.sixbars.motion import on_a_way
-from benchmarks.sixbars.planted_motion import planted
 from synthesis.kinds.motion import by_type
 from synthesis.kinds.motion.design import MotionResult
 from synthesis.kinds.motion.sixbar_makes import MAKES
@@ -24,17 +22,12 @@ from synthesis.model.sixbars import IN_WORDS
 from tests.campaign import further
 from tests.oracles.loops import Loops
 from tests.service.answers import finished
-from tests.service.test_analyses import assert_as_documented
+from tests.support.service.analyses import assert_as_documented
+from tests.support.service.sixbar_jobs import FIVE, TASK
+from tests.support.sixbars.motion import on_a_way
+from tests.support.sixbars.planted_motion import planted
 
-FIVE = [
-    {"x": 0.0, "y": 0.0, "angle": 0.0},
-    {"x": 35.0, "y": 12.0, "angle": 20.0},
-    {"x": 70.0, "y": 8.0, "angle": 5.0},
-    {"x": 100.0, "y": -20.0, "angle": -25.0},
-    {"x": 115.0, "y": -60.0, "angle": -40.0},
-]
 SIX = [*FIVE, {"x": 118.0, "y": -80.0, "angle": -48.0}]
-TASK: dict[str, Any] = {"kind": "motion", "positions": FIVE, "mechanisms": ["watt_1"], "max_designs": 2}
 SIXBARS = "watt_1", "stephenson_2", "stephenson_1", "stephenson_3"
 FOURBAR_TASK = [FIVE[0], FIVE[1], {"x": 70.0, "y": 20.0, "angle": 30.0}]
 

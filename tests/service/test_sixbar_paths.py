@@ -19,25 +19,9 @@ from tests.campaign import further
 from tests.oracles.loops import Loops
 from tests.service.answers import drawn, finished
 from tests.service.scripted_server import INSTANT
+from tests.support.service.sixbar_paths import EIGHT, TASK, TURN, listed
 
-TURN = np.linspace(0.0, 2.0 * np.pi, 36, endpoint=False)
-EIGHT = 40.0 * np.sin(TURN) + 25.0j * np.sin(2.0 * TURN) + 10.0 + 5.0j
 SIXBARS = "watt_1", "stephenson_1", "stephenson_2", "stephenson_3"
-
-
-def listed(points) -> list[dict[str, float]]:
-    return [{"x": float(z.real), "y": float(z.imag)} for z in points]
-
-
-TASK: dict[str, Any] = {
-    "kind": "path",
-    "method": "curve_match",
-    "closed": True,
-    "points": listed(EIGHT),
-    "mechanisms": ["stephenson_3"],
-    "constraints": {"grashof": "crank_rocker"},
-    "max_designs": 2,
-}
 SIZE = float(np.abs(EIGHT[:, None] - EIGHT).max())
 
 

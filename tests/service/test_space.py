@@ -15,9 +15,8 @@ from tests.campaign import further
 from tests.service.answers import finished
 from tests.service.stated.linkages import FITTED as SIX
 from tests.statements import fields
-from tests.synthesis.test_space import LID
-
-pytestmark = pytest.mark.slow
+from tests.support.service.space import TURNS
+from tests.support.synthesis.space import LID
 
 STEP = math.radians(0.25)
 """Of the input, at which shapes are looked at."""
@@ -38,14 +37,6 @@ POINTS = {
         {"x": 0.2, "y": 3.0},
     ],
     "rounds": 1,
-    "max_designs": 3,
-}
-TURNS = {
-    "kind": "function",
-    "pairs": [
-        {"input": x, "output": y} for x, y in ((0.0, 0.0), (20.0, 9.0), (40.0, 20.0), (60.0, 34.0), (80.0, 50.0))
-    ],
-    "zeros": None,
     "max_designs": 3,
 }
 CORNER = {"polygon": [[500.0, 300.0], [560.0, 300.0], [560.0, 380.0]]}
@@ -140,6 +131,7 @@ KEPT = {
 SLOW = ("obstacles", "cycle")
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", further(KEPT, [name for name in KEPT if name not in SLOW]))
 def test_designs_fit_into_their_room(client, name):
     problem, space = KEPT[name]
@@ -229,6 +221,7 @@ def test_every_field_of_a_space_has_a_row():
     assert fields(Space.model_json_schema()).keys() == ROWS.keys()
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", further(ROWS, list(QUICK)[::2]))
 def test_a_field_of_a_space_makes_another_answer(client, name):
     # Where a body lies differs from where it is to lie only in a fit.
@@ -363,6 +356,7 @@ WITH_MORE = {
 """What else a motion can state."""
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "name", further(WITH_MORE, ["tolerances and a slider", "slider", "constraints", "layout", "four positions"])
 )
@@ -383,6 +377,7 @@ def test_a_room_is_kept_beside_other_demands(client, name):
         assert nearest >= 5.0
 
 
+@pytest.mark.slow
 def test_designs_that_fail_are_measured_too(client):
     problem = {
         **with_space(LID, obstacles=[SHELF]),

@@ -13,13 +13,12 @@ from hypothesis import strategies as st
 from pydantic import BaseModel, ValidationError
 
 from service import stated
-from service.api.idempotency import repeatable
-from service.api.schemas import JobRequest
 from synthesis.model.statement import StatedProblem
 from synthesis.registry import KINDS, parse_problem
 from tests.campaign import further
 from tests.service.answers import finished
 from tests.statements import drawn
+from tests.support.service.stated import hashed
 
 DRAWS, PATIENT = 40, 2000
 """Values that are drawn for a field until one of them is taken; most fields of a spring exclude others."""
@@ -39,12 +38,6 @@ def explicit(value: Any) -> Any:
     if isinstance(value, dict):
         return {name: explicit(entry) for name, entry in value.items()}
     return [explicit(entry) for entry in value] if isinstance(value, list | tuple) else None
-
-
-def hashed(statement: dict[str, Any]) -> str:
-    request = repeatable(["key"], JobRequest.model_validate({"problem": statement}))
-    assert request is not None
-    return request.request_hash
 
 
 def keeps(statement: dict[str, Any]) -> StatedProblem:
@@ -91,6 +84,7 @@ def test_every_field_alone_is_kept(kind: str) -> None:
         keeps(changed)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("kind", KINDS)
 @given(seed=st.integers(0, 2**32))
 def test_fields_together_are_kept(kind: str, seed: int) -> None:
@@ -133,6 +127,6 @@ def test_the_problem_of_a_job_posted_again_has_the_same_answer(server: Any, clie
     assert job["result"]["designs"]
     stored = json.loads(server.stored(job["id"], "problem"))
     assert stored == problem, "the store has something else than what was stated"
-    again = finished(client, job["problem"])
+    again = finished(client, job["problem"], fresh=True)
     assert again["problem"] == job["problem"]
     assert again["result"] == job["result"]

@@ -9,7 +9,7 @@ import pytest
 
 from synthesis.kinds.straight_line.problem import LINE_MECHANISMS
 from tests.service.answers import finished
-from tests.service.test_analyses import assert_as_documented, joint
+from tests.support.service.analyses import assert_as_documented, joint
 
 
 @pytest.mark.parametrize("mechanism", LINE_MECHANISMS)

@@ -8,6 +8,7 @@ import pytest
 import service
 from service.api.bundle import BundleError, bundles, name_of
 from service.api.studio import POLICY, studio_files
+from tests.support.loops import check_each
 
 FOLDER = Path(service.__file__).parent / "studio"
 OWN = sorted(path.name for path in FOLDER.iterdir() if path.is_file())
@@ -32,18 +33,19 @@ def test_every_file_of_the_folder_is_served():
     assert not [name for name in studio_files() if name.startswith("types/")]
 
 
-@pytest.mark.slow
-@pytest.mark.parametrize("name", NAMES)
-def test_a_file_is_served_with_its_type_and_the_policy(client, name):
-    answer = client.get(path_of(name))
-    assert answer.status_code == 200
-    if name != "index.html":
-        assert answer.content == (FOLDER / name).read_bytes()
-    assert answer.headers["content-type"].split(";")[0] == TYPES[Path(name).suffix]
-    assert answer.headers["content-security-policy"] == POLICY
-    assert answer.headers["x-content-type-options"] == "nosniff"
-    again = client.get(path_of(name), headers={"If-None-Match": answer.headers["etag"]})
-    assert (again.status_code, again.content) == (304, b"")
+def test_a_file_is_served_with_its_type_and_the_policy(client):
+    def check(name):
+        answer = client.get(path_of(name))
+        assert answer.status_code == 200
+        if name != "index.html":
+            assert answer.content == (FOLDER / name).read_bytes()
+        assert answer.headers["content-type"].split(";")[0] == TYPES[Path(name).suffix]
+        assert answer.headers["content-security-policy"] == POLICY
+        assert answer.headers["x-content-type-options"] == "nosniff"
+        again = client.get(path_of(name), headers={"If-None-Match": answer.headers["etag"]})
+        assert (again.status_code, again.content) == (304, b"")
+
+    check_each(NAMES, check)
 
 
 def test_the_policy_allows_nothing_inline_and_no_other_host():
@@ -54,22 +56,29 @@ def test_the_policy_allows_nothing_inline_and_no_other_host():
     assert "http" not in POLICY
 
 
-@pytest.mark.parametrize("name", OWN)
-def test_no_file_names_another_host(name):
-    text = (FOLDER / name).read_text().replace(NAMESPACE, "")
-    assert not re.findall(r"(?:https?:)?//[\w-]+\.\w+", text)
+def test_no_file_names_another_host():
+    def check(name):
+        text = (FOLDER / name).read_text().replace(NAMESPACE, "")
+        assert not re.findall(r"(?:https?:)?//[\w-]+\.\w+", text)
+
+    check_each(OWN, check)
 
 
-@pytest.mark.parametrize("name", OWN)
-def test_every_file_that_is_referred_to_exists(client, name):
-    text = (FOLDER / name).read_text()
-    imported = IMPORTED.findall(text)
-    linked = re.findall(r'(?:src|href)="(/[^"]*)"', text)
-    for target in (*(f"/studio/{one}" for one in imported), *linked):
-        assert client.get(target).status_code == 200, target
-    if name == "index.html":
-        assert linked
-        assert not re.search(r"<style|style=|\son\w+=|<script(?![^>]*src=)", text), "inline code or styles"
+def test_every_file_that_is_referred_to_exists(client):
+    referred = {}
+    for name in OWN:
+        text = (FOLDER / name).read_text()
+        linked = re.findall(r'(?:src|href)="(/[^"]*)"', text)
+        for target in (*(f"/studio/{one}" for one in IMPORTED.findall(text)), *linked):
+            referred.setdefault(target, []).append(name)
+        if name == "index.html":
+            assert linked
+            assert not re.search(r"<style|style=|\son\w+=|<script(?![^>]*src=)", text), "inline code or styles"
+
+    def check(target, names):
+        assert client.get(target).status_code == 200, names
+
+    check_each(referred.items(), check)
 
 
 def imported(statement):

@@ -15,8 +15,6 @@ from service.settings import Settings
 from tests.service.running import PROBLEM, SCRIPTED, SOON_S, RunningServer, until
 from tests.service.scripted_server import BROKEN, DIES_ONCE, GATED, INSTANT, NATIVE
 
-pytestmark = pytest.mark.slow
-
 SECRET = "a-word-that-nobody-must-log"
 
 
@@ -76,6 +74,7 @@ def test_rejections_are_counted_by_reason(server):
     }
 
 
+@pytest.mark.slow
 def test_jobs_are_measured_by_kind_and_outcome(server):
     def act():
         (server.folder / "died").unlink(missing_ok=True)
@@ -91,6 +90,7 @@ def test_jobs_are_measured_by_kind_and_outcome(server):
     assert restarts == {"lost": 1, "timeout": 1}
 
 
+@pytest.mark.slow
 def test_the_queue_and_the_workers_are_seen(server):
     gate = server.folder / "open"
     gate.unlink(missing_ok=True)
@@ -217,6 +217,7 @@ def test_the_log_leads_from_a_request_to_its_job(server):
     assert all("request" not in line for line in of_job[1:])
 
 
+@pytest.mark.slow
 @pytest.mark.campaign
 def test_concurrent_requests_keep_their_ids(server):
     def ask(n):

@@ -6,9 +6,7 @@ import pytest
 
 from tests.campaign import further
 from tests.service.answers import drawn, finished
-from tests.synthesis.test_drawn_poses import LID, ZONES, planted_slider
-
-pytestmark = pytest.mark.slow
+from tests.support.synthesis.drawn_poses import LID, ZONES, planted_slider
 
 STATED = {
     "slider": planted_slider(12),
@@ -23,6 +21,7 @@ STATED = {
 """None has an answer without its tolerances."""
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", further(STATED, list(STATED)[:1]))
 def test_tolerances_are_used_beside_other_choices_and_demands(client, name):
     problem = STATED[name]
@@ -55,6 +54,7 @@ def test_what_holds_at_positions_met_exactly_is_refused_beside_tolerances(client
     assert [error["path"] for error in answer.json()["errors"]] == [path]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("side", [{}, {"output_side": {"dyad": "PR"}}, {"driver_dyad": True}])
 @pytest.mark.parametrize("tolerance", [1e-14, {"x": 1e-14, "angle": 1e-15}, {"angle": 1e-13}])
 def test_tolerances_below_rounding_give_what_exact_positions_give(client, side, tolerance):
@@ -69,6 +69,7 @@ def test_tolerances_below_rounding_give_what_exact_positions_give(client, side, 
     assert results[1]["search"] == results[0]["search"]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("angles", further([[0, 30, 60], [0, 20, 40, 60], [0, -60, -90]], [[0, 30, 60]]))
 def test_a_body_that_turns_about_a_point_within_tolerances_of_its_angle_is_driven(client, angles):
     """The linkage holds the point nearly still, so that it alone does not tell where a target is met."""

@@ -12,9 +12,7 @@ from opentelemetry.proto.collector.trace.v1.trace_service_pb2 import ExportTrace
 
 from tests.service.running import SCRIPTED, RunningServer, until
 from tests.service.scripted_server import INSTANT
-from tests.service.test_access import client_with, made, post
-
-pytestmark = pytest.mark.slow
+from tests.support.service.access import client_with, made, post
 
 PARENT = "00-0af7651916cd43dd8448eb211c80319c-b7ad6b7169203331-01"
 SECRET = "a-word-that-nobody-must-trace"
@@ -80,6 +78,7 @@ def running(folder, monkeypatch, **telemetry):
     assert status == 0
 
 
+@pytest.mark.slow
 @pytest.mark.campaign
 def test_a_collector_gets_each_request_with_its_route(tmp_path, monkeypatch, collector):
     key = made(tmp_path, "acme")
@@ -118,6 +117,7 @@ def test_a_collector_gets_each_request_with_its_route(tmp_path, monkeypatch, col
     assert SECRET.encode() not in sent
 
 
+@pytest.mark.slow
 @pytest.mark.campaign
 def test_nothing_is_sent_unless_it_is_asked_for(tmp_path, monkeypatch, collector):
     with running(tmp_path, monkeypatch, OTEL_EXPORTER_OTLP_ENDPOINT=collector.url) as server:
@@ -125,6 +125,7 @@ def test_nothing_is_sent_unless_it_is_asked_for(tmp_path, monkeypatch, collector
     assert not collector.received
 
 
+@pytest.mark.slow
 @pytest.mark.campaign
 def test_a_collector_that_is_not_there_holds_nobody_up(tmp_path, monkeypatch):
     with running(
@@ -136,6 +137,7 @@ def test_a_collector_that_is_not_there_holds_nobody_up(tmp_path, monkeypatch):
         assert server.post(INSTANT, wait=20)["status"] == "succeeded"
 
 
+@pytest.mark.slow
 def test_the_exporters_are_not_imported_by_a_service_without_them():
     program = (
         "import sys, service.web, service.server; "

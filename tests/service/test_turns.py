@@ -13,10 +13,8 @@ from service.jobs.turns import ASK_PERIOD_S, PATIENCE_S, Turns
 from synthesis.registry import KINDS, parse_problem
 from tests.service.running import PROBLEM, REACHED_S, SCRIPTED, SOON_S, RunningServer, until
 from tests.service.scripted_server import GATED, INSTANT, NATIVE, STEPS
-from tests.service.test_access import client_with, post
-from tests.service.test_access import made as made_key
-
-pytestmark = pytest.mark.slow
+from tests.support.service.access import client_with, post
+from tests.support.service.access import made as made_key
 
 LONG = {**PROBLEM, "positions": [{"x": 10.0 * n, "y": 1.0 * n * n, "angle": 9.0 * n} for n in range(7)]}
 """A statement that is taken to be long, whatever the scripted solver makes of it."""
@@ -237,6 +235,7 @@ def gate(server):
     until(lambda: not server.client.get("/v1/jobs?status=running").json()["jobs"], SOON_S, "the end of all jobs")
 
 
+@pytest.mark.slow
 @pytest.mark.campaign
 def test_a_short_job_does_not_wait_for_long_ones(server, gate):
     long = [server.post(GATED, problem=LONG) for _ in range(5)]
@@ -249,6 +248,7 @@ def test_a_short_job_does_not_wait_for_long_ones(server, gate):
         server.reaches(job["id"], "succeeded")
 
 
+@pytest.mark.slow
 @pytest.mark.campaign
 def test_short_jobs_that_turn_out_to_be_long_do_not_block_others(server, gate):
     mistaken = [server.post(STEPS) for _ in range(4)]
@@ -258,6 +258,7 @@ def test_short_jobs_that_turn_out_to_be_long_do_not_block_others(server, gate):
         server.reaches(job["id"], "succeeded")
 
 
+@pytest.mark.slow
 @pytest.mark.campaign
 def test_a_batch_whose_samples_turn_out_to_be_long_does_not_block_others(server, gate):
     body = {"problem": PROBLEM, "vary": [{"field": "/seed", "values": [STEPS] * 6}], "reuse": False}
@@ -270,6 +271,7 @@ def test_a_batch_whose_samples_turn_out_to_be_long_does_not_block_others(server,
     assert (ended["status"], ended["succeeded"]) == ("succeeded", 6)
 
 
+@pytest.mark.slow
 @pytest.mark.campaign
 def test_a_flood_of_one_tenant_leaves_a_worker_to_the_others(server, gate):
     (server.folder / "patient").touch()  # nobody finds out that these are not short
@@ -284,6 +286,7 @@ def test_a_flood_of_one_tenant_leaves_a_worker_to_the_others(server, gate):
         server.reaches(job_id, "succeeded")
 
 
+@pytest.mark.slow
 @pytest.mark.embedded
 @pytest.mark.campaign
 def test_a_cancelled_job_that_reports_progress_costs_no_worker(server, gate):
@@ -299,6 +302,7 @@ def test_a_cancelled_job_that_reports_progress_costs_no_worker(server, gate):
     assert server.workers() == workers
 
 
+@pytest.mark.slow
 @pytest.mark.campaign
 def test_a_short_job_is_done_while_workers_are_killed_by_cancels(server, gate):
     """Two clients post what cannot be stopped but by killing its worker, and cancel it as soon as it runs."""

@@ -18,7 +18,7 @@ from synthesis.dispatch import solve
 from synthesis.kinds.gear_train.design import GearTrainDesign, GearTrainResult
 from synthesis.kinds.gear_train.problem import GearTrainProblem
 from synthesis.registry import parse_problem
-from tests.service.test_gear_drawing import SVG
+from tests.support.service.gear_drawing import SVG
 
 BEVEL: dict[str, Any] = {"type": "bevel", "driver": 20, "driven": 20}
 TASKS: dict[str, dict[str, Any]] = {

@@ -41,6 +41,7 @@ def outlines(client: httpx.Client, place: str, stage: int) -> list[np.ndarray]:
     return [np.array([complex(x, y) for x, y in line.get_points("xy")]) for line in lines]
 
 
+@pytest.mark.slow
 def test_a_ring_is_drawn_around_its_pinion_in_mesh(client: httpx.Client) -> None:
     """The outlines of the CAD file: where the pinion reaches beyond the tips of the ring it lies in its spaces."""
     design, place = design_of(client, PARALLEL)

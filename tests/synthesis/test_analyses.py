@@ -12,16 +12,10 @@ from synthesis.dispatch import solve
 from synthesis.kinds.motion.problem import MotionProblem
 from synthesis.mechanisms import MechanismError
 from tests.campaign import further
-from tests.kinematics.mechanism_sampling import EVERY, geared_fivebar, take
+from tests.kinematics.mechanism_sampling import EVERY
+from tests.support.synthesis.analyses import stated
 
 DOCUMENTED = MotionProblem.model_config["json_schema_extra"]["examples"]
-
-KINDS = {
-    "fourbar": "fourbar", "slider-crank": "slider_crank", "slider-crank driven by its slider": "slider_crank",
-    "inverted slider-crank": "inverted_slider_crank", "crank-shaper": "crank_shaper", "Whitworth": "whitworth",
-    "geared fivebar": "geared_fivebar", "drag link and rocker": "drag_link_rocker",
-    "drag link and slider": "drag_link_slider", "Peaucellier": "peaucellier",
-}  # fmt: skip
 
 FOURBAR = {
     "type": "fourbar",
@@ -33,33 +27,6 @@ FOURBAR = {
 
 def answer(mechanism, **motion):
     return parse_request({"mechanism": mechanism, "motion": motion} if motion else {"mechanism": mechanism}).answer()
-
-
-def stated(name):
-    """A random mechanism of a type by its skeleton and the lengths of its links of two joints."""
-    rng = np.random.default_rng(3)
-    # With a ratio that does not repeat, circuits would not be listed.
-    mechanism = take(geared_fivebar(rng, 1, -2.0) if name == "geared fivebar" else EVERY[name](rng, 1), 0)
-    kind = KINDS.get(name, name.split()[0])
-
-    def pair(place):
-        return [complex(place).real, complex(place).imag]
-
-    binary = {n: j for n, j in mechanism.links.items() if len(j) == 2}
-    return {
-        "type": kind,
-        "links": {n: abs(complex(mechanism.joints[i] - mechanism.joints[j])) for n, (i, j) in binary.items()},
-        "skeleton": {
-            "joints": {n: pair(z) for n, z in mechanism.joints.items()},
-            "links": [{"name": n, "joints": list(j)} for n, j in mechanism.links.items()],
-            "slides": [
-                {"joint": s.joint, "link": s.link, "point": pair(s.point), "angle": math.degrees(s.angle)}
-                for s in mechanism.slides
-            ],
-            "gears": [{"links": [g.first, g.second], "ratio": g.ratio} for g in mechanism.gears],
-            "input_link": mechanism.input,
-        },
-    }
 
 
 @pytest.mark.parametrize("name", EVERY)

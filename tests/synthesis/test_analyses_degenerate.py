@@ -22,7 +22,7 @@ from synthesis.analyses import parse_request
 from synthesis.analyses.linkage import LinkageAnalysis
 from synthesis.mechanisms import MechanismError
 from tests.kinematics.mechanism_sampling import EVERY
-from tests.kinematics.test_branches import on_whole_numbers
+from tests.support.kinematics.branches import on_whole_numbers
 
 REFUSED = (ValidationError, MechanismError, KinematicsError)
 
@@ -278,14 +278,12 @@ NONE = (
 """What is refused in any unit: lengths that nowhere close, and none. All others are mechanisms, and are answered."""
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("name", STATED)
 def test_at_the_edge_of_a_type_only_what_does_not_exist_is_refused(name):
     answered = {place: right_or_refused(placed(STATED[name], *PLACES[place])) for place in PLACES}
     assert set(answered.values()) == {name.removesuffix(", driven by its slider") not in NONE}, answered
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("name", EVERY)
 def test_joints_on_whole_numbers(name):
     """Pins on each other, links of one length, all in line: the same verdict in every unit, and some are answered."""

@@ -17,7 +17,7 @@ from synthesis.mechanisms import MechanismError
 from tests.kinematics.mechanism_sampling import EVERY
 from tests.oracles.constraints import Constraints
 from tests.oracles.differences import derivative
-from tests.synthesis.test_analyses import KINDS, stated
+from tests.support.synthesis.analyses import KINDS, stated
 
 STEPS = 24
 WAY = 0.12

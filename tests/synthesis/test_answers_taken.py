@@ -128,6 +128,7 @@ def taking(schema: Schema) -> list[str]:
     return found
 
 
+@pytest.mark.slow
 def test_no_field_that_takes_a_mechanism_is_left_out() -> None:
     found = {f"{name}.{field}" for name, kind in KINDS.items() for field in taking(kind.problem.model_json_schema())}
     for family in families():

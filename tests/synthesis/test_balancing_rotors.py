@@ -174,6 +174,7 @@ def test_a_grade_at_bearings_beside_the_planes_proves_nothing() -> None:
     assert not result.search.complete
 
 
+@pytest.mark.slow
 def test_many_places_are_used_where_they_reach_the_unbalance() -> None:
     """More choices than can be listed: those towards the unbalance come first, and nearly nothing is left."""
     holes = {"angles": 72, "radius": 800.0, "step": 0.01, "max_per_hole": 2.0, "max_places": 2}

@@ -5,11 +5,11 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from benchmarks.sixbars.motion import SIXBARS, anyhow, false_claim, sound, within_a_box
 from synthesis.dispatch import solve
 from synthesis.kinds.motion import branch_rows as rows
 from synthesis.kinds.motion.chain_kernels import MAKES, O4, Q1, Q2, A, B, J, signed_sine
 from synthesis.registry import parse_problem
+from tests.support.sixbars.motion import SIXBARS, anyhow, false_claim, sound, within_a_box
 
 INF = np.inf
 LIMITS = {
@@ -64,6 +64,7 @@ def test_rates_are_those_of_differences(limited):
     assert met > 30
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("draw", "seed"), [pytest.param(within_a_box, 3, marks=pytest.mark.campaign), (anyhow, 1)])
 def test_what_arrives_does_so_on_one_branch_in_order(draw, seed):
     task = draw(np.random.default_rng(seed))

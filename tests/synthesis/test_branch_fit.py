@@ -8,7 +8,6 @@ from typing import Any
 import numpy as np
 import pytest
 
-from benchmarks.sixbars.motion import stated
 from synthesis.kinds.motion import branch_rows as rows
 from synthesis.kinds.motion.branch_fit import value_of_fit
 from synthesis.kinds.motion.chain_kernels import O4, Q1, Q2, A, B, J, signed_sine
@@ -16,6 +15,7 @@ from synthesis.kinds.motion.problem import MotionProblem
 from synthesis.kinds.motion.sixbar_makes import MAKES
 from synthesis.kinds.motion.sixbar_search import SixbarSearch
 from synthesis.registry import parse_problem
+from tests.support.sixbars.motion import stated
 
 POSITIONS, LIMIT = 24, 20.0
 SPAN = 100.0

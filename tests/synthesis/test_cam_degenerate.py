@@ -139,7 +139,6 @@ NOT_FOUND = {
 }
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("name", further(NOT_FOUND, NOT_FOUND.keys() - {"prime circle hardly larger than the roller"}))
 def test_what_is_not_found_is_not_said_not_to_exist(name):
     result = solve(parse_problem(NOT_FOUND[name]), lambda fraction, message: None)

@@ -7,7 +7,6 @@ import math
 import numpy as np
 import pytest
 
-from benchmarks.independent.cams import statements
 from kinematics.cam.contact import Contour
 from kinematics.cam.finished import worst
 from kinematics.cam.follower import OscillatingFlat, OscillatingRoller, TranslatingFlat, TranslatingRoller
@@ -31,6 +30,7 @@ from synthesis.kinds.cam.mechanism import (
 from synthesis.registry import parse_problem
 from tests.campaign import further
 from tests.oracles.cam_formulas import least_convex_radius, pressure_angle_extremes
+from tests.support.independent.cams import statements
 from tests.synthesis.cam_sampling import dense_motion, oscillating, translating
 
 LAW_NAMES = ("modified_sine", "cycloidal", "modified_trapezoid", "polynomial_345")
@@ -174,6 +174,7 @@ def test_rounding_leaves_a_least_radius_its_digits(seed: int, number: int) -> No
     assert design.metrics.min_convex_radius == pytest.approx(3.0, rel=5e-7)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("follower", "minimize", "rounded"),
     further(

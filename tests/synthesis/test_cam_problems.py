@@ -196,7 +196,6 @@ def jumping(law, follower, **fields):
     )
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("follower", FOLLOWERS)
 @pytest.mark.parametrize("law", ["simple_harmonic", "constant_acceleration"])
 def test_jumps_of_acceleration_that_are_accepted_give_a_cam(law, follower):

@@ -242,6 +242,7 @@ def test_forces_of_nortons_example_15_3():
     assert forces.natural_frequency == pytest.approx(math.sqrt(50.0 / 0.0738))
 
 
+@pytest.mark.slow
 def test_units_of_force():
     """The same valve in millimetres and in metres."""
     metres = {

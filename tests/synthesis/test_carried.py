@@ -12,8 +12,8 @@ import pytest
 from synthesis.model.linkage_answer import LinkageDesign
 from synthesis.proof.carried import carried, ease
 from tests.campaign import further
+from tests.support.synthesis.motion_search import ORDINARY, run
 from tests.synthesis.planted import plant
-from tests.synthesis.test_motion_search import ORDINARY, run
 
 DENSE = 400_001
 """Inputs of the brute-force drive."""
@@ -47,6 +47,7 @@ def confirm(design: LinkageDesign, stated: list[dict[str, Any]]) -> None:
     assert metrics.body_turn_ratio >= 1.0 - 1e-9
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("n", further([2, 3, 4, 5], [3]))
 def test_designs_say_what_a_dense_drive_finds(n: int) -> None:
     rng = np.random.default_rng(n)

@@ -67,6 +67,7 @@ def carrying() -> dict[tuple[tuple[int, ...], ...], bool]:
     return found
 
 
+@pytest.mark.slow
 def test_a_brute_force_finds_the_same() -> None:
     every = carrying()
     assert 1 < sum(every.values()) < len(every) - 1
@@ -107,6 +108,7 @@ def test_ties_and_front_are_of_all_trains_that_carry(rank_by: str) -> None:
     assert [(size, abs(error)) for size, error in found] == front
 
 
+@pytest.mark.slow
 def test_trains_of_the_front_carry_the_power() -> None:
     """Each with the least modules and faces of its stages in their order, as it would be made as a design."""
     stated = {"ratio": "12.3", "max_stages": 2, "teeth": {"min": 18, "max": 90}, "tolerance": 0.01}
@@ -124,6 +126,7 @@ def test_trains_of_the_front_carry_the_power() -> None:
     assert result.pareto[-1].stages == result.designs[0].mechanism.stages
 
 
+@pytest.mark.slow
 def test_the_ratio_of_a_train_of_the_front_counts_its_idler() -> None:
     stated: dict[str, Any] = {"ratio": "-4", "max_stages": 2, "teeth": {"min": 17, "max": 40}, "module": 4.0}
     result = solved(**stated, strength=POWER, max_designs=1)

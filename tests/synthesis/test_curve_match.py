@@ -6,8 +6,6 @@ import numpy as np
 import pytest
 from pydantic import ValidationError
 
-from benchmarks.curve_match import curve_cases, matched, noisy, published_rms, reference_rms
-from benchmarks.demands import closed_curves
 from kinematics.linkage import SliderCrank
 from kinematics.linkage.fourbar import OPEN, Fourbar, positions
 from kinematics.linkage.planar.catalogue import geared_fivebar
@@ -34,6 +32,8 @@ from synthesis.kinds.path.verification import verify_path
 from synthesis.model.linkages import FourbarConfiguration, fourbar_mechanism
 from synthesis.registry import parse_problem
 from tests.campaign import sampled
+from tests.support.demands import closed_curves
+from tests.support.problems.curve_match import curve_cases, matched, noisy, published_rms, reference_rms
 
 CASES = {case["id"]: case for case in curve_cases()}
 EGG = Fourbar(3.0 + 2.0j, 10.0 + 1.0j, 2.0, 6.0, 5.0, 3.0 + 2.5j)
@@ -200,6 +200,7 @@ def test_distances_both_ways_are_those_of_brute_force():
     assert metrics.curve_distance == pytest.approx(far, rel=1e-3)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "size", [1.0, pytest.param(1e-5, marks=pytest.mark.campaign), pytest.param(1e5, marks=pytest.mark.campaign)]
 )

@@ -11,17 +11,9 @@ from synthesis.kinds.path.verification import verify_path
 from synthesis.model.linkages import FourbarConfiguration, fourbar_mechanism
 from synthesis.proof.closer import least_near
 from synthesis.registry import parse_problem
+from tests.support.synthesis.curve_verification import distance_from
 
 CORNERS = np.array([0.0, 4.0, 4.0 + 3.0j])
-
-
-def distance_from(polygon, z):
-    """Distance of one place from a closed polygon, side by side."""
-    least = math.inf
-    for start, end in zip(polygon, np.roll(polygon, -1), strict=True):
-        share = ((z - start) * (end - start).conjugate()).real / abs(end - start) ** 2
-        least = min(least, abs(z - start - min(max(share, 0.0), 1.0) * (end - start)))
-    return least
 
 
 @pytest.mark.parametrize("gap", [0.02, 2e-3, 2e-4, 2e-6])

@@ -239,6 +239,7 @@ def test_no_sixbar_of_many_has_a_defect() -> None:
     assert count > 15
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("limits", "least"),
     further(

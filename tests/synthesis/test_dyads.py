@@ -13,8 +13,8 @@ from synthesis.kinds.motion.stated_dyads import DyadChoices
 from synthesis.kinds.motion.task import MotionTask, motion_task
 from synthesis.registry import parse_problem
 from tests.cases import Case, cases
+from tests.support.synthesis.motion_literature import vector
 from tests.synthesis.planted import inverted_images, plant
-from tests.synthesis.test_motion_literature import vector
 
 ANY_START = Dyads(np.array([0.3 + 0.4j]), np.array([-0.2 + 0.7j]))
 
@@ -146,7 +146,6 @@ TWO = [
 ]
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("names", [*TWO, *THREE], ids="-".join)
 def test_every_way_of_stating_a_dyad_finds_the_planted_one(names: tuple[str, ...]) -> None:
     rng = np.random.default_rng(4)

@@ -218,6 +218,7 @@ def test_the_boxer_twin() -> None:
     assert best.harmonics[0].moment.major == pytest.approx(1.0)
 
 
+@pytest.mark.slow
 def test_layouts_are_compared() -> None:
     """Six cylinders: inline and a boxer, of which neither leaves a force; the vee of 90° has no even throws."""
     others = [{"type": "vee", "vee_angle": 90.0}, {"type": "opposed", "pins": "own"}]

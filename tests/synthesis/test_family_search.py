@@ -3,13 +3,13 @@
 import numpy as np
 import pytest
 
-from benchmarks.demands import path_constraints
 from kinematics.linkage.fourbar import OPEN, Fourbar, positions
 from synthesis.dispatch import solve
 from synthesis.fit.chart import CRANK_ROCKER, natural
 from synthesis.kinds.path.curve_descent import UNLIMITED_PIVOTS, descend
 from synthesis.registry import parse_problem
 from tests.campaign import further
+from tests.support.demands import path_constraints
 
 
 def planted(n, seed):
@@ -58,6 +58,7 @@ def keeps(design, points):
     assert max(target.point_residual for target in design.targets) < 1e-8 * size
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("n", [4, *(pytest.param(n, marks=pytest.mark.campaign) for n in (3, 5, 6, 7, 8))])
 def test_a_crank_rocker_in_a_region_is_found(n):
     linkage, points = planted(n, n)

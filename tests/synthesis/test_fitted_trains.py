@@ -7,14 +7,14 @@ from typing import Any
 
 import pytest
 
-from benchmarks.gears import compare_trains
-from benchmarks.independent.fitted_trains import best_train, same_answer, statements
 from synthesis.dispatch import solve
 from synthesis.kinds.gear_train.design import GearTrainDesign, GearTrainResult
 from synthesis.kinds.gear_train.problem import GearTrainProblem
 from synthesis.kinds.gear_train.verification import verify
 from synthesis.registry import parse_problem
 from tests.campaign import sampled
+from tests.support.independent.fitted_trains import best_train, same_answer, statements
+from tests.support.problems.gears import compare_trains
 
 TEETH, MODULES = {"min": 17, "max": 100}, [1.0, 1.25, 1.5, 2.0]
 

@@ -27,6 +27,7 @@ def best():
     return answered(rank_by="drive_torque")
 
 
+@pytest.mark.slow
 def test_an_order_searches_on_and_says_how_far_it_looked(best):
     values = [design.forces.drive_torque.max for design in best.designs]
     assert values == sorted(values)

@@ -15,8 +15,8 @@ from synthesis.model.linkage_answer import LinkageDesign
 from synthesis.registry import KINDS, parse_problem
 from tests.campaign import sampled
 from tests.cases import search_tasks
+from tests.support.synthesis.motion_search import confirm, run
 from tests.synthesis.planted import Planted, PlantedDyad, plant
-from tests.synthesis.test_motion_search import confirm, run
 
 FOUR = [
     {"x": 0.0, "y": 0.0, "angle": 0.0},

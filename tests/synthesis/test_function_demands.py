@@ -5,14 +5,14 @@ import math
 import numpy as np
 import pytest
 
-from benchmarks.demands import function_constraints
-from benchmarks.demands.planted import box
 from synthesis import parse_problem
 from synthesis.kinds.function.limits import GeneratorLimits
 from synthesis.kinds.function.problem import FunctionProblem
 from synthesis.kinds.function.solver import solve_function
 from synthesis.kinds.function.task import function_task
 from tests.campaign import further, sampled
+from tests.support.demands import function_constraints
+from tests.support.demands.planted import box
 from tests.synthesis.function_tasks import silent
 
 
@@ -28,6 +28,7 @@ def test_members_of_a_family_are_moved_into_narrow_limits(number):
     assert task.answered(solve_function(parse_problem(task.statement), silent))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("mechanism", ["fourbar", "slider_crank"])
 @pytest.mark.parametrize("criterion", further(["minimax", "least_squares"], ["minimax"]))
 def test_an_approximation_keeps_regions_of_its_own_place_without_loss(mechanism, criterion):

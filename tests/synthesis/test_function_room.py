@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import pytest
 
-from benchmarks.fit.function import GROUPS, statement
-from benchmarks.fit.task import generator
-from benchmarks.fit.verdict import violations
 from synthesis.dispatch import solve
 from synthesis.registry import parse_problem
 from tests.campaign import further
+from tests.support.fit.function import GROUPS, statement
+from tests.support.fit.task import generator
+from tests.support.fit.verdict import violations
 
 
 @pytest.mark.parametrize("number", further(range(len(GROUPS)), [1, 2, 3]))

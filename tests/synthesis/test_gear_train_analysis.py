@@ -12,17 +12,7 @@ from synthesis.analyses import parse_request
 from synthesis.analyses.gear_train import GearTrainAnalysis, GearTrainAnalysisRequest
 from synthesis.dispatch import solve
 from synthesis.registry import parse_problem
-
-
-def analysed(
-    stages: list[dict[str, Any]], idlers: list[dict[str, int]] | None = None, **fields: Any
-) -> GearTrainAnalysis:
-    mechanism = {"type": "gear_train", "stages": stages, "idlers": idlers or [], **fields.pop("given", {})}
-    request = parse_request({"mechanism": mechanism, **fields})
-    assert isinstance(request, GearTrainAnalysisRequest)
-    assert request.faults() == []
-    return GearTrainAnalysis.model_validate(request.answer())
-
+from tests.support.synthesis.gear_train_analysis import analysed
 
 TWO = [{"driver": 14, "driven": 112, "module": 2.0}, {"driver": 16, "driven": 140, "module": 2.0}]
 

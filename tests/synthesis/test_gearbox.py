@@ -241,7 +241,10 @@ def test_stated_structure_cluster_and_series() -> None:
         ({"speeds": {"min": 50.0, "ratio": 1.26, "count": 7}}, "cannot be made"),
         ({"speeds": {"min": 50.0, "ratio": 1.41, "count": 16}, "max_pairs": 2}, "No gearbox (24 structures"),
         ({"speeds": {"min": 0.5, "ratio": 1.26, "count": 6}}, "No gearbox (4 structures"),
-        ({"speeds": {"min": 50.0, "ratio": 1.26, "count": 6}, "teeth": {"min": 30, "max": 31}}, "No gearbox (4 structures"),
+        (
+            {"speeds": {"min": 50.0, "ratio": 1.26, "count": 6}, "teeth": {"min": 30, "max": 31}},
+            "No gearbox (4 structures",
+        ),
     ],
 )
 def test_impossible_gearboxes_are_proven(stated: dict[str, Any], words: str) -> None:

@@ -4,10 +4,10 @@ import math
 
 import pytest
 
-from benchmarks.geometry_cases import case
-from benchmarks.geometry_fuzz import run, tally
 from synthesis.model.statement import TINY
 from synthesis.registry import KINDS, parse_problem
+from tests.support.problems.geometry_cases import case
+from tests.support.problems.geometry_fuzz import run, tally
 
 
 @pytest.mark.fuzz
@@ -20,6 +20,7 @@ def test_whatever_is_stated_is_answered_or_refused(kind):
     assert counted.results["refused"] >= 10
 
 
+@pytest.mark.slow
 def test_a_case_is_made_again_by_its_number():
     assert case("motion", 7) == case("motion", 7) != case("motion", 8)
 

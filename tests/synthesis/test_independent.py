@@ -9,33 +9,32 @@ from typing import Any
 import numpy as np
 import pytest
 
-from benchmarks.independent import cam_motion
-from benchmarks.independent.cam_demands import CRITERIA, SORTS, in_units
-from benchmarks.independent.cam_demands import statements as demanding
-from benchmarks.independent.cam_laws import AT_REST, FAMILY, MIRRORED, POLYNOMIALS, law
-from benchmarks.independent.cam_measures import compare_cam
-from benchmarks.independent.cam_motion import by_law, by_polynomial, motion_at, turned
-from benchmarks.independent.cam_verdicts import Limit
-from benchmarks.independent.cams import FOLLOWERS, OPTIMIZED, cams, moves_of
-from benchmarks.independent.comparison import Measured
-from benchmarks.independent.course import Course
-from benchmarks.independent.drive import Drive
-from benchmarks.independent.extremes import greatest, least, root
-from benchmarks.independent.linkages import linkages
-from benchmarks.independent.mobility import class_of
-from benchmarks.independent.statements import families
-from benchmarks.independent.transmission import least_angles
 from synthesis.dispatch import solve
 from synthesis.kinds.cam.segments import Law
 from synthesis.model.linkage_answer import Skeleton
 from synthesis.registry import parse_problem
 from tests.campaign import further, sampled
+from tests.support.independent import cam_motion
+from tests.support.independent.cam_demands import CRITERIA, SORTS, in_units
+from tests.support.independent.cam_demands import statements as demanding
+from tests.support.independent.cam_laws import AT_REST, FAMILY, MIRRORED, POLYNOMIALS, law
+from tests.support.independent.cam_measures import compare_cam
+from tests.support.independent.cam_motion import by_law, by_polynomial, motion_at, turned
+from tests.support.independent.cam_verdicts import Limit
+from tests.support.independent.cams import FOLLOWERS, OPTIMIZED, cams, moves_of
+from tests.support.independent.comparison import Measured
+from tests.support.independent.course import Course
+from tests.support.independent.drive import Drive
+from tests.support.independent.extremes import greatest, least, root
+from tests.support.independent.linkages import linkages
+from tests.support.independent.mobility import class_of
+from tests.support.independent.statements import families
+from tests.support.independent.transmission import least_angles
 
 WAVES = ("simple_harmonic", "cycloidal", "double_harmonic", "half_harmonic_start", "half_harmonic_end")
 LAWS = sorted({*AT_REST, *POLYNOMIALS, *FAMILY, *MIRRORED, *WAVES, "half_cycloidal_start", "half_cycloidal_end"})
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("name", further(LAWS, list(LAWS)[::2]))
 def test_the_laws_written_out_are_motions(name: str) -> None:
     """From nothing to one, without a jump, and each derivative that of the one before, between sixteenths."""

@@ -10,10 +10,10 @@ from pathlib import Path
 import pytest
 
 import synthesis
-from benchmarks.independent.comparison import Measured
-from benchmarks.independent.quantities import COMPARED, NEVER_STATED, NOT_MEASURED, fields_of, models_of
 from synthesis.dispatch import solve
 from synthesis.registry import KINDS, examples, parse_problem
+from tests.support.independent.comparison import Measured
+from tests.support.independent.quantities import COMPARED, NEVER_STATED, NOT_MEASURED, fields_of, models_of
 
 GEARS = {
     "gear_train",
@@ -69,7 +69,7 @@ def test_every_field_is_compared_or_listed(kind: str) -> None:
     fields = set().union(*(fields_of(design) for design in designs if "verification" in design.model_fields))
     listed = COMPARED[kind] | set(NOT_MEASURED) | set(NEVER_STATED.get(kind, "").split())
     assert fields
-    assert not fields - listed, "measure these, or list them in benchmarks/independent/quantities.py"
+    assert not fields - listed, "measure these, or list them in tests/support/independent/quantities.py"
     stale = {name for name in COMPARED[kind] - fields if not name.startswith(("checks.", "mechanism."))}
     assert not stale
 
@@ -88,6 +88,7 @@ def test_every_check_of_all_kinds_is_compared() -> None:
             assert name is None or f"checks.{name}" in COMPARED["motion"], f"{name} in {path.name}"
 
 
+@pytest.mark.slow
 def test_names_from_elsewhere_are_few() -> None:
     found = {}
     for path in [*(SOURCES / "proof").rglob("*.py"), *(SOURCES / "kinds").rglob("*.py")]:

@@ -29,6 +29,7 @@ HELD: list[tuple[dict[str, Any], str, str]] = [
 ]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("fields", "by", "check"), further(HELD, HELD[1:]))
 def test_a_size_is_found_at_which_the_wheel_is_held(fields: dict[str, Any], by: str, check: str) -> None:
     """The walls alone would do with less, but the wheel would rattle, or be held for too short."""

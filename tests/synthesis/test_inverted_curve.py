@@ -26,7 +26,7 @@ from synthesis.kinds.path.sixbar_mechanism import fitted_sixbar
 from synthesis.kinds.path.sixbar_rows import margins_of, rows_of
 from synthesis.kinds.path.sixbar_shapes import FORMS
 from synthesis.proof.rebuilt import rebuilt
-from tests.synthesis.test_sixbar_curve import drawn, stated
+from tests.support.synthesis.sixbar_curve import drawn, stated
 
 ALL = FORMS["stephenson_2"]
 STEP = 1e-6

@@ -20,7 +20,7 @@ from tests.campaign import further
 from tests.kinematics.variation_twin import crank_rocker, slider
 from tests.oracles import made_linkages
 from tests.service.stated.linkages import BOTH_OPEN, FITTED, MOTION, PATH, TOLERATED
-from tests.service.test_space import TURNS
+from tests.support.service.space import TURNS
 
 Statement = dict[str, Any]
 
@@ -261,6 +261,7 @@ def test_no_linkage_within_two_steps_is_nearer(name: str) -> None:
     assert math.sqrt(own / len(of.inputs)) == pytest.approx(rms, rel=1e-4)
 
 
+@pytest.mark.slow
 def test_a_fourbar_on_the_grid_is_not_rounded_one_by_one() -> None:
     problem = {**MOTION, **BOTH_OPEN, "max_designs": 1}
     (design,) = solve(parse_problem({**problem, "manufacture": GRID})).designs
@@ -286,6 +287,7 @@ def test_a_fourbar_on_the_grid_is_not_rounded_one_by_one() -> None:
     ]
 
 
+@pytest.mark.slow
 def test_links_in_stock_meet_exact_positions_with_free_pivots() -> None:
     """Nine dimensions, six conditions: three links may be chosen, and pivots and P still meet all positions."""
     stock = [40.0, 60.0, 80.0, 100.0]
@@ -340,6 +342,7 @@ def test_a_grid_too_coarse_for_the_task_has_no_answer() -> None:
     assert "max_error" in {gap.check for gap in answer.nearest_miss.gaps}
 
 
+@pytest.mark.slow
 def test_linkages_on_the_grid_are_ordered_by_yield() -> None:
     block = {**GRID, "tolerances": FINE, "quality": {"max_error": 0.8}, "samples": 2000}
     stated = {**LOGARITHM, "max_designs": 3, "manufacture": block}

@@ -12,14 +12,11 @@ from synthesis.dispatch import solve
 from synthesis.model.linkage_answer import LinkageDesign
 from synthesis.registry import parse_problem
 from tests.cases import Case, cases
+from tests.support.synthesis.motion_literature import vector
 
 
 def quiet(fraction: float, message: str) -> None:
     pass
-
-
-def vector(value: Any) -> complex:
-    return cmath.rect(value["mag"], math.radians(value["ang"])) if isinstance(value, dict) else complex(*value)
 
 
 def positions(case: Case) -> list[dict[str, float]]:

@@ -8,10 +8,6 @@ from typing import Any
 import numpy as np
 import pytest
 
-from benchmarks.fit import sliders
-from benchmarks.fit.motion import GROUPS, statement
-from benchmarks.fit.task import generator
-from benchmarks.fit.verdict import violations
 from synthesis.dispatch import solve
 from synthesis.fit.room_margins import margins_of
 from synthesis.kinds.motion import slider_search
@@ -27,6 +23,10 @@ from synthesis.kinds.motion.verification import demanded, verify
 from synthesis.proof.room import judged_by_room
 from synthesis.registry import parse_problem
 from tests.campaign import further
+from tests.support.fit import sliders
+from tests.support.fit.motion import GROUPS, statement
+from tests.support.fit.task import generator
+from tests.support.fit.verdict import violations
 
 POSITIONS = [
     {"x": 0.0, "y": 0.0, "angle": 0.0},
@@ -153,6 +153,7 @@ def test_a_planted_slider_crank_is_answered_in_its_room(number: int) -> None:
         assert violations(stated, design) == []
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("over", further(["used", "cycle"], ["cycle"]))
 def test_slider_cranks_that_are_left_out_of_a_room_would_fail_in_it(over: str) -> None:
     """The sweep says so too, and of the others that some fit."""

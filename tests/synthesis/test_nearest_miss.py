@@ -10,7 +10,7 @@ from synthesis.outcome.allowance import Allowance
 from synthesis.registry import KINDS, examples
 from synthesis.relaxation import relaxation
 from tests.campaign import further
-from tests.synthesis.test_drawn_poses import LID, ZONES
+from tests.support.synthesis.drawn_poses import LID, ZONES
 
 POSITIONS = [{"x": x, "y": y, "angle": a} for x, y, a in ((0.0, 0.0, 0.0), (20.0, 10.0, 25.0), (45.0, 8.0, 60.0))]
 

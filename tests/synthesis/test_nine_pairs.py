@@ -5,7 +5,6 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from benchmarks.sixbars.nine_pairs import planted
 from synthesis.dispatch import solve
 from synthesis.kinds.function.nine_pair_system import (
     GROUPS,
@@ -19,6 +18,7 @@ from synthesis.kinds.function.nine_pairs import BEND, nine_pair_start
 from synthesis.numerics.continuation import REACHED, follow, refine
 from synthesis.numerics.known import Known
 from synthesis.registry import parse_problem
+from tests.support.sixbars.nine_pairs import planted
 from tools.watt_start import nine_pair_problem
 
 

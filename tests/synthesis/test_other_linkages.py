@@ -148,6 +148,7 @@ def test_a_slider_crank_stands_on_a_given_pivot():
         assert np.allclose(design.mechanism.fixed_pivot, [1.0, 2.0], atol=1e-8)
 
 
+@pytest.mark.slow
 def test_a_fitted_slider_crank_keeps_a_given_pivot_and_an_angle():
     """Points that none draws, around the curve of one with 70°; the least angle is looked for by brute force."""
     rng = np.random.default_rng(2)

@@ -156,6 +156,7 @@ def test_the_order_follows_its_ranking_at_every_place(rank_by: str) -> None:
     assert values == sorted(values, reverse=rank_by != "size")
 
 
+@pytest.mark.slow
 def test_from_a_path_problem() -> None:
     path = {
         "kind": "path",

@@ -5,7 +5,6 @@ import math
 import numpy as np
 import pytest
 
-from benchmarks.path_fit import best_published, rows, statement
 from kinematics.linkage.fourbar import OPEN, Fourbar, positions
 from synthesis.dispatch import solve
 from synthesis.fit.chart import natural
@@ -15,42 +14,16 @@ from synthesis.model.linkages import FourbarConfiguration, fourbar_mechanism, to
 from synthesis.registry import parse_problem
 from tests.campaign import sampled
 from tests.oracles.fourbar_sweep import coupler_points, least_sum_in_order
+from tests.support.problems.path_fit import best_published, rows, statement
+from tests.support.synthesis.path_fit import CRANK_ROCKER, drawn, listed, measured_at_angles, silent
 
-CRANK_ROCKER = Fourbar(1.0 - 2.0j, 7.0 + 1.0j, 2.0, 6.0, 5.0, 3.0 + 2.0j)
 ROWS = rows()
-
-
-def silent(share, message):
-    pass
-
-
-def listed(points, angles=None):
-    return [
-        {"x": float(z.real), "y": float(z.imag)} | ({} if angles is None else {"crank_angle": float(angles[k])})
-        for k, z in enumerate(points)
-    ]
 
 
 def fit(points, angles=None, **changes):
     timing = {} if angles is None else {"timing": "prescribed"}
     stated = {"kind": "path", "method": "least_squares", "points": listed(points, angles), **timing, **changes}
     return solve(parse_problem(stated), silent)
-
-
-def drawn(rng):
-    """A random crank-rocker or double crank that is no near change point."""
-    while True:
-        a, b, c = rng.uniform(0.4, 2.0, 3)
-        o2, o4 = rng.normal(size=2) + 1j * rng.normal(size=2)
-        sides = sorted([a, b, c, abs(o4 - o2)])
-        if min(a, abs(o4 - o2)) == sides[0] and sides[0] + sides[3] < 0.95 * (sides[1] + sides[2]):
-            return Fourbar(o2, o4, a, b, c, b * complex(rng.normal(), rng.normal()))
-
-
-def measured_at_angles(design, points, angles, way=1.0):
-    """Sum of squared distances with the crank turned from its first angle as demanded."""
-    turned = design.mechanism.reference_input_angle + way * (np.asarray(angles) - angles[0])
-    return float(np.sum(np.abs(coupler_points(design.mechanism, turned) - points) ** 2))
 
 
 def test_a_planted_timed_linkage_is_recovered():

@@ -9,9 +9,6 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from benchmarks.fit.path import GROUPS, statement
-from benchmarks.fit.task import generator
-from benchmarks.fit.verdict import violations
 from synthesis.dispatch import solve
 from synthesis.fit.chart import FOURBAR, natural
 from synthesis.fit.fourbar_room import NO_BODY, fourbar_margins, room_rows, way_of
@@ -20,6 +17,9 @@ from synthesis.fit.room_margins import ROW, margins_of
 from synthesis.model.space import Space
 from synthesis.registry import parse_problem
 from tests.campaign import further
+from tests.support.fit.path import GROUPS, statement
+from tests.support.fit.task import generator
+from tests.support.fit.verdict import violations
 
 Real = NDArray[np.float64]
 

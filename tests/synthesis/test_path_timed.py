@@ -20,7 +20,7 @@ from tests.cases import cases
 from tests.oracles.five_positions import real_dyads
 from tests.oracles.fourbar_sweep import coupler_points
 from tests.oracles.timed_points import fourbars
-from tests.synthesis.test_path_fit import CRANK_ROCKER, drawn, listed, measured_at_angles, silent
+from tests.support.synthesis.path_fit import CRANK_ROCKER, drawn, listed, measured_at_angles, silent
 
 ANGLES = np.array([10.0, 55.0, 120.0, 200.0, 290.0])
 EVERYTHING = {"constraints": {"same_branch": False, "in_order": False}, "max_designs": 50}

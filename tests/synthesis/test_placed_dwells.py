@@ -23,7 +23,7 @@ from synthesis.model.statement import ContradictionError
 from synthesis.outcome.front import front_of
 from synthesis.registry import parse_problem
 from tests.campaign import further
-from tests.synthesis.test_dwell import assert_measured, rocker, slider
+from tests.support.synthesis.dwell import assert_measured, rocker, slider
 
 TASKS: dict[str, dict[str, Any]] = {
     "unequal": {
@@ -64,6 +64,7 @@ def answered(name: str) -> tuple[DwellProblem, DwellResult]:
     return problem, solve_dwell(problem, lambda *_: None)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", further(list(TASKS), ["unequal"]))
 def test_dwells_are_where_and_as_long_as_they_are_told(name: str) -> None:
     problem, result = answered(name)
@@ -81,6 +82,7 @@ def test_dwells_are_where_and_as_long_as_they_are_told(name: str) -> None:
     assert result.search.candidates == result.search.accepted + sum(result.search.rejected.values())
 
 
+@pytest.mark.slow
 def test_what_larger_transmission_angles_cost_is_in_the_front() -> None:
     _, result = answered("unequal")
     front = front_of(result.designs)

@@ -188,6 +188,7 @@ def error(sun: int, planet: int) -> Fraction:
     return abs(Fraction(2 * sun + 2 * planet, sun) / Fraction(9, 2) - 1)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("limit", further([None, 120.0], [120.0]))
 def test_a_brute_force_finds_the_same(limit: float | None) -> None:
     every = borne(limit or math.inf)
@@ -217,6 +218,7 @@ def test_a_brute_force_finds_the_same(limit: float | None) -> None:
         )
 
 
+@pytest.mark.slow
 def test_the_smallest_of_each_size_that_carries() -> None:
     every = borne()
     least: dict[float, Fraction] = {}
@@ -229,6 +231,7 @@ def test_the_smallest_of_each_size_that_carries() -> None:
     assert len(least) < len(every)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("rank_by", ["error", "size"])
 @pytest.mark.parametrize("modules", further([[1.5], list(MODULES)], [[1.5]]))
 def test_what_is_not_judged_is_told(monkeypatch: pytest.MonkeyPatch, rank_by: str, modules: list[float]) -> None:

@@ -126,6 +126,7 @@ def test_contradictions_name_the_field(changes: dict[str, Any], path: str) -> No
         solve(problem, lambda fraction, message: None)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("kind", KINDS)
 def test_examples_are_solved(kind: str) -> None:
     problem = parse_problem(example(kind))

@@ -12,24 +12,14 @@ import pytest
 from pydantic import ValidationError
 
 from kinematics.linkage.fourbar import Fourbar, barker_type, transmission_extremes
-from synthesis.dispatch import solve
 from synthesis.kinds.quick_return.crank_rocker import families
-from synthesis.kinds.quick_return.design import QuickReturnDesign, QuickReturnResult
+from synthesis.kinds.quick_return.design import QuickReturnDesign
 from synthesis.model.linkage_answer import FourbarMechanism
 from synthesis.registry import parse_problem
 from tests.cases import HERE
+from tests.support.synthesis.quick_return import crank_rocker
 
 OPTIMA, CENTRAL = json.loads((HERE / "crank_rocker_optimum.json").read_text(encoding="utf-8"))
-
-
-def answer(**stated: Any) -> QuickReturnResult:
-    result = solve(parse_problem({"kind": "quick_return", **stated}), lambda fraction, message: None)
-    assert isinstance(result, QuickReturnResult)
-    return result
-
-
-def crank_rocker(**stated: Any) -> QuickReturnResult:
-    return answer(mechanism="fourbar", **stated)
 
 
 def in_grounds(design: QuickReturnDesign) -> np.ndarray[Any, Any]:

@@ -13,7 +13,7 @@ from synthesis.kinds.quick_return.design import DragLinkMechanism, QuickReturnMe
 from synthesis.kinds.quick_return.drag_link import drag_link
 from synthesis.model.linkage_answer import SliderCrankMechanism
 from tests.cases import cases
-from tests.synthesis.test_quick_return import answer
+from tests.support.synthesis.quick_return import answer
 
 SLIDING = ("offset_slider_crank", "crank_shaper", "whitworth", "drag_link_slider")
 

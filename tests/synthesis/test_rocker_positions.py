@@ -13,7 +13,7 @@ from kinematics.linkage.fourbar import Fourbar, positions
 from synthesis.kinds.quick_return.design import QuickReturnDesign
 from synthesis.model.linkage_answer import FourbarMechanism
 from synthesis.registry import parse_problem
-from tests.synthesis.test_quick_return import answer, crank_rocker
+from tests.support.synthesis.quick_return import answer, crank_rocker
 
 BODIES = [
     ({"x": 0.0, "y": 0.0, "angle": 0.0}, {"x": 60.0, "y": 20.0, "angle": 50.0}),

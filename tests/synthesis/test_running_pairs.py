@@ -7,11 +7,11 @@ from typing import Any
 
 import pytest
 
-from benchmarks.gears import Compared, compare_pair, compare_pairs
-from benchmarks.independent.cut_gears import external, involute_radius, rack
 from synthesis.analyses import parse_request
 from synthesis.mechanisms.base import MechanismError
 from tests.campaign import further
+from tests.support.independent.cut_gears import external, involute_radius, rack
+from tests.support.problems.gears import Compared, compare_pair, compare_pairs
 
 
 def analysed(**fields: Any) -> dict[str, Any]:

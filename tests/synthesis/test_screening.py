@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import math
-from itertools import pairwise
 from typing import Any
 
 import numpy as np
@@ -13,11 +11,11 @@ from synthesis.kinds.motion.choices import side_dyads
 from synthesis.kinds.motion.screening import REASONS, demands, screen
 from synthesis.kinds.motion.task import motion_task
 from synthesis.kinds.motion.verification import verify
-from synthesis.model.linkage_answer import LinkageDesign
 from synthesis.model.linkages import FourbarConfiguration, fourbar_mechanism
 from synthesis.outcome.ranking import distinct
 from synthesis.proof.measures import quality
 from synthesis.registry import parse_problem
+from tests.support.synthesis.screening import excess_of
 from tests.synthesis.planted import plant
 
 BY_CHECK = {
@@ -38,15 +36,6 @@ IN_KERNEL_ORDER = (
     "visits_in_order",
     "transmission_angle",
 )
-
-
-def excess_of(design: LinkageDesign, stated: list[dict[str, float]], size: float) -> float:
-    """What the body travels and turns more than is needed, by the design's metrics and the text of docs/ranking.md."""
-    needed = sum(math.dist((p["x"], p["y"]), (q["x"], q["y"])) for p, q in pairwise(stated))
-    turn = sum(abs(math.remainder(q["angle"] - p["angle"], 360.0)) for p, q in pairwise(stated))
-    metrics = design.metrics
-    travel = ((metrics.body_travel_ratio or 1.0) - 1.0) * needed / max(needed, size)
-    return max(travel, ((metrics.body_turn_ratio or 1.0) - 1.0) * turn / max(turn, 15.0), 0.0)
 
 
 @pytest.mark.campaign

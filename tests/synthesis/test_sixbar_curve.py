@@ -10,46 +10,18 @@ import pytest
 
 from kinematics.linkage.planar.drive import drive
 from synthesis.fit.chart import natural
-from synthesis.fit.demands import (
-    BOXES,
-    CHANGE_POINT,
-    COSINE,
-    EQUATIONS,
-    FAMILY,
-    GIVEN,
-    LINKS,
-    MOVING,
-    POINT_BOX,
-    RATIO,
-    SIGN,
-    WHOLE,
-)
 from synthesis.fit.sixbar_curve import GROUND, INPUT, UNKNOWNS, joints, pins_with_slopes, point_with_slopes, velocity
 from synthesis.kinds.path.sixbar_mechanism import fitted_sixbar
 from synthesis.kinds.path.sixbar_rows import (
-    BACK,
-    CARRIER,
-    HOLDER,
-    ROOM,
-    SETTING,
-    SIDE,
-    STEPS,
     margins_of,
     rows_of,
     sixbar_rows,
 )
-from synthesis.kinds.path.sixbar_shapes import FORMS, alike_sixbars
+from synthesis.kinds.path.sixbar_shapes import FORMS
 from synthesis.proof.rebuilt import rebuilt
+from tests.support.synthesis.sixbar_curve import drawn, stated
 
 ALL = [(kind, form) for kind, forms in FORMS.items() for form in forms if form.holder != INPUT]
-CIRCLE = np.exp(2j * np.pi * np.arange(48) / 48)
-
-
-def drawn(form, seed=0):
-    """The sixbar of a form whose curve is most like an ellipse."""
-    rng = np.random.default_rng(seed)
-    found = alike_sixbars(form, CIRCLE.real + 0.6j * CIRCLE.imag, True, 1024, 1, rng)
-    return found.x[0], found.signs[0], found.theta[0]
 
 
 def p_at(form, x, signs, theta):
@@ -94,21 +66,6 @@ def test_slopes_are_those_of_differences(kind, form):
     _, there, moved = velocity(x, lengths, signs[0], form.carrier, form.holder, signs[1], theta[5])
     assert there == pytest.approx(p)
     assert moved == pytest.approx(slopes[-1])
-
-
-def stated(form, signs, x):
-    """Demands of every sort, most of them broken a little, so that they bear loads."""
-    out = np.full(SETTING, math.inf)
-    out[FAMILY], out[CARRIER], out[HOLDER] = form
-    out[SIGN], out[SIDE] = signs
-    out[WHOLE], out[CHANGE_POINT], out[STEPS], out[BACK] = 1.0, 1e-6, 12, 0.3
-    out[LINKS], out[LINKS + 1], out[RATIO], out[COSINE] = 0.6, 1.2, 1.5, math.cos(math.radians(60.0))
-    out[BOXES : BOXES + 8] = np.tile([x[0] + 0.1, x[0] + 0.3], 4)
-    out[MOVING : MOVING + 4] = -0.1, 0.1, -0.1, 0.1
-    out[POINT_BOX : POINT_BOX + 4] = -math.inf, math.inf, -math.inf, math.inf
-    out[GIVEN : GIVEN + EQUATIONS] = 0.1, math.nan, math.nan, 0.2
-    out[ROOM : ROOM + 4] = -0.4, 0.3, -0.3, 0.4
-    return out
 
 
 @pytest.mark.parametrize(("kind", "form"), ALL[::3])

@@ -14,6 +14,7 @@ from synthesis.proof.rebuilt import rebuilt
 from synthesis.proof.space import FirstPosition, moving_parts, space_checks
 from synthesis.registry import parse_problem
 from tests.campaign import further
+from tests.support.synthesis.space import LID
 
 HOOK = Zone.model_validate({"polygon": [[0, 0], [40, 0], [40, 30], [30, 30], [30, 10], [0, 10]]})
 DISC = Zone.model_validate({"circle": {"center": [-20.0, 5.0], "radius": 8.0}})
@@ -24,14 +25,6 @@ SHAPES = {
         AnyOf([HOOK, DISC]),
         shapely.Polygon(HOOK.polygon) | shapely.Point(-20.0, 5.0).buffer(8.0, quad_segs=4096),
     ),
-}
-LID = {
-    "kind": "motion",
-    "positions": [
-        {"x": 0.0, "y": 0.0, "angle": 0.0},
-        {"x": 230.0, "y": 240.0, "angle": 40.0},
-        {"x": 190.0, "y": 470.0, "angle": 85.0},
-    ],
 }
 ROOMS = {
     "shelf": {
@@ -141,6 +134,7 @@ def test_parts_are_hulls_of_joints_and_the_body():
     ]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("dyad", "side"),
     further([("PR", "output_side"), ("RP", "output_side"), ("PR", "input_side")], [("PR", "input_side")]),

@@ -275,6 +275,7 @@ def test_a_search_is_no_worse_than_springs_that_are_known() -> None:
     assert design.metrics.value <= least
 
 
+@pytest.mark.slow
 def test_a_search_is_the_same_again_and_another_with_another_seed() -> None:
     one, other = (solve(problem_of({**SOUGHT, "max_designs": 1})).model_dump() for _ in range(2))
     assert one == other
@@ -311,6 +312,7 @@ def test_limits_are_kept_and_cost_something(limit: str) -> None:
         assert held.metrics.value <= 1.0
 
 
+@pytest.mark.slow
 def test_lengths_and_forces_are_kept_where_an_end_is_sought() -> None:
     whole = best(BOTH)
     free = whole.springs[0]
@@ -423,6 +425,7 @@ def turned(statement: Statement, angle: float, shift: complex) -> Statement:
     return other
 
 
+@pytest.mark.slow
 def test_a_frame_that_is_turned_and_moved_changes_nothing() -> None:
     rng = np.random.default_rng(21)
     statement = both_open(rng)

@@ -226,6 +226,7 @@ LEGS: dict[str, Callable[[np.ndarray], np.ndarray]] = {
 }
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("method", ["curve_match", "least_squares"])
 @pytest.mark.parametrize("kind", further(LEGS, ["slider_crank"]))
 def test_a_planted_leg_is_found_with_what_it_does(kind: str, method: str) -> None:

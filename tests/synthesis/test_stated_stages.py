@@ -10,12 +10,12 @@ from typing import Any
 import numpy as np
 import pytest
 
-from benchmarks.independent import typed_trains
 from synthesis.analyses import parse_request
 from synthesis.kinds.gear_train.rings import run_in_rings
 from synthesis.kinds.gear_train.verification import verify
 from synthesis.model.gear_stages import ring_addenda
-from tests.synthesis.test_typed_trains import BEVEL, HELICAL, INTERNAL, Statement, faults, solved, stated
+from tests.support.independent import typed_trains
+from tests.support.synthesis.typed_trains import BEVEL, HELICAL, INTERNAL, Statement, faults, solved, stated
 
 SPUR: Statement = {"type": "external"}
 GIVEN: Statement = {"type": "external", "driver": {"min": 20, "max": 30}, "driven": {"min": 20, "max": 30}}

@@ -31,8 +31,8 @@ from synthesis.kinds.motion.steered_rows import (
 from synthesis.model.linkage_answer import LinkageDesign
 from synthesis.registry import parse_problem
 from tests.campaign import further
+from tests.support.synthesis.motion_search import run
 from tests.synthesis.planted import plant
-from tests.synthesis.test_motion_search import run
 
 HATCH: dict[str, Any] = {
     "positions": [

@@ -7,7 +7,6 @@ import math
 import numpy as np
 import pytest
 
-from benchmarks.limited_forces import LADEN, SPEED_RPM, fourbar, slider_crank
 from kinematics.linkage.planar.mechanism import Mechanism, Slide
 from synthesis.analyses.dynamics import peaks_of
 from synthesis.fit.chart import FOURBAR, natural
@@ -28,6 +27,7 @@ from synthesis.model.linkages import FOURBAR_LINKS
 from synthesis.outcome.forces import shaped
 from synthesis.outcome.weighed import bearable
 from synthesis.registry import parse_problem
+from tests.support.problems.limited_forces import LADEN, SPEED_RPM, fourbar, slider_crank
 
 SPEED = SPEED_RPM * math.tau / 60.0
 PLATE = {"density": 7800.0, "thickness": 10.0, "width": 20.0, "holes": {"A": 8.0, "B": 6.0, "P": 3.0}}

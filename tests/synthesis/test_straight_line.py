@@ -17,6 +17,7 @@ from synthesis.model.statement import ContradictionError
 from synthesis.registry import parse_problem
 from tests.cases import Case, cases
 from tests.oracles.positions import meet
+from tests.support.synthesis.straight_line import norton_path
 from tests.synthesis.driving import constraints_of
 
 FOURBARS = ("hoeken", "chebyshev", "watt", "roberts", "evans")
@@ -90,13 +91,6 @@ def test_every_row_of_nortons_table_is_beaten(case: Case) -> None:
         assert across <= 1.02 * (case.expected["dCy_pct"].value + 0.05)
     assert best.metrics.full_rotation
     assert np.isclose(best.metrics.cycle_transmission_angle, least_over_a_turn(best), atol=1e-6)
-
-
-def norton_path(ground: float, coupler: float, span: float, steps: int = 20001) -> np.ndarray:
-    """P of Hoeken's linkage with a crank of 1 over a range about 180°; A P is the diameter of a circle through O4."""
-    pin = np.exp(1j * np.radians(180.0 + span * np.linspace(-0.5, 0.5, steps))) - ground
-    point = 1j * pin * np.sqrt(4.0 * coupler**2 / np.abs(pin) ** 2 - 1.0)
-    return point * np.sign(point[-1].real - point[0].real)
 
 
 def least_over_a_turn(design: StraightLineDesign) -> float:

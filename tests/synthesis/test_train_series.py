@@ -8,8 +8,6 @@ from typing import Any
 
 import pytest
 
-from benchmarks.independent.train_series import best_series, statements
-from benchmarks.train_series import same
 from kinematics.gear.planetary import speeds
 from synthesis.dispatch import solve
 from synthesis.kinds.train_series import solver
@@ -17,6 +15,8 @@ from synthesis.kinds.train_series.design import TrainSeriesMechanism
 from synthesis.kinds.train_series.verification import joined, verify
 from synthesis.registry import examples, parse_problem
 from tests.campaign import further, sampled
+from tests.support.independent.train_series import best_series, statements
+from tests.support.problems.train_series import same
 
 SET: dict[str, Any] = {
     "type": "planetary_train",
@@ -99,6 +99,7 @@ def test_the_pareto_set_has_no_smaller_and_nearer_series() -> None:
         assert any(size <= mine[0] and error <= mine[1] * (1 + 1e-12) for size, error in front)
 
 
+@pytest.mark.slow
 def test_the_smallest_series_within_a_tolerance() -> None:
     result = solved(20, SET, SET, tolerance=2e-3, rank_by="size", max_designs=30)
     keys = [(design.metrics.total_teeth, abs(design.metrics.error)) for design in result.designs]
@@ -114,7 +115,11 @@ def test_the_smallest_series_within_a_tolerance() -> None:
     [
         (-9, [SET, SET], "none turns input and output in the opposite direction"),
         (4000, [SET, SET], "the nearest has the ratio"),
-        (9, [SET, {**SET, "teeth": {"min": 60, "max": 61, "ring_max": 62}}], "no train satisfies the constraints of unit 2"),
+        (
+            9,
+            [SET, {**SET, "teeth": {"min": 60, "max": 61, "ring_max": 62}}],
+            "no train satisfies the constraints of unit 2",
+        ),
     ],
 )
 def test_an_empty_answer_has_its_reason(ratio: float, units: list[dict[str, Any]], reason: str) -> None:

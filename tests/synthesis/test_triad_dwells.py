@@ -11,7 +11,6 @@ import pytest
 from kinematics.linkage.planar.branches import cycle, cycle_on
 from kinematics.linkage.planar.drive import drive
 from kinematics.linkage.planar.limits import branches, cycle_from_reference, holding_reference
-from kinematics.linkage.planar.mechanism import Mechanism
 from synthesis.analyses.cycle import cycle_of
 from synthesis.analyses.layout import layout_of
 from synthesis.kinds.dwell import triads
@@ -29,6 +28,7 @@ from synthesis.model.dynamics import WeighedLinkage
 from synthesis.model.layout import LayoutSizes
 from synthesis.proof.on_branch import OnBranch
 from synthesis.registry import parse_problem
+from tests.support.synthesis.triad_dwells import ELSEWHERE, built
 
 DWELLS, PLACES, WAY, ANGLE, RATIO = (1.2, 0.7), (0.0, 0.6), 0.9, 0.4, 8.0
 
@@ -38,10 +38,6 @@ def begun() -> list[Start]:
     found = triad_starts(Asked(DWELLS, PLACES, WAY, ANGLE, RATIO), np.random.default_rng(3), 12)
     assert len(found) == 12
     return found
-
-
-def built(shape: np.ndarray) -> Mechanism:
-    return Mechanism(triads.joints(shape), dict(STEPHENSON_2), "input")
 
 
 def test_starts_move_as_the_core_drives_them(begun: list[Start]) -> None:
@@ -103,15 +99,6 @@ def test_the_pivot_moves_along_the_line_of_the_resting_pin(begun: list[Start]) -
     pytest.fail("no way could be changed")
 
 
-ELSEWHERE = [2.2396606322535577, -0.334575861525666, 0.24544745321698264, 0.7194190943844678, -0.6621867552800142]
-ELSEWHERE += [
-    -0.7538952564402432,
-    -2.6042454162426814,
-    0.04380469911357842,
-    -0.2120167410675391,
-    0.02,
-    1.0496245076460904,
-]
 """A sixbar that meets no toggle, but is at another place after a turn of its crank, and back after two."""
 
 

@@ -12,7 +12,7 @@ from kinematics.errors import DimensionError
 from kinematics.gear.worm import WormDrive
 from synthesis.analyses import parse_request
 from synthesis.analyses.gear_train import GearTrainAnalysis, GearTrainAnalysisRequest
-from tests.synthesis.test_gear_train_analysis import analysed
+from tests.support.synthesis.gear_train_analysis import analysed
 
 Statement = dict[str, Any]
 

@@ -10,47 +10,23 @@ from typing import Any
 import numpy as np
 import pytest
 
-from benchmarks.gears import compare_typed
-from benchmarks.independent import typed_trains
 from kinematics.gear.bevel import BevelCones
 from kinematics.gear.train import OrdinaryTrain, TrainStage
 from kinematics.gear.worm import WormDrive
 from synthesis.analyses import parse_request
 from synthesis.dispatch import solve
-from synthesis.kinds.gear_train.design import GearTrainResult
-from synthesis.kinds.gear_train.problem import GearTrainProblem
 from synthesis.kinds.gear_train.verification import verify
 from synthesis.mechanisms.base import MechanismError
 from synthesis.registry import parse_problem
 from tests.campaign import sampled
+from tests.support.independent import typed_trains
+from tests.support.problems.gears import compare_typed
+from tests.support.synthesis.typed_trains import BEVEL, HELICAL, INTERNAL, Statement, faults, solved, stated
 
-Statement = dict[str, Any]
-
-HELICAL: Statement = {"type": "helical", "helix_angle": 20.0}
-INTERNAL: Statement = {"type": "internal"}
 WORM: Statement = {"type": "worm", "driver": 2, "driven": 40}
-BEVEL: Statement = {"type": "bevel", "driver": 20, "driven": 30}
 
 
-def stated(*stages: Statement, **fields: Any) -> GearTrainProblem:
-    problem = parse_problem({"kind": "gear_train", "ratio": "6", "stages": list(stages), **fields})
-    assert isinstance(problem, GearTrainProblem)
-    return problem
-
-
-def solved(*stages: Statement, **fields: Any) -> GearTrainResult:
-    problem = stated(*stages, **fields)
-    assert problem.contradictions() == []
-    result = solve(problem, lambda fraction, message: None)
-    assert isinstance(result, GearTrainResult)
-    assert all(design.verification.passed for design in result.designs)
-    return result
-
-
-def faults(*stages: Statement, **fields: Any) -> list[str]:
-    return [fault.path for fault in stated(*stages, **fields).contradictions()]
-
-
+@pytest.mark.slow
 def test_a_brute_force_finds_the_same() -> None:
     tasks = typed_trains.statements(60, 5)
     small = [

@@ -9,11 +9,11 @@ from typing import Any
 import numpy as np
 import pytest
 
-from benchmarks.demands import ordinary
 from synthesis import parse_problem, solve
 from synthesis.outcome.front import error_of
 from synthesis.outcome.usable import BAND, usable, usable_first
 from tests.campaign import sampled
+from tests.support.demands import ordinary
 
 # Fits whose nearest linkages transmit force badly: the first of the list was such a one.
 CLOSED = {

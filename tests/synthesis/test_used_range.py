@@ -23,6 +23,7 @@ ROUNDING = 1e-6
 """Degrees, or a share of a length."""
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("kind", "n"), further(LINKAGES, [case for case in LINKAGES if case[1] == 0]))
 def test_the_linkage_moves_through_its_range_and_meets_its_targets_there(kind, n):
     problem = parse_problem(examples(kind)[n])

@@ -7,10 +7,10 @@ import math
 import numpy as np
 import pytest
 
-from benchmarks.sixbars.path import both_ways, solved
-from benchmarks.walking_legs import LEGS, foot, jansen, klann
 from kinematics.linkage.planar.limits import branches, holding_reference
 from synthesis.proof.rebuilt import rebuilt
+from tests.support.problems.walking_legs import LEGS, foot, jansen, klann
+from tests.support.sixbars.path import both_ways, solved
 
 
 def length(mechanism, one: str, other: str) -> float:

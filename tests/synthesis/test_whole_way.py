@@ -5,14 +5,14 @@ import math
 import numpy as np
 import pytest
 
-from benchmarks.curve_match import noisy
 from kinematics.linkage.fourbar import OPEN, Fourbar, positions, transmission_extremes
 from synthesis.dispatch import solve
 from synthesis.kinds.path.nearness import error_of
 from synthesis.kinds.path.verification import verify_path
 from synthesis.model.linkages import FourbarConfiguration, driven_fourbar, fourbar_mechanism
 from synthesis.registry import parse_problem
-from tests.synthesis.test_curve_verification import distance_from
+from tests.support.problems.curve_match import noisy
+from tests.support.synthesis.curve_verification import distance_from
 
 EGG = Fourbar(3.0 + 2.0j, 10.0 + 1.0j, 2.0, 6.0, 5.0, 3.0 + 2.5j)
 WHIP = Fourbar(0j, 4.0 + 0.0j, 4.0002, 5.0, 5.0001, 1.0 + 2.0j)

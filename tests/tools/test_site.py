@@ -176,6 +176,7 @@ def test_a_machine_is_stated_the_same_over_http_in_python_and_as_json(entry: gal
     assert known["problem"] == entry.problem
 
 
+@pytest.mark.slow
 def test_the_reference_has_every_operation_every_model_and_every_field_once() -> None:
     document = json.loads((ROOT / "docs" / "openapi.json").read_text("utf-8"))
     pages = http_reference.http_reference(document)

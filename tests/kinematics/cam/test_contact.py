@@ -13,8 +13,8 @@ from kinematics.cam.profile import Cam, even_angles
 from kinematics.errors import DimensionError, ShapeError
 from tests.campaign import sampled
 from tests.kinematics.cam.sampling import FOLLOWERS, sound_cam
-from tests.kinematics.cam.test_profile import double_dwell
 from tests.oracles.cam_formulas import largest_cutter, least_convex_radius, profile_radius, undercut
+from tests.support.kinematics.cam.profile import double_dwell
 
 POINTS = 1440
 

@@ -25,9 +25,9 @@ from kinematics.cam.program import TURN, Program
 from kinematics.cam.segments import dwell
 from kinematics.errors import DimensionError
 from tests.cases import Case, cases
-from tests.kinematics.cam.test_profile import double_dwell
 from tests.oracles.cam_formulas import least_groove_radius
 from tests.oracles.differences import derivative
+from tests.support.kinematics.cam.profile import double_dwell
 
 DEGREE = math.pi / 180.0
 

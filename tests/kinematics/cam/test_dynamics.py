@@ -19,8 +19,8 @@ from kinematics.errors import DimensionError
 from tests.cases import Case, cases
 from tests.kinematics.cam.sampling import random_program
 from tests.kinematics.cam.stating import program_of
-from tests.kinematics.cam.test_profile import double_dwell
 from tests.oracles.cam_formulas import damped_frequency
+from tests.support.kinematics.cam.profile import double_dwell
 
 
 def running(x: dict[str, Any], design: dict[str, Any]) -> RunningCam:

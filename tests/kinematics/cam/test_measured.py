@@ -11,7 +11,7 @@ from kinematics.cam.measured import measured_program
 from kinematics.cam.profile import Cam, even_angles
 from kinematics.errors import DimensionError
 from tests.kinematics.cam.sampling import FOLLOWERS, sound_cam
-from tests.kinematics.cam.test_profile import double_dwell
+from tests.support.kinematics.cam.profile import double_dwell
 
 
 @pytest.mark.parametrize("kind", FOLLOWERS)

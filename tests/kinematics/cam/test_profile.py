@@ -24,21 +24,10 @@ from tests.oracles.cam_formulas import (
     undercut,
 )
 from tests.oracles.differences import derivative
+from tests.support.kinematics.cam.profile import double_dwell
 
 ROLLERS = ("translating_roller", "offset_roller", "oscillating_roller")
 FLATS = ("translating_flat", "oscillating_flat")
-
-
-def double_dwell(lift: float = 1.0, law: str = "cycloidal") -> Program:
-    quarter = TURN / 4.0
-    return Program(
-        [
-            law_segment(LAWS[law], quarter, 0.0, lift),
-            dwell(quarter, lift),
-            law_segment(LAWS[law], quarter, lift, 0.0),
-            dwell(quarter, 0.0),
-        ]
-    )
 
 
 def smooth_angles(cam: Cam, count: int, margin: float) -> np.ndarray:

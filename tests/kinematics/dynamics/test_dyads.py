@@ -16,7 +16,7 @@ from tests.campaign import further
 from tests.kinematics.dynamics.dyad_twin import Twin
 from tests.kinematics.dynamics.machines import GRAVITY, Rng, machine, masses
 from tests.kinematics.mechanism_sampling import CHAIN, CLASS_THREE, DYADIC
-from tests.kinematics.test_redundant_constraints import parallelogram
+from tests.support.kinematics.redundant_constraints import parallelogram
 
 AGREES = 1e-9
 

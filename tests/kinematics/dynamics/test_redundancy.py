@@ -14,7 +14,7 @@ from kinematics.linkage.planar.mechanism import Mechanism, Slide, TopologyError
 from tests.campaign import further
 from tests.kinematics.dynamics.machines import machine, moved
 from tests.kinematics.mechanism_sampling import CHAIN, DYADIC, take
-from tests.kinematics.test_redundant_constraints import CRANK, LINKS, geared, parallelogram
+from tests.support.kinematics.redundant_constraints import CRANK, LINKS, geared, parallelogram
 
 
 def with_rod() -> Mechanism:

@@ -1,0 +1,14 @@
+"""Code that several tests share: stated."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from service.api.idempotency import repeatable
+from service.api.schemas import JobRequest
+
+
+def hashed(statement: dict[str, Any]) -> str:
+    request = repeatable(["key"], JobRequest.model_validate({"problem": statement}))
+    assert request is not None
+    return request.request_hash

@@ -1,0 +1,1 @@
+"""Planted problems that tests and benchmarks share: sixbars."""
