@@ -8,6 +8,7 @@ import re
 from pathlib import Path
 
 import pytest
+
 from synthesis.kinds.function.problem import FunctionConstraints
 from synthesis.kinds.path.problem import PathConstraints
 from synthesis.model.linkage_statement import FORCES, Constraints, LinkageProblem

@@ -5,6 +5,7 @@ from contextlib import asynccontextmanager
 from pathlib import Path
 
 import pytest
+
 from service.app import api_document, application
 
 KEPT = Path(__file__).parents[2] / "docs" / "openapi.json"

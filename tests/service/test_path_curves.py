@@ -7,8 +7,8 @@ import math
 import xml.etree.ElementTree as ET
 import zipfile
 
-import pytest
 import numpy as np
+import pytest
 
 from synthesis.registry import examples
 
