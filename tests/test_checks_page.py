@@ -7,6 +7,8 @@ import json
 import re
 from pathlib import Path
 
+import pytest
+
 from synthesis.kinds.function.problem import FunctionConstraints
 from synthesis.kinds.path.problem import PathConstraints
 from synthesis.model.linkage_statement import FORCES, Constraints, LinkageProblem
@@ -97,6 +99,7 @@ def names_in(cell: str) -> list[str]:
     return re.findall(r"`([^`]+)`", cell)
 
 
+@pytest.mark.slow
 def test_the_page_names_every_check_once_and_none_more() -> None:
     listed = [name for cells in rows("check") for name in names_in(cells[0])]
     once_more = {"shaking_force", "shaking_moment", "drive_torque", "size"}

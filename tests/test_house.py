@@ -121,6 +121,7 @@ def test_who_parses_problems_waits_for_no_solver(module: str) -> None:
     assert run.stdout.split() == []
 
 
+@pytest.mark.slow
 def test_no_test_imports_another_test_or_a_benchmark() -> None:
     """Shared code is in tests/support, or in a module of a folder of tests that is no test itself."""
     wrong = {

@@ -35,6 +35,7 @@ def written_twice(sources):
     return pairs
 
 
+@pytest.mark.slow
 def test_nothing_of_more_than_a_dozen_lines_stands_twice():
     files = [path for package in PACKAGES for path in sorted((ROOT / package).rglob("*.py"))]
     assert len(files) > 300

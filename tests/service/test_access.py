@@ -81,6 +81,7 @@ def test_with_a_key_any_host_is_right(shared):
     assert shared.clients["acme"].get("/v1/jobs", headers={"Host": "mechanisms.com"}).status_code == 200
 
 
+@pytest.mark.slow
 def test_the_document_asks_for_keys_where_there_are_some(shared):
     document = shared.client.get("/openapi.json").json()
     assert document["components"]["securitySchemes"]["bearer"]["type"] == "http"

@@ -18,6 +18,7 @@ TASKS = {
 }
 
 
+@pytest.mark.slow
 @pytest.mark.timeout(300)
 @pytest.mark.parametrize("kind", TASKS)
 def test_every_type_is_solved_drawn_and_driven(client, kind):

@@ -86,6 +86,7 @@ def test_every_field_has_a_value():
     assert FIELDS.keys() == fields(Manufacture.model_json_schema()).keys()
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", FIELDS)
 def test_a_field_makes_another_answer(client, name):
     outer = name.partition(".")[0]
@@ -97,6 +98,7 @@ def test_a_field_makes_another_answer(client, name):
     assert made(client, base, changed(block, name, FIELDS[name])) != made(client, base, block)
 
 
+@pytest.mark.slow
 def test_designs_are_those_on_the_grid_with_the_exact_ones_beside_them(client):
     """Beside a room, planes, a limit of the angle, a yield, and the order by it."""
     demands = {
@@ -223,6 +225,7 @@ def test_play_is_told_at_every_target_and_grows_with_the_clearance(client):
     assert "yield" not in one["metrics"]
 
 
+@pytest.mark.slow
 def test_beside_tolerances_of_positions(client):
     stated = {**MOTION, **TOLERATED}
     (tight,), (wide,) = (

@@ -11,6 +11,7 @@ THREE = [{"x": 0, "y": 0, "angle": 0}, {"x": 40, "y": 15, "angle": -25}, {"x": 7
 TOLERATED = [THREE[0], *({**position, "tolerance": {"x": 2.0, "y": 2.0, "angle": 2.0}} for position in THREE[1:])]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("positions", "link"),
     further(

@@ -4,6 +4,8 @@ import json
 from contextlib import asynccontextmanager
 from pathlib import Path
 
+import pytest
+
 from service.app import api_document, application
 
 KEPT = Path(__file__).parents[2] / "docs" / "openapi.json"
@@ -17,6 +19,7 @@ def parts(document):
     return {**named, "the rest": {key: document[key] for key in document if key not in ("paths", "components")}}
 
 
+@pytest.mark.slow
 def test_the_document_is_the_one_that_is_kept():
     says, kept = parts(json.loads(api_document())), parts(json.loads(KEPT.read_text(encoding="utf-8")))
     changed = sorted(name for name in says.keys() | kept.keys() if says.get(name) != kept.get(name))
@@ -26,6 +29,7 @@ def test_the_document_is_the_one_that_is_kept():
     )
 
 
+@pytest.mark.slow
 def test_the_document_is_written_the_same_way_each_time():
     assert KEPT.read_text(encoding="utf-8") == api_document()
 

@@ -62,6 +62,7 @@ def test_walls_on_the_cylinder_of_the_rollers_middle_are_those_of_the_answer() -
         assert radius * theta + lateral == pytest.approx(np.array(told.x), abs=1e-6)
 
 
+@pytest.mark.slow
 def test_the_barrel_is_a_closed_surface_and_moves_across_the_follower() -> None:
     barrel = next(part for part in assembly().parts if part.name == "barrel")
     (mesh,) = barrel.bodies

@@ -8,6 +8,7 @@ import xml.etree.ElementTree as ET
 import zipfile
 
 import numpy as np
+import pytest
 
 from synthesis.registry import examples
 
@@ -15,6 +16,7 @@ SVG = "{http://www.w3.org/2000/svg}"
 DRAWN = next(example for example in examples("path") if example.get("method") == "curve_match")
 
 
+@pytest.mark.slow
 def test_a_drawn_curve_is_matched_drawn_and_driven(server, client):
     job = client.post("/v1/jobs", json={"problem": DRAWN}, headers={"Prefer": "wait=30"}).json()
     job = server.reaches(job["id"], "succeeded", seconds=110.0)

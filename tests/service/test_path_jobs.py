@@ -82,6 +82,7 @@ def test_a_nine_point_search_tells_its_progress_and_is_cancelled(server):
     server.reaches(server.post(problem=TIMED[0])["id"], "succeeded")
 
 
+@pytest.mark.slow
 def test_tolerances_of_points_hold_both_ways_and_the_front_is_told(client):
     """An ellipse that no fourbar draws exactly, with tolerances that some keep."""
     turns = [2.0 * math.pi * k / 16 for k in range(16)]

@@ -94,6 +94,7 @@ def sine_is_met(design) -> None:
     held_against_loops(design, x, np.sin(np.radians(x)), off=design["structural_error"]["max"])
 
 
+@pytest.mark.slow
 @pytest.mark.timeout(300)
 @pytest.mark.parametrize("kind", further(TYPES, ["stephenson_2"]))
 def test_every_type_is_solved_proved_drawn_and_driven(client, kind):
@@ -219,6 +220,7 @@ def _error(design) -> float:
     return design.error
 
 
+@pytest.mark.slow
 @pytest.mark.timeout(300)
 def test_demands_are_kept_together(client):
     constraints = {

@@ -60,6 +60,7 @@ def held_against_loops(design, positions, only: Sequence[int] | None = None) -> 
     assert design["metrics"]["transmission_angles"] == pytest.approx(seen, abs=0.05)
 
 
+@pytest.mark.slow
 @pytest.mark.timeout(300)
 @pytest.mark.parametrize("kind", further(SIXBARS, ["watt_1", "stephenson_2"]))
 def test_every_type_is_solved_proved_drawn_and_driven(client, kind):
@@ -202,6 +203,7 @@ def _least(design) -> float:
     return design.metrics.min_transmission_angle
 
 
+@pytest.mark.slow
 def test_seven_positions_are_met_by_sixbars(client):
     positions = on_a_way(np.random.default_rng(2), 7)
     body = answered(client, positions=positions, mechanisms=list(SIXBARS), seed=2)
@@ -487,6 +489,7 @@ def test_positions_without_a_crank_have_no_stephenson_2(client):
     assert min(one.cost for one in met if 1e-3 < np.abs(one.x).max() < 100.0) > 1e-12
 
 
+@pytest.mark.slow
 def test_a_body_that_turns_about_one_point_has_many_cranks_and_is_carried(client):
     positions = [{"x": 5.0, "y": 5.0, "angle": 12.0 * k} for k in range(5)]
     designs = passed(answered(client, positions=positions, mechanisms=["stephenson_2"], max_designs=1))

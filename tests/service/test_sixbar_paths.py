@@ -65,6 +65,7 @@ def transmission(design, met) -> dict[str, float]:
     return Loops(mechanism["skeleton"]).transmission(met, dyads)
 
 
+@pytest.mark.slow
 @pytest.mark.timeout(300)
 @pytest.mark.parametrize("kind", further(SIXBARS, ["stephenson_3"]))
 def test_every_type_is_solved_proved_drawn_and_driven(client, kind):
@@ -132,6 +133,7 @@ def test_all_demands_are_kept_together(client, kind):
         assert {"box", "transmission_angle", "link_ratio", "shortest_link", "fixed_pivot_region"} <= names
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("kind", "limits"), [("stephenson_3", TASK["constraints"]), ("stephenson_2", {})])
 def test_points_are_met_exactly_in_order(client, kind, limits):
     stated = {"points": listed(FEW), "method": "auto", "closed": False, "constraints": limits}
