@@ -167,7 +167,7 @@ test-docs: $(SITE)
 
 # Rewrites what the service promises; see the difference before it is committed.
 openapi: $(STAMP)
-	$(BIN)/python -m service.cli openapi docs/openapi.json
+	$(BIN)/python -m service.command.cli openapi docs/openapi.json
 
 types: $(STAMP) $(NODE)
 	$(BIN)/python -m tools.studio.types

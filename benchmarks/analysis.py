@@ -21,8 +21,9 @@ import numpy as np
 from numpy.typing import NDArray
 from pydantic_core import to_json
 
+from kinematics.arrays import Real
 from kinematics.linkage import slider_crank
-from kinematics.linkage.batch import sweep
+from kinematics.linkage.batch import build_sweep
 from kinematics.linkage.fourbar import closed_form as fourbar
 from kinematics.linkage.fourbar import kernels as fourbar_sweeps
 from kinematics.linkage.fourbar.closed_form import Fourbar
@@ -36,8 +37,6 @@ REPEATS = 9
 
 CHUNK = 32
 """Designs that the NumPy formulas take at a time: their intermediate arrays then stay in the cache."""
-
-Real = NDArray[np.float64]
 
 
 def seconds(work: Callable[[], Any]) -> float:
@@ -161,7 +160,7 @@ def chunk_of_one(linkage: Fourbar, k: int) -> Fourbar:
 def fourbars(linkage: Fourbar, theta: Real) -> None:
     designs, n = linkage.input.size, theta.size
     count, size = designs * n, 10.0
-    at = sweep(linkage.blocks, theta, 1)
+    at = build_sweep(linkage.blocks, theta, 1)
     point, valid = np.empty((designs, n), np.complex128), np.empty((designs, n), np.bool_)
 
     print("fourbar, coupler point")
@@ -220,7 +219,7 @@ def fourbars(linkage: Fourbar, theta: Real) -> None:
 def sliders(linkage: SliderCrank, theta: Real) -> None:
     designs, n = linkage.crank.size, theta.size
     count = designs * n
-    at = sweep(linkage.blocks, theta, 1)
+    at = build_sweep(linkage.blocks, theta, 1)
     point, valid = np.empty((designs, n), np.complex128), np.empty((designs, n), np.bool_)
     print("slider-crank, coupler point")
     row("compiled, into arrays that are used again", count, lambda: slider_sweeps.coupler_points(*at[:4], point, valid))
@@ -270,7 +269,7 @@ def answers() -> None:
         content, times = b"", []
         for _ in range(REPEATS):
             start = time.process_time()
-            content = to_json(parse_request({"mechanism": mechanism}).answer(), inf_nan_mode="null")
+            content = to_json(parse_request({"mechanism": mechanism}).build_answer(), inf_nan_mode="null")
             times.append(time.process_time() - start)
         print(f"  {name:<66}{min(times) * 1e3:>10.1f}{len(content) / 1e3:>12.0f}")
 

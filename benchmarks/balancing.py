@@ -16,19 +16,17 @@ from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
-from kinematics.dynamics.reactions import reactions
-from synthesis.analyses.driven import Task, placed
+from kinematics.arrays import Real
+from kinematics.dynamics.reactions import compute_reactions
+from synthesis.analyses.linkages.requested_motion import Task, place_machine
 from synthesis.dispatch import solve
-from synthesis.kinds.balancing.driven import task_of
-from synthesis.kinds.balancing.effects import PARAMETERS, Linear
-from synthesis.kinds.balancing.minimize import Minimum, Setting, minimum, setting_of
+from synthesis.kinds.balancing.linkage.effects import PARAMETER_COUNT, LinearQuantity
+from synthesis.kinds.balancing.linkage.minimize import Minimum, Setting, build_setting, find_minimum
+from synthesis.kinds.balancing.linkage.motion import build_balancing_task
 from synthesis.kinds.balancing.problem import BalancingProblem
-from synthesis.kinds.balancing.verify_linkage import machine_of_answer
+from synthesis.kinds.balancing.verification.linkage import build_answer_machine
 from tests.synthesis.balanced_linkages import crank_rocker, fourbar, sixbar, stated, turning_sixbar
-
-Real = NDArray[np.float64]
 
 FINER = 2880
 """Positions of the second measurement."""
@@ -62,10 +60,10 @@ def random_problem(rng: np.random.Generator, make: Any) -> BalancingProblem:
 
 def measured_again(problem: BalancingProblem, task: Task, design: Any) -> float:
     """The value on other positions: a peak between those of the grid is not seen by it."""
-    grid = task.positions(FINER + 1)
+    grid = task.list_positions(FINER + 1)
     found = []
-    for machine in (task.machine, machine_of_answer(problem, design.mechanism, design.dynamics)):
-        found.append(reactions(machine, placed(machine, grid, task.speed, task.acceleration)))
+    for machine in (task.machine, build_answer_machine(problem, design.mechanism, design.dynamics)):
+        found.append(compute_reactions(machine, place_machine(machine, grid, task.speed, task.acceleration)))
     value = 0.0
     for level in design.metrics.levels:
         peaks = []
@@ -88,12 +86,12 @@ def drawn(rng: np.random.Generator, setting: Setting, count: int) -> Real:
     masses = np.minimum(shares * whole * rng.uniform(0.0, 1.0, (count, 1)) ** 0.3, limits.mass)
     arms = limits.reach * np.sqrt(rng.uniform(0.0, 1.0, (count, links)))
     angles = rng.uniform(-np.pi, np.pi, (count, links))
-    found = np.zeros((count, PARAMETERS * links))
-    found[:, 0::PARAMETERS] = masses
-    found[:, 1::PARAMETERS] = masses * arms * np.cos(angles)
-    found[:, 2::PARAMETERS] = masses * arms * np.sin(angles)
+    found = np.zeros((count, PARAMETER_COUNT * links))
+    found[:, 0::PARAMETER_COUNT] = masses
+    found[:, 1::PARAMETER_COUNT] = masses * arms * np.cos(angles)
+    found[:, 2::PARAMETER_COUNT] = masses * arms * np.sin(angles)
     ring = np.where(rng.random((count, links)) < 0.5, 0.0, rng.exponential(0.02, (count, links)))
-    found[:, 3::PARAMETERS] = masses * arms**2 + masses**2 / limits.disc + ring
+    found[:, 3::PARAMETER_COUNT] = masses * arms**2 + masses**2 / limits.disc + ring
     return _pushed_inside(setting, found)
 
 
@@ -111,7 +109,7 @@ def costs(setting: Setting, used: dict[str, list[int]], parameters: Real) -> Rea
     return np.asarray(total)
 
 
-def _largest(part: Linear, at: list[int], parameters: Real) -> Real:
+def _largest(part: LinearQuantity, at: list[int], parameters: Real) -> Real:
     """The largest magnitude at positions."""
     fixed, by = part.fixed[at], part.by[:, at]
     squares = (fixed.real + parameters @ by.real) ** 2
@@ -120,7 +118,7 @@ def _largest(part: Linear, at: list[int], parameters: Real) -> Real:
     return np.asarray(np.sqrt(squares.max(axis=1)))
 
 
-def _means(part: Linear, parameters: Real) -> Real:
+def _means(part: LinearQuantity, parameters: Real) -> Real:
     """Roots of the mean square, by the matrix of the quadratic form."""
     rows = np.concatenate([part.by, part.fixed[None]])
     form = (rows @ rows.conj().T).real / len(part.fixed)
@@ -150,21 +148,21 @@ def least_by_chance(rng: np.random.Generator, setting: Setting, found: Minimum, 
 def _pushed_inside(setting: Setting, parameters: Real) -> Real:
     """Parameters with masses, places and inertias brought within the set."""
     limits, inside = setting.limits, parameters.copy()
-    masses = np.clip(inside[:, 0::PARAMETERS], 0.0, limits.mass)
+    masses = np.clip(inside[:, 0::PARAMETER_COUNT], 0.0, limits.mass)
     if np.isfinite(limits.total):
         masses *= np.minimum(1.0, limits.total / np.maximum(masses.sum(axis=1, keepdims=True), 1e-300))
-    moments = np.hypot(inside[:, 1::PARAMETERS], inside[:, 2::PARAMETERS])
+    moments = np.hypot(inside[:, 1::PARAMETER_COUNT], inside[:, 2::PARAMETER_COUNT])
     shrink = np.minimum(1.0, limits.reach * masses / np.maximum(moments, 1e-300))
-    inside[:, 0::PARAMETERS] = masses
-    inside[:, 1::PARAMETERS] *= shrink
-    inside[:, 2::PARAMETERS] *= shrink
+    inside[:, 0::PARAMETER_COUNT] = masses
+    inside[:, 1::PARAMETER_COUNT] *= shrink
+    inside[:, 2::PARAMETER_COUNT] *= shrink
     least = (moments * shrink) ** 2 / np.maximum(masses, 1e-300) + masses**2 / limits.disc
-    inside[:, 3::PARAMETERS] = np.maximum(inside[:, 3::PARAMETERS], least)
+    inside[:, 3::PARAMETER_COUNT] = np.maximum(inside[:, 3::PARAMETER_COUNT], least)
     # A weight that is too wide for its radius of gyration is none at all.
     widest = np.where(np.isfinite(limits.gyration), limits.gyration, 1e9)
-    wide = inside[:, 3::PARAMETERS] > masses * widest**2
-    for n in range(PARAMETERS):
-        inside[:, n::PARAMETERS] = np.where(wide, 0.0, inside[:, n::PARAMETERS])
+    wide = inside[:, 3::PARAMETER_COUNT] > masses * widest**2
+    for n in range(PARAMETER_COUNT):
+        inside[:, n::PARAMETER_COUNT] = np.where(wide, 0.0, inside[:, n::PARAMETER_COUNT])
     return inside
 
 
@@ -183,9 +181,9 @@ def run(name: str, makes: Sequence[Any], count: int, samples: int, seed: int) ->
             empty += 1
             continue
         design = result.designs[0]
-        task = task_of(problem)
-        setting = setting_of(problem, task)
-        found = minimum(setting, task)
+        task = build_balancing_task(problem)
+        setting = build_setting(problem, task)
+        found = find_minimum(setting, task)
         again = measured_again(problem, task, design)
         chance = least_by_chance(rng, setting, found, samples)
         metrics = design.metrics

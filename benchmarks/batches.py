@@ -29,10 +29,10 @@ from service.jobs.batches.plan import Plan
 from service.jobs.batches.sampling import evenly
 from service.jobs.batches.slices import Slices
 from service.jobs.batches.store import BatchStore
-from service.jobs.database import connect, upgrade
-from service.jobs.solving import Solving
-from service.jobs.states import Cost
-from service.jobs.store import JobStore
+from service.jobs.job_store import JobStore
+from service.jobs.processes.stop_flag import Solving
+from service.jobs.store.database import connect, upgrade
+from service.jobs.store.states import Cost
 from synthesis import dispatch
 from tests.service.running import RunningServer, until
 

@@ -17,12 +17,19 @@ from typing import Any
 
 import numpy as np
 
-from kinematics.cam.motion_laws import LAWS
+from kinematics.cam.motion.laws import LAWS
 from synthesis.dispatch import solve
-from synthesis.kinds.cam.motion_program import Condition, Limit
-from synthesis.kinds.cam.optimal import Best, NoMotion, Run, best_derivative, best_roller_size, best_torque
-from synthesis.kinds.cam.sizing import RollerLimits, oscillating_roller, translating_roller
-from synthesis.numerics.convex import modeling
+from synthesis.kinds.cam.program.convex_programs import Condition, Limit
+from synthesis.kinds.cam.program.optimal import (
+    NoMotion,
+    Optimum,
+    Run,
+    minimize_derivative,
+    minimize_roller_size,
+    minimize_torque,
+)
+from synthesis.kinds.cam.sizing.sizing import RollerLimits, size_oscillating_roller, size_translating_roller
+from synthesis.numerics.convex import import_cvxpy
 from synthesis.registry import KINDS, parse_problem
 from tests.synthesis.cam_sampling import first_sound, oscillating, random_program, translating
 
@@ -32,7 +39,7 @@ ENDS = ((0.0, 0.0), (1.0, 1.0))
 def rise(angle: float = 1.0, continuity: int = 2, **limits: float) -> Run:
     """A unit rise from dwell to dwell."""
     conditions = [
-        Condition.at(share * angle, order, height if order == 0 else 0.0)
+        Condition.fix_derivative(share * angle, order, height if order == 0 else 0.0)
         for share, height in ENDS
         for order in range(continuity + 1)
     ]
@@ -40,49 +47,54 @@ def rise(angle: float = 1.0, continuity: int = 2, **limits: float) -> Run:
     return Run(angle, tuple(conditions), continuity, tuple(Limit(orders[k], x) for k, x in limits.items()))
 
 
-def norton_8_10() -> Best | NoMotion:
+def norton_8_10() -> Optimum | NoMotion:
     rate = 2.0 * math.pi
     conditions = [
-        Condition.at(at, order, x / rate**order)
+        Condition.fix_derivative(at, order, x / rate**order)
         for at, s in ((0.0, 5.0), (math.pi, 0.0))
         for order, x in ((0, s), (1, 10.0), (2, 0.0))
     ]
-    return best_derivative(Run(math.pi, tuple(conditions), 2, (Limit(3, 4800.0 / rate**3),)), "peak", 2)
+    return minimize_derivative(Run(math.pi, tuple(conditions), 2, (Limit(3, 4800.0 / rate**3),)), "peak", 2)
 
 
 def least_acceleration(jerk: float) -> float:
     return 0.25 * jerk * (1.0 - math.sqrt(1.0 - 32.0 / jerk))
 
 
-def targets() -> list[tuple[str, Callable[[], Best | NoMotion], float, float]]:
+def targets() -> list[tuple[str, Callable[[], Optimum | NoMotion], float, float]]:
     """Name, program, known limit, factor from the program's unit."""
     _, a, j = (factor.largest for factor in LAWS["modified_sine"].factors)
     sixty, tangent = math.pi / 3.0, math.tan(math.radians(20.0))
     small = rise(sixty, a=a / sixty**2, j=j / sixty**3)
-    rows: list[tuple[str, Callable[[], Best | NoMotion], float, float]] = [
-        ("peak v", lambda: best_derivative(rise(), "peak", 1), 1.0, 1.0),
-        ("peak a", lambda: best_derivative(rise(), "peak", 2), 4.0, 1.0),
-        ("peak j", lambda: best_derivative(rise(), "peak", 3), 32.0, 1.0),
-        ("rms a", lambda: best_derivative(rise(), "rms", 2), math.sqrt(12.0), 1.0),
-        ("rms j", lambda: best_derivative(rise(), "rms", 3), math.sqrt(720.0), 1.0),
-        ("rms fourth derivative", lambda: best_derivative(rise(continuity=3), "rms", 4), math.sqrt(100800.0), 1.0),
+    rows: list[tuple[str, Callable[[], Optimum | NoMotion], float, float]] = [
+        ("peak v", lambda: minimize_derivative(rise(), "peak", 1), 1.0, 1.0),
+        ("peak a", lambda: minimize_derivative(rise(), "peak", 2), 4.0, 1.0),
+        ("peak j", lambda: minimize_derivative(rise(), "peak", 3), 32.0, 1.0),
+        ("rms a", lambda: minimize_derivative(rise(), "rms", 2), math.sqrt(12.0), 1.0),
+        ("rms j", lambda: minimize_derivative(rise(), "rms", 3), math.sqrt(720.0), 1.0),
+        ("rms fourth derivative", lambda: minimize_derivative(rise(continuity=3), "rms", 4), math.sqrt(100800.0), 1.0),
     ]
     for name in ("modified_sine", "modified_trapezoid", "polynomial_345", "cycloidal"):
         jerk = LAWS[name].factors[2].largest
         rows.append(
             (
                 f"peak a at the jerk of {name} ({LAWS[name].factors[1].largest:.3f})",
-                lambda jerk=jerk: best_derivative(rise(j=jerk), "peak", 2),
+                lambda jerk=jerk: minimize_derivative(rise(j=jerk), "peak", 2),
                 least_acceleration(jerk),
                 1.0,
             )
         )
     rows += [
-        ("peak v at modified sine's a and j (1.760)", lambda: best_derivative(rise(a=a, j=j), "peak", 1), 1.572, 1.0),
-        ("peak |v a| (modified sine 5.458)", lambda: best_torque(rise(), "peak"), 2.25, 1.0),
+        (
+            "peak v at modified sine's a and j (1.760)",
+            lambda: minimize_derivative(rise(a=a, j=j), "peak", 1),
+            1.572,
+            1.0,
+        ),
+        ("peak |v a| (modified sine 5.458)", lambda: minimize_torque(rise(), "peak"), 2.25, 1.0),
         (
             "motion and prime radius, 60°, 20° (4.142)",
-            lambda: best_roller_size([small], [(tangent, tangent)], 0.0, []),
+            lambda: minimize_roller_size([small], [(tangent, tangent)], 0.0, []),
             3.647,
             1.0,
         ),
@@ -100,7 +112,7 @@ def optimal_table() -> None:
     print(f"{'optimal motion':<52}{'known':>10}{'found':>11}{'off, %':>9}{'bound':>11}{'gap, %':>9}{'CPU s':>8}")
     for name, program, known, unit in targets():
         best, seconds = timed(program)
-        assert isinstance(best, Best)
+        assert isinstance(best, Optimum)
         off, gap = 100.0 * (best.value * unit / known - 1.0), 100.0 * (best.value / best.bound - 1.0)
         found, bound = best.value * unit, best.bound * unit
         print(f"{name:<52}{known:>10.4f}{found:>11.4f}{off:>9.3f}{bound:>11.4f}{gap:>9.3f}{seconds:>8.2f}")
@@ -119,9 +131,9 @@ def sizing_row(name: str, programs: int, oscillates: bool) -> None:
         program = random_program(rng, math.radians(20.0) if oscillates else 1.0)
         limits = RollerLimits(math.radians(35.0), math.radians(35.0), 0.1 if oscillates else 1.0, 0.05)
         if oscillates:
-            size, seconds = timed(partial(oscillating_roller, program, 1.0, 1.3, 1, limits))
+            size, seconds = timed(partial(size_oscillating_roller, program, 1.0, 1.3, 1, limits))
         else:
-            size, seconds = timed(partial(translating_roller, program, 0.1, limits))
+            size, seconds = timed(partial(size_translating_roller, program, 0.1, limits))
         ours.append(seconds)
         if size is None:
             continue
@@ -151,9 +163,9 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__.split("\n")[0] if __doc__ else None)
     parser.add_argument("--programs", type=int, default=40, help="random programs per row of sizing")
     programs = parser.parse_args().programs
-    _, seconds = timed(modeling)
+    _, seconds = timed(import_cvxpy)
     print(f"import of the modelling library: {seconds:.2f} s")
-    best_derivative(rise(), "peak", 2)
+    minimize_derivative(rise(), "peak", 2)
     optimal_table()
     print(f"\n{'sizing against brute force':<52}{'worst rel.':>12}{'median ms':>12}{'brute ms':>14}")
     sizing_row("translating roller, pressure angle and curvature", programs, False)

@@ -15,8 +15,8 @@ import time
 
 import numpy as np
 
-from kinematics.cam.contact import Contour
-from kinematics.cam.profile import even_angles
+from kinematics.cam.finished.contact import Contour
+from kinematics.cam.profile import space_angles
 from tests.kinematics.cam.sampling import FOLLOWERS, sound_cam
 
 POINTS = (360, 720, 1440, 2880)
@@ -27,16 +27,16 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--cams", type=int, default=40)
     count = parser.parse_args().cams
-    angles = even_angles(ANGLES) + 1e-3
+    angles = space_angles(ANGLES) + 1e-3
     print(f"{'follower':20} {'points':>6} {'s/lift':>9} {'v/peak':>9} {'pressure':>9} {'ms':>7}   ({count} cams each)")
     for kind in FOLLOWERS:
         cams = [sound_cam(np.random.default_rng(seed), kind) for seed in range(count)]
-        Contour(cams[0].profile(even_angles(POINTS[0]))).follow(cams[0].follower, angles[:2], cams[0].rotation)
+        Contour(cams[0].profile(space_angles(POINTS[0]))).follow(cams[0].follower, angles[:2], cams[0].rotation)
         for points in POINTS:
             worst, spent = np.zeros(3), 0.0
             for cam in cams:
                 start = time.process_time()
-                found = Contour(cam.profile(even_angles(points))).follow(cam.follower, angles, cam.rotation)
+                found = Contour(cam.profile(space_angles(points))).follow(cam.follower, angles, cam.rotation)
                 spent += time.process_time() - start
                 motion, size = cam.program.motion(angles), cam.program.peaks[1].largest
                 off = (

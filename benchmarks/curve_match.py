@@ -18,19 +18,13 @@ from typing import Any
 
 import numpy as np
 
+from kinematics.arrays import Complex
 from kinematics.linkage.fourbar import positions
 from synthesis.kinds.path.design import PathResult
 from synthesis.kinds.path.solver import warm_up
-from synthesis.model.linkage_answer import FourbarMechanism
-from synthesis.model.linkages import driven_fourbar
-from tests.support.problems.curve_match import (
-    Complex,
-    curve_cases,
-    matched,
-    noisy,
-    published_rms,
-    reference_rms,
-)
+from synthesis.model.linkage.answer import FourbarMechanism
+from synthesis.model.linkage.conversion import build_driven_fourbar
+from tests.support.problems.curve_match import curve_cases, matched, noisy, published_rms, reference_rms
 
 
 def recovered(case: dict[str, Any], result: PathResult) -> float:
@@ -63,7 +57,7 @@ def recovered(case: dict[str, Any], result: PathResult) -> float:
     true = min((drawn(1.0), drawn(-1.0)), key=lambda curve: off(curve, case["curve"][:5]))
     mechanism = result.designs[0].mechanism
     assert isinstance(mechanism, FourbarMechanism)
-    fourbar = driven_fourbar(mechanism)
+    fourbar = build_driven_fourbar(mechanism)
     inputs = np.radians([target.input_angle for target in result.designs[0].targets])
     low, high = float(inputs.min()), float(inputs.max())
     if case["closed"]:

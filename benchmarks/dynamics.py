@@ -24,16 +24,16 @@ from typing import Any
 import numpy as np
 
 from benchmarks.limited_forces import KINDS, limited
-from kinematics.dynamics import Machine, Places, body, reactions
-from kinematics.dynamics.dyads import dyad_forces
-from kinematics.dynamics.fourbar import DRIVE, Fourbars, Weights, peaks
+from kinematics.dynamics import Machine, Places, compute_reactions, make_body
+from kinematics.dynamics.dyads import compute_dyad_forces
+from kinematics.dynamics.fourbar import DRIVE, Fourbars, Weights, compute_peaks
 from kinematics.linkage.planar.drive import drive
 from kinematics.linkage.planar.mechanism import Mechanism
 from synthesis.analyses import parse_request
-from synthesis.mechanisms.fourbar_weights import JOINTS, fourbars, weights
-from synthesis.model.dynamics import DesignDynamics
-from synthesis.model.linkages import FOURBAR_LINKS
-from synthesis.outcome.forces import shaped
+from synthesis.mechanisms.fourbar_weights import JOINTS, build_fourbars, build_weights
+from synthesis.model.dynamics.request import DesignDynamics
+from synthesis.model.linkage.conversion import FOURBAR_LINKS
+from synthesis.results.forces import apply_link_shape
 from tests.kinematics.dynamics.dyad_twin import Twin
 from tests.kinematics.dynamics.machines import differences, masses
 from tests.kinematics.mechanism_sampling import CHAIN, EVERY, take
@@ -135,7 +135,7 @@ def in_general(joints: np.ndarray, carried: Weights) -> np.ndarray:
     machine = Machine(
         mechanism,
         {
-            link: body(0.0)._replace(mass=carried.mass[:, k], cg=centres[:, k], inertia=carried.inertia[:, k])
+            link: make_body(0.0)._replace(mass=carried.mass[:, k], cg=centres[:, k], inertia=carried.inertia[:, k])
             for k, link in enumerate(("input", "coupler", "output"))
         },
         {"P": carried.pins[:, 2]},
@@ -143,27 +143,27 @@ def in_general(joints: np.ndarray, carried: Weights) -> np.ndarray:
     )
     start = np.asarray(mechanism.reference_input)
     inputs = start[:, None] + math.tau * np.linspace(0.0, 1.0, POSITIONS + 1)
-    found = reactions(machine, Places(mechanism, drive(mechanism, inputs, speed=SPEED, order=2)))
+    found = compute_reactions(machine, Places(mechanism, drive(mechanism, inputs, speed=SPEED, order=2)))
     return np.abs(found.drive).max(axis=1)
 
 
 def speed(count: int, seed: int) -> None:
     """Analyses a second, three ways, which agree."""
     joints = crank_rockers(np.random.default_rng(seed), count)
-    stated = shaped(DesignDynamics.model_validate(LADEN), FOURBAR_LINKS)
+    stated = apply_link_shape(DesignDynamics.model_validate(LADEN), FOURBAR_LINKS)
     whole = np.full(count, math.tau)
-    linkages, carried = fourbars(joints, whole, 1e-3), weights(stated, joints, "mm")
+    linkages, carried = build_fourbars(joints, whole, 1e-3), build_weights(stated, joints, "mm")
     analyses = count * (POSITIONS + 1)
     few = min(count, 500)
     some = [column[:few] for column in linkages]
     light = carried._replace(
         **{name: getattr(carried, name)[:few] for name in ("mass", "cg", "inertia", "pins", "arm", "force", "about")}
     )
-    compiled, plain = peaks(linkages, carried, SPEED, POSITIONS + 1)[:, DRIVE], in_numpy(Fourbars(*some), light)
+    compiled, plain = compute_peaks(linkages, carried, SPEED, POSITIONS + 1)[:, DRIVE], in_numpy(Fourbars(*some), light)
     general = in_general(joints[:few], light)
     differ = max(float(np.abs(one / compiled[:few] - 1.0).max()) for one in (plain, general))
     print(f"{count} fourbars, {POSITIONS + 1} positions each; three ways to the peak torque differ by {differ:.1e}")
-    spent = cpu_of(lambda: peaks(linkages, carried, SPEED, POSITIONS + 1))
+    spent = cpu_of(lambda: compute_peaks(linkages, carried, SPEED, POSITIONS + 1))
     print(f"closed form, compiled, kinematics included: {analyses / spent / 1e6:.1f} M analyses/s")
     spent = cpu_of(lambda: in_numpy(Fourbars(*some), light))
     print(f"the same in plain numpy: {few * (POSITIONS + 1) / spent / 1e6:.2f} M analyses/s")
@@ -171,8 +171,8 @@ def speed(count: int, seed: int) -> None:
     print(f"general equations, kinematics included: {few * (POSITIONS + 1) / spent / 1e3:.0f} k analyses/s")
 
     def order() -> np.ndarray:
-        carried = weights(stated, joints, "mm")
-        return np.argsort(peaks(fourbars(joints, whole, 1e-3), carried, SPEED, POSITIONS + 1)[:, DRIVE])
+        carried = build_weights(stated, joints, "mm")
+        return np.argsort(compute_peaks(build_fourbars(joints, whole, 1e-3), carried, SPEED, POSITIONS + 1)[:, DRIVE])
 
     print(f"{count} candidates weighed by their shapes and ordered by peak torque: {cpu_of(order, 3):.2f} s")
 
@@ -193,7 +193,7 @@ def dyads(count: int, seed: int) -> None:
         some = Machine(
             few,
             {
-                k: body(0.0)._replace(mass=b.mass[:100], cg=b.cg[:100], inertia=b.inertia[:100])
+                k: make_body(0.0)._replace(mass=b.mass[:100], cg=b.cg[:100], inertia=b.inertia[:100])
                 for k, b in bodies.items()
             },
             {joint: mass[:100] for joint, mass in pin_masses.items()},
@@ -201,9 +201,9 @@ def dyads(count: int, seed: int) -> None:
         )
 
         def by_equations(some: Machine = some, at: np.ndarray = inputs[:100]) -> Any:
-            return reactions(some, Places(some.mechanism, drive(some.mechanism, at, speed=SPEED, order=2)))
+            return compute_reactions(some, Places(some.mechanism, drive(some.mechanism, at, speed=SPEED, order=2)))
 
-        found = dyad_forces(machine, inputs, SPEED)
+        found = compute_dyad_forces(machine, inputs, SPEED)
         general, plain = by_equations(), Twin(some, inputs[:100], SPEED)
         posed = general.condition < 1e4
         peak = np.where(posed, np.abs(general.drive), 0.0).max(axis=1, keepdims=True)
@@ -214,7 +214,7 @@ def dyads(count: int, seed: int) -> None:
         rates = [
             one.size / cpu_of(work)
             for one, work in (
-                (inputs, partial(dyad_forces, machine, inputs, SPEED)),
+                (inputs, partial(compute_dyad_forces, machine, inputs, SPEED)),
                 (inputs[:100], partial(Twin, some, inputs[:100], SPEED)),
                 (inputs[:100], by_equations),
             )
@@ -246,7 +246,7 @@ def analysis(count: int, seed: int) -> None:
         }
         block = {"gravity": {}, "bodies": bodies, "point_masses": [{"joint": "P", "mass": 2.0}]}
         plain, forced = parse_request(stated), parse_request({**stated, "dynamics": block})
-        added.append(1e3 * (cpu_of(forced.answer, 3) - cpu_of(plain.answer, 3)))
+        added.append(1e3 * (cpu_of(forced.build_answer, 3) - cpu_of(plain.build_answer, 3)))
     print(
         f"forces add to an analysis of 360 steps: median {statistics.median(added):.1f} ms, worst {max(added):.1f} ms"
     )

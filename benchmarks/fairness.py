@@ -28,7 +28,7 @@ from pathlib import Path
 import httpx
 
 from benchmarks.service import until_settled
-from synthesis.registry import examples
+from synthesis.registry import list_examples
 from tests.cluster import backend
 from tests.service.running import REAL, RunningServer, environment, until
 
@@ -44,8 +44,8 @@ CONNECTIONS = 4
 CANCELLING = 2
 WORKERS, RESERVE = 2, 1
 
-SHORT = examples("motion")[0]  # a search over all pairs of dyads, a tenth of a second
-LONG = examples("path")[3]  # a closed curve, matched and fitted, several seconds
+SHORT = list_examples("motion")[0]  # a search over all pairs of dyads, a tenth of a second
+LONG = list_examples("path")[3]  # a closed curve, matched and fitted, several seconds
 
 
 def key_of(folder: Path, tenant: str) -> str:

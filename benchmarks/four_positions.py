@@ -15,12 +15,12 @@ import math
 
 import numpy as np
 
-from synthesis.kinds.motion.dyads import Dyads
+from synthesis.kinds.motion.dyads.equations import Dyads
+from synthesis.kinds.motion.exact.screening import make_screening_constraints, screen
 from synthesis.kinds.motion.problem import MotionProblem
-from synthesis.kinds.motion.screening import demands, screen
-from synthesis.kinds.motion.task import MotionTask, motion_task
-from synthesis.kinds.motion.verification import verify
-from synthesis.model.linkages import FourbarConfiguration, fourbar_mechanism
+from synthesis.kinds.motion.task.positions import MotionTask, make_motion_task
+from synthesis.kinds.motion.verification.verify import verify
+from synthesis.model.linkage.conversion import FourbarConfiguration, build_fourbar
 
 GRID_DEGREES = 0.25
 TRIED = 50
@@ -59,12 +59,12 @@ def grid_dyads(task: MotionTask) -> Dyads:
 
 def brute_force(problem: MotionProblem, least: float) -> float:
     """The greatest verified transmission angle, degrees, of the best pairs that reach ``least``; 0 if none does."""
-    task = motion_task(problem)
+    task = make_motion_task(problem)
     dyads = grid_dyads(task)
     links = np.abs(task.images(dyads.moving) - dyads.fixed[:, None])
     good = np.ptp(links, axis=1) < 1e-6 * (1.0 + links[:, 0])
     dyads = Dyads(dyads.fixed[good], dyads.moving[good])
-    wanted = demands(problem.constraints, task, least, "transmission_angle")
+    wanted = make_screening_constraints(problem.constraints, task, least, "transmission_angle")
     screening = screen(task, dyads, dyads, wanted)
     best = 0.0
     for k in np.argsort(-screening.score.ravel())[:TRIED]:
@@ -73,7 +73,7 @@ def brute_force(problem: MotionProblem, least: float) -> float:
             break
         pivots = [dyads.fixed[i], dyads.moving[i], dyads.moving[j], dyads.fixed[j]]
         o2, a, b, o4 = (task.to_problem(complex(z)) for z in pivots)
-        design = verify(problem, fourbar_mechanism(FourbarConfiguration(o2, a, b, o4, task.origin)))
+        design = verify(problem, build_fourbar(FourbarConfiguration(o2, a, b, o4, task.origin)))
         # The dyads of the grid carry rounding that the demand for 1e-9 may not forgive; the motion is what counts.
         if design is not None and design.metrics.same_branch and design.metrics.visits_in_order:
             best = max(best, design.metrics.min_transmission_angle)

@@ -24,7 +24,7 @@ from typing import Any
 
 import httpx
 
-from synthesis.analyses.cam import EXAMPLE
+from synthesis.analyses.cams.cam import EXAMPLE
 from tests.service.running import RunningServer
 from tests.service.test_access import made
 from tests.support.problems.fuzz_bodies import LAYOUT

@@ -13,8 +13,8 @@ import time
 import numpy as np
 
 from synthesis.dispatch import compile_kind, solve
-from synthesis.kinds.motion.verification import verify
-from synthesis.model.linkages import FourbarConfiguration, fourbar_mechanism
+from synthesis.kinds.motion.verification.verify import verify
+from synthesis.model.linkage.conversion import FourbarConfiguration, build_fourbar
 from synthesis.registry import parse_problem
 from tests.synthesis.planted import Planted, plant_many
 
@@ -29,7 +29,7 @@ def row(n: int, noise: float, tasks: int) -> None:
         joints = FourbarConfiguration(
             one.fixed_pivot, one.moving_pivot, other.moving_pivot, other.fixed_pivot, complex(first["x"], first["y"])
         )
-        allowed = verify(problem, fourbar_mechanism(joints, first["angle"]))
+        allowed = verify(problem, build_fourbar(joints, first["angle"]))
         start = time.process_time()
         result = solve(problem, lambda fraction, message: None)
         times.append(time.process_time() - start)

@@ -20,11 +20,11 @@ import numpy as np
 
 from kinematics.linkage.planar.drive import drive
 from kinematics.linkage.planar.mechanism import Mechanism
-from synthesis.analyses.dynamics import peaks_of
+from synthesis.analyses.linkages.dynamics import find_force_peaks
 from synthesis.dispatch import solve
-from synthesis.model.dynamics import DesignDynamics
-from synthesis.outcome.forces import run_of, shaped
+from synthesis.model.dynamics.request import DesignDynamics
 from synthesis.registry import parse_problem
+from synthesis.results.forces import apply_link_shape, prepare_drive
 from tests.support.problems.limited_forces import BLOCK, LADEN, SPEED_RPM, fourbar, slider_crank
 
 DRIVING = BLOCK | {"loads": [{"link": "output", "torque": {"constant": 5.0}}]}
@@ -164,7 +164,9 @@ def _peaks(planted: Planted) -> dict[str, float]:
     start = math.degrees(float(np.asarray(planted.mechanism.reference_input)))
     at = start + np.linspace(0.0, 360.0, 73)
     mechanism = planted.mechanism
-    _, found = peaks_of(mechanism, shaped(block, mechanism.links), "mm", at, SPEED_RPM * math.tau / 60.0)
+    _, found = find_force_peaks(
+        mechanism, apply_link_shape(block, mechanism.links), "mm", at, SPEED_RPM * math.tau / 60.0
+    )
     return _named(found)
 
 
@@ -188,8 +190,8 @@ def limited(kind: str, count: int, seed: int, over: float = OVER) -> None:
         passed = [design for design in result.designs if design.verification.passed]
         answered += bool(passed)
         for design in passed:
-            run = run_of(problem.dynamics, design, CONFIRMED)
-            _, found = peaks_of(run.mechanism, run.block, problem.length_unit, run.at, run.speed)
+            run = prepare_drive(problem.dynamics, design, CONFIRMED)
+            _, found = find_force_peaks(run.mechanism, run.block, problem.length_unit, run.at, run.speed)
             share = max(value / limits[name] for name, value in _named(found).items())
             designs += 1
             off += share > 1.0 + ROUNDING

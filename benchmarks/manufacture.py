@@ -19,17 +19,15 @@ import time
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
+from kinematics.arrays import Real
 from kinematics.linkage import Fourbar, fourbar
-from synthesis.manufacture.grid import nearest_on_grid
-from synthesis.manufacture.linkage import Linkage, product
-from synthesis.manufacture.sampled import sampled_yield
-from synthesis.model.manufacture import Held, Manufacture
+from synthesis.manufacture.grid import find_nearest_on_grid
+from synthesis.manufacture.linkage import Linkage, build_product
+from synthesis.manufacture.yield_sampling import sample_yield
+from synthesis.model.manufacture.request import Manufacture, RequiredTargets
 from tests.oracles import made_linkages
 from tests.oracles.made_linkages import Stated
-
-Real = NDArray[np.float64]
 
 STEP = 0.5
 """Of the grid, with links of 20 to 100 units."""
@@ -50,7 +48,7 @@ class Drawn(NamedTuple):
     """A fourbar, what it is held to, the range that it is used over, and the same for the other formulation."""
 
     linkage: Linkage
-    held: Held
+    held: RequiredTargets
     used: tuple[float, float]
     other: Stated
 
@@ -75,7 +73,7 @@ def drawn(rng: np.random.Generator) -> Drawn:
         size = float(np.abs(at.p[:, None] - at.p).max())
         used = float(inputs[0]), float(inputs[-1])
         angles = np.unwrap(at.coupler_angle)
-        held = Held(inputs, points=at.p, angles=angles, body=float(angles[0]), size=size)
+        held = RequiredTargets(inputs, points=at.p, angles=angles, body=float(angles[0]), size=size)
         other = Stated(row, None, 0j, inputs, at.p, angles, None, used, True)
         return Drawn(Linkage("fourbar", row, sign, None, 0j, used[0]), held, used, other)
 
@@ -87,7 +85,7 @@ def rounded(count: int, rng: np.random.Generator) -> None:
     for _ in range(count):
         design = drawn(rng)
         begun = time.process_time()
-        found = nearest_on_grid(design.linkage, design.held, block, design.used)
+        found = find_nearest_on_grid(design.linkage, design.held, block, design.used)
         taken.append(time.process_time() - begun)
         assert not isinstance(found, str)
         least = exhaustive(design, float(found.squares[0]))
@@ -150,9 +148,9 @@ def yields(count: int, rng: np.random.Generator) -> None:
                 "quality": {"max_error": limits[0], "max_angle_error": limits[1]},
             }
         )
-        made = product(design.linkage, design.held, block, design.used)
+        made = build_product(design.linkage, design.held, block, design.used)
         assert not isinstance(made, str)
-        told = sampled_yield(made, block, n)
+        told = sample_yield(made, block, n)
         good = 0
         for part in range(SAMPLES // CHUNK):
             rows = made_linkages.samples(design.other, tolerances, distribution, CHUNK, 1000 * n + part)
@@ -171,11 +169,11 @@ def speed(rng: np.random.Generator) -> None:
     times = []
     for n in range(20):
         design = drawn(rng)
-        made = product(design.linkage, design.held, block, design.used)
+        made = build_product(design.linkage, design.held, block, design.used)
         assert not isinstance(made, str)
-        sampled_yield(made, block.model_copy(update={"samples": 100}), n)
+        sample_yield(made, block.model_copy(update={"samples": 100}), n)
         begun = time.process_time()
-        sampled_yield(made, block, n)
+        sample_yield(made, block, n)
         times.append(time.process_time() - begun)
     print(f"speed: 10^5 samples at five positions in {np.median(times):.3f} s (median), {max(times):.3f} s at most")
 

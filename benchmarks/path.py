@@ -19,10 +19,10 @@ from typing import Any
 
 import numpy as np
 
-from kinematics.linkage.fourbar import OPEN, Fourbar, cognates, positions
+from kinematics.linkage.fourbar import OPEN_ASSEMBLY, Fourbar, build_cognates, positions
 from synthesis.dispatch import solve
 from synthesis.kinds.path.design import PathResult
-from synthesis.kinds.path.nine_point_system import ORBITS
+from synthesis.kinds.path.exact.nine_point_system import ORBIT_COUNT
 from synthesis.kinds.path.solver import warm_up
 from synthesis.registry import parse_problem
 
@@ -46,14 +46,14 @@ def drawn(rng: np.random.Generator) -> tuple[Any, Any]:
 
 def is_among(result: PathResult, linkage: Any, start: float) -> bool:
     """Whether the fourbar and both of its cognates are among the designs."""
-    first = complex(positions(linkage, start, OPEN).p)
+    first = complex(positions(linkage, start, OPEN_ASSEMBLY).p)
     found = np.array(
         [
             [complex(*design.mechanism.fixed_pivots.input), complex(*design.mechanism.fixed_pivots.output)]
             for design in result.designs
         ]
     )
-    pair = cognates(linkage)
+    pair = build_cognates(linkage)
     wanted = [linkage, pair.left.linkage, pair.right.linkage]
     size = max(abs(first - linkage.input_pivot), abs(linkage.output_pivot - linkage.input_pivot))
     return all(
@@ -64,7 +64,7 @@ def is_among(result: PathResult, linkage: Any, start: float) -> bool:
 
 def around(linkage: Any) -> dict[str, list[float]]:
     """A box around the pivots of a fourbar and its cognates."""
-    pair = cognates(linkage)
+    pair = build_cognates(linkage)
     pivots = np.array(
         [
             complex(z)
@@ -95,7 +95,7 @@ def main() -> None:
         constraints: dict[str, Any] = {"same_branch": False, "in_order": False}
         if n % 2 == 0:
             linkage, angles = drawn(rng)
-            points = positions(linkage, angles, OPEN).p
+            points = positions(linkage, angles, OPEN_ASSEMBLY).p
             constraints["fixed_pivot_region"] = around(linkage)
         problem = parse_problem(
             {
@@ -119,14 +119,14 @@ def main() -> None:
         complete += result.search.complete
         triples = result.triples
         assert triples is not None
-        counted += triples.computed == ORBITS and triples.closed_under_conjugation
+        counted += triples.computed == ORBIT_COUNT and triples.closed_under_conjugation
         print(
             f"{'of a fourbar' if word else 'random':<14}{triples.computed:>8}{triples.real:>6}"
             f"{triples.on_one_circuit:>13}{word:>9}{'yes' if result.search.complete else 'no':>10}"
             f"{walls[-1]:>8.2f}{time.process_time() - cpu:>7.2f}"
         )
     memory = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024
-    print(f"all {ORBITS} triples, closed under conjugation: {counted} of {len(walls)}")
+    print(f"all {ORBIT_COUNT} triples, closed under conjugation: {counted} of {len(walls)}")
     print(f"complete: {complete} of {len(walls)}; planted linkage and cognates found: {planted} of {plants}")
     print(
         f"wall: median {statistics.median(walls):.2f} s, worst {max(walls):.2f} s (limit {LIMIT_S} s); {memory:.0f} MiB"

@@ -6,12 +6,12 @@ import time
 from typing import Any
 
 from synthesis.dispatch import solve
-from synthesis.registry import example, parse_problem
+from synthesis.registry import get_first_example, parse_problem
 
 WIDE = {"min": 17, "max": 100, "ring_max": 200}
 
 ROWS: list[tuple[str, dict[str, Any]]] = [
-    ("planetary example", example("planetary_train")),
+    ("planetary example", get_first_example("planetary_train")),
     ("simple, all members", {"kind": "planetary_train", "ratio": "pi", "arrangement": "simple", "teeth": WIDE}),
     *(
         (f"{name}, all members", {"kind": "planetary_train", "ratio": "-pi", "arrangement": name, "teeth": WIDE})
@@ -20,7 +20,7 @@ ROWS: list[tuple[str, dict[str, Any]]] = [
         )
     ),
     ("auto, 17 to 60 teeth", {"kind": "planetary_train", "ratio": 7.77, "teeth": {"max": 60, "ring_max": 150}}),
-    ("gearbox example", example("gearbox")),
+    ("gearbox example", get_first_example("gearbox")),
     (
         "Rao 8.9, 18 speeds",
         {
@@ -35,13 +35,13 @@ ROWS: list[tuple[str, dict[str, Any]]] = [
         "R10, 12 speeds",
         {"kind": "gearbox", "input_speed": 1440.0, "speeds": {"min": 31.5, "series": "R10", "count": 12}},
     ),
-    ("layshaft example", example("layshaft_gearbox")),
+    ("layshaft example", get_first_example("layshaft_gearbox")),
 ]  # fmt: skip
 
 
 def main() -> None:
     for row in ("planetary_train", "gearbox", "layshaft_gearbox"):
-        solve(parse_problem(example(row)), lambda fraction, message: None)
+        solve(parse_problem(get_first_example(row)), lambda fraction, message: None)
     print(f"{'problem':<32}{'CPU s':>9}{'combinations':>28}{'designs':>9}  best")
     for name, stated in ROWS:
         problem = parse_problem(stated)

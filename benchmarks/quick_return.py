@@ -10,7 +10,7 @@ import time
 from typing import Any
 
 from synthesis.dispatch import solve
-from synthesis.registry import examples, parse_problem
+from synthesis.registry import list_examples, parse_problem
 
 SWINGS = (20.0, 40.0, 60.0, 80.0, 100.0, 120.0)
 TYPES = (
@@ -31,7 +31,7 @@ def answer(stated: dict[str, Any]) -> tuple[Any, float]:
 
 
 def main() -> None:
-    for stated in examples("quick_return"):
+    for stated in list_examples("quick_return"):
         answer(stated)
     print(f"{'crank-rocker':<20}{'transmission':>13}{'links':>8}{'ratio off':>11}{'swing off':>11}{'CPU s':>8}")
     slowest = 0.0

@@ -26,7 +26,7 @@ from typing import Any
 
 import httpx
 
-from synthesis.registry import example
+from synthesis.registry import get_first_example
 from tests.service.running import RunningServer
 from tests.support.problems.fuzz_bodies import BLOCKS, analysis_corpus, job_corpus, spoil
 
@@ -115,7 +115,7 @@ def _solve_examples(server: RunningServer) -> list[dict[str, Any]]:
     """Mechanisms of the designs of quick examples."""
     found = []
     for kind in QUICK_KINDS:
-        job = server.post(problem=example(kind), wait=30)
+        job = server.post(problem=get_first_example(kind), wait=30)
         designs = (job.get("result") or {}).get("designs", [])
         found += [design["mechanism"] for design in designs[:2]]
     return found

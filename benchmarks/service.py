@@ -36,7 +36,7 @@ import httpx
 
 from benchmarks import http_load
 from benchmarks.http_load import Load
-from synthesis.analyses import families
+from synthesis.analyses import list_families
 from synthesis.registry import KINDS
 from tests.service import hostile
 from tests.service.running import START_S, RunningServer, alive, until
@@ -307,7 +307,7 @@ def stated() -> dict[str, dict[str, Any]]:
     for name, mechanism in STATED.items():
         slide = mechanism.get("driven_by") == "slider"
         found[name] = {"mechanism": mechanism} | ({} if slide else {"motion": motion})
-    for family in families()[1:]:
+    for family in list_families()[1:]:
         body = family.request.model_json_schema()["examples"][0]
         if "steps" in body.get("motion", {}):
             body = {**body, "motion": {**body["motion"], "from": 0.0, "to": 360.0, "steps": STEPS}}

@@ -15,20 +15,18 @@ import time
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
-from kinematics.dynamics.reactions import reactions
-from synthesis.analyses.driven import placed
+from kinematics.arrays import Real
+from kinematics.dynamics.reactions import compute_reactions
+from synthesis.analyses.linkages.requested_motion import place_machine
 from synthesis.dispatch import solve
 from synthesis.kinds.spring_balancing.design import SprungDesign
-from synthesis.kinds.spring_balancing.effects import Setting, effects_of
+from synthesis.kinds.spring_balancing.effects import Setting, compute_effects
 from synthesis.kinds.spring_balancing.problem import SpringBalancingProblem
-from synthesis.kinds.spring_balancing.program import size_of
-from synthesis.kinds.spring_balancing.stated_springs import SoughtSpring
-from synthesis.kinds.spring_balancing.verification import machine_of_answer
+from synthesis.kinds.spring_balancing.program import compute_norm
+from synthesis.kinds.spring_balancing.requested_springs import SoughtSpring
+from synthesis.kinds.spring_balancing.verification import build_answer_machine
 from tests.synthesis.sprung_linkages import both_open, fourbar, lever, missed, slider_crank
-
-Real = NDArray[np.float64]
 
 FINER = 7200
 """Positions of the second measurement."""
@@ -48,12 +46,12 @@ FAMILIES: dict[str, Any] = {
 
 def measured_again(problem: SpringBalancingProblem, setting: Setting, design: SprungDesign) -> float:
     """The value on other positions."""
-    grid = setting.task.positions(FINER + 1)
+    grid = setting.task.list_positions(FINER + 1)
     drives = []
-    for machine in (setting.task.machine, machine_of_answer(problem, design.mechanism, design.dynamics)):
-        found = reactions(machine, placed(machine, grid, setting.task.speed, setting.task.acceleration))
+    for machine in (setting.task.machine, build_answer_machine(problem, design.mechanism, design.dynamics)):
+        found = compute_reactions(machine, place_machine(machine, grid, setting.task.speed, setting.task.acceleration))
         drives.append(found.drive[found.solved])
-    return size_of(drives[1], problem.norm) / size_of(drives[0], problem.norm)
+    return compute_norm(drives[1], problem.norm) / compute_norm(drives[0], problem.norm)
 
 
 def drawn(rng: np.random.Generator, setting: Setting, spring: SoughtSpring, best: Any) -> Real:
@@ -64,14 +62,14 @@ def drawn(rng: np.random.Generator, setting: Setting, spring: SoughtSpring, best
     if near:
         rate = float(np.clip(best.rate * (1.0 + 0.02 * rng.normal()), low, np.inf if high is None else high))
     ends = []
-    for n, corners in enumerate(setting.places(spring)):
+    for n, corners in enumerate(setting.list_corners(spring)):
         at = complex(rng.dirichlet(np.ones(len(corners))) @ corners)
         if near:
             own = setting.task.machine.scale * complex(*best.ends[n].point)
             at = own + (at - own) * rng.uniform(0.0, 0.05)
         ends.append(np.array([at]))
-    effects = effects_of(setting, spring, ends)
-    if spring.superposed:
+    effects = compute_effects(setting, spring, ends)
+    if spring.is_superposable:
         return np.asarray(rate * effects.drive[0])
     scale = setting.task.machine.scale
     shortest, longest = spring.free_lengths
@@ -87,18 +85,18 @@ def drawn(rng: np.random.Generator, setting: Setting, spring: SoughtSpring, best
 
 def least_by_chance(rng: np.random.Generator, setting: Setting, design: SprungDesign, samples: int) -> float:
     """The least value of random springs."""
-    few, norm = setting.thinned(THINNED), setting.problem.norm
-    whole, least = size_of(setting.fixed, norm), np.inf
+    few, norm = setting.thin_positions(THINNED), setting.problem.norm
+    whole, least = compute_norm(setting.fixed, norm), np.inf
     known = {spring.number: spring for spring in design.springs}
     for _ in range(samples):
         state = rng.bit_generator.state
         parts = [drawn(rng, few, spring, known.get(n)) for n, spring in enumerate(setting.problem.springs)]
         left = few.fixed + np.sum(parts, axis=0)
-        if np.isfinite(left).all() and size_of(left, norm) < least * whole:
+        if np.isfinite(left).all() and compute_norm(left, norm) < least * whole:
             again = np.random.default_rng()
             again.bit_generator.state = state
             parts = [drawn(again, setting, spring, known.get(n)) for n, spring in enumerate(setting.problem.springs)]
-            least = min(least, size_of(setting.fixed + np.sum(parts, axis=0), norm) / whole)
+            least = min(least, compute_norm(setting.fixed + np.sum(parts, axis=0), norm) / whole)
     return least
 
 

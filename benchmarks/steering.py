@@ -6,7 +6,7 @@ import time
 
 from synthesis.dispatch import solve
 from synthesis.kinds.steering.design import SteeringResult
-from synthesis.registry import example, parse_problem
+from synthesis.registry import get_first_example, parse_problem
 
 VEHICLES = (
     ("Rao, Solved Problem 4.6", 2.745, 1.22, 33.0),
@@ -18,7 +18,7 @@ VEHICLES = (
 
 
 def main() -> None:
-    solve(parse_problem(example("steering")), lambda fraction, message: None)
+    solve(parse_problem(get_first_example("steering")), lambda fraction, message: None)
     heads = f"{'arm/pivot':>11}{'arm angle':>11}{'error':>9}{'Davis':>10}{'CPU s':>8}"
     print(f"{'vehicle':<26}{'lock':>6}{'tie rod':>9}{heads}")
     for name, wheelbase, pivot, lock in VEHICLES:

@@ -20,20 +20,22 @@ from numba.core.caching import InTreeCacheLocator, UserProvidedCacheLocator, Use
 from numba.core.compiler_lock import global_compiler_lock
 from numba.core.registry import CPUDispatcher
 
-_OURS = rb"(?:kinematics|synthesis)[\w.]*"
-_IMPORT = re.compile(rb"^ *(?:from (%b) import (\([^)]*\)|.*)|import (%b))" % (_OURS, _OURS), re.MULTILINE)
+_PROJECT_MODULES = rb"(?:kinematics|synthesis)[\w.]*"
+_IMPORT_PATTERN = re.compile(
+    rb"^ *(?:from (%b) import (\([^)]*\)|.*)|import (%b))" % (_PROJECT_MODULES, _PROJECT_MODULES), re.MULTILINE
+)
 
 
 @cache
-def _text(source: Path) -> bytes:
+def _read_source(source: Path) -> bytes:
     return source.read_bytes()
 
 
 @cache
-def _imports(root: Path, source: Path) -> frozenset[Path]:
+def _find_imports(root: Path, source: Path) -> frozenset[Path]:
     """Return the project files below `root` that `source` imports; packages are represented by `__init__`."""
     files = set()
-    for module, names, whole in _IMPORT.findall(_text(source)):
+    for module, names, whole in _IMPORT_PATTERN.findall(_read_source(source)):
         place = root.joinpath(*(module or whole).decode().split("."))
         if place.is_dir():
             files.add(place / "__init__.py")
@@ -45,7 +47,7 @@ def _imports(root: Path, source: Path) -> frozenset[Path]:
 
 
 @cache
-def sources(root: Path, source: Path) -> tuple[Path, ...]:
+def find_sources(root: Path, source: Path) -> tuple[Path, ...]:
     """Return `source` and all project files that it imports, directly or indirectly, sorted by path.
 
     `root` is the folder that contains the top-level packages.
@@ -53,57 +55,57 @@ def sources(root: Path, source: Path) -> tuple[Path, ...]:
     reached = {source}
     waiting = [source]
     while waiting:
-        further = _imports(root, waiting.pop()) - reached
+        further = _find_imports(root, waiting.pop()) - reached
         reached |= further
         waiting.extend(further)
     return tuple(sorted(reached))
 
 
 @cache
-def digest(root: Path, source: Path) -> str:
+def compute_digest(root: Path, source: Path) -> str:
     """Return a digest of the text of `sources`; it changes whenever a kernel has to be compiled again."""
-    return sha256(b"".join(sha256(_text(file)).digest() for file in sources(root, source))).hexdigest()
+    return sha256(b"".join(sha256(_read_source(file)).digest() for file in find_sources(root, source))).hexdigest()
 
 
-def _root(source: Path) -> Path:
+def _find_root(source: Path) -> Path:
     """Return the folder that contains the top-level package of a source file."""
     return next(folder for folder in source.parents if not (folder / "__init__.py").exists())
 
 
-class _BySources:
+class _SourceStampMixin:
     """Mixin for a cache locator of `numba`: stamps a kernel with the digest of all its sources."""
 
     _py_file: str
 
     def get_source_stamp(self) -> str:
         source = Path(self._py_file).resolve()
-        return digest(_root(source), source)
+        return compute_digest(_find_root(source), source)
 
 
-class InStatedFolder(_BySources, UserProvidedCacheLocator):
+class EnvironmentFolderLocator(_SourceStampMixin, UserProvidedCacheLocator):
     """Locator of the folder named by `NUMBA_CACHE_DIR`, if that is set."""
 
 
-class BesideSources(_BySources, InTreeCacheLocator):
+class SourceFolderLocator(_SourceStampMixin, InTreeCacheLocator):
     """Locator of the `__pycache__` next to the sources, if that is writable."""
 
 
-class InCheckout(BesideSources):
+class CheckoutLocator(SourceFolderLocator):
     """Locator of `__pycache__` in a checkout of the project; installed packages are left untouched."""
 
     @classmethod
     def from_function(cls, py_func: Any, py_file: str) -> Any:
         """Return the locator for a kernel (the hook that numba calls), or None outside a checkout."""
-        in_checkout = (_root(Path(py_file).resolve()) / "pyproject.toml").exists()
+        in_checkout = (_find_root(Path(py_file).resolve()) / "pyproject.toml").exists()
         beside: Any = super()  # numba annotates nothing
         return beside.from_function(py_func, py_file) if in_checkout else None
 
 
-class OfUser(_BySources, UserWideCacheLocator):
+class UserFolderLocator(_SourceStampMixin, UserWideCacheLocator):
     """Locator of the user's cache folder, if there is one."""
 
 
-LOCATORS: tuple[Any, ...] = (InStatedFolder, InCheckout, OfUser, BesideSources)
+LOCATORS: tuple[Any, ...] = (EnvironmentFolderLocator, CheckoutLocator, UserFolderLocator, SourceFolderLocator)
 """Cache locators in the order in which they are tried."""
 
 _LOCATORS = ",".join(f"{__name__}.{locator.__name__}" for locator in LOCATORS)
@@ -112,7 +114,7 @@ _LOCATORS = ",".join(f"{__name__}.{locator.__name__}" for locator in LOCATORS)
 _Dispatcher: Any = CPUDispatcher
 
 
-class _Declared(_Dispatcher):
+class _LazyKernel(_Dispatcher):
     """A kernel of one declared signature that is compiled at its first use instead of at import."""
 
     declared: Any = None
@@ -175,7 +177,7 @@ def _njit(*signature: Any, **options: Any) -> Callable[[Callable[..., Any]], Any
         finally:
             config.CACHE_LOCATOR_CLASSES = before
         if declared is not None:
-            kernel.__class__ = _Declared
+            kernel.__class__ = _LazyKernel
             kernel.declared = declared
         return kernel
 

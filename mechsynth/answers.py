@@ -10,10 +10,10 @@ from pathlib import Path
 from typing import Any
 
 from mechsynth.cycle import Cycle
-from service.render import Form, exported, forms, heading
+from service.render import Form, export_design, list_forms, make_heading
 from synthesis.model.answer import NearestMiss, Search, Verification
 from synthesis.model.answer import Result as Answered
-from synthesis.model.statement import StatedProblem
+from synthesis.model.problem import ProblemBase
 from synthesis.registry import KINDS
 
 Place = str | PathLike[str]
@@ -35,9 +35,9 @@ class Design:
         The heading of its drawings.
     """
 
-    def __init__(self, model: Any, problem: StatedProblem, label: str | None, number: int) -> None:
+    def __init__(self, model: Any, problem: ProblemBase, label: str | None, number: int) -> None:
         self.model, self.problem, self.number = model, problem, number
-        self.title = heading(problem, label, number)
+        self.title = make_heading(problem, label, number)
 
     def __repr__(self) -> str:
         verdict = "passed" if self.passed else "FAILED"
@@ -67,7 +67,7 @@ class Design:
     @property
     def forms(self) -> list[Form]:
         """The forms of files that its type of mechanism has: ``svg``, ``gif``, ``dxf``, ``csv``."""
-        return forms(self.mechanism.type)
+        return list_forms(self.mechanism.type)
 
     def draw(self) -> str:
         """The labelled drawing, SVG: the same as the service's."""
@@ -83,7 +83,7 @@ class Design:
         NotBuilt
             Where its lengths are at the limits of what a statement may hold.
         """
-        return exported(self.model, self.problem, self.title, form)
+        return export_design(self.model, self.problem, self.title, form)
 
     def to_svg(self, path: Place) -> Path:
         """Write the drawing; returns the path. Raises as :meth:`file`, and OSError."""
@@ -120,10 +120,10 @@ class Design:
         """
         if steps < 1:
             raise ValueError(f"a cycle has one step at least, not {steps}")
-        from synthesis.analyses import family  # the analysis core is for who moves something
+        from synthesis.analyses import get_family  # the analysis core is for who moves something
 
         mechanism = self.mechanism.model_dump(mode="json")
-        return Cycle.of(family(mechanism).request.over_the_cycle(mechanism, steps))
+        return Cycle.of(get_family(mechanism).request.analyze_cycle(mechanism, steps))
 
     def _repr_svg_(self) -> str:
         return self.draw()
@@ -149,7 +149,7 @@ class Result:
     designs : list of Design
     """
 
-    def __init__(self, model: Answered[Any], problem: StatedProblem, label: str | None = None) -> None:
+    def __init__(self, model: Answered[Any], problem: ProblemBase, label: str | None = None) -> None:
         self.model, self.problem, self.label = model, problem, label
         self.designs = [Design(design, problem, label, n) for n, design in enumerate(model.designs)]
 

@@ -9,7 +9,7 @@ from typing import Any, Self
 import numpy as np
 from numpy.typing import NDArray
 
-Real = NDArray[np.float64]
+from kinematics.arrays import Real
 
 
 @dataclass(frozen=True, eq=False)

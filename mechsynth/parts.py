@@ -4,7 +4,12 @@ Only the stock of a rotor has another one here, ``RotorStock``, because ``Stock`
 units of a series of trains are mappings.
 """
 
-from synthesis.kinds.balancing.stated_rotor import (
+from synthesis.kinds.balancing.statement.counterweights import (
+    Counterweights,
+    ForceCaps,
+    ForceWeights,
+)
+from synthesis.kinds.balancing.statement.rotor import (
     BearingReading,
     Correction,
     Holes,
@@ -13,15 +18,10 @@ from synthesis.kinds.balancing.stated_rotor import (
     RotorMass,
     TrialRun,
 )
-from synthesis.kinds.balancing.stated_rotor import (
+from synthesis.kinds.balancing.statement.rotor import (
     Stock as RotorStock,
 )
-from synthesis.kinds.balancing.stated_weights import (
-    Counterweights,
-    ForceCaps,
-    ForceWeights,
-)
-from synthesis.kinds.cam.followers import (
+from synthesis.kinds.cam.statement.followers import (
     BarrelRoller,
     FollowerDynamics,
     LengthRange,
@@ -31,8 +31,8 @@ from synthesis.kinds.cam.followers import (
     TranslatingFlat,
     TranslatingRoller,
 )
-from synthesis.kinds.cam.limits import CamLimits
-from synthesis.kinds.cam.segments import (
+from synthesis.kinds.cam.statement.limits import CamLimits
+from synthesis.kinds.cam.statement.segments import (
     ConstantVelocity,
     DisplacementBand,
     Dwell,
@@ -41,31 +41,27 @@ from synthesis.kinds.cam.segments import (
     ProgramCondition,
 )
 from synthesis.kinds.dwell.problem import (
+    DwellRequest,
     RockerOutput,
     SliderOutput,
-    StatedDwell,
 )
 from synthesis.kinds.engine.problem import (
+    ConnectingRod,
+    CrankThrow,
     CylinderPressure,
     EngineLayout,
     EngineMasses,
     IdleFlywheel,
-    StatedCrank,
-    StatedRod,
 )
 from synthesis.kinds.flywheel.problem import (
-    FastestRim,
-    Flattest,
     FlywheelLimits,
-    Least,
     Machine,
-    Most,
-    StatedTorque,
+    MaxLength,
+    MaxRimSpeed,
+    MaxSlenderness,
+    MinLength,
     Thickness,
-)
-from synthesis.kinds.function.functions import (
-    FunctionStatement,
-    TablePoint,
+    TorqueTable,
 )
 from synthesis.kinds.function.problem import (
     FunctionConstraints,
@@ -74,8 +70,12 @@ from synthesis.kinds.function.problem import (
     Scales,
     Zeros,
 )
-from synthesis.kinds.gear_train.stated_stages import StageTeethRange, StatedStage
-from synthesis.kinds.gear_train.stated_train import StockedGear, TeethRange
+from synthesis.kinds.function.statement.functions import (
+    FunctionStatement,
+    TablePoint,
+)
+from synthesis.kinds.gear_train.statement.stages import RequestedStage, StageTeethRange
+from synthesis.kinds.gear_train.statement.train import StockedGear, TeethRange
 from synthesis.kinds.gearbox.problem import (
     SpindleSpeeds,
     StageRatio,
@@ -86,14 +86,14 @@ from synthesis.kinds.indexing.problem import (
     IndexingConstraints,
     Ratcheting,
 )
-from synthesis.kinds.motion.stated_dyads import (
+from synthesis.kinds.motion.statement.dyad_choices import (
     CouplerVector,
     DriverDyad,
     DyadChoices,
     GroundLine,
 )
-from synthesis.kinds.motion.stated_mechanisms import Chain
-from synthesis.kinds.motion.stated_positions import (
+from synthesis.kinds.motion.statement.mechanism_types import Chain
+from synthesis.kinds.motion.statement.positions import (
     Position,
     Tolerance,
 )
@@ -104,88 +104,88 @@ from synthesis.kinds.path.problem import (
     PathPivots,
     PathPoint,
 )
-from synthesis.kinds.path.stated_stance import Stance
-from synthesis.kinds.path.stated_start import StartFourbar
+from synthesis.kinds.path.statement.stance import Stance
+from synthesis.kinds.path.statement.start import StartFourbar
 from synthesis.kinds.planetary_train.problem import PlanetaryTeeth
 from synthesis.kinds.quick_return.problem import RockerPosition
 from synthesis.kinds.spring_balancing.problem import Holding
-from synthesis.kinds.spring_balancing.stated_springs import (
+from synthesis.kinds.spring_balancing.requested_springs import (
     SoughtEnd,
     SoughtSpring,
 )
 from synthesis.kinds.steering.problem import ArmLimits
-from synthesis.model.bodies import (
+from synthesis.model.dynamics.bodies import (
+    BodySpec,
     LinkShape,
     Part,
     PointMass,
-    PolarPlace,
+    PolarPoint,
     Shape,
-    StatedBody,
 )
-from synthesis.model.dynamics import (
+from synthesis.model.dynamics.loads import (
+    AgainstMotion,
+    ForceCurve,
+    GasPressure,
+    LoadSpec,
+    TorqueCurve,
+)
+from synthesis.model.dynamics.request import (
     DesignDynamics,
     DrivenSlide,
     DynamicsBlock,
+    FlywheelSpec,
+    FrictionSpec,
     Gravity,
+    LoadedLinkage,
     PinFriction,
-    StatedFlywheel,
-    StatedFriction,
-    WeighedLinkage,
 )
-from synthesis.model.gear_statement import (
+from synthesis.model.dynamics.springs import (
+    SpringEnd,
+    SpringSpec,
+)
+from synthesis.model.gears.planet_strength import PlanetPower
+from synthesis.model.gears.request import (
     DistanceRange,
     ShiftRange,
     ToothRange,
 )
-from synthesis.model.gear_strength import (
+from synthesis.model.gears.strength import (
     CarriedPower,
-    StatedFactors,
+    StrengthFactors,
 )
-from synthesis.model.layout import StatedLayout
-from synthesis.model.linkage_statement import (
+from synthesis.model.layout import LayoutSpec
+from synthesis.model.linkage.given_linkage import (
+    CouplerPointSpec,
+    FixedPivotsSpec,
+    FourbarLengths,
+    GearSpec,
+    LinkSpec,
+    SkeletonSpec,
+    SlideSpec,
+)
+from synthesis.model.linkage.input_motion import Sweep
+from synthesis.model.linkage.problem import (
     Constraints,
     LengthLimits,
     Region,
 )
-from synthesis.model.loads import (
-    AgainstMotion,
-    ForceCourse,
-    GasPressure,
-    StatedLoad,
-    TorqueCourse,
-)
-from synthesis.model.manufacture import (
-    Manufacture,
-    Quality,
-    Rounding,
-    Stock,
-    Tolerances,
-)
-from synthesis.model.motions import Sweep
-from synthesis.model.planet_strength import PlanetPower
-from synthesis.model.space import (
+from synthesis.model.linkage.workspace import (
     Body,
     FixedPivotZones,
     MovingPivotZones,
     Space,
 )
-from synthesis.model.springs import (
-    SpringEnd,
-    StatedSpring,
-)
-from synthesis.model.stated_linkage import (
-    FourbarLengths,
-    StatedCouplerPoint,
-    StatedGear,
-    StatedLink,
-    StatedPivots,
-    StatedSkeleton,
-    StatedSlide,
-)
-from synthesis.model.zones import (
+from synthesis.model.linkage.zones import (
     Circle,
     MovingZone,
     Zone,
+)
+from synthesis.model.manufacture.request import (
+    Manufacture,
+    Quality,
+    Rounding,
+    Stock,
+    Tolerances,
 )
 
 __all__ = [
@@ -194,17 +194,21 @@ __all__ = [
     "BarrelRoller",
     "BearingReading",
     "Body",
+    "BodySpec",
     "CamLimits",
     "CarriedPower",
     "Chain",
     "Circle",
     "Clearances",
+    "ConnectingRod",
     "ConstantVelocity",
     "Constraints",
     "Correction",
     "Counterweights",
     "CouplerPointLimits",
+    "CouplerPointSpec",
     "CouplerVector",
+    "CrankThrow",
     "CylinderPressure",
     "DesignDynamics",
     "DisplacementBand",
@@ -212,23 +216,26 @@ __all__ = [
     "DrivenSlide",
     "DriverDyad",
     "Dwell",
+    "DwellRequest",
     "DwellShare",
     "DyadChoices",
     "DynamicsBlock",
     "EngineLayout",
     "EngineMasses",
-    "FastestRim",
     "FixedPivotZones",
-    "Flattest",
+    "FixedPivotsSpec",
     "FlywheelLimits",
+    "FlywheelSpec",
     "FollowerDynamics",
     "ForceCaps",
-    "ForceCourse",
+    "ForceCurve",
     "ForceWeights",
     "FourbarLengths",
+    "FrictionSpec",
     "FunctionConstraints",
     "FunctionStatement",
     "GasPressure",
+    "GearSpec",
     "Gravity",
     "GroundLine",
     "GroundPivots",
@@ -237,13 +244,19 @@ __all__ = [
     "IdleFlywheel",
     "IndexingConstraints",
     "Influence",
-    "Least",
+    "LayoutSpec",
     "LengthLimits",
     "LengthRange",
     "LinkShape",
+    "LinkSpec",
+    "LoadSpec",
+    "LoadedLinkage",
     "Machine",
     "Manufacture",
-    "Most",
+    "MaxLength",
+    "MaxRimSpeed",
+    "MaxSlenderness",
+    "MinLength",
     "Move",
     "MovingPivotZones",
     "MovingZone",
@@ -258,7 +271,7 @@ __all__ = [
     "PlanetPower",
     "PlanetaryTeeth",
     "PointMass",
-    "PolarPlace",
+    "PolarPoint",
     "Polynomial",
     "Position",
     "ProgramCondition",
@@ -267,6 +280,7 @@ __all__ = [
     "RateRange",
     "Reading",
     "Region",
+    "RequestedStage",
     "RockerOutput",
     "RockerPosition",
     "RotorMass",
@@ -275,6 +289,8 @@ __all__ = [
     "Scales",
     "Shape",
     "ShiftRange",
+    "SkeletonSpec",
+    "SlideSpec",
     "SliderOutput",
     "SoughtEnd",
     "SoughtSpring",
@@ -282,30 +298,14 @@ __all__ = [
     "Space",
     "SpindleSpeeds",
     "SpringEnd",
+    "SpringSpec",
     "StageRatio",
     "StageTeethRange",
     "Stance",
     "StartFourbar",
-    "StatedBody",
-    "StatedCouplerPoint",
-    "StatedCrank",
-    "StatedDwell",
-    "StatedFactors",
-    "StatedFlywheel",
-    "StatedFriction",
-    "StatedGear",
-    "StatedLayout",
-    "StatedLink",
-    "StatedLoad",
-    "StatedPivots",
-    "StatedRod",
-    "StatedSkeleton",
-    "StatedSlide",
-    "StatedSpring",
-    "StatedStage",
-    "StatedTorque",
     "Stock",
     "StockedGear",
+    "StrengthFactors",
     "Sweep",
     "TablePoint",
     "TeethRange",
@@ -313,11 +313,11 @@ __all__ = [
     "Tolerance",
     "Tolerances",
     "ToothRange",
-    "TorqueCourse",
+    "TorqueCurve",
+    "TorqueTable",
     "TranslatingFlat",
     "TranslatingRoller",
     "TrialRun",
-    "WeighedLinkage",
     "Zeros",
     "Zone",
 ]

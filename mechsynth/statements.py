@@ -6,11 +6,11 @@ import json
 from collections.abc import Mapping
 from typing import Any, cast
 
-from service.stated import Faults, consistent, well_formed
-from synthesis.model.statement import StatedProblem
+from service.requests import Faults, consistent, well_formed
+from synthesis.model.problem import ProblemBase
 from synthesis.registry import KINDS
 
-Problem = StatedProblem | Mapping[str, Any]
+Problem = ProblemBase | Mapping[str, Any]
 """A problem: one of the classes of :mod:`mechsynth.kinds`, or the JSON object that a client would post."""
 
 
@@ -27,12 +27,12 @@ class InvalidProblem(ValueError):
 
 def statement_of(problem: Problem) -> dict[str, Any]:
     """A problem as the JSON object that states it."""
-    if isinstance(problem, StatedProblem):
+    if isinstance(problem, ProblemBase):
         return {**json.loads(problem.model_dump_json(exclude_unset=True)), "kind": problem.kind}
     return dict(problem)
 
 
-def checked(problem: Problem) -> StatedProblem:
+def checked(problem: Problem) -> ProblemBase:
     """A problem that can be solved.
 
     Raises
@@ -48,7 +48,7 @@ def checked(problem: Problem) -> StatedProblem:
     faults = faults or consistent(read)
     if faults:
         raise InvalidProblem(_by_path(faults))
-    return cast(StatedProblem, read)
+    return cast(ProblemBase, read)
 
 
 def _by_path(faults: Faults) -> dict[str, str]:

@@ -20,7 +20,7 @@ class Progress:
 
 
 class Compiling(Protocol):
-    """Whoever compiles kernels beside the jobs (:mod:`service.warming`)."""
+    """Whoever compiles kernels beside the jobs (:mod:`service.server.precompile`)."""
 
     def start(self, after: Callable[[], bool]) -> None:
         """Begin in the background, once ``after`` says so or ten seconds from now."""

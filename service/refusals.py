@@ -11,8 +11,8 @@ from typing import Any
 
 from pydantic import ValidationError
 
-from service.explained import MAX_FAULTS, explained, place
-from synthesis.model.counting import counted
+from service.error_messages import MAX_FAULTS, explained, place
+from synthesis.model.counting import format_count
 
 FieldFaults = Sequence[tuple[str, str]]
 """Pairs of a JSON pointer and what is wrong there."""
@@ -100,7 +100,7 @@ def count_faults(faults: int) -> str:
     """Say in a sentence how many faults a request has."""
     if faults > MAX_FAULTS:
         return f"The request has more than {MAX_FAULTS} faults; the first {MAX_FAULTS} are listed."
-    return f"The request has {counted(faults, 'fault')}."
+    return f"The request has {format_count(faults, 'fault')}."
 
 
 __all__ = [

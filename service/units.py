@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from synthesis.model.dimension import Dimension
-from synthesis.model.statement import StatedProblem
+from synthesis.model.problem import ProblemBase
 
 _SI = {
     Dimension.POWER: "W",
@@ -18,11 +18,11 @@ _SI = {
 """What masses, loads and flywheels have, and nothing else."""
 
 
-def symbols(problem: StatedProblem) -> dict[Dimension, str]:
+def symbols(problem: ProblemBase) -> dict[Dimension, str]:
     """The symbol of each dimension in the units of a problem; forces and masses of inches are those of pounds-force."""
     length = problem.length_unit
     inches = length == "in"
-    displacement, rate = ("°", "rad") if problem.oscillating else (length, length)
+    displacement, rate = ("°", "rad") if problem.is_oscillating else (length, length)
     output, way = (length, length) if problem.slides else ("°", "rad")
     force = "lbf" if inches else "N"
     stated = {

@@ -31,7 +31,7 @@ from synthesis.kinds import (
     train_series,
 )
 from synthesis.model.kind import Kind
-from synthesis.model.statement import StatedProblem
+from synthesis.model.problem import ProblemBase
 
 KINDS: dict[str, Kind[Any, Any]] = {
     folder.KIND.name: folder.KIND
@@ -60,19 +60,19 @@ KINDS: dict[str, Kind[Any, Any]] = {
 """Every kind of problem by name, in display order."""
 
 
-def _tag(statement: Any) -> str | None:
+def _tag_kind(statement: Any) -> str | None:
     kind = statement.get("kind") if isinstance(statement, dict) else getattr(statement, "kind", None)
     return f"<{kind}>" if isinstance(kind, str) and kind in KINDS else None
 
 
 if TYPE_CHECKING:
-    Problem = StatedProblem
+    Problem = ProblemBase
 else:
     _members = tuple(Annotated[kind.problem, Tag(f"<{name}>")] for name, kind in KINDS.items())
     Problem = Annotated[
         Union[_members],  # noqa: UP007  (made of a list)
         Discriminator(
-            _tag,
+            _tag_kind,
             custom_error_type="unknown_kind",
             custom_error_message=f"kind must be given and be one of: {', '.join(KINDS)}",
         ),
@@ -85,14 +85,14 @@ def parse_problem(statement: dict[str, Any]) -> Problem:
     return _PROBLEM.validate_python(statement)
 
 
-def examples(kind: str) -> list[dict[str, Any]]:
+def list_examples(kind: str) -> list[dict[str, Any]]:
     """Return the runnable examples of a kind, as a client would post them."""
     return KINDS[kind].examples
 
 
-def example(kind: str) -> dict[str, Any]:
+def get_first_example(kind: str) -> dict[str, Any]:
     """Return the first example of a kind."""
-    return examples(kind)[0]
+    return list_examples(kind)[0]
 
 
 _PROBLEM: TypeAdapter[Problem] = TypeAdapter(Problem, config=ConfigDict(defer_build=True))

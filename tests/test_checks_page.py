@@ -11,11 +11,11 @@ import pytest
 
 from synthesis.kinds.function.problem import FunctionConstraints
 from synthesis.kinds.path.problem import PathConstraints
-from synthesis.model.linkage_statement import FORCES, Constraints, LinkageProblem
-from synthesis.model.statement import StatedProblem
-from synthesis.proof.checks import REACHES_TARGETS
-from synthesis.proof.space import ROOM
+from synthesis.model.linkage.problem import FORCE_NAMES, Constraints, LinkageProblem
+from synthesis.model.problem import ProblemBase
 from synthesis.registry import KINDS
+from synthesis.verification.checks import REACHES_TARGETS
+from synthesis.verification.workspace import WORKSPACE_CHECKS
 
 ROOT = Path(__file__).parents[1]
 PAGE = (ROOT / "docs" / "checks.md").read_text("utf-8")
@@ -43,13 +43,13 @@ MADE_OF = {
     ("kinds/gear_train/verification.py", "name"): ("contact_ratio", "tip_thickness"),
     ("kinds/motion/checks.py", "name"): ("input_side", "output_side"),
     ("kinds/spring_balancing/verification.py", "name"): (*LIMITED, "extension", "compression"),
-    ("outcome/forces.py", "name"): FORCES,
+    ("outcome/forces.py", "name"): FORCE_NAMES,
     ("outcome/layout.py", "PLANES"): ("planes",),
     ("outcome/manufacture.py", "YIELD"): ("yield",),
     ("proof/checks.py", "REACHES_TARGETS"): (REACHES_TARGETS,),
     ("proof/checks.py", "name"): (),
     ("proof/constraints.py", "name"): ("fixed_pivot_region", "moving_pivot_region"),
-    ("proof/space.py", "ROOM[moving]"): ROOM[:2],
+    ("proof/space.py", "ROOM[moving]"): WORKSPACE_CHECKS[:2],
     ("relaxation.py", "name"): ("ratio", "ratio_error", "ratios", "speeds"),
 }
 """The names that are no literals where a check is made, by file and expression. Empty: names that others hand over."""
@@ -116,7 +116,7 @@ def test_every_kind_that_the_page_says_has_a_check_is_one() -> None:
 def test_the_page_names_every_field_that_kinds_have_in_common() -> None:
     listed = [names_in(cells[0])[0] for cells in rows("field") if len(cells) == 3]
     assert sorted(listed) == sorted(LinkageProblem.model_fields)
-    assert listed[: len(StatedProblem.model_fields)] == list(StatedProblem.model_fields)
+    assert listed[: len(ProblemBase.model_fields)] == list(ProblemBase.model_fields)
     (of_linkages,) = re.findall(r"^(`motion`.*?) have these too", PAGE, re.MULTILINE | re.DOTALL)
     assert set(names_in(of_linkages)) == {
         kind.name for kind in KINDS.values() if issubclass(kind.problem, LinkageProblem)
@@ -138,5 +138,5 @@ def test_the_page_names_every_constraint_with_its_default_and_its_check() -> Non
 def test_every_field_of_every_problem_has_the_default_that_the_page_tells() -> None:
     told = {names_in(cells[0])[0]: cells[1] for cells in rows("field") if len(cells) == 3}
     for kind in KINDS.values():
-        for name in StatedProblem.model_fields.keys() - {"kind"}:
+        for name in ProblemBase.model_fields.keys() - {"kind"}:
             assert told[name].strip("`") == json.dumps(kind.problem.model_fields[name].default)

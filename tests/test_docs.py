@@ -12,7 +12,7 @@ from pathlib import Path
 import pytest
 
 from synthesis.analyses import parse_request
-from synthesis.model.sixbars import IN_WORDS
+from synthesis.model.linkage.sixbars import SIXBAR_NAMES
 from synthesis.registry import parse_problem
 from tests.support.loops import check_each
 
@@ -152,7 +152,7 @@ def test_sixbars_are_called_by_one_name_on_pages_sheets_and_in_statements() -> N
     sources = [path for folder in ("synthesis", "service", "kinematics") for path in (ROOT / folder).rglob("*.py")]
     texts = {path.name: path.read_text("utf-8") for path in [*PAGES, *sources, ROOT / "docs" / "openapi.json"]}
     assert {name: NO_NAME.search(text).group() for name, text in texts.items() if NO_NAME.search(text)} == {}
-    for kind, name in IN_WORDS.items():
+    for kind, name in SIXBAR_NAMES.items():
         chain, number = kind.split("_")
         assert name == f"{chain.capitalize()} {'I' * int(number)} sixbar"
         assert name.removesuffix(" sixbar").split()[0] in texts["glossary.md"]

@@ -13,10 +13,10 @@ from typing import get_args
 
 import pytest
 
-from service.render import FILES, forms
+from service.render import FORMS_BY_TYPE, list_forms
 from synthesis.analyses import FAMILIES
 from synthesis.model.kind import Kind
-from synthesis.model.mechanism_types import models_within
+from synthesis.model.mechanism_types import collect_models
 from synthesis.registry import KINDS
 from tests.support.loops import check_each
 
@@ -62,12 +62,12 @@ def test_every_kind_is_offered() -> None:
 @pytest.mark.parametrize("kind", KINDS.values(), ids=lambda kind: kind.name)
 def test_every_mechanism_is_drawn_and_analysed(kind: Kind) -> None:
     """What has neither files nor a family of its own is a linkage, and is drawn and driven by its skeleton."""
-    designs = models_within(kind.result.model_fields["designs"].annotation)
-    for model in (model for design in designs for model in models_within(design.model_fields["mechanism"].annotation)):
+    designs = collect_models(kind.result.model_fields["designs"].annotation)
+    for model in (model for design in designs for model in collect_models(design.model_fields["mechanism"].annotation)):
         for mechanism in get_args(model.model_fields["type"].annotation):
             assert mechanism in kind.mechanisms
-            assert "svg" in forms(mechanism)
-            assert (mechanism in FAMILIES and mechanism in FILES) or "skeleton" in model.model_fields
+            assert "svg" in list_forms(mechanism)
+            assert (mechanism in FAMILIES and mechanism in FORMS_BY_TYPE) or "skeleton" in model.model_fields
 
 
 def test_kinematics_knows_numpy_and_numba_only() -> None:
@@ -113,7 +113,7 @@ def test_the_page_names_no_more_files_that_a_kind_edits_than_it_may_take() -> No
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("module", ["synthesis.registry", "service.app"])
+@pytest.mark.parametrize("module", ["synthesis.registry", "service.server.app"])
 def test_who_parses_problems_waits_for_no_solver(module: str) -> None:
     """Compiled kernels and solvers are imported by those who solve, in processes of their own."""
     program = f"import sys, {module}; print(*({HEAVY} & set(sys.modules)))"

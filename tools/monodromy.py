@@ -13,11 +13,9 @@ from collections.abc import Callable
 from itertools import pairwise
 
 import numpy as np
-from numpy.typing import NDArray
 
-from synthesis.kinds.path.starts import Start
-
-Complex = NDArray[np.complex128]
+from kinematics.arrays import Complex
+from synthesis.kinds.path.exact.continuation_starts import StoredStart
 
 
 def all_solutions(
@@ -31,7 +29,7 @@ def all_solutions(
     quiet_loops: int,
     most_loops: int,
     spread: float = 1.0,
-) -> Start:
+) -> StoredStart:
     """All solutions for the parameters ``p``.
 
     Parameters
@@ -63,5 +61,5 @@ def all_solutions(
         print(f"loop {loop + 1}: {len(found)} solutions")
         quiet = quiet + 1 if len(found) == before else 0
         if len(found) == count and quiet == quiet_loops:
-            return Start(found, p)
+            return StoredStart(found, p)
     raise RuntimeError(f"{len(found)} solutions after {most_loops} loops; {count} are expected")

@@ -8,11 +8,11 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Any
 
-from service.parts.isometric import isometric_sheet
-from service.parts.items import items
-from service.parts.made import made
-from service.parts.sheet import assembly_sheet
-from service.parts.sizes import PartsQuery
+from service.parts.assembly.items import list_items
+from service.parts.assembly.sizes import PartsQuery
+from service.parts.drawings.assembly_sheet import draw_assembly_sheet
+from service.parts.drawings.isometric import draw_isometric_sheet
+from service.parts.registry import make_parts
 from synthesis.dispatch import solve
 from synthesis.registry import parse_problem
 
@@ -84,9 +84,9 @@ def drawn(title: str, problem: dict[str, Any], query: dict[str, Any]) -> tuple[s
     """The drawing of an assembly, and its picture."""
     stated = parse_problem({**problem, "max_designs": 1})
     design = solve(stated, lambda _fraction, _message: None).designs[0]
-    assembly = made(design, stated, PartsQuery(**query))
-    picture = isometric_sheet(assembly, title, assembly.motion.reference)
-    return assembly_sheet(assembly, items(assembly), title), picture
+    assembly = make_parts(design, stated, PartsQuery(**query))
+    picture = draw_isometric_sheet(assembly, title, assembly.motion.reference)
+    return draw_assembly_sheet(assembly, list_items(assembly), title), picture
 
 
 def main() -> None:

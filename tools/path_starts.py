@@ -2,7 +2,8 @@
 
 ``python -m tools.path_starts nine`` draws a fourbar with complex dimensions and nine points that it goes through, and
 finds one solution of each of the other 1441 orbits (a minute). ``python -m tools.path_starts five`` does the same for
-five points on given pivots, which have 36 solutions (seconds). :mod:`synthesis.kinds.path.starts` reads the files.
+five points on given pivots, which have 36 solutions (seconds). :mod:`synthesis.kinds.path.exact.continuation_starts`
+reads the files.
 """
 
 from __future__ import annotations
@@ -12,16 +13,14 @@ from importlib import resources
 from pathlib import Path
 
 import numpy as np
-from numpy.typing import NDArray
 
-from synthesis.kinds.path import five_point_system as five
-from synthesis.kinds.path import nine_point_system as nine
-from synthesis.kinds.path.nine_point_system import is_linkage
-from synthesis.kinds.path.starts import Start
-from synthesis.numerics.continuation import REACHED, follow
+from kinematics.arrays import Complex
+from synthesis.kinds.path.exact import five_point_system as five
+from synthesis.kinds.path.exact import nine_point_system as nine
+from synthesis.kinds.path.exact.continuation_starts import StoredStart
+from synthesis.kinds.path.exact.nine_point_system import is_linkage
+from synthesis.numerics.continuation import END_REACHED, follow
 from tools.monodromy import all_solutions
-
-Complex = NDArray[np.complex128]
 
 NINE_SEED, FIVE_SEED = 9, 5
 """Of the stored files."""
@@ -45,7 +44,7 @@ NEWTON_STEPS = 60
 """Many more than Newton's method takes from a random point to a solution of two equations."""
 
 
-def solve_nine_points(rng: np.random.Generator) -> Start:
+def solve_nine_points(rng: np.random.Generator) -> StoredStart:
     """One solution of each orbit of a random problem of nine points.
 
     Raises
@@ -54,13 +53,13 @@ def solve_nine_points(rng: np.random.Generator) -> Start:
         When the loops do not come to 1442 orbits; another seed will do.
     """
     y, p = nine_point_problem(rng)
-    straight = np.zeros(nine.PARAMETERS, np.complex128)
+    straight = np.zeros(nine.PARAMETER_COUNT, np.complex128)
 
     def followed(y: Complex, here: Complex, there: Complex) -> Complex:
         ends = follow(
-            nine.nine_point_system,
-            nine.GROUPS,
-            nine.SCRATCH,
+            nine.evaluate_nine_point_system,
+            nine.SCALE_GROUPS,
+            nine.SCRATCH_SIZE,
             y,
             here,
             there,
@@ -68,10 +67,10 @@ def solve_nine_points(rng: np.random.Generator) -> Start:
             tolerance=FOLLOWING_TOLERANCE,
             threads=THREADS,
         )
-        return np.asarray(ends.y[ends.status == REACHED])
+        return np.asarray(ends.y[ends.status == END_REACHED])
 
     def distinct(ends: Complex) -> Complex:
-        return _distinct_orbits(ends[is_linkage(ends) & (nine.residuals(ends, p) < SAME_ORBIT)], p)
+        return _distinct_orbits(ends[is_linkage(ends) & (nine.compute_residuals(ends, p) < SAME_ORBIT)], p)
 
     y, p = all_solutions(
         y,
@@ -79,15 +78,15 @@ def solve_nine_points(rng: np.random.Generator) -> Start:
         followed,
         distinct,
         rng,
-        count=nine.ORBITS,
+        count=nine.ORBIT_COUNT,
         quiet_loops=NINE_QUIET_LOOPS,
         most_loops=NINE_MOST_LOOPS,
         spread=float(np.abs(p).mean()),
     )
-    return Start(_smallest_member(y, p), p)
+    return StoredStart(_smallest_member(y, p), p)
 
 
-def solve_five_points(rng: np.random.Generator) -> Start:
+def solve_five_points(rng: np.random.Generator) -> StoredStart:
     """All solutions of a random problem of five points on given pivots.
 
     Raises
@@ -96,21 +95,28 @@ def solve_five_points(rng: np.random.Generator) -> Start:
         When the loops do not come to 36 solutions; another seed will do.
     """
     y, p = five_point_problem(rng)
-    straight = np.zeros(five.PARAMETERS, np.complex128)
+    straight = np.zeros(five.PARAMETER_COUNT, np.complex128)
 
     def followed(y: Complex, here: Complex, there: Complex) -> Complex:
         ends = follow(
-            five.five_point_system, five.GROUPS, five.SCRATCH, y, here, there, straight, tolerance=FOLLOWING_TOLERANCE
+            five.evaluate_five_point_system,
+            five.SCALE_GROUPS,
+            five.SCRATCH_SIZE,
+            y,
+            here,
+            there,
+            straight,
+            tolerance=FOLLOWING_TOLERANCE,
         )
-        return np.asarray(ends.y[ends.status == REACHED])
+        return np.asarray(ends.y[ends.status == END_REACHED])
 
     return all_solutions(
         y,
         p,
         followed,
-        lambda ends: _distinct(ends[five.residuals(ends, p) < SAME_SOLUTION]),
+        lambda ends: _distinct(ends[five.compute_residuals(ends, p) < SAME_SOLUTION]),
         rng,
-        count=five.SOLUTIONS,
+        count=five.SOLUTION_COUNT,
         quiet_loops=FIVE_QUIET_LOOPS,
         most_loops=FIVE_MOST_LOOPS,
     )
@@ -126,7 +132,7 @@ def nine_point_problem(rng: np.random.Generator) -> tuple[Complex, Complex]:
         return np.asarray((rng.normal(size=8) + 1j * rng.normal(size=8)) * np.sqrt(0.5))
 
     vectors, turned = drawn(), drawn() * np.sqrt(2.0) - 1.0
-    p = np.empty(nine.PARAMETERS, np.complex128)
+    p = np.empty(nine.PARAMETER_COUNT, np.complex128)
     for j, s in enumerate(turned):
         s_back = -s / (1.0 + s)
         by_delta, by_conj, rest = [], [], []
@@ -149,7 +155,7 @@ def five_point_problem(rng: np.random.Generator) -> tuple[Complex, Complex]:
     def drawn(count: int) -> Complex:
         return np.asarray(rng.normal(size=(count, 2)) @ np.array([1.0, 1.0j]))
 
-    y, p = drawn(five.UNKNOWNS), drawn(five.PARAMETERS)
+    y, p = drawn(five.UNKNOWN_COUNT), drawn(five.PARAMETER_COUNT)
     for j in range(4):
         s = y[4 + j]
         s_back = -s / (1.0 + s)
@@ -166,7 +172,7 @@ def five_point_problem(rng: np.random.Generator) -> tuple[Complex, Complex]:
 
 def _smallest_member(y: Complex, p: Complex) -> Complex:
     """Of each orbit the solution with the shortest vectors, which rounding treats best: shape (orbits, 16)."""
-    members = nine.cognates(y, p)
+    members = nine.construct_cognates(y, p)
     size = np.abs(members[..., :8]).max(axis=-1)
     members = members[np.arange(len(y)), np.where(np.isfinite(size), size, np.inf).argmin(axis=-1)]
     return np.asarray(members)
@@ -174,7 +180,7 @@ def _smallest_member(y: Complex, p: Complex) -> Complex:
 
 def _distinct_orbits(y: Complex, p: Complex) -> Complex:
     """The solutions without those whose orbit has been met before in the list."""
-    keys = nine.orbit_keys(y, p)
+    keys = nine.compute_orbit_keys(y, p)
     size = np.abs(keys).max(axis=-1)
     kept: list[int] = []
     for n in range(len(y)):
@@ -195,8 +201,8 @@ def _distinct(y: Complex) -> Complex:
 def main() -> None:
     """Make one start anew and store it."""
     made_by = {
-        "nine": (solve_nine_points, nine.residuals, NINE_SEED),
-        "five": (solve_five_points, five.residuals, FIVE_SEED),
+        "nine": (solve_nine_points, nine.compute_residuals, NINE_SEED),
+        "five": (solve_five_points, five.compute_residuals, FIVE_SEED),
     }
     parser = argparse.ArgumentParser(description=main.__doc__)
     parser.add_argument("points", choices=list(made_by))

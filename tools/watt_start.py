@@ -2,8 +2,8 @@
 
 ``python -m tools.watt_start`` takes a quarter of an hour of a processor. A sixbar with complex dimensions is drawn with
 turns of its input, and the turns of its output follow from two quadratic equations each; all others are met on ways
-around loops (:mod:`tools.monodromy`). :mod:`synthesis.kinds.function.nine_pairs` reads the file, which has the
-solutions in single precision: Newton's method brings the other digits back.
+around loops (:mod:`tools.monodromy`). :mod:`synthesis.kinds.function.nine_pairs.continuation` reads the file, which has
+the solutions in single precision: Newton's method brings the other digits back.
 """
 
 from __future__ import annotations
@@ -13,22 +13,20 @@ from importlib import resources
 from pathlib import Path
 
 import numpy as np
-from numpy.typing import NDArray
 
-from synthesis.kinds.function.nine_pair_system import (
-    GROUPS,
-    PARAMETERS,
-    SCRATCH,
-    SOLUTIONS,
-    UNKNOWNS,
+from kinematics.arrays import Complex
+from synthesis.kinds.function.nine_pairs.system import (
+    PARAMETER_COUNT,
+    SCALE_GROUPS,
+    SCRATCH_SIZE,
+    SOLUTION_COUNT,
+    UNKNOWN_COUNT,
+    compute_residuals,
     is_linkage,
     nine_pair_system,
-    residuals,
 )
-from synthesis.numerics.continuation import REACHED, follow
+from synthesis.numerics.continuation import END_REACHED, follow
 from tools.monodromy import all_solutions
-
-Complex = NDArray[np.complex128]
 
 SEED = 9
 """Of the stored file."""
@@ -54,7 +52,7 @@ def nine_pair_problem(rng: np.random.Generator) -> tuple[Complex, Complex]:
     def drawn(count: int) -> Complex:
         return np.asarray(rng.normal(size=(count, 2)) @ np.array([1.0, 1.0j]))
 
-    y, p = drawn(UNKNOWNS), np.empty(PARAMETERS, np.complex128)
+    y, p = drawn(UNKNOWN_COUNT), np.empty(PARAMETER_COUNT, np.complex128)
     a, a_bar, c, c_bar, d, d_bar, e, e_bar = y
     p[:8] = drawn(8)
     for j, u in enumerate(1.0 + p[:8]):
@@ -77,13 +75,16 @@ def solve_nine_pairs(rng: np.random.Generator) -> tuple[Complex, Complex]:
         When the loops do not come to as many; another seed will do.
     """
     y, p = nine_pair_problem(rng)
-    straight, across = np.zeros(PARAMETERS, np.complex128), rng.normal(size=(UNKNOWNS, 2)) @ np.array([1.0, 1.0j])
+    straight, across = (
+        np.zeros(PARAMETER_COUNT, np.complex128),
+        rng.normal(size=(UNKNOWN_COUNT, 2)) @ np.array([1.0, 1.0j]),
+    )
 
     def followed(y: Complex, here: Complex, there: Complex) -> Complex:
         ends = follow(
             nine_pair_system,
-            GROUPS,
-            SCRATCH,
+            SCALE_GROUPS,
+            SCRATCH_SIZE,
             y,
             here,
             there,
@@ -91,10 +92,10 @@ def solve_nine_pairs(rng: np.random.Generator) -> tuple[Complex, Complex]:
             tolerance=FOLLOWING_TOLERANCE,
             threads=THREADS,
         )
-        return np.asarray(ends.y[ends.status == REACHED])
+        return np.asarray(ends.y[ends.status == END_REACHED])
 
     def distinct(ends: Complex) -> Complex:
-        ends = ends[is_linkage(ends) & (residuals(ends, p) < RESIDUAL)]
+        ends = ends[is_linkage(ends) & (compute_residuals(ends, p) < RESIDUAL)]
         keys = ends @ across
         order = np.lexsort((keys.imag, keys.real))
         ends, keys = ends[order], keys[order]
@@ -107,7 +108,7 @@ def solve_nine_pairs(rng: np.random.Generator) -> tuple[Complex, Complex]:
         followed,
         distinct,
         rng,
-        count=SOLUTIONS,
+        count=SOLUTION_COUNT,
         quiet_loops=QUIET_LOOPS,
         most_loops=MOST_LOOPS,
         spread=SPREAD,
@@ -122,7 +123,7 @@ def main() -> None:
     asked = parser.parse_args()
     stored = Path(str(resources.files("synthesis.kinds.function"))) / "nine_pair_start.npz"
     y, p = solve_nine_pairs(np.random.default_rng(asked.seed))
-    print(f"{len(y)} solutions, largest residual: {residuals(y, p).max():.1e}")
+    print(f"{len(y)} solutions, largest residual: {compute_residuals(y, p).max():.1e}")
     np.savez(asked.output or stored, y=y.astype(np.complex64), p=p)
 
 

@@ -12,23 +12,19 @@ its own cam:
 
 from __future__ import annotations
 
-import numpy as np
-from numpy.typing import NDArray
-
+from kinematics.arrays import Complex
 from kinematics.cam.follower import OscillatingRoller, Roller, TranslatingRoller
-from kinematics.cam.program import Program
-from kinematics.cam.segments import Segment
-
-Complex = NDArray[np.complex128]
+from kinematics.cam.motion.program import Program
+from kinematics.cam.motion.segments import Segment
 
 
-def opposed(program: Program) -> Program:
+def reverse_program(program: Program) -> Program:
     """Return the program of the second roller: s_max − s, which is 0 where the first is highest."""
     top = program.peaks[0].greatest
     return Program([Segment(one.name, one.pieces.scaled(one.angle, -1.0, top)) for one in program.segments])
 
 
-def span(first: Roller, second: Roller, top: float) -> float:
+def compute_span(first: Roller, second: Roller, top: float) -> float:
     """Return D, or γ in radians, from the maximum displacement s_max of the first roller."""
     if isinstance(first, TranslatingRoller) and isinstance(second, TranslatingRoller):
         return first.height + second.height + top
@@ -37,7 +33,7 @@ def span(first: Roller, second: Roller, top: float) -> float:
     return first.start_angle + second.start_angle + top
 
 
-def turned(follower: Roller, points: Complex) -> Complex:
+def transform_between_cams(follower: Roller, points: Complex) -> Complex:
     """Transform points between the frame of the second cam, whose roller lies on +x, and that of the first."""
     # On a slide the second roller is on the opposite side: half a turn, which is its own inverse.
     return -points if isinstance(follower, TranslatingRoller) else points

@@ -20,16 +20,14 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from kinematics.arrays import Complex, Real
 from kinematics.cam.follower import TranslatingFlat, TranslatingRoller
-from kinematics.cam.pieces import Motion
+from kinematics.cam.motion.pieces import Motion
+from kinematics.cam.motion.program import TURN
 from kinematics.cam.profile import Rotation
-from kinematics.cam.program import TURN
 from kinematics.errors import DimensionError
 
-Real = NDArray[np.float64]
-Complex = NDArray[np.complex128]
-
-TANGENT = 1e-9
+TANGENCY_TOLERANCE = 1e-9
 """Largest gap between the ends of neighbouring parts, as a share of the base radius: rounding of given numbers."""
 
 
@@ -65,7 +63,7 @@ class SpecifiedContour:
 
     def __post_init__(self) -> None:
         for k, part in enumerate(self.parts):
-            before, after = self._end(k - 1), self._end(k)
+            before, after = self._find_end(k - 1), self._find_end(k)
             if isinstance(part, Arc):
                 off = abs(part.centre + part.radius * np.exp(1j * part.start) - before)
             else:
@@ -74,13 +72,13 @@ class SpecifiedContour:
                 ends = np.array([before * normal, after * normal]).real - part.distance
                 # A flank must lie at its distance at both ends, and the next normal must be its own.
                 off = max(np.abs(ends).max(), abs(turn) * self.base_radius)
-            if not off <= TANGENT * self.base_radius:
+            if not off <= TANGENCY_TOLERANCE * self.base_radius:
                 raise DimensionError("contour", "of parts that are tangent to their neighbours", (k, float(off)))
 
     @property
     def joints(self) -> Complex:
         """Points at which the parts begin, shape (parts,)."""
-        return np.array([self._end(k - 1) for k in range(len(self.parts))])
+        return np.array([self._find_end(k - 1) for k in range(len(self.parts))])
 
     @property
     def least_radius(self) -> float:
@@ -90,20 +88,20 @@ class SpecifiedContour:
     def points(self, count: int) -> Complex:
         """Return about ``count`` points along the contour, every joint included."""
         found: list[NDArray[Any]] = []
-        lengths = [abs(self._length(k)) for k in range(len(self.parts))]
+        lengths = [abs(self._compute_length(k)) for k in range(len(self.parts))]
         for k, part in enumerate(self.parts):
             number = max(2, round(count * lengths[k] / sum(lengths)))
             share = np.arange(number) / number
             if isinstance(part, Arc):
-                angle = part.start + share * self._turn(k)
+                angle = part.start + share * self._compute_turn(k)
                 found.append(part.centre + part.radius * np.exp(1j * angle))
             else:
-                found.append(self._end(k - 1) + share * (self._end(k) - self._end(k - 1)))
+                found.append(self._find_end(k - 1) + share * (self._find_end(k) - self._find_end(k - 1)))
         return np.concatenate(found)
 
     def breaks(self, follower: TranslatingRoller | TranslatingFlat, rotation: Rotation = "ccw") -> Real:
         """Return the cam angles between which the follower stays on one part, ascending from 0 to 2π."""
-        starts = np.mod(self._starts(follower, rotation)[0], TURN)
+        starts = np.mod(self._find_starts(follower, rotation)[0], TURN)
         return np.unique(np.concatenate([[0.0], starts, [TURN]]))
 
     def motion(
@@ -120,10 +118,10 @@ class SpecifiedContour:
         """
         own = follower.base_radius if isinstance(follower, TranslatingFlat) else follower.prime_radius
         roller = 0.0 if isinstance(follower, TranslatingFlat) else follower.roller_radius
-        if abs(own - self.base_radius - roller) > TANGENT * self.base_radius:
+        if abs(own - self.base_radius - roller) > TANGENCY_TOLERANCE * self.base_radius:
             raise DimensionError("prime or base radius", f"{self.base_radius + roller} for this contour", own)
         theta = np.asarray(angle, dtype=np.float64)
-        starts, parts = self._starts(follower, rotation)
+        starts, parts = self._find_starts(follower, rotation)
         # The parts begin in cyclic order; sorted by angle, the last one wraps around to angle 0 (index −1).
         order = np.argsort(np.mod(starts, TURN))
         index = order[np.searchsorted(np.mod(starts, TURN)[order], np.mod(theta, TURN), side="right") - 1]
@@ -131,14 +129,14 @@ class SpecifiedContour:
         for k, part in enumerate(parts):
             here = index == k
             if here.any():
-                result[:, here] = _on(part, follower, theta[here])
+                result[:, here] = _evaluate_part(part, follower, theta[here])
         return Motion(*result)
 
-    def _starts(
+    def _find_starts(
         self, follower: TranslatingRoller | TranslatingFlat, rotation: Rotation
     ) -> tuple[Real, tuple[Arc | Flank, ...]]:
         """Return the cam angles at which the follower reaches each part, and the parts, for a clockwise cam."""
-        contour = self if rotation == "cw" else self._mirrored()
+        contour = self if rotation == "cw" else self._mirror()
         normals = np.array([part.start for part in contour.parts])
         if isinstance(follower, TranslatingFlat):
             if any(isinstance(part, Arc) and part.radius <= 0.0 for part in self.parts):
@@ -153,17 +151,17 @@ class SpecifiedContour:
         # The roller's centre reaches a joint's offset point when this lies on the slide, e off the centre.
         return np.angle(centre) - np.arcsin(follower.offset / np.abs(centre)), contour.parts
 
-    def _mirrored(self) -> SpecifiedContour:
+    def _mirror(self) -> SpecifiedContour:
         parts: list[Arc | Flank] = []
         for k in range(len(self.parts) - 1, -1, -1):
             part = self.parts[k]
-            end = -(part.start + self._turn(k))
+            end = -(part.start + self._compute_turn(k))
             parts.append(
                 Arc(part.centre.conjugate(), part.radius, end) if isinstance(part, Arc) else Flank(part[0], end)
             )
         return SpecifiedContour(self.base_radius, tuple(parts))
 
-    def _turn(self, k: int) -> float:
+    def _compute_turn(self, k: int) -> float:
         """Return the angle by which the normal turns on a part: negative on a hollow, 2π on a single arc."""
         part, following = self.parts[k], self.parts[(k + 1) % len(self.parts)]
         if isinstance(part, Flank):
@@ -173,7 +171,7 @@ class SpecifiedContour:
             return turn - TURN if turn > 0.0 else 0.0
         return turn or TURN
 
-    def _end(self, k: int) -> complex:
+    def _find_end(self, k: int) -> complex:
         """Return the end of a part: of an arc where its normal is the next part's, of a flank the next arc's start."""
         part, following = self.parts[k], self.parts[(k + 1) % len(self.parts)]
         if isinstance(part, Flank):
@@ -182,21 +180,21 @@ class SpecifiedContour:
             part = following
         return complex(part.centre + part.radius * np.exp(1j * following.start))
 
-    def _length(self, k: int) -> float:
+    def _compute_length(self, k: int) -> float:
         part = self.parts[k]
         if isinstance(part, Arc):
-            return part.radius * self._turn(k)
-        return abs(self._end(k) - self._end(k - 1))
+            return part.radius * self._compute_turn(k)
+        return abs(self._find_end(k) - self._find_end(k - 1))
 
 
-def eccentric_circle(radius: float, eccentricity: float) -> SpecifiedContour:
+def build_eccentric_circle(radius: float, eccentricity: float) -> SpecifiedContour:
     """Build a circle that turns about a point off its centre; the base circle is inscribed about that point."""
     if not (math.isfinite(radius) and 0.0 <= eccentricity < radius):
         raise DimensionError("eccentricity", f"at least 0 and less than the radius {radius}", eccentricity)
     return SpecifiedContour(radius - eccentricity, (Arc(complex(eccentricity), radius, 0.0),))
 
 
-def tangent_cam(base_radius: float, nose_radius: float, nose_distance: float) -> SpecifiedContour:
+def build_tangent_cam(base_radius: float, nose_radius: float, nose_distance: float) -> SpecifiedContour:
     """Build a cam with straight flanks tangent to the base circle and to a nose at a distance (Rao §5.7)."""
     _check_nose(base_radius, nose_radius, nose_distance)
     normal = math.acos((base_radius - nose_radius) / nose_distance)
@@ -212,7 +210,7 @@ def tangent_cam(base_radius: float, nose_radius: float, nose_distance: float) ->
     )
 
 
-def circular_arc_cam(
+def build_circular_arc_cam(
     base_radius: float, nose_radius: float, nose_distance: float, flank_radius: float
 ) -> SpecifiedContour:
     """Build a cam whose flanks are arcs tangent to base circle and nose; a negative flank radius is hollow.
@@ -246,7 +244,7 @@ def circular_arc_cam(
     )
 
 
-def flank_radius_of(base_radius: float, nose_radius: float, nose_distance: float, half_action: float) -> float:
+def compute_flank_radius(base_radius: float, nose_radius: float, nose_distance: float, half_action: float) -> float:
     """Compute the flank radius of a circular-arc cam from the angle of its rise, radians; infinite for a tangent cam.
 
     The base circle ends at the half action angle from the nose, where the flank is tangent to it.
@@ -271,7 +269,7 @@ def _check_nose(base_radius: float, nose_radius: float, nose_distance: float) ->
         raise DimensionError("distance of the nose's centre", expected, nose_distance)
 
 
-def _on(part: Arc | Flank, follower: TranslatingRoller | TranslatingFlat, theta: Real) -> Real:
+def _evaluate_part(part: Arc | Flank, follower: TranslatingRoller | TranslatingFlat, theta: Real) -> Real:
     """Evaluate s, v, a, j on one part; dγ/dθ = dβ/dθ = −1."""
     if isinstance(part, Flank):
         # Under a flat face a flank is passed in an instant, and no angle comes here.

@@ -19,23 +19,22 @@ from functools import cached_property
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
-from kinematics.cam.extremes import Extremes, extremes, roots
-from kinematics.cam.pieces import Motion
-from kinematics.cam.program import TURN, Program
+from kinematics.arrays import Real
+from kinematics.cam.motion.extremes import Extremes, find_extremes, find_roots
+from kinematics.cam.motion.pieces import Motion
+from kinematics.cam.motion.program import TURN, Program
 from kinematics.errors import DimensionError
 
-Real = NDArray[np.float64]
-
-APART = 1e-13
+MIN_ANGLE_GAP = 1e-13
 """Radians below which two breaks are merged: a closer pair differs only by rounding."""
 
-SAME = 1e-10
+COINCIDENCE_TOLERANCE = 1e-10
 """Radians within which joints of several cams coincide: they come from angles in degrees with phases added."""
 
 
-PRESSED = 1e-6
+MIN_PRESSING_FORCE = 1e-6
 """Share of the maximum force above which the follower is pressed to a wall. Motions from a convex program have smaller
 forces where the true one is zero, and no play would show them."""
 
@@ -68,7 +67,7 @@ class FollowerLoad:
                 expected = "positive" if name == "mass" else "at least 0"
                 raise DimensionError(name.replace("_", " "), expected, value)
 
-    def damped(self, ratio: float) -> FollowerLoad:
+    def with_damping_ratio(self, ratio: float) -> FollowerLoad:
         """Return the load with the damping c = 2 ζ √(k m) of a ratio ζ."""
         if not (math.isfinite(ratio) and ratio >= 0.0):
             raise DimensionError("damping ratio", "at least 0", ratio)
@@ -79,7 +78,7 @@ class FollowerLoad:
         """√(k/m), radians per unit of time; 0 without a spring."""
         return math.sqrt(self.spring_rate / self.mass)
 
-    def weakest_speed(self, motion: Motion, top_speed: float) -> Real:
+    def find_weakest_speed(self, motion: Motion, top_speed: float) -> Real:
         """Return the speed between 0 and a top speed at which F is minimal, given a program's s, v, a."""
         curving = 2.0 * self.mass * motion.a
         vertex = -self.damping * motion.v / np.where(curving > 0.0, curving, 1.0)
@@ -140,32 +139,32 @@ class RunningCam:
     @cached_property
     def force_extremes(self) -> Extremes:
         """Exact extremes of F; where F ≤ 0 the follower leaves a force-closed cam."""
-        return extremes(self.force, self.program.breaks)
+        return find_extremes(self.force, self.program.breaks)
 
     @cached_property
     def torque_extremes(self) -> Extremes:
         """Exact extremes of the torque."""
-        return extremes(self.torque, self.program.breaks)
+        return find_extremes(self.torque, self.program.breaks)
 
-    def reversals(self) -> Real:
+    def find_reversals(self) -> Real:
         """Find the angles where F changes sign: there a form-closed follower crosses to the other wall.
 
         If F stays at zero in between, as in a dwell without spring and preload, the angle is the end of that zone. If F
         only touches zero, or has the same sign before and after a dwell, there is no reversal.
         """
         # F has one sign between neighbouring roots or breaks, so its value in the middle decides.
-        pieces = np.unique(np.concatenate([roots(self.force, self.program.breaks), self.program.breaks]))
+        pieces = np.unique(np.concatenate([find_roots(self.force, self.program.breaks), self.program.breaks]))
         force = self.force(0.5 * (pieces[:-1] + pieces[1:]))
-        pressed = np.flatnonzero(np.abs(force) > PRESSED * self.force_extremes.largest)
+        pressed = np.flatnonzero(np.abs(force) > MIN_PRESSING_FORCE * self.force_extremes.largest)
         # The program is periodic: the piece before the first is the last of the previous turn.
         changed = force[pressed] * force[np.roll(pressed, 1)] < 0.0
         return np.asarray(np.mod(pieces[:-1][pressed[changed]], TURN))
 
-    def least_preload(self, floor: float = 0.0) -> float:
+    def compute_min_preload(self, floor: float = 0.0) -> float:
         """Compute the smallest preload, at least 0, that keeps F at or above a floor; the rest is unchanged."""
         return max(0.0, floor + self.load.preload - self.force_extremes.least)
 
-    def weakest_contact(self, top_speed: float) -> WeakestContact:
+    def find_weakest_contact(self, top_speed: float) -> WeakestContact:
         """Find the minimum F over all cam angles and all speeds from 0 to a top speed; the running speed is irrelevant.
 
         At one angle F is a parabola in the speed: minimal at its vertex if a > 0 and the vertex lies in the range, else
@@ -174,34 +173,34 @@ class RunningCam:
         load, motion = self.load, self.program.motion
         c, m = load.damping, load.mass
 
-        def turning(angle: Real) -> Real:
+        def slope_at_top_speed(angle: Real) -> Real:
             now = motion(angle)
             return np.asarray(c * now.v + 2.0 * m * top_speed * now.a)
 
-        def changing(angle: Real) -> Real:
+        def difference_over_speed(angle: Real) -> Real:
             now = motion(angle)
             return np.asarray(c * now.v + m * top_speed * now.a)
 
         # Where the minimizing speed switches between vertex and ends, the minimum over speeds has a kink: split there.
         switches = [lambda angle: motion(angle).a]
         if c > 0.0:
-            switches += [lambda angle: motion(angle).v, turning, changing]
+            switches += [lambda angle: motion(angle).v, slope_at_top_speed, difference_over_speed]
         breaks = self.program.breaks
-        breaks = np.unique(np.concatenate([breaks, *(roots(switch, breaks) for switch in switches)]))
-        apart = np.append(True, np.diff(breaks) > APART)
+        breaks = np.unique(np.concatenate([breaks, *(find_roots(switch, breaks) for switch in switches)]))
+        apart = np.append(True, np.diff(breaks) > MIN_ANGLE_GAP)
 
-        def least(angle: Real) -> Real:
+        def minimize_over_speed(angle: Real) -> Real:
             now = motion(angle)
-            return load.force(now, load.weakest_speed(now, top_speed))
+            return load.force(now, load.find_weakest_speed(now, top_speed))
 
-        found = extremes(least, breaks[apart])
+        found = find_extremes(minimize_over_speed, breaks[apart])
         # At a break the minimum may be a limit from either side.
         sides = [motion(found.at_least, before=side) for side in (False, True)]
-        speeds = [float(load.weakest_speed(now, top_speed)) for now in sides]
+        speeds = [float(load.find_weakest_speed(now, top_speed)) for now in sides]
         forces = [float(load.force(now, speed)) for now, speed in zip(sides, speeds, strict=True)]
         return WeakestContact(found.least, found.at_least, speeds[int(np.argmin(forces))])
 
-    def jump_speed(self, floor: float = 0.0) -> float:
+    def find_jump_speed(self, floor: float = 0.0) -> float:
         """Find the speed at which F first falls to a floor; the running speed is irrelevant.
 
         With q = k s + F0 − floor > 0 and u = 1/ω the force at one angle equals the floor where q u² + c v u + m a = 0.
@@ -211,11 +210,11 @@ class RunningCam:
         load, motion = self.load, self.program.motion
         c, m, breaks = load.damping, load.mass, self.program.breaks
 
-        def spare(angle: Real) -> Real:
+        def resting_margin(angle: Real) -> Real:
             return np.asarray(load.spring_rate * motion(angle).s + load.preload - floor)
 
         _, v, a = self.program.peaks[:3]
-        resting = extremes(spare, breaks).least
+        resting = find_extremes(resting_margin, breaks).least
         # Neither deceleration nor damping pulls the follower off at any speed.
         if m * max(-a.least, 0.0) + c * v.largest <= 0.0:
             return math.inf if resting >= 0.0 else 0.0
@@ -223,21 +222,21 @@ class RunningCam:
             return 0.0
         if c == 0.0:
             # Without damping u² itself is smooth; taking the root at the end avoids the kink at zero.
-            square = extremes(lambda angle: -m * motion(angle).a / spare(angle), breaks).greatest
+            square = find_extremes(lambda angle: -m * motion(angle).a / resting_margin(angle), breaks).greatest
             return 1.0 / math.sqrt(square)
 
-        def inner(angle: Real) -> Real:
+        def discriminant(angle: Real) -> Real:
             now = motion(angle)
-            return np.asarray((c * now.v) ** 2 - 4.0 * m * now.a * spare(angle))
+            return np.asarray((c * now.v) ** 2 - 4.0 * m * now.a * resting_margin(angle))
 
         def slowness(angle: Real) -> Real:
-            square = inner(angle)
-            root = (np.sqrt(np.maximum(square, 0.0)) - c * motion(angle).v) / (2.0 * spare(angle))
+            square = discriminant(angle)
+            root = (np.sqrt(np.maximum(square, 0.0)) - c * motion(angle).v) / (2.0 * resting_margin(angle))
             return np.where(square >= 0.0, np.maximum(root, 0.0), 0.0)
 
-        breaks = np.unique(np.concatenate([breaks, roots(inner, breaks)]))
+        breaks = np.unique(np.concatenate([breaks, find_roots(discriminant, breaks)]))
         # The larger root exists only where the discriminant is positive; its roots are kinks and become breaks.
-        u = extremes(slowness, breaks[np.append(True, np.diff(breaks) > APART)]).greatest
+        u = find_extremes(slowness, breaks[np.append(True, np.diff(breaks) > MIN_ANGLE_GAP)]).greatest
         return 1.0 / u if u > 0.0 else math.inf
 
 
@@ -261,7 +260,7 @@ class Camshaft:
         """Shaft angles from 0 to 2π between which the torque is smooth."""
         shifted = [np.mod(cam.program.breaks + cam.phase, TURN) for cam in self.cams]
         angles = np.unique(np.concatenate([[0.0], *shifted, [TURN]]))
-        kept: Real = angles[np.append(True, np.diff(angles) > SAME)]
+        kept: Real = angles[np.append(True, np.diff(angles) > COINCIDENCE_TOLERANCE)]
         # The end of the turn must stay exact even if its neighbour was merged into it.
         kept[-1] = TURN
         return kept
@@ -274,12 +273,12 @@ class Camshaft:
     @cached_property
     def torque_extremes(self) -> Extremes:
         """Exact extremes of the shaft's torque."""
-        return extremes(self.torque, self.breaks)
+        return find_extremes(self.torque, self.breaks)
 
     @cached_property
     def mean_torque(self) -> float:
         """Mean torque over a turn: only friction contributes, since masses and springs return their energy."""
-        return float(self._work(self.breaks).sum()) / TURN
+        return float(self._integrate_torque(self.breaks).sum()) / TURN
 
     @cached_property
     def energy_fluctuation(self) -> float:
@@ -288,27 +287,27 @@ class Camshaft:
         The energy ∫(T − T̄) dθ has its extremes where the torque crosses its mean (Norton §11.11).
         """
         mean = self.mean_torque
-        crossings = roots(lambda angle: self.torque(angle) - mean, self.breaks)
+        crossings = find_roots(lambda angle: self.torque(angle) - mean, self.breaks)
         at = np.unique(np.concatenate([self.breaks, crossings]))
-        at = at[np.append(True, np.diff(at) > SAME)]
-        energy = np.concatenate([[0.0], np.cumsum(self._work(at) - mean * np.diff(at))])
+        at = at[np.append(True, np.diff(at) > COINCIDENCE_TOLERANCE)]
+        energy = np.concatenate([[0.0], np.cumsum(self._integrate_torque(at) - mean * np.diff(at))])
         return float(energy.max() - energy.min())
 
-    def flywheel_inertia(self, fluctuation: float) -> float:
+    def compute_flywheel_inertia(self, fluctuation: float) -> float:
         """Compute the inertia that keeps (ω_max − ω_min)/ω at a coefficient k: E/(k ω²) (Norton eq. 11.22)."""
         if not (math.isfinite(fluctuation) and fluctuation > 0.0):
             raise DimensionError("coefficient of fluctuation", "positive", fluctuation)
         return self.energy_fluctuation / (fluctuation * self.speed**2)
 
-    def _work(self, at: Real) -> Real:
+    def _integrate_torque(self, at: Real) -> Real:
         """Integrate the torque between neighbouring angles by Gauss's rule on quarters of each interval."""
-        nodes, weights = np.polynomial.legendre.leggauss(GAUSS)
-        low, step = at[:-1, None], np.diff(at)[:, None] / PARTS
-        middles = low + step * (np.arange(PARTS) + 0.5)
+        nodes, weights = np.polynomial.legendre.leggauss(GAUSS_NODE_COUNT)
+        low, step = at[:-1, None], np.diff(at)[:, None] / PARTS_PER_STRETCH
+        middles = low + step * (np.arange(PARTS_PER_STRETCH) + 0.5)
         values = self.torque(middles[..., None] + 0.5 * step[..., None] * nodes)
         return np.asarray((values @ weights).sum(axis=1) * 0.5 * step[:, 0])
 
 
-GAUSS = 12
-PARTS = 4
+GAUSS_NODE_COUNT = 12
+PARTS_PER_STRETCH = 4
 """Nodes of Gauss's rule and parts of each smooth stretch: enough to integrate the torque of every law to rounding."""

@@ -24,13 +24,10 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
-from kinematics.cam.pieces import Motion
+from kinematics.arrays import Complex, Real
+from kinematics.cam.motion.pieces import Motion
 from kinematics.errors import DimensionError
-
-Real = NDArray[np.float64]
-Complex = NDArray[np.complex128]
 
 
 class Trace(NamedTuple):
@@ -95,7 +92,7 @@ class TranslatingRoller:
 
     def pitch_curvature(self, motion: Motion) -> Real:
         """Of the pitch curve, positive where convex."""
-        return _curvature(self.trace(motion))
+        return _compute_curvature(self.trace(motion))
 
 
 @dataclass(frozen=True)
@@ -164,7 +161,7 @@ class OscillatingRoller:
 
     def pitch_curvature(self, motion: Motion) -> Real:
         """Of the pitch curve, positive where convex."""
-        return _curvature(self.trace(motion))
+        return _compute_curvature(self.trace(motion))
 
 
 Roller = TranslatingRoller | OscillatingRoller
@@ -278,7 +275,7 @@ Flat = TranslatingFlat | OscillatingFlat
 Follower = Roller | Flat
 
 
-def _curvature(trace: Trace) -> Real:
+def _compute_curvature(trace: Trace) -> Real:
     # Derivatives in the cam's frame, rotated back to the ground's.
     tangent = trace.p1 + 1j * trace.p
     bend = trace.p2 + 2j * trace.p1 - trace.p

@@ -13,9 +13,9 @@ from functools import cached_property
 from typing import Literal
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
-from kinematics.cam.extremes import Extremes, extremes
+from kinematics.arrays import Complex, Real
 from kinematics.cam.follower import (
     Follower,
     OscillatingFlat,
@@ -23,11 +23,9 @@ from kinematics.cam.follower import (
     TranslatingFlat,
     TranslatingRoller,
 )
-from kinematics.cam.program import TURN, Program
+from kinematics.cam.motion.extremes import Extremes, find_extremes
+from kinematics.cam.motion.program import TURN, Program
 from kinematics.errors import DimensionError
-
-Real = NDArray[np.float64]
-Complex = NDArray[np.complex128]
 
 Rotation = Literal["ccw", "cw"]
 
@@ -86,8 +84,8 @@ class Cam:
             0 gives the curve itself.
         """
         theta = np.asarray(angle, dtype=np.float64)
-        z, normal = self._curve(theta)
-        return self._mirrored(z + distance * normal)
+        z, normal = self._evaluate_curve(theta)
+        return self._mirror(z + distance * normal)
 
     def pitch_curve(self, angle: ArrayLike) -> Complex:
         """Return the centres of the roller; for a flat face the contact points, which are the profile."""
@@ -103,7 +101,7 @@ class Cam:
 
     def normal(self, angle: ArrayLike) -> Complex:
         """Return the outward unit normals at the contact points."""
-        return self._mirrored(self._curve(np.asarray(angle, dtype=np.float64))[1])
+        return self._mirror(self._evaluate_curve(np.asarray(angle, dtype=np.float64))[1])
 
     def pressure_angle(self, angle: ArrayLike) -> Real:
         """Return the angle between contact force and follower motion, radians; positive in a rise without offset."""
@@ -113,7 +111,7 @@ class Cam:
         """Return the curvature of the pitch curve (for a flat face, of the profile), positive where convex."""
         follower, motion = self.follower, self.program.motion(angle)
         if isinstance(follower, TranslatingFlat | OscillatingFlat):
-            return _inverse(follower.face(motion).radius)
+            return _invert(follower.face(motion).radius)
         return follower.pitch_curvature(motion)
 
     @cached_property
@@ -122,7 +120,9 @@ class Cam:
         follower = self.follower
         if isinstance(follower, TranslatingFlat | OscillatingFlat):
             raise DimensionError("follower", "a roller; a flat face has radius_extremes", type(follower).__name__)
-        return extremes(lambda angle: follower.pitch_curvature(self.program.pieces.motion(angle)), self.program.breaks)
+        return find_extremes(
+            lambda angle: follower.pitch_curvature(self.program.pieces.motion(angle)), self.program.breaks
+        )
 
     @cached_property
     def radius_extremes(self) -> Extremes:
@@ -130,9 +130,9 @@ class Cam:
         flat = self.follower
         if not isinstance(flat, TranslatingFlat | OscillatingFlat):
             raise DimensionError("follower", "flat-faced", type(flat).__name__)
-        return extremes(lambda angle: flat.face(self.program.pieces.motion(angle)).radius, self.program.breaks)
+        return find_extremes(lambda angle: flat.face(self.program.pieces.motion(angle)).radius, self.program.breaks)
 
-    def _curve(self, theta: Real) -> tuple[Complex, Complex]:
+    def _evaluate_curve(self, theta: Real) -> tuple[Complex, Complex]:
         """Return trace or contact points and outward normals, for a cam that turns clockwise."""
         motion, follower = self.program.motion(theta), self.follower
         if isinstance(follower, TranslatingFlat | OscillatingFlat):
@@ -145,17 +145,17 @@ class Cam:
         tangent = trace.p1 + 1j * trace.p
         return turn * trace.p, -1j * turn * tangent / np.abs(tangent)
 
-    def _mirrored(self, points: Complex) -> Complex:
+    def _mirror(self, points: Complex) -> Complex:
         # All formulas hold for a clockwise cam; the other sense is its mirror image.
         return np.conj(points) if self.rotation == "ccw" else points
 
 
-def even_angles(count: int) -> Real:
+def space_angles(count: int) -> Real:
     """Return cam angles of equal steps once around, from 0 inclusive to 2π exclusive."""
     return np.arange(count, dtype=np.float64) * (TURN / count)
 
 
-def _inverse(values: Real) -> Real:
+def _invert(values: Real) -> Real:
     """Return 1/x, infinity for zero."""
     infinite: Real = np.full(values.shape, np.inf)
     np.divide(1.0, values, out=infinite, where=values != 0.0)

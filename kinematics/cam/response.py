@@ -18,28 +18,26 @@ from functools import cached_property
 from itertools import pairwise
 
 import numpy as np
-from numpy.typing import NDArray
 
-from kinematics.cam.program import TURN, Program
+from kinematics.arrays import Real
+from kinematics.cam.motion.program import TURN, Program
 from kinematics.compiling import njit
 from kinematics.errors import DimensionError
 
-Real = NDArray[np.float64]
-
-STEPS_A_TURN = 1440
+MIN_STEPS_PER_TURN = 1440
 """Minimum number of steps per turn; the cubic then approximates the right side to 1e-9 of it."""
 
-STEPS_A_SWING = 24
+MIN_STEPS_PER_PERIOD = 24
 """Minimum number of steps per period of the natural frequency, so that the oscillation is resolved in plots."""
 
-MOST_STEPS = 50_000
+MAX_STEPS = 50_000
 """Maximum number of steps, for a very stiff train whose single oscillations need not be resolved; the solution is exact
 on steps of any length."""
 
-RESONANT = 1e-9
+RESONANCE_TOLERANCE = 1e-9
 """Smallest singular value of 1 − (transfer matrix of a turn) below which no steady motion exists."""
 
-LOW_RATIO = 10.0
+MIN_FREQUENCY_RATIO = 10.0
 """Ratio of natural frequency to speed below which the program's harmonics excite the train markedly (Norton §15.3)."""
 
 
@@ -116,13 +114,13 @@ class Response:
     @property
     def too_slow(self) -> bool:
         """Whether the natural frequency is so low that the program's first harmonics reach it."""
-        return self.frequency_ratio < LOW_RATIO
+        return self.frequency_ratio < MIN_FREQUENCY_RATIO
 
     @cached_property
     def angle(self) -> Real:
         """Cam angles of the steps from 0 to 2π, every break of the program among them."""
         # Fine enough for both the program and the oscillation, but bounded.
-        step = TURN / min(max(STEPS_A_TURN, STEPS_A_SWING * self.frequency_ratio), MOST_STEPS)
+        step = TURN / min(max(MIN_STEPS_PER_TURN, MIN_STEPS_PER_PERIOD * self.frequency_ratio), MAX_STEPS)
         breaks = self.program.breaks
         parts = [
             np.linspace(low, high, max(2, math.ceil((high - low) / step) + 1))[:-1] for low, high in pairwise(breaks)
@@ -134,17 +132,17 @@ class Response:
         """y and y′ at the angles, shape (2, n); NaN at a resonance, where no steady motion exists."""
         r, zeta = self.frequency_ratio, self.train.damping_ratio
         steps = np.diff(self.angle)
-        transfer = _free(r, zeta, steps)
+        transfer = _build_transfer(r, zeta, steps)
         # Linear recurrence y_{k+1} = T_k y_k + f_k; the periodic solution solves (1 − ΠT) y₀ = Σ.
-        driven = self._driven(steps, transfer)
+        driven = self._compute_forcing(steps, transfer)
         # The turn's transfer matrix, column by column, from unit initial states without forcing.
-        columns = [_march(transfer, push, start) for push, start in ((0.0 * driven, e) for e in np.eye(2))]
+        columns = [_integrate_steps(transfer, push, start) for push, start in ((0.0 * driven, e) for e in np.eye(2))]
         gap = np.eye(2) - np.stack([column[-1] for column in columns], axis=1)
         # Near resonance the periodic solution grows without bound; report NaN instead.
-        if np.linalg.svd(gap, compute_uv=False).min() <= RESONANT:
+        if np.linalg.svd(gap, compute_uv=False).min() <= RESONANCE_TOLERANCE:
             return np.full((2, len(self.angle)), np.nan)
-        start = np.linalg.solve(gap, _march(transfer, driven, np.zeros(2))[-1])
-        return np.ascontiguousarray(_march(transfer, driven, start).T)
+        start = np.linalg.solve(gap, _integrate_steps(transfer, driven, np.zeros(2))[-1])
+        return np.ascontiguousarray(_integrate_steps(transfer, driven, start).T)
 
     @property
     def resonant(self) -> bool:
@@ -182,7 +180,7 @@ class Response:
         lag = y - rest
         return np.asarray(np.hypot(lag, (rate + zeta * r * lag) / (r * math.sqrt(1.0 - zeta**2))))
 
-    def _driven(self, steps: Real, transfer: Real) -> Real:
+    def _compute_forcing(self, steps: Real, transfer: Real) -> Real:
         """Compute the forcing of each step on y, y′: end of the particular cubic minus the free motion from its
         start."""
         r, zeta, train = self.frequency_ratio, self.train.damping_ratio, self.train
@@ -204,7 +202,7 @@ class Response:
         return np.asarray(np.stack([end, rate], axis=1) - (transfer @ start[..., None])[..., 0])
 
 
-def _free(r: float, zeta: float, h: Real) -> Real:
+def _build_transfer(r: float, zeta: float, h: Real) -> Real:
     """Build the transfer matrices of y, y′ over steps of free vibration, shape (n, 2, 2)."""
     # Damped frequency per radian of cam rotation; ζ < 1 is checked on construction.
     w = r * math.sqrt(1.0 - zeta**2)
@@ -215,7 +213,7 @@ def _free(r: float, zeta: float, h: Real) -> Real:
 
 
 @njit(cache=True, nogil=True)
-def _march(transfer: Real, driven: Real, start: Real) -> Real:
+def _integrate_steps(transfer: Real, driven: Real, start: Real) -> Real:
     """Return the states after each step, the start first."""
     states = np.empty((len(transfer) + 1, 2))
     states[0] = start

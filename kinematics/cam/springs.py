@@ -24,26 +24,24 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from kinematics.arrays import Real
 from kinematics.cam.dynamics import FollowerLoad, RunningCam
-from kinematics.cam.program import Program
+from kinematics.cam.motion.program import Program
 from kinematics.errors import DimensionError
 
-Real = NDArray[np.float64]
-
-ROUNDS = 80
+MAX_ROUNDS = 80
 """Maximum number of springs tried; a dozen is usual."""
 
-CLOSE = 1e-10
+FORCE_TOLERANCE = 1e-10
 """Share of the force by which the value may exceed its bound, and by which a given preload may miss a need."""
 
-STIFFEST = 1e4
+MAX_STIFFNESS = 1e4
 """Maximum spring force over the lift, in units of all other forces: upper end of the search."""
 
 
 @dataclass(frozen=True)
-class SpringDemands:
+class SpringConstraints:
     """Constraints on a return spring.
 
     Parameters
@@ -93,7 +91,7 @@ class Spring:
     bound: float | None
 
 
-def best_spring(program: Program, mass: float, damping_ratio: float, demands: SpringDemands) -> Spring:
+def find_best_spring(program: Program, mass: float, damping_ratio: float, demands: SpringConstraints) -> Spring:
     """Find the feasible spring of smallest maximum contact force, or the one that violates the constraints least.
 
     Parameters
@@ -105,23 +103,23 @@ def best_spring(program: Program, mass: float, damping_ratio: float, demands: Sp
         Damping ratio ζ of mass and spring.
     demands : SpringDemands
     """
-    search = _Search(program, mass, damping_ratio, demands)
-    found = search.least_force()
-    return search.nearest() if found is None else found
+    search = _SpringSearch(program, mass, damping_ratio, demands)
+    found = search.minimize_force()
+    return search.find_nearest_miss() if found is None else found
 
 
-class _Search:
+class _SpringSearch:
     """State of the exchange: the current cuts."""
 
-    def __init__(self, program: Program, mass: float, ratio: float, demands: SpringDemands) -> None:
+    def __init__(self, program: Program, mass: float, ratio: float, demands: SpringConstraints) -> None:
         self.program, self.mass, self.ratio, self.demands = program, mass, ratio, demands
         lift = program.lift
         # Scale of all forces without the spring, for the tolerances and the upper end of the search.
         others = mass * demands.top_speed**2 * program.peaks[2].largest + demands.floor + (demands.preload or 0.0)
-        cap = STIFFEST * others / lift if lift > 0.0 else 0.0
+        cap = MAX_STIFFNESS * others / lift if lift > 0.0 else 0.0
         self.ends = (
             math.sqrt(demands.least_rate),
-            math.sqrt(min(demands.greatest_rate, max(cap, STIFFEST * demands.least_rate))),
+            math.sqrt(min(demands.greatest_rate, max(cap, MAX_STIFFNESS * demands.least_rate))),
         )
         self.scale = others
         self.upper = np.empty((0, 3))
@@ -129,120 +127,127 @@ class _Search:
         self.needs = np.zeros((1, 3)) if demands.preload is None else np.empty((0, 3))
         # Cuts at both ends bound the model from the start.
         for x in self.ends:
-            self.tried(x)
+            self.try_spring(x)
 
-    def tried(self, x: float) -> tuple[float, float]:
+    def try_spring(self, x: float) -> tuple[float, float]:
         """Evaluate maximum force without preload and required preload of a spring; its worst angles become cuts."""
         demands, root = self.demands, 2.0 * self.ratio * math.sqrt(self.mass)
-        load = FollowerLoad(self.mass, x * x).damped(self.ratio)
+        load = FollowerLoad(self.mass, x * x).with_damping_ratio(self.ratio)
         running = RunningCam(self.program, load, demands.speed)
         force = running.force_extremes
         speed = demands.speed
         rows = [
-            [self.mass * speed**2 * a, root * speed * v, s] for s, v, a in _both_sides(self.program, force.at_greatest)
+            [self.mass * speed**2 * a, root * speed * v, s]
+            for s, v, a in _evaluate_both_sides(self.program, force.at_greatest)
         ]
         self.upper = np.vstack([self.upper, rows])
-        weakest = running.weakest_contact(demands.top_speed)
+        weakest = running.find_weakest_contact(demands.top_speed)
         w = weakest.speed
         rows = [
             [demands.floor - self.mass * w**2 * a, -root * w * v, -s]
-            for s, v, a in _both_sides(self.program, weakest.angle)
+            for s, v, a in _evaluate_both_sides(self.program, weakest.angle)
         ]
         self.needs = np.vstack([self.needs, rows])
         return force.greatest, max(0.0, demands.floor - weakest.force)
 
-    def _rate(self, x: float) -> float:
+    def _clip_rate(self, x: float) -> float:
         """Return k = x², clipped to the given range to the last digit."""
         # √ and square do not return the given limit exactly; restore it.
         if x <= self.ends[0]:
             return self.demands.least_rate
         rate = max(x * x, self.demands.least_rate)
-        return self.demands.greatest_rate if rate >= self.demands.greatest_rate * (1.0 - CLOSE) else rate
+        return self.demands.greatest_rate if rate >= self.demands.greatest_rate * (1.0 - FORCE_TOLERANCE) else rate
 
-    def least_force(self) -> Spring | None:
+    def minimize_force(self) -> Spring | None:
         """Exchange until value and bound meet; None if no feasible spring was found."""
         best: Spring | None = None
         bound = -math.inf
         stated = self.demands.preload
-        for _ in range(ROUNDS):
-            least = self._least_of_model()
+        for _ in range(MAX_ROUNDS):
+            least = self._minimize_model()
             if least is None:
                 return None
             x, bound = least
-            greatest, needed = self.tried(x)
+            greatest, needed = self.try_spring(x)
             preload = needed if stated is None else stated
-            if needed <= preload + CLOSE * self.scale and (best is None or greatest + preload < best.greatest_force):
-                best = Spring(self._rate(x), preload, greatest + preload, None)
+            if needed <= preload + FORCE_TOLERANCE * self.scale and (
+                best is None or greatest + preload < best.greatest_force
+            ):
+                best = Spring(self._clip_rate(x), preload, greatest + preload, None)
             # The bound is a proof of optimality to this tolerance.
-            if best is not None and best.greatest_force - bound <= CLOSE * abs(best.greatest_force):
+            if best is not None and best.greatest_force - bound <= FORCE_TOLERANCE * abs(best.greatest_force):
                 break
         if best is None:
             return None
         # Rounding may put the bound slightly above the value.
         return Spring(best.rate, best.preload, best.greatest_force, min(bound, best.greatest_force))
 
-    def nearest(self) -> Spring:
+    def find_nearest_miss(self) -> Spring:
         """Find the spring whose required preload exceeds the given one least."""
         stated = self.demands.preload
         assert stated is not None, "a free preload meets every need"
         best: tuple[float, float, float] | None = None
-        for _ in range(ROUNDS):
-            x, bound = _least(lambda at: _greatest(self.needs, at), _turning(self.needs), self.ends)
-            greatest, needed = self.tried(x)
+        for _ in range(MAX_ROUNDS):
+            x, bound = _select_minimum(
+                lambda at: _evaluate_maximum(self.needs, at), _find_turning_points(self.needs), self.ends
+            )
+            greatest, needed = self.try_spring(x)
             if best is None or needed < best[0]:
                 best = needed, x, greatest
-            if best[0] - bound <= CLOSE * self.scale:
+            if best[0] - bound <= FORCE_TOLERANCE * self.scale:
                 break
         assert best is not None
-        return Spring(self._rate(best[1]), stated, best[2] + stated, None)
+        return Spring(self._clip_rate(best[1]), stated, best[2] + stated, None)
 
-    def _least_of_model(self) -> tuple[float, float] | None:
+    def _minimize_model(self) -> tuple[float, float] | None:
         """Minimize the model: return x and value; None if its needs exceed a given preload everywhere."""
         stated = self.demands.preload
-        candidates = [_turning(self.upper), _turning(self.needs)]
+        candidates = [_find_turning_points(self.upper), _find_turning_points(self.needs)]
         if stated is None:
             # The sum of the two maxima is the maximum of all pairwise sums, so its minimum is at one of their vertices.
             together = (self.upper[:, None] + self.needs[None]).reshape(-1, 3)
-            candidates.append(_vertices(together))
+            candidates.append(_find_vertices(together))
 
             def model(x: Real) -> Real:
-                return _greatest(self.upper, x) + _greatest(self.needs, x)
+                return _evaluate_maximum(self.upper, x) + _evaluate_maximum(self.needs, x)
         else:
-            candidates.append(_crossings(self.needs - np.array([stated, 0.0, 0.0])))
+            candidates.append(_find_crossings(self.needs - np.array([stated, 0.0, 0.0])))
             # Half the tolerance, so that a spring on the model's boundary passes the full one.
-            allowed = stated + 0.5 * CLOSE * self.scale
+            allowed = stated + 0.5 * FORCE_TOLERANCE * self.scale
 
             def model(x: Real) -> Real:
-                return np.where(_greatest(self.needs, x) <= allowed, _greatest(self.upper, x) + stated, math.inf)
+                return np.where(
+                    _evaluate_maximum(self.needs, x) <= allowed, _evaluate_maximum(self.upper, x) + stated, math.inf
+                )
 
-        x, value = _least(model, np.concatenate(candidates), self.ends)
+        x, value = _select_minimum(model, np.concatenate(candidates), self.ends)
         return (x, value) if math.isfinite(value) else None
 
 
-def _both_sides(program: Program, angle: float) -> Real:
+def _evaluate_both_sides(program: Program, angle: float) -> Real:
     """Return s, v, a on both sides of an angle, where the motion may jump; shape (2, 3)."""
     return np.array([[float(x) for x in program.motion(angle, before=side)[:3]] for side in (False, True)])
 
 
-def _greatest(rows: Real, x: Real) -> Real:
+def _evaluate_maximum(rows: Real, x: Real) -> Real:
     """Return the maximum of parabolas at places."""
     at = np.asarray(x)
     return np.asarray((rows[:, 0, None] + rows[:, 1, None] * at + rows[:, 2, None] * at**2).max(axis=0))
 
 
-def _turning(rows: Real) -> Real:
+def _find_turning_points(rows: Real) -> Real:
     """Return the places where the maximum of parabolas may switch or have a vertex."""
     # Every pair of parabolas may cross; the list stays short, as each round adds two cuts.
     first, second = np.triu_indices(len(rows), 1)
-    return np.concatenate([_vertices(rows), _crossings(rows[first] - rows[second])])
+    return np.concatenate([_find_vertices(rows), _find_crossings(rows[first] - rows[second])])
 
 
-def _vertices(rows: Real) -> Real:
+def _find_vertices(rows: Real) -> Real:
     curved = rows[:, 2] != 0.0
     return np.asarray(-0.5 * rows[curved, 1] / rows[curved, 2])
 
 
-def _crossings(rows: Real) -> Real:
+def _find_crossings(rows: Real) -> Real:
     """Return the real roots of c + b x + a x², without cancellation."""
     c, b, a = rows.T
     square = b * b - 4.0 * a * c
@@ -255,7 +260,7 @@ def _crossings(rows: Real) -> Real:
     return np.asarray(found[np.isfinite(found)])
 
 
-def _least(model: Callable[[Real], Real], candidates: Real, ends: tuple[float, float]) -> tuple[float, float]:
+def _select_minimum(model: Callable[[Real], Real], candidates: Real, ends: tuple[float, float]) -> tuple[float, float]:
     """Select the best of the candidates between two ends, ends included."""
     inside = candidates[(candidates > ends[0]) & (candidates < ends[1])]
     x = np.unique(np.concatenate([inside, ends]))

@@ -17,11 +17,10 @@ from typing import NamedTuple
 
 import numpy as np
 
+from kinematics.arrays import Complex, Real
 from kinematics.dynamics.friction import NO_RUBBING, Rubbing
 from kinematics.dynamics.machine import Machine
 from kinematics.dynamics.places import Places, cross, dot
-from kinematics.linkage.planar.drive import Jet
-from kinematics.linkage.planar.mechanism import Complex, Real
 
 
 class Balance(NamedTuple):
@@ -33,7 +32,7 @@ class Balance(NamedTuple):
     scale: Real
 
 
-def balance(machine: Machine, now: Places, paced: Places, rubbing: Rubbing = NO_RUBBING) -> Balance:
+def compute_balance(machine: Machine, now: Places, paced: Places, rubbing: Rubbing = NO_RUBBING) -> Balance:
     """Compute the balances of a machine at positions ``now``; ``paced`` is the same motion at an input speed of 1.
 
     Friction losses come from the reactions (``rubbing``), since a balance of energy cannot determine them. Friction is
@@ -41,7 +40,7 @@ def balance(machine: Machine, now: Places, paced: Places, rubbing: Rubbing = NO_
     """
     # Speed and acceleration of the input; all other derivatives are by the input itself.
     q1, q2 = now.input[1], now.input[2]
-    masses: list[tuple[Real, Jet]] = [
+    masses: list[tuple[Real, Complex]] = [
         (np.asarray(part.mass)[..., None], paced.point(link, part.cg)) for link, part in machine.bodies.items()
     ]
     # Point masses at pins contribute like bodies without inertia.

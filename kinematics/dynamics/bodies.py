@@ -11,7 +11,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from kinematics.linkage.planar.mechanism import Complex, Real
+from kinematics.arrays import Complex, Real
 
 
 class Body(NamedTuple):
@@ -22,12 +22,12 @@ class Body(NamedTuple):
     inertia: Real
 
 
-def body(mass: float, cg: complex = 0j, inertia: float = 0.0) -> Body:
+def make_body(mass: float, cg: complex = 0j, inertia: float = 0.0) -> Body:
     """Make a body from plain numbers."""
     return Body(np.asarray(mass, np.float64), np.asarray(cg, np.complex128), np.asarray(inertia, np.float64))
 
 
-def joined(bodies: Iterable[Body]) -> Body:
+def join_bodies(bodies: Iterable[Body]) -> Body:
     """Join bodies that are fixed to one another into one.
 
     Examples
@@ -48,7 +48,7 @@ def joined(bodies: Iterable[Body]) -> Body:
     return Body(mass, np.asarray(cg), np.asarray(inertia, np.float64))
 
 
-def slenderness_faults(part: Body, reach: float) -> bool:
+def is_too_slender(part: Body, reach: float) -> bool:
     """Return whether the moment of inertia is too small for a body of this extent.
 
     A plane body of positive density has I > 0; below 1e-6 m·reach² it is practically a point mass.

@@ -30,14 +30,11 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from kinematics.arrays import Complex, Integers, Real
 from kinematics.compiling import njit
-from kinematics.linkage.planar.drive_kernels import GEAR, JOINT, KIND, LINK, OTHER, OTHER_PIN, PIN, RRP, RRR, SLIDE
+from kinematics.linkage.planar.drive_kernels import GEAR, JOINT, KIND, LINK, OTHER_LINK, OTHER_PIN, PIN, RRP, RRR, SLIDE
 
-Real = NDArray[np.float64]
-Complex = NDArray[np.complex128]
-Rows = NDArray[np.int64]
-
-LEAST_SINE = 1e-7
+MIN_SINE = 1e-7
 """Sine of the angle at a closure below which a position counts as a toggle, without finite forces."""
 
 ON_LINK, ON_JOINT = range(2)
@@ -46,35 +43,35 @@ ON_LINK, ON_JOINT = range(2)
 DRIVE, PIN_FORCE, SHAKING_X, SHAKING_Y, MOMENT = range(5)
 """Rows of the results."""
 
-LANES = 64
+MAX_LANES = 64
 """Maximum number of inputs processed side by side by vector instructions; their data must fit into the first-level
 cache."""
 
 OPTIONS: dict[str, Any] = {"cache": True, "nogil": True, "error_model": "numpy"}
 """Options of the kernels: division by zero gives inf or NaN as in NumPy."""
 
-STEP: dict[str, Any] = OPTIONS | {"forceinline": True}
+INLINE_OPTIONS: dict[str, Any] = OPTIONS | {"forceinline": True}
 """Options of a kernel that is called in one place and inlined there."""
 
 
 @njit(**OPTIONS)
 def eliminate(
-    rows: Rows,
+    rows: Integers,
     ratios: Real,
-    bases: Rows,
+    bases: Integers,
     exact: NDArray[np.bool_],
-    carried: Rows,
-    driver: Rows,
+    carried: Integers,
+    driver: Integers,
     joints: Complex,
     lines: Complex,
     normals: Complex,
-    signs: Rows,
+    signs: Integers,
     mass: Real,
     cg: Complex,
     inertia: Real,
     pin_mass: Real,
     gravity: complex,
-    on: Rows,
+    on: Integers,
     arms: Complex,
     strengths: Complex,
     couples: Real,
@@ -119,21 +116,21 @@ def eliminate(
         Filled; NaN where a closure cannot be assembled or is a toggle.
     """
     links, count, inputs = len(bases), joints.shape[1], moved.shape[2]
-    x, turn, angle = np.zeros((count, 6, LANES)), np.zeros((links, 4, LANES)), np.zeros((links, LANES))
-    need, pins, whole = np.zeros((links, 3, LANES)), np.zeros((count, 2, LANES)), np.ones(LANES, np.bool_)
-    fixed, results = np.zeros((len(rows), 8)), np.zeros((5, LANES))
+    x, turn, angle = np.zeros((count, 6, MAX_LANES)), np.zeros((links, 4, MAX_LANES)), np.zeros((links, MAX_LANES))
+    need, pins, whole = np.zeros((links, 3, MAX_LANES)), np.zeros((count, 2, MAX_LANES)), np.ones(MAX_LANES, np.bool_)
+    fixed, results = np.zeros((len(rows), 8)), np.zeros((5, MAX_LANES))
     # The ground has rotation factor 1 and no rates.
     turn[0, 0] = 1.0
     gx, gy = gravity.real, gravity.imag
     # Blocks of equal size, at most LANES: two ceiling divisions.
-    block = -(-inputs // -(-inputs // LANES)) if inputs else 1
+    block = -(-inputs // -(-inputs // MAX_LANES)) if inputs else 1
     for d in range(joints.shape[0]):
         place = joints[d]
         for joint in range(count):
             x[joint] = 0.0
             x[joint, 0], x[joint, 1] = place[joint].real, place[joint].imag
         # Constants of the design, computed once for all inputs.
-        _reference(rows, place, lines[d], normals[d], bases, fixed)
+        _compute_reference(rows, place, lines[d], normals[d], bases, fixed)
         for start in range(0, inputs, block):
             lanes = min(block, inputs - start)
             # Lanes whose closures exist; the others are masked at the end.
@@ -155,8 +152,8 @@ def eliminate(
                     angle[first, k] = moved[0, d, at]
                     turn[first, 0, k], turn[first, 1, k] = math.cos(angle[first, k]), math.sin(angle[first, k])
                     turn[first, 2, k], turn[first, 3, k] = moved[1, d, at], moved[2, d, at]
-                _carry(first, bases[first], place, carried, turn, x, lanes)
-            _assemble(
+                _move_joints(first, bases[first], place, carried, turn, x, lanes)
+            _assemble_closures(
                 rows,
                 ratios,
                 bases,
@@ -209,15 +206,19 @@ def eliminate(
                     need[which, 0, k] -= fx
                     need[which, 1, k] -= fy
                     need[which, 2, k] -= rx * fy - ry * fx
-            _give_back(rows, ratios, bases, carried, driver, normals[d], about[d], x, turn, need, pins, results, lanes)
+            _compute_reactions(
+                rows, ratios, bases, carried, driver, normals[d], about[d], x, turn, need, pins, results, lanes
+            )
             for k in range(lanes):
                 for n in range(5):
                     # NaN only here, so that the loops above need no branches.
                     out[n, d, start + k] = results[n, k] if whole[k] else np.nan
 
 
-@njit(**STEP)
-def _reference(rows: Rows, place: Complex, line: Complex, normal: Complex, bases: Rows, fixed: Real) -> None:
+@njit(**INLINE_OPTIONS)
+def _compute_reference(
+    rows: Integers, place: Complex, line: Complex, normal: Complex, bases: Integers, fixed: Real
+) -> None:
     """Compute the constants of each closure: arms and squares of their lengths; for RPR the distance of the line."""
     for row in range(len(rows)):
         kind, pin, joint = rows[row, KIND], rows[row, PIN], rows[row, JOINT]
@@ -240,7 +241,7 @@ def _reference(rows: Rows, place: Complex, line: Complex, normal: Complex, bases
 
 
 @njit(**OPTIONS)
-def _carry(link: int, pin: int, place: Complex, carried: Rows, turn: Real, x: Real, lanes: int) -> None:
+def _move_joints(link: int, pin: int, place: Complex, carried: Integers, turn: Real, x: Real, lanes: int) -> None:
     """Compute positions, velocities and accelerations of the joints that a link determines."""
     for n in range(1, carried[link, 0] + 1):
         joint = carried[link, n]
@@ -254,17 +255,17 @@ def _carry(link: int, pin: int, place: Complex, carried: Rows, turn: Real, x: Re
             x[joint, 5, k] = x[pin, 5, k] - w * w * ry + alpha * rx
 
 
-@njit(**STEP)
-def _assemble(
-    rows: Rows,
+@njit(**INLINE_OPTIONS)
+def _assemble_closures(
+    rows: Integers,
     ratios: Real,
-    bases: Rows,
+    bases: Integers,
     exact: NDArray[np.bool_],
-    carried: Rows,
+    carried: Integers,
     place: Complex,
     line: Complex,
     normal: Complex,
-    signs: Rows,
+    signs: Integers,
     d: int,
     fixed: Real,
     x: Real,
@@ -276,7 +277,7 @@ def _assemble(
     """Compute rotations and rates of all links, and their joints; clear ``whole`` where a closure has no solution."""
     for row in range(len(rows)):
         kind, link, pin, joint = rows[row, KIND], rows[row, LINK], rows[row, PIN], rows[row, JOINT]
-        other, slide, sign = rows[row, OTHER], rows[row, SLIDE], float(signs[row, d])
+        other, slide, sign = rows[row, OTHER_LINK], rows[row, SLIDE], float(signs[row, d])
         if kind == RRR:
             far, b2, c2 = rows[row, OTHER_PIN], fixed[row, 2], fixed[row, 6]
             for k in range(lanes):
@@ -285,7 +286,7 @@ def _assemble(
                 along = 0.5 * (square + b2 - c2)
                 height = b2 * square - along * along
                 # height is the square of b c times the sine of the angle between both links.
-                whole[k] &= height > LEAST_SINE * LEAST_SINE * b2 * c2
+                whole[k] &= height > MIN_SINE * MIN_SINE * b2 * c2
                 height = -sign * math.sqrt(height)
                 inverse = 1.0 / square
                 # Position of the joint from the base, by the two circles.
@@ -303,7 +304,7 @@ def _assemble(
                 turn[link, 1, k] = (py * fixed[row, 0] - px * fixed[row, 1]) * fixed[row, 3]
                 turn[other, 0, k] = (qx * fixed[row, 4] + qy * fixed[row, 5]) * fixed[row, 7]
                 turn[other, 1, k] = (qy * fixed[row, 4] - qx * fixed[row, 5]) * fixed[row, 7]
-            _carry(other, far, place, carried, turn, x, lanes)
+            _move_joints(other, far, place, carried, turn, x, lanes)
         elif kind == GEAR:
             for k in range(lanes):
                 # Only the principal value is known of a link that a closure places; gears on it must not exceed ±π.
@@ -321,7 +322,7 @@ def _assemble(
                 ly = x[base, 1, k] + s * point.real + c * point.imag
                 h = nx * (lx - x[pin, 0, k]) + ny * (ly - x[pin, 1, k])
                 root = fixed[row, 2] - h * h
-                whole[k] &= root > LEAST_SINE * LEAST_SINE * fixed[row, 2]
+                whole[k] &= root > MIN_SINE * MIN_SINE * fixed[row, 2]
                 root = sign * math.sqrt(root)
                 px, py = nx * h + ny * root, ny * h - nx * root
                 # The line's own motion at the joint, and the joint's motion along it (Coriolis term below).
@@ -341,7 +342,7 @@ def _assemble(
                 px, py = x[joint, 0, k] - x[pin, 0, k], x[joint, 1, k] - x[pin, 1, k]
                 square = px * px + py * py
                 root = square - h * h
-                whole[k] &= root > LEAST_SINE * LEAST_SINE * square
+                whole[k] &= root > MIN_SINE * MIN_SINE * square
                 root = sign * math.sqrt(root)
                 inverse = 1.0 / square
                 nx, ny = (px * h + py * root) * inverse, (py * h - px * root) * inverse
@@ -352,12 +353,12 @@ def _assemble(
                 turn[link, 2, k] = w
                 turn[link, 3, k] = (w * w * h - nx * ax - ny * ay - 2.0 * w * (nx * vy - ny * vx)) * inverse
                 turn[link, 0, k], turn[link, 1, k] = nx * n.real + ny * n.imag, ny * n.real - nx * n.imag
-        _carry(link, pin, place, carried, turn, x, lanes)
+        _move_joints(link, pin, place, carried, turn, x, lanes)
 
 
 @njit(**OPTIONS)
 def _gather(
-    link: int, base: int, but: int, carried: Rows, x: Real, need: Real, pins: Real, largest: Real, lanes: int
+    link: int, base: int, but: int, carried: Integers, x: Real, need: Real, pins: Real, largest: Real, lanes: int
 ) -> None:
     """Subtract the forces on a link's joints, except one, from its required resultant and moment."""
     for n in range(1, carried[link, 0] + 1):
@@ -372,13 +373,13 @@ def _gather(
             largest[k] = max(largest[k], fx * fx + fy * fy)
 
 
-@njit(**STEP)
-def _give_back(
-    rows: Rows,
+@njit(**INLINE_OPTIONS)
+def _compute_reactions(
+    rows: Integers,
     ratios: Real,
-    bases: Rows,
-    carried: Rows,
-    driver: Rows,
+    bases: Integers,
+    carried: Integers,
+    driver: Integers,
     normal: Complex,
     about: complex,
     x: Real,
@@ -394,7 +395,7 @@ def _give_back(
     shake_x, shake_y = results[SHAKING_X], results[SHAKING_Y]
     for row in range(len(rows) - 1, -1, -1):
         kind, link, pin, joint = rows[row, KIND], rows[row, LINK], rows[row, PIN], rows[row, JOINT]
-        other, slide = rows[row, OTHER], rows[row, SLIDE]
+        other, slide = rows[row, OTHER_LINK], rows[row, SLIDE]
         # The force at the joint where two links meet is the unknown of the closure.
         own = joint if kind in (RRR, RRP) else -1
         _gather(link, pin, own, carried, x, need, pins, largest, lanes)
@@ -463,11 +464,11 @@ def _give_back(
                 need[link, 1, k] -= ny
                 pins[joint, 0, k] -= nx
                 pins[joint, 1, k] -= ny
-        _stand(link, pin, need, pins, largest, lanes)
+        _pass_to_pin(link, pin, need, pins, largest, lanes)
     first = driver[0]
     if first > 0:
         _gather(first, bases[first], -1, carried, x, need, pins, largest, lanes)
-        _stand(first, bases[first], need, pins, largest, lanes)
+        _pass_to_pin(first, bases[first], need, pins, largest, lanes)
         for k in range(lanes):
             drive[k] = need[first, 2, k]
             # The drive is a couple between ground and input link.
@@ -494,7 +495,7 @@ def _give_back(
 
 
 @njit(**OPTIONS)
-def _stand(link: int, pin: int, need: Real, pins: Real, largest: Real, lanes: int) -> None:
+def _pass_to_pin(link: int, pin: int, need: Real, pins: Real, largest: Real, lanes: int) -> None:
     """Transfer the remaining required force of a link to its pin."""
     for k in range(lanes):
         fx, fy = need[link, 0, k], need[link, 1, k]

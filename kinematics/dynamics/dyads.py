@@ -13,17 +13,15 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from kinematics.arrays import Complex, Integers, Real
 from kinematics.dynamics import dyad_kernels as kernels
 from kinematics.dynamics.loads import JointForce, PointForce, Torque
 from kinematics.dynamics.machine import Machine
 from kinematics.errors import MechanismError
-from kinematics.linkage.planar.closures import RECENT
-from kinematics.linkage.planar.drive import RealJet
-from kinematics.linkage.planar.drive_kernels import JOINT, LINK, OTHER, OTHER_PIN, PIN
-from kinematics.linkage.planar.mechanism import Complex, Mechanism, Real
-from kinematics.linkage.planar.program import program_of
-
-Rows = NDArray[np.int64]
+from kinematics.linkage.planar.closures import CACHE_SIZE
+from kinematics.linkage.planar.drive_kernels import JOINT, LINK, OTHER_LINK, OTHER_PIN, PIN
+from kinematics.linkage.planar.mechanism import Mechanism
+from kinematics.linkage.planar.program import build_program
 
 
 class NoDyadsError(MechanismError, ValueError):
@@ -42,32 +40,32 @@ class DyadForces(NamedTuple):
     shaking_moment: Real
 
 
-class _Make(NamedTuple):
+class _Numbering(NamedTuple):
     """Numbering shared by all designs of one topology: links with the ground first, joints followed by the origin."""
 
     links: tuple[str, ...]
     joints: tuple[str, ...]
-    bases: Rows
+    bases: Integers
     exact: NDArray[np.bool_]
-    gives: Rows
+    gives: Integers
 
 
-def closes_by_dyads(machine: Machine) -> bool:
-    """Return whether :func:`dyad_forces` handles a machine: dyads only, no link on two known pins, springs or
+def is_built_of_dyads(machine: Machine) -> bool:
+    """Return whether :func:`compute_dyad_forces` handles a machine: dyads only, no link on two known pins, springs or
     friction."""
     mechanism = machine.mechanism
     if mechanism.redundant or machine.friction.pins or machine.friction.slides:
         return False
     if not all(isinstance(load, PointForce | JointForce | Torque) for load in machine.loads):
         return False
-    program = program_of(mechanism)
+    program = build_program(mechanism)
     # A link on two known pins has no dyad equation for its forces.
     return not program.class_iii and all(step.kind != "carried" for step in program.steps)
 
 
-@lru_cache(maxsize=RECENT)
-def _make_of(mechanism: Mechanism) -> _Make:
-    program = program_of(mechanism)
+@lru_cache(maxsize=CACHE_SIZE)
+def _build_numbering(mechanism: Mechanism) -> _Numbering:
+    program = build_program(mechanism)
     rows, driver = program.code.rows, program.code.driver
     joints = tuple(mechanism.joints)
     # Moments of the ground are taken about the origin, a fictitious joint after the real ones.
@@ -79,11 +77,11 @@ def _make_of(mechanism: Mechanism) -> _Make:
         bases[row[LINK]] = row[PIN]
         exact[row[LINK]] = step.kind == "gear"
         if step.kind == "RRR":
-            bases[row[OTHER]] = row[OTHER_PIN]
-    return _Make(program.links, joints, bases, exact, program.code.gives)
+            bases[row[OTHER_LINK]] = row[OTHER_PIN]
+    return _Numbering(program.links, joints, bases, exact, program.code.gives)
 
 
-def dyad_forces(
+def compute_dyad_forces(
     machine: Machine, input: ArrayLike, speed: ArrayLike = 1.0, acceleration: ArrayLike = 0.0
 ) -> DyadForces:
     """Compute forces at absolute inputs, in the assemblies of the reference.
@@ -91,7 +89,7 @@ def dyad_forces(
     Parameters
     ----------
     machine : Machine
-        Designs of shape S for which :func:`closes_by_dyads` is true.
+        Designs of shape S for which :func:`is_built_of_dyads` is true.
     input, speed, acceleration : float
         Radians (or positions along the input slide) and their rates, broadcasting with S + (1,).
 
@@ -100,23 +98,23 @@ def dyad_forces(
     NoDyadsError
         For any other machine.
     """
-    if not closes_by_dyads(machine):
+    if not is_built_of_dyads(machine):
         raise NoDyadsError(
             "expected a linkage of dyads without springs and friction; use the general equations for others"
         )
-    mechanism, make = machine.mechanism, _make_of(machine.mechanism)
-    program = program_of(mechanism)
+    mechanism, make = machine.mechanism, _build_numbering(machine.mechanism)
+    program = build_program(mechanism)
     given = np.broadcast_arrays(*(np.asarray(rate, np.float64) for rate in (input, speed, acceleration)))
     shape = np.broadcast_shapes((*mechanism.shape, 1), given[0].shape)
     input_jet = np.stack([np.broadcast_to(rate, shape) for rate in given])
     moved = input_jet.reshape(3, -1, shape[-1]).copy()
     # The kernel expects rotations from the reference configuration.
     moved[0] -= program.reference_input[:, None]
-    if mechanism.driven_by_slide:
+    if mechanism.has_slide_input:
         # A slide's input is a length, so it scales like all lengths.
         moved *= machine.scale
         input_jet *= machine.scale
-    put = _Put(machine, make)
+    put = _KernelInput(machine, make)
     mass, cg, inertia = put.bodies()
     loads = put.loads(input_jet)
     out = np.empty((5, *moved.shape[1:]))
@@ -125,11 +123,13 @@ def dyad_forces(
         program.code.ratios,
         make.bases,
         make.exact,
-        _carried(machine, make, loads.on),
+        _find_moved_joints(machine, make, loads.on),
         program.code.driver,
         put.joints,
         *put.lines(),
-        np.stack([put.each(sign) for sign in program.signs]) if program.signs else np.empty((0, len(mass)), np.int64),
+        np.stack([put.broadcast_value(sign) for sign in program.signs])
+        if program.signs
+        else np.empty((0, len(mass)), np.int64),
         mass,
         cg,
         inertia,
@@ -152,31 +152,31 @@ def dyad_forces(
 class _Loads(NamedTuple):
     """Loads in the form that the kernel expects."""
 
-    on: Rows
+    on: Integers
     arms: Complex
     strengths: Complex
     couples: Real
 
 
-class _Put:
+class _KernelInput:
     """A machine's designs in rows, in the unit of the forces' lengths, relative to the first joint: a far origin would
     cost digits."""
 
-    def __init__(self, machine: Machine, make: _Make) -> None:
+    def __init__(self, machine: Machine, make: _Numbering) -> None:
         self.machine, self.make = machine, make
         self.designs = int(np.prod(machine.mechanism.shape, dtype=np.int64))
         joints = machine.mechanism.joints
-        self.zero = machine.scale * self.each(joints[make.joints[0]])
+        self.zero = machine.scale * self.broadcast_value(joints[make.joints[0]])
         placed = [self.from_origin(machine.scale * place) for place in joints.values()]
         self.joints = np.stack([*placed, np.zeros(self.designs, np.complex128)], axis=1)
 
-    def each(self, value: ArrayLike) -> NDArray[Any]:
+    def broadcast_value(self, value: ArrayLike) -> NDArray[Any]:
         """Broadcast a value to every design, shape (D,)."""
         return np.broadcast_to(np.asarray(value), self.machine.mechanism.shape).ravel()
 
     def from_origin(self, place: ArrayLike) -> Complex:
         """Return a point of every design relative to the first joint."""
-        return np.asarray(self.each(place) - self.zero, np.complex128)
+        return np.asarray(self.broadcast_value(place) - self.zero, np.complex128)
 
     def _from_pin(self, link: str, place: ArrayLike) -> Complex:
         return np.asarray(self.from_origin(place) - self.joints[:, self.make.bases[self.make.links.index(link)]])
@@ -187,7 +187,7 @@ class _Put:
         points, normals = np.empty((2, self.designs, len(slides)), np.complex128)
         for n, slide in enumerate(slides):
             points[:, n] = self._from_pin(slide.link, self.machine.scale * slide.point)
-            normals[:, n] = 1j * np.exp(1j * self.each(slide.angle))
+            normals[:, n] = 1j * np.exp(1j * self.broadcast_value(slide.angle))
         return points, normals
 
     def bodies(self) -> tuple[Real, Complex, Real]:
@@ -197,9 +197,9 @@ class _Put:
         for link, part in self.machine.bodies.items():
             k = self.make.links.index(link)
             mass[:, k], cg[:, k], inertia[:, k] = (
-                self.each(part.mass),
+                self.broadcast_value(part.mass),
                 self._from_pin(link, part.cg),
-                self.each(part.inertia),
+                self.broadcast_value(part.inertia),
             )
         return mass, cg, inertia
 
@@ -207,10 +207,10 @@ class _Put:
         """Return point masses, shape (D, joints)."""
         masses = np.zeros(self.joints.shape)
         for joint, mass in self.machine.pin_masses.items():
-            masses[:, self.make.joints.index(joint)] = self.each(mass)
+            masses[:, self.make.joints.index(joint)] = self.broadcast_value(mass)
         return masses
 
-    def loads(self, input_jet: RealJet) -> _Loads:
+    def loads(self, input_jet: Real) -> _Loads:
         """Return the loads at an input of shape (3,) + S + (N,)."""
         shape, links = input_jet.shape[1:], self.make.links
         flat = self.designs, shape[-1]
@@ -242,9 +242,9 @@ class _Put:
         )
 
 
-def _carried(machine: Machine, make: _Make, on: Rows) -> Rows:
+def _find_moved_joints(machine: Machine, make: _Numbering, on: Integers) -> Integers:
     """List the joints that each link determines, limited to those that a closure, mass or load uses."""
-    code = program_of(machine.mechanism).code
+    code = build_program(machine.mechanism).code
     # Skipping joints without any role saves their motion in every lane.
     used = {int(code.driver[1])} | {int(joint) for row in code.rows for joint in row[[PIN, JOINT, OTHER_PIN]]}
     used |= {make.joints.index(joint) for joint in machine.pin_masses}

@@ -6,15 +6,15 @@ from dataclasses import replace
 
 import numpy as np
 
+from kinematics.arrays import Real
 from kinematics.dynamics.friction import Friction
 from kinematics.dynamics.loads import Load
 from kinematics.dynamics.machine import Machine
 from kinematics.dynamics.places import Places
-from kinematics.dynamics.reactions import reactions
-from kinematics.linkage.planar.mechanism import Real
+from kinematics.dynamics.reactions import compute_reactions
 
 
-def joint_force_index(machine: Machine, now: Places, load: Load) -> Real:
+def compute_joint_force_index(machine: Machine, now: Places, load: Load) -> Real:
     """Compute the largest force of a pin or slide over the load, without masses, springs and friction; shape S + (N,).
 
     For a torque the index has the unit 1/length. It is NaN where the load vanishes or the reactions are not
@@ -22,7 +22,7 @@ def joint_force_index(machine: Machine, now: Places, load: Load) -> Real:
     """
     # Only the load acts, so that the index depends on the geometry alone.
     alone = replace(machine, bodies={}, pin_masses={}, gravity=0j, loads=(load,), friction=Friction())
-    found = reactions(alone, now)
+    found = compute_reactions(alone, now)
     shape = now.smooth.shape
     acting = [np.broadcast_to(np.hypot(np.abs(e.force), e.couple), shape) for e in load.efforts(now)]
     forces = [np.abs(force) for on in found.joints.values() for force in on.values()]

@@ -23,9 +23,9 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from kinematics.arrays import Complex, Real
 from kinematics.compiling import njit
 from kinematics.dynamics.kernels import OPTIONS
-from kinematics.linkage.planar.mechanism import Complex, Real
 
 DRIVE, JOINT, SHAKING_FORCE, SHAKING_MOMENT, POWER = range(5)
 """Columns of the peaks."""
@@ -33,7 +33,7 @@ DRIVE, JOINT, SHAKING_FORCE, SHAKING_MOMENT, POWER = range(5)
 INPUT, COUPLER, OUTPUT, PIN_A, PIN_B, PIN_P = range(6)
 """Codes for the target of a load. Loads at ground pins are omitted, since they act on no moving link."""
 
-LEAST_SINE = 1e-6
+MIN_SINE = 1e-6
 """Sine of the transmission angle below which the forces of a position count as infinite."""
 
 
@@ -77,7 +77,7 @@ class Weights(NamedTuple):
     about: Complex
 
 
-def peaks(linkages: Fourbars, weights: Weights, speed: float, positions: int) -> Real:
+def compute_peaks(linkages: Fourbars, weights: Weights, speed: float, positions: int) -> Real:
     """Compute the maximum magnitudes of drive, pin force, shaking force, shaking moment and power over the positions.
 
     Parameters
@@ -110,7 +110,7 @@ def _dot(u: complex, v: complex) -> float:
 
 
 @njit(**OPTIONS)
-def _square(z: complex) -> float:
+def _square_magnitude(z: complex) -> float:
     return z.real * z.real + z.imag * z.imag
 
 
@@ -140,7 +140,8 @@ def fill_peaks(
     positions: int,
     out: Real,
 ) -> None:
-    """Fill the peaks of :func:`peaks` by windows of equal numbers of positions: ``out`` has shape (n, windows, 5).
+    """Fill the peaks of :func:`compute_peaks` by windows of equal numbers of positions: ``out`` has shape (n, windows,
+    5).
 
     One long loop, since function calls here would cost as much as the work inside them.
     """
@@ -161,14 +162,14 @@ def fill_peaks(
         for k in range(positions):
             # The window is complete: store its peaks and start the next one.
             if k == last and window + 1 < windows:
-                _note(out[n, window], drive, pin, shaking, moment, speed)
+                _write_peaks(out[n, window], drive, pin, shaking, moment, speed)
                 drive = pin = shaking = moment = 0.0
                 window += 1
                 last = (window + 1) * positions // windows
             crank = a * u2
             joint_a = o2 + crank
             diagonal = o4 - joint_a
-            squared = _square(diagonal)
+            squared = _square_magnitude(diagonal)
             # Projection of the coupler on the diagonal A → O4, times the diagonal's length.
             along = 0.5 * (squared + b * b - c * c)
             height = b * b * squared - along * along
@@ -181,7 +182,7 @@ def fill_peaks(
             u4 = (joint_b - o4) / c
             s = _cross(u4, u3)
             # At a toggle the forces are unbounded: the whole design is rejected.
-            if not abs(s) > LEAST_SINE:
+            if not abs(s) > MIN_SINE:
                 whole = False
                 break
             w3, w4 = speed * _cross(crank, u4) / (b * s), speed * _cross(crank, u3) / (c * s)
@@ -237,20 +238,26 @@ def fill_peaks(
             at_ground = -(o2_on_input + o4_on_output)
             about_point = -_cross(o2 - about, o2_on_input) - _cross(o4 - about, o4_on_output) - torque
             drive, moment = max(drive, abs(torque)), max(moment, abs(about_point))
-            shaking = max(shaking, _square(at_ground))
+            shaking = max(shaking, _square_magnitude(at_ground))
             # Squares avoid a root per force and position.
-            pin = max(pin, _square(o2_on_input), _square(o4_on_output), _square(a_on_input), _square(a_on_coupler))
-            pin = max(pin, _square(b_on_output), _square(b_on_coupler), _square(payload))
+            pin = max(
+                pin,
+                _square_magnitude(o2_on_input),
+                _square_magnitude(o4_on_output),
+                _square_magnitude(a_on_input),
+                _square_magnitude(a_on_coupler),
+            )
+            pin = max(pin, _square_magnitude(b_on_output), _square_magnitude(b_on_coupler), _square_magnitude(payload))
             # A complex product instead of sine and cosine per position; the error grows by 1e-16 per step.
             u2 *= turn
         if whole:
-            _note(out[n, window], drive, pin, shaking, moment, speed)
+            _write_peaks(out[n, window], drive, pin, shaking, moment, speed)
         else:
             out[n] = np.inf
 
 
 @njit(**OPTIONS)
-def _note(out: Real, drive: float, pin: float, shaking: float, moment: float, speed: float) -> None:
+def _write_peaks(out: Real, drive: float, pin: float, shaking: float, moment: float, speed: float) -> None:
     """Write the peaks; those of pins and frame are passed as squares."""
     out[DRIVE], out[JOINT], out[SHAKING_FORCE] = drive, math.sqrt(pin), math.sqrt(shaking)
     out[SHAKING_MOMENT], out[POWER] = moment, drive * abs(speed)

@@ -14,10 +14,11 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from kinematics.dynamics.kernels import ALONG, TORQUE
+from kinematics.arrays import Real
+from kinematics.dynamics.kernels import DIRECTED_FORCE, TORQUE
 from kinematics.dynamics.places import Places
 from kinematics.dynamics.system import System
-from kinematics.linkage.planar.mechanism import GROUND, Mechanism, Real
+from kinematics.linkage.planar.mechanism import GROUND, Mechanism
 
 
 @dataclass(frozen=True)
@@ -58,14 +59,14 @@ class Rubbing(NamedTuple):
         """Return the work of friction per unit of time, or of the input if ``places`` move at an input speed of 1."""
         total = np.zeros(places.smooth.shape)
         for contact, friction in zip(self.contacts, self.frictions, strict=True):
-            total = total + friction * speed_of(contact, places)
+            total = total + friction * compute_contact_speed(contact, places)
         return total
 
 
 NO_RUBBING = Rubbing((), (), np.zeros((), np.bool_))
 
 
-def rubbing_joints(mechanism: Mechanism) -> list[str]:
+def find_rubbing_joints(mechanism: Mechanism) -> list[str]:
     """Find the joints at which a link or block turns on a pin."""
     return [
         joint
@@ -75,7 +76,7 @@ def rubbing_joints(mechanism: Mechanism) -> list[str]:
     ]
 
 
-def contacts_of(mechanism: Mechanism, system: System, friction: Friction) -> tuple[Contact, ...]:
+def list_contacts(mechanism: Mechanism, system: System, friction: Friction) -> tuple[Contact, ...]:
     """List all contacts of a mechanism."""
     found = []
     for joint, (coefficient, radius) in friction.pins.items():
@@ -97,29 +98,29 @@ def contacts_of(mechanism: Mechanism, system: System, friction: Friction) -> tup
     return tuple(found)
 
 
-def speed_of(contact: Contact, places: Places) -> Real:
+def compute_contact_speed(contact: Contact, places: Places) -> Real:
     """Compute the speed of a contact: of one link relative to the other, or along the slide."""
     if contact.slide >= 0:
         return np.asarray(places.slides[contact.slide][1])
     return np.asarray(places.spins[contact.link][1] - places.spins[contact.against][1])
 
 
-def still(contact: Contact, places: Places) -> NDArray[np.bool_]:
+def is_still(contact: Contact, places: Places) -> NDArray[np.bool_]:
     """Return where a contact is at rest."""
     # Linear and angular speeds have different thresholds.
     rest = places.rest if contact.slide >= 0 else places.turning_rest
-    return np.asarray(np.abs(speed_of(contact, places)) <= rest)
+    return np.asarray(np.abs(compute_contact_speed(contact, places)) <= rest)
 
 
-def factors_of(contact: Contact, places: Places, size: Real) -> Real:
+def compute_factors(contact: Contact, places: Places, size: Real) -> Real:
     """Compute friction per unit of the norm, against the motion; moments are divided by the mechanism's size."""
     lever = contact.lever / (1.0 if contact.slide >= 0 else size)
     # At rest friction is undetermined; 0 keeps the equations solvable.
-    sense = np.where(still(contact, places), 0.0, -np.sign(speed_of(contact, places)))
+    sense = np.where(is_still(contact, places), 0.0, -np.sign(compute_contact_speed(contact, places)))
     return np.asarray(lever * sense)
 
 
-def wrenches(
+def build_wrenches(
     contacts: tuple[Contact, ...], mechanism: Mechanism, system: System, tangent: int
 ) -> tuple[NDArray[np.int64], NDArray[np.float64]]:
     """Build the contacts' terms, one column each, in the form of :mod:`system`; ``tangent``: direction of slide 0."""
@@ -127,7 +128,7 @@ def wrenches(
     joints = {joint: n for n, joint in enumerate(mechanism.joints)}
     terms, coefficients = [], []
     for column, contact in enumerate(contacts):
-        kind, direction = (ALONG, tangent + contact.slide) if contact.slide >= 0 else (TORQUE, -1)
+        kind, direction = (DIRECTED_FORCE, tangent + contact.slide) if contact.slide >= 0 else (TORQUE, -1)
         # Action and reaction; the ground has no equations.
         for link, sense in ((contact.link, 1.0), (contact.against, -1.0)):
             if link != GROUND:

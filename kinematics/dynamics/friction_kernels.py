@@ -17,36 +17,44 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
+from kinematics.arrays import Complex, Integers, Real
 from kinematics.compiling import njit
-from kinematics.dynamics.kernels import OPTIONS, Complex, Real, Rows, factor, fill, forward, inverse_norm, norm_of
+from kinematics.dynamics.kernels import (
+    OPTIONS,
+    compute_norm,
+    estimate_inverse_norm,
+    factorise,
+    fill_terms,
+    solve_factors,
+)
 
-PASSES = 200
+MAX_ITERATIONS = 200
 """Maximum number of steps of the fixed-point iteration, and of Newton's method."""
 
-CONVERGED = 1e-12
+CONVERGENCE_TOLERANCE = 1e-12
 """Relative change of friction at which it has converged."""
 
-HALVED = 30
+MAX_HALVINGS = 30
 """Maximum number of halvings of a Newton step."""
 
-FAR = 1e3
+FAR_START_DISTANCE = 1e3
 """Distance of the far starts of Newton's method, in units of the friction caused by the frictionless forces."""
 
-APART = 1e-6
+DISTINCT_TOLERANCE = 1e-6
 """Relative difference above which two solutions are distinct."""
 
-POWERS = 30
+POWER_STEPS = 30
 """Steps of the power iteration that bounds the spectral radius."""
 
 
 @njit(**OPTIONS)
-def solve_rubbing(
-    terms: Rows,
+def solve_friction(
+    terms: Integers,
     coefficients: Real,
-    bases: Rows,
-    contact_terms: Rows,
+    bases: Integers,
+    contact_terms: Integers,
     contact_coefficients: Real,
-    columns: Rows,
+    columns: Integers,
     factors: Real,
     joints: Complex,
     directions: Complex,
@@ -57,7 +65,7 @@ def solve_rubbing(
     frictions: Real,
     jammed: NDArray[np.bool_],
 ) -> None:
-    """Solve at all positions. Parameters in addition to :func:`kinematics.dynamics.kernels.solve`:
+    """Solve at all positions. Parameters in addition to :func:`kinematics.dynamics.kernels.solve_positions`:
 
     contact_terms, contact_coefficients
         Wrenches of the contacts, as terms of E columns.
@@ -85,26 +93,26 @@ def solve_rubbing(
             continue
         matrix[:] = 0.0
         wrenches[:] = 0.0
-        fill(terms, coefficients, bases, joints, directions, at, matrix)
-        fill(contact_terms, contact_coefficients, bases, joints, directions, at, wrenches)
-        norm = norm_of(matrix)
-        if not factor(matrix, order):
+        fill_terms(terms, coefficients, bases, joints, directions, at, matrix)
+        fill_terms(contact_terms, contact_coefficients, bases, joints, directions, at, wrenches)
+        norm = compute_norm(matrix)
+        if not factorise(matrix, order):
             continue
-        conditions[at] = norm * inverse_norm(matrix, order, work)
+        conditions[at] = norm * estimate_inverse_norm(matrix, order, work)
         free[:] = known[at]
-        forward(matrix, order, free)
+        solve_factors(matrix, order, free)
         for e in range(contacts):
             answers[e] = wrenches[:, e]
-            forward(matrix, order, answers[e])
+            solve_factors(matrix, order, answers[e])
         y[:] = 0.0
         # The cheap iteration succeeds for usual coefficients; Newton's method is the fallback.
-        found = iterate(free, answers, columns, factors[:, at], y)
+        found = iterate_friction(free, answers, columns, factors[:, at], y)
         if not found:
             y[:] = 0.0
-            found = newton(free, answers, columns, factors[:, at], y)
+            found = solve_newton(free, answers, columns, factors[:, at], y)
         # Uniqueness is proved by contraction, else only tested by searching for a second solution.
-        if found and not contracts(answers, columns, factors[:, at]):
-            found = only(free, answers, columns, factors[:, at], y, other)
+        if found and not is_contraction(answers, columns, factors[:, at]):
+            found = is_unique(free, answers, columns, factors[:, at], y, other)
         jammed[at] = not found
         if not found:
             continue
@@ -117,7 +125,7 @@ def solve_rubbing(
 
 
 @njit(**OPTIONS)
-def norm_at(free: Real, answers: Real, pair: Rows, y: Real) -> tuple[float, float, float]:
+def compute_contact_norm(free: Real, answers: Real, pair: Integers, y: Real) -> tuple[float, float, float]:
     """Compute the norm on the columns of a contact, and its two components."""
     one, two = free[pair[0]], 0.0
     for f in range(len(y)):
@@ -130,13 +138,13 @@ def norm_at(free: Real, answers: Real, pair: Rows, y: Real) -> tuple[float, floa
 
 
 @njit(**OPTIONS)
-def iterate(free: Real, answers: Real, columns: Rows, factors: Real, y: Real) -> bool:
+def iterate_friction(free: Real, answers: Real, columns: Integers, factors: Real, y: Real) -> bool:
     """Iterate to the fixed point from y, in place; return whether it converged."""
     fresh = np.empty_like(y)
-    for _ in range(PASSES):
+    for _ in range(MAX_ITERATIONS):
         change, size = 0.0, 0.0
         for e in range(len(y)):
-            fresh[e] = factors[e] * norm_at(free, answers, columns[e], y)[0]
+            fresh[e] = factors[e] * compute_contact_norm(free, answers, columns[e], y)[0]
         for e in range(len(y)):
             change = max(change, abs(fresh[e] - y[e]))
             size = max(size, abs(fresh[e]))
@@ -144,36 +152,36 @@ def iterate(free: Real, answers: Real, columns: Rows, factors: Real, y: Real) ->
         # Diverged: the iteration is no contraction here.
         if not math.isfinite(size):
             return False
-        if change <= CONVERGED * size:
+        if change <= CONVERGENCE_TOLERANCE * size:
             return True
     return False
 
 
 @njit(**OPTIONS)
-def missing(free: Real, answers: Real, columns: Rows, factors: Real, y: Real, out: Real) -> float:
+def compute_residual(free: Real, answers: Real, columns: Integers, factors: Real, y: Real, out: Real) -> float:
     """Fill the residual, y minus the friction of the forces that y causes, and return its largest magnitude."""
     largest = 0.0
     for e in range(len(y)):
-        out[e] = y[e] - factors[e] * norm_at(free, answers, columns[e], y)[0]
+        out[e] = y[e] - factors[e] * compute_contact_norm(free, answers, columns[e], y)[0]
         largest = max(largest, abs(out[e]))
     return largest
 
 
 @njit(**OPTIONS)
-def newton(free: Real, answers: Real, columns: Rows, factors: Real, y: Real) -> bool:
+def solve_newton(free: Real, answers: Real, columns: Integers, factors: Real, y: Real) -> bool:
     """Solve by Newton's method with halved steps from y, in place; return whether it converged."""
     contacts = len(y)
     jacobian, order = np.empty((contacts, contacts)), np.empty(contacts, np.int64)
     step, trial, rest = np.empty(contacts), np.empty(contacts), np.empty(contacts)
-    error = missing(free, answers, columns, factors, y, step)
-    for _ in range(PASSES):
+    error = compute_residual(free, answers, columns, factors, y, step)
+    for _ in range(MAX_ITERATIONS):
         size = 0.0
         for e in range(contacts):
             size = max(size, abs(y[e]))
-        if error <= CONVERGED * size or error == 0.0:
+        if error <= CONVERGENCE_TOLERANCE * size or error == 0.0:
             return True
         for e in range(contacts):
-            norm, one, two = norm_at(free, answers, columns[e], y)
+            norm, one, two = compute_contact_norm(free, answers, columns[e], y)
             for f in range(contacts):
                 slope = 0.0
                 # At zero norm the derivative does not exist; 0 is a subgradient.
@@ -184,14 +192,14 @@ def newton(free: Real, answers: Real, columns: Rows, factors: Real, y: Real) -> 
                     slope *= -factors[e] / norm
                 jacobian[e, f] = (1.0 if e == f else 0.0) - slope
         # A singular Jacobian gives no direction.
-        if not factor(jacobian, order):
+        if not factorise(jacobian, order):
             return False
-        forward(jacobian, order, step)
+        solve_factors(jacobian, order, step)
         share = 1.0
-        for _ in range(HALVED):
+        for _ in range(MAX_HALVINGS):
             for e in range(contacts):
                 trial[e] = y[e] - share * step[e]
-            fresh = missing(free, answers, columns, factors, trial, rest)
+            fresh = compute_residual(free, answers, columns, factors, trial, rest)
             if fresh < error:
                 break
             share *= 0.5
@@ -205,11 +213,11 @@ def newton(free: Real, answers: Real, columns: Rows, factors: Real, y: Real) -> 
 
 
 @njit(**OPTIONS)
-def contracts(answers: Real, columns: Rows, factors: Real) -> bool:
+def is_contraction(answers: Real, columns: Integers, factors: Real) -> bool:
     """Return whether the iteration contracts: the spectral radius of K is below 1 (Collatz-Wielandt bound)."""
     contacts = len(columns)
     z, image = np.ones(contacts), np.empty(contacts)
-    for _ in range(POWERS):
+    for _ in range(POWER_STEPS):
         bound = 0.0
         for e in range(contacts):
             # A small multiple of z keeps z positive, so that the bound also holds for a K with zero rows.
@@ -226,19 +234,19 @@ def contracts(answers: Real, columns: Rows, factors: Real) -> bool:
 
 
 @njit(**OPTIONS)
-def only(free: Real, answers: Real, columns: Rows, factors: Real, y: Real, other: Real) -> bool:
+def is_unique(free: Real, answers: Real, columns: Integers, factors: Real, y: Real, other: Real) -> bool:
     """Return whether Newton's method, started far out along ± each axis, finds no other solution than y."""
     contacts = len(y)
     # Scale of friction from the frictionless forces, to choose starts far outside the solution.
     reach = 0.0
     for e in range(contacts):
-        reach = max(reach, abs(factors[e]) * norm_at(free, answers, columns[e], 0.0 * y)[0], abs(y[e]))
+        reach = max(reach, abs(factors[e]) * compute_contact_norm(free, answers, columns[e], 0.0 * y)[0], abs(y[e]))
     for e in range(contacts):
         for sense in (-1.0, 1.0):
             other[:] = y
-            other[e] += sense * FAR * reach
-            if newton(free, answers, columns, factors, other):
+            other[e] += sense * FAR_START_DISTANCE * reach
+            if solve_newton(free, answers, columns, factors, other):
                 for f in range(contacts):
-                    if abs(other[f] - y[f]) > APART * reach:
+                    if abs(other[f] - y[f]) > DISTINCT_TOLERANCE * reach:
                         return False
     return True

@@ -12,16 +12,13 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from kinematics.arrays import Complex, Integers, Real
 from kinematics.compiling import njit
 
-Real = NDArray[np.float64]
-Complex = NDArray[np.complex128]
-Rows = NDArray[np.int64]
-
-FORCE, ALONG, TORQUE = range(3)
+FORCE, DIRECTED_FORCE, TORQUE = range(3)
 """Kinds of terms: a force at a joint (two columns, its components); a force along a given direction; a couple."""
 
-ESTIMATES = 5
+MAX_ESTIMATE_STEPS = 5
 """Maximum number of steps of Hager's estimate; it usually ends after two or three."""
 
 OPTIONS: dict[str, Any] = {"cache": True, "nogil": True, "error_model": "numpy"}
@@ -29,10 +26,10 @@ OPTIONS: dict[str, Any] = {"cache": True, "nogil": True, "error_model": "numpy"}
 
 
 @njit(**OPTIONS)
-def solve(
-    terms: Rows,
+def solve_positions(
+    terms: Integers,
     coefficients: Real,
-    bases: Rows,
+    bases: Integers,
     joints: Complex,
     directions: Complex,
     known: Real,
@@ -69,27 +66,29 @@ def solve(
         if not smooth[at]:
             continue
         matrix[:] = 0.0
-        fill(terms, coefficients, bases, joints, directions, at, matrix)
+        fill_terms(terms, coefficients, bases, joints, directions, at, matrix)
         # Before the elimination overwrites the matrix.
-        norm = norm_of(matrix)
-        if not factor(matrix, order):
+        norm = compute_norm(matrix)
+        if not factorise(matrix, order):
             continue
-        conditions[at] = norm * inverse_norm(matrix, order, work)
+        conditions[at] = norm * estimate_inverse_norm(matrix, order, work)
         for row in range(n):
             solutions[at, row] = known[at, row]
-        forward(matrix, order, solutions[at])
+        solve_factors(matrix, order, solutions[at])
 
 
 @njit(**OPTIONS)
-def matrices(terms: Rows, coefficients: Real, bases: Rows, joints: Complex, directions: Complex, filled: Real) -> None:
+def fill_matrices(
+    terms: Integers, coefficients: Real, bases: Integers, joints: Complex, directions: Complex, filled: Real
+) -> None:
     """Add the equations of all positions to an array of shape (M, rows, columns)."""
     for at in range(len(filled)):
-        fill(terms, coefficients, bases, joints, directions, at, filled[at])
+        fill_terms(terms, coefficients, bases, joints, directions, at, filled[at])
 
 
 @njit(**OPTIONS)
-def fill(
-    terms: Rows, coefficients: Real, bases: Rows, joints: Complex, directions: Complex, at: int, matrix: Real
+def fill_terms(
+    terms: Integers, coefficients: Real, bases: Integers, joints: Complex, directions: Complex, at: int, matrix: Real
 ) -> None:
     """Add the terms of one position to a matrix."""
     for t in range(len(terms)):
@@ -113,7 +112,7 @@ def fill(
 
 
 @njit(**OPTIONS)
-def norm_of(matrix: Real) -> float:
+def compute_norm(matrix: Real) -> float:
     """Compute the 1-norm: the maximum column sum of magnitudes."""
     largest = 0.0
     n = len(matrix)
@@ -126,7 +125,7 @@ def norm_of(matrix: Real) -> float:
 
 
 @njit(**OPTIONS)
-def factor(matrix: Real, order: Rows) -> bool:
+def factorise(matrix: Real, order: Integers) -> bool:
     """Eliminate in place with partial pivoting; False where a pivot vanishes."""
     n = len(matrix)
     for k in range(n):
@@ -155,7 +154,7 @@ def factor(matrix: Real, order: Rows) -> bool:
 
 
 @njit(**OPTIONS)
-def forward(matrix: Real, order: Rows, x: Real) -> None:
+def solve_factors(matrix: Real, order: Integers, x: Real) -> None:
     """Solve A x = b with the factors, in place."""
     n = len(matrix)
     for k in range(n):
@@ -176,7 +175,7 @@ def forward(matrix: Real, order: Rows, x: Real) -> None:
 
 
 @njit(**OPTIONS)
-def transposed(matrix: Real, order: Rows, x: Real) -> None:
+def solve_transposed(matrix: Real, order: Integers, x: Real) -> None:
     """Solve Aᵀ x = b with the factors, in place."""
     n = len(matrix)
     for k in range(n):
@@ -195,15 +194,15 @@ def transposed(matrix: Real, order: Rows, x: Real) -> None:
 
 
 @njit(**OPTIONS)
-def inverse_norm(matrix: Real, order: Rows, work: Real) -> float:
+def estimate_inverse_norm(matrix: Real, order: Integers, work: Real) -> float:
     """Estimate the 1-norm of the inverse from the factors (Hager): a lower bound, rarely less than a third of it."""
     n = len(matrix)
     x, z, signs = work[0], work[1], work[2]
     # Hager starts from the uniform vector, then moves to unit vectors that increase the norm.
     x[:] = 1.0 / n
     estimate = 0.0
-    for step in range(ESTIMATES):
-        forward(matrix, order, x)
+    for step in range(MAX_ESTIMATE_STEPS):
+        solve_factors(matrix, order, x)
         total = 0.0
         for k in range(n):
             total += abs(x[k])
@@ -213,7 +212,7 @@ def inverse_norm(matrix: Real, order: Rows, work: Real) -> float:
             break
         estimate = total
         z[:] = signs
-        transposed(matrix, order, z)
+        solve_transposed(matrix, order, z)
         largest = 0
         for k in range(n):
             if abs(z[k]) > abs(z[largest]):

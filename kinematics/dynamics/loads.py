@@ -13,11 +13,10 @@ from typing import NamedTuple, Protocol
 import numpy as np
 from numpy.typing import NDArray
 
+from kinematics.arrays import Complex, Real
 from kinematics.dynamics.places import Places, dot
-from kinematics.linkage.planar.drive import RealJet
-from kinematics.linkage.planar.mechanism import Complex, Real
 
-Course = Callable[[RealJet], NDArray[np.complex128] | NDArray[np.float64]]
+Course = Callable[[Real], NDArray[np.complex128] | NDArray[np.float64]]
 """Strength of a load as a function of the input jet (absolute value in radians or a length along the input slide,
 speed, acceleration), shape (3,) + S + (N,); the strengths have shape S + (N,)."""
 
@@ -51,18 +50,18 @@ class PointForce:
     course: Course
     turning: bool = False
 
-    def _force(self, now: Places) -> Complex:
+    def _compute_force(self, now: Places) -> Complex:
         force = np.asarray(self.course(now.input), np.complex128)
         # Rotate components given in the link's frame into the ground's.
         return force * now.turns[self.link][0] if self.turning else force
 
     def efforts(self, now: Places) -> list[Effort]:
         """See :class:`Load`."""
-        return [Effort(self.link, "", now.point(self.link, self.place)[0], self._force(now), np.zeros(()))]
+        return [Effort(self.link, "", now.point(self.link, self.place)[0], self._compute_force(now), np.zeros(()))]
 
     def work(self, now: Places, paced: Places) -> Real:
         """See :class:`Load`."""
-        return dot(self._force(now), paced.point(self.link, self.place)[1])
+        return dot(self._compute_force(now), paced.point(self.link, self.place)[1])
 
 
 @dataclass(frozen=True)
@@ -99,7 +98,7 @@ class Torque:
         return np.asarray(self.course(now.input) * paced.spins[self.link][1], np.float64)
 
 
-def constant(strength: complex) -> Course:
+def make_constant(strength: complex) -> Course:
     """Make the course of a constant load."""
     return lambda input: np.full(input.shape[1:], strength)
 
@@ -117,7 +116,7 @@ class Resistance:
     backward: float
     slide: int | None = None
 
-    def _force(self, now: Places) -> Complex:
+    def _compute_force(self, now: Places) -> Complex:
         velocity = now.joints[self.joint][1]
         # At a dead centre the direction of motion would be decided by rounding.
         moves = np.abs(velocity) > now.rest
@@ -134,11 +133,11 @@ class Resistance:
 
     def efforts(self, now: Places) -> list[Effort]:
         """See :class:`Load`."""
-        return [Effort("", self.joint, now.joints[self.joint][0], self._force(now), np.zeros(()))]
+        return [Effort("", self.joint, now.joints[self.joint][0], self._compute_force(now), np.zeros(()))]
 
     def work(self, now: Places, paced: Places) -> Real:
         """See :class:`Load`."""
-        return dot(self._force(now), paced.joints[self.joint][1])
+        return dot(self._compute_force(now), paced.joints[self.joint][1])
 
 
 @dataclass(frozen=True)
@@ -149,7 +148,7 @@ class TurningResistance:
     forward: float
     backward: float
 
-    def _torque(self, now: Places) -> Real:
+    def _compute_torque(self, now: Places) -> Real:
         spin = now.spins[self.link][1]
         # Rounding must not decide the sign of a resistance at rest.
         still = np.abs(spin) <= now.turning_rest
@@ -157,8 +156,10 @@ class TurningResistance:
 
     def efforts(self, now: Places) -> list[Effort]:
         """See :class:`Load`."""
-        return [Effort(self.link, "", np.zeros((), np.complex128), np.zeros((), np.complex128), self._torque(now))]
+        return [
+            Effort(self.link, "", np.zeros((), np.complex128), np.zeros((), np.complex128), self._compute_torque(now))
+        ]
 
     def work(self, now: Places, paced: Places) -> Real:
         """See :class:`Load`."""
-        return np.asarray(self._torque(now) * paced.spins[self.link][1])
+        return np.asarray(self._compute_torque(now) * paced.spins[self.link][1])

@@ -4,10 +4,11 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 
+from kinematics.arrays import Complex, Real
 from kinematics.dynamics.bodies import Body
 from kinematics.dynamics.friction import Friction
 from kinematics.dynamics.loads import Load
-from kinematics.linkage.planar.mechanism import Complex, Mechanism, Real
+from kinematics.linkage.planar.mechanism import Mechanism
 
 
 @dataclass(frozen=True)

@@ -10,10 +10,11 @@ from functools import cached_property
 
 import numpy as np
 
-from kinematics.linkage.planar.drive import Jet, MechanismMotion, RealJet
-from kinematics.linkage.planar.mechanism import GROUND, Complex, Mechanism, Real
+from kinematics.arrays import Complex, Real
+from kinematics.linkage.planar.drive import MechanismMotion
+from kinematics.linkage.planar.mechanism import GROUND, Mechanism
 
-REST = 1e-12
+REST_SPEED = 1e-12
 """Speed, as a share of the mechanism's size times the input's speed, up to which a point counts as at rest."""
 
 
@@ -35,12 +36,12 @@ class Places:
         self.scale = scale
         self.smooth = motion.smooth
         # A slide's input is a length and scales like one; an angle does not.
-        travelled = scale if mechanism.driven_by_slide else 1.0
-        self.input: RealJet = motion.input if travelled == 1.0 else travelled * motion.input
-        self.joints: dict[str, Jet] = {name: scale * jet[:3] for name, jet in motion.joints.items()}
-        self.slides: tuple[RealJet, ...] = tuple(scale * jet[:3] for jet in motion.slides.values())
+        travelled = scale if mechanism.has_slide_input else 1.0
+        self.input: Real = motion.input if travelled == 1.0 else travelled * motion.input
+        self.joints: dict[str, Complex] = {name: scale * jet[:3] for name, jet in motion.joints.items()}
+        self.slides: tuple[Real, ...] = tuple(scale * jet[:3] for jet in motion.slides.values())
         self._still = np.zeros((3, *motion.smooth.shape))
-        self.spins: dict[str, RealJet] = {GROUND: self._still}
+        self.spins: dict[str, Real] = {GROUND: self._still}
         for link, jet in motion.angles.items():
             spin = jet[:3].copy()
             # Rotation relative to the reference, not the absolute angle.
@@ -59,7 +60,7 @@ class Places:
     def rest(self) -> Real:
         """Speed up to which a point counts as at rest."""
         speed = np.abs(self.input[1])
-        return np.asarray(REST * (speed if self.mechanism.driven_by_slide else speed * self.size))
+        return np.asarray(REST_SPEED * (speed if self.mechanism.has_slide_input else speed * self.size))
 
     @property
     def turning_rest(self) -> Real:
@@ -75,15 +76,15 @@ class Places:
         return self.mechanism.link_line(link)[0]
 
     @cached_property
-    def turns(self) -> dict[str, Jet]:
+    def turns(self) -> dict[str, Complex]:
         """e^{iφ} of every link, and two derivatives."""
-        turns: dict[str, Jet] = {}
+        turns: dict[str, Complex] = {}
         for link, (angle, speed, acceleration) in self.spins.items():
             unit = np.exp(1j * angle)
             turns[link] = np.stack([unit, 1j * speed * unit, (1j * acceleration - speed**2) * unit])
         return turns
 
-    def point(self, link: str, place: Complex) -> Jet:
+    def point(self, link: str, place: Complex) -> Complex:
         """Return position, velocity and acceleration of a point of a link, given by its position in the reference."""
         # The ground has no motion; its points keep their reference position.
         if link == GROUND:
@@ -93,7 +94,7 @@ class Places:
         base = self.base(link)
         return np.asarray(self.joints[base] + (place - self.reference(base))[..., None] * self.turns[link])
 
-    def direction(self, slide: int) -> Jet:
+    def direction(self, slide: int) -> Complex:
         """Return the direction of a slide's line, and two derivatives."""
         line = self.mechanism.slides[slide]
         return np.asarray(np.exp(1j * line.angle)[..., None] * self.turns[line.link])

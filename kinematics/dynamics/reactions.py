@@ -11,23 +11,21 @@ from dataclasses import dataclass, replace
 from typing import Any, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
+from kinematics.arrays import Complex, Mask, Real
 from kinematics.dynamics import kernels, redundancy
-from kinematics.dynamics.friction import Rubbing, contacts_of, factors_of, still, wrenches
-from kinematics.dynamics.friction_kernels import solve_rubbing
+from kinematics.dynamics.friction import Rubbing, build_wrenches, compute_factors, is_still, list_contacts
+from kinematics.dynamics.friction_kernels import solve_friction
 from kinematics.dynamics.loads import Effort
 from kinematics.dynamics.machine import Machine
 from kinematics.dynamics.places import Places, cross
-from kinematics.dynamics.system import System, system_of
-from kinematics.linkage.planar.mechanism import GROUND, Complex, Real, TopologyError
+from kinematics.dynamics.system import System, build_system
+from kinematics.linkage.planar.mechanism import GROUND, TopologyError
 
-Mask = NDArray[np.bool_]
-
-NOTHING = complex(np.nan, np.nan)
+UNKNOWN_FORCE = complex(np.nan, np.nan)
 """An unknown force: NaN in both components."""
 
-SINGULAR = 1e12
+MAX_CONDITION = 1e12
 """Condition number above which a position is a dead centre: at most four digits of the reactions remain."""
 
 
@@ -75,7 +73,7 @@ class Reactions:
     indeterminate: Mask
 
 
-def efforts_of(machine: Machine, now: Places) -> list[Effort]:
+def collect_efforts(machine: Machine, now: Places) -> list[Effort]:
     """Collect loads, weight and inertia of point masses (d'Alembert's force on the pin)."""
     efforts = [effort for load in machine.loads for effort in load.efforts(now)]
     none = np.zeros(())
@@ -86,7 +84,7 @@ def efforts_of(machine: Machine, now: Places) -> list[Effort]:
     return efforts
 
 
-def reactions(machine: Machine, now: Places, *, minimum_norm: bool = False) -> Reactions:
+def compute_reactions(machine: Machine, now: Places, *, minimum_norm: bool = False) -> Reactions:
     """Compute all reactions of a machine at the positions of a motion.
 
     With redundant constraints the joint forces that are not determined are NaN or, with ``minimum_norm``, those of the
@@ -97,19 +95,21 @@ def reactions(machine: Machine, now: Places, *, minimum_norm: bool = False) -> R
     TopologyError
         For friction with redundant constraints: it would depend on forces that are not unique.
     """
-    mechanism, system = machine.mechanism, system_of(machine.mechanism)
+    mechanism, system = machine.mechanism, build_system(machine.mechanism)
     shape = now.smooth.shape
     size = now.size
     # Loads on pins are collected per joint, since the hub carries them.
-    efforts = efforts_of(machine, now)
+    efforts = collect_efforts(machine, now)
     on_pins: dict[str, Complex] = {joint: np.zeros(shape, np.complex128) for joint in mechanism.joints}
     for effort in efforts:
         if effort.joint:
             on_pins[effort.joint] = on_pins[effort.joint] + effort.force
-    known = _known(machine, now, system, efforts, on_pins, size)
+    known = _build_right_sides(machine, now, system, efforts, on_pins, size)
     slides = len(mechanism.slides)
     along = [now.direction(n)[0] for n in range(slides)]
-    directions = np.stack([*(1j * line for line in along), _input_direction(now), *along]).reshape(2 * slides + 1, -1)
+    directions = np.stack([*(1j * line for line in along), _get_input_direction(now), *along]).reshape(
+        2 * slides + 1, -1
+    )
     # Lengths as shares of the size make forces and torques comparable, so that the condition number means something.
     joints = np.stack([jet[0] / size for jet in now.joints.values()]).reshape(len(mechanism.joints), -1)
     solutions, conditions = np.empty((known.shape[0], system.columns)), np.empty(len(known))
@@ -119,21 +119,21 @@ def reactions(machine: Machine, now: Places, *, minimum_norm: bool = False) -> R
     jammed, stick = np.zeros(len(known), np.bool_), np.zeros(shape, np.bool_)
     frictions = np.empty((0, len(known)))
     equations = system.terms, system.coefficients, system.bases
-    contacts = contacts_of(mechanism, system, machine.friction)
+    contacts = list_contacts(mechanism, system, machine.friction)
     open_forces: list[Real] = []
     if machine.mechanism.redundant:
         if contacts:
             raise TopologyError("friction is not determined with redundant constraints")
-        open_forces = redundancy.solve(*equations, joints, directions, known, posed, solutions, conditions)
+        open_forces = redundancy.solve_minimum_norm(*equations, joints, directions, known, posed, solutions, conditions)
     elif contacts:
         columns = np.array([contact.columns for contact in contacts], np.int64)
-        factors = np.stack([np.broadcast_to(factors_of(c, now, size), shape) for c in contacts]).reshape(
+        factors = np.stack([np.broadcast_to(compute_factors(c, now, size), shape) for c in contacts]).reshape(
             len(contacts), -1
         )
-        stick = np.logical_or.reduce([np.broadcast_to(still(c, now), shape) for c in contacts])
+        stick = np.logical_or.reduce([np.broadcast_to(is_still(c, now), shape) for c in contacts])
         frictions = np.empty(factors.shape)
-        wrench = wrenches(contacts, mechanism, system, slides + 1)
-        solve_rubbing(
+        wrench = build_wrenches(contacts, mechanism, system, slides + 1)
+        solve_friction(
             *equations,
             *wrench,
             columns,
@@ -148,53 +148,61 @@ def reactions(machine: Machine, now: Places, *, minimum_norm: bool = False) -> R
             jammed,
         )
     else:
-        kernels.solve(*equations, joints, directions, known, posed, solutions, conditions)
+        kernels.solve_positions(*equations, joints, directions, known, posed, solutions, conditions)
     # "not <" also marks NaN and infinite condition numbers.
-    singular = ~(conditions < SINGULAR)
+    singular = ~(conditions < MAX_CONDITION)
     solutions[singular], frictions[:, singular], jammed[singular] = np.nan, np.nan, False
     values = [
         friction.reshape(shape) * (1.0 if c.slide >= 0 else size)
         for c, friction in zip(contacts, frictions, strict=True)
     ]
     rubbing = Rubbing(contacts, tuple(values), np.asarray(stick))
-    outcome = _Outcome(
+    outcome = _Solution(
         [column.reshape(shape) for column in solutions.T],
         conditions.reshape(shape),
         np.asarray(determined.reshape(shape)),
         np.asarray(jammed.reshape(shape)),
         rubbing,
     )
-    found = _named(machine, now, system, efforts, on_pins, outcome, size)
+    found = _assemble_reactions(machine, now, system, efforts, on_pins, outcome, size)
     if not machine.mechanism.redundant:
         return found
     # A self-stress is a solution without loads: evaluate it like the forces, to compare component by component.
     nothing = {joint: np.zeros(shape, np.complex128) for joint in mechanism.joints}
     stresses = [
-        _named(machine, now, system, [], nothing, outcome._replace(unknowns=[c.reshape(shape) for c in forces.T]), size)
+        _assemble_reactions(
+            machine, now, system, [], nothing, outcome._replace(unknowns=[c.reshape(shape) for c in forces.T]), size
+        )
         for forces in open_forces
     ]
-    return _opened(found, stresses, size, keep=minimum_norm)
+    return _mask_indeterminate(found, stresses, size, keep=minimum_norm)
 
 
-def _opened(found: Reactions, stresses: list[Reactions], size: Real, *, keep: bool) -> Reactions:
+def _mask_indeterminate(found: Reactions, stresses: list[Reactions], size: Real, *, keep: bool) -> Reactions:
     """Mark the forces that are not unique and, unless ``keep``, replace them by NaN."""
     indeterminate = np.zeros(found.solved.shape, np.bool_)
 
-    def told(force: Any, parts: list[Any]) -> Any:
-        unique = redundancy.unique(force, parts)
+    def mask_force(force: Any, parts: list[Any]) -> Any:
+        unique = redundancy.is_unique(force, parts)
         np.logical_or(indeterminate, ~unique, out=indeterminate)
-        return force if keep else np.where(unique, force, NOTHING if np.iscomplexobj(force) else np.nan)
+        return force if keep else np.where(unique, force, UNKNOWN_FORCE if np.iscomplexobj(force) else np.nan)
 
     joints = {
-        joint: {link: told(force, [stress.joints[joint][link] for stress in stresses]) for link, force in on.items()}
+        joint: {
+            link: mask_force(force, [stress.joints[joint][link] for stress in stresses]) for link, force in on.items()
+        }
         for joint, on in found.joints.items()
     }
-    slides = tuple(told(normal, [stress.slides[n] for stress in stresses]) for n, normal in enumerate(found.slides))
-    gears = tuple(told(torque, [stress.gears[n] / size for stress in stresses]) for n, torque in enumerate(found.gears))
+    slides = tuple(
+        mask_force(normal, [stress.slides[n] for stress in stresses]) for n, normal in enumerate(found.slides)
+    )
+    gears = tuple(
+        mask_force(torque, [stress.gears[n] / size for stress in stresses]) for n, torque in enumerate(found.gears)
+    )
     return replace(found, joints=joints, slides=slides, gears=gears, indeterminate=indeterminate)
 
 
-class _Outcome(NamedTuple):
+class _Solution(NamedTuple):
     """Solution of the kernels, over positions of shape S + (N,)."""
 
     unknowns: list[Real]
@@ -204,19 +212,19 @@ class _Outcome(NamedTuple):
     rubbing: Rubbing
 
 
-def _input_direction(now: Places) -> Complex:
+def _get_input_direction(now: Places) -> Complex:
     mechanism = now.mechanism
-    if not mechanism.driven_by_slide:
+    if not mechanism.has_slide_input:
         return np.zeros(now.smooth.shape, np.complex128)
-    return np.asarray(now.direction(_input_slide(now))[0])
+    return np.asarray(now.direction(_find_input_slide(now))[0])
 
 
-def _input_slide(now: Places) -> int:
+def _find_input_slide(now: Places) -> int:
     slides = now.mechanism.slides
     return next(n for n, s in enumerate(slides) if s.joint == now.mechanism.input and s.link == GROUND)
 
 
-def _known(
+def _build_right_sides(
     machine: Machine,
     now: Places,
     system: System,
@@ -229,7 +237,7 @@ def _known(
     rows = np.zeros((3 * len(system.moving), *shape))
     number = {link: n for n, link in enumerate(system.moving)}
 
-    def add(link: str, at: Complex, force: Complex, couple: Real, sign: float) -> None:
+    def add_wrench(link: str, at: Complex, force: Complex, couple: Real, sign: float) -> None:
         if link == GROUND:
             return
         n, base = number[link], now.joints[now.base(link)][0]
@@ -241,36 +249,36 @@ def _known(
     for link, part in machine.bodies.items():
         at, _, acceleration = now.point(link, part.cg)
         force = np.asarray(part.mass)[..., None] * (acceleration - machine.gravity)
-        add(link, at, force, np.asarray(part.inertia)[..., None] * now.spins[link][2], 1.0)
+        add_wrench(link, at, force, np.asarray(part.inertia)[..., None] * now.spins[link][2], 1.0)
     for effort in efforts:
         if not effort.joint:
-            add(effort.link, effort.at, effort.force, effort.couple, -1.0)
+            add_wrench(effort.link, effort.at, effort.force, effort.couple, -1.0)
     for joint, force in on_pins.items():
         # The hub takes all loads on its pin, by the convention of the system of equations.
-        add(system.hubs[joint], now.joints[joint][0], force, none, -1.0)
+        add_wrench(system.hubs[joint], now.joints[joint][0], force, none, -1.0)
     return np.ascontiguousarray(rows.reshape(len(rows), -1).T)
 
 
-def _named(
+def _assemble_reactions(
     machine: Machine,
     now: Places,
     system: System,
     efforts: list[Effort],
     on_pins: dict[str, Complex],
-    outcome: _Outcome,
+    outcome: _Solution,
     size: Real,
 ) -> Reactions:
     mechanism, unknowns = machine.mechanism, outcome.unknowns
-    solved = (outcome.condition < SINGULAR) & ~outcome.jammed
+    solved = (outcome.condition < MAX_CONDITION) & ~outcome.jammed
     slides = tuple(unknowns[system.slides_at : system.slides_at + len(mechanism.slides)])
     gears = tuple(size * torque for torque in unknowns[system.slides_at + len(slides) : system.columns - 1])
-    drive = unknowns[-1] if mechanism.driven_by_slide else size[..., :] * unknowns[-1]
-    on_hub = {joint: np.where(solved, force, NOTHING) for joint, force in on_pins.items()}
-    lines = _lines(now, slides, outcome.rubbing)
+    drive = unknowns[-1] if mechanism.has_slide_input else size[..., :] * unknowns[-1]
+    on_hub = {joint: np.where(solved, force, UNKNOWN_FORCE) for joint, force in on_pins.items()}
+    lines = _compute_line_forces(now, slides, outcome.rubbing)
     for slide, force in zip(mechanism.slides, lines, strict=True):
         on_hub[slide.joint] = on_hub[slide.joint] + force
-    if mechanism.driven_by_slide:
-        on_hub[mechanism.input] = on_hub[mechanism.input] + drive * _input_direction(now)
+    if mechanism.has_slide_input:
+        on_hub[mechanism.input] = on_hub[mechanism.input] + drive * _get_input_direction(now)
     joints: dict[str, dict[str, Complex]] = {joint: {} for joint in mechanism.joints}
     for n, (joint, link) in enumerate(system.pins):
         force = unknowns[2 * n] + 1j * unknowns[2 * n + 1]
@@ -279,7 +287,7 @@ def _named(
     for joint, hub in system.hubs.items():
         joints[joint][hub] = on_hub[joint]
     # The shaking force is the sum of everything that acts on the frame.
-    force, moment = _on_ground(machine, now, efforts, joints, lines, gears, drive, outcome.rubbing)
+    force, moment = _sum_ground_forces(machine, now, efforts, joints, lines, gears, drive, outcome.rubbing)
     return Reactions(
         solved,
         outcome.determined,
@@ -296,7 +304,7 @@ def _named(
     )
 
 
-def _lines(now: Places, slides: tuple[Real, ...], rubbing: Rubbing) -> list[Complex]:
+def _compute_line_forces(now: Places, slides: tuple[Real, ...], rubbing: Rubbing) -> list[Complex]:
     """Compute the force of each slide's line on its pin: normal force and friction."""
     forces = [normal * 1j * now.direction(n)[0] for n, normal in enumerate(slides)]
     for contact, friction in zip(rubbing.contacts, rubbing.frictions, strict=True):
@@ -305,7 +313,7 @@ def _lines(now: Places, slides: tuple[Real, ...], rubbing: Rubbing) -> list[Comp
     return forces
 
 
-def _on_ground(
+def _sum_ground_forces(
     machine: Machine,
     now: Places,
     efforts: list[Effort],
@@ -327,8 +335,8 @@ def _on_ground(
         if contact.slide < 0 and GROUND in (contact.link, contact.against):
             moment = moment + (friction if contact.link == GROUND else -friction)
     # The drive reacts on the ground, as a force along the slide or as a couple.
-    if mechanism.driven_by_slide:
-        pushes.append((now.joints[mechanism.input][0], -drive * _input_direction(now)))
+    if mechanism.has_slide_input:
+        pushes.append((now.joints[mechanism.input][0], -drive * _get_input_direction(now)))
     else:
         moment = moment - drive
     for gear, torque in zip(mechanism.gears, gears, strict=True):

@@ -11,19 +11,17 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from kinematics.arrays import Complex, Real
 from kinematics.dynamics import kernels
 
-Real = NDArray[np.float64]
-Complex = NDArray[np.complex128]
-
-OPEN = 1e-9
+MIN_STRESS_PART = 1e-9
 """Component in a self-stress of unit length above which a force is not unique; smaller ones are rounding."""
 
-FEWEST = 1e-14
+MIN_SINGULAR_VALUE = 1e-14
 """Singular value, as a share of the largest, above which it is not rounding alone."""
 
 
-def solve(
+def solve_minimum_norm(
     terms: NDArray[np.int64],
     coefficients: Real,
     bases: NDArray[np.int64],
@@ -48,7 +46,7 @@ def solve(
     # The SVD is done only at positions that can be solved.
     at = np.flatnonzero(posed)
     matrices = np.zeros((len(at), rows, columns))
-    kernels.matrices(
+    kernels.fill_matrices(
         terms,
         coefficients,
         bases,
@@ -58,7 +56,7 @@ def solve(
     )
     left, values, right = np.linalg.svd(matrices, full_matrices=True)
     # A vanishing singular value is a dead centre: nothing is determined.
-    sound = values[:, -1] > FEWEST * values[:, 0]
+    sound = values[:, -1] > MIN_SINGULAR_VALUE * values[:, 0]
     at, left, values, right = at[sound], left[sound], values[sound], right[sound]
     conditions[at] = values[:, 0] / values[:, -1]
     # The pseudoinverse by the SVD gives the solution without self-stress, hence of minimum norm.
@@ -69,7 +67,7 @@ def solve(
     return stresses
 
 
-def unique(force: NDArray[np.inexact], stresses: list[NDArray[np.inexact]]) -> NDArray[np.bool_]:
+def is_unique(force: NDArray[np.inexact], stresses: list[NDArray[np.inexact]]) -> NDArray[np.bool_]:
     """Return where no self-stress contributes to a force."""
     parts = np.array([np.abs(stress) for stress in stresses])
-    return np.asarray(np.isnan(np.abs(force)) | (parts < OPEN).all(axis=0))
+    return np.asarray(np.isnan(np.abs(force)) | (parts < MIN_STRESS_PART).all(axis=0))

@@ -12,10 +12,10 @@ from __future__ import annotations
 
 import numpy as np
 
-from kinematics.linkage.planar.mechanism import Complex, Real
+from kinematics.arrays import Complex, Real
 
 
-def plane_corrections(moments: Complex, z: Real, planes: Real) -> Complex:
+def compute_plane_corrections(moments: Complex, z: Real, planes: Real) -> Complex:
     """Compute the moments that have to be added in one or two planes.
 
     Parameters
@@ -49,12 +49,12 @@ def plane_corrections(moments: Complex, z: Real, planes: Real) -> Complex:
     return np.asarray([-(moments * (1.0 - shares)).sum(), -(moments * shares).sum()])
 
 
-def bearing_moments(moments: Complex, z: Real, bearings: Real) -> Complex:
+def compute_bearing_moments(moments: Complex, z: Real, bearings: Real) -> Complex:
     """Compute the load on the two bearings, divided by ω², shape (2,): each moment is shared by the lever rule."""
-    return -plane_corrections(moments, z, bearings)
+    return -compute_plane_corrections(moments, z, bearings)
 
 
-def influence_coefficients(initial: Complex, runs: Complex, trials: Complex) -> Complex:
+def compute_influence_coefficients(initial: Complex, runs: Complex, trials: Complex) -> Complex:
     """Compute the change of each reading per unit of unbalance in each plane, shape (sensors, planes).
 
     Parameters
@@ -70,6 +70,6 @@ def influence_coefficients(initial: Complex, runs: Complex, trials: Complex) -> 
     return np.asarray(((runs - initial) / trials[:, None]).T)
 
 
-def unbalances_by_influence(initial: Complex, coefficients: Complex) -> Complex:
+def solve_unbalances(initial: Complex, coefficients: Complex) -> Complex:
     """Solve for the moments in the planes that cause the initial readings, shape (planes,); least squares."""
     return np.asarray(np.linalg.lstsq(coefficients, initial, rcond=None)[0])

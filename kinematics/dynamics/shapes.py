@@ -12,7 +12,7 @@ import math
 from collections.abc import Sequence
 from typing import NamedTuple, Self
 
-from kinematics.dynamics.bodies import Body, body
+from kinematics.dynamics.bodies import Body, make_body
 
 
 class Section(NamedTuple):
@@ -37,29 +37,29 @@ class Section(NamedTuple):
         """Return the plate of this section, with its mass properties about its centroid."""
         # Parallel axis theorem, from the origin to the centroid.
         own = self.polar - abs(self.first) ** 2 / self.area
-        return body(density * thickness * self.area, self.centroid, density * thickness * own)
+        return make_body(density * thickness * self.area, self.centroid, density * thickness * own)
 
 
-NOTHING = Section(0.0, 0j, 0.0)
+EMPTY_SECTION = Section(0.0, 0j, 0.0)
 
 
-def _placed(area: float, centre: complex, own: float) -> Section:
+def _build_section(area: float, centre: complex, own: float) -> Section:
     """Build a section from its centre and its polar moment about that centre."""
     return Section(area, area * centre, own + area * abs(centre) ** 2)
 
 
-def disc(centre: complex, radius: float) -> Section:
+def make_disc(centre: complex, radius: float) -> Section:
     """Return the section of a disc."""
-    return _placed(math.pi * radius**2, centre, 0.5 * math.pi * radius**4)
+    return _build_section(math.pi * radius**2, centre, 0.5 * math.pi * radius**4)
 
 
-def rectangle(centre: complex, length: float, width: float) -> Section:
+def make_rectangle(centre: complex, length: float, width: float) -> Section:
     """Return the section of a rectangle; its angle does not matter."""
     area = length * width
-    return _placed(area, centre, area * (length**2 + width**2) / 12.0)
+    return _build_section(area, centre, area * (length**2 + width**2) / 12.0)
 
 
-def polygon(corners: Sequence[complex]) -> Section:
+def make_polygon(corners: Sequence[complex]) -> Section:
     """Return the section of a simple polygon of either orientation, by triangles from the origin."""
     area, first, polar = 0.0, 0j, 0.0
     for z, w in zip(corners, [*corners[1:], corners[0]], strict=True):
@@ -72,24 +72,24 @@ def polygon(corners: Sequence[complex]) -> Section:
     return Section(sense * area, sense * first, sense * polar)
 
 
-def _sector(centre: complex, radius: float, towards: complex, angle: float) -> Section:
+def _make_sector(centre: complex, radius: float, towards: complex, angle: float) -> Section:
     """Return a sector of a circle about ``centre``, symmetric about a direction."""
     area = 0.5 * radius**2 * angle
     arm = (2.0 * radius / 3.0) * (math.sin(angle / 2.0) / (angle / 2.0)) * towards
     about_centre = radius**4 * angle / 4.0
     # From the circle's centre to the sector's centroid.
     own = about_centre - area * abs(arm) ** 2
-    return _placed(area, centre + arm, own)
+    return _build_section(area, centre + arm, own)
 
 
-def hull(points: Sequence[complex]) -> list[complex]:
+def find_hull(points: Sequence[complex]) -> list[complex]:
     """Return the corners of the convex hull, counter-clockwise; two if all are collinear (Andrew's monotone chain)."""
     # Duplicates would break the chain's orientation test.
     listed = sorted(set(points), key=lambda z: (z.real, z.imag))
     if len(listed) < 3:
         return listed
 
-    def chain(order: Sequence[complex]) -> list[complex]:
+    def trace_chain(order: Sequence[complex]) -> list[complex]:
         kept: list[complex] = []
         for z in order:
             while len(kept) > 1 and ((kept[-1] - kept[-2]).conjugate() * (z - kept[-2])).imag <= 0.0:
@@ -97,41 +97,41 @@ def hull(points: Sequence[complex]) -> list[complex]:
             kept.append(z)
         return kept[:-1]
 
-    return chain(listed) + chain(listed[::-1])
+    return trace_chain(listed) + trace_chain(listed[::-1])
 
 
-def widened_hull(points: Sequence[complex], width: float) -> Section:
+def make_widened_hull(points: Sequence[complex], width: float) -> Section:
     """Return the convex hull of points, widened by half a width all round."""
-    corners = hull(points)
+    corners = find_hull(points)
     radius = 0.5 * width
     if len(corners) == 1:
-        return disc(corners[0], radius)
-    total = polygon(corners)
+        return make_disc(corners[0], radius)
+    total = make_polygon(corners)
     edges = [w - z for z, w in zip(corners, [*corners[1:], corners[0]], strict=True)]
     for z, edge, before in zip(corners, edges, [edges[-1], *edges[:-1]], strict=True):
         length = abs(edge)
         outward, outward_before = -1j * edge / length, -1j * before / abs(before)
-        total = total.plus(rectangle(z + edge / 2.0 + outward * radius / 2.0, length, radius))
+        total = total.plus(make_rectangle(z + edge / 2.0 + outward * radius / 2.0, length, radius))
         turned = abs(
             math.atan2((outward_before.conjugate() * outward).imag, (outward_before.conjugate() * outward).real)
         )
         middle = outward_before * complex(math.cos(turned / 2.0), math.sin(turned / 2.0))
         # Collinear edges leave no sector.
         if turned > 0.0:
-            total = total.plus(_sector(z, radius, middle, turned))
+            total = total.plus(_make_sector(z, radius, middle, turned))
     return total
 
 
-def square_bar(start: complex, end: complex, width: float, overhang: float) -> Section:
+def make_square_bar(start: complex, end: complex, width: float, overhang: float) -> Section:
     """Return a bar with square ends that project beyond its two joints."""
-    return rectangle((start + end) / 2.0, abs(end - start) + 2.0 * overhang, width)
+    return make_rectangle((start + end) / 2.0, abs(end - start) + 2.0 * overhang, width)
 
 
-def cylinder(
+def make_cylinder(
     centre: complex, diameter: float, length: float, density: float, *, bore: float = 0.0, in_plane: bool = False
 ) -> Body:
     """Return a (hollow) cylinder, its axis normal to the plane, or in it."""
     mass = density * math.pi / 4.0 * (diameter**2 - bore**2) * length
     squares = (diameter**2 + bore**2) / 4.0
     inertia = mass * (squares / 4.0 + length**2 / 12.0) if in_plane else mass * squares / 2.0
-    return body(mass, centre, inertia)
+    return make_body(mass, centre, inertia)

@@ -12,15 +12,16 @@ from typing import Literal
 
 import numpy as np
 
+from kinematics.arrays import Complex, Real
 from kinematics.dynamics.loads import Effort
 from kinematics.dynamics.places import Places, dot
 from kinematics.linkage.planar.drive import drive
-from kinematics.linkage.planar.mechanism import GROUND, Complex, Mechanism, Real
+from kinematics.linkage.planar.mechanism import GROUND, Mechanism
 
-NO_LENGTH = 1e-12
+MIN_LENGTH = 1e-12
 """Length of a spring, as a share of the mechanism's size, below which rounding determines its direction."""
 
-FINE = 720
+STEPS_PER_TURN = 720
 """Positions per turn at which a rotation is followed: between two of them no link turns by π, except at a toggle."""
 
 TURN = 2.0 * np.pi
@@ -42,12 +43,12 @@ class Spring:
     damping: float = 0.0
     one_sided: Literal["pull", "push"] | None = None
 
-    def _span(self, places: Places) -> tuple[Complex, Complex]:
+    def _measure_span(self, places: Places) -> tuple[Complex, Complex]:
         """Return the vector from the first end to the second, and its rate."""
         first, second = (places.point(link, place) for link, place in zip(self.links, self.places, strict=True))
         return np.asarray(second[0] - first[0]), np.asarray(second[1] - first[1])
 
-    def _tension(self, length: Real, lengthening: Real) -> Real:
+    def _compute_tension(self, length: Real, lengthening: Real) -> Real:
         spring = self.rate * (length - self.free_length) + self.preload
         total = spring + self.damping * lengthening
         if self.one_sided == "pull":
@@ -57,19 +58,19 @@ class Spring:
         return np.asarray(total)
 
     @property
-    def _through_zero(self) -> bool:
+    def _has_limit_at_zero(self) -> bool:
         """Whether the force has a limit where both ends meet: rate × span, from every direction."""
         return self.free_length == 0.0 and self.preload == 0.0 and self.damping == 0.0
 
     def efforts(self, now: Places) -> list[Effort]:
         """See :class:`kinematics.dynamics.loads.Load`; NaN where both ends meet and the force has no direction."""
-        span, rate = self._span(now)
+        span, rate = self._measure_span(now)
         length = np.abs(span)
         # Where the ends meet the direction is undefined, except for a spring whose force vanishes there.
-        met = length <= NO_LENGTH * now.size
+        met = length <= MIN_LENGTH * now.size
         with np.errstate(invalid="ignore"):  # complex NaN, where the mechanism cannot be assembled
-            unit = np.where(met, 0.0 if self._through_zero else np.nan, span / np.where(met, 1.0, length))
-        pull = np.asarray(self._tension(length, dot(unit, rate)) * unit, np.complex128)
+            unit = np.where(met, 0.0 if self._has_limit_at_zero else np.nan, span / np.where(met, 1.0, length))
+        pull = np.asarray(self._compute_tension(length, dot(unit, rate)) * unit, np.complex128)
         none = np.zeros(())
         return [
             Effort(link, "", now.point(link, place)[0], sense * pull, none)
@@ -78,12 +79,12 @@ class Spring:
 
     def work(self, now: Places, paced: Places) -> Real:
         """See :class:`kinematics.dynamics.loads.Load`: −tension × the lengthening, L' = (L²)' / 2 L."""
-        length = np.abs(self._span(now)[0])
-        span, by_input = self._span(paced)
+        length = np.abs(self._measure_span(now)[0])
+        span, by_input = self._measure_span(paced)
         # At zero length the numerator vanishes as well.
         safe = np.where(length > 0.0, length, 1.0)
         lengthening = (span.real * by_input.real + span.imag * by_input.imag) / safe
-        return np.asarray(-self._tension(length, lengthening * now.input[1]) * lengthening)
+        return np.asarray(-self._compute_tension(length, lengthening * now.input[1]) * lengthening)
 
 
 @dataclass(frozen=True)
@@ -110,13 +111,13 @@ class TorsionSpring:
             rotation = rotation + TURN * np.round((self.near(now.input[0]) - rotation) / TURN)
         return np.asarray(rotation)
 
-    def _torque(self, now: Places) -> Real:
+    def _compute_torque(self, now: Places) -> Real:
         first, second = (now.spins[link] for link in self.links)
         return np.asarray(-self.rate * (self.rotation(now) - self.free) - self.damping * (second[1] - first[1]))
 
     def efforts(self, now: Places) -> list[Effort]:
         """See :class:`kinematics.dynamics.loads.Load`."""
-        torque, nowhere = self._torque(now), np.zeros((), np.complex128)
+        torque, nowhere = self._compute_torque(now), np.zeros((), np.complex128)
         return [
             Effort(link, "", nowhere, nowhere, sense * torque)
             for link, sense in zip(self.links, (-1.0, 1.0), strict=True)
@@ -125,10 +126,10 @@ class TorsionSpring:
     def work(self, now: Places, paced: Places) -> Real:
         """See :class:`kinematics.dynamics.loads.Load`."""
         first, second = (paced.spins[link] for link in self.links)
-        return np.asarray(self._torque(now) * (second[1] - first[1]))
+        return np.asarray(self._compute_torque(now) * (second[1] - first[1]))
 
 
-def rotation_near(mechanism: Mechanism, links: tuple[str, str], period: float) -> Callable[[Real], Real]:
+def follow_rotation(mechanism: Mechanism, links: tuple[str, str], period: float) -> Callable[[Real], Real]:
     """Follow the rotation of one link relative to another, from the reference over the input, for one design.
 
     Parameters
@@ -150,7 +151,7 @@ def rotation_near(mechanism: Mechanism, links: tuple[str, str], period: float) -
     if not np.isfinite(period):
         # A link driven by a slide between toggles only swings; a rotation beyond ±π could not be detected anyway.
         return lambda input: np.zeros(input.shape)
-    count = round(FINE * period / TURN)
+    count = round(STEPS_PER_TURN * period / TURN)
     at = start + np.linspace(-period, period, 2 * count + 1)
     angles = drive(mechanism, at, order=0).angles
     turned = {
@@ -166,9 +167,9 @@ def rotation_near(mechanism: Mechanism, links: tuple[str, str], period: float) -
     # Net rotation after one period forward and backward; it need not be zero.
     wound = rotation[-1], rotation[0]
 
-    def near(input: Real) -> Real:
+    def interpolate_rotation(input: Real) -> Real:
         periods = np.trunc((input - start) / period)
         within = np.interp(input - periods * period, at, rotation)
         return np.asarray(within + np.where(periods > 0.0, periods * wound[0], -periods * wound[1]))
 
-    return near
+    return interpolate_rotation

@@ -15,8 +15,8 @@ from functools import lru_cache
 import numpy as np
 from numpy.typing import NDArray
 
-from kinematics.dynamics.kernels import ALONG, FORCE, TORQUE
-from kinematics.linkage.planar.closures import RECENT
+from kinematics.dynamics.kernels import DIRECTED_FORCE, FORCE, TORQUE
+from kinematics.linkage.planar.closures import CACHE_SIZE
 from kinematics.linkage.planar.mechanism import GROUND, Mechanism
 
 
@@ -56,8 +56,8 @@ class System:
         return 2 * len(self.pins)
 
 
-@lru_cache(maxsize=RECENT)
-def system_of(mechanism: Mechanism) -> System:
+@lru_cache(maxsize=CACHE_SIZE)
+def build_system(mechanism: Mechanism) -> System:
     """Build the equations of a mechanism."""
     links = mechanism.links
     moving = tuple(link for link in links if link != GROUND)
@@ -74,30 +74,32 @@ def system_of(mechanism: Mechanism) -> System:
     terms: list[tuple[int, int, int, int, int]] = []
     coefficients: list[float] = []
 
-    def add(kind: int, column: int, link: str, joint: int, direction: int, coefficient: float) -> None:
+    def add_term(kind: int, column: int, link: str, joint: int, direction: int, coefficient: float) -> None:
         # The ground has no equations; its forces follow from the others.
         if link != GROUND and coefficient != 0.0:
             terms.append((kind, column, number[link], joint, direction))
             coefficients.append(coefficient)
 
     for n, (joint, link) in enumerate(pins):
-        add(FORCE, 2 * n, link, joint_number[joint], -1, 1.0)
+        add_term(FORCE, 2 * n, link, joint_number[joint], -1, 1.0)
         # Reaction on the hub.
-        add(FORCE, 2 * n, hubs[joint], joint_number[joint], -1, -1.0)
+        add_term(FORCE, 2 * n, hubs[joint], joint_number[joint], -1, -1.0)
     column = 2 * len(pins)
     for n, slide in enumerate(mechanism.slides):
-        add(ALONG, column, hubs[slide.joint], joint_number[slide.joint], n, 1.0)
-        add(ALONG, column, slide.link, joint_number[slide.joint], n, -1.0)
+        add_term(DIRECTED_FORCE, column, hubs[slide.joint], joint_number[slide.joint], n, 1.0)
+        add_term(DIRECTED_FORCE, column, slide.link, joint_number[slide.joint], n, -1.0)
         column += 1
     for gear in mechanism.gears:
-        add(TORQUE, column, gear.second, -1, -1, 1.0)
+        add_term(TORQUE, column, gear.second, -1, -1, 1.0)
         # The couple does no work: T ω₂ − ratio T ω₁ = 0.
-        add(TORQUE, column, gear.first, -1, -1, -gear.ratio)
+        add_term(TORQUE, column, gear.first, -1, -1, -gear.ratio)
         column += 1
-    if mechanism.driven_by_slide:
-        add(ALONG, column, hubs[mechanism.input], joint_number[mechanism.input], len(mechanism.slides), 1.0)
+    if mechanism.has_slide_input:
+        add_term(
+            DIRECTED_FORCE, column, hubs[mechanism.input], joint_number[mechanism.input], len(mechanism.slides), 1.0
+        )
     else:
-        add(TORQUE, column, mechanism.input, -1, -1, 1.0)
+        add_term(TORQUE, column, mechanism.input, -1, -1, 1.0)
     return System(
         moving,
         hubs,

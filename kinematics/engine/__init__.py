@@ -1,19 +1,25 @@
 """Piston engines: exact piston kinematics, harmonics of their forces and moments, firing orders."""
 
-from kinematics.engine.firing import Firing, firing_choices, unevenness
-from kinematics.engine.harmonics import Turning, torque_sum, turning_parts
-from kinematics.engine.pistons import Rod, acceleration_harmonics, binomial_terms, piston, two_mass_rod
+from kinematics.engine.firing import Firing, compute_unevenness, list_firing_choices
+from kinematics.engine.harmonics import TurningParts, compute_turning_parts, sum_torque
+from kinematics.engine.pistons import (
+    Rod,
+    build_two_mass_rod,
+    compute_acceleration_harmonics,
+    compute_binomial_terms,
+    compute_piston_motion,
+)
 
 __all__ = [
     "Firing",
     "Rod",
-    "Turning",
-    "acceleration_harmonics",
-    "binomial_terms",
-    "firing_choices",
-    "piston",
-    "torque_sum",
-    "turning_parts",
-    "two_mass_rod",
-    "unevenness",
+    "TurningParts",
+    "build_two_mass_rod",
+    "compute_acceleration_harmonics",
+    "compute_binomial_terms",
+    "compute_piston_motion",
+    "compute_turning_parts",
+    "compute_unevenness",
+    "list_firing_choices",
+    "sum_torque",
 ]

@@ -5,14 +5,13 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
-Real = NDArray[np.float64]
+from kinematics.arrays import Real
 
-SAME = 1e-9
+ANGLE_TOLERANCE = 1e-9
 """Degrees within which two angles, or two unevennesses, are equal."""
 
-MOST_CYLINDERS = 20
+MAX_CYLINDERS = 20
 """Maximum number of cylinders: the 2^(n−1) choices of a four-stroke engine are all enumerated."""
 
 
@@ -34,7 +33,7 @@ class Firing(NamedTuple):
     choices: int
 
 
-def unevenness(angles: Real, cycle: float) -> Real:
+def compute_unevenness(angles: Real, cycle: float) -> Real:
     """Compute the largest minus the smallest gap between firings, shape S, from angles S + (n,) in degrees of a
     cycle."""
     ordered = np.sort(np.mod(angles, cycle), axis=-1)
@@ -42,21 +41,21 @@ def unevenness(angles: Real, cycle: float) -> Real:
     return np.asarray(gaps.max(axis=-1) - gaps.min(axis=-1))
 
 
-def firing_choices(top: Real, strokes: int) -> Firing:
+def list_firing_choices(top: Real, strokes: int) -> Firing:
     """List the most even choices for top dead centres τ (degrees, by cylinder) of an engine of 2 or 4 strokes."""
     count = len(top)
     own = np.mod(top - top[0], 360.0)
     # An angle that rounding left just below a full turn is a full turn.
-    own = np.where(own > 360.0 - SAME, 0.0, own)
+    own = np.where(own > 360.0 - ANGLE_TOLERANCE, 0.0, own)
     if strokes == 2:
-        return Firing(own[None], float(unevenness(own, 360.0)), 1)
-    if count > MOST_CYLINDERS:
-        raise ValueError(f"expected at most {MOST_CYLINDERS} cylinders, got {count}")
+        return Firing(own[None], float(compute_unevenness(own, 360.0)), 1)
+    if count > MAX_CYLINDERS:
+        raise ValueError(f"expected at most {MAX_CYLINDERS} cylinders, got {count}")
     # Each bit decides whether a cylinder fires in the first or the second turn; the first cylinder is the origin.
     number = np.arange(1 << (count - 1))[:, None]
     late = np.concatenate([np.zeros((len(number), 1), np.int64), (number >> np.arange(count - 1)) & 1], axis=1)
     angles = own + 360.0 * late
-    uneven = unevenness(angles, 720.0)
+    uneven = compute_unevenness(angles, 720.0)
     least = float(uneven.min())
     # Keep all ties, which differ only by rounding.
-    return Firing(angles[uneven <= least + SAME], least, len(number))
+    return Firing(angles[uneven <= least + ANGLE_TOLERANCE], least, len(number))

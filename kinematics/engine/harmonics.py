@@ -14,13 +14,11 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
-Real = NDArray[np.float64]
-Complex = NDArray[np.complex128]
+from kinematics.arrays import Complex, Real
 
 
-class Turning(NamedTuple):
+class TurningParts(NamedTuple):
     """Forward and backward part of a harmonic: it turns with the crank, and against it. Complex, over arrangements."""
 
     forward: Complex
@@ -37,7 +35,7 @@ class Turning(NamedTuple):
         return np.asarray(np.abs(np.abs(self.forward) - np.abs(self.backward)))
 
 
-def turning_parts(order: int, axis: Real, top: Real, weight: Real | float = 1.0) -> Turning:
+def compute_turning_parts(order: int, axis: Real, top: Real, weight: Real | float = 1.0) -> TurningParts:
     """Compute both parts of a harmonic, in units of m_B r ω² A_k.
 
     Parameters
@@ -47,12 +45,12 @@ def turning_parts(order: int, axis: Real, top: Real, weight: Real | float = 1.0)
     weight : float, shape S + (n,)
         1 for forces, the positions along the shaft for moments.
     """
-    return Turning(
+    return TurningParts(
         0.5 * (weight * np.exp(1j * (axis - order * top))).sum(axis=-1),
         0.5 * (weight * np.exp(1j * (axis + order * top))).sum(axis=-1),
     )
 
 
-def torque_sum(order: int, top: Real, weight: Real | float = 1.0) -> Complex:
+def sum_torque(order: int, top: Real, weight: Real | float = 1.0) -> Complex:
     """Sum e^(−jkτ): the k-th harmonic of the torque, in units of one cylinder's."""
     return np.asarray((weight * np.exp(-1j * order * top)).sum(axis=-1))

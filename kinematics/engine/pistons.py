@@ -13,18 +13,17 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
-Real = NDArray[np.float64]
+from kinematics.arrays import Real
 
-SMALL = 1e-18
+SERIES_TOLERANCE = 1e-18
 """Terms of the series below this share of the first are neglected."""
 
-MOST_TERMS = 20_000
+MAX_TERMS = 20_000
 """Maximum number of terms of the series: enough for a rod 0.1 % longer than the crank."""
 
 
-def binomial_terms(ratio: float, count: int) -> list[float]:
+def compute_binomial_terms(ratio: float, count: int) -> list[float]:
     """Compute the sizes of the terms of √(1 − λ² sin² θ) in (sin θ)^2, ^4, ...: |b_j| λ^(2j) (Norton, eq. 13.2f)."""
     terms, b = [], 1.0
     for j in range(1, count + 1):
@@ -33,7 +32,7 @@ def binomial_terms(ratio: float, count: int) -> list[float]:
     return terms
 
 
-def acceleration_harmonics(ratio: float, order: int, *, two_term: bool = False) -> dict[int, float]:
+def compute_acceleration_harmonics(ratio: float, order: int, *, two_term: bool = False) -> dict[int, float]:
     """Compute A_k of −a/(r ω²) = Σ A_k cos kθ for k = 1 and the even orders up to ``order``.
 
     Parameters
@@ -60,9 +59,9 @@ def acceleration_harmonics(ratio: float, order: int, *, two_term: bool = False) 
             b *= (j - 1.5) / j
         term = b * ratio ** (2 * m - 1) * 2.0 ** (1 - 2 * m)
         total, first = 0.0, abs(term)
-        for j in range(m, m + MOST_TERMS):
+        for j in range(m, m + MAX_TERMS):
             total += term
-            if abs(term) <= SMALL * first:
+            if abs(term) <= SERIES_TOLERANCE * first:
                 break
             # From j to j + 1: b gains (j − ½)/(j + 1), the binomial (2j+2)(2j+1)/((j+1−m)(j+1+m)).
             term *= (j - 0.5) / (j + 1) * ratio**2 / 4.0
@@ -80,7 +79,7 @@ class Motion(NamedTuple):
     lean: Real
 
 
-def piston(angle: Real, crank: float, rod: float, *, two_term: bool = False) -> Motion:
+def compute_piston_motion(angle: Real, crank: float, rod: float, *, two_term: bool = False) -> Motion:
     """Compute the motion of a piston at crank angles after top dead centre, radians.
 
     ``two_term`` gives Norton's eq. 13.3, and of tan φ eq. 13.7d.
@@ -109,7 +108,7 @@ class Rod(NamedTuple):
     excess: float
 
 
-def two_mass_rod(length: float, mass: float, cg: float, inertia: float | None) -> Rod:
+def build_two_mass_rod(length: float, mass: float, cg: float, inertia: float | None) -> Rod:
     """Build the two-mass model of a rod whose centre of gravity is ``cg`` from the crank pin.
 
     ``excess`` is I − m l_a l_b, usually negative: the inertia of the exact rod beyond its two masses; 0 if I is None.

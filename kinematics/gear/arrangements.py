@@ -93,27 +93,27 @@ class Arrangement:
         gears = self.places[one], self.places[other]
         return INTERNAL if any(gear.internal or gear.far for gear in gears) else EXTERNAL
 
-    def meshing(self, gear: str) -> tuple[str, ...]:
+    def list_mates(self, gear: str) -> tuple[str, ...]:
         """List the gears that mesh with a gear."""
         return tuple(two if gear == one else one for one, two in self.meshes if gear in (one, two))
 
-    def central_meshes(self, planet: str) -> tuple[tuple[str, str], ...]:
+    def list_central_meshes(self, planet: str) -> tuple[tuple[str, str], ...]:
         """List (gear of a planet, sun or ring) for every such mesh of one planet."""
         pairs = [pair for one, other in self.meshes for pair in ((one, other), (other, one))]
         return tuple((own, mate) for own, mate in pairs if self.places[own].body == planet and not self.is_planet(mate))
 
-    def independent_gears(self, planets: tuple[str, ...]) -> tuple[str, ...]:
+    def list_independent_gears(self, planets: tuple[str, ...]) -> tuple[str, ...]:
         """List the gears of a planet set whose teeth can be chosen; coaxiality then determines the other suns and
         rings.
 
         Suns and rings come first, in the order of planets with the most of them: these have the most conditions.
         """
         # The most constrained planets first, so that a search fails early.
-        order = sorted(planets, key=lambda body: -len(self.central_meshes(body)))
-        central = [self.central_meshes(planet)[0][1] for planet in order]
+        order = sorted(planets, key=lambda body: -len(self.list_central_meshes(body)))
+        central = [self.list_central_meshes(planet)[0][1] for planet in order]
         return (*central, *(gear.name for planet in order for gear in self.gears if gear.body == planet))
 
-    def train(self, teeth: Mapping[str, int]) -> Train:
+    def build_train(self, teeth: Mapping[str, int]) -> Train:
         """Build the speed equations for given tooth numbers.
 
         Raises
@@ -132,21 +132,21 @@ class Arrangement:
         return Train(tuple(meshes), frozenset(self.carriers))
 
 
-def _sun(name: str, plane: int = 1, body: str | None = None) -> GearPlace:
+def _make_sun(name: str, plane: int = 1, body: str | None = None) -> GearPlace:
     return GearPlace(name, body or name, (plane,))
 
 
-def _ring(name: str, plane: int = 1, body: str | None = None) -> GearPlace:
+def _make_ring(name: str, plane: int = 1, body: str | None = None) -> GearPlace:
     return GearPlace(name, body or name, (plane,), internal=True)
 
 
-def _planet(name: str, *planes: int, body: str | None = None) -> GearPlace:
+def _make_planet(name: str, *planes: int, body: str | None = None) -> GearPlace:
     return GearPlace(name, body or name, planes or (1,))
 
 
-def _stepped(name: str, description: str, first: GearPlace, second: GearPlace) -> Arrangement:
+def _make_stepped(name: str, description: str, first: GearPlace, second: GearPlace) -> Arrangement:
     """Make stepped planets on one carrier, between a sun or ring in the first plane and another in the second."""
-    planets = _planet("planet_1", 1, body="planet"), _planet("planet_2", 2, body="planet")
+    planets = _make_planet("planet_1", 1, body="planet"), _make_planet("planet_2", 2, body="planet")
     # The smaller gear of a mesh comes first, the ring second.
     near = ("planet_1", first.name) if first.internal else (first.name, "planet_1")
     return Arrangement(
@@ -160,29 +160,31 @@ ARRANGEMENTS: dict[str, Arrangement] = {
         Arrangement(
             "simple",
             "sun, planets and ring in one plane",
-            (_sun("sun"), _planet("planet"), _ring("ring")),
+            (_make_sun("sun"), _make_planet("planet"), _make_ring("ring")),
             (("sun", "planet"), ("planet", "ring")),
             {"planet": "carrier"},
         ),
         Arrangement(
             "double_planet",
             "sun and ring joined by pairs of planets, so that both turn the same way past the carrier",
-            (_sun("sun"), _planet("planet_1"), _planet("planet_2"), _ring("ring")),
+            (_make_sun("sun"), _make_planet("planet_1"), _make_planet("planet_2"), _make_ring("ring")),
             (("sun", "planet_1"), ("planet_1", "planet_2"), ("planet_2", "ring")),
             {"planet_1": "carrier", "planet_2": "carrier"},
         ),
-        _stepped("stepped", "stepped planets between a sun and a ring", _sun("sun"), _ring("ring", 2)),
-        _stepped("stepped_suns", "stepped planets between two suns", _sun("sun_1"), _sun("sun_2", 2)),
-        _stepped("stepped_rings", "stepped planets between two rings", _ring("ring_1"), _ring("ring_2", 2)),
+        _make_stepped("stepped", "stepped planets between a sun and a ring", _make_sun("sun"), _make_ring("ring", 2)),
+        _make_stepped("stepped_suns", "stepped planets between two suns", _make_sun("sun_1"), _make_sun("sun_2", 2)),
+        _make_stepped(
+            "stepped_rings", "stepped planets between two rings", _make_ring("ring_1"), _make_ring("ring_2", 2)
+        ),
         Arrangement(
             "wolfrom",
             "a simple set whose planets are stepped to drive a second ring; the carrier is free",
             (
-                _sun("sun"),
-                _planet("planet_1", 1, body="planet"),
-                _ring("ring_1"),
-                _planet("planet_2", 2, body="planet"),
-                _ring("ring_2", 2),
+                _make_sun("sun"),
+                _make_planet("planet_1", 1, body="planet"),
+                _make_ring("ring_1"),
+                _make_planet("planet_2", 2, body="planet"),
+                _make_ring("ring_2", 2),
             ),
             (("sun", "planet_1"), ("planet_1", "ring_1"), ("planet_2", "ring_2")),
             {"planet": "carrier"},
@@ -191,11 +193,11 @@ ARRANGEMENTS: dict[str, Arrangement] = {
             "ravigneaux",
             "two suns and a ring on one carrier: the small sun drives short planets, the large one long planets",
             (
-                _sun("sun_small", 1),
-                _planet("planet_short", 1),
-                _planet("planet_long", 1, 2),
-                _sun("sun_large", 2),
-                _ring("ring", 2),
+                _make_sun("sun_small", 1),
+                _make_planet("planet_short", 1),
+                _make_planet("planet_long", 1, 2),
+                _make_sun("sun_large", 2),
+                _make_ring("ring", 2),
             ),
             (
                 ("sun_small", "planet_short"),
@@ -209,12 +211,12 @@ ARRANGEMENTS: dict[str, Arrangement] = {
             "two_stage",
             "two simple sets in line: the first carrier is the second sun, and the rings are one body",
             (
-                _sun("sun_1"),
-                _planet("planet_1"),
-                _ring("ring_1", 1, "ring"),
-                _sun("sun_2", 2, "carrier_1"),
-                _planet("planet_2", 2),
-                _ring("ring_2", 2, "ring"),
+                _make_sun("sun_1"),
+                _make_planet("planet_1"),
+                _make_ring("ring_1", 1, "ring"),
+                _make_sun("sun_2", 2, "carrier_1"),
+                _make_planet("planet_2", 2),
+                _make_ring("ring_2", 2, "ring"),
             ),
             (("sun_1", "planet_1"), ("planet_1", "ring_1"), ("sun_2", "planet_2"), ("planet_2", "ring_2")),
             {"planet_1": "carrier_1", "planet_2": "carrier_2"},
@@ -223,12 +225,12 @@ ARRANGEMENTS: dict[str, Arrangement] = {
             "simpson",
             "two simple sets with a common sun; the first carrier and the second ring are one body",
             (
-                _sun("sun_1", 1, "sun"),
-                _planet("planet_1"),
-                _ring("ring_1"),
-                _sun("sun_2", 2, "sun"),
-                _planet("planet_2", 2),
-                _ring("ring_2", 2, "carrier_1"),
+                _make_sun("sun_1", 1, "sun"),
+                _make_planet("planet_1"),
+                _make_ring("ring_1"),
+                _make_sun("sun_2", 2, "sun"),
+                _make_planet("planet_2", 2),
+                _make_ring("ring_2", 2, "carrier_1"),
             ),
             (("sun_1", "planet_1"), ("planet_1", "ring_1"), ("sun_2", "planet_2"), ("planet_2", "ring_2")),
             {"planet_1": "carrier_1", "planet_2": "carrier_2"},

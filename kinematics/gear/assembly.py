@@ -34,14 +34,14 @@ class Gap(NamedTuple):
     room: float
 
 
-def pin_distances(arrangement: Arrangement, teeth: Mapping[str, int]) -> dict[str, list[Fraction]]:
+def compute_pin_distances(arrangement: Arrangement, teeth: Mapping[str, int]) -> dict[str, list[Fraction]]:
     """Compute for each planet the distances from the axis that its suns and rings require of its pin, in modules.
 
     The gears are coaxial if all distances of each planet agree. For a bevel differential they are the pitch radii of
     the side gears.
     """
     distances: dict[str, list[Fraction]] = {planet: [] for planet in arrangement.carriers}
-    for planet, own, central in _central_meshes(arrangement):
+    for planet, own, central in _list_central_meshes(arrangement):
         if arrangement.bevel:
             twice = teeth[central]
         elif arrangement.places[central].internal:
@@ -55,15 +55,15 @@ def pin_distances(arrangement: Arrangement, teeth: Mapping[str, int]) -> dict[st
 
 def is_coaxial(arrangement: Arrangement, teeth: Mapping[str, int]) -> bool:
     """Return whether every pin has a single positive distance from the axis and meshing planets reach each other."""
-    return pins(arrangement, teeth) is not None
+    return place_pins(arrangement, teeth) is not None
 
 
-def pins(arrangement: Arrangement, teeth: Mapping[str, int]) -> dict[str, complex] | None:
+def place_pins(arrangement: Arrangement, teeth: Mapping[str, int]) -> dict[str, complex] | None:
     """Place the pins of the first copy of every planet, in modules; the first of each set on the positive real axis.
 
     Return None if the gears are not coaxial or two meshing planets cannot reach each other.
     """
-    distances = {planet: set(asked) for planet, asked in pin_distances(arrangement, teeth).items()}
+    distances = {planet: set(asked) for planet, asked in compute_pin_distances(arrangement, teeth).items()}
     if any(len(asked) != 1 or min(asked) <= 0 for asked in distances.values()):
         return None
     radius = {planet: float(min(asked)) for planet, asked in distances.items()}
@@ -71,14 +71,14 @@ def pins(arrangement: Arrangement, teeth: Mapping[str, int]) -> dict[str, comple
     for members in arrangement.planet_sets:
         placed[members[0]] = complex(radius[members[0]])
         for planet in members[1:]:
-            pin = _beside(arrangement, teeth, radius, placed, planet)
+            pin = _place_meshing_pin(arrangement, teeth, radius, placed, planet)
             if pin is None:
                 return None
             placed[planet] = pin
     return placed
 
 
-def _beside(
+def _place_meshing_pin(
     arrangement: Arrangement,
     teeth: Mapping[str, int],
     radius: Mapping[str, float],
@@ -100,13 +100,13 @@ def _beside(
     raise AssertionError("the planets of a set hang together by meshes")
 
 
-def fits_at(arrangement: Arrangement, teeth: Mapping[str, int], members: Sequence[str], turn: Fraction) -> bool:
+def has_fit_at(arrangement: Arrangement, teeth: Mapping[str, int], members: Sequence[str], turn: Fraction) -> bool:
     """Return whether another copy of a planet set fits between the gears, ``turn`` of a full turn after the first.
 
     Every tooth of every planet is tried, in exact arithmetic.
     """
     demands: dict[str, list[tuple[int, Fraction]]] = {planet: [] for planet in members}
-    for planet, own, central in _central_meshes(arrangement):
+    for planet, own, central in _list_central_meshes(arrangement):
         if planet in demands:
             sense = arrangement.sense(own, central)
             # External: −S θ, internal: +R θ; the sense carries the sign.
@@ -124,22 +124,22 @@ def fits_at(arrangement: Arrangement, teeth: Mapping[str, int], members: Sequenc
         tried = count if carried.count(planet) > 1 else 1
         # Each solution of z β ≡ phase, one per tooth.
         turned = [(phase + tooth) / count for tooth in range(tried)]
-        choices.append([beta for beta in turned if all(_whole(z * beta - demand) for z, demand in others)])
+        choices.append([beta for beta in turned if all(_is_whole(z * beta - demand) for z, demand in others)])
     # Without meshes between planets each planet is independent of the others.
     if not between:
         return all(choices)
     for combination in itertools.product(*choices):
         beta = dict(zip(members, combination, strict=True))
-        if all(_whole(z_one * beta[one] + z_two * beta[two]) for one, z_one, two, z_two in between):
+        if all(_is_whole(z_one * beta[one] + z_two * beta[two]) for one, z_one, two, z_two in between):
             return True
     return False
 
 
-def _whole(value: Fraction) -> bool:
+def _is_whole(value: Fraction) -> bool:
     return value.denominator == 1
 
 
-def gaps(
+def measure_gaps(
     arrangement: Arrangement,
     teeth: Mapping[str, int],
     turns: Mapping[str, Sequence[Fraction]],
@@ -161,13 +161,13 @@ def gaps(
     list of Gap
         The minimum for each pair of gear names; empty if no gears can touch.
     """
-    placed = pins(arrangement, teeth)
+    placed = place_pins(arrangement, teeth)
     assert placed is not None
     if arrangement.bevel:
-        return _bevel_gaps(arrangement, teeth, turns, addendum)
+        return _measure_bevel_gaps(arrangement, teeth, turns, addendum)
     rooms: dict[tuple[str, str], float] = {}
 
-    def note(one: str, other: str, room: float) -> None:
+    def note_gap(one: str, other: str, room: float) -> None:
         rooms[one, other] = min(room, rooms.get((one, other), math.inf))
 
     tip = {gear: 0.5 * teeth[gear] + addendum for gear in arrangement.gear_names}
@@ -175,28 +175,32 @@ def gaps(
     for k, one in enumerate(moving):
         body = arrangement.places[one].body
         for central in arrangement.gear_names:
-            if central in moving or not _share_plane(arrangement, one, central) or one in arrangement.meshing(central):
+            if (
+                central in moving
+                or not _share_a_plane(arrangement, one, central)
+                or one in arrangement.list_mates(central)
+            ):
                 continue
             # The tips of a ring point inwards.
             ring_tip = 0.5 * teeth[central] - addendum
             reach = abs(placed[body]) + tip[one]
             internal = arrangement.places[central].internal
-            note(one, central, ring_tip - reach if internal else abs(placed[body]) - tip[one] - tip[central])
+            note_gap(one, central, ring_tip - reach if internal else abs(placed[body]) - tip[one] - tip[central])
         for other in moving[k:]:
-            if not _share_plane(arrangement, one, other):
+            if not _share_a_plane(arrangement, one, other):
                 continue
             mate = arrangement.places[other].body
             for here, there in itertools.product(turns[body], turns[mate]):
                 # Planets of one copy that mesh do touch, by design.
                 same_copy = here == there
-                if same_copy and (body == mate or one in arrangement.meshing(other)):
+                if same_copy and (body == mate or one in arrangement.list_mates(other)):
                     continue
                 ahead = cmath.exp(2j * math.pi * float(there - here))
-                note(one, other, abs(placed[mate] * ahead - placed[body]) - tip[one] - tip[other])
+                note_gap(one, other, abs(placed[mate] * ahead - placed[body]) - tip[one] - tip[other])
     return [Gap(*pair, room) for pair, room in rooms.items()]
 
 
-def _bevel_gaps(
+def _measure_bevel_gaps(
     arrangement: Arrangement, teeth: Mapping[str, int], turns: Mapping[str, Sequence[Fraction]], addendum: float
 ) -> list[Gap]:
     """Measure the clearance between bevel planets at their large ends, in the planes that bisect the angles between
@@ -205,7 +209,7 @@ def _bevel_gaps(
     The pitch circle of a planet's large end lies at the side gear's pitch radius from the axis.
     """
     gaps = []
-    for planet, side, *_ in ((own, central) for _, own, central in _central_meshes(arrangement)):
+    for planet, side, *_ in ((own, central) for _, own, central in _list_central_meshes(arrangement)):
         # Pitch cone of the planet, for axes at a right angle.
         cone = math.atan2(teeth[planet], teeth[side])
         places = sorted(turns[arrangement.places[planet].body])
@@ -220,10 +224,10 @@ def _bevel_gaps(
     return gaps
 
 
-def _central_meshes(arrangement: Arrangement) -> list[tuple[str, str, str]]:
+def _list_central_meshes(arrangement: Arrangement) -> list[tuple[str, str, str]]:
     """List (planet, its gear, the sun or ring) for every mesh between a planet and a gear about the axis."""
-    return [(planet, *pair) for planet in arrangement.carriers for pair in arrangement.central_meshes(planet)]
+    return [(planet, *pair) for planet in arrangement.carriers for pair in arrangement.list_central_meshes(planet)]
 
 
-def _share_plane(arrangement: Arrangement, first: str, second: str) -> bool:
+def _share_a_plane(arrangement: Arrangement, first: str, second: str) -> bool:
     return bool(set(arrangement.places[first].planes) & set(arrangement.places[second].planes))

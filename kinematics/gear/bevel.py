@@ -14,7 +14,7 @@ from kinematics.errors import DimensionError
 from kinematics.gear.teeth import PRESSURE_ANGLE, Gear, Mesh
 
 
-def cone_angles(shaft_angle: float, ratio: float) -> tuple[float, float]:
+def compute_cone_angles(shaft_angle: float, ratio: float) -> tuple[float, float]:
     """Compute the pitch cone angles of pinion and gear for a ratio of at least 1.
 
     Raises
@@ -31,7 +31,7 @@ def cone_angles(shaft_angle: float, ratio: float) -> tuple[float, float]:
     return pinion, shaft_angle - pinion
 
 
-FLATTEST = 1e-6
+MIN_CONE_COSINE = 1e-6
 """Bound below which a bevel gear counts as flat (a crown gear): z₁/z₂ + cos Σ, which is positive and vanishes there."""
 
 
@@ -98,7 +98,7 @@ class BevelPair:
     @property
     def cones(self) -> tuple[float, float]:
         """Pitch cone angles of pinion and gear."""
-        return cone_angles(0.5 * math.pi, self.gear / self.pinion)
+        return compute_cone_angles(0.5 * math.pi, self.gear / self.pinion)
 
     @property
     def pitch_radii(self) -> tuple[float, float]:
@@ -178,7 +178,7 @@ class BevelCones:
     def __post_init__(self) -> None:
         small, large = sorted((self.driver, self.driven))
         # At equality the larger pitch cone opens to 90°: a crown gear.
-        if not small + large * math.cos(self.shaft_angle) > FLATTEST * large:
+        if not small + large * math.cos(self.shaft_angle) > MIN_CONE_COSINE * large:
             raise DimensionError("shaft_angle", "such that both pitch cones are less than flat", self.shaft_angle)
         # Raises for teeth that cannot mesh.
         _ = self.back_mesh
@@ -187,7 +187,7 @@ class BevelCones:
     def cones(self) -> tuple[float, float]:
         """Pitch cone angles of driver and driven gear."""
         large, small = max(self.driver, self.driven), min(self.driver, self.driven)
-        pinion, gear = cone_angles(self.shaft_angle, large / small)
+        pinion, gear = compute_cone_angles(self.shaft_angle, large / small)
         # The cone angles are computed for the smaller gear first.
         return (pinion, gear) if self.driver <= self.driven else (gear, pinion)
 

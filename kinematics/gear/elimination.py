@@ -22,7 +22,7 @@ class Elimination:
         for pivot, (known, value) in self._rows.items():
             share = row.get(pivot)
             if share:
-                row, right = _less(row, known, share), right - share * value
+                row, right = _subtract(row, known, share), right - share * value
         row = {name: c for name, c in row.items() if c}
         # A dependent equation: consistent only if its right side vanishes too.
         if not row:
@@ -33,7 +33,7 @@ class Elimination:
             share = known.get(pivot)
             # Keep the rows fully reduced, so that values can be read off at any time.
             if share:
-                self._rows[other] = (_less(known, row, share), value - share * right)
+                self._rows[other] = (_subtract(known, row, share), value - share * right)
         self._rows[pivot] = (row, right)
         return True
 
@@ -46,7 +46,7 @@ class Elimination:
         return solution
 
 
-def _less(row: dict[str, Fraction], subtrahend: dict[str, Fraction], share: Fraction) -> dict[str, Fraction]:
+def _subtract(row: dict[str, Fraction], subtrahend: dict[str, Fraction], share: Fraction) -> dict[str, Fraction]:
     return {
         name: row.get(name, Fraction(0)) - share * subtrahend.get(name, Fraction(0)) for name in {**row, **subtrahend}
     }

@@ -7,7 +7,7 @@ the base circle, the involute begins at
     f = r sin φ − m (k − x) / sin φ,
 
 negative where the rack undercuts the gear; its involute then begins where the fillet crosses it, see
-:func:`kinematics.gear.profile.involute_start`. A ring is shaped by a cutter with the teeth of a gear, whose tip
+:func:`kinematics.gear.profile.find_involute_start`. A ring is shaped by a cutter with the teeth of a gear, whose tip
 corner is sharp: with the distance a_c and the pressure angle φ_c of cutting the involute of the ring ends at
 
     f = a_c sin φ_c + √(r_ac² − r_bc²).
@@ -33,7 +33,7 @@ CUTTER_ADDENDUM = 1.25
 """Addendum of a cutter for rings, in modules: the dedendum that it leaves at no shift."""
 
 
-def corner_rounding(pressure_angle: float, dedendum: float) -> float:
+def compute_corner_rounding(pressure_angle: float, dedendum: float) -> float:
     """Compute the radius of the rack's rounded tip, modules.
 
     Raises
@@ -49,16 +49,16 @@ def corner_rounding(pressure_angle: float, dedendum: float) -> float:
     return min(TIP_ROUNDING, wide * math.cos(pressure_angle) / (1.0 - math.sin(pressure_angle)))
 
 
-def straight_depth(pressure_angle: float, dedendum: float) -> float:
+def compute_straight_depth(pressure_angle: float, dedendum: float) -> float:
     """Compute the depth below its reference line that the rack's straight flank reaches, modules.
 
     >>> round(straight_depth(math.radians(20.0), 1.25), 4)
     1.0
     """
-    return dedendum - corner_rounding(pressure_angle, dedendum) * (1.0 - math.sin(pressure_angle))
+    return dedendum - compute_corner_rounding(pressure_angle, dedendum) * (1.0 - math.sin(pressure_angle))
 
 
-def rack_cut_form(gear: Gear, depth: float) -> float:
+def compute_rack_form(gear: Gear, depth: float) -> float:
     """Compute where the involute of a rack-cut external gear begins, from the base circle's tangent point.
 
     That is where the rack's straight flank ends; a negative value means undercut.
@@ -69,7 +69,7 @@ def rack_cut_form(gear: Gear, depth: float) -> float:
     return gear.pitch_radius * sine - gear.module * (depth - gear.shift) / sine
 
 
-def least_shift_of_rack(teeth: float, pressure_angle: float, depth: float) -> float:
+def compute_min_shift(teeth: float, pressure_angle: float, depth: float) -> float:
     """Compute the shift below which a rack with this depth of straight flank undercuts a gear: x = k − z sin² φ / 2."""
     return depth - 0.5 * teeth * math.sin(pressure_angle) ** 2
 
@@ -158,7 +158,7 @@ class Contact:
         """Maximum specific sliding of each flank, below its pitch circle: 1 − (u₂ z₁) / (u₁ z₂) on the pinion."""
         mesh, tips, deepest = self.mesh, self._tips, self.reaches
         teeth = mesh.pinion.teeth / mesh.gear.teeth
-        return _slid(tips[1] * teeth, deepest[0]), _slid(tips[0] / teeth, deepest[1])
+        return _compute_sliding(tips[1] * teeth, deepest[0]), _compute_sliding(tips[0] / teeth, deepest[1])
 
     @property
     def backlash(self) -> float:
@@ -171,12 +171,12 @@ class Contact:
         return pitch - mesh.pinion.thickness_at(radii[0]) - mesh.gear.thickness_at(radii[1])
 
 
-def _slid(mate: float, own: float) -> float:
+def _compute_sliding(mate: float, own: float) -> float:
     # On the base circle the flank's own rolling velocity vanishes.
     return 1.0 - mate / own if own > 0.0 else -math.inf
 
 
-def shortened_tips(mesh: Mesh) -> float:
+def compute_tip_shortening(mesh: Mesh) -> float:
     """Compute by how many modules the tips of an external pair are shortened to keep the clearance of unshifted gears.
 
     The centre distance grows by less than the sum of the shifts; the tips lose the difference x₁ + x₂ − (C − C₀) / m.

@@ -21,7 +21,7 @@ R40 = (
 )  # fmt: skip
 """Preferred numbers of the series R40 from 100 to 950 (ISO 3); R20, R10 and R5 are every 2nd, 4th and 8th of them."""
 
-STRIDES = {"R40": 1, "R20": 2, "R10": 4, "R5": 8}
+SERIES_STRIDES = {"R40": 1, "R20": 2, "R10": 4, "R5": 8}
 """Steps in R40 from one number of a series to the next."""
 
 
@@ -32,7 +32,7 @@ class SpindleSpeed(NamedTuple):
     engaged: tuple[int, ...]
 
 
-def spindle_speeds(input_speed: Fraction | int, stages: Sequence[Sequence[tuple[int, int]]]) -> list[SpindleSpeed]:
+def list_spindle_speeds(input_speed: Fraction | int, stages: Sequence[Sequence[tuple[int, int]]]) -> list[SpindleSpeed]:
     """List every speed of the spindle, slowest first: input × Π driver/driven over the engaged pairs.
 
     Parameters
@@ -71,7 +71,7 @@ def spindle_speeds(input_speed: Fraction | int, stages: Sequence[Sequence[tuple[
     return sorted(speeds)
 
 
-def progression(lowest: float, highest: float, count: int) -> tuple[float, list[float]]:
+def compute_progression(lowest: float, highest: float, count: int) -> tuple[float, list[float]]:
     """Compute the ratio φ = (n_max/n_min)^(1/(z − 1)) and the z speeds of a geometric progression (Rao, eq. 8.5).
 
     Raises
@@ -87,12 +87,12 @@ def progression(lowest: float, highest: float, count: int) -> tuple[float, list[
     return ratio, [lowest * ratio**k for k in range(count)]
 
 
-def preferred_ratio(series: str, step: int = 1) -> float:
+def series_ratio(series: str, step: int = 1) -> float:
     """Return the progression ratio of every ``step``-th number of a series: 10^(step/r), r numbers in a decade."""
-    return float(10.0 ** (step * STRIDES[series] / len(R40)))
+    return float(10.0 ** (step * SERIES_STRIDES[series] / len(R40)))
 
 
-def preferred_numbers(series: str, start: float, count: int, step: int = 1) -> list[float] | None:
+def list_preferred_numbers(series: str, start: float, count: int, step: int = 1) -> list[float] | None:
     """List every ``step``-th preferred number (rounded by ISO 3) from ``start`` on; None if ``start`` is none."""
     # Bring the start into the tabulated decade; the tolerance absorbs binary rounding of decimal input.
     decade = 0
@@ -101,7 +101,7 @@ def preferred_numbers(series: str, start: float, count: int, step: int = 1) -> l
         value, decade = value / 10.0, decade + 1
     while value < 100.0 * (1.0 - 1e-9):
         value, decade = value * 10.0, decade - 1
-    stride = STRIDES[series]
+    stride = SERIES_STRIDES[series]
     place = next((k for k, number in enumerate(R40) if abs(value - number) <= 1e-6 * number), None)
     # Not in this series, though perhaps in a finer one.
     if place is None or place % stride:
@@ -118,7 +118,7 @@ class LayshaftRatios(NamedTuple):
     reverse: Fraction | None
 
 
-def layshaft_ratios(
+def compute_layshaft_ratios(
     head: tuple[int, int],
     gears: Sequence[tuple[int, int] | None],
     reverse: tuple[int, int, int] | None = None,

@@ -14,7 +14,7 @@ from dataclasses import dataclass
 from kinematics.errors import DimensionError
 from kinematics.gear.teeth import PRESSURE_ANGLE, Gear
 
-OVERLAP = 1.15
+USUAL_OVERLAP = 1.15
 """Usual minimum advance of a tooth over the face, in transverse pitches (Rao, Sec. 7.4)."""
 
 
@@ -78,6 +78,6 @@ class HelicalGear:
         shrunk = math.cos(self.helix_angle)
         return Gear(self.teeth, self.transverse_module, self.transverse_pressure_angle, shrunk, 1.25 * shrunk)
 
-    def least_face_width(self, overlap: float = OVERLAP) -> float:
+    def min_face_width(self, overlap: float = USUAL_OVERLAP) -> float:
         """Return the face over which a tooth advances by ``overlap`` transverse pitches: overlap × axial pitch."""
         return overlap * self.axial_pitch

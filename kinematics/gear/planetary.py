@@ -65,7 +65,7 @@ class Mesh:
         if len(set(bodies)) != 3:
             raise DimensionError("bodies of a mesh", "three different ones", bodies)
 
-    def equation(self) -> dict[str, int]:
+    def build_equation(self) -> dict[str, int]:
         """Build the coefficients, by body, of the speed equation; its right side is 0."""
         # N1 ω1 − σ N2 ω2 − (N1 − σ N2) ωc = 0.
         first, second = self.first_teeth, -self.sense * self.second_teeth
@@ -114,7 +114,7 @@ class Speeds:
     contradiction: str | None
 
 
-def speeds(train: Train, known: Mapping[str, Fraction | int], locked: Iterable[tuple[str, str]] = ()) -> Speeds:
+def solve_speeds(train: Train, known: Mapping[str, Fraction | int], locked: Iterable[tuple[str, str]] = ()) -> Speeds:
     """Solve for the speeds of all bodies from some of them, as exact fractions.
 
     Parameters
@@ -151,7 +151,7 @@ def speeds(train: Train, known: Mapping[str, Fraction | int], locked: Iterable[t
         if body not in bodies and body != GROUND:
             raise DimensionError("body", f"one of {', '.join(bodies)}", body)
     for mesh in train.meshes:
-        system.add({body: Fraction(c) for body, c in mesh.equation().items() if body != GROUND}, Fraction(0))
+        system.add({body: Fraction(c) for body, c in mesh.build_equation().items() if body != GROUND}, Fraction(0))
     for first, second in pairs:
         locking = {first: Fraction(1), second: Fraction(-1)}
         system.add({body: c for body, c in locking.items() if body != GROUND}, Fraction(0))
@@ -166,13 +166,13 @@ def speeds(train: Train, known: Mapping[str, Fraction | int], locked: Iterable[t
     return Speeds(system.values(), freedom, len(bodies) - system.rank, contradiction)
 
 
-def speed_ratio(train: Train, driver: str, driven: str, held: Iterable[str] = ()) -> Fraction | None:
+def compute_speed_ratio(train: Train, driver: str, driven: str, held: Iterable[str] = ()) -> Fraction | None:
     """Compute the speed of the driver over that of the driven body, with other bodies fixed.
 
     Return None if the driven body stands still or is free, or the train is locked.
     """
     # The equations are linear: unit speed of the driver gives the ratio.
-    solution = speeds(train, {**dict.fromkeys(held, 0), driver: 1})
+    solution = solve_speeds(train, {**dict.fromkeys(held, 0), driver: 1})
     driven_speed = solution.values[driven]
     if solution.contradiction is not None or not driven_speed:
         return None

@@ -87,7 +87,7 @@ class PowerFlow:
         return self.largest_branch_power > 1
 
 
-def power_flow(
+def solve_power_flow(
     train: Train,
     speeds: Mapping[str, Exact],
     loads: Collection[str],
@@ -101,7 +101,7 @@ def power_flow(
     train : Train
         The meshes.
     speeds : mapping
-        Speed of every body, see :func:`kinematics.gear.planetary.speeds`.
+        Speed of every body, see :func:`kinematics.gear.planetary.solve_speeds`.
     loads : collection of str
         Members with external torque (fixed, driven or braked); all other bodies turn freely.
     known : mapping
@@ -129,19 +129,19 @@ def power_flow(
     >>> round(float(power_flow(train, found, {"A", "B", "C"}, {"C": 100}).torques["A"]), 1)
     -48.5
     """
-    shares = _efficiencies(train, efficiency)
-    turning = {**{body: _known_speed(body, speeds) for body in train.bodies}, GROUND: Fraction(0)}
+    shares = _check_efficiencies(train, efficiency)
+    turning = {**{body: _get_known_speed(body, speeds) for body in train.bodies}, GROUND: Fraction(0)}
     for body in (*loads, *known):
         if body not in train.bodies or body in train.planets:
             raise DimensionError("load", f"on one of the members {', '.join(train.members)}", body)
     relative = [turning[mesh.first] - turning[mesh.carrier] for mesh in train.meshes]
     # Without losses first: it defines the input power and the likely directions.
-    ideal = _balance(train, loads, known, [Fraction(1)] * len(shares))
+    ideal = _balance_bodies(train, loads, known, [Fraction(1)] * len(shares))
     if ideal is None:
         return None
-    settled = _settled(train, loads, known, shares, relative, ideal[0])
-    without_loss = _flow(train, turning, relative, *ideal, [Fraction(1)] * len(shares))
-    flow = _flow(train, turning, relative, *(settled[0] or ideal), settled[1])
+    settled = _find_consistent_balance(train, loads, known, shares, relative, ideal[0])
+    without_loss = _build_flow(train, turning, relative, *ideal, [Fraction(1)] * len(shares))
+    flow = _build_flow(train, turning, relative, *(settled[0] or ideal), settled[1])
     # Reference of the shares, since losses would blur a circulating power.
     put_in = without_loss.input_power
     # Power enters without losses, but none leaves with them.
@@ -155,11 +155,11 @@ def power_flow(
         Fraction(0) if locked else flow.output_power / flow.input_power if flow.input_power else None,
         locked,
         max((abs(mesh.rolling_power) for mesh in without_loss.meshes), default=Fraction(0)) / (put_in or 1),
-        _branch_power(train, turning, without_loss.meshes) / (put_in or 1),
+        _find_branch_power(train, turning, without_loss.meshes) / (put_in or 1),
     )
 
 
-def _efficiencies(train: Train, efficiency: Exact | Sequence[Exact]) -> list[Fraction]:
+def _check_efficiencies(train: Train, efficiency: Exact | Sequence[Exact]) -> list[Fraction]:
     each = list(efficiency) if isinstance(efficiency, Sequence) else [efficiency] * len(train.meshes)
     if len(each) != len(train.meshes):
         raise DimensionError("efficiency", f"one number, or {len(train.meshes)} for the meshes", len(each))
@@ -169,19 +169,19 @@ def _efficiencies(train: Train, efficiency: Exact | Sequence[Exact]) -> list[Fra
     return [Fraction(share) for share in each]
 
 
-def _known_speed(body: str, speeds: Mapping[str, Exact]) -> Fraction:
+def _get_known_speed(body: str, speeds: Mapping[str, Exact]) -> Fraction:
     if speeds.get(body) is None:
         raise DimensionError("speeds", "known for every body", body)
     return Fraction(speeds[body])
 
 
-def _torques(mesh: Mesh, share: Fraction) -> tuple[Fraction, Fraction, Fraction]:
+def _compute_torques(mesh: Mesh, share: Fraction) -> tuple[Fraction, Fraction, Fraction]:
     """Compute the torques of a mesh on first gear, second gear and carrier per unit force."""
     first, second = Fraction(mesh.first_teeth), share * -mesh.sense * mesh.second_teeth
     return first, second, -first - second
 
 
-def _balance(
+def _balance_bodies(
     train: Train, loads: Collection[str], known: Mapping[str, Exact], shares: list[Fraction]
 ) -> tuple[list[Fraction], dict[str, Fraction]] | None:
     """Solve for mesh forces and load torques from the equilibrium of every body."""
@@ -189,7 +189,7 @@ def _balance(
     system = Elimination((*meshes, *(f"torque {body}" for body in loads)))
     rows: dict[str, dict[str, Fraction]] = {body: {} for body in train.bodies}
     for name, mesh, share in zip(meshes, train.meshes, shares, strict=True):
-        for body, torque in zip((mesh.first, mesh.second, mesh.carrier), _torques(mesh, share), strict=True):
+        for body, torque in zip((mesh.first, mesh.second, mesh.carrier), _compute_torques(mesh, share), strict=True):
             if body != GROUND:
                 rows[body][name] = torque
     for body, row in rows.items():
@@ -209,7 +209,7 @@ def _balance(
     return [f for f in forces if f is not None], {body: t for body, t in torques.items() if t is not None}
 
 
-def _settled(
+def _find_consistent_balance(
     train: Train,
     loads: Collection[str],
     known: Mapping[str, Exact],
@@ -222,29 +222,29 @@ def _settled(
     The directions without loss are tried first: with small losses they are correct.
     """
 
-    def lost(driving: Sequence[bool]) -> list[Fraction]:
+    def apply_losses(driving: Sequence[bool]) -> list[Fraction]:
         return [share if first else 1 / share for share, first in zip(shares, driving, strict=True)]
 
-    def directions(forces: list[Fraction]) -> tuple[bool, ...]:
+    def find_directions(forces: list[Fraction]) -> tuple[bool, ...]:
         # Power into a gear, relative to the carrier, is minus the mesh's power on it.
         return tuple(-force * rate > 0 for force, rate in zip(forces, relative, strict=True))
 
-    first = directions(forces)
+    first = find_directions(forces)
     # Meshes without relative motion or without loss have no direction to decide.
     idle = [not rate or share == 1 for rate, share in zip(relative, shares, strict=True)]
     shares = [Fraction(1) if still else share for still, share in zip(idle, shares, strict=True)]
     others = itertools.product(*([a] if still else [a, not a] for a, still in zip(first, idle, strict=True)))
     for driving in others:
-        found = _balance(train, loads, known, lost(driving))
+        found = _balance_bodies(train, loads, known, apply_losses(driving))
         if found is not None and all(
             still or not force or a == b
-            for a, b, still, force in zip(driving, directions(found[0]), idle, found[0], strict=True)
+            for a, b, still, force in zip(driving, find_directions(found[0]), idle, found[0], strict=True)
         ):
-            return found, lost(driving)
+            return found, apply_losses(driving)
     return None, [Fraction(1)] * len(shares)
 
 
-def _flow(
+def _build_flow(
     train: Train,
     turning: Mapping[str, Fraction],
     relative: list[Fraction],
@@ -254,7 +254,7 @@ def _flow(
 ) -> PowerFlow:
     loads = []
     for mesh, force, rate, share in zip(train.meshes, forces, relative, shares, strict=True):
-        first, second, carrier = (force * torque for torque in _torques(mesh, share))
+        first, second, carrier = (force * torque for torque in _compute_torques(mesh, share))
         # Relative to the carrier the second gear turns σ N1/N2 times as fast as the first one.
         loss = -first * rate - second * rate * Fraction(mesh.sense * mesh.first_teeth, mesh.second_teeth)
         loads.append(MeshLoad(first, second, carrier, -first * rate, loss))
@@ -265,7 +265,7 @@ def _flow(
     return PowerFlow(every, powers, tuple(loads), put_in, put_out, None, False, Fraction(0), Fraction(0))
 
 
-def _branch_power(train: Train, turning: Mapping[str, Fraction], loads: Sequence[MeshLoad]) -> Fraction:
+def _find_branch_power(train: Train, turning: Mapping[str, Fraction], loads: Sequence[MeshLoad]) -> Fraction:
     """Find the maximum power between a row and a member; a row consists of meshes connected by planets."""
     row_of: dict[str, int] = {}
     rows: list[dict[str, Fraction]] = []

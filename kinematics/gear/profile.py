@@ -27,13 +27,11 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from kinematics.gear.flanks import corner_rounding
+from kinematics.arrays import Complex, Real
+from kinematics.gear.flanks import compute_corner_rounding
 from kinematics.gear.teeth import Gear, involute
 
-Outline = NDArray[np.complex128]
-Reals = NDArray[np.float64]
-
-FLANK, FILLET, ARC = 24, 20, 4
+FLANK_POINTS, FILLET_POINTS, ARC_POINTS = 24, 20, 4
 """Points on a flank, a fillet, and half of a tip or root arc: the chords deviate by about 1e-4 module."""
 
 
@@ -51,7 +49,7 @@ class _Corner(NamedTuple):
     end: float
 
 
-def half_space(gear: Gear, helix_angle: float = 0.0) -> Outline:
+def draw_half_space(gear: Gear, helix_angle: float = 0.0) -> Complex:
     """Draw the outline from the middle of a tooth space, on the real axis, along root, fillet and flank to mid-tip.
 
     Parameters
@@ -71,12 +69,12 @@ def half_space(gear: Gear, helix_angle: float = 0.0) -> Outline:
     DimensionError
         If the rack's tooth comes to a point before it has cut to the root circle.
     """
-    return _internal(gear) if gear.internal else _external(gear, _corner(gear, helix_angle))
+    return _draw_internal(gear) if gear.internal else _draw_external(gear, _build_corner(gear, helix_angle))
 
 
-def outline(gear: Gear, tooth_at: float = 0.0, helix_angle: float = 0.0) -> Outline:
+def draw_outline(gear: Gear, tooth_at: float = 0.0, helix_angle: float = 0.0) -> Complex:
     """Draw the closed outline of all teeth, counter-clockwise, one tooth's middle at the polar angle ``tooth_at``."""
-    half = half_space(gear, helix_angle)
+    half = draw_half_space(gear, helix_angle)
     # From tooth to tooth: the mirrored half space backwards, then the half space forwards.
     space = np.concatenate([half[::-1].conj(), half[1:]])[:-1]
     pitch = 2.0 * math.pi / gear.teeth
@@ -85,45 +83,47 @@ def outline(gear: Gear, tooth_at: float = 0.0, helix_angle: float = 0.0) -> Outl
     return np.asarray((turns[:, None] * space[None, :]).ravel())
 
 
-def _corner(gear: Gear, helix_angle: float) -> _Corner:
+def _build_corner(gear: Gear, helix_angle: float) -> _Corner:
     """Build the corner of the rack; for a helical gear in the normal plane, except ``beside`` (plane of rotation)."""
     phi, m, dedendum, stretch = gear.pressure_angle, gear.module, gear.dedendum, 1.0
     if helix_angle:
         cosine = math.cos(helix_angle)
         phi, m, dedendum = math.atan(math.tan(phi) * cosine), m * cosine, dedendum / cosine
         stretch = 1.0 / cosine
-    rounding = m * corner_rounding(phi, dedendum)
+    rounding = m * compute_corner_rounding(phi, dedendum)
     wide = 0.25 * math.pi - dedendum * math.tan(phi)
     beside = m * wide + rounding * (math.tan(phi) - 1.0 / math.cos(phi))
     below = gear.module * (gear.dedendum - gear.shift) - rounding
     return _Corner(rounding, below, stretch * beside, stretch, 0.5 * math.pi - phi)
 
 
-def _external(gear: Gear, corner: _Corner) -> Outline:
-    fillet = _fillet(gear.pitch_radius, corner, np.linspace(0.0, _fillet_end(gear, corner), FILLET))
+def _draw_external(gear: Gear, corner: _Corner) -> Complex:
+    fillet = _trace_fillet(gear.pitch_radius, corner, np.linspace(0.0, _find_fillet_end(gear, corner), FILLET_POINTS))
     # The involute cannot start below the base circle.
-    start, tip = max(abs(fillet[-1]), gear.base_radius), _tip(gear)
+    start, tip = max(abs(fillet[-1]), gear.base_radius), _find_tip(gear)
     least, most = (math.sqrt(max((end / gear.base_radius) ** 2 - 1.0, 0.0)) for end in (start, tip))
     # Equal steps in the roll angle √(R²/r_b² − 1) put more points where the involute bends most.
-    rolls = np.linspace(least, most, FLANK)
+    rolls = np.linspace(least, most, FLANK_POINTS)
     radii = gear.base_radius * np.hypot(1.0, rolls)
-    flank = np.array([r * np.exp(1j * _space_angle(gear, r)) for r in radii])
-    root = _arc(gear.root_radius, 0.0, float(np.angle(fillet[0])))
-    return _distinct(np.concatenate([root, fillet, flank, _arc(tip, float(np.angle(flank[-1])), math.pi / gear.teeth)]))
+    flank = np.array([r * np.exp(1j * _compute_space_angle(gear, r)) for r in radii])
+    root = _draw_arc(gear.root_radius, 0.0, float(np.angle(fillet[0])))
+    return _drop_repeated(
+        np.concatenate([root, fillet, flank, _draw_arc(tip, float(np.angle(flank[-1])), math.pi / gear.teeth)])
+    )
 
 
-def _distinct(points: Outline) -> Outline:
+def _drop_repeated(points: Complex) -> Complex:
     """Drop points that repeat their predecessor."""
     # Segments of zero length would break offsetting and drawing programs.
     kept = np.abs(np.diff(points)) > 1e-9 * np.abs(points[:-1])
     return np.asarray(points[np.concatenate([[True], kept])])
 
 
-def involute_start(gear: Gear, helix_angle: float = 0.0) -> float:
+def find_involute_start(gear: Gear, helix_angle: float = 0.0) -> float:
     """Find the start of the involute of a rack-cut external gear, measured from the base circle's tangent point.
 
-    Without undercut it is :func:`kinematics.gear.flanks.rack_cut_form`; on an undercut gear it is the point where the
-    fillet crosses the flank, above the base circle.
+    Without undercut it is :func:`kinematics.gear.flanks.compute_rack_form`; on an undercut gear it is the point where
+    the fillet crosses the flank, above the base circle.
 
     Parameters
     ----------
@@ -137,35 +137,36 @@ def involute_start(gear: Gear, helix_angle: float = 0.0) -> float:
     DimensionError
         If the rack's tooth comes to a point before it has cut to the root circle.
     """
-    radius, corner = np.array([gear.pitch_radius]), _corner(gear, helix_angle)
-    return float(_starts(radius, gear.pressure_angle, np.array([_base_space(gear)]), corner)[0])
+    radius, corner = np.array([gear.pitch_radius]), _build_corner(gear, helix_angle)
+    return float(_find_starts(radius, gear.pressure_angle, np.array([_compute_base_space(gear)]), corner)[0])
 
 
-def full_depth_starts(teeth: NDArray[np.float64], pressure_angle: float) -> NDArray[np.float64]:
-    """Find the starts of the involutes of unshifted full-depth spur gears, in modules; see :func:`involute_start`."""
-    corner = _corner(Gear(10.0, 1.0, pressure_angle), 0.0)  # the rack does not depend on the number of teeth
+def find_full_depth_starts(teeth: NDArray[np.float64], pressure_angle: float) -> NDArray[np.float64]:
+    """Find the starts of the involutes of unshifted full-depth spur gears, in modules; see
+    :func:`find_involute_start`."""
+    corner = _build_corner(Gear(10.0, 1.0, pressure_angle), 0.0)  # the rack does not depend on the number of teeth
     space = 0.5 * math.pi / teeth - involute(pressure_angle)
-    return _starts(0.5 * teeth, pressure_angle, space, corner)
+    return _find_starts(0.5 * teeth, pressure_angle, space, corner)
 
 
-def _starts(radius: Reals, phi: float, space: Reals, corner: _Corner) -> Reals:
+def _find_starts(radius: Real, phi: float, space: Real, corner: _Corner) -> Real:
     """Find the starts of involutes, given pitch radii and half the space angle on the base circles."""
-    ends = _straight_ends(radius, phi, corner)
+    ends = _compute_straight_ends(radius, phi, corner)
     starts = ends.copy()
     cut = ends < 0.0
     if cut.any():
-        met = np.abs(_fillet(radius[cut], corner, _crossing(radius[cut], phi, space[cut], corner)))
+        met = np.abs(_trace_fillet(radius[cut], corner, _find_crossing(radius[cut], phi, space[cut], corner)))
         starts[cut] = np.sqrt(np.maximum(met**2 - (radius[cut] * math.cos(phi)) ** 2, 0.0))
     return starts
 
 
-def _straight_ends(radius: Reals, phi: float, corner: _Corner) -> Reals:
+def _compute_straight_ends(radius: Real, phi: float, corner: _Corner) -> Real:
     """Compute where the rack's straight flank ends, from the base circle's tangent point; negative: undercut."""
     deep = corner.below + corner.rounding * math.cos(corner.end)
     return radius * math.sin(phi) - deep / math.sin(phi)
 
 
-def _crossing(radius: Reals, phi: float, space: Reals, corner: _Corner) -> Reals:
+def _find_crossing(radius: Real, phi: float, space: Real, corner: _Corner) -> Real:
     """Find the parameters at which the fillets of undercut gears cross their flanks.
 
     From the root up, the fillet meets the base circle inside the tooth, beyond the flank, and ends in the space: in
@@ -173,7 +174,7 @@ def _crossing(radius: Reals, phi: float, space: Reals, corner: _Corner) -> Reals
     """
     base = radius * math.cos(phi)
 
-    def bisected(is_low: Callable[[Reals], NDArray[np.bool_]], low: Reals) -> Reals:
+    def bisect_fillet(is_low: Callable[[Real], NDArray[np.bool_]], low: Real) -> Real:
         high = np.full_like(low, corner.end)
         for _ in range(60):
             middle = 0.5 * (low + high)
@@ -181,30 +182,30 @@ def _crossing(radius: Reals, phi: float, space: Reals, corner: _Corner) -> Reals
             low, high = np.where(below, middle, low), np.where(below, high, middle)
         return low
 
-    def inside(theta: Reals) -> NDArray[np.bool_]:
-        point = _fillet(radius, corner, theta)
+    def is_inside(theta: Real) -> NDArray[np.bool_]:
+        point = _trace_fillet(radius, corner, theta)
         # Pressure angle at the point's radius; rounding may push the quotient above 1.
         there = np.arccos(np.minimum(1.0, base / np.abs(point)))
         return np.asarray(np.angle(point) > space + np.tan(there) - there)
 
-    at_base = bisected(lambda theta: np.abs(_fillet(radius, corner, theta)) < base, np.zeros_like(radius))
-    return bisected(inside, at_base)
+    at_base = bisect_fillet(lambda theta: np.abs(_trace_fillet(radius, corner, theta)) < base, np.zeros_like(radius))
+    return bisect_fillet(is_inside, at_base)
 
 
-def _fillet_end(gear: Gear, corner: _Corner) -> float:
+def _find_fillet_end(gear: Gear, corner: _Corner) -> float:
     """Find the parameter at which the fillet joins the flank: tangent at the corner's end, or crossing it before."""
     radius, phi = np.array([gear.pitch_radius]), gear.pressure_angle
-    if _straight_ends(radius, phi, corner)[0] >= 0.0:
+    if _compute_straight_ends(radius, phi, corner)[0] >= 0.0:
         return corner.end
-    return float(_crossing(radius, phi, np.array([_base_space(gear)]), corner)[0])
+    return float(_find_crossing(radius, phi, np.array([_compute_base_space(gear)]), corner)[0])
 
 
-def _base_space(gear: Gear) -> float:
+def _compute_base_space(gear: Gear) -> float:
     """Compute half the angle of the space between two external teeth, extrapolated to the base circle."""
     return math.pi / gear.teeth - gear.tooth_thickness / (2.0 * gear.pitch_radius) - involute(gear.pressure_angle)
 
 
-def _fillet(r: float | Reals, corner: _Corner, theta: Reals) -> Outline:
+def _trace_fillet(r: float | Real, corner: _Corner, theta: Real) -> Complex:
     """Trace the trochoid of the rack's corner on gears of pitch radius ``r``, from the root circle up."""
     below, q = corner.below, corner.stretch
     along = below * (np.tan(theta) / q)
@@ -214,12 +215,12 @@ def _fillet(r: float | Reals, corner: _Corner, theta: Reals) -> Outline:
     return np.asarray(point * np.exp(-1j * moved / r))
 
 
-def _space_angle(gear: Gear, radius: float) -> float:
+def _compute_space_angle(gear: Gear, radius: float) -> float:
     """Compute half the angle of the space between two external teeth at a radius."""
     return math.pi / gear.teeth - gear.thickness_at(max(radius, gear.base_radius)) / (2.0 * radius)
 
 
-def _tip(gear: Gear) -> float:
+def _find_tip(gear: Gear) -> float:
     """Find the tip radius, or the radius at which the flanks meet."""
     if not gear.is_pointed:
         return gear.tip_radius
@@ -231,23 +232,23 @@ def _tip(gear: Gear) -> float:
     return low
 
 
-def _internal(gear: Gear) -> Outline:
+def _draw_internal(gear: Gear) -> Complex:
     """Draw an internal gear: root arc, flank down to the tip, tip arc; below the base circle the flank is radial."""
     # The flank of a ring cannot be an involute inside the base circle.
     low = max(gear.tip_radius, gear.base_radius)
-    radii = np.linspace(gear.root_radius, low, FLANK)
+    radii = np.linspace(gear.root_radius, low, FLANK_POINTS)
     half = math.pi / gear.teeth
     angles = np.array([half - gear.thickness_at(r) / (2.0 * r) for r in radii])
-    return _distinct(
+    return _drop_repeated(
         np.concatenate(
             [
-                _arc(gear.root_radius, 0.0, angles[0]),
+                _draw_arc(gear.root_radius, 0.0, angles[0]),
                 radii * np.exp(1j * angles),
-                _arc(gear.tip_radius, angles[-1], half),
+                _draw_arc(gear.tip_radius, angles[-1], half),
             ]
         )
     )
 
 
-def _arc(radius: float, start: float, end: float) -> Outline:
-    return np.asarray(radius * np.exp(1j * np.linspace(start, end, ARC)))
+def _draw_arc(radius: float, start: float, end: float) -> Complex:
+    return np.asarray(radius * np.exp(1j * np.linspace(start, end, ARC_POINTS)))

@@ -18,28 +18,28 @@ import math
 from typing import NamedTuple
 
 from kinematics.compiling import njit
-from kinematics.gear.teeth import involute, tangent_of_involute
+from kinematics.gear.teeth import invert_involute_tangent, involute
 
-KEPT = 1e-10
+MARGIN_TOLERANCE = 1e-10
 """Violation of a constraint, in modules, that is tolerated: rounding must not reject pairs that lie on a limit."""
 
-TO_THE_LAST = 4e-16
+FULL_PRECISION = 4e-16
 """Relative tolerance of tan φ_w if every digit counts."""
 
-GOLDEN = 0.5 * (math.sqrt(5.0) - 1.0)
+GOLDEN_RATIO = 0.5 * (math.sqrt(5.0) - 1.0)
 
-SECTIONS = 52
+GOLDEN_SECTION_STEPS = 52
 """Number of golden sections of an interval: 1e-11 of it remains."""
 
-STEEP = 6.0
+TIP_SLOPE_BOUND = 6.0
 """Slope of the tip thickness over the shift at most; with 2 / sin φ for the ends of involutes it bounds all
 margins'."""
 
-TOLD = 1e-5
+MARGIN_RESOLUTION = 1e-5
 """Accuracy, modules, of a margin that is compared with other margins."""
 
 
-class Demands(NamedTuple):
+class PairConstraints(NamedTuple):
     """Constraints on a pair; shifts, depth and thickness in modules, the angle in radians.
 
     ``depth`` is the depth of the cutting rack's straight flank below its reference line. For helical teeth all values
@@ -73,7 +73,7 @@ class Rack(NamedTuple):
     involute: float
 
 
-class Left(NamedTuple):
+class Margins(NamedTuple):
     """Margin of each constraint for a split, modules; negative if violated.
 
     Addendum of both gears, flank above the base circles and below the mate's tip, path of contact, thickness of tips.
@@ -99,18 +99,18 @@ class Tips(NamedTuple):
     mate_reach: float
 
 
-inv, _tangent = njit(cache=True, nogil=True)(involute), njit(cache=True, nogil=True)(tangent_of_involute)
+inv, _tangent = njit(cache=True, nogil=True)(involute), njit(cache=True, nogil=True)(invert_involute_tangent)
 
 
 @njit(cache=True, nogil=True)
-def rack_of(demands: Demands) -> Rack:
+def build_rack(demands: PairConstraints) -> Rack:
     """Build the functions of the constraints' pressure angle."""
     phi = demands.pressure_angle
     return Rack(math.sin(phi), math.cos(phi), 4.0 * math.tan(phi), inv(phi))
 
 
 @njit(cache=True, nogil=True)
-def at_distance(teeth: int, mate: int, distance: float, demands: Demands) -> Working:
+def from_distance(teeth: int, mate: int, distance: float, demands: PairConstraints) -> Working:
     """Return the pair at a centre distance; its sum is nan if the base circles overlap."""
     phi = demands.pressure_angle
     standard = 0.5 * (teeth + mate)
@@ -124,48 +124,52 @@ def at_distance(teeth: int, mate: int, distance: float, demands: Demands) -> Wor
 
 
 @njit(cache=True, nogil=True)
-def with_sum(teeth: int, mate: int, total: float, demands: Demands) -> Working:
+def from_sum(teeth: int, mate: int, total: float, demands: PairConstraints) -> Working:
     """Return the pair with a sum of shifts; its distance is nan if no distance takes up the sum."""
-    return nearby(teeth, mate, total, rack_of(demands), 0.0, TO_THE_LAST)[0]
+    return from_sum_near(teeth, mate, total, build_rack(demands), 0.0, FULL_PRECISION)[0]
 
 
 @njit(cache=True, nogil=True)
-def nearby(teeth: int, mate: int, total: float, rack: Rack, near: float, told: float) -> tuple[Working, float]:
+def from_sum_near(
+    teeth: int, mate: int, total: float, rack: Rack, near: float, tolerance: float
+) -> tuple[Working, float]:
     """Return the pair with a sum of shifts, and its tan φ_w to a relative tolerance, from a guess if positive."""
     # inv φ_w of the mesh without play.
     value = rack.involute + 0.5 * rack.slope * total / (teeth + mate)
     if not value > 0.0:
         return Working(total, math.nan, math.nan, math.nan), near
-    t = _tangent(value, near, told)
+    t = _tangent(value, near, tolerance)
     standard = 0.5 * (teeth + mate)
     distance = standard * rack.cosine * math.sqrt(1.0 + t * t)
     return Working(total, distance, max(0.0, total - (distance - standard)), standard * rack.cosine * t), t
 
 
 @njit(cache=True, nogil=True)
-def margin(teeth: int, mate: int, working: Working, shift: float, demands: Demands) -> float:
+def compute_margin(teeth: int, mate: int, working: Working, shift: float, demands: PairConstraints) -> float:
     """Compute the margin of a split; ``shift`` is that of the first gear."""
-    return margin_of(teeth, mate, working, shift, demands, rack_of(demands))
+    return compute_margin_with_rack(teeth, mate, working, shift, demands, build_rack(demands))
 
 
 @njit(cache=True, nogil=True)
-def margin_of(teeth: int, mate: int, working: Working, shift: float, demands: Demands, rack: Rack) -> float:
+def compute_margin_with_rack(
+    teeth: int, mate: int, working: Working, shift: float, demands: PairConstraints, rack: Rack
+) -> float:
     """Compute the margin of a split, given the rack of the constraints."""
     other = working.total - shift
     least = min(demands.addendum + shift - working.shortening, demands.addendum + other - working.shortening)
     # Without an addendum the other margins are neither concave nor monotonic, hence meaningless.
-    if not least >= -KEPT:
+    if not least >= -MARGIN_TOLERANCE:
         return least
-    left = what_is_left(teeth, mate, working, shift, demands, rack)[0]
+    left = compute_margins(teeth, mate, working, shift, demands, rack)[0]
     for value in left:
         least = min(least, value)
     return least
 
 
 @njit(cache=True, nogil=True)
-def what_is_left(
-    teeth: int, mate: int, working: Working, shift: float, demands: Demands, rack: Rack
-) -> tuple[Left, Tips]:
+def compute_margins(
+    teeth: int, mate: int, working: Working, shift: float, demands: PairConstraints, rack: Rack
+) -> tuple[Margins, Tips]:
     """Compute the margins of all constraints for a split, and the tips."""
     other = working.total - shift
     sine, cosine = rack.sine, rack.cosine
@@ -182,7 +186,7 @@ def what_is_left(
     mate_sharper = rack.involute - mate_reach / mate_base + math.atan(mate_reach / mate_base)
     thick = tip * ((math.pi + rack.slope * shift) / teeth + 2.0 * sharper)
     mate_thick = mate_tip * ((math.pi + rack.slope * other) / mate + 2.0 * mate_sharper)
-    left = Left(
+    left = Margins(
         heads[0],
         heads[1],
         form,
@@ -197,53 +201,56 @@ def what_is_left(
 
 
 @njit(cache=True, nogil=True)
-def splits_within(working: Working, demands: Demands) -> tuple[float, float]:
+def bound_splits(working: Working, demands: PairConstraints) -> tuple[float, float]:
     """Return the range of shifts of the first gear in which both are within limits and keep an addendum; or nan."""
     total, head = working.total, working.shortening - demands.addendum
     # Limits of the second shift, expressed by the first.
     low = max(demands.least_shift, total - demands.most_shift, head)
     high = min(demands.most_shift, total - demands.least_shift, total - head)
     # An interval empty only by rounding still contains its single point.
-    if not low <= high + 2.0 * KEPT:
+    if not low <= high + 2.0 * MARGIN_TOLERANCE:
         return math.nan, math.nan
     return min(low, high), max(low, high)
 
 
 @njit(cache=True, nogil=True)
-def best_split(teeth: int, mate: int, working: Working, demands: Demands, enough: float) -> tuple[float, float]:
+def find_best_split(
+    teeth: int, mate: int, working: Working, demands: PairConstraints, enough: float
+) -> tuple[float, float]:
     """Find the shift of the first gear with the maximum margin, and that margin.
 
     The search stops when a margin reaches ``enough`` or no split can be feasible; then only the sign of the margin is
-    meaningful. With an infinite ``enough`` it runs until the margin is known to :data:`TOLD` and its sign is certain.
+    meaningful. With an infinite ``enough`` it runs until the margin is known to :data:`MARGIN_RESOLUTION` and its sign
+    is certain.
     """
-    low, high = splits_within(working, demands)
+    low, high = bound_splits(working, demands)
     if not low <= high:
         return math.nan, -math.inf
-    rack = rack_of(demands)
-    steepest = 2.0 / rack.sine + STEEP
-    one, other = high - GOLDEN * (high - low), low + GOLDEN * (high - low)
-    left = margin_of(teeth, mate, working, one, demands, rack)
-    right = margin_of(teeth, mate, working, other, demands, rack)
-    for _ in range(SECTIONS):
+    rack = build_rack(demands)
+    steepest = 2.0 / rack.sine + TIP_SLOPE_BOUND
+    one, other = high - GOLDEN_RATIO * (high - low), low + GOLDEN_RATIO * (high - low)
+    left = compute_margin_with_rack(teeth, mate, working, one, demands, rack)
+    right = compute_margin_with_rack(teeth, mate, working, other, demands, rack)
+    for _ in range(GOLDEN_SECTION_STEPS):
         # The maximum cannot exceed the best value by more than the steepest slope times the remaining interval.
         most, rest = max(left, right), steepest * (high - low)
-        if most >= enough or (most + rest < -KEPT and (enough < math.inf or rest < TOLD)):
+        if most >= enough or (most + rest < -MARGIN_TOLERANCE and (enough < math.inf or rest < MARGIN_RESOLUTION)):
             break
-        if rest < TOLD and enough == math.inf and most >= -KEPT:
+        if rest < MARGIN_RESOLUTION and enough == math.inf and most >= -MARGIN_TOLERANCE:
             break
         if left < right:
             low, one, left = one, other, right
-            other = low + GOLDEN * (high - low)
-            right = margin_of(teeth, mate, working, other, demands, rack)
+            other = low + GOLDEN_RATIO * (high - low)
+            right = compute_margin_with_rack(teeth, mate, working, other, demands, rack)
         else:
             high, other, right = other, one, left
-            one = high - GOLDEN * (high - low)
-            left = margin_of(teeth, mate, working, one, demands, rack)
+            one = high - GOLDEN_RATIO * (high - low)
+            left = compute_margin_with_rack(teeth, mate, working, one, demands, rack)
     return (one, left) if left > right else (other, right)
 
 
 @njit(cache=True, nogil=True)
-def _excess(teeth: int, mate: int, working: Working, shift: float, demands: Demands) -> float:
+def _compare_sliding(teeth: int, mate: int, working: Working, shift: float, demands: PairConstraints) -> float:
     """Compare maximum specific sliding: positive if the first flank's is larger; falls with the first gear's shift."""
     cosine = math.cos(demands.pressure_angle)
     base, mate_base = 0.5 * teeth * cosine, 0.5 * mate * cosine
@@ -257,7 +264,7 @@ def _excess(teeth: int, mate: int, working: Working, shift: float, demands: Dema
 
 
 @njit(cache=True, nogil=True)
-def balanced_split(teeth: int, mate: int, working: Working, demands: Demands) -> float:
+def find_balanced_split(teeth: int, mate: int, working: Working, demands: PairConstraints) -> float:
     """Find the feasible split nearest to balanced specific sliding; nan if none is feasible.
 
     Returns
@@ -266,28 +273,28 @@ def balanced_split(teeth: int, mate: int, working: Working, demands: Demands) ->
         The shift of the first gear; the second gear has the rest of the sum.
     """
     # Any clearly feasible split serves as the inner end of the bisection.
-    sound, most = best_split(teeth, mate, working, demands, 1e-6)
-    if not most >= -KEPT:
+    sound, most = find_best_split(teeth, mate, working, demands, 1e-6)
+    if not most >= -MARGIN_TOLERANCE:
         return math.nan
-    low, high = splits_within(working, demands)
-    if _excess(teeth, mate, working, low, demands) <= 0.0:
+    low, high = bound_splits(working, demands)
+    if _compare_sliding(teeth, mate, working, low, demands) <= 0.0:
         wanted = low
-    elif _excess(teeth, mate, working, high, demands) >= 0.0:
+    elif _compare_sliding(teeth, mate, working, high, demands) >= 0.0:
         wanted = high
     else:
         for _ in range(60):
             middle = 0.5 * (low + high)
-            if _excess(teeth, mate, working, middle, demands) > 0.0:
+            if _compare_sliding(teeth, mate, working, middle, demands) > 0.0:
                 low = middle
             else:
                 high = middle
         wanted = 0.5 * (low + high)
-    if margin(teeth, mate, working, wanted, demands) >= -KEPT:
+    if compute_margin(teeth, mate, working, wanted, demands) >= -MARGIN_TOLERANCE:
         return wanted
     # The balanced split is infeasible: bisect for the end of the feasible interval on its side.
     for _ in range(60):
         middle = 0.5 * (sound + wanted)
-        if margin(teeth, mate, working, middle, demands) >= -KEPT:
+        if compute_margin(teeth, mate, working, middle, demands) >= -MARGIN_TOLERANCE:
             sound = middle
         else:
             wanted = middle

@@ -1,13 +1,13 @@
 """Feasibility and margin of the splits of a sum of profile shifts, by slopes, compiled; lengths in modules.
 
-Golden sections (:func:`~kinematics.gear.shifting.best_split`) need some thirty margins per sum, and a search over sums
-examines hundreds. The margin of each constraint is concave in the split x, except the two distances from a fillet,
+Golden sections (:func:`~kinematics.gear.shifting.find_best_split`) need some thirty margins per sum, and a search over
+sums examines hundreds. The margin of each constraint is concave in the split x, except the two distances from a fillet,
 which are convex and monotonic over the interval of splits. If a split x violates a constraint whose margin rises with
 x, all smaller splits violate it too, and so do larger ones as far as the tangent (for a convex margin, the steepest
 slope) reaches: a few splits decide feasibility. In the same way the tangents bound the maximum margin from above, and
 the splits where they meet bound it from below.
 
-Both agree with golden sections: closer to a limit than :data:`CLEAR` they leave the decision to those.
+Both agree with golden sections: closer to a limit than :data:`CLEAR_MARGIN` they leave the decision to those.
 """
 
 from __future__ import annotations
@@ -17,28 +17,28 @@ from typing import NamedTuple
 
 from kinematics.compiling import njit
 from kinematics.gear.shifting import (
-    KEPT,
-    TOLD,
-    Demands,
-    Left,
+    MARGIN_RESOLUTION,
+    MARGIN_TOLERANCE,
+    Margins,
+    PairConstraints,
     Rack,
     Tips,
     Working,
-    splits_within,
-    what_is_left,
+    bound_splits,
+    compute_margins,
 )
 
-CLEAR = 1e-9
+CLEAR_MARGIN = 1e-9
 """Margin above which golden sections find a feasible split too: they come within 1e-10 of the maximum."""
 
-ROUNDED = 1e-12
+ROUNDING_ERROR = 1e-12
 """Bound, modules, for the effect of rounding on a margin or an end of an interval; the actual effect is about 1e-14."""
 
-STEPS = 40
+MAX_STEPS = 40
 """Number of splits tried before the decision is left to golden sections."""
 
 
-FILLETS = (4, 5)
+FILLET_INDICES = (4, 5)
 """Indices of the convex margins."""
 
 
@@ -56,7 +56,7 @@ class Slopes(NamedTuple):
     mate_thick: float
 
 
-class Margin(NamedTuple):
+class MarginBounds(NamedTuple):
     """Bounds ``least`` and ``most`` of the maximum margin over all splits of a sum; ``split`` attains the lower one.
 
     An infinite ``split`` means that the margin is too close to a limit to decide its sign.
@@ -68,8 +68,16 @@ class Margin(NamedTuple):
 
 
 @njit(cache=True, nogil=True)
-def _slopes(
-    teeth: int, mate: int, left: Left, tips: Tips, low: float, high: float, split: float, demands: Demands, rack: Rack
+def _compute_slopes(
+    teeth: int,
+    mate: int,
+    left: Margins,
+    tips: Tips,
+    low: float,
+    high: float,
+    split: float,
+    demands: PairConstraints,
+    rack: Rack,
 ) -> Slopes:
     base, mate_base = 0.5 * teeth * rack.cosine, 0.5 * mate * rack.cosine
     # The distance from the mate's fillet is steepest where the tip reaches deepest: 1 / sin φ − tip / reach.
@@ -92,7 +100,9 @@ def _slopes(
 
 
 @njit(cache=True, nogil=True)
-def sound_split(teeth: int, mate: int, working: Working, demands: Demands, rack: Rack, guess: float) -> float:
+def find_sound_split(
+    teeth: int, mate: int, working: Working, demands: PairConstraints, rack: Rack, guess: float
+) -> float:
     """Find a feasible split of the sum; nan: there is none; infinite: too close to a limit to decide.
 
     Parameters
@@ -100,23 +110,23 @@ def sound_split(teeth: int, mate: int, working: Working, demands: Demands, rack:
     guess : float
         A split to begin with; nan for the middle.
     """
-    low, high = splits_within(working, demands)
+    low, high = bound_splits(working, demands)
     if not low <= high:
         return math.nan
     split = guess if low <= guess <= high else 0.5 * (low + high)
     # Only violations beyond rounding may exclude splits.
-    missed = -KEPT - ROUNDED
-    for _ in range(STEPS):
-        left, tips = what_is_left(teeth, mate, working, split, demands, rack)
+    missed = -MARGIN_TOLERANCE - ROUNDING_ERROR
+    for _ in range(MAX_STEPS):
+        left, tips = compute_margins(teeth, mate, working, split, demands, rack)
         least = math.inf
         for value in left:
             least = min(least, value)
-        if least >= CLEAR - KEPT:
+        if least >= CLEAR_MARGIN - MARGIN_TOLERANCE:
             return split
         # Between the tolerance and CLEAR the decision is left to golden sections.
         if least >= missed:
             break
-        slopes = _slopes(teeth, mate, left, tips, low, high, split, demands, rack)
+        slopes = _compute_slopes(teeth, mate, left, tips, low, high, split, demands, rack)
         first, last = low, high
         for number in range(len(left)):
             # Each violated margin excludes splits up to where its tangent reaches the limit.
@@ -130,7 +140,7 @@ def sound_split(teeth: int, mate: int, working: Working, demands: Demands, rack:
             else:
                 return math.nan
         # The excluded ranges overlap: no split is left.
-        if first > last + ROUNDED:
+        if first > last + ROUNDING_ERROR:
             return math.nan
         if first > last:
             break
@@ -140,25 +150,27 @@ def sound_split(teeth: int, mate: int, working: Working, demands: Demands, rack:
 
 
 @njit(cache=True, nogil=True)
-def greatest_margin(teeth: int, mate: int, working: Working, demands: Demands, rack: Rack, guess: float) -> Margin:
-    """Bound the maximum margin over all splits of a sum to within :data:`TOLD`, and decide its sign.
+def bound_greatest_margin(
+    teeth: int, mate: int, working: Working, demands: PairConstraints, rack: Rack, guess: float
+) -> MarginBounds:
+    """Bound the maximum margin over all splits of a sum to within :data:`MARGIN_RESOLUTION`, and decide its sign.
 
     Parameters
     ----------
     guess : float
         A split to begin with; nan for the middle.
     """
-    low, high = splits_within(working, demands)
+    low, high = bound_splits(working, demands)
     if not low <= high:
-        return Margin(-math.inf, -math.inf, math.nan)
+        return MarginBounds(-math.inf, -math.inf, math.nan)
     split = guess if low <= guess <= high else 0.5 * (low + high)
     best, most, at = -math.inf, math.inf, split
     # Tangents at both ends of the remaining interval bound the margin from above.
     rise, fall = math.inf, -math.inf
     rising, falling = math.inf, math.inf
-    for _ in range(STEPS):
-        left, tips = what_is_left(teeth, mate, working, split, demands, rack)
-        slopes = _slopes(teeth, mate, left, tips, low, high, split, demands, rack)
+    for _ in range(MAX_STEPS):
+        left, tips = compute_margins(teeth, mate, working, split, demands, rack)
+        slopes = _compute_slopes(teeth, mate, left, tips, low, high, split, demands, rack)
         least, slope = math.inf, 0.0
         for number in range(len(left)):
             if left[number] < least:
@@ -182,17 +194,19 @@ def greatest_margin(teeth: int, mate: int, working: Working, demands: Demands, r
         # Margins with the opposite slope bound the maximum too; those of fillets, being convex, by their value.
         for number in range(len(left)):
             if slope != 0.0 and slopes[number] * slope <= 0.0:
-                own = 0.0 if number in FILLETS else slopes[number]
+                own = 0.0 if number in FILLET_INDICES else slopes[number]
                 away = (left[number] - least) / (slope - own)
                 bound = least + slope * away
                 if bound < most:
                     most, following = bound, split + away
-        if most - best <= 0.5 * TOLD and (most < -KEPT - CLEAR or best >= CLEAR - KEPT):
-            return Margin(best, most, at)
+        if most - best <= 0.5 * MARGIN_RESOLUTION and (
+            most < -MARGIN_TOLERANCE - CLEAR_MARGIN or best >= CLEAR_MARGIN - MARGIN_TOLERANCE
+        ):
+            return MarginBounds(best, most, at)
         if not low < high:
             break
         split = min(max(following, low), high)
         # A repeated split would not shrink the interval.
         if split in (low, high):
             split = 0.5 * (low + high)
-    return Margin(best, most, math.inf)
+    return MarginBounds(best, most, math.inf)

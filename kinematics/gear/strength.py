@@ -28,47 +28,49 @@ import numpy as np
 from numpy.typing import NDArray
 
 from kinematics.errors import DimensionError
-from kinematics.gear.flanks import Contact, corner_rounding
-from kinematics.gear.profile import half_space
+from kinematics.gear.flanks import Contact, compute_corner_rounding
+from kinematics.gear.profile import draw_half_space
 from kinematics.gear.teeth import Gear, involute
 
-STEEL_ON_STEEL = 191.0
+STEEL_ELASTIC_COEFFICIENT = 191.0
 """Elastic coefficient C_p of steel gears, √MPa (Shigley, Table 14-8)."""
 
-INCH = 25.4
+MILLIMETRES_PER_INCH = 25.4
 
-WIDEST = 40.0
+MAX_FACE_WIDTH = 40.0
 """Face width, inches, up to which the load distribution factor is tabulated."""
 
-FEET_A_MINUTE = 60.0 / 0.3048
+FEET_PER_MINUTE = 60.0 / 0.3048
 """Feet per minute in one metre per second."""
 
 
-def barth_factor(speed: float) -> float:
+def compute_barth_factor(speed: float) -> float:
     """Compute Lewis's velocity factor for cut or milled teeth, K_v = (1200 + V) / 1200, V in ft/min (eq. 14-4b)."""
-    return (1200.0 + speed * FEET_A_MINUTE) / 1200.0
+    return (1200.0 + speed * FEET_PER_MINUTE) / 1200.0
 
 
-def dynamic_factor(speed: float, quality: float) -> float:
+def compute_dynamic_factor(speed: float, quality: float) -> float:
     """Compute AGMA's dynamic factor for a quality number Q_v of 3 to 12: ((A + √V) / A)^B (eq. 14-27, 14-28)."""
     # Constants A and B of the AGMA curves; metric speed converted to ft/min.
     b = 0.25 * (12.0 - quality) ** (2.0 / 3.0)
     a = 50.0 + 56.0 * (1.0 - b)
-    return float(((a + math.sqrt(speed * FEET_A_MINUTE)) / a) ** b)
+    return float(((a + math.sqrt(speed * FEET_PER_MINUTE)) / a) ** b)
 
 
-def size_factor(width: float, module: float, form: float) -> float:
+def compute_size_factor(width: float, module: float, form: float) -> float:
     """Compute K_s = 1.192 (F √Y / P)^0.0535, F and 1/P in inches; at least 1 (Sec. 14-10)."""
-    return max(1.0, 1.192 * math.pow(width / INCH * math.sqrt(form) * module / INCH, 0.0535))
+    return max(
+        1.0, 1.192 * math.pow(width / MILLIMETRES_PER_INCH * math.sqrt(form) * module / MILLIMETRES_PER_INCH, 0.0535)
+    )
 
 
-def load_distribution_factor(width: float, pinion_diameter: float) -> float:
+def compute_load_distribution(width: float, pinion_diameter: float) -> float:
     """Compute K_m of uncrowned teeth between close bearings in a commercial enclosed unit (eq. 14-30 to 14-35).
 
     The curves end at a face width of 40 inches; wider faces use that value.
     """
     # AGMA's lower limit of F/(10 d) is 0.05.
-    face, share = min(width / INCH, WIDEST), max(0.05, width / (10.0 * pinion_diameter))
+    face, share = min(width / MILLIMETRES_PER_INCH, MAX_FACE_WIDTH), max(0.05, width / (10.0 * pinion_diameter))
     if face <= 1.0:
         proportion = share - 0.025
     elif face <= 17.0:
@@ -78,7 +80,7 @@ def load_distribution_factor(width: float, pinion_diameter: float) -> float:
     return 1.0 + proportion + 0.127 + 0.0158 * face - 0.930e-4 * face**2
 
 
-def lewis_form(gear: Gear) -> float:
+def compute_lewis_form(gear: Gear) -> float:
     """Compute Lewis's form factor Y of an external gear with the load at its tip.
 
     Raises
@@ -86,13 +88,13 @@ def lewis_form(gear: Gear) -> float:
     DimensionError
         If the tooth has no section below its load.
     """
-    apex, _ = _load_line(gear, gear.tip_radius)
-    height, thick = _sections(gear, apex)
+    apex, _ = _find_load_line(gear, gear.tip_radius)
+    height, thick = _find_sections(gear, apex)
     # The weakest section: where the parabola of constant strength touches the profile.
     return float((thick**2 / (6.0 * height)).min())
 
 
-def bending_geometry(contact: Contact, second: bool) -> float:
+def compute_bending_geometry(contact: Contact, second: bool) -> float:
     """Compute AGMA's factor J of the pinion of an external pair, or of the gear: spur teeth without load sharing.
 
     The load acts at the highest point of single-pair contact, one base pitch from the end of contact at the mate's tip.
@@ -107,8 +109,8 @@ def bending_geometry(contact: Contact, second: bool) -> float:
     # From the lowest point of contact, one base pitch up, a second pair takes over.
     highest = contact.reaches[1 if second else 0] + gear.base_pitch
     tip = math.sqrt(gear.tip_radius**2 - gear.base_radius**2)
-    apex, angle = _load_line(gear, math.hypot(gear.base_radius, min(highest, tip)))
-    height, thick = _sections(gear, apex)
+    apex, angle = _find_load_line(gear, math.hypot(gear.base_radius, min(highest, tip)))
+    height, thick = _find_sections(gear, apex)
     bent = 6.0 * height / thick**2 - math.tan(angle) / thick
     # The critical section is the one with the largest bending stress.
     at = int(np.argmax(bent))
@@ -116,19 +118,19 @@ def bending_geometry(contact: Contact, second: bool) -> float:
     stress = math.cos(angle) / math.cos(mesh.pressure_angle) * float(bent[at])
     if not stress > 0.0:
         raise DimensionError("tooth", "one that its load bends", gear)
-    curved = _fillet_radius(gear) / gear.module
+    curved = _compute_fillet_radius(gear) / gear.module
     h, low, high = 0.34 - 0.4583662 * phi, 0.316 - 0.4583662 * phi, 0.290 + 0.4583662 * phi
     raised = h + (float(thick[at]) / curved) ** low * (float(thick[at]) / float(height[at])) ** high
     return float(1.0 / (raised * stress))
 
 
-def contact_geometry(pressure_angle: float, ratio: float, internal: bool, sharing: float = 1.0) -> float:
+def compute_contact_geometry(pressure_angle: float, ratio: float, internal: bool, sharing: float = 1.0) -> float:
     """Compute AGMA's factor I (eq. 14-23); ``ratio`` ≥ 1: gear teeth over pinion teeth, ``sharing``: m_N."""
     share = ratio / (ratio - 1.0 if internal else ratio + 1.0)
     return 0.5 * math.cos(pressure_angle) * math.sin(pressure_angle) * share / sharing
 
 
-def load_sharing(contact_ratio: float, base_pitch: float, base_helix: float, width: float) -> float:
+def compute_load_sharing(contact_ratio: float, base_pitch: float, base_helix: float, width: float) -> float:
     """Compute AGMA's load sharing ratio m_N = F / L_min of helical teeth with a face of at least one axial pitch.
 
     The lines of contact cross a field as wide as the face F and as long as the path of contact. With the transverse
@@ -152,7 +154,7 @@ def load_sharing(contact_ratio: float, base_pitch: float, base_helix: float, wid
     return math.cos(base_helix) * width / (contact_ratio * width - lost)
 
 
-def _load_line(gear: Gear, radius: float) -> tuple[float, float]:
+def _find_load_line(gear: Gear, radius: float) -> tuple[float, float]:
     """Find where the flank's normal at a radius crosses the middle of the tooth, and its angle to the tangent."""
     there = math.acos(min(1.0, gear.base_radius / radius))
     half = gear.tooth_thickness / (2.0 * gear.pitch_radius) + involute(gear.pressure_angle) - involute(there)
@@ -160,9 +162,9 @@ def _load_line(gear: Gear, radius: float) -> tuple[float, float]:
     return gear.base_radius / math.cos(angle), angle
 
 
-def _sections(gear: Gear, apex: float) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+def _find_sections(gear: Gear, apex: float) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     """Find the heights of the apex above the sections of the tooth below it, and their thickness, in modules."""
-    depth, half = _tooth(gear)
+    depth, half = _trace_tooth(gear)
     # Sections at the apex itself would divide by a vanishing height.
     below = (apex - depth > 1e-6 * gear.module) & (half > 0.0)
     if not below.any():
@@ -171,18 +173,18 @@ def _sections(gear: Gear, apex: float) -> tuple[NDArray[np.float64], NDArray[np.
 
 
 @lru_cache(maxsize=1024)
-def _tooth(gear: Gear) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+def _trace_tooth(gear: Gear) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     """Trace one side of the tooth: distance from the centre along its middle, and half the thickness there."""
-    points = half_space(gear)
+    points = draw_half_space(gear)
     # Rotate from the frame of the tooth space into that of the tooth.
     seen = points * np.exp(-1j * math.pi / gear.teeth)
     return np.asarray(seen.real), np.asarray(-seen.imag)
 
 
-def _fillet_radius(gear: Gear) -> float:
+def _compute_fillet_radius(gear: Gear) -> float:
     """Compute the minimum radius of curvature of the fillet, at its root: ρ + b² / (r + b), b from the pitch circle
     (AGMA 908)."""
-    rounding = gear.module * corner_rounding(gear.pressure_angle, gear.dedendum)
+    rounding = gear.module * compute_corner_rounding(gear.pressure_angle, gear.dedendum)
     deep = gear.module * (gear.dedendum - gear.shift) - rounding
     return rounding + deep**2 / (gear.pitch_radius + deep)
 
@@ -209,18 +211,18 @@ class Factors:
     rim: float
 
 
-def lewis_stress(load: Load, form: float, dynamic: float) -> float:
+def compute_lewis_stress(load: Load, form: float, dynamic: float) -> float:
     """Compute the bending stress by Lewis, σ = K_v W / (F m Y) (eq. 14-8)."""
     return dynamic * load.force / (load.width * load.module * form)
 
 
-def bending_stress(load: Load, geometry: float, factors: Factors) -> float:
+def compute_bending_stress(load: Load, geometry: float, factors: Factors) -> float:
     """Compute AGMA's bending stress (eq. 14-15)."""
     raised = factors.overload * factors.dynamic * factors.size * factors.load_distribution * factors.rim
     return load.force * raised / (load.width * load.module * geometry)
 
 
-def contact_stress(load: Load, geometry: float, factors: Factors, elastic: float) -> float:
+def compute_contact_stress(load: Load, geometry: float, factors: Factors, elastic: float) -> float:
     """Compute AGMA's contact stress (eq. 14-16)."""
     raised = factors.overload * factors.dynamic * factors.size * factors.load_distribution
     return elastic * math.sqrt(load.force * raised / (load.pinion_diameter * load.width * geometry))

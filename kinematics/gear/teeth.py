@@ -27,7 +27,7 @@ FULL_DEPTH_DEDENDUM = 1.25
 
 PRESSURE_ANGLE = math.radians(20.0)
 
-ON_LIMIT = 1e-12
+LIMIT_TOLERANCE = 1e-12
 """Share of the limiting radius by which a tip may exceed it: teeth on the limit are sound, and rounding must not reject
 them."""
 
@@ -37,7 +37,7 @@ def involute(angle: float) -> float:
     return math.tan(angle) - angle
 
 
-def tangent_of_involute(value: float, near: float = 0.0, told: float = 4e-16) -> float:
+def invert_involute_tangent(value: float, near: float = 0.0, tolerance: float = 4e-16) -> float:
     """Solve tan φ − φ = ``value`` > 0 for tan φ, φ in (0, π/2), by Newton's method; kernels compile it too.
 
     Parameters
@@ -55,7 +55,7 @@ def tangent_of_involute(value: float, near: float = 0.0, told: float = 4e-16) ->
     for left in range(59, -1, -1):
         step = (t - math.atan(t) - value) * (1.0 + t * t) / (t * t)
         last, t = t, t - step
-        if abs(step) <= told * t:
+        if abs(step) <= tolerance * t:
             break
         if t == before:
             # Rounding alternates between two neighbours: return the one that the full number of steps would end on.
@@ -64,7 +64,7 @@ def tangent_of_involute(value: float, near: float = 0.0, told: float = 4e-16) ->
     return t
 
 
-def inverse_involute(value: float) -> float:
+def invert_involute(value: float) -> float:
     """Solve tan φ − φ = ``value`` ≥ 0 for φ in [0, π/2), by Newton's method from above.
 
     Raises
@@ -76,7 +76,7 @@ def inverse_involute(value: float) -> float:
         raise DimensionError("value", "zero or positive", value)
     if value == 0.0:
         return 0.0
-    return math.atan(tangent_of_involute(value))
+    return math.atan(invert_involute_tangent(value))
 
 
 @dataclass(frozen=True)
@@ -181,7 +181,7 @@ class Gear:
     @property
     def is_undercut(self) -> bool:
         """Whether a rack that cuts this gear removes flank above the base circle. Internal teeth are shaped: never."""
-        return not self.internal and self.shift < self.least_shift - ON_LIMIT
+        return not self.internal and self.shift < self.least_shift - LIMIT_TOLERANCE
 
 
 @dataclass(frozen=True)
@@ -244,7 +244,7 @@ class Mesh:
         teeth = self.gear.teeth + self._side * self.pinion.teeth
         value = involute(phi) + 2.0 * math.tan(phi) * taken_up / teeth
         # Unshifted pairs keep φ exactly, without a round trip through the involute.
-        return phi if taken_up == 0.0 else inverse_involute(value) if value >= 0.0 else math.nan
+        return phi if taken_up == 0.0 else invert_involute(value) if value >= 0.0 else math.nan
 
     @property
     def centre_distance(self) -> float:
@@ -302,7 +302,7 @@ class Mesh:
         the fillet that a rack leaves on its pinion (ring of 60, pinion of 30 at 20°).
         """
         # Teeth exactly on the limit must not be rejected by rounding.
-        slack = 1.0 + ON_LIMIT
+        slack = 1.0 + LIMIT_TOLERANCE
         if self.pinion.tip_radius > self.pinion_tip_limit * slack:
             return True
         if self.gear.internal:
@@ -354,16 +354,16 @@ class Mesh:
         return math.pi * teeth * (1.0 - self.contact_ratio + recess**2 + approach**2)
 
 
-def least_teeth_with_rack(pressure_angle: float = PRESSURE_ANGLE, addendum: float = FULL_DEPTH_ADDENDUM) -> int:
+def compute_min_teeth(pressure_angle: float = PRESSURE_ANGLE, addendum: float = FULL_DEPTH_ADDENDUM) -> int:
     """Compute the minimum teeth that mesh with a rack, and so with every gear: z ≥ 2 k / sin² φ (Norton, eq. 9.8).
 
     >>> [least_teeth_with_rack(math.radians(angle)) for angle in (14.5, 20.0, 25.0)]
     [32, 18, 12]
     """
-    return _ceil(2.0 * addendum / math.sin(pressure_angle) ** 2)
+    return _round_up(2.0 * addendum / math.sin(pressure_angle) ** 2)
 
 
-def largest_gear(
+def find_largest_gear(
     pinion: int, pressure_angle: float = PRESSURE_ANGLE, addendum: float = FULL_DEPTH_ADDENDUM
 ) -> int | None:
     """Find the maximum teeth of an external gear that meshes with a pinion without interference (Norton, Table 9-5).
@@ -374,12 +374,12 @@ def largest_gear(
     squared = math.sin(pressure_angle) ** 2
     room = 4.0 * addendum - 2.0 * pinion * squared
     # A pinion sound with a rack is sound with every gear.
-    if pinion >= least_teeth_with_rack(pressure_angle, addendum):
+    if pinion >= compute_min_teeth(pressure_angle, addendum):
         return None
-    return max(0, math.floor((pinion * pinion * squared - 4.0 * addendum**2) / room * (1.0 + ON_LIMIT)))
+    return max(0, math.floor((pinion * pinion * squared - 4.0 * addendum**2) / room * (1.0 + LIMIT_TOLERANCE)))
 
 
-def saving_shift(mesh: Mesh, least_contact_ratio: float = 1.2) -> Mesh | None:
+def find_saving_shift(mesh: Mesh, least_contact_ratio: float = 1.2) -> Mesh | None:
     """Find a profile shift that makes an undercut or interfering external pair sound, if one exists.
 
     The pinion is shifted until the rack no longer undercuts it. If the gear can take the opposite shift the centre
@@ -412,6 +412,6 @@ def saving_shift(mesh: Mesh, least_contact_ratio: float = 1.2) -> Mesh | None:
     return None
 
 
-def _ceil(value: float) -> int:
+def _round_up(value: float) -> int:
     # A value that exceeds an integer only by rounding must not be rounded up.
-    return math.ceil(value * (1.0 - ON_LIMIT))
+    return math.ceil(value * (1.0 - LIMIT_TOLERANCE))

@@ -22,11 +22,11 @@ from functools import cached_property
 from typing import Literal
 
 import numpy as np
-from numpy.typing import NDArray
 
+from kinematics.arrays import Real
 from kinematics.errors import DimensionError
 from kinematics.gear.bevel import BevelCones
-from kinematics.gear.flanks import shortened_tips
+from kinematics.gear.flanks import compute_tip_shortening
 from kinematics.gear.helical import HelicalGear
 from kinematics.gear.teeth import FULL_DEPTH_ADDENDUM, PRESSURE_ANGLE, Gear, Mesh
 from kinematics.gear.worm import WormDrive
@@ -34,7 +34,7 @@ from kinematics.gear.worm import WormDrive
 StageKind = Literal["external", "internal", "helical", "bevel", "worm"]
 """Kinds of stages: two spur gears; a pinion in a ring; two helical gears; two bevel gears; a worm and its gear."""
 
-CROSSING: tuple[StageKind, ...] = ("bevel", "worm")
+CROSSED_KINDS: tuple[StageKind, ...] = ("bevel", "worm")
 """Kinds of stages whose shafts are not parallel."""
 
 USUAL_QUOTIENT = 10.0
@@ -42,8 +42,6 @@ USUAL_QUOTIENT = 10.0
 
 USUAL_FRICTION = 0.05
 """Default friction coefficient of lubricated teeth."""
-
-Axis = NDArray[np.float64]
 
 
 @dataclass(frozen=True)
@@ -88,7 +86,7 @@ class TrainStage:
     @property
     def is_parallel(self) -> bool:
         """Whether its shafts are parallel."""
-        return self.kind not in CROSSING
+        return self.kind not in CROSSED_KINDS
 
     def worm(self, pressure_angle: float) -> WormDrive:
         """Return the worm and its gear."""
@@ -110,7 +108,7 @@ class TrainStage:
             For impossible gears, shifts in a stage with idlers, or either in a kind of stage that allows neither.
         """
         if self.kind != "external":
-            return self._other_meshes(pressure_angle)
+            return self._build_other_meshes(pressure_angle)
         pairs = itertools.pairwise(self.gears)
         if self.shifts == (0.0, 0.0):
             return tuple(Mesh.standard((min(pair), max(pair)), self.module, pressure_angle) for pair in pairs)
@@ -119,10 +117,10 @@ class TrainStage:
         # Keep each shift with its gear while the smaller one becomes the pinion.
         ends = sorted(zip((self.driver, self.driven), self.shifts, strict=True), key=lambda end: end[0])
         pinion, gear = (Gear(teeth, self.module, pressure_angle, shift=shift) for teeth, shift in ends)
-        addendum = FULL_DEPTH_ADDENDUM - shortened_tips(Mesh(pinion, gear))
+        addendum = FULL_DEPTH_ADDENDUM - compute_tip_shortening(Mesh(pinion, gear))
         return (Mesh(replace(pinion, addendum=addendum), replace(gear, addendum=addendum)),)
 
-    def _other_meshes(self, pressure_angle: float) -> tuple[Mesh, ...]:
+    def _build_other_meshes(self, pressure_angle: float) -> tuple[Mesh, ...]:
         """Return the mesh of a stage that is not external."""
         if self.idlers:
             raise DimensionError("idlers", f"absent in a stage of kind {self.kind}", self.idlers)
@@ -137,7 +135,7 @@ class TrainStage:
         one, two = self.cut_gears(pressure_angle)
         return (Mesh(one, two) if self.driver <= self.driven else Mesh(two, one),)
 
-    def _in_rotation(self, pressure_angle: float) -> tuple[Gear, Gear]:
+    def _build_transverse_gears(self, pressure_angle: float) -> tuple[Gear, Gear]:
         """Return driver and driven gear of a helical stage in the plane of rotation, shifted tips shortened."""
         shrunk = math.cos(self.helix_angle)
         one, two = (
@@ -148,7 +146,7 @@ class TrainStage:
         )
         if self.shifts == (0.0, 0.0):
             return one, two
-        addendum = one.addendum - shortened_tips(Mesh(one, two))
+        addendum = one.addendum - compute_tip_shortening(Mesh(one, two))
         return replace(one, addendum=addendum), replace(two, addendum=addendum)
 
     def cut_gears(self, pressure_angle: float) -> tuple[Gear, ...]:
@@ -158,7 +156,7 @@ class TrainStage:
         the gear, in its middle plane.
         """
         if self.kind == "helical":
-            return self._in_rotation(pressure_angle)
+            return self._build_transverse_gears(pressure_angle)
         if self.kind == "internal":
             one, two = (
                 Gear(teeth, self.module, pressure_angle, addendum, internal=teeth > mate)
@@ -224,7 +222,7 @@ class OrdinaryTrain:
         return all(stage.is_parallel for stage in self.stages)
 
     @cached_property
-    def axes(self) -> tuple[Axis, ...]:
+    def axes(self) -> tuple[Real, ...]:
         """Axes of the shafts from the input on, unit vectors of shape (3,), the input along z.
 
         A bevel stage rotates the axis about y, its driven shaft towards x if the shafts before it are along z; a worm

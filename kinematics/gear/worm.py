@@ -158,7 +158,7 @@ class WormDrive:
         # A negative value would mean that the worm has to be helped by its gear.
         return max(0.0, (cosine - friction * slope) / (cosine + friction / slope))
 
-    def driven_back(self, friction: float) -> float:
+    def back_efficiency(self, friction: float) -> float:
         """Return the efficiency of a driving gear; 0 if it cannot drive."""
         cosine, slope = math.cos(self.normal_pressure_angle), math.tan(self.lead_angle)
         return max(0.0, (cosine - friction / slope) / (cosine + friction * slope))

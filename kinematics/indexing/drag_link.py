@@ -11,12 +11,10 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from kinematics.arrays import Complex, Real
 from kinematics.indexing.geneva import Geneva, Motion
 
-Real = NDArray[np.float64]
-Complex = NDArray[np.complex128]
-
-NEWTON = 30
+MAX_NEWTON_STEPS = 30
 """Maximum number of Newton steps to the input angle of an output angle; about five are usual."""
 
 
@@ -33,7 +31,7 @@ class DragLink:
     coupler: float | Real
     output: float | Real
 
-    def turned(self, angle: Real) -> Motion:
+    def output_motion(self, angle: Real) -> Motion:
         """Return the output's angle ψ from the ground line and its derivatives by the input angle; NaN if impossible.
 
         The joint lies on the left of the line from the input's pin to the output's pivot, and ψ grows by a turn with
@@ -51,13 +49,13 @@ class DragLink:
         u, v = (joint - pin) / b, (joint - 1.0) / c
         sine = (v * u.conj()).imag
 
-        def highest(right: Complex) -> tuple[Real, Real]:
+        def solve_highest(right: Complex) -> tuple[Real, Real]:
             turned = -1j * right
             return -(turned * v.conj()).imag / (b * sine), -(turned * u.conj()).imag / (c * sine)
 
-        x1, y1 = highest(-1j * pin)
-        x2, y2 = highest(pin + b * x1**2 * u - c * y1**2 * v)
-        _, y3 = highest(1j * pin + b * u * (3.0 * x1 * x2 + 1j * x1**3) - c * v * (3.0 * y1 * y2 + 1j * y1**3))
+        x1, y1 = solve_highest(-1j * pin)
+        x2, y2 = solve_highest(pin + b * x1**2 * u - c * y1**2 * v)
+        _, y3 = solve_highest(1j * pin + b * u * (3.0 * x1 * x2 + 1j * x1**3) - c * v * (3.0 * y1 * y2 + 1j * y1**3))
         # Output and input never differ by half a turn, so the input's angle selects the turn of ψ.
         psi = angle + np.angle(v * np.exp(-1j * angle))
         return Motion(psi, y1, y2, y3)
@@ -70,11 +68,11 @@ class DragLink:
         worst = np.maximum(np.abs(cosines[0]), np.abs(cosines[1]))
         return np.asarray(np.arccos(np.minimum(worst, 1.0)))
 
-    def reached(self, output: float) -> float:
+    def find_input_angle(self, output: float) -> float:
         """Find the input angle at which the output is at an angle ψ, radians."""
         angle = output
-        for _ in range(NEWTON):
-            motion = self.turned(np.array(angle))
+        for _ in range(MAX_NEWTON_STEPS):
+            motion = self.output_motion(np.array(angle))
             step = float((motion.s - output) / motion.v)
             angle -= step
             # At rounding level; further steps would only alternate.
@@ -84,7 +82,7 @@ class DragLink:
 
 
 @dataclass(frozen=True)
-class Course:
+class CrankCourse:
     """A Geneva drive whose crank is the input, or the output of a drag link.
 
     Attributes
@@ -103,19 +101,19 @@ class Course:
     def start(self) -> float:
         """Input angle at which the roller enters."""
         half = self.geneva.half
-        return -half if self.link is None else self.link.reached(self.phase - half)
+        return -half if self.link is None else self.link.find_input_angle(self.phase - half)
 
     @property
     def end(self) -> float:
         """Input angle at which the roller leaves."""
         half = self.geneva.half
-        return half if self.link is None else self.link.reached(self.phase + half)
+        return half if self.link is None else self.link.find_input_angle(self.phase + half)
 
-    def engaged(self, angle: Real, rollers: int = 1) -> NDArray[np.bool_]:
+    def is_engaged(self, angle: Real, rollers: int = 1) -> NDArray[np.bool_]:
         """Return whether a roller is in a slot at input angles counted from an entry."""
         if self.link is None:
-            return self.geneva.engaged(angle, rollers)
-        return self.geneva.engaged(self.from_entry(angle).s, rollers)
+            return self.geneva.is_engaged(angle, rollers)
+        return self.geneva.is_engaged(self.from_entry(angle).s, rollers)
 
     def from_entry(self, angle: Real) -> Motion:
         """Return the crank's angle since an entry, and its derivatives, at input angles since that entry."""
@@ -125,19 +123,19 @@ class Course:
         turned = self.crank(self.start + angle)
         return Motion(turned.s + self.geneva.half, *turned[1:])
 
-    def turned(self, angle: Real, rollers: int = 1) -> Motion:
-        """Return the motion of the wheel over any input angle since an entry; see :meth:`Geneva.turned`."""
+    def wheel_motion(self, angle: Real, rollers: int = 1) -> Motion:
+        """Return the motion of the wheel over any input angle since an entry; see :meth:`Geneva.wheel_motion`."""
         if self.link is None:
-            return self.geneva.turned(angle, rollers)
+            return self.geneva.wheel_motion(angle, rollers)
         crank = self.from_entry(angle)
-        return _through(self.geneva.turned(crank.s, rollers), crank)
+        return _apply_chain_rule(self.geneva.wheel_motion(crank.s, rollers), crank)
 
     def crank(self, angle: Real) -> Motion:
         """Return the crank's angle from the middle of the index, and its derivatives by the input angle."""
         if self.link is None:
             one = np.ones_like(angle)
             return Motion(angle, one, 0.0 * one, 0.0 * one)
-        turned = self.link.turned(angle)
+        turned = self.link.output_motion(angle)
         return Motion(turned.s - self.phase, *turned[1:])
 
     def motion(self, angle: Real) -> Motion:
@@ -148,10 +146,10 @@ class Course:
         half = self.geneva.half
         # Rounding at entry and exit must not leave the index.
         wheel = self.geneva.motion(np.clip(crank.s, -half, half))
-        return _through(wheel, crank)
+        return _apply_chain_rule(wheel, crank)
 
 
-def _through(wheel: Motion, crank: Motion) -> Motion:
+def _apply_chain_rule(wheel: Motion, crank: Motion) -> Motion:
     """Convert derivatives by the crank into derivatives by the input (chain rule)."""
     return Motion(
         wheel.s,
@@ -161,10 +159,10 @@ def _through(wheel: Motion, crank: Motion) -> Motion:
     )
 
 
-STEADY = 0.9
+STEADY_SPEED_SHARE = 0.9
 """Share of the maximum speed above which the wheel counts as steady."""
 
 
-def steady_share(speed: Real) -> float:
+def compute_steady_share(speed: Real) -> float:
     """Compute the share of equal steps in which the speed exceeds nine tenths of its maximum."""
-    return float(np.mean(speed >= STEADY * speed.max()))
+    return float(np.mean(speed >= STEADY_SPEED_SHARE * speed.max()))

@@ -30,11 +30,11 @@ from typing import Literal, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-Real = NDArray[np.float64]
+from kinematics.arrays import Real
 
 Drive = Literal["geneva_external", "geneva_internal", "geneva_spherical"]
 
-ENTRY = 1e-12
+ENTRY_TOLERANCE = 1e-12
 """Angle past the end of an index at which the roller still counts as in the slot: rounding."""
 
 
@@ -101,7 +101,7 @@ class Geneva:
         """
         sine, cosine = np.sin(angle), np.cos(angle)
         if self.drive == "geneva_spherical":
-            return _spherical(sine, cosine, self.ratio)
+            return _evaluate_spherical(sine, cosine, self.ratio)
         ratio = self.signed
         sign = math.copysign(1.0, ratio)
         square = 1.0 - 2.0 * ratio * cosine + ratio * ratio
@@ -133,18 +133,18 @@ class Geneva:
         k = (1.0 + ratio * ratio) / (4.0 * ratio)
         return min(half, math.acos(math.sqrt(k * k + 2.0) - k))
 
-    def engaged(self, angle: Real, rollers: int = 1) -> NDArray[np.bool_]:
+    def is_engaged(self, angle: Real, rollers: int = 1) -> NDArray[np.bool_]:
         """Return whether a roller is in a slot at crank angles counted from an entry."""
-        return np.asarray(self._counted(angle, rollers)[1] <= 2.0 * self.half + ENTRY)
+        return np.asarray(self._count_entries(angle, rollers)[1] <= 2.0 * self.half + ENTRY_TOLERANCE)
 
-    def _counted(self, angle: Real, rollers: int) -> tuple[Real, Real]:
+    def _count_entries(self, angle: Real, rollers: int) -> tuple[Real, Real]:
         """Count the rollers that have entered since, and return the angle since the last entry."""
         pitch = 2.0 * math.pi / rollers
         # The tolerance assigns an angle at an entry to the new roller.
-        count = np.floor(angle / pitch + ENTRY)
+        count = np.floor(angle / pitch + ENTRY_TOLERANCE)
         return count, angle - count * pitch
 
-    def turned(self, angle: Real, rollers: int = 1) -> Motion:
+    def wheel_motion(self, angle: Real, rollers: int = 1) -> Motion:
         """Return the motion of the wheel over any crank angle, dwells included, counted from an entry.
 
         Parameters
@@ -160,15 +160,15 @@ class Geneva:
             Angle since the entry; at rest all derivatives are 0.
         """
         step = 2.0 * math.pi / self.stations
-        count, within = self._counted(angle, rollers)
-        moves = self.engaged(angle, rollers)
+        count, within = self._count_entries(angle, rollers)
+        moves = self.is_engaged(angle, rollers)
         motion = self.motion(np.clip(within, 0.0, 2.0 * self.half) - self.half)
         rates = (np.where(moves, rate, 0.0) for rate in motion[1:])
         # The index is measured from its middle; shift it to start at the entry.
         return Motion(np.where(moves, motion.s + 0.5 * step, step) + count * step, *rates)
 
 
-def _spherical(sine: Real, cosine: Real, tangent: float) -> Motion:
+def _evaluate_spherical(sine: Real, cosine: Real, tangent: float) -> Motion:
     """Differentiate tan φ = t sin α."""
     square = tangent * tangent
     denominator = 1.0 + square * sine * sine

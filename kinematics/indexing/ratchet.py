@@ -17,15 +17,13 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
-Complex = NDArray[np.complex128]
-Real = NDArray[np.float64]
+from kinematics.arrays import Complex, Real
 
-STEEPEST = 60
+MAX_FACE_ANGLE = 60
 """Maximum face angle of the search, degrees."""
 
-HALVINGS = 60
+HALVING_STEPS = 60
 """Halvings of an interval of angles below 90°, down to rounding."""
 
 
@@ -90,7 +88,7 @@ class Ratchet:
     def locking_angle(self) -> float:
         """Minimum over the face of the angle between its normal and the line to the pivot, positive if drawn in,
         radians."""
-        return _least_angle(self.face, self.reach, self.pawl)
+        return _compute_locking_angle(self.face, self.reach, self.pawl)
 
     @property
     def thickness(self) -> float:
@@ -122,7 +120,7 @@ class Ratchet:
         turns = np.exp(1j * self.pitch * np.arange(self.teeth))
         return np.asarray((turns[:, None] * tooth).ravel())
 
-    def lifted(self, angle: Real) -> Real:
+    def pawl_lift(self, angle: Real) -> Real:
         """Return the lift of the pawl, radians, while the wheel turns by angles from its locked position.
 
         The nose rides on the back of the tooth behind, a line from this foot to the tip one pitch before.
@@ -141,25 +139,25 @@ class Ratchet:
         return np.asarray(np.angle((self.foot - self.pivot) / place))
 
 
-def _least_angle(face: float, reach: float, pawl: float) -> float:
+def _compute_locking_angle(face: float, reach: float, pawl: float) -> float:
     return face - math.atan2(reach * math.cos(face), pawl - reach * math.sin(face))
 
 
-def least_face(teeth: int, radius: float, height: float, pawl: float, wanted: float) -> float | None:
+def find_min_face(teeth: int, radius: float, height: float, pawl: float, wanted: float) -> float | None:
     """Find the minimum face angle, radians, with the required locking angle; None if it exceeds 60°."""
 
-    def short(face: float) -> bool:
+    def is_short(face: float) -> bool:
         return not Ratchet(teeth, radius, height, face, pawl).locking_angle >= wanted
 
     # Feasibility is not monotonic, since a face that leans too far misses the foot: scan for the first success.
-    degrees = next((degree for degree in range(1, STEEPEST + 1) if not short(math.radians(degree))), None)
+    degrees = next((degree for degree in range(1, MAX_FACE_ANGLE + 1) if not is_short(math.radians(degree))), None)
     if degrees is None:
         return None
     # The first success lies within the last degree; bisect there.
     low, high = math.radians(degrees - 1), math.radians(degrees)
-    for _ in range(HALVINGS):
+    for _ in range(HALVING_STEPS):
         middle = 0.5 * (low + high)
-        if short(middle):
+        if is_short(middle):
             low = middle
         else:
             high = middle

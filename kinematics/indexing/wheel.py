@@ -16,12 +16,10 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import NDArray
 
-Complex = NDArray[np.complex128]
-Real = NDArray[np.float64]
+from kinematics.arrays import Complex
 
-QUARTER, LAND, LOCK = 10, 4, 18
+QUARTER_STEPS, LAND_STEPS, LOCK_STEPS = 10, 4, 18
 """Steps of the outline over a quarter of a slot's end, over a land, and over half a locking arc."""
 
 
@@ -97,23 +95,23 @@ class Wheel:
     @cached_property
     def half_sector(self) -> Complex:
         """Outline from the end of slot 0 to the middle of the next locking arc, shape (m,)."""
-        turn = np.linspace(0.0, 0.5 * math.pi, QUARTER + 1)
+        turn = np.linspace(0.0, 0.5 * math.pi, QUARTER_STEPS + 1)
         # Include the point nearest to the next slot, so that the polygon shows the exact web.
         turn = np.unique(np.append(turn, 0.5 * math.pi - self.step))
         outward = -1.0 if not self.internal else 1.0
         end = self.slot_end + self.half_slot * (outward * np.cos(turn) + 1j * np.sin(turn))
         first = self.mouth
-        land = self.reach * np.exp(1j * np.linspace(first, self.step - self.lock_half, LAND + 1))
+        land = self.reach * np.exp(1j * np.linspace(first, self.step - self.lock_half, LAND_STEPS + 1))
         center = self.center_distance * np.exp(1j * self.step)
         # Angles about the crank's axis, from the land's corner to the arc's own axis.
         corner = np.angle((land[-1] - center) * np.exp(-1j * self.step))
         if self.internal:
             # Include the foot of the perpendicular to the slot, where the wall is thinnest.
             foot = -(0.5 * math.pi + self.step)
-            before = np.linspace(corner, foot, LOCK // 2 + 1)[:-1] if corner < foot else np.empty(0)
-            turned = np.concatenate([before, np.linspace(max(corner, foot), 0.0, LOCK + 1)])
+            before = np.linspace(corner, foot, LOCK_STEPS // 2 + 1)[:-1] if corner < foot else np.empty(0)
+            turned = np.concatenate([before, np.linspace(max(corner, foot), 0.0, LOCK_STEPS + 1)])
         else:
-            turned = np.linspace(corner % (2.0 * math.pi), math.pi, LOCK + 1)
+            turned = np.linspace(corner % (2.0 * math.pi), math.pi, LOCK_STEPS + 1)
         arc = center + self.lock * np.exp(1j * (turned + self.step))
         return np.asarray(np.concatenate([end, land, arc[1:]]), np.complex128)
 

@@ -6,9 +6,9 @@ A linkage of the :mod:`catalogue <kinematics.linkage.planar.catalogue>`, or any 
 """
 
 from kinematics.linkage import fourbar, slider_crank
-from kinematics.linkage.batch import CROSSED, OPEN
+from kinematics.linkage.batch import CROSSED_ASSEMBLY, OPEN_ASSEMBLY
 from kinematics.linkage.fourbar import Fourbar
-from kinematics.linkage.mobility import mobility
+from kinematics.linkage.mobility import compute_mobility
 from kinematics.linkage.planar import (
     GROUND,
     GearPair,
@@ -22,9 +22,9 @@ from kinematics.linkage.planar import (
 from kinematics.linkage.slider_crank import SliderCrank
 
 __all__ = [
-    "CROSSED",
+    "CROSSED_ASSEMBLY",
     "GROUND",
-    "OPEN",
+    "OPEN_ASSEMBLY",
     "Fourbar",
     "GearPair",
     "Mechanism",
@@ -33,8 +33,8 @@ __all__ = [
     "SliderCrank",
     "TopologyError",
     "catalogue",
+    "compute_mobility",
     "drive",
     "fourbar",
-    "mobility",
     "slider_crank",
 ]

@@ -13,19 +13,17 @@ from typing import Any, ClassVar, NamedTuple, Self
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from kinematics.arrays import Complex, Mask, Real
 from kinematics.errors import DimensionError, ShapeError
 
-Real = NDArray[np.float64]
-Complex = NDArray[np.complex128]
-Mask = NDArray[np.bool_]
 Shape = tuple[int, ...]
 
-OPEN, CROSSED = 1, -1
+OPEN_ASSEMBLY, CROSSED_ASSEMBLY = 1, -1
 """Assembly signs. Fourbar: B to the left (open) or to the right (crossed) of the directed line from A to O4.
 Slider-crank: B at the far end of the slide (open), or at the near end (crossed)."""
 
 
-def one_shape(**shapes: Shape) -> Shape:
+def broadcast_shape(**shapes: Shape) -> Shape:
     """Return the shape that the named shapes broadcast to, or raise an error that names them."""
     try:
         return np.broadcast_shapes(*shapes.values())
@@ -39,7 +37,7 @@ def require(name: str, expected: str, value: NDArray[Any], good: Mask | np.bool_
         raise DimensionError(name, expected, np.asarray(value)[~np.asarray(good)].flat[0].item())
 
 
-def block(rows: tuple[NDArray[Any], ...], designs: Shape, dtype: Any) -> NDArray[Any]:
+def build_block(rows: tuple[NDArray[Any], ...], designs: Shape, dtype: Any) -> NDArray[Any]:
     """Build a read-only copy of fields of a linkage, broadcast to one shape, as rows of one array."""
     whole = np.empty((len(rows), *designs), dtype)
     for row, field in enumerate(rows):
@@ -55,7 +53,7 @@ class DesignBatch:
     _FIELDS: ClassVar[tuple[str, str, str, str, str, str]]
     """Names of the fields: three points and three lengths."""
 
-    def _keep(self, *fields: ArrayLike) -> tuple[Complex, Real]:
+    def _store_fields(self, *fields: ArrayLike) -> tuple[Complex, Real]:
         """Copy the fields, three points and three lengths, into blocks of one shape; the blocks with designs in a row.
 
         Raises
@@ -70,8 +68,8 @@ class DesignBatch:
             designs = a.shape
         else:
             named = zip(self._FIELDS, (p, q, r, a, b, c), strict=True)
-            designs = one_shape(**{name: field.shape for name, field in named})
-        at, long = block((p, q, r), designs, np.complex128), block((a, b, c), designs, np.float64)
+            designs = broadcast_shape(**{name: field.shape for name, field in named})
+        at, long = build_block((p, q, r), designs, np.complex128), build_block((a, b, c), designs, np.float64)
         # Written out, because a loop over the six fields would take a tenth of the constructor's time.
         point_1, point_2, point_3, length_1, length_2, length_3 = self._FIELDS
         attributes = self.__dict__
@@ -109,10 +107,10 @@ class Sweep(NamedTuple):
     @property
     def flat(self) -> tuple[int, int]:
         """The shape as designs × angles."""
-        return flat(self.shape)
+        return flatten_shape(self.shape)
 
 
-def sweep(blocks: tuple[Complex, Real], input_angle: ArrayLike, assembly: ArrayLike, shape: Shape = ()) -> Sweep:
+def build_sweep(blocks: tuple[Complex, Real], input_angle: ArrayLike, assembly: ArrayLike, shape: Shape = ()) -> Sweep:
     """Bring designs, input angles and assemblies to one shape.
 
     Parameters
@@ -140,42 +138,46 @@ def sweep(blocks: tuple[Complex, Real], input_angle: ArrayLike, assembly: ArrayL
     if not shape and sign.ndim == 0 and (theta.ndim == 1 or not designs):
         shape = (*designs, *theta.shape)
     elif theta.ndim or designs or sign.ndim:
-        found = one_shape(designs=(*designs, 1), assembly=(*sign.shape, 1), input_angle=theta.shape)
-        shape = one_shape(found=found, shape=shape) if shape else found
+        found = broadcast_shape(designs=(*designs, 1), assembly=(*sign.shape, 1), input_angle=theta.shape)
+        shape = broadcast_shape(found=found, shape=shape) if shape else found
     batch = shape[:-1]
     if designs not in (batch, ()):
-        pivots, lengths = (block(tuple(rows), batch, rows.dtype) for rows in (pivots, lengths))
+        pivots, lengths = (build_block(tuple(rows), batch, rows.dtype) for rows in (pivots, lengths))
     # A single sign is not repeated; the kernels use it for every design.
     signs = np.empty(1 if sign.size == 1 else batch)
     signs[...] = sign.reshape(1) if sign.size == 1 else sign
-    return Sweep(pivots.reshape(3, -1), lengths.reshape(3, -1), signs.reshape(-1), angle_rows(theta, shape), shape)
+    return Sweep(
+        pivots.reshape(3, -1), lengths.reshape(3, -1), signs.reshape(-1), build_angle_rows(theta, shape), shape
+    )
 
 
 Fields = tuple[Mask, Complex, Complex, Complex, Real, Real]
 """Mask, points A, B and P, and two angles (or an angle and the slider's travel) of a configuration, or of its rates."""
 
 
-def swept_positions(
+def sweep_positions(
     kernels: ModuleType, blocks: tuple[Complex, Real], input_angle: ArrayLike, assembly: ArrayLike
 ) -> Fields:
-    """Compute configurations by a linkage's kernel ``whole_positions``; parameters and errors as for :func:`sweep`."""
-    at = sweep(blocks, input_angle, assembly)
+    """Compute configurations by a linkage's kernel ``whole_positions``; parameters and errors as for
+    :func:`build_sweep`."""
+    at = build_sweep(blocks, input_angle, assembly)
     points, angles, valid = np.empty((3, *at.flat), np.complex128), np.empty((2, *at.flat)), np.empty(at.flat, np.bool_)
     kernels.whole_positions(*at[:4], points, angles, valid)
-    return _fields(valid.reshape(at.shape), points.reshape(3, *at.shape), angles.reshape(2, *at.shape))
+    return _split_fields(valid.reshape(at.shape), points.reshape(3, *at.shape), angles.reshape(2, *at.shape))
 
 
-def swept_coupler_points(
+def sweep_coupler_points(
     kernels: ModuleType, blocks: tuple[Complex, Real], input_angle: ArrayLike, assembly: ArrayLike
 ) -> CouplerPoints:
-    """Compute coupler points by a linkage's kernel ``coupler_points``; parameters and errors as for :func:`sweep`."""
-    at = sweep(blocks, input_angle, assembly)
+    """Compute coupler points by a linkage's kernel ``coupler_points``; parameters and errors as for
+    :func:`build_sweep`."""
+    at = build_sweep(blocks, input_angle, assembly)
     points, valid = np.empty(at.flat, np.complex128), np.empty(at.flat, np.bool_)
     kernels.coupler_points(*at[:4], points, valid)
     return CouplerPoints(valid.reshape(at.shape), points.reshape(at.shape))
 
 
-def swept_motion(
+def sweep_motion(
     kernels: ModuleType,
     blocks: tuple[Complex, Real],
     input_angle: ArrayLike,
@@ -183,7 +185,7 @@ def swept_motion(
     *rates: ArrayLike,
 ) -> tuple[Fields, Fields, Fields, Fields]:
     """Compute configurations and three time derivatives by ``whole_motion``; ``rates``: speed, acceleration, jerk."""
-    positions_shape, at, rows = rated_sweep(blocks, input_angle, assembly, *rates)
+    positions_shape, at, rows = build_rated_sweep(blocks, input_angle, assembly, *rates)
     points, angles = np.empty((4, 3, *at.flat), np.complex128), np.empty((4, 2, *at.flat))
     valid = np.empty((2, *at.flat), np.bool_)
     kernels.whole_motion(*at[:4], rows, points, angles, valid)
@@ -191,53 +193,53 @@ def swept_motion(
     valid = valid.reshape(2, *at.shape)
     # Rates may have more axes than the positions; the positions keep their own shape.
     if at.shape == positions_shape:
-        position = _fields(valid[0, ...], points[0], angles[0])
+        position = _split_fields(valid[0, ...], points[0], angles[0])
     else:
-        position = swept_positions(kernels, blocks, input_angle, assembly)
+        position = sweep_positions(kernels, blocks, input_angle, assembly)
     sound = valid[1, ...]
-    velocity, acceleration, jerk = (_fields(sound, points[k], angles[k]) for k in (1, 2, 3))
+    velocity, acceleration, jerk = (_split_fields(sound, points[k], angles[k]) for k in (1, 2, 3))
     return position, velocity, acceleration, jerk
 
 
-def rated_sweep(
+def build_rated_sweep(
     blocks: tuple[Complex, Real], input_angle: ArrayLike, assembly: ArrayLike, *rates: ArrayLike
 ) -> tuple[Shape, Sweep, Real]:
     """Return the shape of the positions, the sweep broadcast with the rates, and the rates as rows."""
-    narrow = sweep(blocks, input_angle, assembly)
+    narrow = build_sweep(blocks, input_angle, assembly)
     speed, acceleration, jerk = (np.asarray(rate, np.float64) for rate in rates)
     if speed.ndim == acceleration.ndim == jerk.ndim == 0:
-        return narrow.shape, narrow, rate_rows(speed, acceleration, jerk, narrow.shape)
-    shape = one_shape(positions=narrow.shape, speed=speed.shape, acceleration=acceleration.shape, jerk=jerk.shape)
-    at = narrow if shape == narrow.shape else sweep(blocks, input_angle, assembly, shape)
-    return narrow.shape, at, rate_rows(speed, acceleration, jerk, shape)
+        return narrow.shape, narrow, build_rate_rows(speed, acceleration, jerk, narrow.shape)
+    shape = broadcast_shape(positions=narrow.shape, speed=speed.shape, acceleration=acceleration.shape, jerk=jerk.shape)
+    at = narrow if shape == narrow.shape else build_sweep(blocks, input_angle, assembly, shape)
+    return narrow.shape, at, build_rate_rows(speed, acceleration, jerk, shape)
 
 
-def _fields(valid: Mask, points: Complex, angles: Real) -> Fields:
+def _split_fields(valid: Mask, points: Complex, angles: Real) -> Fields:
     return valid, points[0, ...], points[1, ...], points[2, ...], angles[0, ...], angles[1, ...]
 
 
-def over_designs(
+def broadcast_over_designs(
     blocks: tuple[Complex, Real], shape: Shape, *values: ArrayLike
 ) -> tuple[Complex, Real, *tuple[Real, ...]]:
     """Put designs and values in rows: blocks of shape (3, D) or (3, 1), values of shape (M,) for M designs."""
     designs = blocks[1].shape[1:]
     pivots, lengths = blocks
     if designs not in (shape, ()):
-        pivots, lengths = (block(tuple(rows), shape, rows.dtype) for rows in blocks)
+        pivots, lengths = (build_block(tuple(rows), shape, rows.dtype) for rows in blocks)
     rows = np.empty((len(values), *shape))
     for row, value in enumerate(values):
         rows[row] = value
     return pivots.reshape(3, -1), lengths.reshape(3, -1), *rows.reshape(len(values), math.prod(shape))
 
 
-def flat(shape: Shape) -> tuple[int, int]:
+def flatten_shape(shape: Shape) -> tuple[int, int]:
     """Return a shape of results as designs × angles; a scalar is one design at one angle."""
     return math.prod(shape[:-1]), shape[-1] if shape else 1
 
 
-def angle_rows(values: Real, shape: Shape) -> Real:
+def build_angle_rows(values: Real, shape: Shape) -> Real:
     """Copy values over designs × angles into a row per design, or one row for all: shape (D, N) or (1, N)."""
-    designs, n = flat(shape)
+    designs, n = flatten_shape(shape)
     # One row of angles serves all designs.
     if values.ndim < 2:
         row = np.empty((1, n))
@@ -252,15 +254,15 @@ def angle_rows(values: Real, shape: Shape) -> Real:
     return rows
 
 
-def rate_rows(speed: Real, acceleration: Real, jerk: Real, shape: Shape) -> Real:
+def build_rate_rows(speed: Real, acceleration: Real, jerk: Real, shape: Shape) -> Real:
     """Copy input rates into rows per design, or one row for all: shape (3, D, N) or (3, 1, N)."""
     rates = speed, acceleration, jerk
     if speed.ndim == acceleration.ndim == jerk.ndim == 0:
-        together = np.empty((3, 1, flat(shape)[1]))
+        together = np.empty((3, 1, flatten_shape(shape)[1]))
         together[0], together[1], together[2] = rates
         return together
-    rows = [angle_rows(rate, shape) for rate in rates]
-    together = np.empty((3, 1 if all(len(row) == 1 for row in rows) else flat(shape)[0], rows[0].shape[-1]))
+    rows = [build_angle_rows(rate, shape) for rate in rates]
+    together = np.empty((3, 1 if all(len(row) == 1 for row in rows) else flatten_shape(shape)[0], rows[0].shape[-1]))
     for k, row in enumerate(rows):
         together[k] = row
     return together

@@ -25,18 +25,14 @@ import math
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from kinematics.arrays import Complex, Real
 from kinematics.compiling import njit
-
-Real = NDArray[np.float64]
-Complex = NDArray[np.complex128]
-Mask = NDArray[np.bool_]
 
 OPTIONS: dict[str, Any] = {"cache": True, "nogil": True, "error_model": "numpy"}
 """Options of every kernel: cached on disk, without the interpreter's lock, division by zero as in NumPy."""
 
-ON_TOGGLE = 16 * float(np.finfo(np.float64).eps)
+TOGGLE_SLACK = 16 * float(np.finfo(np.float64).eps)
 """Amount, as a share of the product of the sides, by which the squared height of a triangle may be negative. It changes
 no link by more than that share: a toggle or change point is a valid configuration, and rounding must not remove it."""
 
@@ -45,15 +41,15 @@ TOGGLE_SINE = 1e-6
 of the input angle's distance from it: rounding of the toggle angle alone gives a sine of up to 2e-7, and an
 acceleration of 1e20 without a single correct digit. At this limit the relative error is about 1 %."""
 
-TILE = 128
+TILE_SIZE = 128
 """Number of input angles processed together: their intermediate rows stay in the first-level cache."""
 
-OCTANT = math.sqrt(2.0) - 1.0
+OCTANT_TANGENT = math.sqrt(2.0) - 1.0
 """tan(π/8): up to this slope the arc tangent is evaluated directly, above it relative to the diagonal."""
 
 
 @njit(**OPTIONS)
-def direction(x: float, y: float) -> float:
+def compute_direction(x: float, y: float) -> float:
     """Return the angle of the vector (x, y) in (−π, π], without branches; NaN for the zero vector.
 
     The slope is reduced to 0 … tan(π/8) by symmetry, where (arctan(t)/t − 1)/t² is a polynomial in t² (interpolated
@@ -63,7 +59,7 @@ def direction(x: float, y: float) -> float:
     # Octant symmetry: arctan of the smaller over the larger component.
     steep = up > across
     large, small = (up if steep else across), (across if steep else up)
-    diagonal = small > OCTANT * large
+    diagonal = small > OCTANT_TANGENT * large
     t = (small - large if diagonal else small) / (large + small if diagonal else large)
     # math.atan2 is a call with branches, which would prevent vectorization.
     z = t * t
@@ -85,7 +81,7 @@ def direction(x: float, y: float) -> float:
 
 
 @njit(**OPTIONS)
-def cosines(theta: Real, cosine: Real, sine: Real) -> None:
+def fill_cosines(theta: Real, cosine: Real, sine: Real) -> None:
     """Fill the cosines and sines of a row of angles."""
     for k in range(len(theta)):
         cosine[k] = math.cos(theta[k])
@@ -93,13 +89,13 @@ def cosines(theta: Real, cosine: Real, sine: Real) -> None:
 
 
 @njit(**OPTIONS)
-def divided(z: complex, length: float) -> complex:
+def divide_by_length(z: complex, length: float) -> complex:
     """Return z / length; the built-in complex division would handle cases that cannot occur."""
     return complex(z.real / length, z.imag / length)
 
 
 @njit(**OPTIONS)
-def carried(x: Real, y: Real, ux: Real, uy: Real, arm: complex, point: Complex) -> None:
+def fill_points(x: Real, y: Real, ux: Real, uy: Real, arm: complex, point: Complex) -> None:
     """Fill x + iy + arm (ux + i uy): a point of the coupler, or its derivative, from those of A and u = B − A.
 
     Each loop writes a single complex row: with several the compiler must assume aliasing and does not vectorize.
@@ -109,7 +105,9 @@ def carried(x: Real, y: Real, ux: Real, uy: Real, arm: complex, point: Complex) 
 
 
 @njit(**OPTIONS)
-def velocities(kx: Real, ky: Real, ux: Real, uy: Real, w2: Real, w3: Real, arm: complex, velocity: Complex) -> None:
+def fill_velocities(
+    kx: Real, ky: Real, ux: Real, uy: Real, w2: Real, w3: Real, arm: complex, velocity: Complex
+) -> None:
     """Fill the velocity of a coupler point, i ω2 k + i ω3 arm u."""
     for k in range(len(velocity)):
         x, y = arm.real * ux[k] - arm.imag * uy[k], arm.real * uy[k] + arm.imag * ux[k]
@@ -117,7 +115,7 @@ def velocities(kx: Real, ky: Real, ux: Real, uy: Real, w2: Real, w3: Real, arm: 
 
 
 @njit(**OPTIONS)
-def accelerations(
+def fill_accelerations(
     kx: Real,
     ky: Real,
     ux: Real,
@@ -139,7 +137,7 @@ def accelerations(
 
 
 @njit(**OPTIONS)
-def jerks(
+def fill_jerks(
     kx: Real,
     ky: Real,
     ux: Real,

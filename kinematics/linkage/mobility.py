@@ -9,7 +9,7 @@ from __future__ import annotations
 from kinematics.errors import DimensionError
 
 
-def mobility(links: int, full_joints: int, half_joints: int = 0, grounded: int = 1) -> int:
+def compute_mobility(links: int, full_joints: int, half_joints: int = 0, grounded: int = 1) -> int:
     """Compute the mobility by Gruebler's equation in Kutzbach's form, M = 3 (L − G) − 2 J1 − J2 (Norton 2.1).
 
     Parameters

@@ -10,18 +10,18 @@ With the wheelbase L and the kingpin distance w the angles θ of the inner and �
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
-Real = NDArray[np.float64]
+from kinematics.arrays import Real
 
 
-def outer_angle(inner: ArrayLike, ratio: ArrayLike) -> Real:
+def compute_outer_angle(inner: ArrayLike, ratio: ArrayLike) -> Real:
     """Compute the outer wheel's angle from the inner one's, radians; ``ratio`` is w/L. 0 for 0, smooth there."""
     theta = np.asarray(inner, np.float64)
     # Multiplied by sin θ, the cotangent relation has no singularity at θ = 0.
     return np.asarray(np.arctan2(np.sin(theta), np.cos(theta) + np.asarray(ratio) * np.sin(theta)))
 
 
-def davis_arm_angle(ratio: ArrayLike) -> Real:
+def compute_davis_arm_angle(ratio: ArrayLike) -> Real:
     """Compute the angle of the arms of Davis's gear from the vehicle's axis, wheels straight ahead; radians."""
     return np.asarray(np.arctan(0.5 * np.asarray(ratio, np.float64)))

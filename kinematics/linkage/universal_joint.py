@@ -22,11 +22,10 @@ from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from kinematics.arrays import Real
 from kinematics.linkage.batch import require
-
-Real = NDArray[np.float64]
 
 
 class Joint(NamedTuple):
@@ -84,7 +83,7 @@ class ShaftExtremes(NamedTuple):
     equivalent_angle: float
 
 
-def joint_matrix(joints: Sequence[Joint]) -> Real:
+def build_joint_matrix(joints: Sequence[Joint]) -> Real:
     """Build the matrix of a row of joints, shape (2, 2), with determinant 1.
 
     Raises
@@ -106,7 +105,7 @@ def joint_matrix(joints: Sequence[Joint]) -> Real:
     return np.asarray(matrix)
 
 
-def shaft_motion(joints: Sequence[Joint], input: ArrayLike) -> ShaftMotion:
+def compute_shaft_motion(joints: Sequence[Joint], input: ArrayLike) -> ShaftMotion:
     """Compute angle and rates of the last shaft.
 
     Parameters
@@ -116,7 +115,7 @@ def shaft_motion(joints: Sequence[Joint], input: ArrayLike) -> ShaftMotion:
     input : float
         Input angles from the position with the driver's fork in the plane of the shafts, radians, any shape.
     """
-    matrix = joint_matrix(joints)
+    matrix = build_joint_matrix(joints)
     alpha = np.asarray(input, np.float64)
     u = np.stack([np.cos(alpha), np.sin(alpha)])
     v = np.stack([-u[1], u[0]])
@@ -128,21 +127,21 @@ def shaft_motion(joints: Sequence[Joint], input: ArrayLike) -> ShaftMotion:
     _, sigma, right = np.linalg.svd(matrix)
     stretch = right.T @ np.diag(sigma) @ right
 
-    def lead(at: Real) -> Real:
+    def compute_lead(at: Real) -> Real:
         moved = np.tensordot(stretch, at, 1)
         return np.asarray(np.arctan2(at[0] * moved[1] - at[1] * moved[0], at[0] * moved[0] + at[1] * moved[1]))
 
-    angle = alpha + lead(u) - lead(np.array([1.0, 0.0]))
+    angle = alpha + compute_lead(u) - compute_lead(np.array([1.0, 0.0]))
     return ShaftMotion(np.asarray(angle), np.asarray(ratio), np.asarray(-2.0 * np.sum(x * y, axis=0) * ratio * ratio))
 
 
-def shaft_extremes(joints: Sequence[Joint]) -> ShaftExtremes:
+def find_shaft_extremes(joints: Sequence[Joint]) -> ShaftExtremes:
     """Find the extremes over a turn, in closed form.
 
     With s = sin² δ of the equivalent joint the acceleration is maximal where, measured from the fastest position,
     (s/2) cos² 2α + (1 − s/2) cos 2α = s; Rao's eq. 4.25 drops the first term.
     """
-    _, sigma, right = np.linalg.svd(joint_matrix(joints))
+    _, sigma, right = np.linalg.svd(build_joint_matrix(joints))
     cosine = float(min(sigma[1] / sigma[0], 1.0))
     # sin² δ without cancellation for small joint angles.
     s = (1.0 - cosine) * (1.0 + cosine)
@@ -162,7 +161,7 @@ def shaft_extremes(joints: Sequence[Joint]) -> ShaftExtremes:
     )
 
 
-def angle_of_fluctuation(fluctuation: float) -> float:
+def compute_joint_angle(fluctuation: float) -> float:
     """Compute the joint angle with a fluctuation (ω_max − ω_min)/ω_mean; radians (Rao, Solved Problem 4.10)."""
     value = np.asarray(fluctuation)
     require("fluctuation", "positive or zero, and finite", value, np.isfinite(value) & (value >= 0.0))
@@ -170,7 +169,7 @@ def angle_of_fluctuation(fluctuation: float) -> float:
     return math.acos(min(cosine, 1.0))
 
 
-def angle_within(least: float, greatest: float) -> float:
+def compute_max_joint_angle(least: float, greatest: float) -> float:
     """Compute the largest joint angle at which the speed ratio stays between two limits; radians.
 
     Parameters

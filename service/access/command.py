@@ -10,8 +10,8 @@ from contextlib import contextmanager
 from sqlalchemy.exc import SQLAlchemyError
 
 from service.access.keys import KeyStore, TenantExists
-from service.jobs.database import LaterTables, connect, upgrade
-from service.jobs.schema import TENANT_LENGTH
+from service.jobs.store.database import LaterTables, connect, upgrade
+from service.jobs.store.schema import TENANT_LENGTH
 from service.settings import Settings
 
 _TENANT = re.compile(f"[A-Za-z0-9._@-]{{1,{TENANT_LENGTH}}}")

@@ -1,7 +1,7 @@
 """The gate: which tenant a request is for, and whether it has come too often.
 
-Without keys the service is open, to this machine only (see :mod:`service.server`), and every request is for the tenant
-:data:`ANYBODY`. From the first key on each request needs one.
+Without keys the service is open, to this machine only (see :mod:`service.server.run`), and every request is for the
+tenant :data:`ANYBODY`. From the first key on each request needs one.
 """
 
 from __future__ import annotations

@@ -16,7 +16,7 @@ from dataclasses import dataclass, fields
 from sqlalchemy import Column, Engine, Index, String, Table, insert, inspect, select, update
 from ulid import ULID
 
-from service.jobs.schema import TENANT_LENGTH, metadata, now
+from service.jobs.store.schema import TENANT_LENGTH, metadata, now
 
 PREFIX = "mechsynth_"
 """What every key begins with, so that one that has got somewhere by mistake is recognized."""

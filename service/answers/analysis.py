@@ -8,7 +8,7 @@ from pydantic import ValidationError
 from pydantic_core import to_json
 
 from service.answers.numerical import refuse_numerical_errors
-from service.explained import sentence
+from service.error_messages import sentence
 from service.refusals import invalid_body, invalid_mechanism, invalid_request
 
 
@@ -30,11 +30,11 @@ def analyse(body: Any) -> bytes:
             request = parse_request(body)
         except ValidationError as error:
             raise invalid_body(error, body) from None
-        contradictions = request.faults()
+        contradictions = request.find_errors()
         if contradictions:
             raise invalid_request([(path, sentence(detail)) for path, detail in contradictions])
         try:
-            answer = request.answer()
+            answer = request.build_answer()
         except BudgetError as error:
             raise invalid_request([(error.path, sentence(error.detail))]) from None
         except MechanismError as error:

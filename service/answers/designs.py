@@ -25,7 +25,7 @@ def draw_design(job: SolvedJob, number: str, form: Form) -> str | bytes:
     n = design_index(number, len(designs))
     problem = job.statement()
     try:
-        return render.exported(designs[n], problem, render.heading(problem, job.label, n), form)
+        return render.export_design(designs[n], problem, render.make_heading(problem, job.label, n), form)
     except render.NoSuchExport:
         raise not_found(f"There is no .{form} file of this type of mechanism.") from None
     except render.NotBuilt:
@@ -41,14 +41,14 @@ def move_design(result: str, number: str, steps: int) -> bytes:
         404 where there is no such design, 409 where it is no mechanism that the analysis core would be given.
     """
     from kinematics import errors as kinematics
-    from synthesis.analyses import family
+    from synthesis.analyses import get_family
     from synthesis.mechanisms import MechanismError
 
     designs = from_json(result)["designs"]
     mechanism = designs[design_index(number, len(designs))]["mechanism"]
     with refuse_numerical_errors("/mechanism"):
         try:
-            answer = family(mechanism).request.over_the_cycle(mechanism, steps)
+            answer = get_family(mechanism).request.analyze_cycle(mechanism, steps)
         except (ValidationError, MechanismError, kinematics.MechanismError):
             # A design for lengths at the end of what can be stated may itself lie beyond that.
             raise Refusal(409, "no-motion", "No motion", "This design is of a size that is not analysed.") from None

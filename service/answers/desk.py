@@ -12,9 +12,9 @@ from collections.abc import Awaitable, Callable, Mapping
 from typing import Any
 
 from service.answers import process
-from service.jobs.orphans import tell_children
-from service.jobs.request_pool import Busy, Limits, PoolMetrics, RequestPool
-from service.logs import Format
+from service.jobs.processes.parent_death import tell_children
+from service.jobs.processes.request_pool import Busy, Limits, PoolMetrics, RequestPool
+from service.observability.logs import Format
 
 TEMPLATE = "service.answers.template"
 """The module that the process has imported that others are forked from."""
@@ -98,7 +98,7 @@ class AnswerDesk:
         Raises
         ------
         Busy, GivenUp, Gone, Lost
-            As :meth:`service.jobs.request_pool.RequestPool.call`, and ``Busy`` while kernels are compiled.
+            As :meth:`service.jobs.processes.request_pool.RequestPool.call`, and ``Busy`` while kernels are compiled.
         """
         await self._wait_until_loaded()
         return await self._analyses.call(gone, tenant, work, *args)
@@ -129,7 +129,7 @@ class AnswerDesk:
         first = context.Process(target=os.getpid, name="answers", daemon=True)
         first.start()
         first.join()
-        # All that is imported by now stays; see service.web.
+        # All that is imported by now stays; see service.server.web.
         gc.freeze()
         if not self._stopping.is_set():
             self._loaded.set()

@@ -9,7 +9,7 @@ from pydantic_core import to_json
 
 from service.answers.job_result import SolvedJob, design_index
 from service.answers.numerical import refuse_numerical_errors
-from service.explained import sentence
+from service.error_messages import sentence
 from service.refusals import Refusal, invalid_body, invalid_request
 
 
@@ -26,9 +26,9 @@ def forces_of_design(job: SolvedJob, number: str, steps: int, body: Any) -> byte
 
 
 def _forces(job: SolvedJob, number: str, steps: int, body: Any) -> bytes:
-    from synthesis.model.dynamics import DesignForcesRequest
-    from synthesis.model.linkage_statement import LinkageProblem
-    from synthesis.outcome.forces import NoForces, forces_over_motion
+    from synthesis.model.dynamics.request import DesignForcesRequest
+    from synthesis.model.linkage.problem import LinkageProblem
+    from synthesis.results.forces import ForcesUnknownError, compute_forces_over_motion
 
     designs = job.answer().designs
     design = designs[design_index(number, len(designs))]
@@ -44,12 +44,12 @@ def _forces(job: SolvedJob, number: str, steps: int, body: Any) -> bytes:
     else:
         try:
             stated = DesignForcesRequest.model_validate(body).dynamics
-            stated.laid_out(problem.layout)
+            stated.fill_from_layout(problem.layout)
         except ValidationError as error:
             raise invalid_body(error, body) from None
     try:
-        return to_json(forces_over_motion(stated, design, problem.length_unit, steps), inf_nan_mode="null")
-    except NoForces as error:
+        return to_json(compute_forces_over_motion(stated, design, problem.length_unit, steps), inf_nan_mode="null")
+    except ForcesUnknownError as error:
         if body is None or not error.path:
             raise _no_forces(sentence(str(error))) from None
         raise invalid_request([(error.path, sentence(error.detail))]) from None
@@ -63,7 +63,7 @@ def _with_its_own(problem: Any, design: Any, steps: int) -> dict[str, Any]:
     if "speed_rpm" not in motion:
         motion["speed"] = problem.motion.rate  # that of the kind, where none is stated
     stated = {"mechanism": design.mechanism.model_dump(), "motion": motion, "dynamics": design.dynamics}
-    return parse_request({**stated, "length_unit": problem.length_unit}).answer()
+    return parse_request({**stated, "length_unit": problem.length_unit}).build_answer()
 
 
 def _no_forces(detail: str) -> Refusal:

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from service.refusals import not_found
-from service.stated import read
+from service.requests import read
 from synthesis.registry import KINDS
 
 _DESIGN_NUMBER = re.compile("[0-9]{1,4}")

@@ -7,8 +7,8 @@ import os
 from collections.abc import Callable
 from typing import Any
 
-from service.jobs.confined import confine, limit_memory
-from service.logs import Format
+from service.jobs.processes.limits import confine, limit_memory
+from service.observability.logs import Format
 
 
 def prepare(log_level: str, log_format: Format, memory_mb: int) -> None:

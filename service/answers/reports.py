@@ -15,7 +15,7 @@ def report_job(job: SolvedJob, most: int, built: dict[int, str]) -> tuple[str, s
     built : dict
         By the number of a design: its assembly as SVG, or why there is none.
     """
-    from service.render.report import POLICY, Occasion, report
+    from service.render.report import POLICY, ReportedJob, report
 
-    occasion = Occasion(job.id, job.kind, job.label, job.created_at, job.finished_at, version("mechsynth"))
+    occasion = ReportedJob(job.id, job.kind, job.label, job.created_at, job.finished_at, version("mechsynth"))
     return report(job.statement(), job.answer(), occasion, most, built), POLICY

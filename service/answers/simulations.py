@@ -15,14 +15,14 @@ def simulate_design(job: SolvedJob, number: str, form: Form, query: SimulationQu
     Refusal
         404, 409 or 422.
     """
-    from service.render import heading
-    from service.simulation.export import simulation
+    from service.render import make_heading
+    from service.simulation.export import write_simulation
 
     designs = job.answer().designs
     n = design_index(number, len(designs))
     problem = job.statement()
     try:
-        return n, simulation(designs[n], problem, heading(problem, job.label, n), form, query)
+        return n, write_simulation(designs[n], problem, make_heading(problem, job.label, n), form, query)
     except NoSimulation:
         raise not_found("This type of mechanism has no simulations; linkages and gear trains have.") from None
     except NotSimulated as error:
@@ -39,12 +39,12 @@ def open_in_pmks(job: SolvedJob, number: str) -> tuple[str, float]:
     Refusal
         404 or 409.
     """
-    from service.simulation.export import opened_in_pmks
+    from service.simulation.export import open_in_pmks
 
     designs = job.answer().designs
     n = design_index(number, len(designs))
     try:
-        return opened_in_pmks(designs[n], job.statement())
+        return open_in_pmks(designs[n], job.statement())
     except NoSimulation:
         raise not_found("PMKS+ opens linkages only.") from None
     except NotSimulated as error:

@@ -9,8 +9,8 @@ from __future__ import annotations
 import gc
 import os
 
-from service.jobs.confined import use_one_thread
-from service.jobs.orphans import forget_parent
+from service.jobs.processes.limits import use_one_thread
+from service.jobs.processes.parent_death import forget_parent
 
 use_one_thread()
 # Forked processes are children of this one, not of the server that started this one.
@@ -20,14 +20,14 @@ forget_parent()
 def _load() -> None:
     import structlog
 
-    from service import analyst, render
+    from service import render, warm_analysis
     from service.answers import analysis, designs, forces, reports, simulations
     from synthesis import registry
 
     # Named here to be there when they are called.
     assert all((render, analysis, designs, forces, reports, simulations, registry))
     try:
-        analyst.warm_up()
+        warm_analysis.warm_up()
     except Exception:  # the requests will say, one by one, what they could not have
         structlog.get_logger(__name__).exception("the analysis core could not be warmed up", pid=os.getpid())
     # A collection would write to the pages that forked processes share.

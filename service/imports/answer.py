@@ -6,8 +6,8 @@ from typing import Literal
 
 from pydantic import BaseModel, ConfigDict, Field
 
-from service.outlines.answer import DrawingUnit, Drawn, LeftOut
-from service.outlines.limits import MOST_TOLD
+from service.outlines.answer import DrawingElement, DrawingUnit, LeftOut
+from service.outlines.limits import MAX_LISTED
 
 Format = Literal["svg", "dxf", "csv", "png"]
 
@@ -21,7 +21,7 @@ class ImportedPoint(BaseModel):
     y: float
 
 
-class ImportedCurve(Drawn):
+class ImportedCurve(DrawingElement):
     """A curve as points: as `points` of a path, corners of an outline or an obstacle, or a table of y over x."""
 
     model_config = ConfigDict(title="Imported curve")
@@ -50,5 +50,5 @@ class Imports(BaseModel):
     )
     scale: float = Field(description="Units of the numbers here in a unit of the file.")
     curves: list[ImportedCurve] = Field(description="In the order of the file; of a picture the longest first.")
-    left_out: list[LeftOut] = Field(description=f"What gives no curve, {MOST_TOLD} elements at most.")
+    left_out: list[LeftOut] = Field(description=f"What gives no curve, {MAX_LISTED} elements at most.")
     left_out_count: int = Field(description="How many elements give no curve.")

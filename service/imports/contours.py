@@ -13,7 +13,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from service.outlines.curves import Complex
+from kinematics.arrays import Complex
 
 # The sides of a square: bottom, right, top, left. Corners count 1, 2, 4, 8 from lower left, counter-clockwise. From
 # which side to which a contour goes, with the high corners on its left.

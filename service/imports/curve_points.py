@@ -8,10 +8,11 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from kinematics.arrays import Complex
 from service.imports.limits import MOST_POINTS
 from service.imports.thinning import astray, at_most, thinned, with_farthest
-from service.outlines.curves import STRAIGHT, Complex, flattened, line, steps
-from service.outlines.faults import Unsuitable
+from service.outlines.curves import STRAIGHTNESS_TOLERANCE, count_chords, flatten_pieces, make_line
+from service.outlines.faults import UnsuitableDrawing
 from service.outlines.limits import DEFAULT_TOLERANCE
 
 SAME = 1e-12
@@ -55,16 +56,16 @@ def of_pieces(pieces: Complex, closed: bool, asked: Asked) -> Points:
     if not len(pieces):
         raise ValueError("it has no length")
     if closed and pieces[-1, 3] != pieces[0, 0]:
-        pieces = np.concatenate([pieces, line(pieces[-1, 3], pieces[0, 0])])
+        pieces = np.concatenate([pieces, make_line(pieces[-1, 3], pieces[0, 0])])
     extent = _extent(pieces.ravel())
     tolerance = DEFAULT_TOLERANCE * extent if asked.tolerance is None else asked.tolerance
     chords = LOOKED * tolerance
-    counts = steps(pieces, chords)
+    counts = count_chords(pieces, chords)
     if counts.sum() > MOST_POINTS:
-        raise Unsuitable(
+        raise UnsuitableDrawing(
             f"A curve has more than {MOST_POINTS} points at a tolerance of {tolerance:.4g}; give a larger one."
         )
-    dense = flattened(pieces, chords)
+    dense = flatten_pieces(pieces, chords)
     lines = straight(pieces)
     kept = np.zeros(len(dense), bool)
     ends = np.concatenate([[0], np.cumsum(counts)])
@@ -138,7 +139,7 @@ def length_of_points(points: Complex, closed: bool) -> float:
 def straight(pieces: Complex) -> NDArray[np.bool_]:
     """Which cubics are lines that run evenly from end to end."""
     bends = np.abs(pieces[:, :-2] - 2.0 * pieces[:, 1:-1] + pieces[:, 2:]).max(axis=1)
-    return np.asarray(bends <= STRAIGHT * np.abs(np.diff(pieces, axis=1)).sum(axis=1))
+    return np.asarray(bends <= STRAIGHTNESS_TOLERANCE * np.abs(np.diff(pieces, axis=1)).sum(axis=1))
 
 
 def _extent(points: Complex) -> float:

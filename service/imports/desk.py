@@ -1,7 +1,7 @@
 """Files that clients send are read by processes of their own, a file each at a time, within bounded time and memory.
 
 A reader that takes too long or too much is killed and replaced, so that no file can hold the server up or take it down
-with it (:mod:`service.jobs.request_pool`).
+with it (:mod:`service.jobs.processes.request_pool`).
 """
 
 from __future__ import annotations
@@ -12,9 +12,9 @@ from typing import Any
 
 from service.imports import reader
 from service.imports.limits import MEMORY_MB, READ_S
-from service.jobs.request_pool import GivenUp, Limits, PoolMetrics, RequestPool
-from service.logs import Format
-from service.outlines.faults import Unsuitable
+from service.jobs.processes.request_pool import GivenUp, Limits, PoolMetrics, RequestPool
+from service.observability.logs import Format
+from service.outlines.faults import UnsuitableDrawing
 
 READERS = 2
 """Files that are read at once."""
@@ -39,14 +39,14 @@ class ImportDesk:
         DrawingError
             Why the file gives nothing; it may also have taken more than the time or the memory that a file has.
         Busy, Gone, Lost
-            As :meth:`service.jobs.request_pool.RequestPool.call`.
+            As :meth:`service.jobs.processes.request_pool.RequestPool.call`.
         """
         try:
             answer = await self.pool.call(gone, tenant, reader.read, door, content, asked)
         except GivenUp as error:
             longer, more = f"longer than {READ_S:g} seconds to read", "more memory to read than a file has here"
             taken = longer if error.of == "time" else more
-            raise Unsuitable(f"The file takes {taken}; send a smaller or simpler one.") from None
+            raise UnsuitableDrawing(f"The file takes {taken}; send a smaller or simpler one.") from None
         if isinstance(answer, reader.Fault):
             raise answer.error()
         assert isinstance(answer, bytes)

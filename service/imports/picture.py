@@ -15,10 +15,10 @@ import numpy as np
 from numpy.typing import NDArray
 from PIL import Image
 
+from kinematics.arrays import Complex
 from service.imports.contours import TooMany, contours
 from service.imports.limits import MOST_CROSSINGS, MOST_PIXELS
-from service.outlines.curves import Complex
-from service.outlines.faults import Malformed, Unsuitable
+from service.outlines.faults import MalformedDrawing, UnsuitableDrawing
 
 BROKEN = (
     OSError, EOFError, SyntaxError, ValueError, IndexError, struct.error, zlib.error, Image.DecompressionBombError,
@@ -70,7 +70,7 @@ def picture_of(content: bytes) -> Picture:
     try:
         found = contours(field, level, MOST_CROSSINGS)
     except TooMany:
-        raise Unsuitable(
+        raise UnsuitableDrawing(
             f"The contours of the picture have more than {MOST_CROSSINGS} points; is it a photograph? Send a drawing "
             "in two colours."
         ) from None
@@ -92,10 +92,10 @@ def _samples(content: bytes) -> tuple[Samples, Samples | None, tuple[float, floa
             picture = Image.open(io.BytesIO(content), formats=("PNG",))
             _bounded(*picture.size)
             picture.load()
-    except Unsuitable:
+    except UnsuitableDrawing:
         raise
     except BROKEN as error:
-        raise Malformed(f"The picture cannot be read as PNG ({type(error).__name__}).") from None
+        raise MalformedDrawing(f"The picture cannot be read as PNG ({type(error).__name__}).") from None
     density = picture.info.get("dpi")
     opacity = None
     if picture.mode.startswith("I"):
@@ -114,7 +114,7 @@ def _samples(content: bytes) -> tuple[Samples, Samples | None, tuple[float, floa
 
 def _bounded(width: int, height: int) -> None:
     if width * height > MOST_PIXELS:
-        raise Unsuitable(f"The picture has {width} × {height} pixels, more than {MOST_PIXELS}.")
+        raise UnsuitableDrawing(f"The picture has {width} × {height} pixels, more than {MOST_PIXELS}.")
 
 
 def _field(lightness: Samples, opacity: Samples | None) -> tuple[Samples, float]:
@@ -124,7 +124,9 @@ def _field(lightness: Samples, opacity: Samples | None) -> tuple[Samples, float]
         return np.pad(opacity, 1), 127.5
     least, most = int(lightness.min()), int(lightness.max())
     if most - least < LEAST_CONTRAST:
-        raise Unsuitable("Nothing stands out in the picture; it takes something dark on light, or the other way.")
+        raise UnsuitableDrawing(
+            "Nothing stands out in the picture; it takes something dark on light, or the other way."
+        )
     middle = 0.5 * (least + most)
     # No sample has the level itself.
     level = middle if middle % 1.0 else middle + 0.25

@@ -12,13 +12,13 @@ from typing import Any, Literal
 
 from pydantic import BaseModel
 
-from service.jobs.confined import confine, limit_memory
-from service.logs import Format
+from service.jobs.processes.limits import confine, limit_memory
+from service.observability.logs import Format
 from service.outlines import faults
 
 Door = Literal["imports", "outlines"]
 
-_FAULTS = {each.__name__: each for each in (faults.ForeignFormat, faults.Malformed, faults.Unsuitable)}
+_FAULTS = {each.__name__: each for each in (faults.ForeignFormat, faults.MalformedDrawing, faults.UnsuitableDrawing)}
 
 
 @dataclass(frozen=True)
@@ -53,9 +53,9 @@ def prepare(server_pid: int, log_level: str, log_format: Format, memory_mb: int)
 def read(door: Door, content: bytes, asked: dict[str, Any]) -> bytes | Fault:
     """What a door answers to a file, as JSON, or what is wrong with the file."""
     from service.imports.reading import imports_of
-    from service.outlines.reading import outlines_of
+    from service.outlines.reading import read_outlines
 
-    doors: dict[Door, Callable[..., BaseModel]] = {"imports": imports_of, "outlines": outlines_of}
+    doors: dict[Door, Callable[..., BaseModel]] = {"imports": imports_of, "outlines": read_outlines}
     try:
         return doors[door](content, **asked).model_dump_json().encode()
     except faults.DrawingError as error:

@@ -8,19 +8,20 @@ from typing import Any
 
 import numpy as np
 
+from kinematics.arrays import Complex
 from service.imports.answer import Format, ImportedCurve, ImportedPoint, Imports
 from service.imports.curve_points import Asked, Points, length_of, length_of_points, of_pieces, of_points, straight
 from service.imports.limits import DEFAULT_POINTS, MOST_CURVES, MOST_LOOKED, MOST_POINTS, PNG
 from service.imports.picture import COARSE, FINE, picture_of
 from service.imports.table import table_of
-from service.outlines.answer import DrawingUnit, sentence, short, told, told_left_out
-from service.outlines.curves import Complex, Curve, Source, line
+from service.outlines.answer import DrawingUnit, describe_source, format_sentence, list_left_out, truncate_text
+from service.outlines.curves import Curve, Source, make_line
 from service.outlines.drawing import Drawing
-from service.outlines.faults import ForeignFormat, NoOutline, Unsuitable
-from service.outlines.formats import MILLIMETRES, drawing_of, extent, placed
-from service.outlines.joining import chains
-from service.outlines.limits import DEFAULT_TOLERANCE, FARTHEST, JOINED
-from service.outlines.path_data import unit_arc
+from service.outlines.faults import ForeignFormat, NoOutline, UnsuitableDrawing
+from service.outlines.formats import MILLIMETRES_PER_UNIT, convert_units, measure_extent, read_drawing
+from service.outlines.joining import find_chains
+from service.outlines.limits import DEFAULT_TOLERANCE, JOIN_GAP_SHARE, MAX_COORDINATE
+from service.outlines.path_data import make_unit_arc
 
 
 @dataclass(frozen=True)
@@ -84,7 +85,7 @@ def imports_of(
     with np.errstate(all="ignore"):
         if content.startswith(PNG):
             return _picture(content, length_unit, pixel_size, asked)
-        drawing = drawing_of(content)
+        drawing = read_drawing(content)
         if drawing is not None:
             return _drawing(drawing, length_unit, asked)
         if not tables:
@@ -93,8 +94,10 @@ def imports_of(
 
 
 def _drawing(drawing: Drawing, length_unit: DrawingUnit, asked: Asked) -> Imports:
-    curves, left_out, scale, unit = placed(drawing, length_unit)
-    reach = JOINED * (asked.tolerance if asked.tolerance is not None else DEFAULT_TOLERANCE * extent(curves))
+    curves, left_out, scale, unit = convert_units(drawing, length_unit)
+    reach = JOIN_GAP_SHARE * (
+        asked.tolerance if asked.tolerance is not None else DEFAULT_TOLERANCE * measure_extent(curves)
+    )
     found, tiny = _connected(curves, reach)
     return _answer(drawing.format, found, [*left_out, *tiny], drawing.millimetres, unit, scale, asked)
 
@@ -107,12 +110,12 @@ def _connected(curves: Sequence[Curve], reach: float) -> tuple[list[Found], Left
     open_: list[Curve] = []
     tiny: LeftOut = []
     for one in curves:
-        if not one.closed and extent([one]) > reach:
+        if not one.closed and measure_extent([one]) > reach:
             open_.append(one)
         elif not one.closed:
             tiny.append((one.source, "it is no longer than the gap between ends that are joined"))
     found = [([one], True) for one in curves if one.closed]
-    found += [(chain.members, chain.closed) for chain in chains(open_, reach)]
+    found += [(chain.members, chain.closed) for chain in find_chains(open_, reach)]
     found.sort(key=lambda one: min(place[id(each.source)] for each in one[0]))
     return [Found(members[0].source, _pieces(members, closed), closed, len(members)) for members, closed in found], tiny
 
@@ -124,7 +127,7 @@ def _picture(content: bytes, length_unit: DrawingUnit, pixel_size: float | None,
         across = up = pixel_size
         unit: DrawingUnit | None = length_unit
     elif stated is not None:
-        across, up = (side / MILLIMETRES[length_unit] for side in stated)
+        across, up = (side / MILLIMETRES_PER_UNIT[length_unit] for side in stated)
         unit = length_unit
     else:
         across, up, unit = 1.0, 1.0, None
@@ -138,13 +141,13 @@ def _picture(content: bytes, length_unit: DrawingUnit, pixel_size: float | None,
         for one, steps in zip(picture.contours, picture.stepped, strict=True)
     ]
     left_out: LeftOut = [(Source("contour"), "it goes around a few pixels only")] * picture.specks
-    millimetres = None if unit is None else across * MILLIMETRES[unit]
+    millimetres = None if unit is None else across * MILLIMETRES_PER_UNIT[unit]
     return _answer("png", found, left_out, millimetres, unit, across, asked)
 
 
 def _table(content: bytes, length_unit: DrawingUnit, asked: Asked) -> Imports:
     table = table_of(content)
-    scale = 1.0 if table.millimetres is None else table.millimetres / MILLIMETRES[length_unit]
+    scale = 1.0 if table.millimetres is None else table.millimetres / MILLIMETRES_PER_UNIT[length_unit]
     name = None if table.names is None else ", ".join(table.names)
     found = []
     for points in table.curves:
@@ -171,17 +174,19 @@ def _answer(
         try:
             points, tolerance, looked_at = one.chosen(asked)
         except ValueError as error:
-            if isinstance(error, Unsuitable):
+            if isinstance(error, UnsuitableDrawing):
                 raise
             left_out.append((one.source, str(error)))
             continue
-        if not np.all(np.abs(points) <= FARTHEST):
-            left_out.append((one.source, f"its coordinates go beyond {FARTHEST:g}, or are no numbers"))
+        if not np.all(np.abs(points) <= MAX_COORDINATE):
+            left_out.append((one.source, f"its coordinates go beyond {MAX_COORDINATE:g}, or are no numbers"))
             continue
         total, looked = total + len(points), looked + looked_at
         if total > MOST_POINTS or looked > MOST_LOOKED:
-            raise Unsuitable(f"The curves take more than {MOST_POINTS} points together; give a larger tolerance.")
-        named: dict[str, Any] = told(one.source)
+            raise UnsuitableDrawing(
+                f"The curves take more than {MOST_POINTS} points together; give a larger tolerance."
+            )
+        named: dict[str, Any] = describe_source(one.source)
         curves.append(
             ImportedCurve(
                 **named,
@@ -193,7 +198,9 @@ def _answer(
             )
         )
     if not curves:
-        reasons = [(short(source.id or source.element) or "", sentence(reason)) for source, reason in left_out]
+        reasons = [
+            (truncate_text(source.id or source.element) or "", format_sentence(reason)) for source, reason in left_out
+        ]
         raise NoOutline("The file has no curve." if reasons else "The file has no curve: it draws nothing.", reasons)
     return Imports(
         format=format_,
@@ -201,7 +208,7 @@ def _answer(
         length_unit=unit,
         scale=scale,
         curves=curves,
-        left_out=told_left_out(left_out),
+        left_out=list_left_out(left_out),
         left_out_count=len(left_out),
     )
 
@@ -223,13 +230,13 @@ def _pieces(members: Sequence[Curve], closed: bool) -> Complex:
     """The cubics of curves in a row; where the next one begins near to the end of the one before, it begins there."""
     (first, *_) = members
     if first.circle is not None:
-        return np.asarray(first.circle.centre + first.circle.radius * unit_arc(0.0, 2.0 * np.pi))
+        return np.asarray(first.circle.centre + first.circle.radius * make_unit_arc(0.0, 2.0 * np.pi))
     parts = [one.pieces.copy() for one in members]
     if not first.closed:
         for before, after in zip(parts if closed else parts[:-1], [*parts[1:], parts[0]], strict=False):
             gap = before[-1, 3] - after[0, 0]
             if gap and straight(after[:1])[0]:
-                after[:1] = line(before[-1, 3], after[0, 3])
+                after[:1] = make_line(before[-1, 3], after[0, 3])
             else:
                 after[0, :2] += gap
     return np.concatenate(parts)

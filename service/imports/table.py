@@ -7,11 +7,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from kinematics.arrays import Complex
 from service.imports.limits import MOST_COLUMNS, MOST_CURVES, MOST_POINTS
-from service.outlines.curves import Complex
-from service.outlines.faults import ForeignFormat, Malformed, Unsuitable
-from service.outlines.formats import MILLIMETRES
-from service.outlines.limits import FARTHEST
+from service.outlines.faults import ForeignFormat, MalformedDrawing, UnsuitableDrawing
+from service.outlines.formats import MILLIMETRES_PER_UNIT
+from service.outlines.limits import MAX_COORDINATE
 
 _NUMBER = re.compile(r"[+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?", re.ASCII)
 _UNIT = re.compile(r"(.*?)\s*[\[(]\s*([A-Za-z]+)\s*[\])]")
@@ -49,7 +49,7 @@ def table_of(content: bytes) -> Table:
     rows = [(n, line.partition("#")[0].strip()) for n, line in enumerate(lines, 1)]
     first = next((line for _, line in rows if line), None)
     if first is None:
-        raise Unsuitable("The table has no rows.")
+        raise UnsuitableDrawing("The table has no rows.")
     separator = next((one for one in ";\t," if one in first), None)
     decimal_comma = separator != ","
     names, millimetres, columns = None, None, (0, 1)
@@ -65,14 +65,14 @@ def table_of(content: bytes) -> Table:
             names, columns, millimetres = _columns(cells)
             continue
         if len(cells) <= max(columns) or len(cells) > MOST_COLUMNS:
-            raise Malformed(f"Line {n} of the table has not two columns of numbers.")
+            raise MalformedDrawing(f"Line {n} of the table has not two columns of numbers.")
         curves[-1].append(complex(*(_value(cells[k], decimal_comma, n) for k in columns)))
         count += 1
         if count > MOST_POINTS or len(curves) > MOST_CURVES:
-            raise Unsuitable(f"The table has more than {MOST_POINTS} points, or more than {MOST_CURVES} curves.")
+            raise UnsuitableDrawing(f"The table has more than {MOST_POINTS} points, or more than {MOST_CURVES} curves.")
     found = [np.array(curve) for curve in curves if curve]
     if not found:
-        raise Unsuitable("The table has names and no points.")
+        raise UnsuitableDrawing("The table has names and no points.")
     return Table(found, names, millimetres)
 
 
@@ -99,9 +99,9 @@ def _columns(cells: list[str]) -> tuple[tuple[str, str], tuple[int, int], float 
     lower = [name.lower() for name in names]
     columns = (lower.index("x"), lower.index("y")) if {"x", "y"} <= set(lower) else (0, 1)
     if len(cells) < 2:
-        raise Unsuitable("The table has one column; it takes two, x and y.")
+        raise UnsuitableDrawing("The table has one column; it takes two, x and y.")
     stated: set[str] = {found[2] if (found := parted[k]) else "" for k in columns}
-    units: dict[str, float] = {unit: MILLIMETRES[unit] for unit in MILLIMETRES}
+    units: dict[str, float] = {unit: MILLIMETRES_PER_UNIT[unit] for unit in MILLIMETRES_PER_UNIT}
     return (names[columns[0]], names[columns[1]]), columns, units.get(stated.pop()) if len(stated) == 1 else None
 
 
@@ -112,8 +112,8 @@ def _pointed(cell: str, decimal_comma: bool) -> str:
 def _value(cell: str, decimal_comma: bool, line: int) -> float:
     spelt = _pointed(cell[: LONGEST_CELL + 1], decimal_comma)
     if not _NUMBER.fullmatch(spelt) or len(spelt) > LONGEST_CELL:
-        raise Malformed(f"Line {line} of the table has a cell that is no number.")
+        raise MalformedDrawing(f"Line {line} of the table has a cell that is no number.")
     value = float(spelt)
-    if not abs(value) <= FARTHEST:
-        raise Unsuitable(f"Line {line} of the table has a number beyond {FARTHEST:g}.")
+    if not abs(value) <= MAX_COORDINATE:
+        raise UnsuitableDrawing(f"Line {line} of the table has a number beyond {MAX_COORDINATE:g}.")
     return value

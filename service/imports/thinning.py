@@ -15,7 +15,7 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from service.outlines.curves import Complex
+from kinematics.arrays import Complex
 
 MOST_TRIES = 12
 """Tolerances that are tried for a number of points; each is a pass over the curve."""

@@ -9,15 +9,15 @@ from typing import Literal
 import structlog
 from starlette.concurrency import run_in_threadpool
 
-from service.jobs.admission import Repeatable
+from service.jobs.events.notifier import ChangeNotifier
 from service.jobs.executor import Executor
-from service.jobs.finished import FinishedJobs
-from service.jobs.notifier import ChangeNotifier
-from service.jobs.schema import JobRow, JobSummary, SampleRow
-from service.jobs.states import Cost, Status
-from service.jobs.store import JobStore
-from service.metrics import Metrics
-from service.telemetry import span
+from service.jobs.job_store import JobStore
+from service.jobs.store.admission import Repeatable
+from service.jobs.store.finished_cache import FinishedJobs
+from service.jobs.store.schema import JobRow, JobSummary, SampleRow
+from service.jobs.store.states import Cost, Status
+from service.observability.metrics import Metrics
+from service.observability.telemetry import span
 
 log = structlog.get_logger(__name__)
 

@@ -6,7 +6,7 @@ import json
 from collections.abc import Sequence
 from dataclasses import asdict, dataclass
 
-from service.explained import MAX_FAULTS
+from service.error_messages import MAX_FAULTS
 
 
 @dataclass(frozen=True, slots=True)

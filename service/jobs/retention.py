@@ -10,8 +10,8 @@ import structlog
 from starlette.concurrency import run_in_threadpool
 
 from service.jobs.batches.store import BatchStore
-from service.jobs.finished import FinishedJobs
-from service.jobs.store import JobStore
+from service.jobs.job_store import JobStore
+from service.jobs.store.finished_cache import FinishedJobs
 
 MAX_REMOVED_AT_ONCE = 200
 """Jobs removed by one statement, so that nobody who writes meanwhile waits for long."""

@@ -5,15 +5,15 @@ not imported here.
 """
 
 from service.outlines.answer import DrawingUnit, Outline, Outlines
-from service.outlines.faults import DrawingError, ForeignFormat, Malformed, NoOutline, Unsuitable
+from service.outlines.faults import DrawingError, ForeignFormat, MalformedDrawing, NoOutline, UnsuitableDrawing
 
 __all__ = [
     "DrawingError",
     "DrawingUnit",
     "ForeignFormat",
-    "Malformed",
+    "MalformedDrawing",
     "NoOutline",
     "Outline",
     "Outlines",
-    "Unsuitable",
+    "UnsuitableDrawing",
 ]

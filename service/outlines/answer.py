@@ -8,12 +8,12 @@ from typing import Literal
 from pydantic import BaseModel, ConfigDict, Field
 
 from service.outlines.curves import Source
-from service.outlines.limits import LONGEST_NAME, MOST_TOLD
+from service.outlines.limits import MAX_LISTED, MAX_NAME_LENGTH
 
 DrawingUnit = Literal["mm", "cm", "m", "in"]
 
 
-class Drawn(BaseModel):
+class DrawingElement(BaseModel):
     """An element of the drawing."""
 
     element: str = Field(description="The element or entity, as the format calls it.", examples=["path", "LWPOLYLINE"])
@@ -31,7 +31,7 @@ class DrawnCircle(BaseModel):
     radius: float
 
 
-class Outline(Drawn):
+class Outline(DrawingElement):
     """A closed outline: a polygon, or a circle."""
 
     polygon: list[tuple[float, float]] | None = Field(
@@ -45,7 +45,7 @@ class Outline(Drawn):
     )
 
 
-class LeftOut(Drawn):
+class LeftOut(DrawingElement):
     """An element without an outline."""
 
     model_config = ConfigDict(title="Element left out")
@@ -67,28 +67,30 @@ class Outlines(BaseModel):
     scale: float = Field(description="Units of the numbers here in a unit of the drawing.")
     tolerance: float = Field(description="Maximum distance of a curve from its polygon.")
     outlines: list[Outline]
-    left_out: list[LeftOut] = Field(description=f"Elements without an outline, at most {MOST_TOLD}.")
+    left_out: list[LeftOut] = Field(description=f"Elements without an outline, at most {MAX_LISTED}.")
     left_out_count: int = Field(description="Number of elements without an outline.")
 
 
-def told(source: Source) -> dict[str, str | None]:
+def describe_source(source: Source) -> dict[str, str | None]:
     """Return the fields of an element that the API reports."""
-    return {name: short(getattr(source, name)) for name in ("element", "id", "name", "layer")}
+    return {name: truncate_text(getattr(source, name)) for name in ("element", "id", "name", "layer")}
 
 
-def told_left_out(left_out: Sequence[tuple[Source, str]]) -> list[LeftOut]:
+def list_left_out(left_out: Sequence[tuple[Source, str]]) -> list[LeftOut]:
     """Return the first elements without an outline, at most ``MOST_TOLD``, with their reasons."""
-    return [LeftOut(**told(source), reason=sentence(reason)) for source, reason in left_out[:MOST_TOLD]]
+    return [
+        LeftOut(**describe_source(source), reason=format_sentence(reason)) for source, reason in left_out[:MAX_LISTED]
+    ]
 
 
-def short(text: str | None) -> str | None:
+def truncate_text(text: str | None) -> str | None:
     """Return a text from the drawing as valid UTF-8, truncated to ``LONGEST_NAME`` characters."""
     if text is None:
         return None
     spelt = text.encode("utf-8", "replace").decode()
-    return spelt if len(spelt) <= LONGEST_NAME else f"{spelt[: LONGEST_NAME - 1]}…"
+    return spelt if len(spelt) <= MAX_NAME_LENGTH else f"{spelt[: MAX_NAME_LENGTH - 1]}…"
 
 
-def sentence(reason: str) -> str:
+def format_sentence(reason: str) -> str:
     """Return a reason as a sentence: capitalized, with a full stop."""
     return f"{reason[:1].upper()}{reason[1:]}."

@@ -10,11 +10,10 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from service.outlines.limits import FARTHEST
+from kinematics.arrays import Complex
+from service.outlines.limits import MAX_COORDINATE
 
-Complex = NDArray[np.complex128]
-
-STRAIGHT = 1e-12
+STRAIGHTNESS_TOLERANCE = 1e-12
 """A cubic counts as a line if its control points deviate by less than this share of its length from those of a line;
 transforms round.
 """
@@ -64,8 +63,8 @@ class Curve:
     def finite(self) -> bool:
         """Whether every coordinate is a number within ``FARTHEST``."""
         if self.circle is not None:
-            return abs(self.circle.centre) + self.circle.radius <= FARTHEST
-        return bool(np.all(np.abs(self.pieces) <= FARTHEST))
+            return abs(self.circle.centre) + self.circle.radius <= MAX_COORDINATE
+        return bool(np.all(np.abs(self.pieces) <= MAX_COORDINATE))
 
     @property
     def corners(self) -> tuple[complex, complex]:
@@ -76,42 +75,42 @@ class Curve:
         x, y = self.pieces.real, self.pieces.imag
         return complex(x.min(), y.min()), complex(x.max(), y.max())
 
-    def scaled(self, factor: float) -> Curve:
+    def scale_by(self, factor: float) -> Curve:
         """Return the curve scaled by a factor, for a change of unit."""
         circle = self.circle and Circle(self.circle.centre * factor, self.circle.radius * factor)
         return replace(self, pieces=self.pieces * factor, circle=circle)
 
 
-def backwards(curve: Curve) -> Curve:
+def reverse_curve(curve: Curve) -> Curve:
     """Return the curve traversed in the opposite direction."""
     return replace(curve, pieces=np.ascontiguousarray(curve.pieces[::-1, ::-1]))
 
 
-NONE: Complex = np.empty((0, 4), np.complex128)
+NO_PIECES: Complex = np.empty((0, 4), np.complex128)
 
 
-def bezier(start: complex, first: complex, second: complex, end: complex) -> Complex:
+def make_bezier(start: complex, first: complex, second: complex, end: complex) -> Complex:
     """Build a cubic from its four control points, shape (1, 4)."""
     return np.array([[start, first, second, end]])
 
 
-def line(start: complex, end: complex) -> Complex:
+def make_line(start: complex, end: complex) -> Complex:
     """Build a line as a cubic, shape (1, 4)."""
-    return bezier(start, start + (end - start) / 3.0, end + (start - end) / 3.0, end)
+    return make_bezier(start, start + (end - start) / 3.0, end + (start - end) / 3.0, end)
 
 
-def quadratic(start: complex, control: complex, end: complex) -> Complex:
+def make_quadratic(start: complex, control: complex, end: complex) -> Complex:
     """Build a quadratic Bézier as a cubic (degree elevation), shape (1, 4)."""
-    return bezier(start, start + 2.0 / 3.0 * (control - start), end + 2.0 / 3.0 * (control - end), end)
+    return make_bezier(start, start + 2.0 / 3.0 * (control - start), end + 2.0 / 3.0 * (control - end), end)
 
 
-def polyline(points: Complex) -> Complex:
+def make_polyline(points: Complex) -> Complex:
     """Build lines through consecutive points as cubics, shape (n - 1, 4)."""
     start, end = points[:-1], points[1:]
     return np.stack([start, start + (end - start) / 3.0, end + (start - end) / 3.0, end], axis=1)
 
 
-def steps(pieces: Complex, tolerance: float) -> NDArray[np.int64]:
+def count_chords(pieces: Complex, tolerance: float) -> NDArray[np.int64]:
     """Count the chords for each cubic that keep every chord within the tolerance of its curve, shape (n,).
 
     The distance of a cubic from a chord over 1/n of its parameter is at most M/(8n²), where M = 6 max|Δ²| bounds its
@@ -121,15 +120,15 @@ def steps(pieces: Complex, tolerance: float) -> NDArray[np.int64]:
     bends = np.abs(pieces[:, :-2] - 2.0 * pieces[:, 1:-1] + pieces[:, 2:]).max(axis=1)
     length = np.abs(np.diff(pieces, axis=1)).sum(axis=1)
     # Rounded transforms leave tiny second differences on straight lines; one chord is enough there.
-    bends = np.where(bends <= STRAIGHT * length, 0.0, bends)
+    bends = np.where(bends <= STRAIGHTNESS_TOLERANCE * length, 0.0, bends)
     counts = np.sqrt(6.0 * bends / (8.0 * tolerance))
     # The cap keeps absurd coordinates from overflowing the integer type.
     return np.maximum(np.ceil(np.minimum(counts, 1e9)), 1.0).astype(np.int64)
 
 
-def flattened(pieces: Complex, tolerance: float) -> Complex:
+def flatten_pieces(pieces: Complex, tolerance: float) -> Complex:
     """Sample points along a curve, both ends included, so that the chords stay within the tolerance; shape (m,)."""
-    counts = steps(pieces, tolerance)
+    counts = count_chords(pieces, tolerance)
     owner = np.repeat(np.arange(len(pieces)), counts)
     t = (np.arange(len(owner)) - np.repeat(np.cumsum(counts) - counts, counts)) / counts[owner]
     p0, p1, p2, p3 = pieces[owner].T

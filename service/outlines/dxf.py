@@ -17,30 +17,31 @@ from ezdxf.enums import InsertUnits
 from ezdxf.lldxf.const import DXFError
 from ezdxf.path import Curve3To, Curve4To
 
-from service.outlines.curves import NONE, Circle, Complex, Curve, Source, line, quadratic
+from kinematics.arrays import Complex
+from service.outlines.curves import NO_PIECES, Circle, Curve, Source, make_line, make_quadratic
 from service.outlines.drawing import Drawing
-from service.outlines.faults import Malformed, Unsuitable
-from service.outlines.limits import FARTHEST, MOST_DEPTH, MOST_ELEMENTS, MOST_PIECES
-from service.outlines.path_data import ARC_SEGMENTS
+from service.outlines.faults import MalformedDrawing, UnsuitableDrawing
+from service.outlines.limits import MAX_COORDINATE, MAX_DEPTH, MAX_ELEMENTS, MAX_PIECES
+from service.outlines.path_data import SEGMENTS_PER_TURN
 from service.outlines.references import grid_of, require_countable
-from service.outlines.splines import cubics
+from service.outlines.splines import convert_spline
 
-PATHS = {"LINE", "ARC", "CIRCLE", "ELLIPSE", "LWPOLYLINE", "POLYLINE", "SOLID", "TRACE"}
+PATH_TYPES = {"LINE", "ARC", "CIRCLE", "ELLIPSE", "LWPOLYLINE", "POLYLINE", "SOLID", "TRACE"}
 """Entity types that are read as curves."""
 
-TEXTS = {"TEXT", "MTEXT", "ATTRIB", "ATTDEF"}
+TEXT_TYPES = {"TEXT", "MTEXT", "ATTRIB", "ATTDEF"}
 
-MOST_FIT_POINTS = 500
+MAX_FIT_POINTS = 500
 """Limit for splines given by fit points: their control points follow from a system of linear equations of that size."""
 
-FLAT = 1e-6
+FLATNESS_TOLERANCE = 1e-6
 """An entity counts as flat if its heights differ by less than this share of its extent."""
 
 # Faults of a file are reported to the client by this module, not in the server's log.
 logging.getLogger("ezdxf").setLevel(logging.CRITICAL)
 
-_GUESSED = {AuditError.INVALID_INTEGER_VALUE, AuditError.INVALID_FLOATING_POINT_VALUE}
-_LINE = re.compile(r"near line (\d+)")
+_GUESS_ERROR_CODES = {AuditError.INVALID_INTEGER_VALUE, AuditError.INVALID_FLOATING_POINT_VALUE}
+_LINE_PATTERN = re.compile(r"near line (\d+)")
 
 
 class DxfReader:
@@ -54,16 +55,18 @@ class DxfReader:
 
     def shows(self, entity: DXFEntity) -> bool:
         """Whether an entity is to be seen, by its own layer; those on layer 0 of a block go by the block's."""
-        layer, invisible = _attribute(entity, "layer"), _attribute(entity, "invisible")
+        layer, invisible = _get_attribute(entity, "layer"), _get_attribute(entity, "invisible")
         return not invisible and str(layer).lower() not in self.hidden
 
     def visit(self, entity: DXFEntity, above: Source, depth: int) -> None:
         """Read an entity; ``above`` is the insert that contains it, or an empty source."""
         self.visited += 1
-        if self.visited > MOST_ELEMENTS:
-            raise Unsuitable(f"The drawing has more than {MOST_ELEMENTS} entities, counting each insertion of a block.")
+        if self.visited > MAX_ELEMENTS:
+            raise UnsuitableDrawing(
+                f"The drawing has more than {MAX_ELEMENTS} entities, counting each insertion of a block."
+            )
         type_ = entity.dxftype()
-        layer, handle, invisible = (_attribute(entity, name) for name in ("layer", "handle", "invisible"))
+        layer, handle, invisible = (_get_attribute(entity, name) for name in ("layer", "handle", "invisible"))
         # Entities on layer 0 of a block take the layer of the insert (AutoCAD's rule).
         if layer in (None, "0") and above.layer:
             layer = above.layer
@@ -72,14 +75,14 @@ class DxfReader:
         source = Source(type_, str(handle) if handle else above.id, above.name, str(layer or "0"))
         try:
             if type_ == "INSERT":
-                self.insert(entity, replace(source, name=str(_attribute(entity, "name") or "")), depth)
+                self.insert(entity, replace(source, name=str(_get_attribute(entity, "name") or "")), depth)
             elif isinstance(entity, Spline):
-                self.add(Curve(source, _spline(entity), bool(entity.closed)))
-            elif type_ in PATHS:
-                self.add(_curve(entity, source))
+                self.add(Curve(source, _read_spline(entity), bool(entity.closed)))
+            elif type_ in PATH_TYPES:
+                self.add(_read_curve(entity, source))
             else:
-                raise ValueError("it is text" if type_ in TEXTS else "entities of its type give no outline")
-        except Unsuitable:
+                raise ValueError("it is text" if type_ in TEXT_TYPES else "entities of its type give no outline")
+        except UnsuitableDrawing:
             raise
         except ValueError as error:
             self.left_out.append((source, str(error)))
@@ -89,11 +92,11 @@ class DxfReader:
 
     def insert(self, entity: Any, source: Source, depth: int) -> None:
         """Read the entities of a block at every place where it is inserted."""
-        if depth >= MOST_DEPTH:
-            raise Unsuitable(f"The drawing nests blocks more than {MOST_DEPTH} deep.")
+        if depth >= MAX_DEPTH:
+            raise UnsuitableDrawing(f"The drawing nests blocks more than {MAX_DEPTH} deep.")
         rows, columns = grid_of(entity)
-        if rows * columns > MOST_ELEMENTS:
-            raise Unsuitable(f"A block is inserted {rows} × {columns} times, more than {MOST_ELEMENTS}.")
+        if rows * columns > MAX_ELEMENTS:
+            raise UnsuitableDrawing(f"A block is inserted {rows} × {columns} times, more than {MAX_ELEMENTS}.")
         if entity.block() is None:
             raise ValueError("it inserts a block that is not in the drawing")
         for one in entity.multi_insert() if rows * columns > 1 else (entity,):
@@ -103,12 +106,12 @@ class DxfReader:
     def add(self, curve: Curve) -> None:
         """Append a curve; refuse the drawing if it has too many pieces."""
         self.pieces += max(len(curve.pieces), 1)
-        if self.pieces > MOST_PIECES:
-            raise Unsuitable(f"The drawing has more than {MOST_PIECES} lines and curves.")
+        if self.pieces > MAX_PIECES:
+            raise UnsuitableDrawing(f"The drawing has more than {MAX_PIECES} lines and curves.")
         self.found.append(curve)
 
 
-def curves_of(content: bytes) -> Drawing:
+def read_curves(content: bytes) -> Drawing:
     """Read the curves of the model space.
 
     Raises
@@ -119,9 +122,9 @@ def curves_of(content: bytes) -> Drawing:
         The drawing exceeds the limits.
     """
     if b"\0" in content:
-        raise Malformed("The drawing contains NUL characters, which text DXF never does.")
+        raise MalformedDrawing("The drawing contains NUL characters, which text DXF never does.")
     if not content.rstrip().endswith(b"EOF"):
-        raise Malformed("The drawing does not end with EOF; it may be truncated.")
+        raise MalformedDrawing("The drawing does not end with EOF; it may be truncated.")
     # The recovery reader accepts files of sloppy writers; wrong numbers are refused below.
     try:
         document, auditor = recover.read(io.BytesIO(content))
@@ -129,16 +132,16 @@ def curves_of(content: bytes) -> Drawing:
         layers = {layer.dxf.name.lower(): not (layer.is_off() or layer.is_frozen()) for layer in document.layers}
         unit = document.header.get("$INSUNITS", 0)
     except Exception as error:  # a broken file brings the library to errors of any sort
-        raise Malformed(f"The drawing cannot be read as DXF ({type(error).__name__}).") from None
+        raise MalformedDrawing(f"The drawing cannot be read as DXF ({type(error).__name__}).") from None
     _refuse_guesses(auditor)
     reader = DxfReader(layers)
     require_countable(entities, reader.shows)
     for entity in entities:
         reader.visit(entity, Source(""), 0)
-    return Drawing("dxf", reader.found, reader.left_out, _millimetres(unit))
+    return Drawing("dxf", reader.found, reader.left_out, _get_millimetres_per_unit(unit))
 
 
-def _attribute(entity: DXFEntity, name: str) -> Any:
+def _get_attribute(entity: DXFEntity, name: str) -> Any:
     """Return an attribute of an entity, or None if the entity lacks it or its type has no such attribute."""
     return entity.dxf.get(name) if entity.dxf.is_supported(name) else None
 
@@ -146,12 +149,12 @@ def _attribute(entity: DXFEntity, name: str) -> Any:
 def _refuse_guesses(auditor: Auditor) -> None:
     """Refuse a file in which ezdxf replaced unreadable numbers, such as `i.5`, by guesses."""
     for fault in auditor.errors:
-        if fault.code in _GUESSED:
-            line = _LINE.search(fault.message)
-            raise Malformed(f"A number of the drawing cannot be read{f', near line {line[1]}' if line else ''}.")
+        if fault.code in _GUESS_ERROR_CODES:
+            line = _LINE_PATTERN.search(fault.message)
+            raise MalformedDrawing(f"A number of the drawing cannot be read{f', near line {line[1]}' if line else ''}.")
 
 
-def _millimetres(unit: int) -> float | None:
+def _get_millimetres_per_unit(unit: int) -> float | None:
     """Return the millimetres in a drawing unit according to the header's $INSUNITS; None if unitless."""
     try:
         return float(units.conversion_factor(InsertUnits(unit), InsertUnits.Millimeters))
@@ -159,14 +162,14 @@ def _millimetres(unit: int) -> float | None:
         return None
 
 
-def _curve(entity: Any, source: Source) -> Curve:
+def _read_curve(entity: Any, source: Source) -> Curve:
     if entity.dxftype() == "CIRCLE" and abs(entity.dxf.extrusion.normalize().z) > 1.0 - 1e-9:
         centre = entity.ocs().to_wcs(entity.dxf.center)
         # Circles seen from above or below stay exact circles.
-        if not 0.0 < entity.dxf.radius <= FARTHEST:
+        if not 0.0 < entity.dxf.radius <= MAX_COORDINATE:
             raise ValueError("its radius is not positive, or too large")
-        return Curve(source, NONE, True, Circle(complex(centre.x, centre.y), float(entity.dxf.radius)))
-    drawn = path.make_path(entity, segments=_segments(entity))
+        return Curve(source, NO_PIECES, True, Circle(complex(centre.x, centre.y), float(entity.dxf.radius)))
+    drawn = path.make_path(entity, segments=_count_requested_segments(entity))
     if not len(drawn):
         raise ValueError("it has no length")
     if drawn.has_sub_paths:
@@ -180,32 +183,34 @@ def _curve(entity: Any, source: Source) -> Curve:
             controls = [complex(point.x, point.y) for point in (command.ctrl1, command.ctrl2)]
             pieces.append(np.array([[at, *controls, end]]))
         elif isinstance(command, Curve3To):
-            pieces.append(quadratic(at, complex(command.ctrl.x, command.ctrl.y), end))
+            pieces.append(make_quadratic(at, complex(command.ctrl.x, command.ctrl.y), end))
         else:
-            pieces.append(line(at, end))
+            pieces.append(make_line(at, end))
         at = end
-    return Curve(source, _flat(np.concatenate(pieces), heights), drawn.is_closed)
+    return Curve(source, _check_flat(np.concatenate(pieces), heights), drawn.is_closed)
 
 
-def _segments(entity: Any) -> int:
+def _count_requested_segments(entity: Any) -> int:
     """Return the segment count to request from ezdxf, which uses a third of it for a bulge."""
-    return 3 * ARC_SEGMENTS if entity.dxftype() in ("LWPOLYLINE", "POLYLINE") else ARC_SEGMENTS
+    return 3 * SEGMENTS_PER_TURN if entity.dxftype() in ("LWPOLYLINE", "POLYLINE") else SEGMENTS_PER_TURN
 
 
-def _spline(entity: Any) -> Complex:
+def _read_spline(entity: Any) -> Complex:
     # Control points, if present, make solving the linear system unnecessary.
-    if entity.fit_point_count() > MOST_FIT_POINTS and not entity.control_point_count():
-        raise ValueError(f"it passes through more than {MOST_FIT_POINTS} points")
+    if entity.fit_point_count() > MAX_FIT_POINTS and not entity.control_point_count():
+        raise ValueError(f"it passes through more than {MAX_FIT_POINTS} points")
     tool = entity.construction_tool()
     points = np.array([complex(point.x, point.y) for point in tool.control_points])
-    if not np.all(np.abs(points) <= FARTHEST):
+    if not np.all(np.abs(points) <= MAX_COORDINATE):
         raise ValueError("its coordinates are too large, or no numbers")
     weights = tool.weights() or [1.0] * len(points)
-    return _flat(cubics(tool.degree, tool.knots(), points, weights), [point.z for point in tool.control_points])
+    return _check_flat(
+        convert_spline(tool.degree, tool.knots(), points, weights), [point.z for point in tool.control_points]
+    )
 
 
-def _flat(pieces: Complex, heights: list[float]) -> Complex:
+def _check_flat(pieces: Complex, heights: list[float]) -> Complex:
     rise = max(heights) - min(heights)
-    if not rise <= FLAT * float(np.abs(pieces - pieces[0, 0]).max()):
+    if not rise <= FLATNESS_TOLERANCE * float(np.abs(pieces - pieces[0, 0]).max()):
         raise ValueError("it does not lie in a plane parallel to xy")
     return pieces

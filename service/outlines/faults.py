@@ -13,11 +13,11 @@ class ForeignFormat(DrawingError):
     """The content is neither SVG nor text DXF."""
 
 
-class Malformed(DrawingError):
+class MalformedDrawing(DrawingError):
     """The content violates the rules of its format."""
 
 
-class Unsuitable(DrawingError):
+class UnsuitableDrawing(DrawingError):
     """The drawing is too large, or its coordinates are out of range."""
 
 

@@ -13,15 +13,15 @@ from service.outlines.answer import DrawingUnit
 from service.outlines.curves import Curve, Source
 from service.outlines.drawing import Drawing
 from service.outlines.faults import ForeignFormat
-from service.outlines.limits import FARTHEST
+from service.outlines.limits import MAX_COORDINATE
 
-MILLIMETRES: dict[DrawingUnit, float] = {"mm": 1.0, "cm": 10.0, "m": 1000.0, "in": 25.4}
+MILLIMETRES_PER_UNIT: dict[DrawingUnit, float] = {"mm": 1.0, "cm": 10.0, "m": 1000.0, "in": 25.4}
 
-_TEXT_DXF = re.compile(rb"\s*(?:0|999)[ \t]*\r?\n")
-_COMPRESSED = (b"\x1f\x8b", b"PK\x03\x04")
+_TEXT_DXF_PATTERN = re.compile(rb"\s*(?:0|999)[ \t]*\r?\n")
+_COMPRESSED_SIGNATURES = (b"\x1f\x8b", b"PK\x03\x04")
 
 
-class Placed(NamedTuple):
+class DrawingCurves(NamedTuple):
     """The curves of a drawing in the unit of the answer; ``scale`` is the number of those units in a drawing unit."""
 
     curves: list[Curve]
@@ -30,7 +30,7 @@ class Placed(NamedTuple):
     unit: DrawingUnit | None
 
 
-def drawing_of(content: bytes) -> Drawing | None:
+def read_drawing(content: bytes) -> Drawing | None:
     """Read an SVG or DXF file; return None if the content begins like neither.
 
     Raises
@@ -42,34 +42,34 @@ def drawing_of(content: bytes) -> Drawing | None:
         raise ForeignFormat("The body is a binary DXF file; save it as text (ASCII) DXF.")
     if content.startswith(b"AC10"):
         raise ForeignFormat("The body is a DWG file; save it as text (ASCII) DXF.")
-    if content.startswith(_COMPRESSED):
+    if content.startswith(_COMPRESSED_SIGNATURES):
         raise ForeignFormat("The body is compressed; send the drawing itself.")
     # Editors on Windows write a byte-order mark before UTF-8.
     bare = content.removeprefix(b"\xef\xbb\xbf")
     if bare.lstrip()[:1] == b"<" or content[:4] in (b"\xff\xfe<\0", b"\xfe\xff\0<"):
-        return svg.curves_of(content)
-    if _TEXT_DXF.match(bare):
-        return dxf.curves_of(bare)
+        return svg.read_curves(content)
+    if _TEXT_DXF_PATTERN.match(bare):
+        return dxf.read_curves(bare)
     return None
 
 
-def placed(drawing: Drawing, length_unit: DrawingUnit | None) -> Placed:
+def convert_units(drawing: Drawing, length_unit: DrawingUnit | None) -> DrawingCurves:
     """Convert the curves to a unit, if the drawing gives its own; leave out curves with coordinates out of range."""
     scale, unit = 1.0, None
     if length_unit is not None and drawing.millimetres is not None:
-        scale, unit = drawing.millimetres / MILLIMETRES[length_unit], length_unit
+        scale, unit = drawing.millimetres / MILLIMETRES_PER_UNIT[length_unit], length_unit
     left_out = list(drawing.left_out)
     curves = []
     for one in drawing.curves:
-        curve = one.scaled(scale)
+        curve = one.scale_by(scale)
         if curve.finite:
             curves.append(curve)
         else:
-            left_out.append((one.source, f"its coordinates go beyond {FARTHEST:g}, or are no numbers"))
-    return Placed(curves, left_out, scale, unit)
+            left_out.append((one.source, f"its coordinates go beyond {MAX_COORDINATE:g}, or are no numbers"))
+    return DrawingCurves(curves, left_out, scale, unit)
 
 
-def extent(curves: Sequence[Curve]) -> float:
+def measure_extent(curves: Sequence[Curve]) -> float:
     """Return the larger side of the box around all curves."""
     if not curves:
         return 0.0

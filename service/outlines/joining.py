@@ -9,9 +9,10 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
-from service.outlines.curves import Complex, Curve, backwards
+from kinematics.arrays import Complex
+from service.outlines.curves import Curve, reverse_curve
 
-FREE, BRANCH = -1, -2
+FREE_END, BRANCH_END = -1, -2
 """Markers in place of a partner: the end meets no other end, or more than one."""
 
 
@@ -28,9 +29,9 @@ class Chain:
     branching: bool = False
 
 
-def chains(curves: Sequence[Curve], reach: float) -> list[Chain]:
+def find_chains(curves: Sequence[Curve], reach: float) -> list[Chain]:
     """Chain open curves whose ends lie within ``reach`` of exactly one other end."""
-    partner = _partners(curves, reach)
+    partner = _find_partners(curves, reach)
     seen: set[int] = set()
     found = []
     # Start at free ends: the curves that remain afterwards form rings.
@@ -43,44 +44,46 @@ def chains(curves: Sequence[Curve], reach: float) -> list[Chain]:
             seen.add(end // 2)
             one = curves[end // 2]
             # Entering a curve at its end means traversing it backwards.
-            members.append(one if end % 2 == 0 else backwards(one))
+            members.append(one if end % 2 == 0 else reverse_curve(one))
             # end ^ 1 is the other end of the same curve.
             end = int(partner[end ^ 1])
         closed = bool(partner[begin] >= 0)
-        found.append(Chain(members, closed, branching=not closed and BRANCH in (partner[begin], end)))
+        found.append(Chain(members, closed, branching=not closed and BRANCH_END in (partner[begin], end)))
     return found
 
 
-def joined(curves: Sequence[Curve], reach: float) -> tuple[list[list[Curve]], list[tuple[Curve, str]]]:
+def join_curves(curves: Sequence[Curve], reach: float) -> tuple[list[list[Curve]], list[tuple[Curve, str]]]:
     """Return the closed chains of open curves, and the remaining curves with the reason."""
     rings, alone = [], []
-    for chain in chains(curves, reach):
+    for chain in find_chains(curves, reach):
         if chain.closed:
             rings.append(chain.members)
         else:
-            alone += [(one, _reason(chain)) for one in chain.members]
+            alone += [(one, _describe_gap(chain)) for one in chain.members]
     return rings, alone
 
 
-def _partners(curves: Sequence[Curve], reach: float) -> NDArray[np.int64]:
+def _find_partners(curves: Sequence[Curve], reach: float) -> NDArray[np.int64]:
     """Return for each end the number of the end that it meets, or FREE, or BRANCH."""
     if not curves:
         return np.empty(0, np.int64)
     places = np.array([place for one in curves for place in (one.start, one.end)])
     # Of the nearest three one is the end itself; where all three are near, it is a branch.
-    looked = _thrice_at_most(places)
+    looked = _select_up_to_three(places)
     pairs = np.stack([places[looked].real, places[looked].imag], axis=1)
     away, near = cKDTree(pairs).query(pairs, k=3, distance_upper_bound=reach * (1.0 + 1e-9))
     count = np.isfinite(away).sum(axis=1)
     other = np.where(near[:, 0] == np.arange(len(looked)), near[:, 1], near[:, 0])
-    partner = np.full(len(places), BRANCH)
-    partner[looked] = np.where(count == 1, FREE, np.where(count == 2, looked[np.where(count == 2, other, 0)], BRANCH))
+    partner = np.full(len(places), BRANCH_END)
+    partner[looked] = np.where(
+        count == 1, FREE_END, np.where(count == 2, looked[np.where(count == 2, other, 0)], BRANCH_END)
+    )
     # An end with one neighbour whose neighbour has two is at the edge of a branch.
     mutual = (partner >= 0) & (partner[np.maximum(partner, 0)] == np.arange(len(places)))
-    return np.asarray(np.where((partner >= 0) & ~mutual, BRANCH, partner))
+    return np.asarray(np.where((partner >= 0) & ~mutual, BRANCH_END, partner))
 
 
-def _thrice_at_most(places: Complex) -> NDArray[np.int64]:
+def _select_up_to_three(places: Complex) -> NDArray[np.int64]:
     """Return the indices of the points without the fourth and later copies of equal points, which are branches anyway.
 
     A k-d tree with thousands of equal points would visit all of them for each query.
@@ -93,7 +96,7 @@ def _thrice_at_most(places: Complex) -> NDArray[np.int64]:
     return np.asarray(np.sort(order[~fourth]))
 
 
-def _reason(chain: Chain) -> str:
+def _describe_gap(chain: Chain) -> str:
     if chain.branching:
         return "more than two open elements meet at one point there"
     members = chain.members

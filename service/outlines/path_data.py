@@ -13,19 +13,20 @@ import numpy as np
 from ezdxf.math import cubic_bezier_arc_parameters
 from fontTools.svgLib.path import parse_path
 
-from service.outlines.curves import Complex, bezier, line, quadratic
-from service.outlines.faults import Unsuitable
-from service.outlines.limits import FARTHEST, MOST_PIECES
+from kinematics.arrays import Complex
+from service.outlines.curves import make_bezier, make_line, make_quadratic
+from service.outlines.faults import UnsuitableDrawing
+from service.outlines.limits import MAX_COORDINATE, MAX_PIECES
 
-ARC_SEGMENTS = 16
+SEGMENTS_PER_TURN = 16
 """Number of cubics for a full turn; their largest deviation from the circle is 7e-8 of the radius."""
 
-_NUMBER = re.compile(r"[\s,]*([+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)")
-_FLAG = re.compile(r"[\s,]*([01])")
-_COMMAND = re.compile(r"[\s,]*([A-Za-z])")
-_REST = re.compile(r"[\s,]*")
-_COUNTS = {"M": 2, "L": 2, "H": 1, "V": 1, "C": 6, "S": 4, "Q": 4, "T": 2, "A": 7, "Z": 0}
-_FLAGS = (3, 4)
+_NUMBER_PATTERN = re.compile(r"[\s,]*([+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)")
+_FLAG_PATTERN = re.compile(r"[\s,]*([01])")
+_COMMAND_PATTERN = re.compile(r"[\s,]*([A-Za-z])")
+_SEPARATOR_PATTERN = re.compile(r"[\s,]*")
+_ARGUMENT_COUNTS = {"M": 2, "L": 2, "H": 1, "V": 1, "C": 6, "S": 4, "Q": 4, "T": 2, "A": 7, "Z": 0}
+_FLAG_POSITIONS = (3, 4)
 """Positions of the single-digit flags among the arguments of an arc; no separator needs to follow them."""
 
 
@@ -54,19 +55,19 @@ class _Pen:
 
     def lineTo(self, point: tuple[float, float]) -> None:
         path = self.subpaths[-1]
-        path.add(line(path.end, complex(*point)))
+        path.add(make_line(path.end, complex(*point)))
 
     def curveTo(self, first: tuple[float, float], second: tuple[float, float], end: tuple[float, float]) -> None:
         path = self.subpaths[-1]
-        path.add(bezier(path.end, complex(*first), complex(*second), complex(*end)))
+        path.add(make_bezier(path.end, complex(*first), complex(*second), complex(*end)))
 
     def qCurveTo(self, control: tuple[float, float], end: tuple[float, float]) -> None:
         path = self.subpaths[-1]
-        path.add(quadratic(path.end, complex(*control), complex(*end)))
+        path.add(make_quadratic(path.end, complex(*control), complex(*end)))
 
     def arcTo(self, rx: float, ry: float, rotation: float, large: bool, sweep: bool, end: tuple[float, float]) -> None:
         path = self.subpaths[-1]
-        path.add(arc(path.end, complex(rx, ry), rotation, large, sweep, complex(*end)))
+        path.add(make_arc(path.end, complex(rx, ry), rotation, large, sweep, complex(*end)))
 
     def closePath(self) -> None:
         self.subpaths[-1].closed = True
@@ -75,7 +76,7 @@ class _Pen:
         """Do nothing: an open subpath needs no closing piece."""
 
 
-def subpaths_of(data: str) -> list[Subpath]:
+def parse_subpaths(data: str) -> list[Subpath]:
     """Parse SVG path data into subpaths.
 
     Raises
@@ -86,61 +87,61 @@ def subpaths_of(data: str) -> list[Subpath]:
         The path has more pieces than a drawing may have.
     """
     pen = _Pen()
-    tokens = list(_tokens(data))
+    tokens = list(_parse_tokens(data))
     # The longest command, an arc, has one letter and seven numbers.
-    if len(tokens) > 8 * MOST_PIECES:
-        raise Unsuitable(f"A path has more than {MOST_PIECES} pieces.")
+    if len(tokens) > 8 * MAX_PIECES:
+        raise UnsuitableDrawing(f"A path has more than {MAX_PIECES} pieces.")
     parse_path(" ".join(tokens), pen)
     return [path for path in pen.subpaths if path.pieces]
 
 
-def _tokens(data: str) -> Iterator[str]:
+def _parse_tokens(data: str) -> Iterator[str]:
     at, command = 0, ""
     end = len(data.rstrip())
-    while (at := _skipped(data, at)) < end:
-        if found := _COMMAND.match(data, at):
+    while (at := _skip_separators(data, at)) < end:
+        if found := _COMMAND_PATTERN.match(data, at):
             command, at = found[1], found.end()
-            if command.upper() not in _COUNTS:
+            if command.upper() not in _ARGUMENT_COUNTS:
                 raise ValueError(f"it has no command “{command}”, at character {at - 1}")
             yield command
             if command in "Zz":
                 continue
         elif not command or command in "Zz":
             raise ValueError(f"a command is missing at character {at}")
-        for k in range(_COUNTS[command.upper()]):
+        for k in range(_ARGUMENT_COUNTS[command.upper()]):
             # A flag is a single digit and may touch the following number.
-            pattern = _FLAG if command in "Aa" and k in _FLAGS else _NUMBER
+            pattern = _FLAG_PATTERN if command in "Aa" and k in _FLAG_POSITIONS else _NUMBER_PATTERN
             found = pattern.match(data, at)
             if found is None:
                 raise ValueError(f"a number is missing at character {at}")
             at = found.end()
-            yield found[1] if pattern is _FLAG else _spelt(found[1])
+            yield found[1] if pattern is _FLAG_PATTERN else _format_number(found[1])
 
 
-def _skipped(data: str, at: int) -> int:
-    found = _REST.match(data, at)
+def _skip_separators(data: str, at: int) -> int:
+    found = _SEPARATOR_PATTERN.match(data, at)
     return found.end() if found else at
 
 
-def _spelt(number: str) -> str:
+def _format_number(number: str) -> str:
     value = float(number)
-    if not abs(value) <= FARTHEST:
+    if not abs(value) <= MAX_COORDINATE:
         raise ValueError(f"the number {number[:20]} is too large")
     return repr(value)
 
 
-def arc(start: complex, radii: complex, rotation: float, large: bool, sweep: bool, end: complex) -> Complex:
+def make_arc(start: complex, radii: complex, rotation: float, large: bool, sweep: bool, end: complex) -> Complex:
     """Build an elliptical arc between two points as cubics, shape (k, 4); SVG 2, appendix B.2."""
     rx, ry = abs(radii.real), abs(radii.imag)
     if start == end or rx == 0.0 or ry == 0.0:
-        return line(start, end)
+        return make_line(start, end)
     turn = np.exp(1j * np.radians(rotation))
 
-    def unit(z: complex) -> complex:
+    def to_unit_circle(z: complex) -> complex:
         turned = z * turn.conjugate()
         return complex(turned.real / rx, turned.imag / ry)
 
-    half = unit(0.5 * (start - end))
+    half = to_unit_circle(0.5 * (start - end))
     # Radii that do not reach are made larger by one factor.
     grown = max(abs(half), 1.0)
     half /= grown
@@ -153,16 +154,16 @@ def arc(start: complex, radii: complex, rotation: float, large: bool, sweep: boo
         swept += 2.0 * np.pi
     elif not sweep and swept > 0.0:
         swept -= 2.0 * np.pi
-    cubics = unit_arc(float(np.angle(first)), swept) + centre
+    cubics = make_unit_arc(float(np.angle(first)), swept) + centre
     ellipse = grown * (cubics.real * rx + 1j * cubics.imag * ry) * turn
     placed = ellipse + 0.5 * (start + end)
     placed[0, 0], placed[-1, 3] = start, end
     return np.asarray(placed)
 
 
-def unit_arc(start: float, swept: float) -> Complex:
+def make_unit_arc(start: float, swept: float) -> Complex:
     """Build an arc of the unit circle as cubics, shape (k, 4); angles in radians, ``swept`` of either sign."""
-    count = max(int(np.ceil(abs(swept) / (2.0 * np.pi) * ARC_SEGMENTS)), 1)
+    count = max(int(np.ceil(abs(swept) / (2.0 * np.pi) * SEGMENTS_PER_TURN)), 1)
     # The library goes counter-clockwise; the mirror image goes the other way.
     way = 1.0 if swept >= 0.0 else -1.0
     found = cubic_bezier_arc_parameters(way * start, way * start + abs(swept), segments=count)

@@ -8,34 +8,46 @@ from typing import Any
 import numpy as np
 import shapely
 
-from service.outlines.answer import DrawingUnit, DrawnCircle, Outline, Outlines, sentence, short, told, told_left_out
-from service.outlines.curves import Circle, Complex, Curve, Source, flattened, steps
+from kinematics.arrays import Complex
+from service.outlines.answer import (
+    DrawingUnit,
+    DrawnCircle,
+    Outline,
+    Outlines,
+    describe_source,
+    format_sentence,
+    list_left_out,
+    truncate_text,
+)
+from service.outlines.curves import Circle, Curve, Source, count_chords, flatten_pieces
 from service.outlines.drawing import Drawing
-from service.outlines.faults import ForeignFormat, NoOutline, Unsuitable
-from service.outlines.formats import drawing_of, extent, placed
-from service.outlines.joining import joined
+from service.outlines.faults import ForeignFormat, NoOutline, UnsuitableDrawing
+from service.outlines.formats import convert_units, measure_extent, read_drawing
+from service.outlines.joining import join_curves
 from service.outlines.limits import (
     DEFAULT_TOLERANCE,
-    JOINED,
-    MOST_CORNERS,
-    MOST_OUTLINES,
-    MOST_POINTS,
+    JOIN_GAP_SHARE,
+    MAX_CORNERS,
+    MAX_OUTLINES,
+    MAX_POINTS,
 )
 
-FLAT = 1e-9
+AREA_TOLERANCE = 1e-9
 """Polygons with less than this share of the square of their extent have no area; same value as in problem statements.
 """
 
-SAME = 1e-12
+DUPLICATE_TOLERANCE = 1e-12
 """Relative distance up to which consecutive points are merged: rounding separated them."""
 
-ROUND = 5e-4
+ROUNDNESS_TOLERANCE = 5e-4
 """Largest deviation from a circle, as a share of its radius, of a closed curve that is read as one; four cubics satisfy
 it.
 """
 
 
-def outlines_of(content: bytes, *, tolerance: float | None = None, length_unit: DrawingUnit | None = None) -> Outlines:
+def read_outlines(
+    content: bytes, *, tolerance: float | None = None, length_unit: DrawingUnit | None = None
+) -> Outlines:
     """Read the closed outlines of a drawing.
 
     Parameters
@@ -55,33 +67,33 @@ def outlines_of(content: bytes, *, tolerance: float | None = None, length_unit: 
     """
     # Overflow is detected in the results (`Curve.finite`), so warnings would be noise.
     with np.errstate(all="ignore"):
-        drawing = drawing_of(content)
+        drawing = read_drawing(content)
         if drawing is None:
             raise ForeignFormat("The body is neither SVG nor the text form of DXF.")
-        return _found(drawing, tolerance, length_unit)
+        return _collect_outlines(drawing, tolerance, length_unit)
 
 
-def _found(drawing: Drawing, tolerance: float | None, length_unit: DrawingUnit | None) -> Outlines:
-    curves, left_out, scale, unit = placed(drawing, length_unit)
+def _collect_outlines(drawing: Drawing, tolerance: float | None, length_unit: DrawingUnit | None) -> Outlines:
+    curves, left_out, scale, unit = convert_units(drawing, length_unit)
     if tolerance is None:
-        tolerance = DEFAULT_TOLERANCE * (extent(curves) or 1.0)
-    found, open_ = _closed(curves, JOINED * tolerance)
+        tolerance = DEFAULT_TOLERANCE * (measure_extent(curves) or 1.0)
+    found, open_ = _find_closed(curves, JOIN_GAP_SHARE * tolerance)
     left_out += open_
-    if len(found) > MOST_OUTLINES:
-        raise Unsuitable(f"The drawing has {len(found)} closed outlines, more than {MOST_OUTLINES}.")
-    if sum(_vertices(members, tolerance) for members in found) > MOST_POINTS:
-        raise Unsuitable(
-            f"The outlines have more than {MOST_POINTS} vertices together at a tolerance of {tolerance:.4g}; "
+    if len(found) > MAX_OUTLINES:
+        raise UnsuitableDrawing(f"The drawing has {len(found)} closed outlines, more than {MAX_OUTLINES}.")
+    if sum(_count_vertices(members, tolerance) for members in found) > MAX_POINTS:
+        raise UnsuitableDrawing(
+            f"The outlines have more than {MAX_POINTS} vertices together at a tolerance of {tolerance:.4g}; "
             "give a larger one."
         )
     outlines = []
     for members in found:
         try:
-            outlines.append(_outline(members, tolerance))
+            outlines.append(_make_outline(members, tolerance))
         except ValueError as error:
             left_out.append((members[0].source, str(error)))
     if not outlines:
-        raise _none(left_out)
+        raise _describe_failure(left_out)
     return Outlines(
         format=drawing.format,
         millimetres_per_unit=drawing.millimetres,
@@ -89,17 +101,17 @@ def _found(drawing: Drawing, tolerance: float | None, length_unit: DrawingUnit |
         scale=scale,
         tolerance=tolerance,
         outlines=outlines,
-        left_out=told_left_out(left_out),
+        left_out=list_left_out(left_out),
         left_out_count=len(left_out),
     )
 
 
-def _closed(curves: Sequence[Curve], reach: float) -> tuple[list[list[Curve]], list[tuple[Source, str]]]:
+def _find_closed(curves: Sequence[Curve], reach: float) -> tuple[list[list[Curve]], list[tuple[Source, str]]]:
     """Return curves closed alone or by joining, in drawing order, and the sources of those that stay open."""
     closed = [[one] for one in curves if one.closed]
     # Elements shorter than the reach lie in gaps between others.
-    open_ = [one for one in curves if not one.closed and extent([one]) > reach]
-    chains, alone = joined(open_, reach)
+    open_ = [one for one in curves if not one.closed and measure_extent([one]) > reach]
+    chains, alone = join_curves(open_, reach)
     # Joined outlines take the place of their first element.
     place = {id(one): k for k, one in enumerate(curves)}
     first = {id(one.source): place[id(one)] for one in reversed(curves)}
@@ -107,14 +119,14 @@ def _closed(curves: Sequence[Curve], reach: float) -> tuple[list[list[Curve]], l
     return found, [(one.source, reason) for one, reason in alone]
 
 
-def _vertices(members: Sequence[Curve], tolerance: float) -> int:
-    return sum(int(steps(one.pieces, tolerance).sum()) for one in members if one.circle is None)
+def _count_vertices(members: Sequence[Curve], tolerance: float) -> int:
+    return sum(int(count_chords(one.pieces, tolerance).sum()) for one in members if one.circle is None)
 
 
-def _outline(members: Sequence[Curve], tolerance: float) -> Outline:
+def _make_outline(members: Sequence[Curve], tolerance: float) -> Outline:
     """Build the outline of closed curves; raise ValueError with the obstacle if they form none."""
-    named: dict[str, Any] = {**told(members[0].source), "joined": len(members)}
-    circle = members[0].circle or _circle(np.concatenate([one.pieces for one in members]), tolerance)
+    named: dict[str, Any] = {**describe_source(members[0].source), "joined": len(members)}
+    circle = members[0].circle or _fit_circle(np.concatenate([one.pieces for one in members]), tolerance)
     if circle is not None:
         if not circle.radius > 0.0:
             raise ValueError("it encloses no area")
@@ -122,30 +134,30 @@ def _outline(members: Sequence[Curve], tolerance: float) -> Outline:
         return Outline(
             **named, circle=DrawnCircle(center=centre, radius=circle.radius), area=float(np.pi * circle.radius**2)
         )
-    shape = _polygon(members, tolerance)
+    shape = _make_polygon(members, tolerance)
     # Too many corners: spend half the tolerance on flattening and half on simplification.
-    if len(shape.exterior.coords) > MOST_CORNERS + 1:
-        shape = _polygon(members, 0.5 * tolerance).simplify(0.5 * tolerance)
+    if len(shape.exterior.coords) > MAX_CORNERS + 1:
+        shape = _make_polygon(members, 0.5 * tolerance).simplify(0.5 * tolerance)
     corners = np.array(shapely.geometry.polygon.orient(shape).exterior.coords)[:-1]
-    if len(corners) > MOST_CORNERS:
-        raise ValueError(f"its polygon has {len(corners)} vertices, more than {MOST_CORNERS}; give a larger tolerance")
+    if len(corners) > MAX_CORNERS:
+        raise ValueError(f"its polygon has {len(corners)} vertices, more than {MAX_CORNERS}; give a larger tolerance")
     return Outline(**named, polygon=[(float(x), float(y)) for x, y in corners], area=float(shape.area))
 
 
-def _polygon(members: Sequence[Curve], tolerance: float) -> shapely.Polygon:
-    points = np.concatenate([flattened(one.pieces, tolerance)[:-1] for one in members])
-    points = points[np.abs(points - np.roll(points, 1)) > SAME * np.abs(points).max()]
+def _make_polygon(members: Sequence[Curve], tolerance: float) -> shapely.Polygon:
+    points = np.concatenate([flatten_pieces(one.pieces, tolerance)[:-1] for one in members])
+    points = points[np.abs(points - np.roll(points, 1)) > DUPLICATE_TOLERANCE * np.abs(points).max()]
     if len(points) < 3:
         raise ValueError("it encloses no area")
     shape = shapely.Polygon(np.stack([points.real, points.imag], axis=1))
-    if shape.convex_hull.area <= FLAT * extent(members) ** 2:
+    if shape.convex_hull.area <= AREA_TOLERANCE * measure_extent(members) ** 2:
         raise ValueError("it encloses no area")
     if not shape.is_valid:
         raise ValueError(f"it meets itself ({shapely.is_valid_reason(shape)})")
     return shape
 
 
-def _circle(pieces: Complex, tolerance: float) -> Circle | None:
+def _fit_circle(pieces: Complex, tolerance: float) -> Circle | None:
     """Return the circle that a closed curve traces (two bulges, arcs or four cubics), or None."""
     chord = pieces[:, 3] - pieces[:, 0]
     bent = np.abs(pieces[:, 1] - pieces[:, 0] - chord / 3.0)
@@ -163,18 +175,23 @@ def _circle(pieces: Complex, tolerance: float) -> Circle | None:
     radius = float(np.sqrt(max(rest + x**2 + y**2, 0.0)))
     # The fit must match in radius and go around exactly once.
     away = np.abs(np.abs(z - complex(x, y)) - radius).max()
-    if not away <= min(ROUND * radius, tolerance) or abs(abs(_turns(z - complex(x, y))) - 1.0) > 1e-6:
+    if (
+        not away <= min(ROUNDNESS_TOLERANCE * radius, tolerance)
+        or abs(abs(_count_turns(z - complex(x, y))) - 1.0) > 1e-6
+    ):
         return None
     return Circle(complex(origin + complex(x, y)), radius)
 
 
-def _turns(points: Complex) -> float:
+def _count_turns(points: Complex) -> float:
     """Return the winding number of a ring of points about the origin."""
     return float(np.angle(np.roll(points, -1) / points).sum() / (2.0 * np.pi))
 
 
-def _none(left_out: Sequence[tuple[Source, str]]) -> NoOutline:
-    reasons = [(short(source.id or source.element) or "", sentence(reason)) for source, reason in left_out]
+def _describe_failure(left_out: Sequence[tuple[Source, str]]) -> NoOutline:
+    reasons = [
+        (truncate_text(source.id or source.element) or "", format_sentence(reason)) for source, reason in left_out
+    ]
     if not reasons:
         return NoOutline("The drawing has no closed outline: it draws nothing.", [])
     count = "One element is" if len(reasons) == 1 else f"{len(reasons)} elements are"

@@ -8,14 +8,14 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable
 from typing import Any
 
-from service.outlines.faults import Unsuitable
-from service.outlines.limits import MOST_DEPTH, MOST_ELEMENTS
+from service.outlines.faults import UnsuitableDrawing
+from service.outlines.limits import MAX_DEPTH, MAX_ELEMENTS
 
 Shown = Callable[[Any], bool]
 
 
 def require_countable(entities: Iterable[Any], shown: Shown) -> None:
-    """Refuse entities that are more than :data:`~service.outlines.limits.MOST_ELEMENTS` with those of their blocks.
+    """Refuse entities that are more than :data:`~service.outlines.limits.MAX_ELEMENTS` with those of their blocks.
 
     Parameters
     ----------
@@ -29,8 +29,10 @@ def require_countable(entities: Iterable[Any], shown: Shown) -> None:
     Unsuitable
         Also for blocks that lie too deep in one another, or in themselves.
     """
-    if _Counter(shown).count(entities, 0) > MOST_ELEMENTS:
-        raise Unsuitable(f"The drawing has more than {MOST_ELEMENTS} entities, counting each insertion of a block.")
+    if _Counter(shown).count(entities, 0) > MAX_ELEMENTS:
+        raise UnsuitableDrawing(
+            f"The drawing has more than {MAX_ELEMENTS} entities, counting each insertion of a block."
+        )
 
 
 def grid_of(insert: Any) -> tuple[int, int]:
@@ -63,8 +65,8 @@ class _Counter:
         if block is None:
             return 0
         name = str(block.name).lower()
-        if name in self._open or depth >= MOST_DEPTH:
-            raise Unsuitable(f"The drawing has blocks more than {MOST_DEPTH} deep in one another.")
+        if name in self._open or depth >= MAX_DEPTH:
+            raise UnsuitableDrawing(f"The drawing has blocks more than {MAX_DEPTH} deep in one another.")
         if name not in self._counts:
             self._open.add(name)
             self._counts[name] = self.count(block, depth + 1)

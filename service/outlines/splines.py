@@ -8,19 +8,19 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.interpolate import BSpline
 
-from service.outlines.curves import Complex
+from kinematics.arrays import Complex
 
-HIGHEST_DEGREE = 15
+MAX_DEGREE = 15
 """Highest degree that is read; drawings use 3, seldom 5."""
 
-MOST_CUBICS = 64
+MAX_CUBICS = 64
 """Maximum number of cubics for one knot span."""
 
-TRUE = 1e-6
+SPLINE_TOLERANCE = 1e-6
 """Largest deviation of the cubics from the spline as a share of its extent; far below any flattening tolerance."""
 
 
-def cubics(degree: int, knots: Sequence[float], points: Complex, weights: Sequence[float]) -> Complex:
+def convert_spline(degree: int, knots: Sequence[float], points: Complex, weights: Sequence[float]) -> Complex:
     """Convert a B-spline to cubics with its points and tangents at their ends, shape (n, 4).
 
     Each span between knots takes as many as keep to the spline in their middles; splines of the third degree that are
@@ -40,7 +40,7 @@ def cubics(degree: int, knots: Sequence[float], points: Complex, weights: Sequen
         The numbers do not define a spline, or it bends too sharply.
     """
     t, w = np.array(knots, float), np.array(weights, float)
-    if not 1 <= degree <= HIGHEST_DEGREE or len(points) <= degree or len(t) != len(points) + degree + 1:
+    if not 1 <= degree <= MAX_DEGREE or len(points) <= degree or len(t) != len(points) + degree + 1:
         raise ValueError("it has a number of knots, or a degree, that no spline has")
     if not (np.isfinite(t).all() and np.isfinite(w).all() and np.all(np.diff(t) >= 0.0) and w.min() > 0.0):
         raise ValueError("its knots do not ascend, or its weights are not positive")
@@ -52,29 +52,29 @@ def cubics(degree: int, knots: Sequence[float], points: Complex, weights: Sequen
         raise ValueError("its knots span nothing")
     extent = float(np.abs(points - points[0]).max())
     count = 1
-    while count <= MOST_CUBICS:
+    while count <= MAX_CUBICS:
         ends = np.unique(spans[:-1, None] + np.diff(spans)[:, None] * np.linspace(0.0, 1.0, count + 1))
         low, high = ends[:-1], ends[1:]
         # At a knot the tangent may jump: evaluate it slightly inside the span.
         inside = 1e-9 * (high - low)
-        start, end = _at(curve, low), _at(curve, high)
-        first = _slope(curve, slope, low + inside) * (high - low) / 3.0
-        last = _slope(curve, slope, high - inside) * (high - low) / 3.0
+        start, end = _evaluate(curve, low), _evaluate(curve, high)
+        first = _evaluate_slope(curve, slope, low + inside) * (high - low) / 3.0
+        last = _evaluate_slope(curve, slope, high - inside) * (high - low) / 3.0
         found = np.stack([start, start + first, end - last, end], axis=1)
         middle = found @ np.array([1.0, 3.0, 3.0, 1.0]) / 8.0
-        if np.abs(middle - _at(curve, 0.5 * (low + high))).max() <= TRUE * extent:
+        if np.abs(middle - _evaluate(curve, 0.5 * (low + high))).max() <= SPLINE_TOLERANCE * extent:
             return np.asarray(found)
         # Not accurate enough: double the cubics in every span.
         count *= 2
     raise ValueError("it bends too sharply to be followed")
 
 
-def _at(curve: BSpline, t: NDArray[np.float64]) -> Complex:
+def _evaluate(curve: BSpline, t: NDArray[np.float64]) -> Complex:
     x, y, w = curve(t).T
     return np.asarray((x + 1j * y) / w)
 
 
-def _slope(curve: BSpline, slope: BSpline, t: NDArray[np.float64]) -> Complex:
+def _evaluate_slope(curve: BSpline, slope: BSpline, t: NDArray[np.float64]) -> Complex:
     _, _, w = curve(t).T
     dx, dy, dw = slope(t).T
-    return np.asarray((dx + 1j * dy - dw * _at(curve, t)) / w)
+    return np.asarray((dx + 1j * dy - dw * _evaluate(curve, t)) / w)

@@ -8,36 +8,53 @@ from dataclasses import replace
 
 import numpy as np
 
-from service.outlines.affine import NUMBER, Affine, transform_of
-from service.outlines.curves import NONE, Circle, Complex, Curve, Source, polyline
+from kinematics.arrays import Complex
+from service.outlines.affine import NUMBER_PATTERN, Affine, parse_transform
+from service.outlines.curves import NO_PIECES, Circle, Curve, Source, make_polyline
 from service.outlines.drawing import Drawing
-from service.outlines.faults import Malformed, Unsuitable
-from service.outlines.limits import MOST_DEPTH, MOST_ELEMENTS, MOST_PIECES
-from service.outlines.path_data import subpaths_of, unit_arc
-from service.outlines.xml_tree import Node, parsed
+from service.outlines.faults import MalformedDrawing, UnsuitableDrawing
+from service.outlines.limits import MAX_DEPTH, MAX_ELEMENTS, MAX_PIECES
+from service.outlines.path_data import make_unit_arc, parse_subpaths
+from service.outlines.xml_tree import Node, parse_xml
 
-SVG = "http://www.w3.org/2000/svg"
-INKSCAPE = "http://www.inkscape.org/namespaces/inkscape"
-XLINK = "http://www.w3.org/1999/xlink"
+SVG_NAMESPACE = "http://www.w3.org/2000/svg"
+INKSCAPE_NAMESPACE = "http://www.inkscape.org/namespaces/inkscape"
+XLINK_NAMESPACE = "http://www.w3.org/1999/xlink"
 
-MILLIMETRES = {"mm": 1.0, "cm": 10.0, "in": 25.4, "pt": 25.4 / 72.0, "pc": 25.4 / 6.0, "Q": 0.25}
+MILLIMETRES_PER_UNIT = {"mm": 1.0, "cm": 10.0, "in": 25.4, "pt": 25.4 / 72.0, "pc": 25.4 / 6.0, "Q": 0.25}
 """Millimetres in an absolute unit. Pixels are omitted: they are the unit of drawings that have no physical size."""
 
-PIXELS = {"px": 1.0, "": 1.0, **{unit: length * 96.0 / 25.4 for unit, length in MILLIMETRES.items()}}
+PIXELS_PER_UNIT = {"px": 1.0, "": 1.0, **{unit: length * 96.0 / 25.4 for unit, length in MILLIMETRES_PER_UNIT.items()}}
 """User units in each length unit."""
 
-_LENGTH = re.compile(rf"\s*({NUMBER})\s*([A-Za-z%]*)\s*")
-_NUMBERS = re.compile(rf"[\s,]*+(?:{NUMBER}[\s,]*+)*+")
-_HIDDEN = re.compile(r"(?:^|;)\s*display\s*:\s*none\b")
+_LENGTH_PATTERN = re.compile(rf"\s*({NUMBER_PATTERN})\s*([A-Za-z%]*)\s*")
+_NUMBER_LIST_PATTERN = re.compile(rf"[\s,]*+(?:{NUMBER_PATTERN}[\s,]*+)*+")
+_HIDDEN_PATTERN = re.compile(r"(?:^|;)\s*display\s*:\s*none\b")
 
-_SHARES = {"xMin": 0.0, "YMin": 0.0, "xMax": 1.0, "YMax": 1.0}
+_ALIGNMENT_SHARES = {"xMin": 0.0, "YMin": 0.0, "xMax": 1.0, "YMax": 1.0}
 """Share of the free space before a view box, by the alignment keyword; centred (0.5) by default."""
 
-GROUPS = {"svg", "g", "a", "switch"}
-UNSEEN = {"defs", "symbol", "clipPath", "mask", "marker", "pattern", "style", "script", "title", "desc", "metadata"}
+GROUP_ELEMENTS = {"svg", "g", "a", "switch"}
+INVISIBLE_ELEMENTS = {
+    "defs",
+    "symbol",
+    "clipPath",
+    "mask",
+    "marker",
+    "pattern",
+    "style",
+    "script",
+    "title",
+    "desc",
+    "metadata",
+}
 """Elements that draw nothing in place. Gradients, filters and the like contain no shapes."""
 
-OPAQUE = {"text": "it is text; turn it into paths", "image": "it is a picture", "foreignObject": "it is no shape"}
+UNSUPPORTED_ELEMENTS = {
+    "text": "it is text; turn it into paths",
+    "image": "it is a picture",
+    "foreignObject": "it is no shape",
+}
 
 
 class SvgReader:
@@ -61,44 +78,44 @@ class SvgReader:
     def visit(self, node: Node, above: Affine, layer: str | None, depth: int) -> None:
         """Read an element and its children; ``above`` maps the coordinates of its parent to the drawing."""
         self.visited += 1
-        if self.visited > MOST_ELEMENTS:
-            raise Unsuitable(f"The drawing has more than {MOST_ELEMENTS} elements, counting every use.")
-        if depth > MOST_DEPTH:
-            raise Unsuitable(f"The drawing nests groups or uses more than {MOST_DEPTH} deep.")
+        if self.visited > MAX_ELEMENTS:
+            raise UnsuitableDrawing(f"The drawing has more than {MAX_ELEMENTS} elements, counting every use.")
+        if depth > MAX_DEPTH:
+            raise UnsuitableDrawing(f"The drawing nests groups or uses more than {MAX_DEPTH} deep.")
         space, _, name = node.name.rpartition(" ")
-        if space not in (SVG, "") or name in UNSEEN or _hidden(node):
+        if space not in (SVG_NAMESPACE, "") or name in INVISIBLE_ELEMENTS or _is_hidden(node):
             return
-        source = Source(name, node.attributes.get("id"), _name_of(node), layer)
+        source = Source(name, node.attributes.get("id"), _get_name(node), layer)
         try:
-            place = above @ transform_of(node.attributes.get("transform", ""))
-            if name in GROUPS:
+            place = above @ parse_transform(node.attributes.get("transform", ""))
+            if name in GROUP_ELEMENTS:
                 if name == "svg" and depth:
-                    place = place @ _inner(node, node)
-                below = _layer_of(node) or layer
+                    place = place @ _map_inner(node, node)
+                below = _get_layer(node) or layer
                 for child in node.children:
                     self.visit(child, place, below, depth + 1)
             elif name == "use":
                 self.use(node, place, layer, depth)
-            elif name in OPAQUE:
-                raise ValueError(OPAQUE[name])
-            elif name in SHAPES:
-                for curve in SHAPES[name](node):
+            elif name in UNSUPPORTED_ELEMENTS:
+                raise ValueError(UNSUPPORTED_ELEMENTS[name])
+            elif name in SHAPE_READERS:
+                for curve in SHAPE_READERS[name](node):
                     self.add(replace(curve, source=source), place)
         except ValueError as error:
-            if isinstance(error, (Unsuitable, Malformed)):
+            if isinstance(error, (UnsuitableDrawing, MalformedDrawing)):
                 raise
             self.left_out.append((source, str(error)))
 
     def use(self, node: Node, place: Affine, layer: str | None, depth: int) -> None:
         """Read the element that a ``use`` refers to."""
-        link = node.attributes.get("href", node.attributes.get(f"{XLINK} href", ""))
+        link = node.attributes.get("href", node.attributes.get(f"{XLINK_NAMESPACE} href", ""))
         used = self.by_id.get(link[1:]) if link.startswith("#") else None
         if used is None:
             raise ValueError("it uses something that is not in the drawing")
-        place = place @ Affine(shift=complex(_length(node, "x"), _length(node, "y")))
+        place = place @ Affine(shift=complex(_read_length(node, "x"), _read_length(node, "y")))
         if used.name.rpartition(" ")[2] != "symbol":
             return self.visit(used, place, layer, depth + 1)
-        place = place @ _inner(used, node, used)
+        place = place @ _map_inner(used, node, used)
         for child in used.children:
             self.visit(child, place, layer, depth + 1)
         return None
@@ -106,19 +123,19 @@ class SvgReader:
     def add(self, curve: Curve, place: Affine) -> None:
         """Append a curve given in the coordinates of its element; ``place`` maps them to the drawing."""
         self.pieces += max(len(curve.pieces), 1)
-        if self.pieces > MOST_PIECES:
-            raise Unsuitable(f"The drawing has more than {MOST_PIECES} lines and curves.")
+        if self.pieces > MAX_PIECES:
+            raise UnsuitableDrawing(f"The drawing has more than {MAX_PIECES} lines and curves.")
         # A circle stays an exact circle under similarities; otherwise it becomes cubics.
         if curve.circle is not None:
             centre, radius = curve.circle.centre, curve.circle.radius
             if (larger := place.enlargement) is not None:
                 circle = Circle(complex(place(np.array(centre))), larger * radius)
                 return self.found.append(replace(curve, circle=circle))
-            curve = replace(curve, circle=None, pieces=centre + radius * unit_arc(0.0, 2.0 * np.pi))
+            curve = replace(curve, circle=None, pieces=centre + radius * make_unit_arc(0.0, 2.0 * np.pi))
         return self.found.append(replace(curve, pieces=place(curve.pieces)))
 
 
-def curves_of(content: bytes) -> Drawing:
+def read_curves(content: bytes) -> Drawing:
     """Read the curves of the drawing.
 
     Raises
@@ -128,58 +145,58 @@ def curves_of(content: bytes) -> Drawing:
     Unsuitable
         The drawing exceeds the limits.
     """
-    root = parsed(content)
-    if root.name not in (f"{SVG} svg", "svg"):
-        raise Malformed("The drawing is XML, but its root element is not <svg>.")
-    place, unit = _page(root)
+    root = parse_xml(content)
+    if root.name not in (f"{SVG_NAMESPACE} svg", "svg"):
+        raise MalformedDrawing("The drawing is XML, but its root element is not <svg>.")
+    place, unit = _map_page(root)
     reader = SvgReader(root)
     reader.visit(root, place, None, 0)
     return Drawing("svg", reader.found, reader.left_out, unit)
 
 
-def _page(root: Node) -> tuple[Affine, float | None]:
+def _map_page(root: Node) -> tuple[Affine, float | None]:
     """Return the map from user units to the drawing, and the millimetres in a user unit (None if unknown).
 
     The drawing keeps user units, and has its origin at the lower left corner of the page. Where the page is stretched
     one way more than the other, the smaller stretch is the unit.
     """
-    width, height = (_stated(root.attributes.get(name, "")) for name in ("width", "height"))
-    box = _numbers(root.attributes.get("viewBox", ""), "its viewBox")
+    width, height = (_parse_length(root.attributes.get(name, "")) for name in ("width", "height"))
+    box = _parse_numbers(root.attributes.get("viewBox", ""), "its viewBox")
     if box and (len(box) != 4 or min(box[2:]) <= 0.0):
-        raise Malformed("The viewBox of the drawing is not four numbers with a width and a height.")
-    tall = box[3] if box else height[0] * PIXELS[height[1]] if height else 0.0
+        raise MalformedDrawing("The viewBox of the drawing is not four numbers with a width and a height.")
+    tall = box[3] if box else height[0] * PIXELS_PER_UNIT[height[1]] if height else 0.0
     left, top = box[:2] if box else (0.0, 0.0)
     if not box:
         # Without a view box a user unit is a pixel; its physical size is unknown.
-        return Affine.of_matrix(1.0, 0.0, 0.0, -1.0, 0.0, tall), None
+        return Affine.from_matrix(1.0, 0.0, 0.0, -1.0, 0.0, tall), None
     spans = ((width, box[2]), (height, box[3]))
-    scales = [stated[0] * PIXELS[stated[1]] / span if stated else None for stated, span in spans]
+    scales = [stated[0] * PIXELS_PER_UNIT[stated[1]] / span if stated else None for stated, span in spans]
     known = [scale for scale in scales if scale]
     least = min(known, default=1.0)
     across, up = 1.0, 1.0
     # Only "none" stretches the view box; otherwise the smaller scale applies to both directions.
     if len(known) == 2 and root.attributes.get("preserveAspectRatio", "").split()[:1] == ["none"]:
         across, up = known[0] / least, known[1] / least
-    absolute = [stated for stated in (width, height) if stated and stated[1] in MILLIMETRES]
+    absolute = [stated for stated in (width, height) if stated and stated[1] in MILLIMETRES_PER_UNIT]
     # CSS defines 96 px per inch.
     unit = least * 25.4 / 96.0 if absolute else None
-    return Affine.of_matrix(across, 0.0, 0.0, -up, -across * left, up * (top + tall)), unit
+    return Affine.from_matrix(across, 0.0, 0.0, -up, -across * left, up * (top + tall)), unit
 
 
-def _inner(node: Node, *sized: Node) -> Affine:
+def _map_inner(node: Node, *sized: Node) -> Affine:
     """Return the map from a nested drawing or a symbol to the coordinates around it.
 
     Its view box is fitted into a rectangle with the first width and the first height that ``sized`` give (SVG 2,
     section 8.2). Content outside the rectangle is not clipped.
     """
-    corner = Affine(shift=complex(_length(node, "x"), _length(node, "y")))
-    box = _numbers(node.attributes.get("viewBox", ""), "its view box")
+    corner = Affine(shift=complex(_read_length(node, "x"), _read_length(node, "y")))
+    box = _parse_numbers(node.attributes.get("viewBox", ""), "its view box")
     if not box:
         return corner
     if len(box) != 4 or min(box[2:]) <= 0.0:
         raise ValueError("its view box is not four numbers with a width and a height")
     width, height = (
-        next((_length(one, name) for one in sized if name in one.attributes), 0.0) for name in ("width", "height")
+        next((_read_length(one, name) for one in sized if name in one.attributes), 0.0) for name in ("width", "height")
     )
     if width <= 0.0 or height <= 0.0:
         raise ValueError("it has a view box, and a width or height that depends on the page")
@@ -187,123 +204,127 @@ def _inner(node: Node, *sized: Node) -> Affine:
     across, down = width / box[2], height / box[3]
     if align != "none":
         across = down = max(across, down) if way.strip() == "slice" else min(across, down)
-    left = _SHARES.get(align[:4], 0.5) * (width - across * box[2])
-    top = _SHARES.get(align[4:], 0.5) * (height - down * box[3])
-    return corner @ Affine.of_matrix(across, 0.0, 0.0, down, left - across * box[0], top - down * box[1])
+    left = _ALIGNMENT_SHARES.get(align[:4], 0.5) * (width - across * box[2])
+    top = _ALIGNMENT_SHARES.get(align[4:], 0.5) * (height - down * box[3])
+    return corner @ Affine.from_matrix(across, 0.0, 0.0, down, left - across * box[0], top - down * box[1])
 
 
-def _stated(text: str) -> tuple[float, str] | None:
+def _parse_length(text: str) -> tuple[float, str] | None:
     """Parse a length with its unit; return None if it is missing or relative to the window."""
-    found = _LENGTH.fullmatch(text)
-    if not found or found[2] not in PIXELS or not 0.0 < float(found[1]) < float("inf"):
+    found = _LENGTH_PATTERN.fullmatch(text)
+    if not found or found[2] not in PIXELS_PER_UNIT or not 0.0 < float(found[1]) < float("inf"):
         return None
     return float(found[1]), found[2]
 
 
-def _length(node: Node, name: str, default: float = 0.0) -> float:
+def _read_length(node: Node, name: str, default: float = 0.0) -> float:
     """Return an attribute in user units."""
     if name not in node.attributes:
         return default
-    found = _LENGTH.fullmatch(node.attributes[name])
-    if not found or found[2] not in PIXELS:
+    found = _LENGTH_PATTERN.fullmatch(node.attributes[name])
+    if not found or found[2] not in PIXELS_PER_UNIT:
         raise ValueError(f"its {name} is no length, or one that depends on the page")
-    return float(found[1]) * PIXELS[found[2]]
+    return float(found[1]) * PIXELS_PER_UNIT[found[2]]
 
 
-def _numbers(text: str, what: str) -> list[float]:
-    if not _NUMBERS.fullmatch(text):
+def _parse_numbers(text: str, what: str) -> list[float]:
+    if not _NUMBER_LIST_PATTERN.fullmatch(text):
         raise (
-            Malformed(f"The numbers of {what} cannot be read.")
+            MalformedDrawing(f"The numbers of {what} cannot be read.")
             if what == "its viewBox"
             else ValueError(f"the numbers of {what} cannot be read")
         )
-    return [float(number) for number in re.findall(NUMBER, text)]
+    return [float(number) for number in re.findall(NUMBER_PATTERN, text)]
 
 
-def _hidden(node: Node) -> bool:
-    return node.attributes.get("display") == "none" or bool(_HIDDEN.search(node.attributes.get("style", "")))
+def _is_hidden(node: Node) -> bool:
+    return node.attributes.get("display") == "none" or bool(_HIDDEN_PATTERN.search(node.attributes.get("style", "")))
 
 
-def _name_of(node: Node) -> str | None:
+def _get_name(node: Node) -> str | None:
     title = next((child for child in node.children if child.name.rpartition(" ")[2] == "title"), None)
-    told = node.attributes.get(f"{INKSCAPE} label") or "".join(title.text if title else []).strip()
+    told = node.attributes.get(f"{INKSCAPE_NAMESPACE} label") or "".join(title.text if title else []).strip()
     return told or None
 
 
-def _layer_of(node: Node) -> str | None:
+def _get_layer(node: Node) -> str | None:
     """Return the layer name of a group: its own name or id."""
-    return _name_of(node) or node.attributes.get("id")
+    return _get_name(node) or node.attributes.get("id")
 
 
-_BLANK = Source("")
+_BLANK_SOURCE = Source("")
 
 
-def _path(node: Node) -> Iterator[Curve]:
+def _read_path(node: Node) -> Iterator[Curve]:
     try:
-        subpaths = subpaths_of(node.attributes.get("d", ""))
+        subpaths = parse_subpaths(node.attributes.get("d", ""))
     except ValueError as error:
-        raise (error if isinstance(error, Unsuitable) else ValueError(f"its path data is wrong: {error}")) from None
+        raise (
+            error if isinstance(error, UnsuitableDrawing) else ValueError(f"its path data is wrong: {error}")
+        ) from None
     for subpath in subpaths:
-        yield Curve(_BLANK, np.concatenate(subpath.pieces), subpath.closed)
+        yield Curve(_BLANK_SOURCE, np.concatenate(subpath.pieces), subpath.closed)
 
 
-def _polygon(node: Node) -> Iterator[Curve]:
-    numbers = _numbers(node.attributes.get("points", ""), "its points")
+def _read_polygon(node: Node) -> Iterator[Curve]:
+    numbers = _parse_numbers(node.attributes.get("points", ""), "its points")
     if len(numbers) % 2 or len(numbers) < 4:
         raise ValueError("its points are not pairs of numbers, two at least")
     points = np.array(numbers[::2]) + 1j * np.array(numbers[1::2])
     closed = node.name.endswith("polygon")
-    yield Curve(_BLANK, polyline(np.append(points, points[0]) if closed else points), closed)
+    yield Curve(_BLANK_SOURCE, make_polyline(np.append(points, points[0]) if closed else points), closed)
 
 
-def _line(node: Node) -> Iterator[Curve]:
-    ends = [complex(_length(node, f"x{k}"), _length(node, f"y{k}")) for k in (1, 2)]
-    yield Curve(_BLANK, polyline(np.array(ends)), False)
+def _read_line(node: Node) -> Iterator[Curve]:
+    ends = [complex(_read_length(node, f"x{k}"), _read_length(node, f"y{k}")) for k in (1, 2)]
+    yield Curve(_BLANK_SOURCE, make_polyline(np.array(ends)), False)
 
 
-def _circle(node: Node) -> Iterator[Curve]:
-    radius = _length(node, "r")
+def _read_circle(node: Node) -> Iterator[Curve]:
+    radius = _read_length(node, "r")
     if radius > 0.0:
-        yield Curve(_BLANK, NONE, True, Circle(complex(_length(node, "cx"), _length(node, "cy")), radius))
+        yield Curve(
+            _BLANK_SOURCE, NO_PIECES, True, Circle(complex(_read_length(node, "cx"), _read_length(node, "cy")), radius)
+        )
 
 
-def _ellipse(node: Node) -> Iterator[Curve]:
-    rx = _length(node, "rx", _length(node, "ry"))
-    ry = _length(node, "ry", rx)
-    centre = complex(_length(node, "cx"), _length(node, "cy"))
+def _read_ellipse(node: Node) -> Iterator[Curve]:
+    rx = _read_length(node, "rx", _read_length(node, "ry"))
+    ry = _read_length(node, "ry", rx)
+    centre = complex(_read_length(node, "cx"), _read_length(node, "cy"))
     if rx > 0.0 and rx == ry:
-        yield Curve(_BLANK, NONE, True, Circle(centre, rx))
+        yield Curve(_BLANK_SOURCE, NO_PIECES, True, Circle(centre, rx))
     elif rx > 0.0 and ry > 0.0:
-        turn = unit_arc(0.0, 2.0 * np.pi)
-        yield Curve(_BLANK, centre + rx * turn.real + 1j * ry * turn.imag, True)
+        turn = make_unit_arc(0.0, 2.0 * np.pi)
+        yield Curve(_BLANK_SOURCE, centre + rx * turn.real + 1j * ry * turn.imag, True)
 
 
-def _rect(node: Node) -> Iterator[Curve]:
-    corner = complex(_length(node, "x"), _length(node, "y"))
-    width, height = _length(node, "width"), _length(node, "height")
+def _read_rect(node: Node) -> Iterator[Curve]:
+    corner = complex(_read_length(node, "x"), _read_length(node, "y"))
+    width, height = _read_length(node, "width"), _read_length(node, "height")
     if width <= 0.0 or height <= 0.0:
         return
-    rx = _length(node, "rx", _length(node, "ry"))
-    ry = _length(node, "ry", rx)
+    rx = _read_length(node, "rx", _read_length(node, "ry"))
+    ry = _read_length(node, "ry", rx)
     rx, ry = min(max(rx, 0.0), 0.5 * width), min(max(ry, 0.0), 0.5 * height)
     if rx == 0.0 or ry == 0.0:
         corners = corner + np.array([0.0, width, complex(width, height), 1j * height, 0.0])
-        yield Curve(_BLANK, polyline(corners), True)
+        yield Curve(_BLANK_SOURCE, make_polyline(corners), True)
         return
     # Quarter turns about the centres of its corners, and sides between them.
     centres = [complex(width - rx, ry), complex(width - rx, height - ry), complex(rx, height - ry), complex(rx, ry)]
     pieces: list[Complex] = []
     for k, centre in enumerate(centres):
-        quarter = unit_arc((k - 1) * 0.5 * np.pi, 0.5 * np.pi)
+        quarter = make_unit_arc((k - 1) * 0.5 * np.pi, 0.5 * np.pi)
         rounded = corner + centre + rx * quarter.real + 1j * ry * quarter.imag
         if pieces:
-            pieces.append(polyline(np.array([pieces[-1][-1, 3], rounded[0, 0]])))
+            pieces.append(make_polyline(np.array([pieces[-1][-1, 3], rounded[0, 0]])))
         pieces.append(rounded)
-    pieces.append(polyline(np.array([pieces[-1][-1, 3], pieces[0][0, 0]])))
-    yield Curve(_BLANK, np.concatenate(pieces), True)
+    pieces.append(make_polyline(np.array([pieces[-1][-1, 3], pieces[0][0, 0]])))
+    yield Curve(_BLANK_SOURCE, np.concatenate(pieces), True)
 
 
-SHAPES = {
-    "path": _path, "polygon": _polygon, "polyline": _polygon, "line": _line, "circle": _circle, "ellipse": _ellipse,
-    "rect": _rect,
+SHAPE_READERS = {
+    "path": _read_path, "polygon": _read_polygon, "polyline": _read_polygon, "line": _read_line,
+    "circle": _read_circle, "ellipse": _read_ellipse, "rect": _read_rect,
 }  # fmt: skip

@@ -5,13 +5,13 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from xml.parsers import expat
 
-from service.outlines.faults import Malformed, Unsuitable
-from service.outlines.limits import MOST_DEPTH, MOST_ELEMENTS
+from service.outlines.faults import MalformedDrawing, UnsuitableDrawing
+from service.outlines.limits import MAX_DEPTH, MAX_ELEMENTS
 
-DEEPEST = 4 * MOST_DEPTH
+MAX_NESTING = 4 * MAX_DEPTH
 """Maximum nesting depth of elements of all kinds."""
 
-MOST_ATTRIBUTES = 64
+MAX_ATTRIBUTES = 64
 """Maximum number of attributes of an element."""
 
 
@@ -25,7 +25,7 @@ class Node:
     text: list[str] = field(default_factory=list)
 
 
-def parsed(content: bytes) -> Node:
+def parse_xml(content: bytes) -> Node:
     """Parse a document and return its root.
 
     Raises
@@ -44,41 +44,41 @@ def parsed(content: bytes) -> Node:
     roots: list[Node] = []
     count = 0
 
-    def begin(name: str, attributes: dict[str, str]) -> None:
+    def start_element(name: str, attributes: dict[str, str]) -> None:
         nonlocal count
         count += 1
-        if count > MOST_ELEMENTS:
-            raise Unsuitable(f"The drawing has more than {MOST_ELEMENTS} elements.")
-        if len(open_) >= DEEPEST:
-            raise Unsuitable(f"The drawing has more than {DEEPEST} elements within one another.")
-        if len(attributes) > MOST_ATTRIBUTES:
-            raise Unsuitable(f"An element of the drawing has more than {MOST_ATTRIBUTES} attributes.")
+        if count > MAX_ELEMENTS:
+            raise UnsuitableDrawing(f"The drawing has more than {MAX_ELEMENTS} elements.")
+        if len(open_) >= MAX_NESTING:
+            raise UnsuitableDrawing(f"The drawing has more than {MAX_NESTING} elements within one another.")
+        if len(attributes) > MAX_ATTRIBUTES:
+            raise UnsuitableDrawing(f"An element of the drawing has more than {MAX_ATTRIBUTES} attributes.")
         node = Node(name, attributes)
         (open_[-1].children if open_ else roots).append(node)
         open_.append(node)
 
-    def end(name: str) -> None:
+    def finish_element(name: str) -> None:
         open_.pop()
 
-    def characters(text: str) -> None:
+    def add_text(text: str) -> None:
         if open_:
             open_[-1].text.append(text)
 
-    def entity(*_: object) -> None:
-        raise Malformed("The drawing declares XML entities, which are not expanded here; save it without them.")
+    def refuse_entity(*_: object) -> None:
+        raise MalformedDrawing("The drawing declares XML entities, which are not expanded here; save it without them.")
 
-    parser.StartElementHandler = begin
-    parser.EndElementHandler = end
-    parser.CharacterDataHandler = characters
-    parser.EntityDeclHandler = entity
-    parser.UnparsedEntityDeclHandler = entity
+    parser.StartElementHandler = start_element
+    parser.EndElementHandler = finish_element
+    parser.CharacterDataHandler = add_text
+    parser.EntityDeclHandler = refuse_entity
+    parser.UnparsedEntityDeclHandler = refuse_entity
     try:
         parser.Parse(content, True)
     except expat.ExpatError as error:
         # The message is the parser's own, "mismatched tag: line 3, column 5"; it holds nothing of the drawing.
-        raise Malformed(f"The drawing is not well-formed XML: {error}.") from None
+        raise MalformedDrawing(f"The drawing is not well-formed XML: {error}.") from None
     except (ValueError, LookupError) as error:
-        if isinstance(error, (Malformed, Unsuitable)):
+        if isinstance(error, (MalformedDrawing, UnsuitableDrawing)):
             raise
-        raise Malformed("The drawing has an encoding that is not known here; save it as UTF-8.") from None
+        raise MalformedDrawing("The drawing has an encoding that is not known here; save it as UTF-8.") from None
     return roots[0]

@@ -12,47 +12,47 @@ import math
 from dataclasses import dataclass
 from typing import Any
 
-from service.parts.bodies import Prism
-from service.parts.colours import LINK_COLOURS
-from service.parts.gears.housing import Housing, Shaft, stacked
-from service.parts.gears.keys import key_for, keyed_bore
-from service.parts.gears.motion import TrainMotion, Turning
-from service.parts.gears.sizing import GearSizing
-from service.parts.gears.wheels import looked_at
-from service.parts.model import Assembly, Carrier, Part
-from service.parts.shapes import Disc, Loop, Region, area
-from service.parts.sizes import (
-    CLEARANCES,
-    LOOSEST,
-    THINNEST_PIN,
-    TIGHTEST,
-    WIDEST_PIN,
-    WIDTH,
+from service.parts.assembly.colours import LINK_COLOURS
+from service.parts.assembly.keys import find_key, make_bore
+from service.parts.assembly.model import Assembly, Carrier, Part
+from service.parts.assembly.sizes import (
+    DEFAULT_CLEARANCES,
+    MAX_CLEARANCE_PER_PIN,
+    MAX_PIN,
+    MIN_CLEARANCE_PER_PIN,
+    MIN_PIN,
+    WIDTH_PER_PIN,
     NotMade,
     PartsQuery,
     Sizes,
-    judged,
-    pin_below,
-    rounded_down,
-    sheet_for,
+    check_sizes,
+    choose_pin,
+    choose_sheet,
+    round_down,
 )
+from service.parts.gears.housing import Housing, Shaft, stack_levels
+from service.parts.gears.motion import BodyRotation, TrainMotion
+from service.parts.gears.sizing import GearSizing
+from service.parts.gears.wheels import check_assembly
+from service.parts.geometry.regions import Disc, Loop, Region, measure_area
+from service.parts.geometry.solids import Prism
 
-BORE = 0.2
+MAX_BORE_SHARE = 0.2
 """Thickest default shaft, as a share of the wheel's radius."""
 
-HUB, ARMS, ARM = 1.0, 5, 0.4
+HUB_RADIUS, ARM_COUNT, ARM_WIDTH = 1.0, 5, 0.4
 """Radius of a hub in shaft diameters, number of arms of a rim, and their width in shaft diameters."""
 
-MOST_OF_WALL = 3.5
+MAX_BORE_PER_WALL = 3.5
 """Thickest default shaft, in walls of a rim."""
 
-WINDOW = 0.5
+MIN_WINDOW_WIDTH = 0.5
 """Minimum width of the windows between hub and rim, in shaft diameters; narrower ones are not cut."""
 
 ON_SHAFT = Carrier("flywheel_shaft", None)
 
 
-def flywheel_parts(design: Any, problem: Any, query: PartsQuery) -> Assembly:
+def make_flywheel_parts(design: Any, problem: Any, query: PartsQuery) -> Assembly:
     """Make the parts of a flywheel.
 
     Parameters
@@ -69,39 +69,41 @@ def flywheel_parts(design: Any, problem: Any, query: PartsQuery) -> Assembly:
     """
     sizing = GearSizing(query, problem.length_unit)
     wheel = design.mechanism
-    sizing.judge_size(2.0 * wheel.radius * sizing.factor, "flywheel")
+    sizing.check_size(2.0 * wheel.radius * sizing.factor, "flywheel")
     outer, inner, thick = (sizing.factor * length for length in (wheel.radius, wheel.inner_radius, wheel.thickness))
     density = f"{wheel.density:.6g} kg/m³" if problem.units == "si" else f"density {wheel.density:.6g}"
     # Mass unit of the answer: problem.scale is the length unit in that of the density.
     to_cubic_millimetre = (problem.scale / sizing.unit) ** 3
-    made = _Wheel(outer, inner, thick, _sizes(outer, inner, sizing), wheel.density * to_cubic_millimetre)
-    return made.assembly(sizing, density, "kg" if problem.units == "si" else "units of mass")
+    made = _Wheel(outer, inner, thick, _choose_sizes(outer, inner, sizing), wheel.density * to_cubic_millimetre)
+    return made.build_assembly(sizing, density, "kg" if problem.units == "si" else "units of mass")
 
 
-def _sizes(outer: float, inner: float, sizing: GearSizing) -> Sizes:
+def _choose_sizes(outer: float, inner: float, sizing: GearSizing) -> Sizes:
     """Return sizes with the requested bore, or with the thickest that fits the wheel."""
     query, unit = sizing.query, sizing.unit
     room = inner or outer
-    most = min(BORE * outer, room / (HUB + WINDOW))
+    most = min(MAX_BORE_SHARE * outer, room / (HUB_RADIUS + MIN_WINDOW_WIDTH))
     if inner:
-        most = min(most, MOST_OF_WALL * (outer - inner))
-    bore = pin_below(min(most, WIDEST_PIN)) if query.bore is None else query.bore * unit
-    if not THINNEST_PIN <= bore <= WIDEST_PIN:
+        most = min(most, MAX_BORE_PER_WALL * (outer - inner))
+    bore = choose_pin(min(most, MAX_PIN)) if query.bore is None else query.bore * unit
+    if not MIN_PIN <= bore <= MAX_PIN:
         raise NotMade(
-            f"Shafts of {bore / unit:.6g} {sizing.words} are not available; use {THINNEST_PIN / unit:g} to "
-            f"{WIDEST_PIN / unit:g} {sizing.words}.", sizing.path,
+            f"Shafts of {bore / unit:.6g} {sizing.words} are not available; use {MIN_PIN / unit:g} to "
+            f"{MAX_PIN / unit:g} {sizing.words}.", sizing.path,
         )  # fmt: skip
-    if HUB * bore > room:
+    if HUB_RADIUS * bore > room:
         where = "within the rim" if inner else "in the disc"
         raise NotMade(
             f"A bore of {bore / unit:.6g} {sizing.words} leaves no space for a hub {where}; use at most "
-            f"{rounded_down(room / HUB / unit):g} {sizing.words}.", "/query/bore",
+            f"{round_down(room / HUB_RADIUS / unit):g} {sizing.words}.", "/query/bore",
         )  # fmt: skip
-    usual = min(max(CLEARANCES[query.process], 2.0 * TIGHTEST * bore), 0.5 * LOOSEST * bore)
+    usual = min(
+        max(DEFAULT_CLEARANCES[query.process], 2.0 * MIN_CLEARANCE_PER_PIN * bore), 0.5 * MAX_CLEARANCE_PER_PIN * bore
+    )
     clearance = usual if query.clearance is None else query.clearance * unit
-    thickness = sheet_for(bore) if query.thickness is None else query.thickness * unit
-    sizes = Sizes(query.process, WIDTH * bore, bore, thickness, clearance)
-    judged(sizes, unit)
+    thickness = choose_sheet(bore) if query.thickness is None else query.thickness * unit
+    sizes = Sizes(query.process, WIDTH_PER_PIN * bore, bore, thickness, clearance)
+    check_sizes(sizes, unit)
     return sizes
 
 
@@ -115,12 +117,12 @@ class _Wheel:
     sizes: Sizes
     density: float
 
-    def assembly(self, sizing: GearSizing, density: str, mass_unit: str) -> Assembly:
+    def build_assembly(self, sizing: GearSizing, density: str, mass_unit: str) -> Assembly:
         """Return the wheel on its shaft, after an interference check."""
         sizes = self.sizes
-        levels = stacked([sizes.thickness, self.thick, sizes.thickness], sizes)
-        bore = keyed_bore(0j, sizes.pin, key_for(sizes.pin), sizes.clearance)
-        windows = self._windows()
+        levels = stack_levels([sizes.thickness, self.thick, sizes.thickness], sizes)
+        bore = make_bore(0j, sizes.pin, find_key(sizes.pin), sizes.clearance)
+        windows = self._make_windows()
         region = Region(Disc(0j, self.outer), (bore, *windows))
         body = Prism(region, levels[1].low, levels[1].high)
         wheel = Part(
@@ -129,34 +131,34 @@ class _Wheel:
         )  # fmt: skip
         shaft = Shaft("flywheel shaft", ON_SHAFT, 0j, (0, 2), keyed=(1,), ends=True)
         housing = Housing(sizes, levels, (shaft,), ((0j, self.outer),))
-        motion = TrainMotion({ON_SHAFT.link: Turning(0j, 1.0)}, 2.0 * self.outer)
-        parts = (wheel, *housing.parts())
-        notes = self._notes(wheel, bore, windows, mass_unit)
-        return looked_at(Assembly(parts, motion, 1, 2, sizing.factor, sizing.query.scale, notes), sizes, sizing)
+        motion = TrainMotion({ON_SHAFT.link: BodyRotation(0j, 1.0)}, 2.0 * self.outer)
+        parts = (wheel, *housing.make_parts())
+        notes = self._list_notes(wheel, bore, windows, mass_unit)
+        return check_assembly(Assembly(parts, motion, 1, 2, sizing.factor, sizing.query.scale, notes), sizes, sizing)
 
-    def _windows(self) -> tuple[Loop, ...]:
+    def _make_windows(self) -> tuple[Loop, ...]:
         """Return the cut-outs between the hub, the arms and the rim."""
-        hub, half = HUB * self.sizes.pin, 0.5 * ARM * self.sizes.pin
+        hub, half = HUB_RADIUS * self.sizes.pin, 0.5 * ARM_WIDTH * self.sizes.pin
         # Without enough space the plate inside the rim stays solid.
-        if self.inner < hub + WINDOW * self.sizes.pin:
+        if self.inner < hub + MIN_WINDOW_WIDTH * self.sizes.pin:
             return ()
         far, near = (math.asin(half / radius) for radius in (self.inner, hub))
-        pitch = 2.0 * math.pi / ARMS
+        pitch = 2.0 * math.pi / ARM_COUNT
         corners = [
             cmath.rect(self.inner, far), cmath.rect(self.inner, pitch - far),
             cmath.rect(hub, pitch - near), cmath.rect(hub, near),
         ]  # fmt: skip
         bulges = math.tan(0.25 * (pitch - 2.0 * far)), 0.0, -math.tan(0.25 * (pitch - 2.0 * near)), 0.0
         # The keyway points along the first arm.
-        turns = [cmath.exp(1j * k * pitch) for k in range(ARMS)]
+        turns = [cmath.exp(1j * k * pitch) for k in range(ARM_COUNT)]
         return tuple(Loop(tuple(turn * z for z in corners), bulges) for turn in turns)
 
-    def _notes(self, wheel: Part, bore: Loop, windows: tuple[Loop, ...], mass_unit: str) -> tuple[str, ...]:
+    def _list_notes(self, wheel: Part, bore: Loop, windows: tuple[Loop, ...], mass_unit: str) -> tuple[str, ...]:
         """Describe the difference of mass and moment of inertia from the answer's."""
         assert wheel.mass is not None
         stated = self.density * self.thick * math.pi * (self.outer**2 - self.inner**2)
         if not self.inner:
-            lost = self.density * self.thick * area(bore)
+            lost = self.density * self.thick * measure_area(bore)
             # The bore is treated as a disc of the shaft's radius.
             share = 0.5 * lost * (0.5 * self.sizes.pin) ** 2 / (0.5 * stated * self.outer**2)
             return (
@@ -165,7 +167,7 @@ class _Wheel:
                 f"of it and {share:.2g} of its moment of inertia; the shaft and the key that fill them rotate with it.",
             )
         more = wheel.mass - stated
-        arms = f"hub and {ARMS} arms" if windows else "plate within it"
+        arms = f"hub and {ARM_COUNT} arms" if windows else "plate within it"
         return (
             f"The rim alone has the answer's mass, {stated:.6g} {mass_unit}, and its moment of inertia; the "
             f"{arms} add {more:.4g} {mass_unit}, so that the speed varies less than permitted.",

@@ -6,23 +6,23 @@ from collections.abc import Callable
 from typing import Any, Literal, get_args
 
 from service.loading import IMPORTS
-from service.render.page.svg import clean
+from service.render.page.svg import clean_text
 
-__all__ = ["Form", "NoSuchExport", "NotBuilt", "exported", "forms", "heading"]
+__all__ = ["Form", "NoSuchExport", "NotBuilt", "export_design", "list_forms", "make_heading"]
 
 Form = Literal["svg", "gif", "dxf", "csv"]
 
 Maker = Callable[[Any, Any, str], str | bytes]
 """Makes a file from a design, its problem and a title."""
 
-LINKAGE = "linkage"
+LINKAGE_KEY = "linkage"
 """Key of the makers that serve every linkage; :mod:`service.render.linkage.kind_tables` adds the content of each kind.
 """
 
-GENEVA = ("geneva_external", "geneva_internal", "geneva_spherical")
+GENEVA_TYPES = ("geneva_external", "geneva_internal", "geneva_spherical")
 """Types of Geneva drives, which share their makers."""
 
-FILES: dict[str, tuple[Form, ...]] = {
+FORMS_BY_TYPE: dict[str, tuple[Form, ...]] = {
     "cam": ("svg", "gif", "dxf", "csv"),
     "barrel_cam": ("svg", "gif", "dxf", "csv"),
     "gear_train": ("svg", "gif", "dxf", "csv"),
@@ -33,7 +33,7 @@ FILES: dict[str, tuple[Form, ...]] = {
     "rotor": ("svg", "dxf", "csv"),
     "flywheel": ("svg", "dxf", "csv"),
     "engine": ("svg", "dxf", "csv"),
-    **dict.fromkeys(GENEVA, ("svg", "gif", "dxf", "csv")),
+    **dict.fromkeys(GENEVA_TYPES, ("svg", "gif", "dxf", "csv")),
     "ratchet": ("svg", "dxf", "csv"),
 }
 """File formats by type of mechanism; linkages are not listed and have all formats."""
@@ -50,129 +50,129 @@ class NotBuilt(ValueError):
 # The makers of a form are imported when one is first used, so that a starting server loads no drawing library.
 
 
-def _sheets() -> dict[str, Maker]:
-    from service.render.cam.sheet import barrel_sheet, cam_sheet
-    from service.render.gears.gearbox_sheet import gearbox_sheet, layshaft_sheet
-    from service.render.gears.planetary_sheet import planetary_sheet
-    from service.render.gears.series_sheet import series_sheet
-    from service.render.gears.train_sheet import gear_train_sheet
-    from service.render.linkage.sheet import linkage_sheet
-    from service.render.rotor.sheet import rotor_sheet
-    from service.render.shafts.engine import engine_sheet
-    from service.render.shafts.flywheel import flywheel_sheet
-    from service.render.shafts.indexing import indexing_sheet
-    from service.render.shafts.ratchet import ratchet_sheet
+def _load_sheets() -> dict[str, Maker]:
+    from service.render.cam.sheet import draw_barrel_sheet, draw_cam_sheet
+    from service.render.gears.gearbox_sheet import draw_gearbox_sheet, draw_layshaft_sheet
+    from service.render.gears.planetary_sheet import draw_planetary_sheet
+    from service.render.gears.series_sheet import draw_series_sheet
+    from service.render.gears.train_sheet import draw_gear_train_sheet
+    from service.render.linkage.sheet import draw_linkage_sheet
+    from service.render.rotor.sheet import draw_rotor_sheet
+    from service.render.shafts.engine import draw_engine_sheet
+    from service.render.shafts.flywheel import draw_flywheel_sheet
+    from service.render.shafts.indexing import draw_indexing_sheet
+    from service.render.shafts.ratchet import draw_ratchet_sheet
 
     return {
-        LINKAGE: linkage_sheet,
-        "cam": cam_sheet,
-        "barrel_cam": barrel_sheet,
-        "gear_train": gear_train_sheet,
-        "planetary_train": planetary_sheet,
-        "train_series": series_sheet,
-        "gearbox": gearbox_sheet,
-        "layshaft_gearbox": layshaft_sheet,
-        "rotor": rotor_sheet,
-        "flywheel": flywheel_sheet,
-        "engine": engine_sheet,
-        **dict.fromkeys(GENEVA, indexing_sheet),
-        "ratchet": ratchet_sheet,
+        LINKAGE_KEY: draw_linkage_sheet,
+        "cam": draw_cam_sheet,
+        "barrel_cam": draw_barrel_sheet,
+        "gear_train": draw_gear_train_sheet,
+        "planetary_train": draw_planetary_sheet,
+        "train_series": draw_series_sheet,
+        "gearbox": draw_gearbox_sheet,
+        "layshaft_gearbox": draw_layshaft_sheet,
+        "rotor": draw_rotor_sheet,
+        "flywheel": draw_flywheel_sheet,
+        "engine": draw_engine_sheet,
+        **dict.fromkeys(GENEVA_TYPES, draw_indexing_sheet),
+        "ratchet": draw_ratchet_sheet,
     }
 
 
-def _animations() -> dict[str, Maker]:
-    from service.render.cam.animation import barrel_animation, cam_animation
-    from service.render.gears.gearbox_animation import gearbox_animation, layshaft_animation
-    from service.render.gears.train_animation import gear_train_animation
-    from service.render.gears.turning import planetary_animation, series_animation
-    from service.render.linkage.animation import linkage_animation
-    from service.render.shafts.indexing import indexing_animation
+def _load_animations() -> dict[str, Maker]:
+    from service.render.cam.animation import draw_barrel_animation, draw_cam_animation
+    from service.render.gears.gearbox_animation import draw_gearbox_animation, draw_layshaft_animation
+    from service.render.gears.train_animation import draw_gear_train_animation
+    from service.render.gears.turning import draw_planetary_animation, draw_series_animation
+    from service.render.linkage.animation import draw_linkage_animation
+    from service.render.shafts.indexing import draw_indexing_animation
 
     return {
-        LINKAGE: linkage_animation,
-        "cam": cam_animation,
-        "barrel_cam": barrel_animation,
-        "gear_train": gear_train_animation,
-        "planetary_train": planetary_animation,
-        "train_series": series_animation,
-        "gearbox": gearbox_animation,
-        "layshaft_gearbox": layshaft_animation,
-        **dict.fromkeys(GENEVA, indexing_animation),
+        LINKAGE_KEY: draw_linkage_animation,
+        "cam": draw_cam_animation,
+        "barrel_cam": draw_barrel_animation,
+        "gear_train": draw_gear_train_animation,
+        "planetary_train": draw_planetary_animation,
+        "train_series": draw_series_animation,
+        "gearbox": draw_gearbox_animation,
+        "layshaft_gearbox": draw_layshaft_animation,
+        **dict.fromkeys(GENEVA_TYPES, draw_indexing_animation),
     }
 
 
-def _drawings() -> dict[str, Maker]:
-    from service.render.cam.dxf import barrel_drawing, cam_drawing
-    from service.render.gears.dxf import gear_train_drawing, planetary_drawing, series_drawing
-    from service.render.gears.gearbox_dxf import gearbox_drawing, layshaft_drawing
-    from service.render.linkage.dxf import linkage_drawing
-    from service.render.rotor.dxf import rotor_drawing
-    from service.render.shafts.engine import engine_drawing
-    from service.render.shafts.flywheel import flywheel_drawing
-    from service.render.shafts.indexing import indexing_drawing
-    from service.render.shafts.ratchet import ratchet_drawing
+def _load_drawings() -> dict[str, Maker]:
+    from service.render.cam.dxf import write_barrel_dxf, write_cam_dxf
+    from service.render.gears.dxf import write_gear_train_dxf, write_planetary_dxf, write_series_dxf
+    from service.render.gears.gearbox_dxf import write_gearbox_dxf, write_layshaft_dxf
+    from service.render.linkage.dxf import write_linkage_dxf
+    from service.render.rotor.dxf import write_rotor_dxf
+    from service.render.shafts.engine import write_engine_dxf
+    from service.render.shafts.flywheel import write_flywheel_dxf
+    from service.render.shafts.indexing import write_indexing_dxf
+    from service.render.shafts.ratchet import write_ratchet_dxf
 
     return {
-        LINKAGE: linkage_drawing,
-        "cam": cam_drawing,
-        "barrel_cam": barrel_drawing,
-        "gear_train": gear_train_drawing,
-        "planetary_train": planetary_drawing,
-        "train_series": series_drawing,
-        "gearbox": gearbox_drawing,
-        "layshaft_gearbox": layshaft_drawing,
-        "rotor": rotor_drawing,
-        "flywheel": flywheel_drawing,
-        "engine": engine_drawing,
-        **dict.fromkeys(GENEVA, indexing_drawing),
-        "ratchet": ratchet_drawing,
+        LINKAGE_KEY: write_linkage_dxf,
+        "cam": write_cam_dxf,
+        "barrel_cam": write_barrel_dxf,
+        "gear_train": write_gear_train_dxf,
+        "planetary_train": write_planetary_dxf,
+        "train_series": write_series_dxf,
+        "gearbox": write_gearbox_dxf,
+        "layshaft_gearbox": write_layshaft_dxf,
+        "rotor": write_rotor_dxf,
+        "flywheel": write_flywheel_dxf,
+        "engine": write_engine_dxf,
+        **dict.fromkeys(GENEVA_TYPES, write_indexing_dxf),
+        "ratchet": write_ratchet_dxf,
     }
 
 
-def _tables() -> dict[str, Maker]:
-    from service.render.cam.csv import barrel_table, cam_table
+def _load_tables() -> dict[str, Maker]:
+    from service.render.cam.csv import write_barrel_table, write_cam_table
     from service.render.gears.csv import (
-        gear_train_table,
-        gearbox_table,
-        layshaft_table,
-        planetary_table,
-        series_table,
+        write_gear_train_table,
+        write_gearbox_table,
+        write_layshaft_table,
+        write_planetary_table,
+        write_series_table,
     )
-    from service.render.linkage.csv import function_table, linkage_table
-    from service.render.rotor.csv import rotor_table
-    from service.render.shafts.engine import engine_table
-    from service.render.shafts.flywheel import flywheel_table
-    from service.render.shafts.indexing import indexing_table
-    from service.render.shafts.ratchet import ratchet_table
+    from service.render.linkage.csv import write_function_table, write_linkage_table
+    from service.render.rotor.csv import write_rotor_table
+    from service.render.shafts.engine import write_engine_table
+    from service.render.shafts.flywheel import write_flywheel_table
+    from service.render.shafts.indexing import write_indexing_table
+    from service.render.shafts.ratchet import write_ratchet_table
 
     return {
-        LINKAGE: linkage_table,
-        "function": function_table,
-        "cam": cam_table,
-        "barrel_cam": barrel_table,
-        "gear_train": gear_train_table,
-        "planetary_train": planetary_table,
-        "train_series": series_table,
-        "gearbox": gearbox_table,
-        "layshaft_gearbox": layshaft_table,
-        "rotor": rotor_table,
-        "flywheel": flywheel_table,
-        "engine": engine_table,
-        **dict.fromkeys(GENEVA, indexing_table),
-        "ratchet": ratchet_table,
+        LINKAGE_KEY: write_linkage_table,
+        "function": write_function_table,
+        "cam": write_cam_table,
+        "barrel_cam": write_barrel_table,
+        "gear_train": write_gear_train_table,
+        "planetary_train": write_planetary_table,
+        "train_series": write_series_table,
+        "gearbox": write_gearbox_table,
+        "layshaft_gearbox": write_layshaft_table,
+        "rotor": write_rotor_table,
+        "flywheel": write_flywheel_table,
+        "engine": write_engine_table,
+        **dict.fromkeys(GENEVA_TYPES, write_indexing_table),
+        "ratchet": write_ratchet_table,
     }
 
 
-_MAKERS: dict[Form, Callable[[], dict[str, Maker]]] = {
-    "svg": _sheets,
-    "gif": _animations,
-    "dxf": _drawings,
-    "csv": _tables,
+_MAKER_LOADERS: dict[Form, Callable[[], dict[str, Maker]]] = {
+    "svg": _load_sheets,
+    "gif": _load_animations,
+    "dxf": _load_drawings,
+    "csv": _load_tables,
 }
 """Loaders of the makers of each format, by type of mechanism or kind of problem."""
 
 
-def heading(problem: Any, label: str | None, number: int) -> str:
+def make_heading(problem: Any, label: str | None, number: int) -> str:
     """Return the heading of a design's drawings: the label of its job or the name of its kind, and its number.
 
     Parameters
@@ -185,12 +185,12 @@ def heading(problem: Any, label: str | None, number: int) -> str:
     return f"{label or problem.model_config.get('title') or problem.kind}, design {number + 1}"
 
 
-def forms(mechanism: str) -> list[Form]:
+def list_forms(mechanism: str) -> list[Form]:
     """Return the file formats available for a type of mechanism."""
-    return list(FILES.get(mechanism, get_args(Form)))
+    return list(FORMS_BY_TYPE.get(mechanism, get_args(Form)))
 
 
-def exported(design: Any, problem: Any, title: str, form: Form) -> str | bytes:
+def export_design(design: Any, problem: Any, title: str, form: Form) -> str | bytes:
     """Write a design as a file: text, or bytes for an animation.
 
     Parameters
@@ -217,11 +217,11 @@ def exported(design: Any, problem: Any, title: str, form: Form) -> str | bytes:
         The mechanism cannot be rebuilt from the design.
     """
     mechanism = design.mechanism.type
-    if form not in forms(mechanism):
+    if form not in list_forms(mechanism):
         raise NoSuchExport(mechanism, form)
     # Only one thread of the server imports libraries on demand at a time.
     with IMPORTS:
-        makers = _MAKERS[form]()
+        makers = _MAKER_LOADERS[form]()
     # Look up by type first: a kind, such as functions, may have makers of its own for linkages.
-    make = makers.get(mechanism) or makers.get(problem.kind) or makers[LINKAGE]
-    return make(design, problem, clean(title))
+    make = makers.get(mechanism) or makers.get(problem.kind) or makers[LINKAGE_KEY]
+    return make(design, problem, clean_text(title))

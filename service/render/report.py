@@ -17,15 +17,15 @@ from jinja2 import Environment, StrictUndefined
 from markupsafe import Markup
 from pydantic import BaseModel
 
-from service.render import NoSuchExport, NotBuilt, exported
-from service.render.checks import compared
-from service.render.outline import Outline, outline, with_unit, words, written
-from service.render.page.sheet import UNITS
-from service.render.page.svg import clean
+from service.render import NoSuchExport, NotBuilt, export_design
+from service.render.checks import format_check
+from service.render.outline import Outline, add_unit, format_name, format_value, make_outline
+from service.render.page.sheet import UNIT_NAMES
+from service.render.page.svg import clean_text
 from service.units import symbols
 from synthesis.model.answer import Check, Result, Search
-from synthesis.model.dimension import Dimension, dimensions
-from synthesis.model.statement import StatedProblem
+from synthesis.model.dimension import Dimension, collect_dimensions
+from synthesis.model.problem import ProblemBase
 
 _HERE = files("service").joinpath("render")
 _STYLE = _HERE.joinpath("report.css").read_text(encoding="utf-8")
@@ -37,7 +37,7 @@ POLICY = f"{_OWN_POLICY}; frame-ancestors 'none'"
 """Content security policy that permits only the page's own style sheet; a page cannot declare `frame-ancestors` itself.
 """
 
-RANKED_BY = 4
+MAX_RANKING_QUANTITIES = 4
 """Maximum number of quantities in a row of the table of all designs, limited by the page width."""
 
 _ENVIRONMENT = Environment(autoescape=True, undefined=StrictUndefined, trim_blocks=True, lstrip_blocks=True)
@@ -45,7 +45,7 @@ _PAGE = _ENVIRONMENT.from_string(_HERE.joinpath("report.html").read_text(encodin
 
 
 @dataclass(frozen=True)
-class Occasion:
+class ReportedJob:
     """The reported job: data that its problem and result do not contain."""
 
     job: str
@@ -57,18 +57,18 @@ class Occasion:
 
     def line(self) -> str:
         """Describe the job on one line, with times to the second."""
-        times = [f"accepted {_readable(self.accepted)}"]
+        times = [f"accepted {_format_time(self.accepted)}"]
         if self.finished is not None:
-            times.append(f"finished {_readable(self.finished)}")
+            times.append(f"finished {_format_time(self.finished)}")
         return f"Job {self.job}, {', '.join(times)}; mechsynth {self.version}."
 
 
-def _readable(time: str) -> str:
+def _format_time(time: str) -> str:
     return f"{time[:19].replace('T', ' ')} UTC"
 
 
 @dataclass(frozen=True)
-class Checked:
+class CheckEntry:
     """A check as words."""
 
     name: str
@@ -89,12 +89,12 @@ class Sheet:
     drawing: str
     assembly: str
     unbuilt: str
-    checks: list[Checked]
+    checks: list[CheckEntry]
     parts: list[tuple[str, Outline]]
 
 
 def report(
-    problem: StatedProblem, result: Result[Any], occasion: Occasion, most: int, assemblies: Mapping[int, str] = {}
+    problem: ProblemBase, result: Result[Any], occasion: ReportedJob, most: int, assemblies: Mapping[int, str] = {}
 ) -> str:
     """Write the report as a page.
 
@@ -115,95 +115,99 @@ def report(
         HTML. Deterministic: the same arguments give the same text.
     """
     units = symbols(problem)
-    title = problem.model_config.get("title") or words(occasion.kind)
+    title = problem.model_config.get("title") or format_name(occasion.kind)
     # Labels are client text: remove control characters.
-    heading = clean(occasion.label or "") or title
+    heading = clean_text(occasion.label or "") or title
     sheets = [
-        _sheet(design, n, problem, f"{heading}, design {n + 1}", units, assemblies.get(n, ""))
+        _make_sheet(design, n, problem, f"{heading}, design {n + 1}", units, assemblies.get(n, ""))
         for n, design in enumerate(result.designs[:most])
     ]
     return _PAGE.render(
         title=title,
         heading=heading,
         occasion=occasion,
-        length_unit=UNITS[problem.length_unit],
+        length_unit=UNIT_NAMES[problem.length_unit],
         style=Markup(_STYLE),
         policy=_OWN_POLICY,
         about=(type(problem).__doc__ or "").split("\n\n")[0].replace("\n", " ").strip(),
-        problem=outline(problem, units, leave_out={"kind"}, last=StatedProblem.model_fields.keys() - {"kind"}),
+        problem=make_outline(problem, units, leave_out={"kind"}, last=ProblemBase.model_fields.keys() - {"kind"}),
         summary=result.summary,
-        proven=_proven(result),
-        search=outline(result.search, units),
-        more=outline(result, units, leave_out={"designs", "search", "summary", "curves"}),
-        ranking=_ranking(result, units),
+        proven=_describe_proof(result),
+        search=make_outline(result.search, units),
+        more=make_outline(result, units, leave_out={"designs", "search", "summary", "curves"}),
+        ranking=_rank_designs(result, units),
         sheets=sheets,
     )
 
 
-def _sheet(
-    design: Any, n: int, problem: StatedProblem, title: str, units: dict[Dimension, str], assembly: str
+def _make_sheet(
+    design: Any, n: int, problem: ProblemBase, title: str, units: dict[Dimension, str], assembly: str
 ) -> Sheet:
     try:
-        drawing = exported(design, problem, title, "svg")
+        drawing = export_design(design, problem, title, "svg")
         assert isinstance(drawing, str)
     # The report lists the design even without a drawing.
     except (NoSuchExport, NotBuilt):
         drawing = ""
-    own = outline(design.mechanism, units, leave_out={"type", "skeleton"})
+    own = make_outline(design.mechanism, units, leave_out={"type", "skeleton"})
     parts = [
         ("Dimensions", own),
-        ("Quantities", outline(design.metrics, units)),
-        ("Verified motion", outline(design, units, leave_out={"mechanism", "metrics", "verification"})),
+        ("Quantities", make_outline(design.metrics, units)),
+        ("Verified motion", make_outline(design, units, leave_out={"mechanism", "metrics", "verification"})),
     ]
     skeleton = getattr(design.mechanism, "skeleton", None)
     if skeleton is not None:
         # A linkage given by the client has only its skeleton; a designed one is drawn at its first target.
         beside = own.rows or own.lists
         name = "Skeleton: the joints at the first target" if beside else "Dimensions: the joints as given"
-        parts.append((f"{name}, and the rigid links", outline(skeleton, units)))
+        parts.append((f"{name}, and the rigid links", make_outline(skeleton, units)))
     return Sheet(
         number=n + 1,
-        name=words(design.mechanism.type),
+        name=format_name(design.mechanism.type),
         passed=design.verification.passed,
-        drawing=_inside(drawing) if drawing else "",
-        assembly=_inside(assembly) if assembly.startswith("<") else "",
+        drawing=_embed_drawing(drawing) if drawing else "",
+        assembly=_embed_drawing(assembly) if assembly.startswith("<") else "",
         unbuilt="" if assembly.startswith("<") else assembly,
-        checks=[_checked(check, units) for check in design.verification.checks],
+        checks=[_make_check_entry(check, units) for check in design.verification.checks],
         parts=[(heading, part) for heading, part in parts if part.rows or part.lists],
     )
 
 
-def _inside(drawing: str) -> str:
+def _embed_drawing(drawing: str) -> str:
     """Return a drawing for embedding, without its XML declaration; makers of drawings escape all text."""
     return Markup(drawing[drawing.index("<svg") :])
 
 
-def _checked(check: Check, units: dict[Dimension, str]) -> Checked:
-    return Checked(words(check.name), check.passed, *compared(check, units))
+def _make_check_entry(check: Check, units: dict[Dimension, str]) -> CheckEntry:
+    return CheckEntry(format_name(check.name), check.passed, *format_check(check, units))
 
 
-def _ranking(result: Result[Any], units: dict[Dimension, str]) -> list[tuple[int, str, bool, list[tuple[str, str]]]]:
+def _rank_designs(
+    result: Result[Any], units: dict[Dimension, str]
+) -> list[tuple[int, str, bool, list[tuple[str, str]]]]:
     """Return all designs with the first of their quantities, preferred ones first."""
     ranked = []
     for n, design in enumerate(result.designs):
         metrics: BaseModel = design.metrics
-        measures = dimensions(type(metrics))
+        measures = collect_dimensions(type(metrics))
         plain = [
             (name, value)
             for name, value in metrics
             if isinstance(value, float) or (isinstance(value, int) and not isinstance(value, bool))
         ]
         # A stable sort: preferred quantities first, field order otherwise.
-        plain.sort(key=lambda quantity: quantity[0] not in _COMPARED_BY)
+        plain.sort(key=lambda quantity: quantity[0] not in _RANKING_METRICS)
         figures = []
-        for name, value in plain[:RANKED_BY]:
+        for name, value in plain[:MAX_RANKING_QUANTITIES]:
             measured = measures.get(name)
-            figures.append((words(name), with_unit(written(value), "" if measured is None else units[measured])))
-        ranked.append((n + 1, words(design.mechanism.type), design.verification.passed, figures))
+            figures.append(
+                (format_name(name), add_unit(format_value(value), "" if measured is None else units[measured]))
+            )
+        ranked.append((n + 1, format_name(design.mechanism.type), design.verification.passed, figures))
     return ranked
 
 
-_COMPARED_BY = {
+_RANKING_METRICS = {
     "quality",
     "min_transmission_angle",
     "rms_residual",
@@ -221,7 +225,7 @@ _COMPARED_BY = {
 """Quantities by which designs are preferably compared."""
 
 
-def _proven(result: Result[Any]) -> list[str]:
+def _describe_proof(result: Result[Any]) -> list[str]:
     """Return the facts that are proven, as sentences."""
     search: Search = result.search
     passed = sum(design.verification.passed for design in result.designs)

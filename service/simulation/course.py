@@ -8,28 +8,28 @@ from typing import Any, NamedTuple
 import numpy as np
 from pydantic import ValidationError
 
+from kinematics.arrays import Real
 from kinematics.linkage.planar.mechanism import Mechanism
-from service.simulation.model import Real
-from service.simulation.query import NotSimulated, SimulationQuery, nonzero, unused
-from synthesis.analyses.cycle import cycle_of
-from synthesis.model.dynamics import DynamicsBlock, WeighedLinkage
-from synthesis.outcome.forces import shaped
+from service.simulation.query import NotSimulated, SimulationQuery, check_nonzero, refuse_unused
+from synthesis.analyses.linkages.cycle import find_cycle
+from synthesis.model.dynamics.request import DynamicsBlock, LoadedLinkage
+from synthesis.results.forces import apply_link_shape
 
-SAMPLES = 360
+STEP_COUNT = 360
 """Number of steps of the motion; joint angles are compared at their ends."""
 
-USUAL_RPM = 60.0
+DEFAULT_RPM = 60.0
 """Default speed of a rotating input, in rev/min."""
 
 
-class Course(NamedTuple):
+class SimulatedMotion(NamedTuple):
     """Inputs (radians or length units, shape (n + 1,)), and the signed speed along them."""
 
     inputs: Real
     speed: float
 
 
-def block_of(problem: Any, design: Any, mechanism: Mechanism) -> WeighedLinkage | None:
+def get_dynamics(problem: Any, design: Any, mechanism: Mechanism) -> LoadedLinkage | None:
     """Return the weights and loads of the links from the design's or else the problem's `dynamics`; None without
     either.
     """
@@ -41,10 +41,10 @@ def block_of(problem: Any, design: Any, mechanism: Mechanism) -> WeighedLinkage 
         except ValidationError as error:
             raise NotSimulated(f"The design's `dynamics` is invalid: {error.errors()[0]['msg']}.") from None
     stated = getattr(problem, "dynamics", None)
-    return None if stated is None else shaped(stated, mechanism.links)
+    return None if stated is None else apply_link_shape(stated, mechanism.links)
 
 
-def course_of(problem: Any, design: Any, mechanism: Mechanism, query: SimulationQuery) -> Course:
+def plan_motion(problem: Any, design: Any, mechanism: Mechanism, query: SimulationQuery) -> SimulatedMotion:
     """Return the motion of a design and its speed.
 
     Raises
@@ -52,23 +52,25 @@ def course_of(problem: Any, design: Any, mechanism: Mechanism, query: Simulation
     NotSimulated
         The design has no motion, or the query gives a speed that does not fit its input.
     """
-    slides = mechanism.driven_by_slide
-    unused(query, "an input that slides" if slides else "an input that turns", "speed_rpm" if slides else "speed")
-    low, high = _ends(problem, design, mechanism)
-    speed = nonzero(query.speed if slides else query.speed_rpm, "speed" if slides else "speed_rpm")
+    slides = mechanism.has_slide_input
+    refuse_unused(
+        query, "an input that slides" if slides else "an input that turns", "speed_rpm" if slides else "speed"
+    )
+    low, high = _find_ends(problem, design, mechanism)
+    speed = check_nonzero(query.speed if slides else query.speed_rpm, "speed" if slides else "speed_rpm")
     if speed is None:
-        speed = _stated_speed(problem, slides) or (abs(high - low) if slides else USUAL_RPM)
+        speed = _get_requested_speed(problem, slides) or (abs(high - low) if slides else DEFAULT_RPM)
     rate = speed if slides else speed * math.tau / 60.0
-    inputs = np.linspace(low, high, SAMPLES + 1)
+    inputs = np.linspace(low, high, STEP_COUNT + 1)
     # A negative speed reverses the motion; a full turn starts at the same angle either way.
     if rate * (high - low) < 0.0:
         turn = abs(high - low - math.tau) <= 1e-9 and not slides
         # The analysis covers low to high; a partial range is traversed from its other end.
-        inputs = np.linspace(low, low - math.tau, SAMPLES + 1) if turn else inputs[::-1]
-    return Course(inputs, rate)
+        inputs = np.linspace(low, low - math.tau, STEP_COUNT + 1) if turn else inputs[::-1]
+    return SimulatedMotion(inputs, rate)
 
 
-def _stated_speed(problem: Any, slides: bool) -> float | None:
+def _get_requested_speed(problem: Any, slides: bool) -> float | None:
     """Return the speed from the problem's dynamics, else from its motion; None if missing or 0."""
     for stated in (getattr(problem, "dynamics", None), getattr(problem, "motion", None)):
         found = getattr(stated, "speed" if slides else "speed_rpm", None)
@@ -77,8 +79,8 @@ def _stated_speed(problem: Any, slides: bool) -> float | None:
     return None
 
 
-def _ends(problem: Any, design: Any, mechanism: Mechanism) -> tuple[float, float]:
-    slides, metrics = mechanism.driven_by_slide, design.metrics
+def _find_ends(problem: Any, design: Any, mechanism: Mechanism) -> tuple[float, float]:
+    slides, metrics = mechanism.has_slide_input, design.metrics
     if getattr(metrics, "full_rotation", False) and not slides:
         start = float(mechanism.reference_input)
         return start, start + math.tau
@@ -88,7 +90,7 @@ def _ends(problem: Any, design: Any, mechanism: Mechanism) -> tuple[float, float
     if ends is None and motion is not None:
         ends = motion.start, motion.end
         if None in ends:
-            return cycle_of(mechanism)
+            return find_cycle(mechanism)
     if ends is None:
         raise NotSimulated("This design was not verified over a motion, so there is nothing to simulate.")
     low, high = (float(end) if slides else math.radians(float(end)) for end in ends)

@@ -12,31 +12,36 @@ import numpy as np
 
 from kinematics.errors import MechanismError
 from kinematics.linkage.planar.mechanism import Mechanism
-from service.simulation.course import USUAL_RPM, block_of, course_of
-from service.simulation.linkage import linkage
-from service.simulation.mjcf import mjcf
+from service.simulation.course import DEFAULT_RPM, get_dynamics, plan_motion
+from service.simulation.linkage import build_linkage
+from service.simulation.mjcf import write_mjcf
 from service.simulation.model import Multibody
-from service.simulation.modelica import modelica
-from service.simulation.pmks import Model, pmks
-from service.simulation.query import Form, NoSimulation, NotSimulated, SimulationQuery, unused
-from service.simulation.script import script
-from service.simulation.trains import MAKERS
-from service.simulation.urdf import urdf
-from service.simulation.weights import SCALE, weights_of
+from service.simulation.modelica import write_modelica
+from service.simulation.pmks import PmksModel, write_pmks
+from service.simulation.query import Form, NoSimulation, NotSimulated, SimulationQuery, refuse_unused
+from service.simulation.script import write_script
+from service.simulation.trains import TRAIN_BUILDERS
+from service.simulation.urdf import write_urdf
+from service.simulation.weights import SCALE_PATH, compute_weights
 from synthesis.mechanisms import MechanismError as StatedMechanismError
-from synthesis.model.dynamics import METRES
-from synthesis.proof.rebuilt import rebuilt
+from synthesis.model.dynamics.request import METRES_PER_UNIT
+from synthesis.verification.reconstruction import rebuild_mechanism
 
-LEAST = 1e-14
+MIN_MASS = 1e-14
 """Minimum mass (kg) and inertia (kg m²) of a body. MuJoCo refuses values below 1e-15."""
 
-MOST = 1e9
+MAX_COORDINATE = 1e9
 """Maximum coordinate, rate or acceleration. MuJoCo resets the simulation above 1e10."""
 
-WRITERS: dict[Form, Callable[[Multibody], str]] = {"mjcf": mjcf, "urdf": urdf, "mo": modelica, "sim.py": script}
+WRITERS: dict[Form, Callable[[Multibody], str]] = {
+    "mjcf": write_mjcf,
+    "urdf": write_urdf,
+    "mo": write_modelica,
+    "sim.py": write_script,
+}
 
 
-def simulation(design: Any, problem: Any, title: str, form: Form, query: SimulationQuery) -> str:
+def write_simulation(design: Any, problem: Any, title: str, form: Form, query: SimulationQuery) -> str:
     """Write a design as a simulation.
 
     Parameters
@@ -56,50 +61,50 @@ def simulation(design: Any, problem: Any, title: str, form: Form, query: Simulat
     NotSimulated
         The design cannot be simulated.
     """
-    return WRITERS[form](machine_of_design(design, problem, title, form, query))
+    return WRITERS[form](build_machine(design, problem, title, form, query))
 
 
-def machine_of_design(design: Any, problem: Any, title: str, form: Form, query: SimulationQuery) -> Multibody:
-    """Build the machine that is simulated; raises as :func:`simulation` does."""
-    machine = _made(design, problem, title, form, query)
+def build_machine(design: Any, problem: Any, title: str, form: Form, query: SimulationQuery) -> Multibody:
+    """Build the machine that is simulated; raises as :func:`write_simulation` does."""
+    machine = _build_unscaled(design, problem, title, form, query)
     # The other formats have no such limit.
-    if form in ("mjcf", "sim.py") and _greatest(machine) > MOST:
+    if form in ("mjcf", "sim.py") and _estimate_max_coordinate(machine) > MAX_COORDINATE:
         raise NotSimulated("Coordinates of this design, or their rates, exceed 1e9, the limit for MuJoCo.")
     # MuJoCo's limits are absolute, so very small designs need a larger build.
-    lightest = _lightest(machine)
-    if lightest >= LEAST:
+    lightest = _find_min_mass(machine)
+    if lightest >= MIN_MASS:
         return machine
     if query.scale is None:
         # The inertia of plates grows with the fifth power of their size.
-        larger = 10.0 ** math.ceil(0.2 * math.log10(LEAST / lightest))
+        larger = 10.0 ** math.ceil(0.2 * math.log10(MIN_MASS / lightest))
         # A larger build may violate other limits; then report the original problem.
         with contextlib.suppress(NotSimulated):
-            machine = _made(design, problem, title, form, query.model_copy(update={"scale": larger}))
-            if _lightest(machine) >= LEAST:
+            machine = _build_unscaled(design, problem, title, form, query.model_copy(update={"scale": larger}))
+            if _find_min_mass(machine) >= MIN_MASS:
                 told = f"Built {larger:g} times larger than the design: its bodies would be too light for MuJoCo."
                 return replace(machine, remarks=(*machine.remarks, told))
     raise NotSimulated(
-        f"The bodies of this design are too light for MuJoCo: {lightest:.2g} kg or kg m2, less than {LEAST:g}.",
-        "" if query.scale is None else SCALE,
+        f"The bodies of this design are too light for MuJoCo: {lightest:.2g} kg or kg m2, less than {MIN_MASS:g}.",
+        "" if query.scale is None else SCALE_PATH,
     )
 
 
-def opened_in_pmks(design: Any, problem: Any) -> Model:
-    """Return the address at which PMKS+ opens a design; raises as :func:`simulation` does."""
+def open_in_pmks(design: Any, problem: Any) -> PmksModel:
+    """Return the address at which PMKS+ opens a design; raises as :func:`write_simulation` does."""
     if not hasattr(design.mechanism, "skeleton"):
         raise NoSimulation(design.mechanism.type)
     stated = getattr(getattr(problem, "dynamics", None), "speed_rpm", None)
-    return pmks(_rebuilt(design), stated or USUAL_RPM)
+    return write_pmks(_rebuild_mechanism(design), stated or DEFAULT_RPM)
 
 
-def _rebuilt(design: Any) -> Mechanism:
-    mechanism = rebuilt(design.mechanism, from_skeleton=True)
+def _rebuild_mechanism(design: Any) -> Mechanism:
+    mechanism = rebuild_mechanism(design.mechanism, from_skeleton=True)
     if mechanism is None:
         raise NotSimulated("The dimensions of this design do not assemble to a mechanism.")
     return mechanism
 
 
-def _greatest(machine: Multibody) -> float:
+def _estimate_max_coordinate(machine: Multibody) -> float:
     """Estimate the largest joint coordinate, rate or acceleration of the motion by finite differences."""
     step, found = float(machine.times[1]), 0.0
     for course in machine.motion.values():
@@ -108,31 +113,31 @@ def _greatest(machine: Multibody) -> float:
     return found
 
 
-def _lightest(machine: Multibody) -> float:
+def _find_min_mass(machine: Multibody) -> float:
     return min(min(body.mass, body.inertia) for body in machine.bodies)
 
 
-def _made(design: Any, problem: Any, title: str, form: Form, query: SimulationQuery) -> Multibody:
+def _build_unscaled(design: Any, problem: Any, title: str, form: Form, query: SimulationQuery) -> Multibody:
     kind = design.mechanism.type
-    if kind in MAKERS:
-        return MAKERS[kind](design, problem, title, query)
+    if kind in TRAIN_BUILDERS:
+        return TRAIN_BUILDERS[kind](design, problem, title, query)
     if not hasattr(design.mechanism, "skeleton"):
         raise NoSimulation(kind)
     try:
-        return _linkage(design, problem, title, form, query)
+        return _build_linkage(design, problem, title, form, query)
     except (MechanismError, StatedMechanismError) as error:
         raise NotSimulated(f"This design cannot be driven: {error}.") from None
 
 
-def _linkage(design: Any, problem: Any, title: str, form: Form, query: SimulationQuery) -> Multibody:
-    unused(query, "a linkage", "gear")
-    mechanism = _rebuilt(design)
+def _build_linkage(design: Any, problem: Any, title: str, form: Form, query: SimulationQuery) -> Multibody:
+    refuse_unused(query, "a linkage", "gear")
+    mechanism = _rebuild_mechanism(design)
     if form == "mo" and mechanism.redundant:
         raise NotSimulated(
             "The constraints of this design are redundant: Modelica's equations would be singular. "
             "Use .mjcf with MuJoCo instead."
         )
-    inputs, speed = course_of(problem, design, mechanism, query)
-    block = block_of(problem, design, mechanism)
-    weights = weights_of(mechanism, block, getattr(problem, "layout", None), problem.length_unit, query)
-    return linkage(mechanism, inputs, speed, weights, METRES[problem.length_unit] * query.built, title)
+    inputs, speed = plan_motion(problem, design, mechanism, query)
+    block = get_dynamics(problem, design, mechanism)
+    weights = compute_weights(mechanism, block, getattr(problem, "layout", None), problem.length_unit, query)
+    return build_linkage(mechanism, inputs, speed, weights, METRES_PER_UNIT[problem.length_unit] * query.built, title)

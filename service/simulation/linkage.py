@@ -15,12 +15,13 @@ from typing import Literal
 
 import numpy as np
 
+from kinematics.arrays import Real
 from kinematics.dynamics.bodies import Body as Weight
-from kinematics.dynamics.bodies import body as weight
-from kinematics.dynamics.bodies import joined
+from kinematics.dynamics.bodies import join_bodies
+from kinematics.dynamics.bodies import make_body as weight
 from kinematics.linkage.planar.drive import MechanismMotion, drive
 from kinematics.linkage.planar.mechanism import Mechanism
-from service.simulation.model import GROUND, Body, Closure, Multibody, Real, Relation, Vector, weighty
+from service.simulation.model import GROUND, Body, Closure, Multibody, Relation, Vector, ensure_masses
 from service.simulation.naming import Names
 from service.simulation.query import NotSimulated
 from service.simulation.weights import Weights
@@ -44,7 +45,7 @@ class _Node:
     weights: list[Weight] = field(default_factory=list)
 
 
-def linkage(
+def build_linkage(
     mechanism: Mechanism,
     inputs: Real,
     speed: float,
@@ -76,7 +77,7 @@ def linkage(
     driven = drive(mechanism, inputs, speed=speed, order=1)
     if not driven.smooth.all():
         raise NotSimulated("The design cannot be driven through its whole motion: it contains a toggle.")
-    return _Tree(mechanism, driven, scale).grown(inputs, speed, weights, title)
+    return _Tree(mechanism, driven, scale).build_machine(inputs, speed, weights, title)
 
 
 class _Tree:
@@ -87,19 +88,19 @@ class _Tree:
         self._links: dict[str, str] = {}
         self._nodes: dict[str, _Node] = {}
         for link, joints in mechanism.links.items():
-            name = GROUND if link == GROUND else names.of("link", link)
+            name = GROUND if link == GROUND else names.make_name("link", link)
             self._links[link] = name
             self._nodes[name] = _Node(name, link, joints)
         for number, slide in enumerate(mechanism.slides):
             label = f"block at {slide.joint}"
-            name = names.of("block", mechanism.slide_names[number])
+            name = names.make_name("block", mechanism.slide_names[number])
             self._nodes[name] = _Node(name, label, (slide.joint,), slide=number)
         # Pins are a separate kind of element in all formats.
         self._pins = Names()
         self._order: list[str] = []
         self._closures: list[Closure] = []
 
-    def grown(self, inputs: Real, speed: float, weights: Weights, title: str) -> Multibody:
+    def build_machine(self, inputs: Real, speed: float, weights: Weights, title: str) -> Multibody:
         """Grow the tree and return the machine."""
         mechanism, remarks, gravity = self._mechanism, weights.remarks, weights.gravity
         self._grow()
@@ -108,18 +109,20 @@ class _Tree:
             raise NotSimulated("No moving link has mass.")
         # Size in metres; it scales the minimum inertias.
         size = self._scale * float(mechanism.frame[1])
-        bodies, given = weighty(tuple(self._body(self._nodes[name], weights.width) for name in self._order), size)
+        bodies, given = ensure_masses(
+            tuple(self._make_body(self._nodes[name], weights.width) for name in self._order), size
+        )
         if given:
             told = ", ".join(given)
             remarks = (*remarks, f"Bodies without mass or inertia, given a millionth of the heaviest one's: {told}.")
-        led = self._input_body()
-        coordinates = {name: self._coordinate(self._nodes[name]) for name in self._order}
+        led = self._find_input_body()
+        coordinates = {name: self._compute_coordinate(self._nodes[name]) for name in self._order}
         led_speed = float(coordinates[led][1][0])
         return Multibody(
             title=title,
             bodies=bodies,
             closures=tuple(self._closures),
-            relations=tuple(self._relation(number) for number in range(len(mechanism.gears))),
+            relations=tuple(self._make_relation(number) for number in range(len(mechanism.gears))),
             gravity=(gravity.real, gravity.imag, 0.0),
             driven=led,
             speed=led_speed,
@@ -138,15 +141,15 @@ class _Tree:
         waiting = deque([GROUND])
         opened: set[str] = set()
 
-        def reach(node: _Node, parent: str, sort: Literal["hinge", "slide"], at: str, along: int | None) -> None:
+        def attach(node: _Node, parent: str, sort: Literal["hinge", "slide"], at: str, along: int | None) -> None:
             node.parent, node.sort, node.at, node.along = parent, sort, at, along
             reached.add(node.name)
             # Parents precede their children, as all formats require.
             self._order.append(node.name)
             waiting.append(node.name)
-            slid(node)
+            attach_slides(node)
 
-        def slid(node: _Node) -> None:
+        def attach_slides(node: _Node) -> None:
             """Reach the blocks that slide in a body, or the link in which a block slides."""
             for number, slide in enumerate(self._mechanism.slides):
                 owner = self._nodes[self._links[slide.link]]
@@ -154,12 +157,12 @@ class _Tree:
                 if owner is node and block.name not in reached:
                     # The block moves in its link: its coordinate is the slide's. Below, the link moves on its block.
                     block.carried = 1
-                    reach(block, owner.name, "slide", slide.joint, number)
+                    attach(block, owner.name, "slide", slide.joint, number)
                 elif block is node and owner.name not in reached:
                     owner.carried = -1
-                    reach(owner, block.name, "slide", slide.joint, number)
+                    attach(owner, block.name, "slide", slide.joint, number)
 
-        slid(self._nodes[GROUND])
+        attach_slides(self._nodes[GROUND])
         while waiting:
             hub = self._nodes[waiting.popleft()]
             for joint in hub.joints:
@@ -171,10 +174,10 @@ class _Tree:
                         continue
                     # A body that is already in the tree closes a loop here; a new one hangs from the hub.
                     if node.name in reached:
-                        name = self._pins.of("pin", f"{joint} {hub.label} {node.label}")
+                        name = self._pins.make_name("pin", f"{joint} {hub.label} {node.label}")
                         self._closures.append(Closure(name, hub.name, node.name, self._start(joint)))
                     else:
-                        reach(node, hub.name, "hinge", joint, None)
+                        attach(node, hub.name, "hinge", joint, None)
 
     # Positions and masses
 
@@ -182,7 +185,7 @@ class _Tree:
         place = self._scale * complex(self._driven.joints[joint][0, 0])
         return place.real, place.imag, 0.0
 
-    def _turned(self, link: str) -> complex:
+    def _measure_turn(self, link: str) -> complex:
         """Return the rotation of a link from the reference position to the start of the motion, as a unit complex
         number.
         """
@@ -199,7 +202,7 @@ class _Tree:
             base = self._mechanism.link_line(link)[0]
             # Arm from the link's base joint to its centre of mass, in the reference position.
             away = complex(part.cg) - self._scale * complex(self._mechanism.joints[base])
-            centre = self._scale * complex(self._driven.joints[base][0, 0]) + away * self._turned(link)
+            centre = self._scale * complex(self._driven.joints[base][0, 0]) + away * self._measure_turn(link)
             moved = weight(float(part.mass), centre, float(part.inertia))
             self._nodes[self._links[link]].weights.append(moved)
         for joint, mass in weights.pins.items():
@@ -210,14 +213,14 @@ class _Tree:
                 x, y, _ = self._start(joint)
                 carrier.weights.append(weight(float(mass), complex(x, y)))
 
-    def _body(self, node: _Node, width: float) -> Body:
+    def _make_body(self, node: _Node, width: float) -> Body:
         place = self._start(node.at)
         axis = Z
         if node.along is not None:
             slide = self._mechanism.slides[node.along]
-            along = cmath.exp(1j * float(slide.angle)) * self._turned(slide.link)
+            along = cmath.exp(1j * float(slide.angle)) * self._measure_turn(slide.link)
             axis = (along.real, along.imag, 0.0)
-        whole = joined(node.weights) if node.weights else weight(0.0)
+        whole = join_bodies(node.weights) if node.weights else weight(0.0)
         centre = complex(whole.cg) if float(whole.mass) > 0.0 else complex(place[0], place[1])
         return Body(
             name=node.name,
@@ -235,25 +238,25 @@ class _Tree:
 
     # How they move
 
-    def _rotation(self, node: _Node) -> Real:
+    def _compute_rotation(self, node: _Node) -> Real:
         """Return the angle and angular rate of a body; a block rotates with the link in which it slides."""
         link = node.label if node.slide is None else self._mechanism.slides[node.slide].link
         if link == GROUND:
             return np.zeros((2, self._driven.input.shape[-1]))
         return np.asarray(self._driven.angles[link][:2])
 
-    def _coordinate(self, node: _Node) -> Real:
+    def _compute_coordinate(self, node: _Node) -> Real:
         """Return the joint coordinate of a body and its rate, shape (2, n + 1)."""
         if node.along is not None:
             name = self._mechanism.slide_names[node.along]
             return np.asarray(node.carried * self._scale * self._driven.slides[name][:2])
-        relative = self._rotation(node) - self._rotation(self._nodes[node.parent])
+        relative = self._compute_rotation(node) - self._compute_rotation(self._nodes[node.parent])
         # Joint coordinates must be continuous over full turns.
         return np.stack([np.unwrap(relative[0]), relative[1]])
 
-    def _input_body(self) -> str:
+    def _find_input_body(self) -> str:
         mechanism = self._mechanism
-        if not mechanism.driven_by_slide:
+        if not mechanism.has_slide_input:
             return self._links[mechanism.input]
         return next(
             name
@@ -263,7 +266,7 @@ class _Tree:
             and mechanism.slides[number].link == GROUND
         )
 
-    def _relation(self, number: int) -> Relation:
+    def _make_relation(self, number: int) -> Relation:
         """Return the constraint of a gear pair: angle of the second link minus ratio times that of the first, both to
         ground.
         """

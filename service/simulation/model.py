@@ -16,12 +16,12 @@ from dataclasses import dataclass, replace
 from typing import Literal, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
-Real = NDArray[np.float64]
+from kinematics.arrays import Real
+
 Vector = tuple[float, float, float]
 
-LEAST_SHARE = 1e-6
+MIN_MASS_SHARE = 1e-6
 """Minimum mass of a body as a share of the heaviest one's, and minimum inertia as a share of that mass times size².
 Simulators need positive values; these change forces by a few millionths at most.
 """
@@ -157,9 +157,9 @@ class Multibody:
         return 1e9 * energy
 
 
-def weighty(bodies: tuple[Body, ...], size: float) -> tuple[tuple[Body, ...], tuple[str, ...]]:
+def ensure_masses(bodies: tuple[Body, ...], size: float) -> tuple[tuple[Body, ...], tuple[str, ...]]:
     """Give every body the minimum mass and inertia; return the bodies and the labels of those that were changed."""
     heaviest = max(body.mass for body in bodies)
-    mass, inertia = LEAST_SHARE * heaviest, LEAST_SHARE * heaviest * size**2
+    mass, inertia = MIN_MASS_SHARE * heaviest, MIN_MASS_SHARE * heaviest * size**2
     given = tuple(body.label for body in bodies if body.mass < mass or body.inertia < inertia)
     return tuple(replace(body, mass=max(body.mass, mass), inertia=max(body.inertia, inertia)) for body in bodies), given

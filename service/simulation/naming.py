@@ -12,7 +12,7 @@ class Names:
     def __init__(self) -> None:
         self._given: set[str] = set()
 
-    def of(self, sort: str, label: str) -> str:
+    def make_name(self, sort: str, label: str) -> str:
         """Return a unique identifier for ``label``. It begins with its sort, so that it is no keyword of a language.
 
         It has no two underscores in a row, so that an identifier extended by two underscores and a suffix is unique,
@@ -35,23 +35,23 @@ class Names:
         return name
 
 
-def one_line(text: str) -> str:
+def join_lines(text: str) -> str:
     """Return text without line breaks and control characters."""
     return re.sub(r"\s+", " ", "".join(c if c.isprintable() else " " for c in text)).strip()
 
 
-def attribute(text: str) -> str:
+def escape_attribute(text: str) -> str:
     """Return text as an XML attribute value for use between double quotes."""
-    return escape(one_line(text), {'"': "&quot;"})
+    return escape(join_lines(text), {'"': "&quot;"})
 
 
-def comment(text: str) -> str:
+def escape_comment(text: str) -> str:
     """Return text that is safe inside an XML comment."""
     # XML comments must not contain "--" or end with "-".
-    return re.sub(r"-(?=-)|-$", "- ", escape(one_line(text)))
+    return re.sub(r"-(?=-)|-$", "- ", escape(join_lines(text)))
 
 
-def number(value: float) -> str:
+def format_number(value: float) -> str:
     """Format a number with all its digits.
 
     Examples
@@ -64,6 +64,6 @@ def number(value: float) -> str:
     return text.removesuffix(".0")
 
 
-def numbers(*values: float) -> str:
+def format_numbers(*values: float) -> str:
     """Format numbers separated by spaces."""
-    return " ".join(number(value) for value in values)
+    return " ".join(format_number(value) for value in values)

@@ -6,17 +6,17 @@ from typing import Annotated, Any, Literal, get_args
 
 from pydantic import BaseModel, ConfigDict, Field
 
-from synthesis.model.bodies import Material
+from synthesis.model.dynamics.bodies import Material
 
 Form = Literal["mjcf", "urdf", "mo", "sim.py"]
 """Output formats of a simulation."""
 
 FORMS: tuple[Form, ...] = get_args(Form)
 
-TRAINS = ("gear_train", "planetary_train", "train_series", "gearbox", "layshaft_gearbox")
+TRAIN_TYPES = ("gear_train", "planetary_train", "train_series", "gearbox", "layshaft_gearbox")
 """Types of mechanisms other than linkages that can be simulated."""
 
-SMALLEST, LARGEST = 1e-9, 1e9
+MIN_VALUE, MAX_VALUE = 1e-9, 1e9
 """Bounds of the values in a query."""
 
 
@@ -32,12 +32,12 @@ class SimulationQuery(BaseModel):
         default=None,
         description="Material of all bodies; steel by default. Masses in the problem's `dynamics` take precedence.",
     )
-    width: Annotated[float, Field(ge=SMALLEST, le=LARGEST)] | None = Field(
+    width: Annotated[float, Field(ge=MIN_VALUE, le=MAX_VALUE)] | None = Field(
         default=None,
         description="Width of links between their round ends. Default: that of the problem's `layout`, or a tenth of "
         "the mechanism's size, but at most 0.875 of its shortest link.",
     )
-    thickness: Annotated[float, Field(ge=SMALLEST, le=LARGEST)] | None = Field(
+    thickness: Annotated[float, Field(ge=MIN_VALUE, le=MAX_VALUE)] | None = Field(
         default=None,
         description="Thickness of links. Default: that of the `layout`, or 0.28 of their width. For gears: the face "
         "width of those that have none of their own, 10 modules by default.",
@@ -46,12 +46,12 @@ class SimulationQuery(BaseModel):
         default=None,
         description="Speed of a rotating input. Default: that of the problem's `dynamics`, or 60. Not 0.",
     )
-    speed: Annotated[float, Field(ge=-LARGEST, le=LARGEST)] | None = Field(
+    speed: Annotated[float, Field(ge=-MAX_VALUE, le=MAX_VALUE)] | None = Field(
         default=None,
         description="Speed of a sliding input, length units per second. Default: that of the problem's `dynamics`, or "
         "the whole stroke in one second. Not 0.",
     )
-    scale: Annotated[float, Field(ge=SMALLEST, le=LARGEST)] | None = Field(
+    scale: Annotated[float, Field(ge=MIN_VALUE, le=MAX_VALUE)] | None = Field(
         default=None,
         description="Built size relative to the design; `width` and `thickness` are as built. Default: 1, or the "
         "power of ten that makes a mechanism of unit size heavy enough for MuJoCo. Not available if the problem's "
@@ -81,7 +81,7 @@ class NoSimulation(LookupError):
     """A type of mechanism for which no simulation exists."""
 
 
-def unused(query: SimulationQuery, of: str, *fields: str) -> None:
+def refuse_unused(query: SimulationQuery, of: str, *fields: str) -> None:
     """Refuse fields that have no meaning for a mechanism.
 
     Raises
@@ -95,7 +95,7 @@ def unused(query: SimulationQuery, of: str, *fields: str) -> None:
             raise NotSimulated(f"This has no meaning for {of}; leave it out.", f"/query/{field}")
 
 
-def nonzero(value: float | None, field: str) -> float | None:
+def check_nonzero(value: float | None, field: str) -> float | None:
     """Return a speed, if it is not 0.
 
     Raises
@@ -103,6 +103,6 @@ def nonzero(value: float | None, field: str) -> float | None:
     NotSimulated
         The speed is 0, or below the minimum in size.
     """
-    if value is not None and abs(value) < SMALLEST:
-        raise NotSimulated(f"A simulation needs a speed of at least {SMALLEST:g} in size.", f"/query/{field}")
+    if value is not None and abs(value) < MIN_VALUE:
+        raise NotSimulated(f"A simulation needs a speed of at least {MIN_VALUE:g} in size.", f"/query/{field}")
     return value

@@ -5,9 +5,9 @@ from __future__ import annotations
 import json
 from collections.abc import Iterator
 
-from service.simulation.mjcf import mjcf, steps_between
+from service.simulation.mjcf import count_steps, write_mjcf
 from service.simulation.model import Multibody
-from service.simulation.naming import one_line
+from service.simulation.naming import join_lines
 
 PROGRAM = '''
 
@@ -93,12 +93,12 @@ if __name__ == "__main__":
 '''
 
 
-def script(machine: Multibody) -> str:
+def write_script(machine: Multibody) -> str:
     """Write the script as text; it needs only the package ``mujoco``."""
-    return "\n".join(_head(machine)) + PROGRAM
+    return "\n".join(_write_head(machine)) + PROGRAM
 
 
-def _head(machine: Multibody) -> Iterator[str]:
+def _write_head(machine: Multibody) -> Iterator[str]:
     hinge = machine.by_name[machine.driven].sort == "hinge"
     yield "#!/usr/bin/env python3"
     yield '"""Runs a machine in MuJoCo: pip install mujoco. SI units: metres, kilograms, radians, seconds."""'
@@ -110,12 +110,12 @@ def _head(machine: Multibody) -> Iterator[str]:
     yield ""
     yield "import mujoco"
     yield ""
-    yield f"TITLE = {_text(machine.title)}"
-    yield f"REMARKS = [{', '.join(_text(remark) for remark in machine.remarks)}]"
+    yield f"TITLE = {_format_text(machine.title)}"
+    yield f"REMARKS = [{', '.join(_format_text(remark) for remark in machine.remarks)}]"
     yield f"DURATION = {machine.duration!r}"
     yield f"SIZE = {machine.size!r}"
     yield f'FORCE = "{"N m" if hinge else "N"}"'
-    yield f"STEPS = {steps_between(machine)}  # between two rows of MOTION"
+    yield f"STEPS = {count_steps(machine)}  # between two rows of MOTION"
     yield "EQUALITY = mujoco.mjtConstraint.mjCNSTR_EQUALITY"
     yield f"JOINTS = {json.dumps([body.joint for body in machine.bodies])}"
     yield f"UNITS = {json.dumps([body.unit for body in machine.bodies])}"
@@ -125,7 +125,7 @@ def _head(machine: Multibody) -> Iterator[str]:
     yield "# The model, identical to the .mjcf file."
     yield "MODEL = ("
     # ASCII literals keep the script independent of the platform's encoding.
-    for line in mjcf(machine).splitlines():
+    for line in write_mjcf(machine).splitlines():
         yield f"    {line + chr(10)!a}"
     yield ")"
     yield ""
@@ -136,6 +136,6 @@ def _head(machine: Multibody) -> Iterator[str]:
     yield "]"
 
 
-def _text(text: str) -> str:
+def _format_text(text: str) -> str:
     """Return text as an ASCII Python literal."""
-    return ascii(one_line(text))
+    return ascii(join_lines(text))

@@ -17,26 +17,26 @@ import numpy as np
 from kinematics.gear.arrangements import ARRANGEMENTS
 from kinematics.gear.planetary import Mesh
 from kinematics.gear.teeth import Gear
-from service.render.gears.gearbox_layout import gearbox_layout, layshaft_layout
-from service.render.gears.planetary_layout import placed_planetary_gears
-from service.render.gears.train_layout import placed_gears
-from service.simulation.course import SAMPLES, USUAL_RPM
-from service.simulation.model import GROUND, Body, Multibody, Relation, Vector, weighty
+from service.render.gears.gearbox_layout import arrange_gearbox, arrange_layshaft
+from service.render.gears.planetary_layout import place_planetary_gears
+from service.render.gears.train_layout import place_gears
+from service.simulation.course import DEFAULT_RPM, STEP_COUNT
+from service.simulation.model import GROUND, Body, Multibody, Relation, Vector, ensure_masses
 from service.simulation.naming import Names
-from service.simulation.query import TRAINS, NotSimulated, SimulationQuery, nonzero, unused
+from service.simulation.query import TRAIN_TYPES, NotSimulated, SimulationQuery, check_nonzero, refuse_unused
 from synthesis.kinds.gear_train.design import GearTrainMechanism
-from synthesis.kinds.gear_train.verification import driven_train
+from synthesis.kinds.gear_train.verification import build_train
 from synthesis.kinds.planetary_train.design import PlanetaryMechanism
-from synthesis.model.bodies import DENSITIES
-from synthesis.model.dynamics import METRES
+from synthesis.model.dynamics.bodies import DENSITIES
+from synthesis.model.dynamics.request import METRES_PER_UNIT
 
-FACE = 10.0
+FACE_WIDTH_MODULES = 10.0
 """Default face width of gears, modules."""
 
-RIM = 4.0
+RIM_WIDTH_MODULES = 4.0
 """Width of a ring gear outside its pitch circle, modules."""
 
-ARM = 0.25
+ARM_WIDTH_SHARE = 0.25
 """Width of a carrier's arms as a share of the distance of its pins from the axis."""
 
 Z: Vector = (0.0, 0.0, 1.0)
@@ -62,27 +62,27 @@ class _Train:
     """Shafts and meshes of a train by name."""
 
     def __init__(self, unit: Any, query: SimulationQuery) -> None:
-        self.scale = METRES[unit] * query.built
+        self.scale = METRES_PER_UNIT[unit] * query.built
         self.shafts: dict[str, _Shaft] = {}
         self.relations: list[tuple[tuple[str, float], ...]] = []
         self.material = query.material or "steel"
-        self._face = None if query.thickness is None else METRES[unit] * query.thickness
+        self._face = None if query.thickness is None else METRES_PER_UNIT[unit] * query.thickness
 
-    def shaft(self, name: str, speed: float, place: complex, axis: Vector = Z, parent: str = GROUND) -> str:
+    def add_shaft(self, name: str, speed: float, place: complex, axis: Vector = Z, parent: str = GROUND) -> str:
         """Add a shaft at a place in length units; ``speed`` is relative to the parent, as a multiple of the input's."""
         if name not in self.shafts:
             self.shafts[name] = _Shaft(name, speed, self.scale * place, axis, parent)
         return name
 
-    def gear(self, shaft: str, gear: Gear, face: float | None) -> None:
+    def add_gear(self, shaft: str, gear: Gear, face: float | None) -> None:
         """Add a gear to a shaft: a disc of its pitch radius, or a ring outside it."""
         one = self.shafts[shaft]
-        width = self._face or FACE * self.scale * gear.module
+        width = self._face or FACE_WIDTH_MODULES * self.scale * gear.module
         if face is not None:
             width = self.scale * face
         inner, outer = 0.0, self.scale * gear.pitch_radius
         if gear.internal:
-            inner, outer = outer, outer + RIM * self.scale * gear.module
+            inner, outer = outer, outer + RIM_WIDTH_MODULES * self.scale * gear.module
         mass = DENSITIES[self.material] * math.pi * (outer**2 - inner**2) * width
         one.mass += mass
         one.inertia += 0.5 * mass * (outer**2 + inner**2)
@@ -90,19 +90,19 @@ class _Train:
         if outer > one.radius:
             one.radius, one.width = outer, width
 
-    def carrier(self, shaft: str, pins: Iterable[complex]) -> None:
+    def add_carrier(self, shaft: str, pins: Iterable[complex]) -> None:
         """Make a shaft a carrier: add an arm from the axis to each pin (length units)."""
         one = self.shafts[shaft]
         for pin in pins:
             length = abs(self.scale * pin)
-            width = ARM * length
+            width = ARM_WIDTH_SHARE * length
             mass = DENSITIES[self.material] * length * width * width
             one.mass += mass
             one.inertia += mass * (length**2 / 3.0 + width**2 / 12.0)
             one.marks.append(one.place + self.scale * pin)
             one.width = one.width or width
 
-    def mesh(self, *terms: tuple[str, float]) -> None:
+    def add_mesh(self, *terms: tuple[str, float]) -> None:
         """Couple shafts: the weighted sum of their angles stays 0. A relation that follows from others is left out."""
         known = list(self.shafts)
         kept: dict[str, float] = {}
@@ -117,17 +117,19 @@ class _Train:
         if np.linalg.matrix_rank(matrix) == len(rows):
             self.relations = rows
 
-    def machine(self, title: str, driven: str, query: SimulationQuery, remarks: Iterable[str] = ()) -> Multibody:
+    def build_machine(self, title: str, driven: str, query: SimulationQuery, remarks: Iterable[str] = ()) -> Multibody:
         """Return the machine over one turn of its driven shaft."""
-        unused(query, "gears", "width", "speed")
+        refuse_unused(query, "gears", "width", "speed")
         if driven not in self.shafts:
             raise NotSimulated("The input of this train is fixed, so there is no motion to simulate.")
-        speed = nonzero(query.speed_rpm, "speed_rpm") or USUAL_RPM
+        speed = check_nonzero(query.speed_rpm, "speed_rpm") or DEFAULT_RPM
         rate = speed * math.tau / 60.0
         names = Names()
-        called = {name: names.of("gear", name) for name in self.shafts} | {GROUND: GROUND}
-        bodies, given = weighty(tuple(self._body(called, shaft) for shaft in self.shafts.values()), self._size())
-        times = np.linspace(0.0, math.tau / abs(rate), SAMPLES + 1)
+        called = {name: names.make_name("gear", name) for name in self.shafts} | {GROUND: GROUND}
+        bodies, given = ensure_masses(
+            tuple(self._make_body(called, shaft) for shaft in self.shafts.values()), self._measure_size()
+        )
+        times = np.linspace(0.0, math.tau / abs(rate), STEP_COUNT + 1)
         # Speeds are normalized to the driven shaft.
         share = self.shafts[driven].speed
         rates = {called[name]: rate * shaft.speed / share for name, shaft in self.shafts.items()}
@@ -152,15 +154,15 @@ class _Train:
             times=times,
             motion={name: own * times for name, own in rates.items()},
             rates=rates,
-            size=self._size(),
+            size=self._measure_size(),
             remarks=tuple(told),
         )
 
-    def _size(self) -> float:
+    def _measure_size(self) -> float:
         places = [(shaft.place, shaft.radius) for shaft in self.shafts.values()]
         return max(abs(a - b) + r + s for a, r in places for b, s in places)
 
-    def _body(self, called: Mapping[str, str], shaft: _Shaft) -> Body:
+    def _make_body(self, called: Mapping[str, str], shaft: _Shaft) -> Body:
         place = (shaft.place.real, shaft.place.imag, 0.0)
         return Body(
             name=called[shaft.label],
@@ -178,52 +180,52 @@ class _Train:
         )
 
 
-def gear_train(design: Any, problem: Any, title: str, query: SimulationQuery) -> Multibody:
+def build_gear_train(design: Any, problem: Any, title: str, query: SimulationQuery) -> Multibody:
     """Build the machine of an ordinary train."""
-    unused(query, "a gear train", "gear")
+    refuse_unused(query, "a gear train", "gear")
     train = _Train(problem.length_unit, query)
-    first, _, remarks = _ordinary(train, design.mechanism, problem.reverted, "", 1.0, None)
-    return train.machine(title, first, query, remarks)
+    first, _, remarks = _add_ordinary(train, design.mechanism, problem.reverted, "", 1.0, None)
+    return train.build_machine(title, first, query, remarks)
 
 
-def _ordinary(
+def _add_ordinary(
     train: _Train, mechanism: GearTrainMechanism, reverted: bool, prefix: str, share: float, before: str | None
 ) -> tuple[str, str, list[str]]:
     """Add the shafts of an ordinary train; return the first shaft, the last one, and remarks."""
-    built = driven_train(mechanism)
-    placed = placed_gears(mechanism, reverted)
+    built = build_train(mechanism)
+    placed = place_gears(mechanism, reverted)
     axes: list[Vector] = [(float(x), float(y), float(z)) for x, y, z in built.axes]
-    first = before or train.shaft(f"{prefix}shaft 1", share, placed[0].centre, axes[0])
+    first = before or train.add_shaft(f"{prefix}shaft 1", share, placed[0].centre, axes[0])
     # A train in a series starts on the previous train's output shaft, so all centres shift by this offset.
     aside = train.shafts[first].place / train.scale - placed[0].centre
     at = first
     for number, stage in enumerate(built.stages):
         gears = [gear for gear in placed if gear.stage == number + 1]
         face = mechanism.stages[number].face_width
-        train.gear(at, gears[0].gear, face)
+        train.add_gear(at, gears[0].gear, face)
         for n, gear in enumerate(gears[1:], 1):
             last = n == len(gears) - 1
             label = f"{prefix}shaft {number + 2}" if last else f"{prefix}idler {number + 1}.{n}"
-            train.shaft(label, share * float(gear.speed), gear.centre + aside, axes[number + last])
-            train.gear(label, gear.gear, face)
+            train.add_shaft(label, share * float(gear.speed), gear.centre + aside, axes[number + last])
+            train.add_gear(label, gear.gear, face)
             # Both gears of a mesh pass the same number of teeth; the sign follows the directions of the shaft axes.
-            train.mesh((label, float(gear.count)), (at, -float(stage.sense) * gears[n - 1].count))
+            train.add_mesh((label, float(gear.count)), (at, -float(stage.sense) * gears[n - 1].count))
             at = label
     crossed = not all(stage.is_parallel for stage in built.stages)
     remarks = ["Non-parallel shafts are placed side by side, as in the drawing."] if crossed else []
     return first, at, remarks
 
 
-def planetary_train(design: Any, problem: Any, title: str, query: SimulationQuery) -> Multibody:
+def build_planetary_train(design: Any, problem: Any, title: str, query: SimulationQuery) -> Multibody:
     """Build the machine of a planetary train."""
-    unused(query, "a gear train", "gear")
+    refuse_unused(query, "a gear train", "gear")
     train = _Train(problem.length_unit, query)
     mechanism = design.mechanism
-    bodies = _planetary(train, mechanism, design.metrics, "", 1.0, 0j, {})
-    return train.machine(title, bodies[mechanism.input], query)
+    bodies = _add_planetary(train, mechanism, design.metrics, "", 1.0, 0j, {})
+    return train.build_machine(title, bodies[mechanism.input], query)
 
 
-def _planetary(
+def _add_planetary(
     train: _Train, mechanism: PlanetaryMechanism, metrics: Any, prefix: str, share: float, axis: complex,
     joined: Mapping[str, str],
 ) -> dict[str, str]:  # fmt: skip
@@ -231,14 +233,14 @@ def _planetary(
     existing bodies.
     """
     arrangement, speeds = ARRANGEMENTS[mechanism.arrangement], metrics.speeds
-    placed = placed_planetary_gears(mechanism)
+    placed = place_planetary_gears(mechanism)
     if not placed:
         raise NotSimulated("The gears of this train do not fit together, so they have no positions.")
     # The fixed member is the ground; members joined to another train are its shafts.
     bodies = {mechanism.fixed: GROUND, **joined}
     for member in arrangement.members:
         if member not in bodies:
-            bodies[member] = train.shaft(prefix + member, share * speeds[member], axis)
+            bodies[member] = train.add_shaft(prefix + member, share * speeds[member], axis)
     copies: dict[str, dict[int, str]] = {}
     faces = mechanism.face_widths or []
     for gear in placed:
@@ -256,21 +258,21 @@ def _planetary(
                 ahead = gear.centre / abs(gear.centre)
                 own = (ahead.real, ahead.imag, 0.0)
             relative = speeds[gear.body] - speeds[carrier]
-            train.shaft(name, share * relative, axis + centre, own, bodies[carrier])
+            train.add_shaft(name, share * relative, axis + centre, own, bodies[carrier])
             copies.setdefault(gear.body, {})[gear.copy] = name
         if name != GROUND:
-            train.gear(name, gear.gear, face)
+            train.add_gear(name, gear.gear, face)
     for carrier in dict.fromkeys(arrangement.carriers.values()):
         if bodies[carrier] != GROUND:
             carried = [gear.centre for gear in placed if arrangement.carriers.get(gear.body) == carrier]
-            train.carrier(bodies[carrier], dict.fromkeys(carried))
+            train.add_carrier(bodies[carrier], dict.fromkeys(carried))
     for copy in range(mechanism.planets):
-        for mesh in arrangement.train(mechanism.teeth).meshes:
-            _planet_mesh(train, mesh, bodies, copies, copy)
+        for mesh in arrangement.build_train(mechanism.teeth).meshes:
+            _add_planet_mesh(train, mesh, bodies, copies, copy)
     return bodies
 
 
-def _planet_mesh(
+def _add_planet_mesh(
     train: _Train, mesh: Mesh, bodies: Mapping[str, str], copies: Mapping[str, Mapping[int, str]], copy: int
 ) -> None:
     """Add the mesh of one copy of the planets; planet angles are relative to their carrier."""
@@ -280,12 +282,12 @@ def _planet_mesh(
             terms.append((copies[body][copy], float(weight)))
         else:
             terms += [(bodies[body], float(weight)), (bodies[mesh.carrier], -float(weight))]
-    train.mesh(*terms)
+    train.add_mesh(*terms)
 
 
-def train_series(design: Any, problem: Any, title: str, query: SimulationQuery) -> Multibody:
+def build_train_series(design: Any, problem: Any, title: str, query: SimulationQuery) -> Multibody:
     """Build the machine of trains in series: the output of each is the input of the next, about one axis."""
-    unused(query, "a gear train", "gear")
+    refuse_unused(query, "a gear train", "gear")
     train = _Train(problem.length_unit, query)
     mechanism, metrics = design.mechanism, design.metrics
     remarks: list[str] = []
@@ -297,45 +299,47 @@ def train_series(design: Any, problem: Any, title: str, query: SimulationQuery) 
             held = {} if joined is None else {unit.input: joined}
             # Each unit continues on the output shaft of the previous one.
             axis = 0j if joined is None else train.shafts[joined].place / train.scale
-            bodies = _planetary(train, unit, metrics.units[number], prefix, share, axis, held)
+            bodies = _add_planetary(train, unit, metrics.units[number], prefix, share, axis, held)
             start, joined = bodies[unit.input], bodies[unit.output]
         else:
-            start, joined, told = _ordinary(train, unit, problem.units[number].reverted, prefix, share, joined)
+            start, joined, told = _add_ordinary(train, unit, problem.units[number].reverted, prefix, share, joined)
             remarks += told
         first = first or start
-    return train.machine(title, first, query, dict.fromkeys(remarks))
+    return train.build_machine(title, first, query, dict.fromkeys(remarks))
 
 
-def gearbox(design: Any, problem: Any, title: str, query: SimulationQuery) -> Multibody:
+def build_gearbox(design: Any, problem: Any, title: str, query: SimulationQuery) -> Multibody:
     """Build the machine of a machine-tool gearbox with the gear pairs of one speed engaged."""
-    engaged_speed = _engaged(query, len(design.metrics.speeds))
+    engaged_speed = _get_engaged_number(query, len(design.metrics.speeds))
     found = design.metrics.speeds[engaged_speed - 1]
     train = _Train(problem.length_unit, query)
-    layout, mechanism = gearbox_layout(design.mechanism), design.mechanism
+    layout, mechanism = arrange_gearbox(design.mechanism), design.mechanism
     shares = [1.0]
     for stage, pair in zip(mechanism.stages, found.engaged, strict=True):
         teeth = stage.pairs[pair]
         shares.append(-shares[-1] * teeth.driver / teeth.driven)
     for shaft, share in zip(layout.shafts, shares, strict=True):
-        train.shaft(shaft.name, share, shaft.centre)
+        train.add_shaft(shaft.name, share, shaft.centre)
     for gear in layout.gears:
-        train.gear(layout.shafts[gear.shaft].name, gear.gear, None)
+        train.add_gear(layout.shafts[gear.shaft].name, gear.gear, None)
     for number, pair in enumerate(found.engaged):
         one, other = layout.shafts[number].name, layout.shafts[number + 1].name
         teeth = mechanism.stages[number].pairs[pair]
-        train.mesh((other, float(teeth.driven)), (one, float(teeth.driver)))
+        train.add_mesh((other, float(teeth.driven)), (one, float(teeth.driver)))
     if query.speed_rpm is None:
         query = query.model_copy(update={"speed_rpm": mechanism.input_speed})
-    return train.machine(title, "input", query, [f"Speed {engaged_speed} of {len(design.metrics.speeds)} is engaged."])
+    return train.build_machine(
+        title, "input", query, [f"Speed {engaged_speed} of {len(design.metrics.speeds)} is engaged."]
+    )
 
 
-def layshaft_gearbox(design: Any, problem: Any, title: str, query: SimulationQuery) -> Multibody:
+def build_layshaft_gearbox(design: Any, problem: Any, title: str, query: SimulationQuery) -> Multibody:
     """Build the machine of a layshaft gearbox with one gear engaged; reverse comes after the last gear."""
     mechanism = design.mechanism
     count = len(mechanism.gears) + (mechanism.reverse is not None)
-    number = _engaged(query, count)
+    number = _get_engaged_number(query, count)
     train = _Train(problem.length_unit, query)
-    layout, head = layshaft_layout(mechanism), mechanism.head
+    layout, head = arrange_layshaft(mechanism), mechanism.head
     # External meshes reverse the direction of rotation.
     on_layshaft = -head.driver / head.driven
     back = mechanism.reverse
@@ -351,25 +355,25 @@ def layshaft_gearbox(design: Any, problem: Any, title: str, query: SimulationQue
     if back is not None:
         shares["idler"] = -on_layshaft * back.layshaft / back.idler
     for shaft in layout.shafts:
-        train.shaft(shaft.name, shares[shaft.name], shaft.centre)
+        train.add_shaft(shaft.name, shares[shaft.name], shaft.centre)
     for gear in layout.gears:
-        train.gear(layout.shafts[gear.shaft].name, gear.gear, None)
-    train.mesh(("layshaft", float(head.driven)), ("input", float(head.driver)))
+        train.add_gear(layout.shafts[gear.shaft].name, gear.gear, None)
+    train.add_mesh(("layshaft", float(head.driven)), ("input", float(head.driver)))
     if back is not None:
-        train.mesh(("idler", float(back.idler)), ("layshaft", float(back.layshaft)))
+        train.add_mesh(("idler", float(back.idler)), ("layshaft", float(back.layshaft)))
     if pair is None:
         assert back is not None
-        train.mesh(("main shaft", float(back.mainshaft)), ("idler", float(back.idler)))
+        train.add_mesh(("main shaft", float(back.mainshaft)), ("idler", float(back.idler)))
     elif pair.layshaft is None:
-        train.mesh(("main shaft", 1.0), ("input", -1.0))
+        train.add_mesh(("main shaft", 1.0), ("input", -1.0))
     else:
-        train.mesh(("main shaft", float(pair.mainshaft)), ("layshaft", float(pair.layshaft)))
+        train.add_mesh(("main shaft", float(pair.mainshaft)), ("layshaft", float(pair.layshaft)))
     name = "reverse" if pair is None else f"gear {number}"
     remarks = [f"Engaged: {name}. The gears that run free on the main shaft count as parts of it."]
-    return train.machine(title, "input", query, remarks)
+    return train.build_machine(title, "input", query, remarks)
 
 
-def _engaged(query: SimulationQuery, count: int) -> int:
+def _get_engaged_number(query: SimulationQuery, count: int) -> int:
     # Without a choice the first gear is engaged.
     number = 1 if query.gear is None else query.gear
     if number > count:
@@ -377,7 +381,11 @@ def _engaged(query: SimulationQuery, count: int) -> int:
     return number
 
 
-MAKERS: dict[str, Callable[[Any, Any, str, SimulationQuery], Multibody]] = dict(
-    zip(TRAINS, (gear_train, planetary_train, train_series, gearbox, layshaft_gearbox), strict=True)
+TRAIN_BUILDERS: dict[str, Callable[[Any, Any, str, SimulationQuery], Multibody]] = dict(
+    zip(
+        TRAIN_TYPES,
+        (build_gear_train, build_planetary_train, build_train_series, build_gearbox, build_layshaft_gearbox),
+        strict=True,
+    )
 )
 """Machine builders of trains, by type of mechanism."""

@@ -11,21 +11,21 @@ from kinematics.dynamics.bodies import Body
 from kinematics.linkage.planar.mechanism import GROUND, Mechanism
 from service.simulation.query import NotSimulated, SimulationQuery
 from synthesis.mechanisms.link_bodies import BlockError
-from synthesis.mechanisms.machine import machine_of, weight_faults
-from synthesis.model.bodies import DENSITIES, Material
-from synthesis.model.dynamics import METRES, WeighedLinkage
+from synthesis.mechanisms.machine import build_machine, find_weight_errors
+from synthesis.model.dynamics.bodies import DENSITIES, Material
+from synthesis.model.dynamics.request import METRES_PER_UNIT, LoadedLinkage
 
-PIN_OF_SIZE, PIN_OF_LINK = 0.04, 0.35
+MAX_PIN_PER_SIZE, MAX_PIN_PER_LINK = 0.04, 0.35
 """Maximum pin diameter as a share of the mechanism's size, and of its shortest link; as in service.parts."""
 
-WIDTH, THICKNESS = 2.5, 0.7
+WIDTH_PER_PIN, THICKNESS_PER_PIN = 2.5, 0.7
 """Default width and thickness of a plate in pin diameters."""
 
-BLOCK_WIDTH, BLOCK_LENGTH = 0.6, 0.9
+BLOCK_WIDTH_SHARE, BLOCK_LENGTH_SHARE = 0.6, 0.9
 """Width and length of a block in its slot, in link widths."""
 
 
-SCALE = "/query/scale"
+SCALE_PATH = "/query/scale"
 
 
 class Weights(NamedTuple):
@@ -39,8 +39,8 @@ class Weights(NamedTuple):
     remarks: tuple[str, ...]
 
 
-def weights_of(
-    mechanism: Mechanism, block: WeighedLinkage | None, layout: Any, unit: Any, query: SimulationQuery
+def compute_weights(
+    mechanism: Mechanism, block: LoadedLinkage | None, layout: Any, unit: Any, query: SimulationQuery
 ) -> Weights:
     """Return the masses of a linkage.
 
@@ -60,8 +60,8 @@ def weights_of(
     NotSimulated
         The block has its own units, or does not fit the mechanism.
     """
-    scale = METRES[unit] * query.built
-    width, thickness = _sizes(mechanism, layout, METRES[unit], query)
+    scale = METRES_PER_UNIT[unit] * query.built
+    width, thickness = _get_sizes(mechanism, layout, METRES_PER_UNIT[unit], query)
     if block is not None and block.units != "si":
         raise NotSimulated(
             "The problem's `dynamics` has its own units, but simulations are in SI units; give it with `units: si`."
@@ -69,12 +69,12 @@ def weights_of(
     remarks: list[str] = []
     gravity, pins = 0j, {}
     if block is not None:
-        faults = weight_faults(block, mechanism)
+        faults = find_weight_errors(block, mechanism)
         # Report only the first contradiction.
         if faults:
             raise NotSimulated(f"The problem's `dynamics` does not fit this design: {faults[0][0]}: {faults[0][1]}.")
         try:
-            machine, _ = machine_of(block, mechanism, unit)
+            machine, _ = build_machine(block, mechanism, unit)
         except BlockError as error:
             raise NotSimulated(f"The problem's `dynamics` does not fit this design: {error}.") from None
         gravity = machine.gravity
@@ -86,21 +86,23 @@ def weights_of(
         # With masses in the problem, plates would count twice; only the masses are used then.
         if any(float(part.mass) > 0.0 for part in machine.bodies.values()) or any(pins.values()):
             if query.built != 1.0:
-                raise NotSimulated("The problem's `dynamics` gives the masses of the links: leave out `scale`.", SCALE)
+                raise NotSimulated(
+                    "The problem's `dynamics` gives the masses of the links: leave out `scale`.", SCALE_PATH
+                )
             remarks.append("Masses and gravity are those of the problem's dynamics.")
             return Weights(machine.bodies, pins, (0.0, 0.0), gravity, width, tuple(remarks))
     material: Material = query.material or "steel"
     density = DENSITIES[material]
     plates = {
-        link: shapes.widened_hull([scale * complex(mechanism.joints[joint]) for joint in joints], width).body(
+        link: shapes.make_widened_hull([scale * complex(mechanism.joints[joint]) for joint in joints], width).body(
             density, thickness
         )
         for link, joints in mechanism.links.items()
         if link != GROUND
     }
     # Blocks have round ends about two points.
-    half = 0.5 * (BLOCK_LENGTH - BLOCK_WIDTH) * width
-    made = shapes.widened_hull([complex(-half), complex(half)], BLOCK_WIDTH * width).body(density, thickness)
+    half = 0.5 * (BLOCK_LENGTH_SHARE - BLOCK_WIDTH_SHARE) * width
+    made = shapes.make_widened_hull([complex(-half), complex(half)], BLOCK_WIDTH_SHARE * width).body(density, thickness)
     remarks.append(
         f"Links are {material} plates ({density:g} kg/m3), {width:.6g} m wide with round ends and {thickness:.6g} "
         "m thick; their holes are filled by pins."
@@ -109,15 +111,15 @@ def weights_of(
     return Weights(plates, pins, (float(made.mass), float(made.inertia)), gravity, width, tuple(remarks))
 
 
-def _sizes(mechanism: Mechanism, layout: Any, unit: float, query: SimulationQuery) -> tuple[float, float]:
+def _get_sizes(mechanism: Mechanism, layout: Any, unit: float, query: SimulationQuery) -> tuple[float, float]:
     """Return width and thickness of the links, metres."""
     width = query.width or getattr(layout, "link_width", None)
     thickness = query.thickness or getattr(layout, "thickness", None)
-    built = unit * width if width else unit * query.built * _width(mechanism)
-    return built, unit * thickness if thickness else THICKNESS / WIDTH * built
+    built = unit * width if width else unit * query.built * _compute_default_width(mechanism)
+    return built, unit * thickness if thickness else THICKNESS_PER_PIN / WIDTH_PER_PIN * built
 
 
-def _width(mechanism: Mechanism) -> float:
+def _compute_default_width(mechanism: Mechanism) -> float:
     """Return the default link width of parts, length units."""
     places = [complex(z) for z in mechanism.joints.values()]
     # Same default as in service.parts: pins limited by size and by the shortest link.
@@ -129,4 +131,4 @@ def _width(mechanism: Mechanism) -> float:
         for a, b in combinations(joints, 2)
         if complex(mechanism.joints[a]) != complex(mechanism.joints[b])
     )
-    return WIDTH * min(PIN_OF_SIZE * size, PIN_OF_LINK * shortest)
+    return WIDTH_PER_PIN * min(MAX_PIN_PER_SIZE * size, MAX_PIN_PER_LINK * shortest)

@@ -8,27 +8,12 @@ from __future__ import annotations
 
 from typing import Any
 
-from synthesis.analyses import (
-    barrel_cam,
-    cam,
-    camshaft,
-    contour_cam,
-    engine,
-    flywheel,
-    gear_pair,
-    gear_train,
-    gearbox,
-    geneva,
-    linkage,
-    planetary_train,
-    ratchet,
-    rotor,
-    running_pair,
-    train_series,
-    universal_joint,
-)
 from synthesis.analyses.base import AnalysisRequest, Family
-from synthesis.model.mechanism_types import mechanism_types
+from synthesis.analyses.cams import barrel_cam, cam, camshaft, contour_cam
+from synthesis.analyses.gears import gear_pair, gear_train, gearbox, planetary_train, running_pair, train_series
+from synthesis.analyses.linkages import linkage
+from synthesis.analyses.machines import engine, flywheel, geneva, ratchet, rotor, universal_joint
+from synthesis.model.mechanism_types import list_mechanism_types
 
 FAMILIES: dict[str, Family] = {
     name: family
@@ -53,18 +38,18 @@ FAMILIES: dict[str, Family] = {
         train_series.FAMILY,
         universal_joint.FAMILY,
     )
-    for name in mechanism_types(family.request)
+    for name in list_mechanism_types(family.request)
 }
 """By the mechanism types that are no linkages; every other mechanism is one."""
 
 
-def family(mechanism: Any) -> Family:
+def get_family(mechanism: Any) -> Family:
     """Return the family of a mechanism in JSON form; that of linkages if it is unclear."""
     kind = mechanism.get("type") if isinstance(mechanism, dict) else None
     return FAMILIES.get(kind, linkage.FAMILY) if isinstance(kind, str) else linkage.FAMILY
 
 
-def families() -> list[Family]:
+def list_families() -> list[Family]:
     """All of them, linkages first."""
     return list(dict.fromkeys([linkage.FAMILY, *FAMILIES.values()]))
 
@@ -77,7 +62,7 @@ def parse_request(body: Any) -> AnalysisRequest:
     pydantic.ValidationError
         For a body that states no mechanism and its motion.
     """
-    return family(body.get("mechanism") if isinstance(body, dict) else None).request.model_validate(body)
+    return get_family(body.get("mechanism") if isinstance(body, dict) else None).request.model_validate(body)
 
 
-__all__ = ["FAMILIES", "AnalysisRequest", "Family", "families", "family", "parse_request"]
+__all__ = ["FAMILIES", "AnalysisRequest", "Family", "get_family", "list_families", "parse_request"]

@@ -7,20 +7,20 @@ from typing import Any, Generic, NamedTuple, Self, TypeVar
 
 from pydantic import Field
 
-from synthesis.analyses.motions import StatedMotion, Sweep
+from synthesis.analyses.input_motion import StatedMotion, Sweep
 from synthesis.model.answer import Answer
-from synthesis.model.statement import Statement
+from synthesis.model.problem import Statement
 
 
 class AnalysisRequest(Statement, ABC):
     """A mechanism and how it is driven; each family has its own fields."""
 
-    def faults(self) -> list[tuple[str, str]]:
+    def find_errors(self) -> list[tuple[str, str]]:
         """What no single field shows: (JSON pointer, detail)."""
         return []
 
     @abstractmethod
-    def answer(self) -> dict[str, Any]:
+    def build_answer(self) -> dict[str, Any]:
         """The answer to a request without faults, as plain lists and numbers in the shape of the family's model.
 
         Raises
@@ -30,12 +30,12 @@ class AnalysisRequest(Statement, ABC):
         """
 
     @classmethod
-    def over_the_cycle(cls, mechanism: dict[str, Any], steps: int) -> dict[str, Any]:
+    def analyze_cycle(cls, mechanism: dict[str, Any], steps: int) -> dict[str, Any]:
         """The answer for a design's mechanism (as JSON has it) over its cycle, a full turn of the input at speed 1."""
-        return cls.model_validate({"mechanism": mechanism, "motion": {"steps": steps}}).answer()
+        return cls.model_validate({"mechanism": mechanism, "motion": {"steps": steps}}).build_answer()
 
     @classmethod
-    def example(cls) -> Self:
+    def build_example(cls) -> Self:
         """The example of the API documentation."""
         return cls.model_validate(cls.model_json_schema()["examples"][0])
 
@@ -49,9 +49,9 @@ class DrivenRequest(AnalysisRequest, Generic[Given]):
     mechanism: Given
     motion: StatedMotion = Sweep()
 
-    def faults(self) -> list[tuple[str, str]]:
+    def find_errors(self) -> list[tuple[str, str]]:
         """Those of the motion, and what no single field shows."""
-        return self.motion.faults()
+        return self.motion.find_errors()
 
 
 class DrivenAnalysis(Answer):

@@ -27,12 +27,8 @@ from __future__ import annotations
 import math
 from typing import Any
 
-import numpy as np
-from numpy.typing import NDArray
-
+from kinematics.arrays import Real
 from kinematics.compiling import njit
-
-Real = NDArray[np.float64]
 
 OPTIONS: Any = {"cache": True, "nogil": True, "error_model": "numpy"}
 """Compiler options of the fits' kernels: division by zero raises no exception, since results are checked for NaN."""
@@ -59,7 +55,7 @@ MIN_LOG, MAX_LOG = -16.0, 16.0
 
 
 @njit(**OPTIONS)
-def natural(family: int, x: Real, lengths: Real, slopes: Real) -> None:
+def compute_lengths(family: int, x: Real, lengths: Real, slopes: Real) -> None:
     """The linkage's lengths, and their slopes in the numbers u as a square matrix.
 
     Fourbars: d, a, b, c. Slider-cranks: a, b, offset. Geared fivebars: input, coupler 1, coupler 2, output.
@@ -68,7 +64,7 @@ def natural(family: int, x: Real, lengths: Real, slopes: Real) -> None:
     if family < FOURBAR:
         shortest = math.exp(x[3])
         half_1, half_2, half_3 = 0.5 * math.exp(x[4]), 0.5 * math.exp(x[5]), 0.5 * math.exp(x[6])
-        (first, second), third = _others(family), 3
+        (first, second), third = _list_other_links(family), 3
         slopes[:, 0] = shortest
         slopes[second, 1] = slopes[third, 1] = half_1
         slopes[first, 2] = slopes[second, 2] = half_2
@@ -98,13 +94,13 @@ def natural(family: int, x: Real, lengths: Real, slopes: Real) -> None:
 
 
 @njit(**OPTIONS)
-def _others(shortest: int) -> tuple[int, int]:
+def _list_other_links(shortest: int) -> tuple[int, int]:
     """The first two of the links d, a, b (0 to 2) that are not the shortest; c is the third."""
     return 1 if shortest == 0 else 0, 1 if shortest > 1 else 2
 
 
 @njit(**OPTIONS)
-def from_lengths(lengths: Real, family: int, edge: float, x: Real) -> bool:
+def write_unknowns(lengths: Real, family: int, edge: float, x: Real) -> bool:
     """Write the numbers of a fourbar's lengths into x; False where the linkage is not of its family.
 
     ``edge`` is the least s, as a share of all links together: what is nearer to a change point, or beyond it, is put
@@ -114,7 +110,7 @@ def from_lengths(lengths: Real, family: int, edge: float, x: Real) -> bool:
         for k in range(4):
             x[LENGTHS + k] = math.log(lengths[k])
         return True
-    (first, second), third = _others(family), 3
+    (first, second), third = _list_other_links(family), 3
     shortest = lengths[family]
     one, two, three = lengths[first] - shortest, lengths[second] - shortest, lengths[third] - shortest
     least = edge * lengths.sum()

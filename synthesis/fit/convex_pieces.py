@@ -9,27 +9,26 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from synthesis.model.triangles import triangles_of
+from kinematics.arrays import Complex
+from synthesis.model.triangles import triangulate_polygon
 
-Complex = NDArray[np.complex128]
-
-COARSE = 1e-3
+COARSE_SHARE = 1e-3
 """Share of the task's size by which an outline with many corners is simplified."""
 
-FEW = 12
+MAX_EXACT_CORNERS = 12
 """Corners of an outline that is taken as it is."""
 
-COARSER = 3.0
+COARSENING_FACTOR = 3.0
 """Factor by which it is simplified further, where it has too many pieces."""
 
 HULL = 0.3
 """Beyond this share of its extent nothing is left of an outline that its convex hull does not say better."""
 
-STRAIGHT = 1e-12
+STRAIGHTNESS_TOLERANCE = 1e-12
 """Sine of a corner that bends in by rounding alone."""
 
 
-def convex_pieces(corners: Complex, size: float, most: int | None = None) -> tuple[list[Complex], float]:
+def decompose_convex(corners: Complex, size: float, most: int | None = None) -> tuple[list[Complex], float]:
     """Convex polygons, each anticlockwise, that cover an outline, and how far the outline may reach beyond them.
 
     Parameters
@@ -47,43 +46,43 @@ def convex_pieces(corners: Complex, size: float, most: int | None = None) -> tup
 
     drawn, beyond = Polygon(np.stack([corners.real, corners.imag], axis=1)), 0.0
     polygon = drawn
-    if len(corners) > FEW:
-        polygon, beyond = drawn.simplify(COARSE * size), COARSE * size
-    coarse = COARSE * max(float(np.ptp(corners.real)), float(np.ptp(corners.imag)))
+    if len(corners) > MAX_EXACT_CORNERS:
+        polygon, beyond = drawn.simplify(COARSE_SHARE * size), COARSE_SHARE * size
+    coarse = COARSE_SHARE * max(float(np.ptp(corners.real)), float(np.ptp(corners.imag)))
     while True:
         outline = get_coordinates(polygon.exterior.normalize()).view(np.complex128).ravel()[:-1][::-1]
         if _is_convex(outline):
             return [outline], beyond
         # A cut takes away two corners that bend in at most, so there are more pieces than half of these.
-        if most is None or np.count_nonzero(_bends(outline) < 0.0) < 2 * most:
-            pieces = _joined([_anticlockwise(triangle) for triangle in triangles_of(outline)])
+        if most is None or np.count_nonzero(_measure_bends(outline) < 0.0) < 2 * most:
+            pieces = _merge_pieces([_orient_anticlockwise(triangle) for triangle in triangulate_polygon(outline)])
             if most is None or len(pieces) <= most:
                 return pieces, beyond
-        coarse *= COARSER
+        coarse *= COARSENING_FACTOR
         if coarse > HULL * np.abs(corners - corners[0]).max():
             polygon, beyond = drawn.convex_hull, 0.0
         else:
             polygon, beyond = drawn.simplify(coarse), coarse
 
 
-def _anticlockwise(corners: Complex) -> Complex:
+def _orient_anticlockwise(corners: Complex) -> Complex:
     area = float((corners.conj() * np.roll(corners, -1)).imag.sum())
     return corners if area > 0.0 else corners[::-1]
 
 
-def _bends(corners: Complex) -> NDArray[np.float64]:
+def _measure_bends(corners: Complex) -> NDArray[np.float64]:
     """At every corner of an anticlockwise outline a number that is negative where it bends in; shape (k,)."""
     ahead = np.roll(corners, -1) - corners
     behind = np.roll(ahead, 1)
-    return np.asarray((behind.conj() * ahead).imag + STRAIGHT * np.abs(behind * ahead))
+    return np.asarray((behind.conj() * ahead).imag + STRAIGHTNESS_TOLERANCE * np.abs(behind * ahead))
 
 
 def _is_convex(corners: Complex) -> bool:
     """Whether an anticlockwise outline bends to the left at every corner."""
-    return bool((_bends(corners) >= 0.0).all())
+    return bool((_measure_bends(corners) >= 0.0).all())
 
 
-def _joined(pieces: list[Complex]) -> list[Complex]:
+def _merge_pieces(pieces: list[Complex]) -> list[Complex]:
     """Neighbouring pieces as one, wherever that is convex."""
     polygons: dict[int, list[complex]] = {n: [complex(z) for z in piece] for n, piece in enumerate(pieces)}
     sides: dict[tuple[complex, complex], int] = {}

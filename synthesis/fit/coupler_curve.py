@@ -17,66 +17,64 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
+from kinematics.arrays import Complex, Real
 from kinematics.compiling import njit
-from synthesis.fit.chart import FOURBAR, GEARED_FIVEBAR, OPTIONS, natural
-
-Real = NDArray[np.float64]
-Complex = NDArray[np.complex128]
+from synthesis.fit.chart import FOURBAR, GEARED_FIVEBAR, OPTIONS, compute_lengths
 
 TOGGLE_TOLERANCE = 1e-9
 """|sin(θ₃ − θ₄)| below which a configuration is a toggle, where derivatives do not exist."""
 
 
 @njit(**OPTIONS)
-def unit(angle: float) -> complex:
+def compute_unit_vector(angle: float) -> complex:
     """e^{iθ}."""
     return complex(math.cos(angle), math.sin(angle))
 
 
 @njit(**OPTIONS)
-def scaled(z: complex, factor: float) -> complex:
+def scale_complex(z: complex, factor: float) -> complex:
     """z times a real factor: a compiler that keeps to the letter of IEEE 754 multiplies by its zero imaginary part."""
     return complex(factor * z.real, factor * z.imag)
 
 
 @njit(**OPTIONS)
-def turned(z: complex) -> complex:
+def rotate_left(z: complex) -> complex:
     """z by a right angle anticlockwise, iz."""
     return complex(-z.imag, z.real)
 
 
 @njit(**OPTIONS)
-def second_angle(family: int, x: Real, ratio: float, theta: float) -> float:
+def compute_second_angle(family: int, x: Real, ratio: float, theta: float) -> float:
     """The angle that stands beside the crank's in the loop: of the ground line, the slide, or the geared output."""
     angle: float = ratio * theta + x[8] if family == GEARED_FIVEBAR else x[2]
     return angle
 
 
 @njit(**OPTIONS)
-def two_bars(base: complex, b: float, c: float, sign: float) -> tuple[bool, complex]:
+def close_two_bars(base: complex, b: float, c: float, sign: float) -> tuple[bool, complex]:
     """Whether two bars close the loop over a base away from a toggle, and the first one's unit vector."""
     square = base.real * base.real + base.imag * base.imag
     half = 0.5 * (square + (b - c) * (b + c))
     under = b * b * square - half * half
     if not under > TOGGLE_TOLERANCE * TOGGLE_TOLERANCE * b * b * c * c:
         return False, 1.0 + 0j
-    return True, scaled(base * complex(half, sign * math.sqrt(under)), 1.0 / (square * b))
+    return True, scale_complex(base * complex(half, sign * math.sqrt(under)), 1.0 / (square * b))
 
 
 @njit(**OPTIONS)
-def _coupler(
+def _solve_coupler(
     family: int, x: Real, lengths: Real, sign: float, crank: complex, second: complex
 ) -> tuple[bool, complex, complex]:
     """Whether the loop closes, P, and the coupler's unit vector, from those of the crank and of the second angle."""
     o2 = complex(x[0], x[1])
     if family <= FOURBAR:
-        pin = scaled(crank, lengths[1])
-        closes, along = two_bars(scaled(second, lengths[0]) - pin, lengths[2], lengths[3], sign)
+        pin = scale_complex(crank, lengths[1])
+        closes, along = close_two_bars(scale_complex(second, lengths[0]) - pin, lengths[2], lengths[3], sign)
         return closes, o2 + pin + complex(x[7], x[8]) * along, along
-    pin = scaled(crank, lengths[0])
+    pin = scale_complex(crank, lengths[0])
     if family == GEARED_FIVEBAR:
-        base = complex(x[2] - x[0], x[3] - x[1]) + scaled(second, lengths[3]) - pin
-        closes, along = two_bars(base, lengths[1], lengths[2], sign)
+        base = complex(x[2] - x[0], x[3] - x[1]) + scale_complex(second, lengths[3]) - pin
+        closes, along = close_two_bars(base, lengths[1], lengths[2], sign)
         return closes, o2 + pin + complex(x[9], x[10]) * along, along
     across = (lengths[2] - (pin * second.conjugate()).imag) / lengths[1]
     under = 1.0 - across * across
@@ -87,45 +85,45 @@ def _coupler(
 
 
 @njit(**OPTIONS)
-def place(
+def place_linkage(
     family: int, x: Real, lengths: Real, sign: float, ratio: float, theta: float
 ) -> tuple[bool, complex, complex]:
     """Whether the linkage closes with the crank at θ, P, and the coupler's unit vector (from A)."""
-    second = unit(second_angle(family, x, ratio, theta))
-    pose: tuple[bool, complex, complex] = _coupler(family, x, lengths, sign, unit(theta), second)
+    second = compute_unit_vector(compute_second_angle(family, x, ratio, theta))
+    pose: tuple[bool, complex, complex] = _solve_coupler(family, x, lengths, sign, compute_unit_vector(theta), second)
     return pose
 
 
 @njit(**OPTIONS)
-def trace(
+def trace_points(
     family: int, x: Real, lengths: Real, sign: float, ratio: float, theta: Real, places: Complex, along: Complex
 ) -> bool:
     """P and the coupler's unit vector with the crank at each of several angles, written; False beyond a toggle."""
     closes = True
     for k in range(len(theta)):
-        here, places[k], along[k] = place(family, x, lengths, sign, ratio, theta[k])
+        here, places[k], along[k] = place_linkage(family, x, lengths, sign, ratio, theta[k])
         closes = closes and here
     return closes
 
 
 @njit(**OPTIONS)
-def _turn(f: complex, change: complex, per_turn: float) -> float:
+def _compute_turn_rate(f: complex, change: complex, per_turn: float) -> float:
     """The coupler's turn that keeps |F| while F changes otherwise."""
     return -(f.real * change.real + f.imag * change.imag) / per_turn
 
 
 @njit(**OPTIONS)
-def fourbar_velocity(
+def compute_fourbar_velocity(
     x: Real, lengths: Real, sign: float, ground: complex, theta: float
 ) -> tuple[bool, complex, complex]:
     """Whether a fourbar closes, P, and P's derivative by θ alone; ``ground`` is the unit vector of the ground line."""
-    crank = unit(theta)
-    closes, z, along = _coupler(FOURBAR, x, lengths, sign, crank, ground)
-    arm, bar = scaled(crank, lengths[1]), scaled(along, lengths[2])
-    f = arm + bar - scaled(ground, lengths[0])
-    g, moved = turned(bar), turned(arm)
-    swing = turned(complex(x[7], x[8]) * along)
-    return closes, z, moved + scaled(swing, _turn(f, moved, f.real * g.real + f.imag * g.imag))
+    crank = compute_unit_vector(theta)
+    closes, z, along = _solve_coupler(FOURBAR, x, lengths, sign, crank, ground)
+    arm, bar = scale_complex(crank, lengths[1]), scale_complex(along, lengths[2])
+    f = arm + bar - scale_complex(ground, lengths[0])
+    g, moved = rotate_left(bar), rotate_left(arm)
+    swing = rotate_left(complex(x[7], x[8]) * along)
+    return closes, z, moved + scale_complex(swing, _compute_turn_rate(f, moved, f.real * g.real + f.imag * g.imag))
 
 
 @njit(**OPTIONS)
@@ -140,69 +138,81 @@ def place_with_slopes(
     slopes: Complex,
 ) -> tuple[bool, complex]:
     """Whether it closes, P, and into ``slopes`` (m + 1) P's derivatives in the unknowns and, last, in θ."""
-    crank, second = unit(theta), unit(second_angle(family, x, ratio, theta))
-    closes, z, along = _coupler(family, x, lengths, sign, crank, second)
+    crank, second = compute_unit_vector(theta), compute_unit_vector(compute_second_angle(family, x, ratio, theta))
+    closes, z, along = _solve_coupler(family, x, lengths, sign, crank, second)
     if not closes:
         return False, z
     m = len(slopes) - 1
-    swing = turned(complex(x[m - 2], x[m - 1]) * along)
+    swing = rotate_left(complex(x[m - 2], x[m - 1]) * along)
     slopes[0], slopes[1] = 1.0 + 0j, 1j
-    slopes[m - 2], slopes[m - 1] = along, turned(along)
+    slopes[m - 2], slopes[m - 1] = along, rotate_left(along)
     if family <= FOURBAR:
         c = lengths[3]
-        side, arm, bar = scaled(second, lengths[0]), scaled(crank, lengths[1]), scaled(along, lengths[2])
-        f, g, moved = arm + bar - side, turned(bar), turned(arm)
+        side, arm, bar = (
+            scale_complex(second, lengths[0]),
+            scale_complex(crank, lengths[1]),
+            scale_complex(along, lengths[2]),
+        )
+        f, g, moved = arm + bar - side, rotate_left(bar), rotate_left(arm)
         per = f.real * g.real + f.imag * g.imag
-        slopes[2] = scaled(swing, _turn(f, -turned(side), per))
-        raw_d = scaled(swing, _turn(f, -second, per))
-        raw_a = crank + scaled(swing, _turn(f, crank, per))
-        raw_b = scaled(swing, _turn(f, along, per))
-        raw_c = scaled(swing, c / per)
+        slopes[2] = scale_complex(swing, _compute_turn_rate(f, -rotate_left(side), per))
+        raw_d = scale_complex(swing, _compute_turn_rate(f, -second, per))
+        raw_a = crank + scale_complex(swing, _compute_turn_rate(f, crank, per))
+        raw_b = scale_complex(swing, _compute_turn_rate(f, along, per))
+        raw_c = scale_complex(swing, c / per)
         for k in range(4):
             slopes[3 + k] = (
-                scaled(raw_d, chart[0, k]) + scaled(raw_a, chart[1, k]) + scaled(raw_b, chart[2, k])
-                + scaled(raw_c, chart[3, k])
+                scale_complex(raw_d, chart[0, k]) + scale_complex(raw_a, chart[1, k])
+                + scale_complex(raw_b, chart[2, k]) + scale_complex(raw_c, chart[3, k])
             )  # fmt: skip
-        slopes[m] = moved + scaled(swing, _turn(f, moved, per))
+        slopes[m] = moved + scale_complex(swing, _compute_turn_rate(f, moved, per))
         return True, z
     if family == GEARED_FIVEBAR:
         c = lengths[2]
-        arm, bar, end = scaled(crank, lengths[0]), scaled(along, lengths[1]), scaled(second, lengths[3])
-        f, g = arm + bar - complex(x[2] - x[0], x[3] - x[1]) - end, turned(bar)
+        arm, bar, end = (
+            scale_complex(crank, lengths[0]),
+            scale_complex(along, lengths[1]),
+            scale_complex(second, lengths[3]),
+        )
+        f, g = arm + bar - complex(x[2] - x[0], x[3] - x[1]) - end, rotate_left(bar)
         per = f.real * g.real + f.imag * g.imag
         # O5 moves the far end, O2 the near one.
         for k in range(2):
             one = 1.0 + 0j if k == 0 else 1j
-            slopes[k] = one + scaled(swing, _turn(f, one, per))
-            slopes[2 + k] = scaled(swing, _turn(f, -one, per))
-        raw_a = crank + scaled(swing, _turn(f, crank, per))
-        raw_b = scaled(swing, _turn(f, along, per))
-        raw_c = scaled(swing, c / per)
-        raw_e = scaled(swing, _turn(f, -second, per))
+            slopes[k] = one + scale_complex(swing, _compute_turn_rate(f, one, per))
+            slopes[2 + k] = scale_complex(swing, _compute_turn_rate(f, -one, per))
+        raw_a = crank + scale_complex(swing, _compute_turn_rate(f, crank, per))
+        raw_b = scale_complex(swing, _compute_turn_rate(f, along, per))
+        raw_c = scale_complex(swing, c / per)
+        raw_e = scale_complex(swing, _compute_turn_rate(f, -second, per))
         for k in range(4):
             slopes[4 + k] = (
-                scaled(raw_a, chart[0, k]) + scaled(raw_b, chart[1, k]) + scaled(raw_c, chart[2, k])
-                + scaled(raw_e, chart[3, k])
+                scale_complex(raw_a, chart[0, k]) + scale_complex(raw_b, chart[1, k])
+                + scale_complex(raw_c, chart[2, k]) + scale_complex(raw_e, chart[3, k])
             )  # fmt: skip
-        slopes[8] = scaled(swing, _turn(f, -turned(end), per))
-        moved = turned(arm)
-        slopes[m] = moved + scaled(swing, _turn(f, moved - scaled(turned(end), ratio), per))
+        slopes[8] = scale_complex(swing, _compute_turn_rate(f, -rotate_left(end), per))
+        moved = rotate_left(arm)
+        slopes[m] = moved + scale_complex(
+            swing, _compute_turn_rate(f, moved - scale_complex(rotate_left(end), ratio), per)
+        )
         return True, z
     a, b = lengths[0], lengths[1]
     local, bent = crank * second.conjugate(), along * second.conjugate()
     reach = b * bent.real
-    raw_a = crank + scaled(swing, -local.imag / reach)
-    raw_b = scaled(swing, -bent.imag / reach)
-    raw_c = scaled(swing, 1.0 / reach)
-    slopes[2] = scaled(swing, 1.0 + a * local.real / reach)
+    raw_a = crank + scale_complex(swing, -local.imag / reach)
+    raw_b = scale_complex(swing, -bent.imag / reach)
+    raw_c = scale_complex(swing, 1.0 / reach)
+    slopes[2] = scale_complex(swing, 1.0 + a * local.real / reach)
     for k in range(3):
-        slopes[3 + k] = scaled(raw_a, chart[0, k]) + scaled(raw_b, chart[1, k]) + scaled(raw_c, chart[2, k])
-    slopes[m] = turned(scaled(crank, a)) + scaled(swing, -a * local.real / reach)
+        slopes[3 + k] = (
+            scale_complex(raw_a, chart[0, k]) + scale_complex(raw_b, chart[1, k]) + scale_complex(raw_c, chart[2, k])
+        )
+    slopes[m] = rotate_left(scale_complex(crank, a)) + scale_complex(swing, -a * local.real / reach)
     return True, z
 
 
 @njit(**OPTIONS)
-def sweep(
+def sweep_curves(
     family: int,
     x: Real,
     sign: Real,
@@ -221,16 +231,16 @@ def sweep(
     n, steps = curves.shape
     lengths, chart = np.empty(4), np.empty((4, 4))
     for i in range(n):
-        natural(family, x[i], lengths, chart)
+        compute_lengths(family, x[i], lengths, chart)
         good[i] = True
         step = (end[i] - begin[i]) / (steps if ring[i] else steps - 1)
         # Rotate unit vectors step by step: one product replaces a sine and a cosine.
-        crank, onward = unit(begin[i]), unit(step)
-        second = unit(second_angle(family, x[i], ratio, begin[i]))
-        turning = unit(ratio * step) if family == GEARED_FIVEBAR else 1.0 + 0j
+        crank, onward = compute_unit_vector(begin[i]), compute_unit_vector(step)
+        second = compute_unit_vector(compute_second_angle(family, x[i], ratio, begin[i]))
+        turning = compute_unit_vector(ratio * step) if family == GEARED_FIVEBAR else 1.0 + 0j
         for k in range(steps):
             theta[i, k] = begin[i] + step * k
-            closes, curves[i, k], _ = _coupler(family, x[i], lengths, sign[i], crank, second)
+            closes, curves[i, k], _ = _solve_coupler(family, x[i], lengths, sign[i], crank, second)
             if not closes:
                 good[i] = False
                 break
@@ -239,7 +249,7 @@ def sweep(
 
 
 @njit(**OPTIONS)
-def crank_range(d: float, a: float, b: float, c: float) -> tuple[float, float]:
+def find_crank_range(d: float, a: float, b: float, c: float) -> tuple[float, float]:
     """Least and greatest |φ| at which the loop closes: 0 and π for a crank; the greatest below the least for none."""
     # Coupler and output close the loop if the diagonal from O4 to A lies between |b − c| and b + c.
     low, high = 0.0, math.pi
@@ -257,7 +267,7 @@ def crank_range(d: float, a: float, b: float, c: float) -> tuple[float, float]:
 
 
 @njit(**OPTIONS)
-def rocking_range(low: float, high: float) -> tuple[float, float]:
+def find_rocking_range(low: float, high: float) -> tuple[float, float]:
     """Begin and width of a rocking crank's range, from its least and greatest |φ|.
 
     It goes from toggle to toggle through φ = 0 or φ = π where it contains one of them; else it is the upper of two

@@ -1,12 +1,12 @@
 """Limits on forces as margins of a fourbar in its chart, and their rows in a fit.
 
 The forces are those of the closed form (:mod:`kinematics.dynamics.fourbar`) at equal steps of the crank: over a whole
-turn where it turns through, else from the first point to the last. In each of :data:`WINDOWS` windows of the motion the
-peak F of each force that is limited has a margin, ln(limit / F), so that a fit sees every hump of a curve of forces,
-and not the highest alone. The derivatives are differences: what a link weighs, too, follows from the unknowns. A whole
-linkage takes some microseconds.
+turn where it turns through, else from the first point to the last. In each of :data:`WINDOW_COUNT` windows of the
+motion the peak F of each force that is limited has a margin, ln(limit / F), so that a fit sees every hump of a curve of
+forces, and not the highest alone. The derivatives are differences: what a link weighs, too, follows from the unknowns.
+A whole linkage takes some microseconds.
 
-The numbers stand behind those of a room (:mod:`synthesis.fit.room`), of which these margins are the last.
+The numbers stand behind those of a room (:mod:`synthesis.fit.workspace`), of which these margins are the last.
 """
 
 from __future__ import annotations
@@ -16,12 +16,12 @@ from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from kinematics.arrays import Real
 from kinematics.compiling import njit
 from kinematics.dynamics.fourbar import DRIVE, JOINT, SHAKING_FORCE, SHAKING_MOMENT, fill_peaks
 from synthesis.fit.chart import LENGTHS, OPTIONS, POINT
-from synthesis.fit.coupler_curve import crank_range, two_bars, unit
+from synthesis.fit.coupler_curve import close_two_bars, compute_unit_vector, find_crank_range
 from synthesis.fit.fourbar_loads import (
     ABOUT,
     AT_POINT,
@@ -33,42 +33,39 @@ from synthesis.fit.fourbar_loads import (
     LOADS,
     PINS,
     SPEED,
-    carried,
-    weigh,
+    pack_loads,
+    weigh_links,
 )
-from synthesis.model.dynamics import DesignDynamics, LengthUnit
+from synthesis.model.dynamics.request import DesignDynamics, LengthUnit
 
-Real = NDArray[np.float64]
-Complex = NDArray[np.complex128]
-
-WINDOWS, POSITIONS = 12, 145
+WINDOW_COUNT, POSITION_COUNT = 12, 145
 """Windows of the motion, and positions in all of them together, both ends included."""
 
-AIM = 0.005
+AIM_SHARE = 0.005
 """Share by which forces are kept below their limits: peaks lie between the positions."""
 
-PLENTY = 1.0
+MAX_MARGIN = 1.0
 """Maximum margin: larger ones are cut off, because a force of a third of its limit does not matter."""
 
-DIFFERENCE = 1e-6
+DIFFERENCE_STEP = 1e-6
 """Step of the derivatives: of angles, logarithms of lengths and places in task sizes."""
 
-SIZE, LIMITED, INDEX, STRENGTH, COUPLE, BLOCK = 0, 1, 5, 6, 7, 8
+SIZE, LIMITS_INDEX, INDEX, STRENGTH, COUPLE, BLOCK = 0, 1, 5, 6, 7, 8
 """Places of the numbers: the task's size in the unit of the forces, limits of the first four peaks, of the joint force
 index, the strength of the load that this is of and the link if it is a torque (-1 if not), and where the block begins.
 Infinite where no limit is stated."""
 
 QUANTITIES = 5
 
-MOVES = 11
+ARGUMENT_COUNT = 11
 """What forces depend on: the nine numbers of the chart, and the crank angles at the first point and the last."""
 
-NONE = np.zeros(0)
+NO_FORCE_LIMITS = np.zeros(0)
 """No limits."""
 
 
-def packed_forces(
-    stated: DesignDynamics | None, limits: Mapping[Any, float], unit: LengthUnit, origin: complex, size: float
+def pack_forces(
+    dynamics: DesignDynamics | None, limits: Mapping[Any, float], unit: LengthUnit, origin: complex, size: float
 ) -> Real:
     """Limits on forces, and what they are of; empty where there are none, or the closed form does not know the block.
 
@@ -83,13 +80,13 @@ def packed_forces(
     origin, size : complex and float
         Of the task, length units.
     """
-    if stated is None or not limits or stated.speed_rpm is None:
-        return NONE
-    block = carried(stated, unit, origin)
+    if dynamics is None or not limits or dynamics.speed_rpm is None:
+        return NO_FORCE_LIMITS
+    block = pack_loads(dynamics, unit, origin)
     if block is None:
-        return NONE
+        return NO_FORCE_LIMITS
     out = np.full(BLOCK, np.inf)
-    out[SIZE], out[COUPLE], out[STRENGTH] = size * stated.scale(unit), -1.0, 1.0
+    out[SIZE], out[COUPLE], out[STRENGTH] = size * dynamics.scale(unit), -1.0, 1.0
     for name, place in (
         ("drive_torque", DRIVE),
         ("joint_force", JOINT),
@@ -97,12 +94,12 @@ def packed_forces(
         ("shaking_moment", SHAKING_MOMENT),
     ):
         if name in limits:
-            out[LIMITED + place] = limits[name]
+            out[LIMITS_INDEX + place] = limits[name]
     speed = abs(float(block[SPEED]))
     if "power" in limits and speed > 0.0:
-        out[LIMITED + DRIVE] = min(out[LIMITED + DRIVE], limits["power"] / speed)
-    if "joint_force_index" in limits and stated.loads:
-        first = stated.loads[0]
+        out[LIMITS_INDEX + DRIVE] = min(out[LIMITS_INDEX + DRIVE], limits["power"] / speed)
+    if "joint_force_index" in limits and dynamics.loads:
+        first = dynamics.loads[0]
         out[INDEX] = limits["joint_force_index"]
         if first.force is None:
             out[COUPLE] = list(LINKS).index(str(first.link))
@@ -110,22 +107,22 @@ def packed_forces(
             out[INDEX] = np.inf  # the frame bears it: nothing that moves does
         else:
             out[STRENGTH] = abs(complex(*(first.force.constant or (1.0, 0.0)))) or 1.0
-    out[LIMITED : INDEX + 1] *= 1.0 - AIM
-    return np.concatenate([out, block]) if np.isfinite(out[LIMITED : INDEX + 1]).any() else NONE
+    out[LIMITS_INDEX : INDEX + 1] *= 1.0 - AIM_SHARE
+    return np.concatenate([out, block]) if np.isfinite(out[LIMITS_INDEX : INDEX + 1]).any() else NO_FORCE_LIMITS
 
 
 @njit(**OPTIONS)
-def margins_of_forces(forces: Real) -> int:
+def count_force_margins(forces: Real) -> int:
     """How many margins there are."""
     stated = 0
     for k in range(QUANTITIES if len(forces) else 0):
-        if forces[LIMITED + k] < np.inf:
+        if forces[LIMITS_INDEX + k] < np.inf:
             stated += 1
-    return stated * WINDOWS
+    return stated * WINDOW_COUNT
 
 
 @njit(**OPTIONS)
-def peaks_in_windows(charts: Real, lengths: Real, sign: float, ends: Real, forces: Real, out: Real) -> None:
+def compute_window_peaks(charts: Real, lengths: Real, sign: float, ends: Real, forces: Real, out: Real) -> None:
     """Peaks of each of n fourbars in each window, shape (n, WINDOWS, QUANTITIES); infinite where one does not close.
 
     ``charts`` (n, 9) and ``lengths`` (n, 4) are of the linkages, ``ends`` (n, 2) their crank angles from the ground
@@ -143,8 +140,8 @@ def peaks_in_windows(charts: Real, lengths: Real, sign: float, ends: Real, force
     sound = np.ones(count, np.bool_)
     for n in range(count):
         x, own = charts[n], lengths[n]
-        ground, crank = unit(x[2]), unit(x[2] + ends[n, 0])
-        closes, along = two_bars(own[0] * ground - own[1] * crank, own[2], own[3], sign)
+        ground, crank = compute_unit_vector(x[2]), compute_unit_vector(x[2] + ends[n, 0])
+        closes, along = close_two_bars(own[0] * ground - own[1] * crank, own[2], own[3], sign)
         o2 = complex(x[0], x[1])
         joints[0], joints[1], joints[3] = o2, o2 + own[1] * crank, o2 + own[0] * ground
         joints[2] = joints[1] + own[2] * along
@@ -152,9 +149,9 @@ def peaks_in_windows(charts: Real, lengths: Real, sign: float, ends: Real, force
         joints *= size
         o2s[n], o4s[n], points[n] = joints[0], joints[3], size * complex(x[POINT], x[POINT + 1])
         about[n] = complex(block[ABOUT], block[ABOUT + 1]) if block[AT_POINT] > 0.0 else joints[0]
-        sound[n] = closes and weigh(block, joints, mass[n], cg[n], inertia[n], arms[n], acting[n])
+        sound[n] = closes and weigh_links(block, joints, mass[n], cg[n], inertia[n], arms[n], acting[n])
         pins[n] = block[PINS : PINS + 3]
-        low, high = crank_range(own[0], own[1], own[2], own[3])
+        low, high = find_crank_range(own[0], own[1], own[2], own[3])
         starts[n] = x[2] + ends[n, 0]
         spans[n] = 2.0 * math.pi if low == 0.0 and high == math.pi else ends[n, 1] - ends[n, 0]
     on, turning = np.empty(loads, np.int64), np.empty(loads, np.bool_)
@@ -162,11 +159,11 @@ def peaks_in_windows(charts: Real, lengths: Real, sign: float, ends: Real, force
         on[k], turning[k] = int(block[FORCES + FORCE * k]), block[FORCES + FORCE * k + 6] > 0.0
     signs = np.full(count, sign)
     a, b, c = size * lengths[:, 1], size * lengths[:, 2], size * lengths[:, 3]
-    found = np.empty((count, WINDOWS, 5))
+    found = np.empty((count, WINDOW_COUNT, 5))
     fill_peaks(
         o2s, o4s, a, b, c, points, signs, starts, spans, mass, cg, inertia, pins,
         complex(block[GRAVITY], block[GRAVITY + 1]), on, arms, acting, turning, block[COUPLES : COUPLES + 3], about,
-        block[SPEED], POSITIONS, found,
+        block[SPEED], POSITION_COUNT, found,
     )  # fmt: skip
     out[:, :, : QUANTITIES - 1] = found[:, :, : QUANTITIES - 1]
     if forces[INDEX] < np.inf:
@@ -179,7 +176,7 @@ def peaks_in_windows(charts: Real, lengths: Real, sign: float, ends: Real, force
         fill_peaks(
             o2s, o4s, a, b, c, points, signs, starts, spans, mass, cg, inertia, pins, 0j, on[:first],
             np.ascontiguousarray(arms[:, :first]), np.ascontiguousarray(acting[:, :first]), turning[:first], couples,
-            about, 0.0, POSITIONS, found,
+            about, 0.0, POSITION_COUNT, found,
         )  # fmt: skip
         out[:, :, QUANTITIES - 1] = found[:, :, JOINT] / forces[STRENGTH]
     for n in range(count):
@@ -188,7 +185,7 @@ def peaks_in_windows(charts: Real, lengths: Real, sign: float, ends: Real, force
 
 
 @njit(**OPTIONS)
-def force_margins(x: Real, lengths: Real, sign: float, ends: Real, forces: Real, values: Real) -> bool:
+def compute_force_margins(x: Real, lengths: Real, sign: float, ends: Real, forces: Real, values: Real) -> bool:
     """The margins of one linkage, written; False where it does not close all along its motion.
 
     Parameters
@@ -200,24 +197,24 @@ def force_margins(x: Real, lengths: Real, sign: float, ends: Real, forces: Real,
     ends : float, shape (2,)
         Crank angles from the ground line at the first point and the last.
     forces : float, shape (m,)
-        Of :func:`packed_forces`.
+        Of :func:`pack_forces`.
     values : float, shape (margins_of_forces(forces),)
         Written.
     """
-    found = np.empty((1, WINDOWS, QUANTITIES))
+    found = np.empty((1, WINDOW_COUNT, QUANTITIES))
     charts, sizes, angles = np.empty((1, 9)), np.empty((1, 4)), np.empty((1, 2))
     charts[0], sizes[0], angles[0] = x[:9], lengths, ends
-    peaks_in_windows(charts, sizes, sign, angles, forces, found)
+    compute_window_peaks(charts, sizes, sign, angles, forces, found)
     m = 0
     for k in range(QUANTITIES):
-        limit = forces[LIMITED + k]
+        limit = forces[LIMITS_INDEX + k]
         if limit == np.inf:
             continue
-        for w in range(WINDOWS):
+        for w in range(WINDOW_COUNT):
             force = found[0, w, k]
             if force == np.inf:
                 return False
-            values[m] = min(math.log(limit / force), PLENTY) if force > 0.0 and limit > 0.0 else PLENTY
+            values[m] = min(math.log(limit / force), MAX_MARGIN) if force > 0.0 and limit > 0.0 else MAX_MARGIN
             if limit == 0.0 and force > 0.0:
                 values[m] = -force
             m += 1
@@ -225,36 +222,40 @@ def force_margins(x: Real, lengths: Real, sign: float, ends: Real, forces: Real,
 
 
 @njit(**OPTIONS)
-def force_slopes(
+def compute_force_slopes(
     x: Real, lengths: Real, slopes: Real, sign: float, ends: Real, turns: Real, forces: Real, rows: Real
 ) -> None:
     """The derivatives of the margins by the unknowns, shape (margins, unknowns), written.
 
     ``slopes`` are those of the lengths, ``turns``, shape (2, unknowns), those of the crank angles at both ends.
     """
-    charts, sizes, angles = np.empty((MOVES + 1, 9)), np.empty((MOVES + 1, 4)), np.empty((MOVES + 1, 2))
-    for n in range(MOVES + 1):
+    charts, sizes, angles = (
+        np.empty((ARGUMENT_COUNT + 1, 9)),
+        np.empty((ARGUMENT_COUNT + 1, 4)),
+        np.empty((ARGUMENT_COUNT + 1, 2)),
+    )
+    for n in range(ARGUMENT_COUNT + 1):
         charts[n], sizes[n], angles[n] = x[:9], lengths, ends
         move = n - 1
         if LENGTHS <= move < LENGTHS + 4:
-            sizes[n] += DIFFERENCE * slopes[:, move - LENGTHS]
+            sizes[n] += DIFFERENCE_STEP * slopes[:, move - LENGTHS]
         elif move >= 9:
-            angles[n, move - 9] += DIFFERENCE
+            angles[n, move - 9] += DIFFERENCE_STEP
         if 0 <= move < 9:
-            charts[n, move] += DIFFERENCE
-    found = np.empty((MOVES + 1, WINDOWS, QUANTITIES))
-    peaks_in_windows(charts, sizes, sign, angles, forces, found)
+            charts[n, move] += DIFFERENCE_STEP
+    found = np.empty((ARGUMENT_COUNT + 1, WINDOW_COUNT, QUANTITIES))
+    compute_window_peaks(charts, sizes, sign, angles, forces, found)
     m = 0
     rows[:] = 0.0
     for k in range(QUANTITIES):
-        if forces[LIMITED + k] == np.inf:
+        if forces[LIMITS_INDEX + k] == np.inf:
             continue
-        for w in range(WINDOWS):
+        for w in range(WINDOW_COUNT):
             force = found[0, w, k]
             if 0.0 < force < np.inf:
-                for n in range(MOVES):
+                for n in range(ARGUMENT_COUNT):
                     moved = found[n + 1, w, k]
-                    by = (force - moved) / (DIFFERENCE * force) if moved < np.inf else 0.0
+                    by = (force - moved) / (DIFFERENCE_STEP * force) if moved < np.inf else 0.0
                     if n < 9:
                         rows[m, n] += by
                     else:
@@ -262,15 +263,15 @@ def force_slopes(
             m += 1
 
 
-def least_margins(charts: Real, lengths: Real, sign: float, ends: Real, forces: Real) -> Real:
-    """The least margin of each of n fourbars, shape (n,), as for :func:`peaks_in_windows`.
+def compute_min_margins(charts: Real, lengths: Real, sign: float, ends: Real, forces: Real) -> Real:
+    """The least margin of each of n fourbars, shape (n,), as for :func:`compute_window_peaks`.
 
     −∞ where one does not close.
     """
-    found = np.empty((len(charts), WINDOWS, QUANTITIES))
-    peaks_in_windows(charts, lengths, sign, ends, forces, found)
-    limits = forces[LIMITED : LIMITED + QUANTITIES]
+    found = np.empty((len(charts), WINDOW_COUNT, QUANTITIES))
+    compute_window_peaks(charts, lengths, sign, ends, forces, found)
+    limits = forces[LIMITS_INDEX : LIMITS_INDEX + QUANTITIES]
     stated = np.isfinite(limits)
     with np.errstate(divide="ignore"):
         logs = np.log(limits[stated]) - np.log(found[:, :, stated].max(axis=1))
-    return np.asarray(np.where(np.isnan(logs), PLENTY, logs).min(axis=1))
+    return np.asarray(np.where(np.isnan(logs), MAX_MARGIN, logs).min(axis=1))

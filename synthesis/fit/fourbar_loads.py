@@ -1,10 +1,10 @@
 """What fourbars weigh and carry as numbers for compiled code: a block ``dynamics`` once, every fourbar from its joints.
 
-A statement becomes one vector, :func:`carried`. What it tells of a link is the sum of three things, each with its mass,
-its first moment and its polar moment of the second order: what stands at places of the plane (as the linkage stands at
-its first target), what stands at places of the link (from its first joint, over the direction to the second), and a
-plate about the link's joints, a bar or their convex hull widened, less its holes, as in
-:mod:`kinematics.dynamics.shapes`. :func:`weigh` makes bodies of them for the joints of one fourbar.
+A statement becomes one vector, :func:`pack_loads`. What it tells of a link is the sum of three things, each with its
+mass, its first moment and its polar moment of the second order: what stands at places of the plane (as the linkage
+stands at its first target), what stands at places of the link (from its first joint, over the direction to the second),
+and a plate about the link's joints, a bar or their convex hull widened, less its holes, as in
+:mod:`kinematics.dynamics.shapes`. :func:`weigh_links` makes bodies of them for the joints of one fourbar.
 
 Everything is in the unit of the forces, and places are told from the task's origin: a far one costs digits.
 """
@@ -15,20 +15,17 @@ import math
 from collections.abc import Mapping, Sequence
 
 import numpy as np
-from numpy.typing import NDArray
 
+from kinematics.arrays import Complex, Real
 from kinematics.compiling import njit
 from kinematics.dynamics.bodies import Body
 from kinematics.dynamics.fourbar import COUPLER, OUTPUT, PIN_A, PIN_B, PIN_P
 from kinematics.dynamics.fourbar import INPUT as CRANK
-from kinematics.dynamics.shapes import NOTHING, cylinder, polygon, rectangle
+from kinematics.dynamics.shapes import EMPTY_SECTION, make_cylinder, make_polygon, make_rectangle
 from synthesis.fit.chart import OPTIONS
-from synthesis.model.bodies import Part, Place, PolarPlace, Shape, StatedBody
-from synthesis.model.dynamics import DesignDynamics, LengthUnit
-from synthesis.model.loads import StatedLoad
-
-Real = NDArray[np.float64]
-Complex = NDArray[np.complex128]
+from synthesis.model.dynamics.bodies import BodySpec, Part, Place, PolarPoint, Shape
+from synthesis.model.dynamics.loads import LoadSpec
+from synthesis.model.dynamics.request import DesignDynamics, LengthUnit
 
 LINKS: Mapping[str, tuple[str, ...]] = {"input": ("O2", "A"), "coupler": ("A", "B", "P"), "output": ("O4", "B")}
 """The moving links of a fourbar by their joints."""
@@ -53,11 +50,11 @@ that turns with the link."""
 FORCE = 7
 
 
-class _Untold(ValueError):
+class _UnsupportedBlockError(ValueError):
     """A statement that these numbers do not tell."""
 
 
-def carried(stated: DesignDynamics, unit: LengthUnit, origin: complex) -> Real | None:
+def pack_loads(block: DesignDynamics, unit: LengthUnit, origin: complex) -> Real | None:
     """The numbers of a block; None for one that has something else: springs, friction, loads that change, polygons
     with corners of both sorts, other links than those of a fourbar.
 
@@ -71,121 +68,123 @@ def carried(stated: DesignDynamics, unit: LengthUnit, origin: complex) -> Real |
         The task's, length units.
     """
     try:
-        return _Teller(stated, unit, origin).numbers()
-    except _Untold:
+        return _LoadPacker(block, unit, origin).pack()
+    except _UnsupportedBlockError:
         return None
 
 
-class _Teller:
+class _LoadPacker:
     """The numbers of one block."""
 
     def __init__(self, stated: DesignDynamics, unit: LengthUnit, origin: complex) -> None:
         self.stated, self.scale, self.origin = stated, stated.scale(unit), origin
 
-    def numbers(self) -> Real:
+    def pack(self) -> Real:
         """All of them in one vector."""
         stated = self.stated
         if stated.springs or stated.friction is not None or stated.speed_rpm is None:
-            raise _Untold
+            raise _UnsupportedBlockError
         if not stated.bodies.keys() <= LINKS.keys():
-            raise _Untold
-        forces = [self._force(load) for load in stated.loads if load.torque is None and load.joint not in FIXED]
+            raise _UnsupportedBlockError
+        forces = [self._pack_force(load) for load in stated.loads if load.torque is None and load.joint not in FIXED]
         out = np.zeros(FORCES + FORCE * len(forces))
         out[SPEED], out[LOADS] = stated.speed_rpm * math.tau / 60.0, len(forces)
         gravity = 0j if stated.gravity is None else stated.gravity.vector
         out[GRAVITY : GRAVITY + 2] = gravity.real, gravity.imag
         if stated.moment_about is not None:
-            about = self._put(complex(*stated.moment_about))
+            about = self._pack_place(complex(*stated.moment_about))
             out[AT_POINT], out[ABOUT], out[ABOUT + 1] = 1.0, about.real, about.imag
         for mass in stated.point_masses:
             if mass.joint not in (*ON_PIN, *FIXED):
-                raise _Untold
+                raise _UnsupportedBlockError
             if mass.joint not in FIXED:
                 out[PINS + "ABP".index(mass.joint)] += mass.mass
         for load in stated.loads:
             if load.torque is not None:
                 if load.torque.constant is None or load.link is None or load.link not in LINKS:
-                    raise _Untold
+                    raise _UnsupportedBlockError
                 out[COUPLES + list(LINKS).index(load.link)] += load.torque.constant
         for n, (link, joints) in enumerate(LINKS.items()):
             body = stated.bodies.get(link)
             at = BODIES + n * LINK
             if body is not None:
-                self._body(body, joints, out[at : at + LINK])
+                self._pack_body(body, joints, out[at : at + LINK])
             elif stated.plate is not None:
                 own = {joint: hole for joint, hole in stated.plate.holes.items() if joint in joints}
                 plain = {"ends": "round", "overhang": 0.0} if len(joints) > 2 else {}
                 shape = stated.plate.model_copy(update={"holes": own, **plain})
-                self._shape(shape, joints, out[at : at + LINK])
+                self._pack_shape(shape, joints, out[at : at + LINK])
         out[FORCES:] = [number for force in forces for number in force]
         return out
 
-    def _put(self, place: complex) -> complex:
+    def _pack_place(self, place: complex) -> complex:
         return self.scale * (place - self.origin)
 
-    def _told(self, place: Place) -> tuple[bool, complex]:
+    def _resolve_place(self, place: Place) -> tuple[bool, complex]:
         """Whether a place is one of the plane, and where it is."""
-        if isinstance(place, PolarPlace):
+        if isinstance(place, PolarPoint):
             return False, self.scale * place.vector
-        return True, self._put(complex(*place))
+        return True, self._pack_place(complex(*place))
 
-    def _force(self, load: StatedLoad) -> Sequence[float]:
+    def _pack_force(self, load: LoadSpec) -> Sequence[float]:
         constant = None if load.force is None else load.force.constant
         if constant is None:
-            raise _Untold
+            raise _UnsupportedBlockError
         if load.joint is not None:
             if load.joint not in ON_PIN:
-                raise _Untold
+                raise _UnsupportedBlockError
             return float(ON_PIN[load.joint]), 0.0, 0.0, 0.0, *constant, 0.0
         if load.link is None or load.link not in LINKS or load.point is None:
-            raise _Untold
-        plane, place = self._told(load.point)
+            raise _UnsupportedBlockError
+        plane, place = self._resolve_place(load.point)
         turning = load.frame == "link"
         return float(ON_LINK[load.link]), float(plane), place.real, place.imag, *constant, float(turning)
 
-    def _body(self, body: StatedBody, joints: Sequence[str], out: Real) -> None:
+    def _pack_body(self, body: BodySpec, joints: Sequence[str], out: Real) -> None:
         if body.shape is not None:
-            self._shape(body.shape, joints, out)
+            self._pack_shape(body.shape, joints, out)
             return
         mass, inertia = body.mass or 0.0, body.inertia or 0.0
-        plane, centre = (False, 0j) if body.cg is None else self._told(body.cg)
-        _add(out, plane, Body(np.asarray(mass), np.asarray(centre), np.asarray(inertia)))
+        plane, centre = (False, 0j) if body.cg is None else self._resolve_place(body.cg)
+        _add_body(out, plane, Body(np.asarray(mass), np.asarray(centre), np.asarray(inertia)))
 
-    def _shape(self, shape: Shape, joints: Sequence[str], out: Real) -> None:
+    def _pack_shape(self, shape: Shape, joints: Sequence[str], out: Real) -> None:
         for part in shape.parts:
-            self._part(part, shape.heaviness, out)
+            self._pack_part(part, shape.material_density, out)
         if shape.thickness is None:
             return
-        density = shape.heaviness * self.scale * shape.thickness
+        density = shape.material_density * self.scale * shape.thickness
         if shape.polygon is not None:
-            places = [self._told(corner) for corner in shape.polygon]
+            places = [self._resolve_place(corner) for corner in shape.polygon]
             frames = {plane for plane, _ in places}
             if len(frames) > 1:
-                raise _Untold
-            section = polygon([place for _, place in places])
+                raise _UnsupportedBlockError
+            section = make_polygon([place for _, place in places])
             if not section.area > 0.0:
-                raise _Untold
-            _add(out, frames.pop(), section.body(shape.heaviness, self.scale * shape.thickness))
+                raise _UnsupportedBlockError
+            _add_body(out, frames.pop(), section.body(shape.material_density, self.scale * shape.thickness))
         elif shape.ends == "square" and len(joints) > 2:
-            raise _Untold
+            raise _UnsupportedBlockError
         if not shape.holes.keys() <= set(joints):
-            raise _Untold
+            raise _UnsupportedBlockError
         plate = out[PLATE:]
         plate[:4] = density, self.scale * (shape.width or 0.0), shape.ends == "square", self.scale * shape.overhang
         plate[4 : 4 + len(joints)] = [0.5 * self.scale * shape.holes.get(joint, 0.0) for joint in joints]
 
-    def _part(self, part: Part, of_shape: float, out: Real) -> None:
-        plane, centre = self._told(part.at)
+    def _pack_part(self, part: Part, of_shape: float, out: Real) -> None:
+        plane, centre = self._resolve_place(part.at)
         density, length = of_shape if part.density is None else part.density, self.scale * part.length
         if part.form == "prism":
-            section = NOTHING.plus(rectangle(centre, length, self.scale * (part.width or 0.0)))
-            _add(out, plane, section.body(density, self.scale * (part.thickness or 0.0)))
+            section = EMPTY_SECTION.plus(make_rectangle(centre, length, self.scale * (part.width or 0.0)))
+            _add_body(out, plane, section.body(density, self.scale * (part.thickness or 0.0)))
             return
         across, bore = self.scale * (part.diameter or 0.0), self.scale * part.bore
-        _add(out, plane, cylinder(centre, across, length, density, bore=bore, in_plane=part.axis == "in_plane"))
+        _add_body(
+            out, plane, make_cylinder(centre, across, length, density, bore=bore, in_plane=part.axis == "in_plane")
+        )
 
 
-def _add(out: Real, plane: bool, body: Body) -> None:
+def _add_body(out: Real, plane: bool, body: Body) -> None:
     """Add a body to what stands in the plane, or in the link."""
     at = IN_PLANE if plane else IN_LINK
     mass, centre = float(body.mass), complex(body.cg)
@@ -194,31 +193,31 @@ def _add(out: Real, plane: bool, body: Body) -> None:
 
 
 @njit(**OPTIONS)
-def _square(z: complex) -> float:
+def _square_magnitude(z: complex) -> float:
     return z.real * z.real + z.imag * z.imag
 
 
 @njit(**OPTIONS)
-def _bar(p: complex, q: complex, width: float, square: bool, overhang: float) -> tuple[float, complex, float]:
+def _integrate_bar(p: complex, q: complex, width: float, square: bool, overhang: float) -> tuple[float, complex, float]:
     """Area, first moment and polar moment about the origin of a bar between two joints."""
     length, middle = abs(q - p), 0.5 * (p + q)
     if square:
         along = length + 2.0 * overhang
         area = along * width
-        return area, area * middle, area * ((along * along + width * width) / 12.0 + _square(middle))
+        return area, area * middle, area * ((along * along + width * width) / 12.0 + _square_magnitude(middle))
     r, area = 0.5 * width, length * width
-    polar = area * ((length * length + width * width) / 12.0 + _square(middle))
+    polar = area * ((length * length + width * width) / 12.0 + _square_magnitude(middle))
     round_ends = math.pi * r * r
     # Two half discs; each has its centre 4r/3π beyond its joint.
     beyond, half = 4.0 * r / (3.0 * math.pi), 0.5 * round_ends
     off = 0.5 * length + beyond
     own = 0.25 * math.pi * r**4 - half * beyond * beyond
-    polar += 2.0 * (own + half * off * off) + round_ends * _square(middle)
+    polar += 2.0 * (own + half * off * off) + round_ends * _square_magnitude(middle)
     return area + round_ends, (area + round_ends) * middle, polar
 
 
 @njit(**OPTIONS)
-def _widened(a: complex, b: complex, p: complex, width: float) -> tuple[float, complex, float]:
+def _integrate_widened_hull(a: complex, b: complex, p: complex, width: float) -> tuple[float, complex, float]:
     """The same of the convex hull of three joints, widened by half the width all round."""
     corners = (a, b, p)
     turned = (b - a).real * (p - a).imag - (b - a).imag * (p - a).real
@@ -228,7 +227,7 @@ def _widened(a: complex, b: complex, p: complex, width: float) -> tuple[float, c
             one, two = a, p
         if abs(p - b) > abs(two - one):
             one, two = b, p
-        bar: tuple[float, complex, float] = _bar(one, two, width, False, 0.0)
+        bar: tuple[float, complex, float] = _integrate_bar(one, two, width, False, 0.0)
         return bar
     if turned < 0.0:
         corners = (a, p, b)
@@ -239,13 +238,13 @@ def _widened(a: complex, b: complex, p: complex, width: float) -> tuple[float, c
         doubled = z.real * w.imag - z.imag * w.real
         area += 0.5 * doubled
         first += doubled * (z + w) / 6.0
-        polar += doubled * (_square(z) + z.real * w.real + z.imag * w.imag + _square(w)) / 12.0
+        polar += doubled * (_square_magnitude(z) + z.real * w.real + z.imag * w.imag + _square_magnitude(w)) / 12.0
         edge, length = w - z, abs(w - z)
         out, out_before = -1j * edge / length, -1j * (z - before) / abs(z - before)
         middle, strip = z + 0.5 * edge + 0.5 * r * out, length * r
         area += strip
         first += strip * middle
-        polar += strip * ((length * length + r * r) / 12.0 + _square(middle))
+        polar += strip * ((length * length + r * r) / 12.0 + _square_magnitude(middle))
         opening = abs(
             math.atan2(
                 out_before.real * out.imag - out_before.imag * out.real,
@@ -258,18 +257,20 @@ def _widened(a: complex, b: complex, p: complex, width: float) -> tuple[float, c
             arm = 2.0 * r / 3.0 * math.sin(0.5 * opening) / (0.5 * opening) * towards
             area += sector
             first += sector * (z + arm)
-            polar += 0.25 * r**4 * opening - sector * _square(arm) + sector * _square(z + arm)
+            polar += 0.25 * r**4 * opening - sector * _square_magnitude(arm) + sector * _square_magnitude(z + arm)
     return area, first, polar
 
 
 @njit(**OPTIONS)
-def weigh(block: Real, joints: Complex, mass: Real, cg: Complex, inertia: Real, arms: Complex, forces: Complex) -> bool:
+def weigh_links(
+    block: Real, joints: Complex, mass: Real, cg: Complex, inertia: Real, arms: Complex, forces: Complex
+) -> bool:
     """The bodies of one fourbar and the forces on it, as :class:`kinematics.dynamics.fourbar.Weights` has them.
 
     Parameters
     ----------
     block : float, shape (m,)
-        Of :func:`carried`.
+        Of :func:`pack_loads`.
     joints : complex, shape (5,)
         O2, A, B, O4, P at the first target, from the task's origin, in the unit of the forces.
     mass, cg, inertia : shape (3,)
@@ -293,7 +294,7 @@ def weigh(block: Real, joints: Complex, mass: Real, cg: Complex, inertia: Real, 
         # All moments are about the link's first joint, over the link's direction.
         m = row[IN_PLANE]
         moment = complex(row[IN_PLANE + 1], row[IN_PLANE + 2])
-        polar = row[IN_PLANE + 3] - 2.0 * (moment * first.conjugate()).real + m * _square(first)
+        polar = row[IN_PLANE + 3] - 2.0 * (moment * first.conjugate()).real + m * _square_magnitude(first)
         moment = (moment - m * first) * unit.conjugate()
         m += row[IN_LINK]
         moment += complex(row[IN_LINK + 1], row[IN_LINK + 2])
@@ -305,9 +306,9 @@ def weigh(block: Real, joints: Complex, mass: Real, cg: Complex, inertia: Real, 
             area, middle, second_moment = 0.0, 0j, 0.0
             if width > 0.0:
                 if n == 1:
-                    area, middle, second_moment = _widened(0j, reach, third, width)
+                    area, middle, second_moment = _integrate_widened_hull(0j, reach, third, width)
                 else:
-                    area, middle, second_moment = _bar(0j, reach, width, row[PLATE + 2] > 0.0, row[PLATE + 3])
+                    area, middle, second_moment = _integrate_bar(0j, reach, width, row[PLATE + 2] > 0.0, row[PLATE + 3])
             for k in range(3):
                 hole = row[PLATE + 4 + k]
                 if hole > 0.0:
@@ -315,14 +316,14 @@ def weigh(block: Real, joints: Complex, mass: Real, cg: Complex, inertia: Real, 
                     taken = math.pi * hole * hole
                     area -= taken
                     middle -= taken * centre
-                    second_moment -= taken * (0.5 * hole * hole + _square(centre))
+                    second_moment -= taken * (0.5 * hole * hole + _square_magnitude(centre))
             sound &= area > 0.0 or width == 0.0
             m += density * area
             moment += density * middle
             polar += density * second_moment
         mass[n] = m
         cg[n] = moment / m if m > 0.0 else 0j
-        inertia[n] = polar - m * _square(cg[n])
+        inertia[n] = polar - m * _square_magnitude(cg[n])
         sound &= m >= 0.0
     for k in range(int(block[LOADS])):
         row = block[FORCES + k * FORCE : FORCES + (k + 1) * FORCE]

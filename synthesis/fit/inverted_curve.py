@@ -19,12 +19,10 @@ from __future__ import annotations
 
 import math
 
-import numpy as np
-from numpy.typing import NDArray
-
+from kinematics.arrays import Complex, Real
 from kinematics.compiling import njit
 from synthesis.fit.chart import OPTIONS
-from synthesis.fit.coupler_curve import scaled, turned, two_bars, unit
+from synthesis.fit.coupler_curve import close_two_bars, compute_unit_vector, rotate_left, scale_complex
 from synthesis.fit.sixbar_curve import (
     COUPLER,
     CRANK,
@@ -34,28 +32,25 @@ from synthesis.fit.sixbar_curve import (
     C,
     D,
     P,
-    across,
-    fourbar,
-    pin,
-    pin_velocity,
-    pins_with_slopes,
-    turn_of,
+    close_fourbar,
+    compute_pin_velocity,
+    compute_turn_rate,
+    differentiate_pins,
+    locate_pin,
+    project_across,
 )
-from synthesis.fit.triad_slant import cross, dot, slant, slant_rate_at
-
-Real = NDArray[np.float64]
-Complex = NDArray[np.complex128]
+from synthesis.fit.triad_slant import cross, differentiate_leg_slant, dot, find_min_slant
 
 A0, A, B, B0, PIN, POINT, PIVOT = range(7)
 """Joints: pin of link 3 on the input and on link 4; of link 5 on link 4 and on the input; of the output on link 4; P;
 and the output's fixed pivot."""
 
-SHOWN = 6
+GROUND_JOINT_COUNT = 6
 """How many of them move on the ground: all but the last."""
 
 
 @njit(**OPTIONS)
-def inverted_joints(
+def compute_inverted_joints(
     x: Real, lengths: Real, sign: float, carrier: int, side: float, theta: float, places: Complex
 ) -> tuple[bool, float, float]:
     """Whether a Stephenson II closes with link 3 at θ, and the cosine and sine of its least transmission angle.
@@ -73,59 +68,63 @@ def inverted_joints(
     places : complex, shape (SHOWN,)
         Filled: the joints, as the ground sees them.
     """
-    crank = unit(theta)
-    closes, along, out = fourbar(x, lengths, sign, crank, 1.0 + 0j)
+    crank = compute_unit_vector(theta)
+    closes, along, out = close_fourbar(x, lengths, sign, crank, 1.0 + 0j)
     if not closes:
         return False, 0.0, 0.0
-    a, pivot, d = scaled(crank, lengths[1]), complex(lengths[0], 0.0), complex(x[D], x[D + 1])
-    b, c = a + scaled(along, lengths[2]), a + complex(x[C], x[C + 1]) * along
+    a, pivot, d = scale_complex(crank, lengths[1]), complex(lengths[0], 0.0), complex(x[D], x[D + 1])
+    b, c = a + scale_complex(along, lengths[2]), a + complex(x[C], x[C + 1]) * along
     first, second = math.exp(x[DYAD]), math.exp(x[DYAD + 1])
-    closes, v = two_bars(d - c, first, second, side)
+    closes, v = close_two_bars(d - c, first, second, side)
     if not closes:
         return False, 0.0, 0.0
-    e = c + scaled(v, first)
-    p = pin(carrier, complex(x[P], x[P + 1]), 0j, lengths, 1.0 + 0j, crank, along, out)
-    back = unit(x[2]) * scaled((e - d).conjugate(), 1.0 / second)
+    e = c + scale_complex(v, first)
+    p = locate_pin(carrier, complex(x[P], x[P + 1]), 0j, lengths, 1.0 + 0j, crank, along, out)
+    back = compute_unit_vector(x[2]) * scale_complex((e - d).conjugate(), 1.0 / second)
     o2 = complex(x[0], x[1])
     places[A0], places[A], places[B] = o2 - back * d, o2 + back * (a - d), o2 + back * (b - d)
     places[B0], places[PIN], places[POINT] = o2 + back * (pivot - d), o2 + back * (c - d), o2 + back * (p - d)
-    cosine, sine, _ = slant(c, e, 0j, a, pivot, b)
+    cosine, sine, _ = find_min_slant(c, e, 0j, a, pivot, b)
     return True, cosine, sine
 
 
 @njit(**OPTIONS)
-def inverted_velocity(
+def compute_inverted_velocity(
     x: Real, lengths: Real, sign: float, carrier: int, side: float, theta: float
 ) -> tuple[bool, complex, complex]:
     """Whether a Stephenson II closes, P, and P's derivative by θ, as the ground sees them."""
-    crank = unit(theta)
-    closes, along, out = fourbar(x, lengths, sign, crank, 1.0 + 0j)
+    crank = compute_unit_vector(theta)
+    closes, along, out = close_fourbar(x, lengths, sign, crank, 1.0 + 0j)
     if not closes:
         return False, 0j, 0j
-    arm, f, g = scaled(crank, lengths[1]), scaled(out, lengths[3]), turned(scaled(along, lengths[2]))
-    moved = turned(arm)
-    turn = turn_of(f, moved, dot(f, g))
-    swing = across(out, moved + scaled(g, turn)) / lengths[3]
+    arm, f, g = (
+        scale_complex(crank, lengths[1]),
+        scale_complex(out, lengths[3]),
+        rotate_left(scale_complex(along, lengths[2])),
+    )
+    moved = rotate_left(arm)
+    turn = compute_turn_rate(f, moved, dot(f, g))
+    swing = project_across(out, moved + scale_complex(g, turn)) / lengths[3]
     local_c, local_p, d = complex(x[C], x[C + 1]), complex(x[P], x[P + 1]), complex(x[D], x[D + 1])
     c = arm + local_c * along
     first, second = math.exp(x[DYAD]), math.exp(x[DYAD + 1])
-    closes, v = two_bars(d - c, first, second, side)
+    closes, v = close_two_bars(d - c, first, second, side)
     if not closes:
         return False, 0j, 0j
-    by_c = pin_velocity(COUPLER, local_c, arm, along, out, turn, swing, crank)
-    bar = scaled(v, first)
-    g = turned(bar)
+    by_c = compute_pin_velocity(COUPLER, local_c, arm, along, out, turn, swing, crank)
+    bar = scale_complex(v, first)
+    g = rotate_left(bar)
     f = bar - (d - c)
-    by_e = by_c + scaled(g, turn_of(f, by_c, dot(f, g)))
+    by_e = by_c + scale_complex(g, compute_turn_rate(f, by_c, dot(f, g)))
     spin = cross(f, by_e) / (second * second)
-    p = pin(carrier, local_p, 0j, lengths, 1.0 + 0j, crank, along, out) - d
-    by_p = pin_velocity(carrier, local_p, arm, along, out, turn, swing, crank)
-    back = unit(x[2]) * scaled(f.conjugate(), 1.0 / second)
-    return True, complex(x[0], x[1]) + back * p, back * (by_p - scaled(turned(p), spin))
+    p = locate_pin(carrier, local_p, 0j, lengths, 1.0 + 0j, crank, along, out) - d
+    by_p = compute_pin_velocity(carrier, local_p, arm, along, out, turn, swing, crank)
+    back = compute_unit_vector(x[2]) * scale_complex(f.conjugate(), 1.0 / second)
+    return True, complex(x[0], x[1]) + back * p, back * (by_p - scale_complex(rotate_left(p), spin))
 
 
 @njit(**OPTIONS)
-def inverted_slopes(
+def compute_inverted_slopes(
     x: Real, lengths: Real, chart: Real, sign: float, carrier: int, side: float, theta: float, turns: Real,
     places: Complex, by: Complex,
 ) -> bool:  # fmt: skip
@@ -134,9 +133,9 @@ def inverted_slopes(
     Parameters
     ----------
     x, lengths, sign, carrier, side, theta
-        As of :func:`inverted_joints`.
+        As of :func:`compute_inverted_joints`.
     chart : float, shape (4, 4)
-        Slopes of the lengths (:func:`synthesis.fit.chart.natural`).
+        Slopes of the lengths (:func:`synthesis.fit.chart.compute_lengths`).
     turns : float, shape (3, 16)
         Filled: derivatives of the angles of link 4, of link 5, and of the ground.
     places, by : complex, shapes (7,) and (7, 16)
@@ -144,62 +143,62 @@ def inverted_slopes(
     """
     here = x.copy()
     here[:3] = 0.0
-    closes, c, d = pins_with_slopes(here, lengths, chart, sign, COUPLER, 0, theta, turns[:2], by[PIN], by[PIVOT])
+    closes, c, d = differentiate_pins(here, lengths, chart, sign, COUPLER, 0, theta, turns[:2], by[PIN], by[PIVOT])
     if not closes:
         return False
     first, second = math.exp(x[DYAD]), math.exp(x[DYAD + 1])
-    closes, v = two_bars(d - c, first, second, side)
+    closes, v = close_two_bars(d - c, first, second, side)
     if not closes:
         return False
-    crank = unit(theta)
-    _, along, out = fourbar(here, lengths, sign, crank, 1.0 + 0j)
+    crank = compute_unit_vector(theta)
+    _, along, out = close_fourbar(here, lengths, sign, crank, 1.0 + 0j)
     by[:] = 0.0
     turns[:, :3] = 0.0
     turn, swing, spin = turns[0], turns[1], turns[2]
-    places[A0], places[A], places[B0] = 0j, scaled(crank, lengths[1]), complex(lengths[0], 0.0)
-    bar, local, point = scaled(along, lengths[2]), complex(x[C], x[C + 1]), complex(x[P], x[P + 1])
+    places[A0], places[A], places[B0] = 0j, scale_complex(crank, lengths[1]), complex(lengths[0], 0.0)
+    bar, local, point = scale_complex(along, lengths[2]), complex(x[C], x[C + 1]), complex(x[P], x[P + 1])
     places[B], places[PIN] = places[A] + bar, c
-    places[POINT] = pin(carrier, point, 0j, lengths, 1.0 + 0j, crank, along, out)
-    link = scaled(v, first)
-    f, g = link - (d - c), turned(link)
+    places[POINT] = locate_pin(carrier, point, 0j, lengths, 1.0 + 0j, crank, along, out)
+    link = scale_complex(v, first)
+    f, g = link - (d - c), rotate_left(link)
     per = dot(f, g)
     places[PIVOT] = c + link
     for k in range(4):
-        by[A, 3 + k] = scaled(crank, chart[1, k])
+        by[A, 3 + k] = scale_complex(crank, chart[1, k])
         by[B0, 3 + k] = complex(chart[0, k], 0.0)
-    by[A, UNKNOWNS] = turned(places[A])
-    swung = turned(local * along)
+    by[A, UNKNOWNS] = rotate_left(places[A])
+    swung = rotate_left(local * along)
     for k in range(3, UNKNOWNS + 1):
-        by[B, k] = by[A, k] + scaled(turned(bar), turn[k])
-        by[PIN, k] = by[A, k] + scaled(swung, turn[k])
+        by[B, k] = by[A, k] + scale_complex(rotate_left(bar), turn[k])
+        by[PIN, k] = by[A, k] + scale_complex(swung, turn[k])
     for k in range(4):
-        by[B, 3 + k] += scaled(along, chart[2, k])
-    by[PIN, C], by[PIN, C + 1] = along, turned(along)
+        by[B, 3 + k] += scale_complex(along, chart[2, k])
+    by[PIN, C], by[PIN, C + 1] = along, rotate_left(along)
     direction = crank
     if carrier == CRANK:
-        by[POINT, UNKNOWNS] = turned(point * crank)
+        by[POINT, UNKNOWNS] = rotate_left(point * crank)
     elif carrier == COUPLER:
         direction = along
         for k in range(3, UNKNOWNS + 1):
-            by[POINT, k] = by[A, k] + scaled(turned(point * along), turn[k])
+            by[POINT, k] = by[A, k] + scale_complex(rotate_left(point * along), turn[k])
     elif carrier == ROCKER:
         direction = out
         for k in range(3, UNKNOWNS + 1):
-            by[POINT, k] = by[B0, k] + scaled(turned(point * out), swing[k])
-    by[POINT, P], by[POINT, P + 1] = direction, turned(direction)
+            by[POINT, k] = by[B0, k] + scale_complex(rotate_left(point * out), swing[k])
+    by[POINT, P], by[POINT, P + 1] = direction, rotate_left(direction)
     for k in range(3, UNKNOWNS + 1):
         apart = by[PIN, k]
         if k == D:
             apart -= 1.0
         elif k == D + 1:
             apart -= 1j
-        rate = turn_of(f, apart, per)
+        rate = compute_turn_rate(f, apart, per)
         if k == DYAD:
-            rate = turn_of(f, link, per)
+            rate = compute_turn_rate(f, link, per)
             by[PIVOT, k] = link
         elif k == DYAD + 1:
             rate = second * second / per
-        by[PIVOT, k] += by[PIN, k] + scaled(g, rate)
+        by[PIVOT, k] += by[PIN, k] + scale_complex(g, rate)
         apart = by[PIVOT, k]
         if k == D:
             apart -= 1.0
@@ -210,28 +209,30 @@ def inverted_slopes(
 
 
 @njit(**OPTIONS)
-def seen_from_ground(x: Real, joint: int, turns: Real, places: Complex, by: Complex, slopes: Complex) -> complex:
-    """A joint as the ground sees it, and its derivatives (16,), from what :func:`inverted_slopes` fills."""
+def transform_to_ground(x: Real, joint: int, turns: Real, places: Complex, by: Complex, slopes: Complex) -> complex:
+    """A joint as the ground sees it, and its derivatives (16,), from what :func:`compute_inverted_slopes` fills."""
     d, spin = complex(x[D], x[D + 1]), turns[2]
-    back = unit(x[2]) * scaled((places[PIVOT] - d).conjugate(), math.exp(-x[DYAD + 1]))
+    back = compute_unit_vector(x[2]) * scale_complex((places[PIVOT] - d).conjugate(), math.exp(-x[DYAD + 1]))
     here = places[joint] - d
-    across_it = turned(here)
+    across_it = rotate_left(here)
     for k in range(3, UNKNOWNS + 1):
-        slopes[k] = by[joint, k] - scaled(across_it, spin[k])
+        slopes[k] = by[joint, k] - scale_complex(across_it, spin[k])
     slopes[D] -= 1.0
     slopes[D + 1] -= 1j
     for k in range(3, UNKNOWNS + 1):
         slopes[k] = back * slopes[k]
-    slopes[0], slopes[1], slopes[2] = 1.0 + 0j, 1j, turned(back * here)
+    slopes[0], slopes[1], slopes[2] = 1.0 + 0j, 1j, rotate_left(back * here)
     seen: complex = complex(x[0], x[1]) + back * here
     return seen
 
 
 @njit(**OPTIONS)
-def slant_with_slopes(places: Complex, by: Complex, row: Real) -> float:
+def differentiate_slant(places: Complex, by: Complex, row: Real) -> float:
     """The cosine of the least transmission angle, and its derivatives by the unknowns (15,)."""
     pins = places[PIN], places[PIVOT], places[A0], places[A], places[B0], places[B]
-    cosine, _, leg = slant(*pins)
+    cosine, _, leg = find_min_slant(*pins)
     for k in range(UNKNOWNS):
-        row[k] = slant_rate_at(leg, pins, (by[PIN, k], by[PIVOT, k], by[A0, k], by[A, k], by[B0, k], by[B, k]))
+        row[k] = differentiate_leg_slant(
+            leg, pins, (by[PIN, k], by[PIVOT, k], by[A0, k], by[A, k], by[B0, k], by[B, k])
+        )
     return cosine

@@ -13,21 +13,16 @@ from __future__ import annotations
 
 import math
 
-import numpy as np
-from numpy.typing import NDArray
-
+from kinematics.arrays import Complex, Real
 from kinematics.compiling import njit
 from synthesis.fit.chart import OPTIONS
 
-Real = NDArray[np.float64]
-Complex = NDArray[np.complex128]
-
-SHORT = 1e-12
+MIN_SIDE = 1e-12
 """Side, in task sizes, that has no direction."""
 
 
 @njit(**OPTIONS)
-def separation(first: Complex, second: Complex, weights: Real) -> tuple[float, complex]:
+def compute_separation(first: Complex, second: Complex, weights: Real) -> tuple[float, complex]:
     """Signed distance of two convex cores, and the unit normal from the second to the first.
 
     Parameters
@@ -38,9 +33,9 @@ def separation(first: Complex, second: Complex, weights: Real) -> tuple[float, c
     weights : float, shape (k,)
         λ, written.
     """
-    apart, normal, corner, after, share = _along_sides(first, second)
+    apart, normal, corner, after, share = _separate_along_sides(first, second)
     if apart > 0.0 or corner < 0:
-        apart, normal, corner, after, share = _distance(first, second)
+        apart, normal, corner, after, share = _compute_distance(first, second)
     weights[:] = 0.0
     weights[corner] = 1.0 - share
     weights[after] += share
@@ -48,7 +43,7 @@ def separation(first: Complex, second: Complex, weights: Real) -> tuple[float, c
 
 
 @njit(**OPTIONS)
-def _along_sides(first: Complex, second: Complex) -> tuple[float, complex, int, int, float]:
+def _separate_along_sides(first: Complex, second: Complex) -> tuple[float, complex, int, int, float]:
     """The greatest separation along normals of sides, the normal, and where on the first: two corners and the share of
     the second of these. No corner where neither core has an inside."""
     best, normal, on, after, share = -math.inf, 0j, -1, -1, 0.0
@@ -65,11 +60,11 @@ def _along_sides(first: Complex, second: Complex) -> tuple[float, complex, int, 
                 least, corner = height, j
         length = math.sqrt(side.real * side.real + side.imag * side.imag)
         # Sides of rounding length have no direction. Compare products to avoid a division per side.
-        if length > SHORT and least > best * length:
+        if length > MIN_SIDE and least > best * length:
             best, normal = least / length, complex(side.imag, -side.real) / length
             on, after = corner, corner
     # The orientation of the first core decides on which side its outward normals point.
-    turn = -1.0 if k > 2 and _area(first) < 0.0 else 1.0
+    turn = -1.0 if k > 2 and _compute_area(first) < 0.0 else 1.0
     for n in range(k if k > 1 else 0):
         start, end = first[n], n + 1 if n + 1 < k else 0
         side = first[end] - start
@@ -79,16 +74,16 @@ def _along_sides(first: Complex, second: Complex) -> tuple[float, complex, int, 
             if height < least:
                 least, corner = height, j
         length = math.sqrt(side.real * side.real + side.imag * side.imag)
-        if length > SHORT and least > best * length:
+        if length > MIN_SIDE and least > best * length:
             best, normal = least / length, turn * complex(-side.imag, side.real) / length
-            on, after, share = n, end, _dot(side, second[corner] - start) / (length * length)
+            on, after, share = n, end, _multiply_scalar(side, second[corner] - start) / (length * length)
     return best, normal, on, after, share
 
 
 @njit(**OPTIONS)
-def _distance(first: Complex, second: Complex) -> tuple[float, complex, int, int, float]:
+def _compute_distance(first: Complex, second: Complex) -> tuple[float, complex, int, int, float]:
     """Distance of cores that do not overlap, the least of a corner of one from a side of the other; as
-    :func:`_along_sides` tells it."""
+    :func:`_separate_along_sides` tells it."""
     k, m = len(first), len(second)
     least, offset, on, after, share = math.inf, 0j, 0, 0, 0.0
     for j in range(k):
@@ -96,7 +91,7 @@ def _distance(first: Complex, second: Complex) -> tuple[float, complex, int, int
             off = first[j] - second[n]
             if m > 1:
                 side = second[n + 1 if n + 1 < m else 0] - second[n]
-                off -= _share(off, side) * side
+                off -= _project_on_side(off, side) * side
             square = off.real * off.real + off.imag * off.imag
             if square < least:
                 least, offset, on, after = square, off, j, j
@@ -105,7 +100,7 @@ def _distance(first: Complex, second: Complex) -> tuple[float, complex, int, int
         side = first[end] - first[n]
         for j in range(m):
             off = second[j] - first[n]
-            along = _share(off, side)
+            along = _project_on_side(off, side)
             off = along * side - off
             square = off.real * off.real + off.imag * off.imag
             if square < least:
@@ -115,13 +110,13 @@ def _distance(first: Complex, second: Complex) -> tuple[float, complex, int, int
 
 
 @njit(**OPTIONS)
-def inside(z: complex, corners: Complex) -> tuple[float, complex]:
+def measure_depth(z: complex, corners: Complex) -> tuple[float, complex]:
     """How far a point lies within a simple anticlockwise polygon, negative outside, and the way it grows."""
     m = len(corners)
     least, toward, on_edge, within = math.inf, 1.0 + 0j, 0j, False
     for n in range(m):
         a, b = corners[n], corners[(n + 1) % m]
-        offset = z - a - _share(z - a, b - a) * (b - a)
+        offset = z - a - _project_on_side(z - a, b - a) * (b - a)
         if abs(offset) < least:
             least = abs(offset)
             toward = offset / least if least > 0.0 else 0j
@@ -139,19 +134,19 @@ def inside(z: complex, corners: Complex) -> tuple[float, complex]:
 
 
 @njit(**OPTIONS)
-def _share(offset: complex, side: complex) -> float:
+def _project_on_side(offset: complex, side: complex) -> float:
     """Where along a side, from 0 to 1, the place nearest to a point lies that is ``offset`` from its start."""
     square = side.real * side.real + side.imag * side.imag
-    return min(max(_dot(side, offset) / square, 0.0), 1.0) if square > 0.0 else 0.0
+    return min(max(_multiply_scalar(side, offset) / square, 0.0), 1.0) if square > 0.0 else 0.0
 
 
 @njit(**OPTIONS)
-def _dot(a: complex, b: complex) -> float:
+def _multiply_scalar(a: complex, b: complex) -> float:
     return a.real * b.real + a.imag * b.imag
 
 
 @njit(**OPTIONS)
-def _area(corners: Complex) -> float:
+def _compute_area(corners: Complex) -> float:
     """Twice the area that is enclosed, anticlockwise counted for more than nothing."""
     area = 0.0
     for n in range(len(corners)):

@@ -27,15 +27,10 @@ from __future__ import annotations
 
 import math
 
-import numpy as np
-from numpy.typing import NDArray
-
+from kinematics.arrays import Complex, Real
 from kinematics.compiling import njit
 from synthesis.fit.chart import OPTIONS
-from synthesis.fit.coupler_curve import scaled, turned, two_bars, unit
-
-Real = NDArray[np.float64]
-Complex = NDArray[np.complex128]
+from synthesis.fit.coupler_curve import close_two_bars, compute_unit_vector, rotate_left, scale_complex
 
 GROUND, CRANK, COUPLER, ROCKER = range(4)
 """Links that C and D lie on."""
@@ -52,27 +47,29 @@ UNKNOWNS = 15
 
 
 @njit(**OPTIONS)
-def turn_of(f: complex, change: complex, per: float) -> float:
+def compute_turn_rate(f: complex, change: complex, per: float) -> float:
     """The turn that keeps |F| while F changes otherwise."""
     return -(f.real * change.real + f.imag * change.imag) / per
 
 
 @njit(**OPTIONS)
-def across(along: complex, change: complex) -> float:
+def project_across(along: complex, change: complex) -> float:
     """The part of a change across a direction."""
     return along.real * change.imag - along.imag * change.real
 
 
 @njit(**OPTIONS)
-def fourbar(x: Real, lengths: Real, sign: float, crank: complex, ground: complex) -> tuple[bool, complex, complex]:
+def close_fourbar(
+    x: Real, lengths: Real, sign: float, crank: complex, ground: complex
+) -> tuple[bool, complex, complex]:
     """Whether the fourbar closes, and the unit vectors of coupler and rocker."""
-    base = scaled(ground, lengths[0]) - scaled(crank, lengths[1])
-    closes, along = two_bars(base, lengths[2], lengths[3], sign)
-    return closes, along, scaled(scaled(along, lengths[2]) - base, 1.0 / lengths[3])
+    base = scale_complex(ground, lengths[0]) - scale_complex(crank, lengths[1])
+    closes, along = close_two_bars(base, lengths[2], lengths[3], sign)
+    return closes, along, scale_complex(scale_complex(along, lengths[2]) - base, 1.0 / lengths[3])
 
 
 @njit(**OPTIONS)
-def pin(
+def locate_pin(
     frame: int,
     local: complex,
     o2: complex,
@@ -87,80 +84,80 @@ def pin(
     if frame == CRANK:
         place = o2 + local * crank
     elif frame == COUPLER:
-        place = o2 + scaled(crank, lengths[1]) + local * along
+        place = o2 + scale_complex(crank, lengths[1]) + local * along
     elif frame == ROCKER:
-        place = o2 + scaled(ground, lengths[0]) + local * out
+        place = o2 + scale_complex(ground, lengths[0]) + local * out
     return place
 
 
 @njit(**OPTIONS)
-def joints(
+def locate_joints(
     x: Real, lengths: Real, sign: float, carrier: int, holder: int, side: float, theta: float, places: Complex
 ) -> bool:
     """Whether a sixbar closes with the crank at θ; A, B, C, D, E and P are written into ``places`` (6,).
 
     ``sign`` and ``side`` are the assemblies of the fourbar's dyad and of C–E–D.
     """
-    o2, ground, crank = complex(x[0], x[1]), unit(x[2]), unit(theta)
-    closes, along, out = fourbar(x, lengths, sign, crank, ground)
+    o2, ground, crank = complex(x[0], x[1]), compute_unit_vector(x[2]), compute_unit_vector(theta)
+    closes, along, out = close_fourbar(x, lengths, sign, crank, ground)
     if not closes:
         return False
-    places[0] = o2 + scaled(crank, lengths[1])
-    places[1] = places[0] + scaled(along, lengths[2])
-    places[2] = pin(carrier, complex(x[C], x[C + 1]), o2, lengths, ground, crank, along, out)
-    places[3] = pin(holder, complex(x[D], x[D + 1]), o2, lengths, ground, crank, along, out)
+    places[0] = o2 + scale_complex(crank, lengths[1])
+    places[1] = places[0] + scale_complex(along, lengths[2])
+    places[2] = locate_pin(carrier, complex(x[C], x[C + 1]), o2, lengths, ground, crank, along, out)
+    places[3] = locate_pin(holder, complex(x[D], x[D + 1]), o2, lengths, ground, crank, along, out)
     first = math.exp(x[DYAD])
-    joined, v = two_bars(places[3] - places[2], first, math.exp(x[DYAD + 1]), side)
-    places[4] = places[2] + scaled(v, first)
+    joined, v = close_two_bars(places[3] - places[2], first, math.exp(x[DYAD + 1]), side)
+    places[4] = places[2] + scale_complex(v, first)
     places[5] = places[2] + complex(x[P], x[P + 1]) * v
     return bool(joined)
 
 
 @njit(**OPTIONS)
-def pin_velocity(
+def compute_pin_velocity(
     frame: int, local: complex, arm: complex, along: complex, out: complex, turn: float, swing: float, crank: complex
 ) -> complex:
     """A pin's derivative by the crank angle, from those of coupler and rocker."""
     moved = 0j
     if frame == CRANK:
-        moved = turned(local * crank)
+        moved = rotate_left(local * crank)
     elif frame == COUPLER:
-        moved = turned(arm) + scaled(turned(local * along), turn)
+        moved = rotate_left(arm) + scale_complex(rotate_left(local * along), turn)
     elif frame == ROCKER:
-        moved = scaled(turned(local * out), swing)
+        moved = scale_complex(rotate_left(local * out), swing)
     return moved
 
 
 @njit(**OPTIONS)
-def velocity(
+def compute_velocity(
     x: Real, lengths: Real, sign: float, carrier: int, holder: int, side: float, theta: float
 ) -> tuple[bool, complex, complex]:
     """Whether a sixbar closes, P, and P's derivative by the crank angle."""
-    o2, ground, crank = complex(x[0], x[1]), unit(x[2]), unit(theta)
-    closes, along, out = fourbar(x, lengths, sign, crank, ground)
+    o2, ground, crank = complex(x[0], x[1]), compute_unit_vector(x[2]), compute_unit_vector(theta)
+    closes, along, out = close_fourbar(x, lengths, sign, crank, ground)
     if not closes:
         return False, 0j, 0j
-    arm, bar, f = scaled(crank, lengths[1]), scaled(along, lengths[2]), scaled(out, lengths[3])
-    g, moved = turned(bar), turned(arm)
-    turn = turn_of(f, moved, f.real * g.real + f.imag * g.imag)
-    swing = across(out, moved + scaled(g, turn)) / lengths[3]
+    arm, bar, f = scale_complex(crank, lengths[1]), scale_complex(along, lengths[2]), scale_complex(out, lengths[3])
+    g, moved = rotate_left(bar), rotate_left(arm)
+    turn = compute_turn_rate(f, moved, f.real * g.real + f.imag * g.imag)
+    swing = project_across(out, moved + scale_complex(g, turn)) / lengths[3]
     local_c, local_d = complex(x[C], x[C + 1]), complex(x[D], x[D + 1])
-    c = pin(carrier, local_c, o2, lengths, ground, crank, along, out)
-    base = pin(holder, local_d, o2, lengths, ground, crank, along, out) - c
+    c = locate_pin(carrier, local_c, o2, lengths, ground, crank, along, out)
+    base = locate_pin(holder, local_d, o2, lengths, ground, crank, along, out) - c
     first = math.exp(x[DYAD])
-    closes, v = two_bars(base, first, math.exp(x[DYAD + 1]), side)
+    closes, v = close_two_bars(base, first, math.exp(x[DYAD + 1]), side)
     if not closes:
         return False, 0j, 0j
-    by_c = pin_velocity(carrier, local_c, arm, along, out, turn, swing, crank)
-    by_d = pin_velocity(holder, local_d, arm, along, out, turn, swing, crank)
-    f, g = scaled(v, first) - base, turned(scaled(v, first))
-    spin = turn_of(f, by_c - by_d, f.real * g.real + f.imag * g.imag)
+    by_c = compute_pin_velocity(carrier, local_c, arm, along, out, turn, swing, crank)
+    by_d = compute_pin_velocity(holder, local_d, arm, along, out, turn, swing, crank)
+    f, g = scale_complex(v, first) - base, rotate_left(scale_complex(v, first))
+    spin = compute_turn_rate(f, by_c - by_d, f.real * g.real + f.imag * g.imag)
     reach = complex(x[P], x[P + 1]) * v
-    return True, c + reach, by_c + scaled(turned(reach), spin)
+    return True, c + reach, by_c + scale_complex(rotate_left(reach), spin)
 
 
 @njit(**OPTIONS)
-def _pin_with_slopes(
+def _differentiate_pin(
     frame: int, at: int, x: Real, lengths: Real, chart: Real, ground: complex, crank: complex, along: complex,
     out: complex, turn: Real, swing: Real, by: Complex,
 ) -> complex:  # fmt: skip
@@ -172,31 +169,31 @@ def _pin_with_slopes(
         by[0], by[1] = 1.0 + 0j, 1j
     if frame == CRANK:
         direction = crank
-        by[UNKNOWNS] = turned(local * crank)
+        by[UNKNOWNS] = rotate_left(local * crank)
     elif frame == COUPLER:
         direction = along
-        swung = turned(local * along)
+        swung = rotate_left(local * along)
         for k in range(2, 7):
-            by[k] = scaled(swung, turn[k])
+            by[k] = scale_complex(swung, turn[k])
         for k in range(4):
-            by[3 + k] += scaled(crank, chart[1, k])
-        by[UNKNOWNS] = turned(scaled(crank, lengths[1])) + scaled(swung, turn[UNKNOWNS])
+            by[3 + k] += scale_complex(crank, chart[1, k])
+        by[UNKNOWNS] = rotate_left(scale_complex(crank, lengths[1])) + scale_complex(swung, turn[UNKNOWNS])
     elif frame == ROCKER:
         direction = out
-        swung = turned(local * out)
+        swung = rotate_left(local * out)
         for k in range(2, 7):
-            by[k] = scaled(swung, swing[k])
-        by[2] += turned(scaled(ground, lengths[0]))
+            by[k] = scale_complex(swung, swing[k])
+        by[2] += rotate_left(scale_complex(ground, lengths[0]))
         for k in range(4):
-            by[3 + k] += scaled(ground, chart[0, k])
-        by[UNKNOWNS] = scaled(swung, swing[UNKNOWNS])
-    by[at], by[at + 1] = direction, turned(direction)
-    place: complex = pin(frame, local, o2, lengths, ground, crank, along, out)
+            by[3 + k] += scale_complex(ground, chart[0, k])
+        by[UNKNOWNS] = scale_complex(swung, swing[UNKNOWNS])
+    by[at], by[at + 1] = direction, rotate_left(direction)
+    place: complex = locate_pin(frame, local, o2, lengths, ground, crank, along, out)
     return place
 
 
 @njit(**OPTIONS)
-def pins_with_slopes(
+def differentiate_pins(
     x: Real, lengths: Real, chart: Real, sign: float, carrier: int, holder: int, theta: float, turns: Real,
     by_c: Complex, by_d: Complex,
 ) -> tuple[bool, complex, complex]:  # fmt: skip
@@ -204,52 +201,54 @@ def pins_with_slopes(
 
     ``turns`` (2, 16) gets those of the directions of coupler and rocker.
     """
-    ground, crank = unit(x[2]), unit(theta)
-    closes, along, out = fourbar(x, lengths, sign, crank, ground)
+    ground, crank = compute_unit_vector(x[2]), compute_unit_vector(theta)
+    closes, along, out = close_fourbar(x, lengths, sign, crank, ground)
     if not closes:
         return False, 0j, 0j
     turn, swing = turns[0], turns[1]
-    arm, bar, f = scaled(crank, lengths[1]), scaled(along, lengths[2]), scaled(out, lengths[3])
-    g = turned(bar)
+    arm, bar, f = scale_complex(crank, lengths[1]), scale_complex(along, lengths[2]), scale_complex(out, lengths[3])
+    g = rotate_left(bar)
     per = f.real * g.real + f.imag * g.imag
     over = 1.0 / lengths[3]
-    moved = -turned(scaled(ground, lengths[0]))
-    turn[2] = turn_of(f, moved, per)
-    swing[2] = across(out, moved + scaled(g, turn[2])) * over
-    moved = turned(arm)
-    turn[UNKNOWNS] = turn_of(f, moved, per)
-    swing[UNKNOWNS] = across(out, moved + scaled(g, turn[UNKNOWNS])) * over
+    moved = -rotate_left(scale_complex(ground, lengths[0]))
+    turn[2] = compute_turn_rate(f, moved, per)
+    swing[2] = project_across(out, moved + scale_complex(g, turn[2])) * over
+    moved = rotate_left(arm)
+    turn[UNKNOWNS] = compute_turn_rate(f, moved, per)
+    swing[UNKNOWNS] = project_across(out, moved + scale_complex(g, turn[UNKNOWNS])) * over
     for k in range(4):
-        moved = scaled(crank, chart[1, k]) - scaled(ground, chart[0, k]) + scaled(along, chart[2, k])
-        turn[3 + k] = turn_of(f, moved, per) + lengths[3] * chart[3, k] / per
-        swing[3 + k] = across(out, moved + scaled(g, turn[3 + k])) * over
-    c = _pin_with_slopes(carrier, C, x, lengths, chart, ground, crank, along, out, turn, swing, by_c)
-    d = _pin_with_slopes(holder, D, x, lengths, chart, ground, crank, along, out, turn, swing, by_d)
+        moved = (
+            scale_complex(crank, chart[1, k]) - scale_complex(ground, chart[0, k]) + scale_complex(along, chart[2, k])
+        )
+        turn[3 + k] = compute_turn_rate(f, moved, per) + lengths[3] * chart[3, k] / per
+        swing[3 + k] = project_across(out, moved + scale_complex(g, turn[3 + k])) * over
+    c = _differentiate_pin(carrier, C, x, lengths, chart, ground, crank, along, out, turn, swing, by_c)
+    d = _differentiate_pin(holder, D, x, lengths, chart, ground, crank, along, out, turn, swing, by_d)
     return True, c, d
 
 
 @njit(**OPTIONS)
-def point_with_slopes(
+def differentiate_point(
     x: Real, side: float, c: complex, d: complex, by_c: Complex, by_d: Complex, slopes: Complex
 ) -> tuple[bool, complex]:
     """Whether C–E–D closes, P, and P's derivatives (16,), from the pins and theirs."""
     first, second = math.exp(x[DYAD]), math.exp(x[DYAD + 1])
-    closes, v = two_bars(d - c, first, second, side)
+    closes, v = close_two_bars(d - c, first, second, side)
     if not closes:
         return False, 0j
-    bar, reach = scaled(v, first), complex(x[P], x[P + 1]) * v
-    f, g, swung = bar - (d - c), turned(bar), turned(reach)
+    bar, reach = scale_complex(v, first), complex(x[P], x[P + 1]) * v
+    f, g, swung = bar - (d - c), rotate_left(bar), rotate_left(reach)
     per = f.real * g.real + f.imag * g.imag
     for k in range(UNKNOWNS + 1):
-        slopes[k] = by_c[k] + scaled(swung, turn_of(f, by_c[k] - by_d[k], per))
-    slopes[DYAD] = scaled(swung, turn_of(f, bar, per))
-    slopes[DYAD + 1] = scaled(swung, second * second / per)
-    slopes[P], slopes[P + 1] = v, turned(v)
+        slopes[k] = by_c[k] + scale_complex(swung, compute_turn_rate(f, by_c[k] - by_d[k], per))
+    slopes[DYAD] = scale_complex(swung, compute_turn_rate(f, bar, per))
+    slopes[DYAD + 1] = scale_complex(swung, second * second / per)
+    slopes[P], slopes[P + 1] = v, rotate_left(v)
     return True, c + reach
 
 
 @njit(**OPTIONS)
-def cosine(x: Real, c: complex, d: complex) -> float:
+def compute_cosine(x: Real, c: complex, d: complex) -> float:
     """The cosine of the angle between the links at E."""
     first, second, base = math.exp(x[DYAD]), math.exp(x[DYAD + 1]), d - c
     square = base.real * base.real + base.imag * base.imag
@@ -257,14 +256,14 @@ def cosine(x: Real, c: complex, d: complex) -> float:
 
 
 @njit(**OPTIONS)
-def cosine_with_slopes(x: Real, c: complex, d: complex, by_c: Complex, by_d: Complex, row: Real) -> float:
+def differentiate_cosine(x: Real, c: complex, d: complex, by_c: Complex, by_d: Complex, row: Real) -> float:
     """The same, and its derivatives by the unknowns (15,), from the pins and theirs."""
     first, second, base = math.exp(x[DYAD]), math.exp(x[DYAD + 1]), d - c
     over = 1.0 / (first * second)
     for k in range(UNKNOWNS):
         change = by_d[k] - by_c[k]
         row[k] = -over * (base.real * change.real + base.imag * change.imag)
-    value: float = cosine(x, c, d)
+    value: float = compute_cosine(x, c, d)
     row[DYAD] = over * first * first - value
     row[DYAD + 1] = over * second * second - value
     return value

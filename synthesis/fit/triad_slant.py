@@ -25,7 +25,7 @@ def cross(u: complex, v: complex) -> float:
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
-def pushed(q: complex, o2: complex, a: complex, o4: complex, b: complex) -> complex:
+def find_push_direction(q: complex, o2: complex, a: complex, o4: complex, b: complex) -> complex:
     """The direction in which the pin q of link 4 moves: at right angles to the way from the pole, where legs meet.
 
     It is multiplied by the cross product of the legs, so that it is there where they are parallel.
@@ -37,7 +37,7 @@ def pushed(q: complex, o2: complex, a: complex, o4: complex, b: complex) -> comp
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
-def third(
+def permute_legs(
     leg: int, q: complex, j: complex, o2: complex, a: complex, o4: complex, b: complex
 ) -> tuple[complex, complex, complex, complex, complex, complex]:
     """The same pins, or their rates, with a leg in the output's place and the others after it in a circle.
@@ -52,35 +52,39 @@ def third(
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
-def slant_at(leg: int, q: complex, j: complex, o2: complex, a: complex, o4: complex, b: complex) -> tuple[float, float]:
+def compute_leg_slant(
+    leg: int, q: complex, j: complex, o2: complex, a: complex, o4: complex, b: complex
+) -> tuple[float, float]:
     """Signed cosine and sine of the transmission angle at a leg; NaN where its pin cannot move."""
-    q, j, o2, a, o4, b = third(leg, q, j, o2, a, o4, b)
-    way, bar = pushed(q, o2, a, o4, b), q - j
+    q, j, o2, a, o4, b = permute_legs(leg, q, j, o2, a, o4, b)
+    way, bar = find_push_direction(q, o2, a, o4, b), q - j
     size = abs(way) * abs(bar)
     return cross(bar, way) / size, dot(bar, way) / size
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
-def slant(q: complex, j: complex, o2: complex, a: complex, o4: complex, b: complex) -> tuple[float, float, int]:
+def find_min_slant(
+    q: complex, j: complex, o2: complex, a: complex, o4: complex, b: complex
+) -> tuple[float, float, int]:
     """Cosine and sine of the least of the three transmission angles, and the leg at which it is.
 
     The sine has the sign of the determinant of the legs' lines, whichever the leg is.
     """
-    cosine, sine = slant_at(0, q, j, o2, a, o4, b)
+    cosine, sine = compute_leg_slant(0, q, j, o2, a, o4, b)
     least = 0
     for leg in range(1, 3):
-        along, across = slant_at(leg, q, j, o2, a, o4, b)
+        along, across = compute_leg_slant(leg, q, j, o2, a, o4, b)
         if abs(across) < abs(sine):
             cosine, sine, least = along, across, leg
     return cosine, sine, least
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
-def pushed_rate(
+def differentiate_push_direction(
     q: complex, o2: complex, a: complex, o4: complex, b: complex, by_q: complex, by_o2: complex, by_a: complex,
     by_o4: complex, by_b: complex,
 ) -> complex:  # fmt: skip
-    """The rate of :func:`pushed` from those of the joints."""
+    """The rate of :func:`find_push_direction` from those of the joints."""
     one, two, between = a - o2, b - o4, o4 - o2
     crossed, along = cross(one, two), cross(between, two)
     by_one, by_two = by_a - by_o2, by_b - by_o4
@@ -91,8 +95,8 @@ def pushed_rate(
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
-def slant_rate(leg: complex, way: complex, by_leg: complex, by_way: complex) -> float:
-    """The rate of the cosine from leg and way, q − j and :func:`pushed`, and theirs."""
+def differentiate_slant(leg: complex, way: complex, by_leg: complex, by_way: complex) -> float:
+    """The rate of the cosine from leg and way, q − j and :func:`find_push_direction`, and theirs."""
     long, wide = abs(leg), abs(way)
     cosine = cross(leg, way) / (long * wide)
     rate = (cross(by_leg, way) + cross(leg, by_way)) / (long * wide)
@@ -100,12 +104,12 @@ def slant_rate(leg: complex, way: complex, by_leg: complex, by_way: complex) -> 
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
-def slant_rate_at(
+def differentiate_leg_slant(
     leg: int, pins: tuple[complex, complex, complex, complex, complex, complex],
     rates: tuple[complex, complex, complex, complex, complex, complex],
 ) -> float:  # fmt: skip
-    """The rate of the cosine at a leg from the six pins, in the order of :func:`slant`, and theirs."""
-    q, j, o2, a, o4, b = third(leg, *pins)
-    by_q, by_j, by_o2, by_a, by_o4, by_b = third(leg, *rates)
-    by_way = pushed_rate(q, o2, a, o4, b, by_q, by_o2, by_a, by_o4, by_b)
-    return slant_rate(q - j, pushed(q, o2, a, o4, b), by_q - by_j, by_way)
+    """The rate of the cosine at a leg from the six pins, in the order of :func:`find_min_slant`, and theirs."""
+    q, j, o2, a, o4, b = permute_legs(leg, *pins)
+    by_q, by_j, by_o2, by_a, by_o4, by_b = permute_legs(leg, *rates)
+    by_way = differentiate_push_direction(q, o2, a, o4, b, by_q, by_o2, by_a, by_o4, by_b)
+    return differentiate_slant(q - j, find_push_direction(q, o2, a, o4, b), by_q - by_j, by_way)

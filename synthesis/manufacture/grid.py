@@ -1,9 +1,9 @@
 """The best linkages on the grid of a shop, or of the links in stock: all of those near a design, driven.
 
 Rounding each dimension by itself is far from the best, as the errors of several can cancel. Every combination of grid
-values within :data:`REACH` steps of the design is driven to all targets, or as far as it may still be among the best;
-nothing about them is linear, and nothing is left out. A fourbar that guides a body has nine dimensions and two million
-combinations.
+values within :data:`REACH_STEPS` steps of the design is driven to all targets, or as far as it may still be among the
+best; nothing about them is linear, and nothing is left out. A fourbar that guides a body has nine dimensions and two
+million combinations.
 
 Links in stock may be far from those of a design. For each choice of them the other dimensions are brought along, from
 the design's, by Gauss and Newton's method with the exact derivatives, the links changing in steps; where there is a
@@ -20,12 +20,13 @@ from typing import NamedTuple, TypeVar
 import numpy as np
 from numpy.typing import NDArray
 
+from kinematics.arrays import Real
 from kinematics.errors import DimensionError
 from kinematics.linkage import Fourbar, SliderCrank, fourbar, slider_crank
-from kinematics.linkage.variation import Task, deviations, shares, squares
-from kinematics.linkage.variation.sensitivities import sensitivities
-from synthesis.manufacture.linkage import LIMIT_SLACK, Linkage, demanded
-from synthesis.model.linkage_answer import (
+from kinematics.linkage.variation import Task, measure_deviations, measure_shares, measure_squares
+from kinematics.linkage.variation.sensitivities import compute_sensitivities
+from synthesis.manufacture.linkage import LIMIT_SLACK, Linkage, find_target_inputs
+from synthesis.model.linkage.answer import (
     CouplerPoint,
     FixedPivots,
     FourbarLinks,
@@ -33,39 +34,37 @@ from synthesis.model.linkage_answer import (
     SliderCrankLinks,
     SliderCrankMechanism,
 )
-from synthesis.model.linkages import (
+from synthesis.model.linkage.conversion import (
     FourbarConfiguration,
-    fourbar_mechanism,
-    slider_crank_mechanism,
-    without_coupler_point,
+    build_fourbar,
+    build_slider_crank,
+    remove_coupler_point,
 )
-from synthesis.model.manufacture import Held, Manufacture
-
-Real = NDArray[np.float64]
+from synthesis.model.manufacture.request import Manufacture, RequiredTargets
 
 Limits = tuple[float, float]
 """Of distance, and of angle in radians."""
 
-REACH = 2
+REACH_STEPS = 2
 """Steps of the grid to either side of a design that are searched, in every dimension at once."""
 
-KEPT = 256
+MAX_KEPT = 256
 """Linkages that are kept of a search, the nearest to the task first."""
 
-INNER = 6
+BATCH_DIMENSIONS = 6
 """Dimensions that one batch runs over."""
 
-CHOICES = 64
+MAX_CHOICES = 64
 """Maximum number of choices of links in stock, those most similar to the design first."""
 
-AROUND = 6
+MAX_REFINED_CHOICES = 6
 """Of these, the best around which a grid is searched."""
 
-STEPS, SETTLED = 6, 3
+STEP_COUNT, NEWTON_STEPS = 6, 3
 """Steps in which links become those of the stock, and steps of Gauss and Newton's method at each."""
 
 
-class Near(NamedTuple):
+class NearbyLinkages(NamedTuple):
     """Linkages near a design, the nearest to its task first.
 
     Attributes
@@ -85,18 +84,18 @@ class Near(NamedTuple):
     squares: Real
     body: float | None
 
-    def body_angle(self, coupler: float) -> float | None:
+    def compute_body_angle(self, coupler: float) -> float | None:
         """The body's angle where A → B has this one, radians; degrees."""
         return None if self.body is None else math.degrees(coupler + self.body)
 
 
-def nearest_on_grid(
+def find_nearest_on_grid(
     linkage: Linkage,
-    held: Held,
-    stated: Manufacture,
+    held: RequiredTargets,
+    block: Manufacture,
     used: tuple[float, float] | None,
     limits: Limits = (math.inf, math.inf),
-) -> Near | str:
+) -> NearbyLinkages | str:
     """Find the linkages on the grid, or from the stock, that best satisfy a design's requirements.
 
     Parameters
@@ -116,10 +115,10 @@ def nearest_on_grid(
     Returns
     -------
     Near or str
-        :data:`KEPT` linkages at most; the nearest alone where none keeps the limits. In words why none can be looked
-        for.
+        :data:`MAX_KEPT` linkages at most; the nearest alone where none keeps the limits. In words why none can be
+        looked for.
     """
-    found = demanded(linkage, held, (held.size, 1.0), used)
+    found = find_target_inputs(linkage, held, (held.size, 1.0), used)
     if isinstance(found, str):
         return found
     task, _ = found
@@ -132,48 +131,48 @@ def nearest_on_grid(
         ground_angle=float(np.angle(ground)),
     )
     row = linkage.row[: task.dimensions]
-    names = linkage.names(guides=task.guides)
-    kept = None if _has_own(held) or limits == (math.inf, math.inf) else limits
+    names = linkage.list_names(guides=task.guides)
+    kept = None if has_own_tolerances(held) or limits == (math.inf, math.inf) else limits
     body = None
     if task.sort == "poses" and held.angles is not None and task.angles is not None:
         body = float(held.angles[0] - task.angles[0])
-    if stated.stock is None:
-        values = _candidates(row, names, stated, held.kept)
-        rows, taken = _searched(linkage, task, values, kept, screened=stated.quality is not None)
+    if block.stock is None:
+        values = _list_candidates(row, names, block, held.kept)
+        rows, taken = _search_combinations(linkage, task, values, kept, screened=block.quality is not None)
         if not len(rows):
             # None keeps them; the one that comes nearest tells by how much.
-            rows, taken = (part[:1] for part in _searched(linkage, task, values, None))
-        return Near(task, rows, taken, body)
+            rows, taken = (part[:1] for part in _search_combinations(linkage, task, values, None))
+        return NearbyLinkages(task, rows, taken, body)
     moving = [k for k, name in enumerate(names) if name.startswith("links.")]
-    rows, taken = _of_stock(linkage, task, row, np.array(sorted(set(stated.stock.links))), names, held.kept)
-    if stated.round is not None:
+    rows, taken = _search_stock(linkage, task, row, np.array(sorted(set(block.stock.links))), names, held.kept)
+    if block.round is not None:
         parts = [(np.empty((0, len(row))), np.empty(0))]
-        for centre in rows[:AROUND]:
-            values = _candidates(centre, names, stated, held.kept)
+        for centre in rows[:MAX_REFINED_CHOICES]:
+            values = _list_candidates(centre, names, block, held.kept)
             for k in moving:
                 values[k] = centre[k : k + 1]
-            parts.append(_searched(linkage, task, values, None))
+            parts.append(_search_combinations(linkage, task, values, None))
         rows, taken = np.concatenate([of for of, _ in parts]), np.concatenate([of for _, of in parts])
-    order = np.argsort(taken, kind="stable")[:KEPT]
-    return Near(task, rows[order], taken[order], body)
+    order = np.argsort(taken, kind="stable")[:MAX_KEPT]
+    return NearbyLinkages(task, rows[order], taken[order], body)
 
 
-def _has_own(held: Held) -> bool:
+def has_own_tolerances(held: RequiredTargets) -> bool:
     """Whether targets have tolerances of their own."""
     return held.limits is not None and bool(((held.limits > 0.0) & np.isfinite(held.limits)).any())
 
 
-def _candidates(row: Real, names: list[str], stated: Manufacture, kept: frozenset[str]) -> list[Real]:
+def _list_candidates(row: Real, names: list[str], block: Manufacture, kept: frozenset[str]) -> list[Real]:
     """Return the grid values of each dimension; only the given value for a fixed dimension."""
-    assert stated.round is not None
+    assert block.round is not None
     values = []
     for at, name in zip(row, names, strict=True):
         link = name.startswith("links.")
-        step = stated.round.length if link or name.startswith("coupler_point") else stated.round.coordinates
+        step = block.round.length if link or name.startswith("coupler_point") else block.round.coordinates
         if name in kept:
             values.append(np.array([at]))
             continue
-        counts = np.arange(-REACH, REACH + 1) + round(float(at) / step)
+        counts = np.arange(-REACH_STEPS, REACH_STEPS + 1) + round(float(at) / step)
         # 3 times 0.1 is not 0.3: a whole multiple is what is written with few digits.
         listed = np.array([float(f"{count * step:.12g}") for count in counts])
         if link:
@@ -182,22 +181,22 @@ def _candidates(row: Real, names: list[str], stated: Manufacture, kept: frozense
     return values
 
 
-def _settings(linkage: Linkage, task: Task, rows: Real) -> Real | None:
+def _list_dial_settings(linkage: Linkage, task: Task, rows: Real) -> Real | None:
     """Where the dial of a slider stands: its places are counted from the foot of the pivot, which the grid moves."""
     if task.guides or not task.slides:
         return None
     moved = (rows[:, 0] - linkage.row[0]) + 1j * (rows[:, 1] - linkage.row[1])
-    return np.stack([np.zeros(len(rows)), (moved * np.conj(task.along)).real], axis=1)
+    return np.stack([np.zeros(len(rows)), (moved * np.conj(task.slide_direction)).real], axis=1)
 
 
-def _searched(
+def _search_combinations(
     linkage: Linkage, task: Task, values: list[Real], limits: Limits | None, *, screened: bool = False
 ) -> tuple[Real, Real]:
     """The best of all combinations of values, driven: rows (v, n) and sums of squares (v,), the least first.
 
     Only those that keep the limits, where there are such; ``screened``: these are tight, and looked at first.
     """
-    split = max(len(values) - INNER, 0)
+    split = max(len(values) - BATCH_DIMENSIONS, 0)
     inner = np.stack(np.meshgrid(*values[split:], indexing="ij"), axis=-1).reshape(-1, len(values) - split)
     batch = np.empty((len(inner), len(values)))
     batch[:, split:] = inner
@@ -207,30 +206,30 @@ def _searched(
         most = len(task.inputs) * ((limits[0] / task.units[0]) ** 2 + (limits[1] / task.units[1]) ** 2)
     for outer in combined(*values[:split]):
         batch[:, :split] = outer
-        settings = _settings(linkage, task, batch)
+        settings = _list_dial_settings(linkage, task, batch)
         some: slice | NDArray[np.intp] = slice(None)
         if limits is not None and screened:
-            near = shares(dataclasses.replace(task, greatest=True, units=limits), batch, settings)
+            near = measure_shares(dataclasses.replace(task, greatest=True, units=limits), batch, settings)
             some = np.flatnonzero(near <= 1.0 + LIMIT_SLACK)
             settings = None if settings is None else settings[some]
-        square = squares(task, batch[some], most, settings)
+        square = measure_squares(task, batch[some], most, settings)
         good = np.flatnonzero(np.isfinite(square))
         if limits is not None:
-            off = deviations(task, batch[some][good], None if settings is None else settings[good])
+            off = measure_deviations(task, batch[some][good], None if settings is None else settings[good])
             kept = (off.distances <= limits[0] * (1.0 + LIMIT_SLACK)) & (off.angles <= limits[1] * (1.0 + LIMIT_SLACK))
             good = good[kept.all(axis=1)]
         if not len(good):
             continue
         rows, taken = np.concatenate([rows, batch[some][good]]), np.concatenate([taken, square[good]])
-        if len(taken) > KEPT:
-            first = np.argpartition(taken, KEPT)[:KEPT]
+        if len(taken) > MAX_KEPT:
+            first = np.argpartition(taken, MAX_KEPT)[:MAX_KEPT]
             rows, taken = rows[first], taken[first]
             most = float(taken.max())
     order = np.argsort(taken, kind="stable")
     return rows[order], taken[order]
 
 
-def _of_stock(
+def _search_stock(
     linkage: Linkage, task: Task, row: Real, stock: Real, names: list[str], kept: frozenset[str]
 ) -> tuple[Real, Real]:
     """Linkages of links in stock, all other dimensions as the task wants them: rows and sums, the least first."""
@@ -238,22 +237,22 @@ def _of_stock(
     free = np.array([k for k, name in enumerate(names) if k not in moving and name not in kept], np.intp)
     away = np.abs(np.log(stock[None] / row[moving][:, None]))
     choices = sorted(combined(range(len(stock)), repeat=len(moving)), key=lambda c: sum(away[range(len(c)), c]))
-    rows = [_brought(task, row, moving, stock[list(choice)], free) for choice in choices[:CHOICES]]
+    rows = [_bring_to_lengths(task, row, moving, stock[list(choice)], free) for choice in choices[:MAX_CHOICES]]
     found = np.array([one for one in rows if one is not None]).reshape(-1, len(row))
-    taken = squares(task, found, math.inf, _settings(linkage, task, found))
+    taken = measure_squares(task, found, math.inf, _list_dial_settings(linkage, task, found))
     order = [n for n in np.argsort(taken, kind="stable") if math.isfinite(taken[n])]
     return found[order], taken[order]
 
 
-def _brought(task: Task, row: Real, moving: list[int], links: Real, free: NDArray[np.intp]) -> Real | None:
+def _bring_to_lengths(task: Task, row: Real, moving: list[int], links: Real, free: NDArray[np.intp]) -> Real | None:
     """The dimensions with other links, by steps from those of the design; None where that leads nowhere."""
     weights = np.array([1.0 / task.units[0]] * 2 + [1.0 / task.units[1]])
     loose = dataclasses.replace(task, used=None)
     at = row.copy()
-    for share in np.linspace(0.0, 1.0, STEPS + 1)[1:]:
+    for share in np.linspace(0.0, 1.0, STEP_COUNT + 1)[1:]:
         at[moving] = row[moving] + share * (links - row[moving])
-        for _ in range(SETTLED):
-            off = sensitivities(loose, at)
+        for _ in range(NEWTON_STEPS):
+            off = compute_sensitivities(loose, at)
             if not (np.isfinite(off.rates).all() and np.isfinite(off.offsets).all()):
                 return None
             slopes = (off.rates[:, :, free] * weights[:, None]).reshape(-1, len(free))
@@ -262,17 +261,17 @@ def _brought(task: Task, row: Real, moving: list[int], links: Real, free: NDArra
     return at
 
 
-def mechanism_of(linkage: Linkage, near: Near, n: int) -> FourbarMechanism | SliderCrankMechanism | None:
+def build_mechanism(linkage: Linkage, near: NearbyLinkages, n: int) -> FourbarMechanism | SliderCrankMechanism | None:
     """One of the linkages near a design as an answer states it, standing at the first target; None where it cannot."""
     try:
-        return _mechanism(linkage, near, n)
+        return _build_mechanism(linkage, near, n)
     except DimensionError:  # the grid may have both fixed pivots in one place
         return None
 
 
-def _mechanism(linkage: Linkage, near: Near, n: int) -> FourbarMechanism | SliderCrankMechanism | None:
+def _build_mechanism(linkage: Linkage, near: NearbyLinkages, n: int) -> FourbarMechanism | SliderCrankMechanism | None:
     row, task = near.rows[n], near.task
-    driven = deviations(task, row[None], _settings(linkage, task, row[None]))
+    driven = measure_deviations(task, row[None], _list_dial_settings(linkage, task, row[None]))
     theta, sign = float(driven.inputs[0, 0]), int(task.assemblies[0])
     if not math.isfinite(theta):
         return None
@@ -281,24 +280,24 @@ def _mechanism(linkage: Linkage, near: Near, n: int) -> FourbarMechanism | Slide
     if task.slide_angle is None:
         o4 = complex(row[2], row[3])
         at = fourbar.positions(Fourbar(o2, o4, row[4], row[5], row[6], point), theta, sign)
-        body = near.body_angle(float(at.coupler_angle))
+        body = near.compute_body_angle(float(at.coupler_angle))
         joints = FourbarConfiguration(o2, complex(at.a), complex(at.b), o4, complex(at.p))
-        made = fourbar_mechanism(joints, body)
-        return with_dimensions(made if task.guides else without_coupler_point(made), row)
-    line = o2 - 1j * row[2] * task.along
+        made = build_fourbar(joints, body)
+        return replace_dimensions(made if task.guides else remove_coupler_point(made), row)
+    line = o2 - 1j * row[2] * task.slide_direction
     sliding = SliderCrank(o2, line, task.slide_angle, row[3], row[4], point)
     stands = slider_crank.positions(sliding, theta, sign)
-    body = near.body_angle(float(stands.coupler_angle))
-    slid = slider_crank_mechanism(
+    body = near.compute_body_angle(float(stands.coupler_angle))
+    slid = build_slider_crank(
         o2, complex(stands.a), complex(stands.b), task.slide_angle, complex(stands.p), body_angle=body
     )
-    return with_dimensions(slid if task.guides else without_coupler_point(slid), row)
+    return replace_dimensions(slid if task.guides else remove_coupler_point(slid), row)
 
 
 Mechanism = TypeVar("Mechanism", FourbarMechanism, SliderCrankMechanism)
 
 
-def with_dimensions(mechanism: Mechanism, row: Real) -> Mechanism:
+def replace_dimensions(mechanism: Mechanism, row: Real) -> Mechanism:
     """Return a mechanism with exactly the dimensions ``row``; its joints agree with them to rounding."""
     at = [float(value) for value in row]
     update: dict[str, object]

@@ -12,12 +12,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from kinematics.linkage.variation import Task, deviations
-from kinematics.linkage.variation.driven import Sort
-from synthesis.model.manufacture import Exactness, Held, Quality
-
-Real = NDArray[np.float64]
-Complex = NDArray[np.complex128]
+from kinematics.arrays import Real
+from kinematics.linkage.variation import Task, measure_deviations
+from kinematics.linkage.variation.variants import Sort
+from synthesis.model.manufacture.request import Exactness, Quality, RequiredTargets
 
 NAMES = {
     "fourbar": (
@@ -33,12 +31,12 @@ NAMES = {
 }
 """Dimensions by the type of the mechanism, in the order of the variants; those of P come after them."""
 
-OF_POINT = ("coupler_point.along", "coupler_point.across")
+POINT_DIMENSIONS = ("coupler_point.along", "coupler_point.across")
 
 LIMIT_SLACK = 1e-9
 """Relative rounding at a limit."""
 
-OPPOSITE = 0.5
+OPPOSITE_SHARE = 0.5
 """Share of the own assembly's miss at a target below which the opposite assembly is the one that is meant there."""
 
 
@@ -51,7 +49,7 @@ class Linkage:
     type : str
         ``fourbar`` or ``slider_crank``.
     row : float, shape (n,)
-        Its dimensions, those of P last, as of :func:`kinematics.linkage.variation.deviations`.
+        Its dimensions, those of P last, as of :func:`kinematics.linkage.variation.measure_deviations`.
     sign : int
         Its assembly: open is +1, crossed −1.
     slide_angle : float or None
@@ -69,17 +67,17 @@ class Linkage:
     foot: complex
     reference: float
 
-    def names(self, *, guides: bool) -> list[str]:
+    def list_names(self, *, guides: bool) -> list[str]:
         """The names of the dimensions, those of P only where it is guided."""
-        return [*NAMES[self.type], *(OF_POINT if guides else ())]
+        return [*NAMES[self.type], *(POINT_DIMENSIONS if guides else ())]
 
-    def pivots(self, *, guides: bool) -> NDArray[np.bool_]:
+    def mark_pivots(self, *, guides: bool) -> NDArray[np.bool_]:
         """Which of the dimensions are places of fixed pivots, or a slide's offset; the others are lengths."""
-        named = self.names(guides=guides)
+        named = self.list_names(guides=guides)
         return np.array([name.startswith("fixed_pivot") or name == "offset" for name in named])
 
 
-def linkage_of(mechanism: Any) -> Linkage | None:
+def extract_linkage(mechanism: Any) -> Linkage | None:
     """The dimensions of the mechanism of an answer or a request; None of a type that is not built.
 
     Parameters
@@ -110,7 +108,7 @@ def linkage_of(mechanism: Any) -> Linkage | None:
 
 
 @dataclass(frozen=True, eq=False)
-class Product:
+class ManufacturedLinkage:
     """A linkage with its task, as a shop makes it.
 
     Attributes
@@ -135,21 +133,21 @@ class Product:
     around: bool
 
     @cached_property
-    def nominal(self) -> Real:
+    def nominal_dimensions(self) -> Real:
         """The dimensions as drawn, shape (n,)."""
         return self.linkage.row[: self.task.dimensions]
 
     @property
-    def names(self) -> list[str]:
+    def list_names(self) -> list[str]:
         """What the dimensions are called."""
-        return self.linkage.names(guides=self.task.guides)
+        return self.linkage.list_names(guides=self.task.guides)
 
     @property
-    def held_apart(self) -> bool:
+    def has_own_tolerances(self) -> bool:
         """Whether the task has tolerances of its own."""
         return bool(np.isfinite(self.limits).any())
 
-    def keeps_own(self, offsets: Real) -> NDArray[np.bool_]:
+    def mark_within_own_tolerances(self, offsets: Real) -> NDArray[np.bool_]:
         """Whether variants with these offsets (v, t, 3) keep the task's own tolerances, shape (v,)."""
         off = np.abs(offsets + self.own)
         if self.around:
@@ -157,7 +155,7 @@ class Product:
         return np.asarray((off <= self.limits * (1.0 + LIMIT_SLACK)).all(axis=(1, 2)))
 
 
-def task_of(linkage: Linkage, held: Held, units: tuple[float, float]) -> Task | str:
+def build_task(linkage: Linkage, held: RequiredTargets, units: tuple[float, float]) -> Task | str:
     """Build the task from a linkage's requirements, with the nominal inputs; a message if there is none."""
     sort: Sort = "outputs" if held.points is None else "points" if held.angles is None else "poses"
     task = Task(
@@ -173,30 +171,32 @@ def task_of(linkage: Linkage, held: Held, units: tuple[float, float]) -> Task | 
         units=units,
     )
     if sort == "poses":
-        angles = _coupler_angles(linkage, task, held)
+        angles = _convert_coupler_angles(linkage, task, held)
         if angles is None:
             return "the linkage cannot be assembled in its reference configuration"
         task = dataclasses.replace(task, angles=angles)
     return task
 
 
-def demanded(
-    linkage: Linkage, held: Held, units: tuple[float, float], used: tuple[float, float] | None
+def find_target_inputs(
+    linkage: Linkage, held: RequiredTargets, units: tuple[float, float], used: tuple[float, float] | None
 ) -> tuple[Task, Real] | str:
     """The same where the linkage can be assembled at every target, and its errors there (t, 3); or why it cannot."""
-    task = task_of(linkage, held, units)
+    task = build_task(linkage, held, units)
     if isinstance(task, str):
         return task
     row = linkage.row[: task.dimensions]
     if used is None:
-        task = dataclasses.replace(task, assemblies=_assemblies(task, row))
-    offsets = deviations(task, row[None]).offsets[0]
+        task = dataclasses.replace(task, assemblies=_choose_assemblies(task, row))
+    offsets = measure_deviations(task, row[None]).offsets[0]
     if not np.isfinite(offsets).all():
         return "the linkage cannot be assembled at every target"
     return dataclasses.replace(task, used=used), offsets
 
 
-def product(linkage: Linkage, held: Held, stated: Exactness, used: tuple[float, float] | None) -> Product | str:
+def build_product(
+    linkage: Linkage, held: RequiredTargets, block: Exactness, used: tuple[float, float] | None
+) -> ManufacturedLinkage | str:
     """Build a linkage with its requirements; a message if this is not possible.
 
     Parameters
@@ -210,7 +210,7 @@ def product(linkage: Linkage, held: Held, stated: Exactness, used: tuple[float, 
     used : pair of float or None
         The range of the input on which it must stay on its branch, radians.
     """
-    found = demanded(linkage, held, _units(stated, held), used)
+    found = find_target_inputs(linkage, held, _choose_units(block, held), used)
     if isinstance(found, str):
         return found
     task, offsets = found
@@ -220,29 +220,29 @@ def product(linkage: Linkage, held: Held, stated: Exactness, used: tuple[float, 
     own = np.where(np.isfinite(limits), offsets, 0.0)
     task = dataclasses.replace(
         task,
-        adjusted=stated.input == "adjusted" or (stated.input is None and held.free),
+        adjusted=block.input == "adjusted" or (block.input is None and held.free),
         points=None if task.points is None else task.points + own[:, 0] + 1j * own[:, 1],
         angles=None if task.angles is None else task.angles + own[:, 2],
     )
-    return Product(linkage, task, own, limits, held.around)
+    return ManufacturedLinkage(linkage, task, own, limits, held.around)
 
 
-def units_of(quality: Quality) -> tuple[float, float]:
+def list_quality_units(quality: Quality) -> tuple[float, float]:
     """Return the quality's limits of distance and of angle (radians); infinite if not given."""
     angle = math.inf if quality.max_angle_error is None else math.radians(quality.max_angle_error)
     return quality.max_error or math.inf, angle
 
 
-def _units(stated: Exactness, held: Held) -> tuple[float, float]:
+def _choose_units(block: Exactness, held: RequiredTargets) -> tuple[float, float]:
     """Return the units of errors: the quality's limits, or the size of the task and one radian by default."""
-    if stated.quality is not None:
-        return units_of(stated.quality)
+    if block.quality is not None:
+        return list_quality_units(block.quality)
     places = held.points if held.points is not None else held.travels
     size = 1.0 if places is None else float(np.abs(places - places[0]).max())
     return size or 1.0, 1.0
 
 
-def _coupler_angles(linkage: Linkage, task: Task, held: Held) -> Real | None:
+def _convert_coupler_angles(linkage: Linkage, task: Task, held: RequiredTargets) -> Real | None:
     """Demanded angles of the line A → B: the body's, by how the body stands on the coupler in the reference."""
     assert held.angles is not None
     at = dataclasses.replace(
@@ -252,15 +252,15 @@ def _coupler_angles(linkage: Linkage, task: Task, held: Held) -> Real | None:
         points=np.zeros(1, np.complex128),
         angles=np.array([held.body]),
     )
-    turned = deviations(at, linkage.row[None]).offsets[0, 0, 2]
+    turned = measure_deviations(at, linkage.row[None]).offsets[0, 0, 2]
     return held.angles + turned if math.isfinite(turned) else None
 
 
-def _assemblies(task: Task, row: Real) -> NDArray[np.int64]:
+def _choose_assemblies(task: Task, row: Real) -> NDArray[np.int64]:
     """The assembly that is meant at each target, where a linkage is not held to one: the opposite if clearly nearer."""
     misses = []
     for sign in (1, -1):
-        off = deviations(dataclasses.replace(task, assemblies=sign * task.assemblies), row[None])
+        off = measure_deviations(dataclasses.replace(task, assemblies=sign * task.assemblies), row[None])
         miss = np.hypot(off.distances[0] / task.units[0], off.angles[0] / task.units[1])
         misses.append(np.where(np.isfinite(miss), miss, np.inf))
-    return np.where(misses[1] < OPPOSITE * misses[0], -task.assemblies, task.assemblies)
+    return np.where(misses[1] < OPPOSITE_SHARE * misses[0], -task.assemblies, task.assemblies)

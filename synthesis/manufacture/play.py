@@ -13,8 +13,8 @@ with three numbers, and with n the guide's normal at B, u = B − A and p = P �
 to the first order. It is convex, and its support in the direction e is ρ |e − (e·ip) m| + σ |(e·ip) g| with
 m = n / n·iu and g = |n| / n·iu. An output turns, or slides, by α alone, in a disc of the sum of all clearances.
 
-What the first order leaves out is driven: at :data:`AROUND` directions, at both ends of γ and half-way, by the closure.
-:data:`SAFE` times the greatest difference is added to every support.
+What the first order leaves out is driven: at :data:`DIRECTION_COUNT` directions, at both ends of γ and half-way, by the
+closure. :data:`SAFETY_FACTOR` times the greatest difference is added to every support.
 """
 
 from __future__ import annotations
@@ -25,26 +25,24 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from synthesis.manufacture.linkage import Product
-from synthesis.model.manufacture_answer import Play
+from kinematics.arrays import Complex, Real
+from synthesis.manufacture.linkage import ManufacturedLinkage
+from synthesis.model.manufacture.answer import Play
 
-Real = NDArray[np.float64]
-Complex = NDArray[np.complex128]
-
-AROUND = 72
+DIRECTION_COUNT = 72
 """Directions of clearance links that are driven."""
 
-CORNERS = 24
+CORNER_COUNT = 24
 """Corners of an outline."""
 
-DIRECTIONS = 720
+SUPPORT_COUNT = 720
 """Number of directions in which the farthest point is searched; its distance is accurate to 1e-5."""
 
-SAFE = 1.5
+SAFETY_FACTOR = 1.5
 """What the first order leaves out is quadratic; half as much again covers what lies between what is driven."""
 
 
-class _At(NamedTuple):
+class _Configuration(NamedTuple):
     """The linkage at its targets, each of shape (t,): A, u = B − A, the normal n of the guide, its fixed part, P − A.
 
     ``sign`` says on which side of the line from A to the guide's centre B lies.
@@ -56,7 +54,7 @@ class _At(NamedTuple):
     arm: Complex
 
 
-def plays(made: Product, clearance: float) -> list[Play] | None:
+def compute_plays(made: ManufacturedLinkage, clearance: float) -> list[Play] | None:
     """What clearances let the linkage do at each target; None where they reach a toggle, and nothing bounds it.
 
     Parameters
@@ -66,8 +64,8 @@ def plays(made: Product, clearance: float) -> list[Play] | None:
     clearance : float
         How far each pin's centre may lie from that of its hole.
     """
-    at = _standing(made)
-    lever = _dot(at.normal, 1j * at.u)
+    at = _evaluate_nominal(made)
+    lever = _multiply_scalar(at.normal, 1j * at.u)
     if not np.isfinite(lever).all() or np.any(lever == 0.0):
         return None
     guides = made.task.guides
@@ -76,18 +74,18 @@ def plays(made: Product, clearance: float) -> list[Play] | None:
     slope, gain = at.normal / lever, np.abs(at.normal) / lever
     told = []
     for k in range(len(at.a)):
-        near = _At(*(part[k : k + 1] for part in at))
-        driven = _driven(made, near, discs)
+        near = _Configuration(*(part[k : k + 1] for part in at))
+        driven = _drive_clearances(made, near, discs)
         if driven is None:
             return None
         if guides:
-            told.append(_of_point(made, k, near, slope[k], gain[k], discs, driven))
+            told.append(_compute_point_play(made, k, near, slope[k], gain[k], discs, driven))
         else:
-            told.append(_of_output(made, k, near, slope[k], discs, driven))
+            told.append(_compute_output_play(made, k, near, slope[k], discs, driven))
     return told
 
 
-class _Driven(NamedTuple):
+class _DrivenClearances(NamedTuple):
     """Clearance links that are driven: α and γ, and what they do to P, to the coupler's angle, and to B."""
 
     alpha: Complex
@@ -97,31 +95,31 @@ class _Driven(NamedTuple):
     pin: Complex
 
 
-def _dot(a: Complex | complex, b: Complex | complex) -> Real:
+def _multiply_scalar(a: Complex | complex, b: Complex | complex) -> Real:
     return np.asarray((np.asarray(a) * np.conj(b)).real)
 
 
-def _standing(made: Product) -> _At:
+def _evaluate_nominal(made: ManufacturedLinkage) -> _Configuration:
     """The linkage as drawn at the inputs of its targets."""
     row, task = made.linkage.row, made.task
     o2 = complex(row[0], row[1])
     crank = row[4 - task.slides] * np.exp(1j * task.inputs)
     a = o2 + crank
     if task.slides:
-        across = 1j * task.along
+        across = 1j * task.slide_direction
         line = o2 - across * row[2]
-        gap = _dot(line - a, across)
-        u = task.along * task.assemblies * np.sqrt(row[4] ** 2 - gap**2) + across * gap
+        gap = _multiply_scalar(line - a, across)
+        u = task.slide_direction * task.assemblies * np.sqrt(row[4] ** 2 - gap**2) + across * gap
         normal = np.full(len(a), across)
         length = row[4]
     else:
-        u = _closed(complex(row[2], row[3]) - a, row[5], row[6], task.assemblies)
+        u = _close_dyad(complex(row[2], row[3]) - a, row[5], row[6], task.assemblies)
         normal = a + u - complex(row[2], row[3])
         length = row[5]
-    return _At(a, u, normal, u / length * complex(row[-2], row[-1]))
+    return _Configuration(a, u, normal, u / length * complex(row[-2], row[-1]))
 
 
-def _closed(to_centre: Complex, b: float, c: Real | float, sign: NDArray[np.int64] | int) -> Complex:
+def _close_dyad(to_centre: Complex, b: float, c: Real | float, sign: NDArray[np.int64] | int) -> Complex:
     """u = B − A of a dyad of lengths b and c; NaN where it does not close."""
     f = np.abs(to_centre)
     part = (f * f + (b - c) * (b + c)) / (2.0 * f)
@@ -130,73 +128,92 @@ def _closed(to_centre: Complex, b: float, c: Real | float, sign: NDArray[np.int6
     return np.asarray(to_centre / f * (part + 1j * sign * height))
 
 
-def _driven(made: Product, at: _At, discs: tuple[float, float]) -> _Driven | None:
+def _drive_clearances(
+    made: ManufacturedLinkage, at: _Configuration, discs: tuple[float, float]
+) -> _DrivenClearances | None:
     """Clearance links at the edge of what they can be, driven; None where some of them reach a toggle."""
     row, task = made.linkage.row, made.task
-    around = discs[0] * np.exp(2j * np.pi * np.arange(AROUND) / AROUND)
+    around = discs[0] * np.exp(2j * np.pi * np.arange(DIRECTION_COUNT) / DIRECTION_COUNT)
     shares = np.array([-1.0, 0.0, 1.0])
     alpha = np.concatenate([np.repeat(around, 3), 0.5 * np.repeat(around, 3)])
-    gamma = discs[1] * np.tile(shares, 2 * AROUND)
+    gamma = discs[1] * np.tile(shares, 2 * DIRECTION_COUNT)
     a = at.a + alpha
     b = abs(complex(at.u[0]))
     if task.slides:
-        across = 1j * task.along
-        gap = _dot(complex(row[0], row[1]) - across * row[2] - a, across) + gamma
+        across = 1j * task.slide_direction
+        gap = _multiply_scalar(complex(row[0], row[1]) - across * row[2] - a, across) + gamma
         with np.errstate(invalid="ignore"):
             way = np.sqrt((b - gap) * (b + gap))
-        forward = 1.0 if _dot(at.u, complex(task.along))[0] > 0.0 else -1.0
-        u = task.along * forward * way + across * gap
+        forward = 1.0 if _multiply_scalar(at.u, complex(task.slide_direction))[0] > 0.0 else -1.0
+        u = task.slide_direction * forward * way + across * gap
     else:
         centre = complex(row[2], row[3])
         turn = (np.conj(centre - at.a[0]) * at.u[0]).imag
-        u = _closed(centre - a, b, abs(complex(at.normal[0])) + gamma, 1 if turn > 0.0 else -1)
+        u = _close_dyad(centre - a, b, abs(complex(at.normal[0])) + gamma, 1 if turn > 0.0 else -1)
     if not np.isfinite(u).all():
         return None
     turned = np.angle(u / at.u)
-    return _Driven(alpha, gamma, alpha + at.arm * (u / at.u - 1.0), turned, a + u - at.a - at.u)
+    return _DrivenClearances(alpha, gamma, alpha + at.arm * (u / at.u - 1.0), turned, a + u - at.a - at.u)
 
 
-def _of_point(
-    made: Product, k: int, at: _At, slope: complex, gain: float, discs: tuple[float, float], driven: _Driven
+def _compute_point_play(
+    made: ManufacturedLinkage,
+    k: int,
+    at: _Configuration,
+    slope: complex,
+    gain: float,
+    discs: tuple[float, float],
+    driven: _DrivenClearances,
 ) -> Play:
     """The places of P about where it stands at target k, and what the coupler turns."""
     arm = complex(at.arm[0])
-    turned = gain * driven.gamma - _dot(slope, driven.alpha)
-    rest = SAFE * float(np.abs(driven.place - driven.alpha - 1j * arm * turned).max())
+    turned = gain * driven.gamma - _multiply_scalar(slope, driven.alpha)
+    rest = SAFETY_FACTOR * float(np.abs(driven.place - driven.alpha - 1j * arm * turned).max())
 
-    def support(direction: Complex) -> Real:
-        by = _dot(direction, 1j * arm)
+    def compute_support(direction: Complex) -> Real:
+        by = _multiply_scalar(direction, 1j * arm)
         return np.asarray(discs[0] * np.abs(direction - by * slope) + discs[1] * np.abs(by * gain) + rest)
 
-    least = np.exp(2j * np.pi * np.arange(DIRECTIONS) / DIRECTIONS)
-    corners = np.exp(2j * np.pi * np.arange(CORNERS) / CORNERS)
-    reach = support(corners)
+    least = np.exp(2j * np.pi * np.arange(SUPPORT_COUNT) / SUPPORT_COUNT)
+    corners = np.exp(2j * np.pi * np.arange(CORNER_COUNT) / CORNER_COUNT)
+    reach = compute_support(corners)
     # Two neighbouring lines e·z = h meet in a corner.
     nexts, far = np.roll(corners, -1), np.roll(reach, -1)
-    meet = -1j * (reach * nexts - far * corners) / np.sin(2.0 * np.pi / CORNERS)
+    meet = -1j * (reach * nexts - far * corners) / np.sin(2.0 * np.pi / CORNER_COUNT)
     stands = complex(at.a[0]) + arm
-    angle = discs[0] * abs(slope) + discs[1] * abs(gain) + SAFE * float(np.abs(driven.turned - turned).max())
+    angle = discs[0] * abs(slope) + discs[1] * abs(gain) + SAFETY_FACTOR * float(np.abs(driven.turned - turned).max())
     return Play(
         index=k,
-        max_error=float(support(least).max()),
+        max_error=float(compute_support(least).max()),
         max_angle_error=math.degrees(angle) if made.task.sort == "poses" else None,
         outline=[(float(z.real), float(z.imag)) for z in stands + meet],
     )
 
 
-def _of_output(made: Product, k: int, at: _At, slope: complex, discs: tuple[float, float], driven: _Driven) -> Play:
+def _compute_output_play(
+    made: ManufacturedLinkage,
+    k: int,
+    at: _Configuration,
+    slope: complex,
+    discs: tuple[float, float],
+    driven: _DrivenClearances,
+) -> Play:
     """What the output turns, or slides, at target k."""
     if made.task.slides:
-        along = complex(made.task.along)
-        moved = _dot(driven.pin, along)
-        first = _dot(driven.alpha, along) - _dot(1j * at.u, along) * _dot(slope, driven.alpha)
-        reach = abs(along - _dot(1j * at.u, along)[0] * slope)
-        error = discs[0] * reach + SAFE * float(np.abs(moved - first).max())
+        along = complex(made.task.slide_direction)
+        moved = _multiply_scalar(driven.pin, along)
+        first = _multiply_scalar(driven.alpha, along) - _multiply_scalar(1j * at.u, along) * _multiply_scalar(
+            slope, driven.alpha
+        )
+        reach = abs(along - _multiply_scalar(1j * at.u, along)[0] * slope)
+        error = discs[0] * reach + SAFETY_FACTOR * float(np.abs(moved - first).max())
         return Play(index=k, max_error=error)
     normal = complex(at.normal[0])
     turned = np.angle((normal + driven.pin) / normal)
     tangent = 1j * normal / abs(normal) ** 2
-    first = _dot(driven.alpha, tangent) - _dot(1j * at.u, tangent) * _dot(slope, driven.alpha)
-    reach = abs(tangent - _dot(1j * at.u, tangent)[0] * slope)
-    error = discs[0] * reach + SAFE * float(np.abs(turned - first).max())
+    first = _multiply_scalar(driven.alpha, tangent) - _multiply_scalar(1j * at.u, tangent) * _multiply_scalar(
+        slope, driven.alpha
+    )
+    reach = abs(tangent - _multiply_scalar(1j * at.u, tangent)[0] * slope)
+    error = discs[0] * reach + SAFETY_FACTOR * float(np.abs(turned - first).max())
     return Play(index=k, max_angle_error=math.degrees(error))

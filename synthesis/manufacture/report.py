@@ -7,31 +7,31 @@ from itertools import product as combined
 from typing import Any, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
-from kinematics.linkage.variation import deviations
-from kinematics.linkage.variation.sensitivities import Sensitivities, sensitivities
-from synthesis.manufacture.linkage import Product, linkage_of, product
-from synthesis.manufacture.play import plays
-from synthesis.manufacture.sampled import offs, sampled_yield
-from synthesis.manufacture.widest import widest
-from synthesis.model.manufacture import Exactness, Held, Manufacture
-from synthesis.model.manufacture_answer import Allocation, Manufactured, Sensitivity, WorstCase, Yield
+from kinematics.arrays import Real
+from kinematics.linkage.variation import measure_deviations
+from kinematics.linkage.variation.sensitivities import Sensitivities, compute_sensitivities
+from synthesis.manufacture.linkage import ManufacturedLinkage, build_product, extract_linkage
+from synthesis.manufacture.play import compute_plays
+from synthesis.manufacture.widest_tolerances import find_widest_tolerances
+from synthesis.manufacture.yield_sampling import list_errors, sample_yield
+from synthesis.model.manufacture.answer import Allocation, ManufactureReport, Sensitivity, WorstCase, Yield
+from synthesis.model.manufacture.request import Exactness, Manufacture, RequiredTargets
 
-Real = NDArray[np.float64]
-
-MATTER = 0.8
+IMPORTANT_SHARE = 0.8
 """Share of all errors that the tolerances that matter add up to."""
 
 
-class Reported(NamedTuple):
+class ManufactureResult(NamedTuple):
     """Manufacturing results of a design, and its yield, if sampled."""
 
-    manufactured: Manufactured
+    manufactured: ManufactureReport
     yield_: Yield | None
 
 
-def reported(mechanism: Any, held: Held, stated: Exactness, seed: int, used: tuple[float, float] | None) -> Reported:
+def report_manufacture(
+    mechanism: Any, held: RequiredTargets, block: Exactness, seed: int, used: tuple[float, float] | None
+) -> ManufactureResult:
     """Report all manufacturing results of a design.
 
     Parameters
@@ -47,51 +47,57 @@ def reported(mechanism: Any, held: Held, stated: Exactness, seed: int, used: tup
     used : pair of float or None
         The range of the input on which it must stay on its branch, radians; None where it need not.
     """
-    linkage = linkage_of(mechanism)
+    linkage = extract_linkage(mechanism)
     if linkage is None:
-        return Reported(Manufactured(remark=f"not built for {mechanism.type}"), None)
-    made = product(linkage, held, stated, used)
+        return ManufactureResult(ManufactureReport(remark=f"not built for {mechanism.type}"), None)
+    made = build_product(linkage, held, block, used)
     if isinstance(made, str):
-        return Reported(Manufactured(remark=made), None)
-    off = offs(stated, linkage.pivots(guides=made.task.guides))
-    share, rates = _shares(made, off)
-    listed = [_sensitivity(made, rates, k, float(off[k]), float(share[k])) for k in np.argsort(-share, kind="stable")]
+        return ManufactureResult(ManufactureReport(remark=made), None)
+    off = list_errors(block, linkage.mark_pivots(guides=made.task.guides))
+    share, rates = _compute_shares(made, off)
+    listed = [
+        _describe_sensitivity(made, rates, k, float(off[k]), float(share[k])) for k in np.argsort(-share, kind="stable")
+    ]
     remark = None if np.isfinite(rates.rates).all() else "the linkage is at a toggle at a target"
-    clearance = 0.0 if stated.tolerances is None else stated.tolerances.pin_clearance
-    play = plays(made, clearance) if clearance > 0.0 else []
+    clearance = 0.0 if block.tolerances is None else block.tolerances.pin_clearance
+    play = compute_plays(made, clearance) if clearance > 0.0 else []
     if play is None:
         remark = "within the clearances of its pins the linkage reaches a toggle at a target"
     allocated: list[Allocation] = []
-    if isinstance(stated, Manufacture) and stated.widest:
-        allocated = widest(made, stated, seed if stated.seed is None else stated.seed, _squares(made, rates), off)
-    seeded = seed if stated.seed is None else stated.seed
-    told = Manufactured(
-        seed=seeded if stated.sampled else None,
-        worst_case=_worst(made, off),
-        matter=_matter(listed),
+    if isinstance(block, Manufacture) and block.widest:
+        allocated = find_widest_tolerances(
+            made, block, seed if block.seed is None else block.seed, _compute_squares(made, rates), off
+        )
+    seeded = seed if block.seed is None else block.seed
+    told = ManufactureReport(
+        seed=seeded if block.is_sampled else None,
+        worst_case=_find_worst_case(made, off),
+        matter=_select_important(listed),
         sensitivities=[one for one in listed if one is not None],
         play=play or [],
         widest=allocated,
         remark=remark,
     )
-    return Reported(told, sampled_yield(made, stated, seeded) if stated.sampled else None)
+    return ManufactureResult(told, sample_yield(made, block, seeded) if block.is_sampled else None)
 
 
-def _shares(made: Product, off: Real) -> tuple[Real, Sensitivities]:
+def _compute_shares(made: ManufacturedLinkage, off: Real) -> tuple[Real, Sensitivities]:
     """What each tolerance adds to the squares of all errors, shape (n,); zeros where derivatives are not finite."""
-    rates = sensitivities(made.task, made.nominal)
-    added = _squares(made, rates) * off * off
+    rates = compute_sensitivities(made.task, made.nominal_dimensions)
+    added = _compute_squares(made, rates) * off * off
     whole = float(added.sum())
     return (added / whole if 0.0 < whole < math.inf else np.zeros(len(off))), rates
 
 
-def _squares(made: Product, rates: Sensitivities) -> Real:
+def _compute_squares(made: ManufacturedLinkage, rates: Sensitivities) -> Real:
     """What each dimension adds to the squares of all errors, by the square of its tolerance, shape (n,)."""
     units = np.array([made.task.units[0]] * 2 + [made.task.units[1]])
     return np.asarray(np.square(rates.rates / units[:, None]).sum(axis=(0, 1)))
 
 
-def _sensitivity(made: Product, rates: Sensitivities, k: int, off: float, share: float) -> Sensitivity | None:
+def _describe_sensitivity(
+    made: ManufacturedLinkage, rates: Sensitivities, k: int, off: float, share: float
+) -> Sensitivity | None:
     """The derivatives to one dimension; None where they are not finite."""
     x, y, turned = rates.rates[:, :, k].T
     if not np.isfinite(rates.rates[:, :, k]).all():
@@ -101,7 +107,7 @@ def _sensitivity(made: Product, rates: Sensitivities, k: int, off: float, share:
     turns = sort == "poses" or (sort == "outputs" and not made.task.slides)
     least = rates.least is not None and math.isfinite(rates.least_rates[k])
     return Sensitivity(
-        dimension=made.names[k],
+        dimension=made.list_names[k],
         tolerance=off,
         x=x.tolist() if made.task.guides else None,
         y=y.tolist() if made.task.guides else None,
@@ -112,10 +118,10 @@ def _sensitivity(made: Product, rates: Sensitivities, k: int, off: float, share:
     )
 
 
-def _matter(listed: list[Sensitivity | None]) -> list[str]:
-    """The dimensions, the first most, whose tolerances make up :data:`MATTER` of the errors."""
+def _select_important(listed: list[Sensitivity | None]) -> list[str]:
+    """The dimensions, the first most, whose tolerances make up :data:`IMPORTANT_SHARE` of the errors."""
     named: list[str] = []
-    left = MATTER
+    left = IMPORTANT_SHARE
     for one in listed:
         if left <= 0.0 or one is None or one.share <= 0.0:
             break
@@ -124,12 +130,12 @@ def _matter(listed: list[Sensitivity | None]) -> list[str]:
     return named
 
 
-def _worst(made: Product, off: Real) -> WorstCase:
+def _find_worst_case(made: ManufacturedLinkage, off: Real) -> WorstCase:
     """The greatest errors over all corners of the tolerances, every one of them driven."""
     open_ones = np.flatnonzero(off > 0.0)
-    corners = np.tile(made.nominal, (2 ** len(open_ones), 1))
+    corners = np.tile(made.nominal_dimensions, (2 ** len(open_ones), 1))
     corners[:, open_ones] += np.array(list(combined((-1.0, 1.0), repeat=len(open_ones)))) * off[open_ones]
-    driven = deviations(made.task, corners)
+    driven = measure_deviations(made.task, corners)
     if not np.isfinite(driven.offsets).all():
         return WorstCase(assembles=False)
     sort, slides = made.task.sort, made.task.slides

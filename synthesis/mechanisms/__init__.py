@@ -23,12 +23,12 @@ _BY_TYPE: dict[str, type[GivenByDimensions]] = {
 }
 
 
-def known_by_dimensions(mechanism_type: str) -> bool:
+def is_known_by_dimensions(mechanism_type: str) -> bool:
     """Whether the dimensions of a type say all, so that its mechanism needs no skeleton."""
     return mechanism_type in _BY_TYPE
 
 
-def _model_of(statement: Any) -> type[GivenByDimensions | GivenSkeleton]:
+def _choose_model(statement: Any) -> type[GivenByDimensions | GivenSkeleton]:
     """Which model reads a statement: the dimensions where its type has them and they are given, else the skeleton.
 
     Whatever is no statement of a mechanism is the skeleton's to refuse.
@@ -42,19 +42,19 @@ def _model_of(statement: Any) -> type[GivenByDimensions | GivenSkeleton]:
     return _BY_TYPE.get(statement["type"], GivenSkeleton)
 
 
-def _tag(model: type[BaseModel]) -> str:
+def _tag_model(model: type[BaseModel]) -> str:
     """The model's name among those of the union; no name of a field looks so."""
     return f"<{model.__name__}>"
 
 
 GivenMechanism = Annotated[
-    Annotated[GivenFourbar, Tag(_tag(GivenFourbar))]
-    | Annotated[GivenSliderCrank, Tag(_tag(GivenSliderCrank))]
-    | Annotated[GivenInvertedSliderCrank, Tag(_tag(GivenInvertedSliderCrank))]
-    | Annotated[GivenQuickReturn, Tag(_tag(GivenQuickReturn))]
-    | Annotated[GivenGearedFivebar, Tag(_tag(GivenGearedFivebar))]
-    | Annotated[GivenSkeleton, Tag(_tag(GivenSkeleton))],
-    Discriminator(lambda statement: _tag(_model_of(statement))),
+    Annotated[GivenFourbar, Tag(_tag_model(GivenFourbar))]
+    | Annotated[GivenSliderCrank, Tag(_tag_model(GivenSliderCrank))]
+    | Annotated[GivenInvertedSliderCrank, Tag(_tag_model(GivenInvertedSliderCrank))]
+    | Annotated[GivenQuickReturn, Tag(_tag_model(GivenQuickReturn))]
+    | Annotated[GivenGearedFivebar, Tag(_tag_model(GivenGearedFivebar))]
+    | Annotated[GivenSkeleton, Tag(_tag_model(GivenSkeleton))],
+    Discriminator(lambda statement: _tag_model(_choose_model(statement))),
 ]
 """Any given mechanism, identified by its field ``type``."""
 
@@ -64,5 +64,5 @@ __all__ = [
     "GivenMechanism",
     "GivenSkeleton",
     "MechanismError",
-    "known_by_dimensions",
+    "is_known_by_dimensions",
 ]

@@ -9,9 +9,9 @@ from itertools import chain
 
 from kinematics.errors import DimensionError
 from kinematics.linkage.planar.mechanism import Mechanism
-from synthesis.model.stated_linkage import AGREES
+from synthesis.model.linkage.given_linkage import AGREEMENT_TOLERANCE
 
-FIRST_TRIED = 30
+FIRST_ANGLE_DEGREES = 30
 """First input angle, degrees, to try for a configuration: many linkages have a change point along the ground line."""
 
 
@@ -24,13 +24,15 @@ class MechanismError(ValueError):
         super().__init__(f"{path}: {detail}")
 
 
-def agree(path: str, stated: float | None, measured: float, what: str = "the fixed pivots") -> None:
+def require_agreement(path: str, given: float | None, measured: float, what: str = "the fixed pivots") -> None:
     """Refuse a redundant dimension that contradicts the others."""
-    if stated is not None and abs(stated - measured) > AGREES * max(abs(measured), abs(stated)):
+    if given is not None and abs(given - measured) > AGREEMENT_TOLERANCE * max(abs(measured), abs(given)):
         raise MechanismError(path, f"{what} give {measured:.9g}; leave the field out or correct it")
 
 
-def assembled(make: Callable[[float], Mechanism], degrees: float | None, between: Iterable[float]) -> Mechanism:
+def assemble_at_reference(
+    make: Callable[[float], Mechanism], degrees: float | None, between: Iterable[float]
+) -> Mechanism:
     """The mechanism at its reference angle; where none is stated, at the first degree that will do, from 30° on.
 
     ``between`` are angles, radians, from the midst of where the lengths let it be assembled, none where they do not:
@@ -43,7 +45,7 @@ def assembled(make: Callable[[float], Mechanism], degrees: float | None, between
             raise MechanismError(
                 "/reference_input_angle", "the mechanism cannot be assembled at this input angle"
             ) from None
-    for angle in chain((math.radians((FIRST_TRIED + step) % 360) for step in range(360)), between):
+    for angle in chain((math.radians((FIRST_ANGLE_DEGREES + step) % 360) for step in range(360)), between):
         try:
             return make(angle)
         except DimensionError:
@@ -51,7 +53,7 @@ def assembled(make: Callable[[float], Mechanism], degrees: float | None, between
     raise MechanismError("/links", "the mechanism cannot be assembled with these lengths at any input angle")
 
 
-def reaching(crank: float, o2: complex, o4: complex, least: float, most: float) -> list[float]:
+def find_reaching_angles(crank: float, o2: complex, o4: complex, least: float, most: float) -> list[float]:
     """Crank angles, radians, at which its pin is in the midst of the distances from O4 that it can have and may have.
 
     Law of cosines in the triangle O2, A, O4. None where it has no such distance.
@@ -66,7 +68,9 @@ def reaching(crank: float, o2: complex, o4: complex, least: float, most: float) 
     return [cmath.phase(o4 - o2) + turn, cmath.phase(o4 - o2) - turn]
 
 
-def midst(centre: float, radius: float, bound: float, least: float = -1.0, most: float = 1.0) -> float | None:
+def find_middle_sine(
+    centre: float, radius: float, bound: float, least: float = -1.0, most: float = 1.0
+) -> float | None:
     """Sine, from ``least`` to ``most``, with centre + radius · sine in the midst of what it can be within ± bound.
 
     None where it cannot be within.

@@ -12,11 +12,11 @@ from pydantic import Discriminator, Field
 
 from kinematics.cam import contours
 from kinematics.cam import follower as core
-from kinematics.cam.contact import Contour
+from kinematics.cam.finished.contact import Contour
 from kinematics.errors import DimensionError
 from synthesis.mechanisms.base import MechanismError
 from synthesis.model.dimension import ANGLE, LENGTH
-from synthesis.model.statement import Coordinate, Degrees, NonNegative, PositiveLength, PositiveNumber, Statement
+from synthesis.model.problem import Coordinate, Degrees, NonNegative, PositiveLength, PositiveNumber, Statement
 
 MAX_POINTS = 20_000
 """Points of a given profile at most."""
@@ -35,17 +35,17 @@ FOLLOWERS: dict[FollowerType, type[core.Follower]] = {
 """Followers of the analysis core by their types. All begin with the radius of their cam: prime or base circle."""
 
 
-def follower_type(follower: core.Follower) -> FollowerType:
+def get_follower_type(follower: core.Follower) -> FollowerType:
     """The type of a follower of the analysis core."""
     return next(name for name, kind in FOLLOWERS.items() if isinstance(follower, kind))
 
 
-def dimensions_of(kind: type[core.Follower]) -> dict[str, Any]:
+def list_dimensions(kind: type[core.Follower]) -> dict[str, Any]:
     """Return the names of a follower's own dimensions and their defaults."""
     return {field.name: 0.0 if field.default is MISSING else field.default for field in fields(kind)[1:]}
 
 
-def follower_by_dimensions(name: FollowerType, radius: float, stated: object) -> core.Follower:
+def build_follower(name: FollowerType, radius: float, spec: object) -> core.Follower:
     """A follower of the analysis core from a model with its dimensions, and the radius of its cam.
 
     Raises
@@ -56,8 +56,8 @@ def follower_by_dimensions(name: FollowerType, radius: float, stated: object) ->
     # No field of another type of follower is read, so that a surplus dimension has no effect.
     kind: Any = FOLLOWERS[name]
     dimensions = {
-        dimension: default if getattr(stated, dimension) is None else getattr(stated, dimension)
-        for dimension, default in dimensions_of(kind).items()
+        dimension: default if getattr(spec, dimension) is None else getattr(spec, dimension)
+        for dimension, default in list_dimensions(kind).items()
     }
     follower: core.Follower = kind(radius, **dimensions)
     return follower
@@ -76,7 +76,7 @@ class GivenFollower(Statement):
     face_offset: Coordinate | None = Field(default=None, description="0 if left out.")
     sense: Literal[1, -1] | None = Field(default=None, description="1, the default: the arm swings out with the cam.")
 
-    def core(self, prime_radius: float | None, base_radius: float | None) -> core.Follower:
+    def build_core(self, prime_radius: float | None, base_radius: float | None) -> core.Follower:
         """The follower of the analysis core.
 
         Raises
@@ -95,7 +95,7 @@ class GivenFollower(Statement):
             name = "prime_radius" if roller else "base_radius"
             raise MechanismError(f"/{name}", "needed to define zero displacement")
         try:
-            return follower_by_dimensions(self.type, radius, self)
+            return build_follower(self.type, radius, self)
         except DimensionError as error:
             raise MechanismError("/follower", str(error)) from None
 
@@ -107,15 +107,15 @@ class GivenCurve(Statement):
     y: Coordinates
     angle: list[Degrees] | None = Field(default=None, max_length=MAX_POINTS)
 
-    def points(self, path: str) -> NDArray[np.complex128]:
+    def convert_points(self, path: str) -> NDArray[np.complex128]:
         """Return the points as complex numbers; errors are reported under ``path``."""
         if len(self.x) != len(self.y):
             raise MechanismError(f"{path}/y", "expected as many values as x")
         return np.array(self.x) + 1j * np.array(self.y)
 
-    def contour(self, path: str) -> Contour:
+    def build_contour(self, path: str) -> Contour:
         """Build the curve of the analysis core; errors are reported under ``path``."""
-        points = self.points(path)
+        points = self.convert_points(path)
         try:
             return Contour(points)
         except DimensionError:
@@ -138,19 +138,19 @@ class GivenCam(Statement):
     second: Any = Field(default=None, description="The other one of conjugate cams; ignored.")
     program: Any = None
 
-    def core_follower(self) -> core.Follower:
+    def build_follower(self) -> core.Follower:
         """The follower of the analysis core."""
-        return self.follower.core(self.prime_radius, self.base_radius)
+        return self.follower.build_core(self.prime_radius, self.base_radius)
 
-    def contour(self) -> Contour:
+    def build_contour(self) -> Contour:
         """The profile of the analysis core."""
-        return self.profile.contour("/profile")
+        return self.profile.build_contour("/profile")
 
-    def wall(self) -> Contour | None:
+    def build_wall(self) -> Contour | None:
         """The outer wall of a groove."""
         if self.outer_wall is not None and not self.follower.type.endswith("roller"):
             raise MechanismError("/outer_wall", "only a roller runs in a groove")
-        return None if self.outer_wall is None else self.outer_wall.contour("/outer_wall")
+        return None if self.outer_wall is None else self.outer_wall.build_contour("/outer_wall")
 
 
 class GivenBarrelFollower(Statement):
@@ -180,28 +180,28 @@ class EccentricContour(Statement):
     radius: PositiveLength
     eccentricity: Annotated[NonNegative, LENGTH]
 
-    def core(self) -> contours.SpecifiedContour:
+    def build_core(self) -> contours.SpecifiedContour:
         """The contour of the analysis core."""
-        return contours.eccentric_circle(self.radius, self.eccentricity)
+        return contours.build_eccentric_circle(self.radius, self.eccentricity)
 
 
-class _Nosed(Statement):
+class _NosedContour(Statement):
     base_radius: PositiveLength
     nose_radius: PositiveLength
     nose_distance: PositiveLength = Field(description="Distance from the cam's centre to the centre of the nose.")
 
 
-class TangentContour(_Nosed):
+class TangentContour(_NosedContour):
     """Base circle and nose with straight flanks."""
 
     shape: Literal["tangent"]
 
-    def core(self) -> contours.SpecifiedContour:
+    def build_core(self) -> contours.SpecifiedContour:
         """The contour of the analysis core."""
-        return contours.tangent_cam(self.base_radius, self.nose_radius, self.nose_distance)
+        return contours.build_tangent_cam(self.base_radius, self.nose_radius, self.nose_distance)
 
 
-class ArcContour(_Nosed):
+class ArcContour(_NosedContour):
     """Base circle and nose with flanks that are arcs: of a radius, or ending at an angle from the nose."""
 
     shape: Literal["circular_arc"]
@@ -210,15 +210,15 @@ class ArcContour(_Nosed):
         default=None, description="Angle from the nose to the end of the flank, degrees."
     )
 
-    def core(self) -> contours.SpecifiedContour:
+    def build_core(self) -> contours.SpecifiedContour:
         """The contour of the analysis core."""
         radius = self.flank_radius
         if (radius is None) == (self.half_action_angle is None):
             raise MechanismError("/contour/flank_radius", "give either this or the half action angle")
         if radius is None:
             angle = math.radians(self.half_action_angle or 0.0)
-            radius = contours.flank_radius_of(self.base_radius, self.nose_radius, self.nose_distance, angle)
-        return contours.circular_arc_cam(self.base_radius, self.nose_radius, self.nose_distance, radius)
+            radius = contours.compute_flank_radius(self.base_radius, self.nose_radius, self.nose_distance, angle)
+        return contours.build_circular_arc_cam(self.base_radius, self.nose_radius, self.nose_distance, radius)
 
 
 class GivenContourCam(Statement):
@@ -232,10 +232,10 @@ class GivenContourCam(Statement):
     offset: Coordinate = 0.0
     rotation: Literal["ccw", "cw"] = "ccw"
 
-    def core(self) -> tuple[contours.SpecifiedContour, core.TranslatingRoller | core.TranslatingFlat]:
+    def build_core(self) -> tuple[contours.SpecifiedContour, core.TranslatingRoller | core.TranslatingFlat]:
         """Contour and follower of the analysis core."""
         try:
-            contour = self.contour.core()
+            contour = self.contour.build_core()
             if self.roller_radius is None:
                 return contour, core.TranslatingFlat(contour.base_radius)
             prime = contour.base_radius + self.roller_radius

@@ -12,47 +12,55 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.interpolate import CubicSpline
 
+from kinematics.arrays import Real
 from kinematics.dynamics.loads import Course, JointForce
 from kinematics.errors import MechanismError as KinematicsError
-from kinematics.linkage.planar.drive import RealJet, drive
-from kinematics.linkage.planar.limits import cycle_from_reference
-from kinematics.linkage.planar.mechanism import GROUND, Mechanism, Real
-from synthesis.model.dynamics import WeighedLinkage
-from synthesis.model.loads import FULL_TURN, ForceCourse, GasPressure, Interpolation, TorqueCourse, period_fault
+from kinematics.linkage.planar.drive import drive
+from kinematics.linkage.planar.limits import find_cycle_from_reference
+from kinematics.linkage.planar.mechanism import GROUND, Mechanism
+from synthesis.model.dynamics.loads import (
+    FULL_TURN,
+    ForceCurve,
+    GasPressure,
+    Interpolation,
+    TorqueCurve,
+    find_period_error,
+)
+from synthesis.model.dynamics.request import LoadedLinkage
 
 Fault = tuple[str, str]
 
-STEPS = 360
+STEP_COUNT = 360
 """Positions of a turn between which a dead centre is found by Newton's method."""
 
 
-def turns_of(course: ForceCourse | TorqueCourse, mechanism: Mechanism) -> int:
+def count_turns(course: ForceCurve | TorqueCurve, mechanism: Mechanism) -> int:
     """Turns of the input after which a table repeats."""
-    return course.turns or round(cycle_from_reference(mechanism) / (2.0 * math.pi))
+    return course.turns or round(find_cycle_from_reference(mechanism) / (2.0 * math.pi))
 
 
-def repeated_after(block: WeighedLinkage, mechanism: Mechanism) -> int:
+def find_period_turns(block: LoadedLinkage, mechanism: Mechanism) -> int:
     """Return the turns of the input after which mechanism and loads repeat; 0 if they never do or a slide drives."""
-    if mechanism.driven_by_slide:
+    if mechanism.has_slide_input:
         return 0
     try:
-        turns = [round(cycle_from_reference(mechanism) / (2.0 * math.pi))]
+        turns = [round(find_cycle_from_reference(mechanism) / (2.0 * math.pi))]
     except KinematicsError:
         return 0
     for load in block.loads:
         course = load.force or load.torque
         if course is not None and course.table is not None:
-            turns.append(turns_of(course, mechanism))
+            turns.append(count_turns(course, mechanism))
         if load.force is not None and load.force.gas is not None:
             turns.append(load.force.gas.cycle // round(FULL_TURN))
     return math.lcm(*turns)
 
 
-def course_faults(course: ForceCourse | TorqueCourse, mechanism: Mechanism) -> Iterator[Fault]:
+def find_course_errors(course: ForceCurve | TorqueCurve, mechanism: Mechanism) -> Iterator[Fault]:
     """What a table over the input contradicts: (path below the course, detail)."""
     if course.table is None:
         return
-    slide = mechanism.driven_by_slide
+    slide = mechanism.has_slide_input
     if slide != (course.by == "input_position"):
         yield "/by", "a slide drives this mechanism" if slide else "the angle of a link drives this mechanism"
         return
@@ -63,16 +71,16 @@ def course_faults(course: ForceCourse | TorqueCourse, mechanism: Mechanism) -> I
             yield "/turns", "a slide does not turn"
         return
     try:
-        period = FULL_TURN * turns_of(course, mechanism)
+        period = FULL_TURN * count_turns(course, mechanism)
     except KinematicsError as error:
         yield "/turns", f"state it: {error}"
         return
-    fault = period_fault(course.table, period)
+    fault = find_period_error(course.table, period)
     if fault is not None:
         yield "/table", fault
 
 
-def tabulated(table: Real, period: float, interpolation: Interpolation) -> Course:
+def interpolate_table(table: Real, period: float, interpolation: Interpolation) -> Course:
     """The course of a table over the absolute input angle (degrees), periodic; complex where it has two values."""
     angles, values = table[:, 0], table[:, 1] if table.shape[1] == 2 else table[:, 1] + 1j * table[:, 2]
     if angles[-1] - angles[0] < period:
@@ -86,30 +94,30 @@ def tabulated(table: Real, period: float, interpolation: Interpolation) -> Cours
     return lambda input: np.asarray(spline(start + (np.degrees(input[0]) - start) % period))
 
 
-def along_slide(table: Real, scale: float) -> Course:
+def interpolate_along_slide(table: Real, scale: float) -> Course:
     """The course of a table over the place of the input slide, in lengths of which ``scale`` is the core's unit."""
     places, values = scale * table[:, 0], table[:, 1] if table.shape[1] == 2 else table[:, 1] + 1j * table[:, 2]
     return lambda input: np.interp(input[0], places, values)
 
 
-def course_of(course: ForceCourse | TorqueCourse, mechanism: Mechanism, scale: float) -> Course:
+def build_course(course: ForceCurve | TorqueCurve, mechanism: Mechanism, scale: float) -> Course:
     """Build the load function of a table or a constant."""
     if course.table is not None:
         table = np.array(course.table, np.float64)
         if course.by == "input_position":
-            return along_slide(table, scale)
-        return tabulated(table, FULL_TURN * turns_of(course, mechanism), course.interpolation)
+            return interpolate_along_slide(table, scale)
+        return interpolate_table(table, FULL_TURN * count_turns(course, mechanism), course.interpolation)
     stated = course.constant
     value = complex(*stated) if isinstance(stated, tuple) else float(stated or 0.0)
     return lambda input: np.full(input.shape[1:], value)
 
 
-def ground_slide(mechanism: Mechanism, joint: str) -> int | None:
+def find_ground_slide(mechanism: Mechanism, joint: str) -> int | None:
     """The slide of the ground that carries a joint."""
     return next((n for n, s in enumerate(mechanism.slides) if s.joint == joint and s.link == GROUND), None)
 
 
-def top_dead_centre(mechanism: Mechanism, slide: int) -> tuple[float, complex]:
+def find_top_dead_centre(mechanism: Mechanism, slide: int) -> tuple[float, complex]:
     """Input angle in [0, 2π) where a joint on a slide of the ground is farthest from the crank, and the way from there.
 
     Raises
@@ -117,10 +125,10 @@ def top_dead_centre(mechanism: Mechanism, slide: int) -> tuple[float, complex]:
     ValueError
         Where no crank turns through, or the joint does not move.
     """
-    if mechanism.driven_by_slide:
+    if mechanism.has_slide_input:
         raise ValueError("gas pressure needs a piston moved by a crank; a slide drives this mechanism")
     name = mechanism.slide_names[slide]
-    at = 2.0 * math.pi * np.arange(STEPS) / STEPS
+    at = 2.0 * math.pi * np.arange(STEP_COUNT) / STEP_COUNT
     motion = drive(mechanism, at, order=0)
     if not motion.valid.all():
         raise ValueError("gas pressure needs a piston moved by a crank; the input cannot make a full turn")
@@ -130,7 +138,7 @@ def top_dead_centre(mechanism: Mechanism, slide: int) -> tuple[float, complex]:
     pivot = complex(mechanism.joints[mechanism.input_pivot])
     centre = ((pivot - complex(line.point)) * direction.conjugate()).real
     outward = 1.0 if abs(along.max() - centre) >= abs(along.min() - centre) else -1.0
-    step = 2.0 * math.pi / STEPS
+    step = 2.0 * math.pi / STEP_COUNT
     top = float(at[np.argmax(outward * along)])
     for _ in range(4):
         _, velocity, acceleration = drive(mechanism, [top], order=2).slides[name][:, 0]
@@ -140,7 +148,7 @@ def top_dead_centre(mechanism: Mechanism, slide: int) -> tuple[float, complex]:
     return top % (2.0 * math.pi), -outward * direction
 
 
-def gas_force(gas: GasPressure, mechanism: Mechanism, joint: str, scale: float) -> JointForce:
+def build_gas_force(gas: GasPressure, mechanism: Mechanism, joint: str, scale: float) -> JointForce:
     """Pressure times area on the pin of a joint.
 
     Raises
@@ -148,16 +156,16 @@ def gas_force(gas: GasPressure, mechanism: Mechanism, joint: str, scale: float) 
     ValueError
         Where the joint is not on a slide of the ground, or no crank moves it.
     """
-    slide = ground_slide(mechanism, joint)
+    slide = find_ground_slide(mechanism, joint)
     if slide is None:
         raise ValueError(f"gas acts on a piston; the joint {joint} is on no slide of the ground")
-    top, way = top_dead_centre(mechanism, slide)
+    top, way = find_top_dead_centre(mechanism, slide)
     area = math.pi / 4.0 * (scale * gas.bore) ** 2
-    pressure = tabulated(np.array(gas.pressure, np.float64), float(gas.cycle), gas.interpolation)
+    pressure = interpolate_table(np.array(gas.pressure, np.float64), float(gas.cycle), gas.interpolation)
     phase = math.radians(gas.phase)
 
-    def force(input: RealJet) -> NDArray[np.complex128]:
+    def evaluate_force(input: Real) -> NDArray[np.complex128]:
         sense = np.where(input[1] < 0.0, -1.0, 1.0)
         return np.asarray(way * area * pressure(np.asarray([sense * (input[0] - top) + phase])), np.complex128)
 
-    return JointForce(joint, force)
+    return JointForce(joint, evaluate_force)

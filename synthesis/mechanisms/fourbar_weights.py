@@ -4,22 +4,22 @@ from __future__ import annotations
 
 import numpy as np
 
+from kinematics.arrays import Complex, Real
 from kinematics.compiling import njit
 from kinematics.dynamics.fourbar import Fourbars, Weights
-from kinematics.linkage.planar.mechanism import Complex, Real
 from synthesis.fit.chart import OPTIONS
-from synthesis.fit.fourbar_loads import COUPLES, FORCE, FORCES, GRAVITY, LOADS, PINS, carried, weigh
-from synthesis.model.dynamics import DesignDynamics, LengthUnit
+from synthesis.fit.fourbar_loads import COUPLES, FORCE, FORCES, GRAVITY, LOADS, PINS, pack_loads, weigh_links
+from synthesis.model.dynamics.request import DesignDynamics, LengthUnit
 
 JOINTS = "O2", "A", "B", "O4", "P"
 
 
-def closed_form(stated: DesignDynamics) -> bool:
+def is_closed_form(block: DesignDynamics) -> bool:
     """Whether a block has nothing that the closed form leaves out: springs, friction, loads that change."""
-    return carried(stated, "m", 0j) is not None
+    return pack_loads(block, "m", 0j) is not None
 
 
-def fourbars(joints: Complex, span: Real, scale: float) -> Fourbars:
+def build_fourbars(joints: Complex, span: Real, scale: float) -> Fourbars:
     """Fourbars by their joints O2, A, B, O4, P in the reference, shape (n, 5), that turn by ``span`` from there."""
     o2, a, b, o4, p = (scale * column for column in joints.T)
     line = (b - a) / np.abs(b - a)
@@ -29,8 +29,8 @@ def fourbars(joints: Complex, span: Real, scale: float) -> Fourbars:
     )
 
 
-def weights(stated: DesignDynamics, joints: Complex, unit: LengthUnit) -> Weights:
-    """What fourbars weigh and carry by a block in :func:`closed_form`.
+def build_weights(dynamics: DesignDynamics, joints: Complex, unit: LengthUnit) -> Weights:
+    """What fourbars weigh and carry by a block in :func:`is_closed_form`.
 
     Parameters
     ----------
@@ -46,9 +46,9 @@ def weights(stated: DesignDynamics, joints: Complex, unit: LengthUnit) -> Weight
     ValueError
         Where the block has more.
     """
-    count, scale = len(joints), stated.scale(unit)
+    count, scale = len(joints), dynamics.scale(unit)
     origin = complex(joints[0, 0]) if count else 0j
-    block = carried(stated, unit, origin)
+    block = pack_loads(dynamics, unit, origin)
     if block is None:
         raise ValueError("expected a block without springs, friction and loads that change; weigh it by its machine")
     loads = int(block[LOADS])
@@ -57,7 +57,7 @@ def weights(stated: DesignDynamics, joints: Complex, unit: LengthUnit) -> Weight
     arm, force = np.empty((2, count, loads), np.complex128)
     _weigh_each(block, np.ascontiguousarray(scale * (joints - origin)), mass, cg, inertia, arm, force)
     listed = block[FORCES:].reshape(loads, FORCE)
-    about = joints[:, 0] if stated.moment_about is None else np.full(count, complex(*stated.moment_about))
+    about = joints[:, 0] if dynamics.moment_about is None else np.full(count, complex(*dynamics.moment_about))
     return Weights(
         mass,
         cg,
@@ -78,5 +78,5 @@ def _weigh_each(
     block: Real, joints: Complex, mass: Real, cg: Complex, inertia: Real, arm: Complex, force: Complex
 ) -> None:
     for n in range(len(joints)):
-        if not weigh(block, joints[n], mass[n], cg[n], inertia[n], arm[n], force[n]):
+        if not weigh_links(block, joints[n], mass[n], cg[n], inertia[n], arm[n], force[n]):
             mass[n] = np.inf

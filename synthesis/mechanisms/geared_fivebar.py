@@ -11,24 +11,23 @@ import numpy as np
 from numpy.typing import NDArray
 from pydantic import Field
 
+from kinematics.arrays import Real
 from kinematics.linkage.planar import catalogue
-from kinematics.linkage.planar.branches import turns_until_repeated
-from kinematics.linkage.planar.catalogue import ASSEMBLY
+from kinematics.linkage.planar.branches import count_turns_until_repeat
+from kinematics.linkage.planar.catalogue import ASSEMBLY_SIGNS
 from kinematics.linkage.planar.mechanism import Mechanism
-from synthesis.mechanisms.base import MechanismError, agree, assembled
+from synthesis.mechanisms.base import MechanismError, assemble_at_reference, require_agreement
 from synthesis.mechanisms.skeleton import GivenByDimensions
-from synthesis.model.stated_linkage import Assembly, StatedCouplerPoint, StatedPivots
-from synthesis.model.statement import Degrees, Number, PositiveLength, Statement
+from synthesis.model.linkage.given_linkage import Assembly, CouplerPointSpec, FixedPivotsSpec
+from synthesis.model.problem import Degrees, Number, PositiveLength, Statement
 
-Real = NDArray[np.float64]
-
-SAMPLES, MOST_SAMPLES = 720, 200_000
+SAMPLE_COUNT, MAX_SAMPLES = 720, 200_000
 """Number of input angles per turn of the faster pin, and their maximum, at which an assembly is tried."""
 
 ANGLE_RESOLUTION = 1e-15
 """Radians at which a search for the best angle ends: no float of an angle is finer."""
 
-BEST = 16
+MAX_REFINED = 16
 """Maximum number of the best input angles that are refined."""
 
 
@@ -46,21 +45,21 @@ class GivenGearedFivebar(GivenByDimensions):
     """A geared fivebar; ``phase`` is the output's angle from the ground line when the input lies along it."""
 
     type: Literal["geared_fivebar"]
-    fixed_pivots: StatedPivots
+    fixed_pivots: FixedPivotsSpec
     links: FivebarLengths
     gear_ratio: Number = Field(description="Output rotation over input rotation.")
     phase: Degrees
-    coupler_point: StatedCouplerPoint = StatedCouplerPoint(distance=0.0)
+    coupler_point: CouplerPointSpec = CouplerPointSpec(distance=0.0)
     assembly: Assembly = "open"
 
-    def assembled(self) -> Mechanism:
+    def assemble(self) -> Mechanism:
         """The mechanism at its reference input angle, or at one where it can be assembled."""
         o2, o5 = complex(*self.fixed_pivots.input), complex(*self.fixed_pivots.output)
-        agree("/links/ground", self.links.ground, abs(o5 - o2))
+        require_agreement("/links/ground", self.links.ground, abs(o5 - o2))
         if o2 == o5:
             raise MechanismError("/fixed_pivots/output", "both fixed pivots coincide; they must be different")
-        return assembled(
-            lambda angle: catalogue.geared_fivebar(
+        return assemble_at_reference(
+            lambda angle: catalogue.make_geared_fivebar(
                 o2,
                 o5,
                 self.links.input,
@@ -70,14 +69,14 @@ class GivenGearedFivebar(GivenByDimensions):
                 self.gear_ratio,
                 math.radians(self.phase),
                 angle,
-                ASSEMBLY[self.assembly],
+                ASSEMBLY_SIGNS[self.assembly],
                 self.coupler_point.vector,
             ),
             self.reference_input_angle,
-            self._between(o2, o5),
+            self._find_reaching_angles(o2, o5),
         )
 
-    def _between(self, o2: complex, o5: complex) -> Iterator[float]:
+    def _find_reaching_angles(self, o2: complex, o5: complex) -> Iterator[float]:
         """Input angles at which the pins A and B are farthest inside the distances that the couplers let them have.
 
         They may lie in any turn until the gears repeat. The distance goes up and down a few times for each turn of
@@ -86,7 +85,7 @@ class GivenGearedFivebar(GivenByDimensions):
         ground, radius = cmath.phase(o5 - o2), max(self.links.input, self.links.output)
         low, high = abs(self.links.coupler_1 - self.links.coupler_2), self.links.coupler_1 + self.links.coupler_2
 
-        def inside(turn: NDArray[np.floating[Any]]) -> Real:
+        def measure_margin(turn: NDArray[np.floating[Any]]) -> Real:
             pins = (
                 o5
                 - o2
@@ -95,19 +94,19 @@ class GivenGearedFivebar(GivenByDimensions):
             )
             return np.asarray(np.minimum(high - np.abs(pins), np.abs(pins) - low) / radius)
 
-        turns = turns_until_repeated(self.gear_ratio)
-        samples = min(round(SAMPLES * max(1.0, abs(self.gear_ratio)) * turns), MOST_SAMPLES)
+        turns = count_turns_until_repeat(self.gear_ratio)
+        samples = min(round(SAMPLE_COUNT * max(1.0, abs(self.gear_ratio)) * turns), MAX_SAMPLES)
         step = 2.0 * math.pi * turns / samples
         at = np.arange(samples) * step
-        margin = inside(at)
+        margin = measure_margin(at)
         best = at[
             np.argsort(-np.where((margin >= np.roll(margin, 1)) & (margin >= np.roll(margin, -1)), margin, -np.inf))[
-                :BEST
+                :MAX_REFINED
             ]
         ]
         while step > ANGLE_RESOLUTION:
             tried = best[:, None] + step * np.array([-0.5, 0.0, 0.5])
-            best = tried[np.arange(len(best)), np.argmax(inside(tried), axis=1)]
+            best = tried[np.arange(len(best)), np.argmax(measure_margin(tried), axis=1)]
             step *= 0.7
         for turn in best:
             yield ground + float(turn)

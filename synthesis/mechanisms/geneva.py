@@ -5,11 +5,11 @@ from __future__ import annotations
 import math
 from typing import Any
 
-from kinematics.indexing.drag_link import Course, DragLink
+from kinematics.indexing.drag_link import CrankCourse, DragLink
 from kinematics.indexing.geneva import Geneva
 
 
-def course_of(mechanism: Any) -> Course:
+def build_drive(mechanism: Any) -> CrankCourse:
     """The drive with its crank, and with the drag link before it where it has one.
 
     Parameters
@@ -28,7 +28,7 @@ def course_of(mechanism: Any) -> Course:
     drive = Geneva(mechanism.type, mechanism.stations, max(ratio, drive.ratio))
     link = getattr(mechanism, "drag_link", None)
     if link is None:
-        return Course(drive)
+        return CrankCourse(drive)
     towards = 0.0 if mechanism.type == "geneva_external" else math.pi
     lengths = DragLink(link.input / link.ground, link.coupler / link.ground, link.output / link.ground)
-    return Course(drive, lengths, towards - math.radians(link.crank_offset))
+    return CrankCourse(drive, lengths, towards - math.radians(link.crank_offset))

@@ -7,11 +7,11 @@ from collections.abc import Mapping, Sequence
 from typing import Any
 
 from kinematics.dynamics import shapes
-from kinematics.dynamics.bodies import Body, body, joined
-from synthesis.model.bodies import Part, Place, PolarPlace, Shape, StatedBody
+from kinematics.dynamics.bodies import Body, join_bodies, make_body
+from synthesis.model.dynamics.bodies import BodySpec, Part, Place, PolarPoint, Shape
 
 
-def token(name: str) -> str:
+def escape_pointer(name: str) -> str:
     """A name as a part of a JSON pointer."""
     return name.replace("~", "~0").replace("/", "~1")
 
@@ -43,45 +43,49 @@ class LinkBodies:
         self.links = links
         self.scale = scale
 
-    def place(self, link: str, stated: Place) -> complex:
+    def resolve_place(self, link: str, place_spec: Place) -> complex:
         """A place on a link, in the reference configuration."""
-        if not isinstance(stated, PolarPlace):
-            return self.scale * complex(*stated)
+        if not isinstance(place_spec, PolarPoint):
+            return self.scale * complex(*place_spec)
         first, second = (complex(self.joints[joint]) for joint in self.links[link][:2])
-        return self.scale * (first + stated.vector * (second - first) / abs(second - first))
+        return self.scale * (first + place_spec.vector * (second - first) / abs(second - first))
 
-    def body(self, link: str, stated: StatedBody) -> Body:
+    def build_body(self, link: str, body_spec: BodySpec) -> Body:
         """The body of a link."""
-        if stated.shape is not None:
-            return self._shaped(link, stated.shape)
+        if body_spec.shape is not None:
+            return self._build_shape(link, body_spec.shape)
         first = self.scale * complex(self.joints[self.links[link][0]])
-        centre = first if stated.cg is None else self.place(link, stated.cg)
-        return body(stated.mass or 0.0, centre, stated.inertia or 0.0)
+        centre = first if body_spec.cg is None else self.resolve_place(link, body_spec.cg)
+        return make_body(body_spec.mass or 0.0, centre, body_spec.inertia or 0.0)
 
-    def _shaped(self, link: str, shape: Shape) -> Body:
+    def _build_shape(self, link: str, shape: Shape) -> Body:
         joints = {joint: self.scale * complex(self.joints[joint]) for joint in self.links[link]}
-        bodies = [self._part(link, part, shape.heaviness) for part in shape.parts]
+        bodies = [self._build_part(link, part, shape.material_density) for part in shape.parts]
         if shape.thickness is not None:
             if shape.polygon is not None:
-                plate = shapes.polygon([self.place(link, corner) for corner in shape.polygon])
+                plate = shapes.make_polygon([self.resolve_place(link, corner) for corner in shape.polygon])
             elif shape.ends == "square":
                 start, end = joints.values()
-                plate = shapes.square_bar(start, end, self.scale * (shape.width or 0.0), self.scale * shape.overhang)
+                plate = shapes.make_square_bar(
+                    start, end, self.scale * (shape.width or 0.0), self.scale * shape.overhang
+                )
             else:
-                plate = shapes.widened_hull(list(joints.values()), self.scale * (shape.width or 0.0))
+                plate = shapes.make_widened_hull(list(joints.values()), self.scale * (shape.width or 0.0))
             for joint, diameter in shape.holes.items():
-                plate = plate.plus(shapes.disc(joints[joint], self.scale * diameter / 2.0), -1.0)
-            path = f"/dynamics/bodies/{token(link)}/shape"
+                plate = plate.plus(shapes.make_disc(joints[joint], self.scale * diameter / 2.0), -1.0)
+            path = f"/dynamics/bodies/{escape_pointer(link)}/shape"
             if not plate.area > 0.0 or not math.isfinite(plate.polar):
                 raise BlockError(path, "the plate has no area; the polygon is flat, or the holes are too wide")
             for joint, diameter in shape.holes.items():
                 wider = 0.0 if shape.width is None else diameter - shape.width
-                if wider > 0.0 and self._at_edge(link, joint, wider):
-                    raise BlockError(f"{path}/holes/{token(joint)}", "the hole extends beyond the edge of the plate")
-            bodies.append(plate.body(shape.heaviness, self.scale * shape.thickness))
-        return joined(bodies)
+                if wider > 0.0 and self._is_at_edge(link, joint, wider):
+                    raise BlockError(
+                        f"{path}/holes/{escape_pointer(joint)}", "the hole extends beyond the edge of the plate"
+                    )
+            bodies.append(plate.body(shape.material_density, self.scale * shape.thickness))
+        return join_bodies(bodies)
 
-    def _at_edge(self, link: str, joint: str, wider: float) -> bool:
+    def _is_at_edge(self, link: str, joint: str, wider: float) -> bool:
         """Whether a hole that is ``wider`` than the plate (length units) reaches beyond its edge at a joint."""
         import shapely  # holes are seldom that wide
 
@@ -90,13 +94,13 @@ class LinkBodies:
         edge = hull.exterior if hull.geom_type == "Polygon" else hull
         return bool(2.0 * edge.distance(shapely.Point(places[joint].real, places[joint].imag)) < wider)
 
-    def _part(self, link: str, part: Part, density: float) -> Body:
-        centre, density = self.place(link, part.at), density if part.density is None else part.density
+    def _build_part(self, link: str, part: Part, density: float) -> Body:
+        centre, density = self.resolve_place(link, part.at), density if part.density is None else part.density
         length = self.scale * part.length
         if part.form == "prism":
-            section = shapes.rectangle(centre, length, self.scale * (part.width or 0.0))
+            section = shapes.make_rectangle(centre, length, self.scale * (part.width or 0.0))
             return section.body(density, self.scale * (part.thickness or 0.0))
-        return shapes.cylinder(
+        return shapes.make_cylinder(
             centre,
             self.scale * (part.diameter or 0.0),
             length,

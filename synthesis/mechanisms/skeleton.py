@@ -12,52 +12,63 @@ from pydantic import Field
 
 from kinematics.linkage.planar.mechanism import GROUND, GearPair, Mechanism, Slide
 from synthesis.mechanisms.base import MechanismError
-from synthesis.model.stated_linkage import AGREES, BODY, ROUNDING, StatedCouplerPoint, StatedSkeleton
-from synthesis.model.statement import Degrees, Point, PositiveLength, Statement
+from synthesis.model.linkage.given_linkage import (
+    AGREEMENT_TOLERANCE,
+    BODY_DESCRIPTION,
+    ROUNDING_TOLERANCE,
+    CouplerPointSpec,
+    SkeletonSpec,
+)
+from synthesis.model.problem import Degrees, Point, PositiveLength, Statement
 
-MOST_SHOWN = 6
+MAX_SHOWN = 6
 """Distances that a message lists."""
 
 
-def assembled_skeleton(stated: StatedSkeleton, degrees: float | None = None) -> Mechanism:
+def assemble_skeleton(spec: SkeletonSpec, degrees: float | None = None) -> Mechanism:
     """Build the mechanism in the reference configuration; a given input angle fixes the turn count of gears."""
-    assembled = _made(stated, 0)
-    if degrees is None or not assembled.gears or assembled.driven_by_slide:
+    assembled = _build_mechanism(spec, 0)
+    if degrees is None or not assembled.gears or assembled.has_slide_input:
         return assembled
-    return _made(stated, round((math.radians(degrees) - float(assembled.reference_input)) / (2.0 * math.pi)))
+    return _build_mechanism(spec, round((math.radians(degrees) - float(assembled.reference_input)) / (2.0 * math.pi)))
 
 
-def _made(stated: StatedSkeleton, turns: int) -> Mechanism:
-    names = [link.name for link in stated.links]
+def _build_mechanism(spec: SkeletonSpec, turns: int) -> Mechanism:
+    names = [link.name for link in spec.links]
     if len(set(names)) != len(names):
         raise MechanismError("/skeleton/links", "the names of the links must be different")
     try:
         return Mechanism(
-            {name: complex(*point) for name, point in stated.joints.items()},
-            {link.name: tuple(link.joints) for link in stated.links},
-            stated.input_link,
+            {name: complex(*point) for name, point in spec.joints.items()},
+            {link.name: tuple(link.joints) for link in spec.links},
+            spec.input_link,
             tuple(
                 Slide(s.joint, s.link, np.asarray(complex(*s.point)), np.asarray(math.radians(s.angle)))
-                for s in stated.slides
+                for s in spec.slides
             ),
-            tuple(GearPair(*gear.links, gear.ratio) for gear in stated.gears),
+            tuple(GearPair(*gear.links, gear.ratio) for gear in spec.gears),
             turns,
         )
     except ValueError as error:
         raise MechanismError("/skeleton", str(error)) from None
 
 
-def skeleton_of(mechanism: Mechanism) -> dict[str, Any]:
+def describe_skeleton(mechanism: Mechanism) -> dict[str, Any]:
     """The skeleton of a mechanism in its reference configuration, as JSON has it."""
 
-    def pair(z: complex) -> tuple[float, float]:
+    def convert_to_pair(z: complex) -> tuple[float, float]:
         return z.real, z.imag
 
     return {
-        "joints": {name: pair(complex(z)) for name, z in mechanism.joints.items()},
+        "joints": {name: convert_to_pair(complex(z)) for name, z in mechanism.joints.items()},
         "links": [{"name": name, "joints": list(listed)} for name, listed in mechanism.links.items()],
         "slides": [
-            {"joint": s.joint, "link": s.link, "point": pair(complex(s.point)), "angle": math.degrees(float(s.angle))}
+            {
+                "joint": s.joint,
+                "link": s.link,
+                "point": convert_to_pair(complex(s.point)),
+                "angle": math.degrees(float(s.angle)),
+            }
             for s in mechanism.slides
         ],
         "gears": [{"links": (gear.first, gear.second), "ratio": gear.ratio} for gear in mechanism.gears],
@@ -95,7 +106,7 @@ class GivenSkeleton(Statement):
         "scott_russell",
         "pantograph",
     ] = "skeleton"
-    skeleton: StatedSkeleton
+    skeleton: SkeletonSpec
     links: dict[str, PositiveLength] = Field(
         default={},
         max_length=20,
@@ -107,15 +118,15 @@ class GivenSkeleton(Statement):
         max_length=20,
         description="Fixed pivots by any name; each must be a joint of the skeleton's ground.",
     )
-    coupler_point: StatedCouplerPoint | None = Field(
+    coupler_point: CouplerPointSpec | None = Field(
         default=None, description="P of a coupler with the pins A and B; it must agree with the skeleton."
     )
     reference_input_angle: Degrees | None = Field(
         default=None, description="Absolute angle of the input link, degrees; it must agree with the skeleton."
     )
-    reference_body_angle: Degrees | None = Field(default=None, description=BODY)
+    reference_body_angle: Degrees | None = Field(default=None, description=BODY_DESCRIPTION)
 
-    def mechanism(self) -> Mechanism:
+    def build_mechanism(self) -> Mechanism:
         """The mechanism in its reference configuration.
 
         Raises
@@ -123,23 +134,23 @@ class GivenSkeleton(Statement):
         MechanismError
             For a skeleton that is none, and for dimensions beside it that it does not have.
         """
-        assembled = assembled_skeleton(self.skeleton, self.reference_input_angle)
+        assembled = assemble_skeleton(self.skeleton, self.reference_input_angle)
         for name, stated in self.links.items():
             listed = [assembled.links[name]] if name in assembled.links else list(assembled.links.values())
-            distances = [distance for joints in listed for distance in _distances(assembled, joints)]
-            if not any(abs(stated - distance) <= AGREES * max(stated, distance) for distance in distances):
+            distances = [distance for joints in listed for distance in _measure_distances(assembled, joints)]
+            if not any(abs(stated - distance) <= AGREEMENT_TOLERANCE * max(stated, distance) for distance in distances):
                 of = f"the skeleton's link {name!r} has" if name in assembled.links else "the skeleton has a link with"
-                shown = ", ".join(f"{distance:.9g}" for distance in distances[:MOST_SHOWN])
+                shown = ", ".join(f"{distance:.9g}" for distance in distances[:MAX_SHOWN])
                 raise MechanismError(f"/links/{name}", f"{of} joints {shown} apart; leave the field out or correct it")
         size = max((abs(complex(z)) for z in assembled.joints.values()), default=1.0)
         for name, pivot in self.fixed_pivots.items():
             ground = [complex(assembled.joints[joint]) for joint in assembled.links[GROUND]]
-            if not any(abs(complex(*pivot) - z) <= AGREES * size for z in ground):
+            if not any(abs(complex(*pivot) - z) <= AGREEMENT_TOLERANCE * size for z in ground):
                 raise MechanismError(f"/fixed_pivots/{name}", "the skeleton's ground has no joint there")
-        self._agree(assembled)
+        self._require_agreement(assembled)
         return assembled
 
-    def _agree(self, assembled: Mechanism) -> None:
+    def _require_agreement(self, assembled: Mechanism) -> None:
         """Refuse a coupler point or an input angle that is not the skeleton's."""
         if self.coupler_point is not None:
             missing = [name for name in ("A", "B", "P") if name not in assembled.joints]
@@ -147,13 +158,13 @@ class GivenSkeleton(Statement):
                 raise MechanismError("/coupler_point", f"the skeleton has no joint {missing[0]}")
             a, b, p = (complex(assembled.joints[name]) for name in ("A", "B", "P"))
             point = a + self.coupler_point.vector * (b - a) / abs(b - a)
-            if abs(point - p) > AGREES * max(abs(p - a), abs(b - a)):
+            if abs(point - p) > AGREEMENT_TOLERANCE * max(abs(p - a), abs(b - a)):
                 raise MechanismError("/coupler_point", "the skeleton has another P; leave the field out or correct it")
         if self.reference_input_angle is not None:
-            if assembled.driven_by_slide:
+            if assembled.has_slide_input:
                 raise MechanismError("/reference_input_angle", "a slide drives this mechanism; leave the field out")
             off = math.remainder(math.degrees(float(assembled.reference_input)) - self.reference_input_angle, 360.0)
-            if abs(off) > AGREES * 360.0:
+            if abs(off) > AGREEMENT_TOLERANCE * 360.0:
                 raise MechanismError(
                     "/reference_input_angle",
                     "the skeleton's input link has another angle; leave the field out or correct it",
@@ -167,14 +178,14 @@ class GivenByDimensions(Statement, ABC):
     reference_input_angle: Degrees | None = Field(
         default=None, description="Input angle of the reference configuration, absolute, degrees."
     )
-    reference_body_angle: Degrees | None = Field(default=None, description=BODY)
-    skeleton: StatedSkeleton | None = None
+    reference_body_angle: Degrees | None = Field(default=None, description=BODY_DESCRIPTION)
+    skeleton: SkeletonSpec | None = None
 
     @abstractmethod
-    def assembled(self) -> Mechanism:
+    def assemble(self) -> Mechanism:
         """The mechanism at its reference input angle, or at one where it can be assembled."""
 
-    def mechanism(self) -> Mechanism:
+    def build_mechanism(self) -> Mechanism:
         """The mechanism in its reference configuration.
 
         Raises
@@ -182,15 +193,15 @@ class GivenByDimensions(Statement, ABC):
         MechanismError
             For dimensions that give no mechanism, and for a skeleton with other ones.
         """
-        own = self.assembled()
+        own = self.assemble()
         if self.skeleton is None:
             return own
-        assembled = assembled_skeleton(self.skeleton, self.reference_input_angle)
-        slack = ROUNDING * max(abs(complex(z)) for m in (own, assembled) for z in m.joints.values())
+        assembled = assemble_skeleton(self.skeleton, self.reference_input_angle)
+        slack = ROUNDING_TOLERANCE * max(abs(complex(z)) for m in (own, assembled) for z in m.joints.values())
         for joints in own.links.values():
             for one, other in combinations([joint for joint in joints if joint in assembled.joints], 2):
                 stated, apart = (abs(complex(m.joints[one] - m.joints[other])) for m in (own, assembled))
-                if abs(stated - apart) > AGREES * max(stated, apart) + slack:
+                if abs(stated - apart) > AGREEMENT_TOLERANCE * max(stated, apart) + slack:
                     raise MechanismError(
                         "/skeleton/joints",
                         f"{one} and {other} are {apart:.9g} apart; the dimensions give {stated:.9g}",
@@ -198,6 +209,6 @@ class GivenByDimensions(Statement, ABC):
         return assembled
 
 
-def _distances(mechanism: Mechanism, joints: tuple[str, ...]) -> list[float]:
+def _measure_distances(mechanism: Mechanism, joints: tuple[str, ...]) -> list[float]:
     places = [complex(mechanism.joints[joint]) for joint in joints]
     return [abs(one - other) for one, other in combinations(places, 2)]

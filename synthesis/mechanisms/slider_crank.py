@@ -10,13 +10,19 @@ import numpy as np
 from pydantic import Field
 
 from kinematics.linkage.planar import catalogue
-from kinematics.linkage.planar.catalogue import ASSEMBLY
+from kinematics.linkage.planar.catalogue import ASSEMBLY_SIGNS
 from kinematics.linkage.planar.mechanism import Mechanism, Slide
-from synthesis.mechanisms.base import MechanismError, agree, assembled, midst, reaching
+from synthesis.mechanisms.base import (
+    MechanismError,
+    assemble_at_reference,
+    find_middle_sine,
+    find_reaching_angles,
+    require_agreement,
+)
 from synthesis.mechanisms.skeleton import GivenByDimensions
 from synthesis.model.dimension import LENGTH
-from synthesis.model.stated_linkage import Assembly, StatedCouplerPoint, StatedLine, StatedPivots
-from synthesis.model.statement import Coordinate, Degrees, NonNegative, Point, PositiveLength, Statement
+from synthesis.model.linkage.given_linkage import Assembly, CouplerPointSpec, FixedPivotsSpec, LineSpec
+from synthesis.model.problem import Coordinate, Degrees, NonNegative, Point, PositiveLength, Statement
 
 
 class SliderCrankLengths(Statement):
@@ -32,38 +38,40 @@ class GivenSliderCrank(GivenByDimensions):
     type: Literal["slider_crank"]
     fixed_pivot: Point
     links: SliderCrankLengths
-    slide: StatedLine
+    slide: LineSpec
     offset: Coordinate | None = None
     assembly: Assembly = "open"
-    coupler_point: StatedCouplerPoint = StatedCouplerPoint(distance=0.0)
+    coupler_point: CouplerPointSpec = CouplerPointSpec(distance=0.0)
     driven_by: Literal["crank", "slider"] = "crank"
 
-    def assembled(self) -> Mechanism:
+    def assemble(self) -> Mechanism:
         """The mechanism at its reference crank angle, or at one where it can be assembled."""
         pivot, angle = complex(*self.fixed_pivot), math.radians(self.slide.angle)
         line = complex(*self.slide.point)
         # Books differ in the sign of an offset; the slide says on which side of the pivot it passes.
         offset = None if self.offset is None else abs(self.offset)
-        agree("/offset", offset, abs(((pivot - line) * cmath.exp(-1j * angle)).imag), "the slide and the pivot")
-        return assembled(
-            lambda at: catalogue.slider_crank(
+        require_agreement(
+            "/offset", offset, abs(((pivot - line) * cmath.exp(-1j * angle)).imag), "the slide and the pivot"
+        )
+        return assemble_at_reference(
+            lambda at: catalogue.make_slider_crank(
                 pivot,
                 line,
                 angle,
                 self.links.crank,
                 self.links.coupler,
                 at,
-                ASSEMBLY[self.assembly],
+                ASSEMBLY_SIGNS[self.assembly],
                 self.coupler_point.vector,
                 self.driven_by,
             ),
             self.reference_input_angle,
-            self._between(((pivot - line) * cmath.exp(-1j * angle)).imag, angle),
+            self._find_reaching_angles(((pivot - line) * cmath.exp(-1j * angle)).imag, angle),
         )
 
-    def _between(self, offset: float, angle: float) -> list[float]:
+    def _find_reaching_angles(self, offset: float, angle: float) -> list[float]:
         """Crank angles with the pin in the midst of where the coupler reaches the slide from."""
-        sine = midst(offset, self.links.crank, self.links.coupler)
+        sine = find_middle_sine(offset, self.links.crank, self.links.coupler)
         return [] if sine is None else [angle + math.asin(sine), angle + math.pi - math.asin(sine)]
 
 
@@ -86,29 +94,31 @@ class GivenInvertedSliderCrank(GivenByDimensions):
     """An inverted slider-crank (Norton, Sec. 4.7): the crank pin slides in the output link."""
 
     type: Literal["inverted_slider_crank"]
-    fixed_pivots: StatedPivots
+    fixed_pivots: FixedPivotsSpec
     links: InvertedLengths
     slide: OutputSlide
-    coupler_point: StatedCouplerPoint | None = Field(
+    coupler_point: CouplerPointSpec | None = Field(
         default=None,
         description="P on the body that slides: its distance from A, and the angle from the line A → O4 to the line "
         "A → P in the reference, which must then be stated.",
     )
     assembly: Assembly = "open"
 
-    def assembled(self) -> Mechanism:
+    def assemble(self) -> Mechanism:
         """The mechanism at its reference input angle, or at one where it can be assembled."""
         o2, o4 = complex(*self.fixed_pivots.input), complex(*self.fixed_pivots.output)
-        agree("/links/ground", self.links.ground, abs(o4 - o2))
+        require_agreement("/links/ground", self.links.ground, abs(o4 - o2))
         if self.coupler_point is not None:
             if self.reference_input_angle is None:
                 raise MechanismError("/reference_input_angle", "missing: it defines the direction of the coupler point")
-            return self._with_body(assembled(self._at, self.reference_input_angle, ()), self.coupler_point.vector)
+            return self._add_body(
+                assemble_at_reference(self._assemble_at, self.reference_input_angle, ()), self.coupler_point.vector
+            )
         nearest = abs(self.links.output * math.sin(math.radians(self.slide.angle)))
-        between = reaching(self.links.input, o2, o4, nearest, math.inf)
-        return assembled(self._at, self.reference_input_angle, between)
+        between = find_reaching_angles(self.links.input, o2, o4, nearest, math.inf)
+        return assemble_at_reference(self._assemble_at, self.reference_input_angle, between)
 
-    def _with_body(self, bare: Mechanism, local: complex) -> Mechanism:
+    def _add_body(self, bare: Mechanism, local: complex) -> Mechanism:
         """The mechanism with the link that slides, and P on it: it keeps its line at a distance from O4."""
         o2, o4, a = (complex(bare.joints[joint]) for joint in ("O2", "O4", "A"))
         if a == o4:
@@ -122,15 +132,15 @@ class GivenInvertedSliderCrank(GivenByDimensions):
             (Slide("O4", "coupler", np.asarray(o4), bare.slides[0].angle),),
         )
 
-    def _at(self, angle: float) -> Mechanism:
-        return catalogue.inverted_slider_crank(
+    def _assemble_at(self, angle: float) -> Mechanism:
+        return catalogue.make_inverted_slider_crank(
             complex(*self.fixed_pivots.input),
             complex(*self.fixed_pivots.output),
             self.links.input,
             self.links.output,
             math.radians(self.slide.angle),
             angle,
-            ASSEMBLY[self.assembly],
+            ASSEMBLY_SIGNS[self.assembly],
         )
 
 
@@ -147,22 +157,22 @@ class GivenQuickReturn(GivenByDimensions):
     """A crank-shaper or Whitworth mechanism: the crank pin slides in the rocker, whose end drives a ram."""
 
     type: Literal["crank_shaper", "whitworth"]
-    fixed_pivots: StatedPivots
+    fixed_pivots: FixedPivotsSpec
     links: QuickReturnLengths
-    slide: StatedLine = Field(description="The ram's line on the ground.")
+    slide: LineSpec = Field(description="The ram's line on the ground.")
     assembly: Assembly = "open"
 
-    def assembled(self) -> Mechanism:
+    def assemble(self) -> Mechanism:
         """The mechanism at its reference input angle, or at one where it can be assembled."""
         o2, o4 = complex(*self.fixed_pivots.input), complex(*self.fixed_pivots.output)
-        agree("/links/ground", self.links.ground, abs(o4 - o2))
+        require_agreement("/links/ground", self.links.ground, abs(o4 - o2))
         if (self.links.crank > abs(o4 - o2)) != (self.type == "whitworth"):
             raise MechanismError(
                 "/links/crank",
                 "a crank-shaper needs a crank shorter than the ground, a Whitworth mechanism a longer one",
             )
-        return assembled(
-            lambda angle: catalogue.quick_return(
+        return assemble_at_reference(
+            lambda angle: catalogue.make_quick_return(
                 o2,
                 o4,
                 self.links.crank,
@@ -171,13 +181,13 @@ class GivenQuickReturn(GivenByDimensions):
                 complex(*self.slide.point),
                 math.radians(self.slide.angle),
                 angle,
-                ASSEMBLY[self.assembly],
+                ASSEMBLY_SIGNS[self.assembly],
             ),
             self.reference_input_angle,
-            self._between(o2, o4),
+            self._find_reaching_angles(o2, o4),
         )
 
-    def _between(self, o2: complex, o4: complex) -> list[float]:
+    def _find_reaching_angles(self, o2: complex, o4: complex) -> list[float]:
         """Crank angles with C in the midst of where it gets to and the coupler reaches the ram's slide from."""
         slide, ground = math.radians(self.slide.angle), o2 - o4
         height = ((o4 - complex(*self.slide.point)) * cmath.exp(-1j * slide)).imag
@@ -188,7 +198,7 @@ class GivenQuickReturn(GivenByDimensions):
             end for end in (0.5 * math.pi, -0.5 * math.pi) if abs(math.remainder(end - towards, 2 * math.pi)) < lean
         ]
         sines = [math.sin(end) for end in ends]
-        sine = midst(height, self.links.rocker, self.links.coupler, min(sines), max(sines))
+        sine = find_middle_sine(height, self.links.rocker, self.links.coupler, min(sines), max(sines))
         if sine is None:
             return []
         angles = []

@@ -6,27 +6,27 @@ from typing import Annotated, Any, Generic, Self, TypeVar
 
 from pydantic import ConfigDict, Field
 
-from synthesis.model.dimension import ANGLE, LENGTH, Dimension, Measured
+from synthesis.model.dimension import ANGLE, LENGTH, Dimension, DimensionedModel
 
 Point = Annotated[tuple[float, float], LENGTH]
 
 
-class Answer(Measured):
+class Answer(DimensionedModel):
     """Base of every model that the service writes."""
 
     model_config = ConfigDict(extra="forbid", frozen=True)
 
 
-def _blank(value: object) -> bool:
+def _is_blank(value: object) -> bool:
     return value is None
 
 
-def optional(description: str | None = None, alias: str | None = None) -> Any:
+def optional_field(description: str | None = None, alias: str | None = None) -> Any:
     """Return a field of an answer that is left out if it has no value.
 
     ``alias`` is its name in JSON if that is no Python identifier.
     """
-    return Field(default=None, exclude_if=_blank, description=description, alias=alias)
+    return Field(default=None, exclude_if=_is_blank, description=description, alias=alias)
 
 
 class Check(Answer):
@@ -34,9 +34,9 @@ class Check(Answer):
 
     name: str
     passed: bool
-    value: float | None = optional()
-    limit: float | None = optional()
-    dimension: Dimension | None = optional("Dimension of value and limit; left out for a pure number.")
+    value: float | None = optional_field()
+    limit: float | None = optional_field()
+    dimension: Dimension | None = optional_field("Dimension of value and limit; left out for a pure number.")
 
 
 class Verification(Answer):
@@ -46,7 +46,7 @@ class Verification(Answer):
     checks: list[Check]
 
     @classmethod
-    def of(cls, checks: list[Check]) -> Self:
+    def from_checks(cls, checks: list[Check]) -> Self:
         """Return the verification that consists of these checks."""
         return cls(passed=all(check.passed for check in checks), checks=checks)
 
@@ -75,19 +75,19 @@ class Gap(Answer):
     """A failed check with its value and its limit; a requirement without a measure, such as a class, has neither."""
 
     check: str
-    value: float | None = optional()
-    limit: float | None = optional()
-    dimension: Dimension | None = optional("Dimension of value and limit; left out for a pure number.")
+    value: float | None = optional_field()
+    limit: float | None = optional_field()
+    dimension: Dimension | None = optional_field("Dimension of value and limit; left out for a pure number.")
 
 
 class Reachable(Answer):
     """Best values found while all other constraints hold; constraints that can be satisfied are left out."""
 
-    min_transmission_angle: Annotated[float, ANGLE] | None = optional("Degrees.")
-    max_link_ratio: float | None = optional()
-    tolerance: float | None = optional("Smallest relative error of a gear ratio.")
-    dwell_angle: Annotated[float, ANGLE] | None = optional("Longest dwell found, degrees of the crank.")
-    dwell_angles: list[Annotated[float, ANGLE]] | None = optional(
+    min_transmission_angle: Annotated[float, ANGLE] | None = optional_field("Degrees.")
+    max_link_ratio: float | None = optional_field()
+    tolerance: float | None = optional_field("Smallest relative error of a gear ratio.")
+    dwell_angle: Annotated[float, ANGLE] | None = optional_field("Longest dwell found, degrees of the crank.")
+    dwell_angles: list[Annotated[float, ANGLE]] | None = optional_field(
         "Longest dwells found if several are requested, degrees of the crank; all are shortened by the same share."
     )
 

@@ -110,7 +110,7 @@ Grade = Annotated[float, GRADE]
 Percent = Annotated[float, PERCENT]
 
 
-class Measured(BaseModel):
+class DimensionedModel(BaseModel):
     """Base of every model whose numbers have dimensions: its JSON schema gives them as ``x-dimension``."""
 
     # Building the validators of all kinds before the first job would lengthen a worker's start by a fifth.
@@ -120,13 +120,13 @@ class Measured(BaseModel):
     def __get_pydantic_json_schema__(cls, core_schema: CoreSchema, handler: GetJsonSchemaHandler) -> JsonSchemaValue:
         schema = handler(core_schema)
         properties = handler.resolve_ref_schema(schema).get("properties", {})
-        for name, dimension in dimensions(cls).items():
+        for name, dimension in collect_dimensions(cls).items():
             properties[cls.model_fields[name].alias or name]["x-dimension"] = dimension.value
         return schema
 
 
 @cache
-def dimensions(model: type[BaseModel]) -> dict[str, Dimension]:
+def collect_dimensions(model: type[BaseModel]) -> dict[str, Dimension]:
     """Return the dimension of each field of a model that has one; fields that hold models have none.
 
     Raises
@@ -136,7 +136,9 @@ def dimensions(model: type[BaseModel]) -> dict[str, Dimension]:
     """
     measured = {}
     for name, field in model.model_fields.items():
-        of_field = {entry for entry in field.metadata if isinstance(entry, Dimension)} | set(_within(field.annotation))
+        of_field = {entry for entry in field.metadata if isinstance(entry, Dimension)} | set(
+            _find_in_annotation(field.annotation)
+        )
         if len(of_field) > 1:
             raise TypeError(f"{model.__name__}.{name} measures {' and '.join(sorted(of_field))}: make two fields of it")
         for dimension in of_field:
@@ -144,10 +146,10 @@ def dimensions(model: type[BaseModel]) -> dict[str, Dimension]:
     return measured
 
 
-def _within(annotation: Any) -> Iterator[Dimension]:
+def _find_in_annotation(annotation: Any) -> Iterator[Dimension]:
     """Yield the dimensions in a type: in its metadata, and in the members of unions and containers."""
     for part in (*getattr(annotation, "__metadata__", ()), *get_args(annotation)):
         if isinstance(part, Dimension):
             yield part
         else:
-            yield from _within(part)
+            yield from _find_in_annotation(part)

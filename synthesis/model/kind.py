@@ -6,29 +6,29 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from typing import Any, Generic, Literal, NamedTuple, TypeVar
 
-from synthesis.model.answer import Result
-from synthesis.model.mechanism_types import mechanism_types, models_within
-from synthesis.model.statement import StatedProblem
+from synthesis.model.answer import Reachable, Result
+from synthesis.model.mechanism_types import collect_models, list_mechanism_types
+from synthesis.model.problem import ProblemBase
 
 Progress = Callable[[float, str], None]
 """Callback with the fraction done, 0 to 1, and a short message."""
 
 
-def part_of(progress: Progress, begin: float, end: float) -> Progress:
+def scale_progress(progress: Progress, begin: float, end: float) -> Progress:
     """Return a progress callback for a part of the work that begins and ends at these shares of the whole."""
     return lambda share, message: progress(begin + (end - begin) * share, message)
 
 
-P = TypeVar("P", bound=StatedProblem)
+P = TypeVar("P", bound=ProblemBase)
 R = TypeVar("R", bound=Result[Any])
 
 
-def never(_problem: StatedProblem) -> bool:
+def return_false(_problem: ProblemBase) -> bool:
     """Return False for every statement."""
     return False
 
 
-def always(_problem: StatedProblem) -> bool:
+def return_true(_problem: ProblemBase) -> bool:
     """Return True for every statement."""
     return True
 
@@ -44,12 +44,50 @@ Group = Literal[
 """Purposes of a mechanism, in the order of the studio's gallery."""
 
 
-class Named(NamedTuple):
+class NamedExample(NamedTuple):
     """Example for the gallery: its name, its purpose, and one sentence on what it shows."""
 
     name: str
     group: Group
     line: str
+
+
+class RatioCheck(NamedTuple):
+    """The check of the tolerance of a speed ratio, and the metric that it compares with the tolerance."""
+
+    check: str
+    metric: str
+
+
+class TableColumns(NamedTuple):
+    """Columns of a table that states a problem: the list that its rows fill, and their required fields."""
+
+    field: str
+    required: tuple[str, ...]
+
+
+@dataclass(frozen=True)
+class TaskEasing(Generic[P]):
+    """Nearest-miss strategy of a kind whose task can be made gradually easier, if no design fulfils the whole task.
+
+    Attributes
+    ----------
+    ease : callable
+        Returns the statement with its task scaled to a share, 0 to 1, of what is requested.
+    list_reached : callable
+        Returns what an eased statement requests, as fields of :class:`synthesis.model.answer.Reachable`.
+    describe_reached : callable
+        Returns a sentence for the summary on what was reached, with a leading space, or an empty string.
+    """
+
+    ease: Callable[[P, float], P]
+    list_reached: Callable[[P], dict[str, Any]]
+    describe_reached: Callable[[Reachable], str]
+
+
+def list_no_problems() -> list[dict[str, Any]]:
+    """Return no statements."""
+    return []
 
 
 @dataclass(frozen=True)
@@ -84,6 +122,19 @@ class Kind(Generic[P, R]):
     brief : callable, optional
         Whether solving a statement usually takes a fraction of a second. The service runs such jobs alongside long
         searches. By default no statement is brief.
+    ratio_check : RatioCheck, optional
+        For kinds with an optional ``tolerance`` of a speed ratio. If no design is within it, the nearest miss is the
+        most accurate design without it.
+    easing : TaskEasing, optional
+        For kinds whose task can be eased. If no design fulfils the task, the nearest miss is found by bisection of the
+        share of the task. Needs ``verify``.
+    is_first_loaded : bool
+        Whether a new worker solves the first example before it takes jobs, because this kind is requested most.
+    list_warm_up_problems : callable, optional
+        Returns statements, runnable like the examples, whose kernels no example calls. They are solved when kernels are
+        compiled ahead of time.
+    columns : TableColumns, optional
+        How a table with a header states a problem of this kind.
     """
 
     name: str
@@ -93,21 +144,26 @@ class Kind(Generic[P, R]):
     warm_up: Callable[[], None] | None = None
     verify: Callable[[P, Any], Any] | None = None
     nearer: Callable[[P, Sequence[Any], Progress], Sequence[Any] | None] | None = None
-    brief: Callable[[P], bool] = never
+    brief: Callable[[P], bool] = return_false
     nearly: Callable[[P, Any, Any], Any] | None = None
-    gallery: tuple[Named, ...] = field(kw_only=True)
+    ratio_check: RatioCheck | None = None
+    easing: TaskEasing[P] | None = None
+    is_first_loaded: bool = False
+    list_warm_up_problems: Callable[[], list[dict[str, Any]]] = list_no_problems
+    columns: TableColumns | None = None
+    gallery: tuple[NamedExample, ...] = field(kw_only=True)
 
     @property
     def mechanisms(self) -> list[str]:
         """Types of mechanisms that its designs can have, in the order of the models of its answer."""
-        designs = models_within(self.result.model_fields["designs"].annotation)
-        return [name for design in designs for name in mechanism_types(design)]
+        designs = collect_models(self.result.model_fields["designs"].annotation)
+        return [name for design in designs for name in list_mechanism_types(design)]
 
     @property
     def metrics(self) -> list[str]:
         """Names of the metrics of its designs, in the order of the models of its answer."""
-        designs = models_within(self.result.model_fields["designs"].annotation)
-        measured = [model for design in designs for model in models_within(design.model_fields["metrics"].annotation)]
+        designs = collect_models(self.result.model_fields["designs"].annotation)
+        measured = [model for design in designs for model in collect_models(design.model_fields["metrics"].annotation)]
         named = [field.alias or name for model in measured for name, field in model.model_fields.items()]
         return list(dict.fromkeys(named))
 

@@ -8,9 +8,9 @@ from typing import Annotated, Literal
 from pydantic import Field, ValidationInfo, field_validator
 
 from synthesis.model.dimension import LENGTH
-from synthesis.model.statement import Count, NonNegative, PositiveLength, Statement
+from synthesis.model.problem import Count, NonNegative, PositiveLength, Statement
 
-MOST_PLANES = 20
+MAX_PLANES = 20
 """Maximum number of planes that may be requested; no linkage has that many links."""
 
 
@@ -38,16 +38,16 @@ class LayoutSizes(Statement):
 
     @field_validator("pin_diameter")
     @classmethod
-    def _within_links(cls, diameter: float, stated: ValidationInfo) -> float:
-        if diameter > stated.data.get("link_width", math.inf):
+    def _validate_diameter(cls, diameter: float, info: ValidationInfo) -> float:
+        if diameter > info.data.get("link_width", math.inf):
             raise ValueError("pin_diameter must not exceed link_width")
         return diameter
 
 
-class StatedLayout(LayoutSizes):
+class LayoutSpec(LayoutSizes):
     """Sizes of links and pins of each design, their arrangement in planes, and the maximum number of planes."""
 
-    max_planes: Annotated[Count, Field(ge=1, le=MOST_PLANES)] | None = Field(
+    max_planes: Annotated[Count, Field(ge=1, le=MAX_PLANES)] | None = Field(
         default=None,
         description="Maximum number of planes for moving links and gears; designs that need more are rejected.",
     )

@@ -7,14 +7,14 @@ from typing import Any, get_args
 from pydantic import BaseModel
 
 
-def mechanism_types(model: type[BaseModel]) -> list[str]:
+def list_mechanism_types(model: type[BaseModel]) -> list[str]:
     """Return the possible values of ``mechanism.type`` in a model of a design or of an analysis request."""
-    mechanisms = models_within(model.model_fields["mechanism"].annotation)
+    mechanisms = collect_models(model.model_fields["mechanism"].annotation)
     return [name for mechanism in mechanisms for name in get_args(mechanism.model_fields["type"].annotation)]
 
 
-def models_within(annotation: Any) -> list[type[BaseModel]]:
+def collect_models(annotation: Any) -> list[type[BaseModel]]:
     """Return the models that occur in a type annotation."""
     if isinstance(annotation, type) and issubclass(annotation, BaseModel):
         return [annotation]
-    return [model for part in get_args(annotation) for model in models_within(part)]
+    return [model for part in get_args(annotation) for model in collect_models(part)]

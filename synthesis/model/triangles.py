@@ -3,16 +3,15 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
-Complex = NDArray[np.complex128]
+from kinematics.arrays import Complex
 
-TURNS = (0.0, 0.37, 0.81, 1.3, 2.1, 2.9)
+TRIAL_ROTATIONS = (0.0, 0.37, 0.81, 1.3, 2.1, 2.9)
 """Rotations (radians) to try in turn until an outline is triangulated: GEOS occasionally fails on valid outlines,
 depending on the last digits of their corners."""
 
 
-def triangles_of(corners: Complex) -> Complex:
+def triangulate_polygon(corners: Complex) -> Complex:
     """Triangulate a polygon between its own corners; complex, shape (k, 3).
 
     An outline that touches itself by rounding is split there. If the triangulation fails, the convex hull is used.
@@ -20,7 +19,7 @@ def triangles_of(corners: Complex) -> Complex:
     from shapely import Polygon, constrained_delaunay_triangles, get_coordinates, get_parts
     from shapely.errors import GEOSException
 
-    for turn in TURNS:
+    for turn in TRIAL_ROTATIONS:
         turned = corners * np.exp(1j * turn)
         shape = Polygon(np.stack([turned.real, turned.imag], axis=1))
         shape = shape if shape.is_valid else shape.buffer(0.0)

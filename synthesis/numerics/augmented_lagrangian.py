@@ -10,7 +10,7 @@ and between descents λ becomes max(0, λ − w g), or λ − w h. The cost stay
 to the forces of the limits, so that the limits hold to rounding in the end although w stays moderate.
 
 The values g and h are called *margins*. A problem keeps them at the end of its ``state``, one for each multiplier, and
-appends their rows by :func:`limit_rows`. A limit that was not given has an infinite margin.
+appends their rows by :func:`append_limit_rows`. A limit that was not given has an infinite margin.
 """
 
 from __future__ import annotations
@@ -20,13 +20,11 @@ from typing import Any
 
 import numpy as np
 from numba import types
-from numpy.typing import NDArray
 
+from kinematics.arrays import Real
 from kinematics.compiling import njit
-from synthesis.numerics.levenberg import MATRIX, ROWS, VECTOR, descend, half_square
+from synthesis.numerics.levenberg import MATRIX, ROWS, VECTOR, compute_half_square, descend
 from synthesis.numerics.status import Status
-
-Real = NDArray[np.float64]
 
 VIOLATION_TOLERANCE = 1e-11
 """Violation of a limit (in task sizes, or as a share of a length) that counts as rounding."""
@@ -34,7 +32,7 @@ VIOLATION_TOLERANCE = 1e-11
 MAX_ROUNDS, MAX_STEPS = 20, 300
 """Maximum number of descents, and of steps of each: a problem of a few unknowns that needs more has no minimum."""
 
-TOLERANCE = 1e-14
+GRADIENT_TOLERANCE = 1e-14
 """Relative decrease of the cost at which a descent ends: see :func:`synthesis.numerics.levenberg.descend`."""
 
 SLOW_DECREASE, WEIGHT_INCREASE = 0.25, 10.0
@@ -47,14 +45,14 @@ _IMPOSSIBLE, _INFEASIBLE = int(Status.IMPOSSIBLE), int(Status.INFEASIBLE)
 
 
 @njit(cache=True, nogil=True)
-def load_of(margin: float, multiplier: float, weight: float, equation: bool) -> float:
+def compute_load(margin: float, multiplier: float, weight: float, equation: bool) -> float:
     """Return λ/w − g if the limit bears a load, otherwise 0."""
     load: float = multiplier / weight - margin
     return load if equation or load > 0.0 else 0.0
 
 
 @njit(cache=True, nogil=True)
-def limit_rows(
+def append_limit_rows(
     margins: Real, gradients: Real, equations: int, multipliers: Real, residuals: Real, jacobian: Real, m: int
 ) -> int:
     """Append the residuals of the limits that bear a load, from row m on, and return the new number of rows.
@@ -74,7 +72,7 @@ def limit_rows(
     for k in range(limits):
         if margins[k] == np.inf:
             continue
-        load = load_of(margins[k], multipliers[k], weight, k >= limits - equations)
+        load = compute_load(margins[k], multipliers[k], weight, k >= limits - equations)
         # A limit without load adds no row, so that the number of rows changes from step to step.
         if load != 0.0:
             residuals[m] = root * load
@@ -85,7 +83,7 @@ def limit_rows(
 
 
 @njit(cache=True, nogil=True)
-def _renew(margins: Real, equations: int, multipliers: Real) -> float:
+def _update_multipliers(margins: Real, equations: int, multipliers: Real) -> float:
     """Update the multipliers for the next descent from the margins of the last one; return the largest violation."""
     limits = margins.size
     weight, worst = multipliers[limits], 0.0
@@ -94,7 +92,7 @@ def _renew(margins: Real, equations: int, multipliers: Real) -> float:
             equation = k >= limits - equations
             # An inequality is violated on one side only, an equation on both.
             worst = max(worst, abs(margins[k]) if equation else -margins[k])
-            multipliers[k] = weight * load_of(margins[k], multipliers[k], weight, equation)
+            multipliers[k] = weight * compute_load(margins[k], multipliers[k], weight, equation)
     return worst
 
 
@@ -106,7 +104,7 @@ def _renew(margins: Real, equations: int, multipliers: Real) -> float:
     cache=True,
     nogil=True,
 )  # fmt: skip
-def hold(
+def descend_constrained(
     rows: Any,
     x: Real,
     points: Real,
@@ -147,10 +145,10 @@ def hold(
     status = _IMPOSSIBLE
     ended[0] = np.inf
     for _ in range(rounds):
-        _, status = descend(rows, x, points, setting, multipliers, state, most, steps, TOLERANCE)
+        _, status = descend(rows, x, points, setting, multipliers, state, most, steps, GRADIENT_TOLERANCE)
         if status == _IMPOSSIBLE:
             return _IMPOSSIBLE
-        worst = _renew(margins, equations, multipliers)
+        worst = _update_multipliers(margins, equations, multipliers)
         if worst <= VIOLATION_TOLERANCE:
             break
         if worst > SLOW_DECREASE * before:
@@ -162,7 +160,7 @@ def hold(
     m = rows(x, points, setting, multipliers, state, residuals, jacobian)
     if m < 0:
         return _IMPOSSIBLE
-    ended[0] = half_square(residuals, m)
+    ended[0] = compute_half_square(residuals, m)
     # The last decade is forgiven: an update in the last round may have come close without reaching the tolerance.
     end: int = status if worst <= 10.0 * VIOLATION_TOLERANCE else _INFEASIBLE
     return end

@@ -4,12 +4,8 @@ from __future__ import annotations
 
 import math
 
-import numpy as np
-from numpy.typing import NDArray
-
+from kinematics.arrays import Real
 from kinematics.compiling import njit
-
-Real = NDArray[np.float64]
 
 
 @njit(cache=True, nogil=True, error_model="numpy")

@@ -15,10 +15,8 @@ from importlib import import_module
 from typing import Literal, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
-Real = NDArray[np.float64]
-
+from kinematics.arrays import Real
 
 Status = Literal["solved", "infeasible", "unbounded", "failed"]
 
@@ -31,7 +29,7 @@ STATUSES: dict[str, Status] = {
 """Status of a program by Clarabel's name for it; every other name counts as failed."""
 
 
-class Rows(NamedTuple):
+class ConeRows(NamedTuple):
     """Rows b − A x in one cone, or in several second-order cones of ``size`` rows each."""
 
     cone: Literal["zero", "nonnegative", "second_order"]
@@ -52,12 +50,12 @@ class Solution(NamedTuple):
     status: Status
 
 
-ROUTES: tuple[dict[str, float | bool], ...] = ({}, {"equilibrate_enable": False}, {"max_step_fraction": 0.95})
+SOLVER_SETTINGS: tuple[dict[str, float | bool], ...] = ({}, {"equilibrate_enable": False}, {"max_step_fraction": 0.95})
 """Settings to try in turn until the solver reaches full accuracy: some programs stall with one of them, none with all.
 """
 
 
-def minimized(cost: Real, rows: Sequence[Rows]) -> Solution:
+def solve_conic_program(cost: Real, rows: Sequence[ConeRows]) -> Solution:
     """Solve a conic program by Clarabel's interior-point method."""
     clarabel, sparse = import_module("clarabel"), import_module("scipy.sparse")
     cones = []
@@ -71,7 +69,7 @@ def minimized(cost: Real, rows: Sequence[Rows]) -> Solution:
     offset = np.concatenate([part.offset for part in rows])
     none = sparse.csc_matrix((len(cost), len(cost)))
     nearly = None
-    for route in ROUTES:
+    for route in SOLVER_SETTINGS:
         # One thread: the programs are small, and callers run several at a time.
         settings = clarabel.DefaultSettings()
         settings.verbose = False

@@ -32,10 +32,9 @@ import numpy as np
 from numba import types
 from numpy.typing import NDArray
 
+from kinematics.arrays import Complex
 from kinematics.compiling import njit
 from synthesis.numerics.double_double import add, multiply
-
-Complex = NDArray[np.complex128]
 
 _VECTOR = types.Array(types.complex128, 1, "C")
 _INDICES = types.Array(types.int64, 1, "C")
@@ -43,37 +42,37 @@ _INDICES = types.Array(types.int64, 1, "C")
 SYSTEM = types.int64(_VECTOR, _VECTOR, _VECTOR, _VECTOR, _VECTOR, _VECTOR, _VECTOR, _VECTOR)
 """The type of a compiled system: y, low, p, p_low, dp, newton, tangent, work."""
 
-REACHED, TOO_MANY_STEPS, STEP_TOO_SMALL, NOT_CONVERGED = range(4)
+END_REACHED, TOO_MANY_STEPS, STEP_TOO_SMALL, NOT_CONVERGED = range(4)
 """Status of a path's end; only ``REACHED`` is a solution."""
 
-CLOSE, PRECISELY_CLOSE = 1e-6, 1e-9
+CORRECTOR_TOLERANCE, PRECISE_CORRECTOR_TOLERANCE = 1e-6, 1e-9
 """Relative Newton step at which a point is close enough to its path, in ordinary and in double-double precision. The
 error that remains is the square of it."""
 
-CORRECTIONS, PRECISE_CORRECTIONS = 3, 6
+MAX_CORRECTIONS, MAX_PRECISE_CORRECTIONS = 3, 6
 """Maximum number of Newton steps after a prediction, in ordinary and in double-double precision."""
 
-SHARP = 1e-13
+REFINEMENT_TOLERANCE = 1e-13
 """Relative Newton step to which an end point is refined, if rounding permits."""
 
-CONVERGED = 1e-7
+CONVERGENCE_TOLERANCE = 1e-7
 """Relative last Newton step above which a path has not converged: its end is singular, or the path was lost."""
 
-FIRST_STEP, LEAST_STEP, LEAST_SHARE = 0.02, 1e-12, 1e-7
+FIRST_STEP, MIN_STEP, MIN_STEP_SHARE = 0.02, 1e-12, 1e-7
 """First step of t, and the step below which a path is abandoned because it runs into a singularity. In double-double
 precision the minimum is a share of the remaining path, since nearly singular ends need ever smaller steps."""
 
-OVERFLOW, UNDERFLOW = 1e300, 1e-300
+OVERFLOW_LIMIT, UNDERFLOW_LIMIT = 1e300, 1e-300
 """Squared size above which a path has diverged, and a number that keeps quotients by zero defined."""
 
-LEFT = 0.2
+MIN_REMAINING_SHARE = 0.2
 """Share of the progress that each further run of all paths leaves to the runs after it, which are seldom needed."""
 
-CHUNK = 16
+CHUNK_SIZE = 16
 """Number of paths that a thread takes at a time: a few milliseconds of work."""
 
 
-class Ends(NamedTuple):
+class PathEnds(NamedTuple):
     """Ends of paths.
 
     Attributes
@@ -81,7 +80,7 @@ class Ends(NamedTuple):
     y, low : complex, shape (paths, n)
         End points and their rounding errors.
     status : int, shape (paths,)
-        :data:`REACHED`, or the reason why there is no solution.
+        :data:`END_REACHED`, or the reason why there is no solution.
     steps : int, shape (paths,)
         Number of steps, refused ones included.
     """
@@ -93,7 +92,7 @@ class Ends(NamedTuple):
 
 
 @njit(cache=True, nogil=True)
-def _relative(step: Complex, y: Complex, groups: Any) -> float:
+def _compute_relative_size(step: Complex, y: Complex, groups: Any) -> float:
     """Return the size of a step relative to the point: the maximum over the groups of unknowns that share a scale."""
     largest = 0.0
     n = 0
@@ -105,14 +104,14 @@ def _relative(step: Complex, y: Complex, groups: Any) -> float:
             moved = max(moved, step[n].real ** 2 + step[n].imag ** 2)
             n += 1
         # Written so that NaN counts as overflow, too.
-        if not moved <= OVERFLOW:
+        if not moved <= OVERFLOW_LIMIT:
             return np.inf
-        largest = max(largest, moved / (size + UNDERFLOW))
+        largest = max(largest, moved / (size + UNDERFLOW_LIMIT))
     return math.sqrt(largest)
 
 
 @njit(cache=True, nogil=True)
-def _parameters(left: float, start: Complex, end: Complex, bend: Complex, p: Complex, dp: Complex) -> None:
+def _interpolate_parameters(left: float, start: Complex, end: Complex, bend: Complex, p: Complex, dp: Complex) -> None:
     """Write the parameters at t = 1 − ``left`` and their derivatives by t."""
     t = 1.0 - left
     for k in range(p.size):
@@ -121,7 +120,7 @@ def _parameters(left: float, start: Complex, end: Complex, bend: Complex, p: Com
 
 
 @njit(cache=True, nogil=True)
-def _precise_parameters(
+def _interpolate_precise_parameters(
     left: float, start: Complex, end: Complex, bend: Complex, p: Complex, p_low: Complex, dp: Complex
 ) -> None:
     """Write the parameters in double-double precision, as p₁ + (1 − t) (p₀ − p₁ + t b)."""
@@ -160,13 +159,13 @@ def _refine(
     for _ in range(8):
         if system(y, low, p, p_low, dp, newton, tangent, work) == 0:
             break
-        now = _relative(newton, y, groups)
+        now = _compute_relative_size(newton, y, groups)
         if now >= moved:
             break
         moved = now
         for k in range(y.size):
             y[k], low[k] = add(y[k], low[k], newton[k], 0j)
-        if moved < SHARP:
+        if moved < REFINEMENT_TOLERANCE:
             break
     return moved
 
@@ -201,14 +200,16 @@ def _follow(
     newton, tangent = np.empty(n, np.complex128), np.empty(n, np.complex128)
     at, rest = np.empty(n, np.complex128), np.zeros(n, np.complex128)
     left, h, tried, grown = 1.0, FIRST_STEP, 0, 2.0
-    close, corrections = (PRECISELY_CLOSE, PRECISE_CORRECTIONS) if precise else (CLOSE, CORRECTIONS)
-    _parameters(left, start, end, bend, p, dp)
+    close, corrections = (
+        (PRECISE_CORRECTOR_TOLERANCE, MAX_PRECISE_CORRECTIONS) if precise else (CORRECTOR_TOLERANCE, MAX_CORRECTIONS)
+    )
+    _interpolate_parameters(left, start, end, bend, p, dp)
     system(y, low, p, p_low, dp, newton, tangent, work)
     slopes[0] = tangent
     while left > 0.0:
         if tried >= most_steps:
             return TOO_MANY_STEPS, tried
-        if h < (LEAST_SHARE * left if precise else LEAST_STEP):
+        if h < (MIN_STEP_SHARE * left if precise else MIN_STEP):
             return STEP_TOO_SMALL, tried
         tried += 1
         h = min(h, left)
@@ -216,9 +217,9 @@ def _follow(
         for stage in range(1, 4):
             reach = h if stage == 3 else 0.5 * h
             if stage != 2 and precise:
-                _precise_parameters(left - reach, start, end, bend, p, p_low, dp)
+                _interpolate_precise_parameters(left - reach, start, end, bend, p, p_low, dp)
             elif stage != 2:
-                _parameters(left - reach, start, end, bend, p, dp)
+                _interpolate_parameters(left - reach, start, end, bend, p, dp)
             for k in range(n):
                 at[k] = y[k] + reach * slopes[stage - 1, k]
             system(at, low, p, p_low, dp, newton, tangent, work)
@@ -230,7 +231,7 @@ def _follow(
         for correction in range(corrections):
             if system(at, rest, p, p_low, dp, newton, tangent, work) == 0:
                 break
-            moved = _relative(newton, at, groups)
+            moved = _compute_relative_size(newton, at, groups)
             if correction == 0:
                 missed = moved
             # A large correction may lead to a neighbouring path: refuse the step.
@@ -242,7 +243,7 @@ def _follow(
                 accepted = True
                 break
         # The prediction error is of order h⁵; aim at 0.4 of the tolerance.
-        scale = (0.4 * tolerance / (missed + UNDERFLOW)) ** 0.2 if missed < OVERFLOW else 0.2
+        scale = (0.4 * tolerance / (missed + UNDERFLOW_LIMIT)) ** 0.2 if missed < OVERFLOW_LIMIT else 0.2
         if accepted:
             left -= h
             for k in range(n):
@@ -255,7 +256,7 @@ def _follow(
             h *= min(max(scale, 0.2), 0.6)
             grown = 1.0
     moved = _refine(system, groups, y, low, p, p_low, dp, newton, tangent, work)
-    return (REACHED if moved < CONVERGED else NOT_CONVERGED), tried
+    return (END_REACHED if moved < CONVERGENCE_TOLERANCE else NOT_CONVERGED), tried
 
 
 @njit(
@@ -318,7 +319,7 @@ def follow(
     most_steps: int = 5000,
     threads: int = 1,
     precise: bool = False,
-) -> Ends:
+) -> PathEnds:
     """Follow solutions from one set of parameters to another.
 
     Parameters
@@ -355,18 +356,18 @@ def follow(
 
     kernel: Any = _follow_all
 
-    def work(first: int) -> None:
-        some = slice(first, first + CHUNK)
+    def run_chunk(first: int) -> None:
+        some = slice(first, first + CHUNK_SIZE)
         limits = tolerance, most_steps, scratch, precise
         kernel(system, groups, ends[some], low[some], *ways, *limits, status[some], steps[some])
 
     if threads == 1:
-        for first in range(0, count, CHUNK):
-            work(first)
+        for first in range(0, count, CHUNK_SIZE):
+            run_chunk(first)
     else:
         with ThreadPoolExecutor(threads) as pool:
-            list(pool.map(work, range(0, count, CHUNK)))
-    return Ends(ends, low, status, steps)
+            list(pool.map(run_chunk, range(0, count, CHUNK_SIZE)))
+    return PathEnds(ends, low, status, steps)
 
 
 def refine(
@@ -388,7 +389,7 @@ def refine(
     return y, low, moved
 
 
-def further(way: int, share: float) -> float:
+def estimate_progress(way: int, share: float) -> float:
     """Return the progress of a search that may follow all paths several times, with ``share`` of run ``way`` done.
 
     The number of runs is not known in advance, so that each run takes a fixed share of the remaining progress; the
@@ -397,4 +398,4 @@ def further(way: int, share: float) -> float:
     >>> further(0, 0.0), further(0, 1.0), further(1, 0.0), round(further(1, 1.0), 2)
     (0.0, 0.8, 0.8, 0.96)
     """
-    return 1.0 - LEFT**way * (1.0 - (1.0 - LEFT) * share)
+    return 1.0 - MIN_REMAINING_SHARE**way * (1.0 - (1.0 - MIN_REMAINING_SHARE) * share)

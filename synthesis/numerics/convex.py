@@ -7,17 +7,17 @@ from importlib import import_module
 from typing import Any
 
 
-def modeling() -> Any:
+def import_cvxpy() -> Any:
     """Import cvxpy and return it. The import takes a second, so that only callers that solve a program pay for it."""
     return import_module("cvxpy")
 
 
-def minimized(cost: Any, constraints: list[Any]) -> bool:
+def solve_convex_program(cost: Any, constraints: list[Any]) -> bool:
     """Solve a cvxpy program and return whether it has a solution.
 
     A solution of reduced accuracy counts, since callers measure the result themselves.
     """
-    cp = modeling()
+    cp = import_cvxpy()
     problem = cp.Problem(cp.Minimize(cost), constraints)
     try:
         with warnings.catch_warnings():

@@ -14,7 +14,7 @@ _SPLITTER = 134217729.0
 
 
 @njit(cache=True, nogil=True, inline="always")
-def two_sum(a: complex, b: complex) -> tuple[complex, complex]:
+def add_exactly(a: complex, b: complex) -> tuple[complex, complex]:
     """Return the rounded sum a + b and its exact rounding error (Knuth)."""
     total = a + b
     part = total - a
@@ -22,7 +22,7 @@ def two_sum(a: complex, b: complex) -> tuple[complex, complex]:
 
 
 @njit(cache=True, nogil=True)
-def _two_product(a: float, b: float) -> tuple[float, float]:
+def _multiply_exactly(a: float, b: float) -> tuple[float, float]:
     """Return the rounded product a b of real numbers and its exact rounding error (Dekker)."""
     product = a * b
     # Split both factors into halves of 26 bits, whose partial products are exact.
@@ -37,7 +37,7 @@ def _two_product(a: float, b: float) -> tuple[float, float]:
 @njit(cache=True, nogil=True)
 def add(a: complex, a_low: complex, b: complex, b_low: complex) -> tuple[complex, complex]:
     """Return a + b as a pair (high, low)."""
-    total, rest = two_sum(a, b)
+    total, rest = add_exactly(a, b)
     rest += a_low + b_low
     high = total + rest
     return high, rest - (high - total)
@@ -46,18 +46,18 @@ def add(a: complex, a_low: complex, b: complex, b_low: complex) -> tuple[complex
 @njit(cache=True, nogil=True)
 def multiply(a: complex, a_low: complex, b: complex, b_low: complex) -> tuple[complex, complex]:
     """Return a b as a pair (high, low)."""
-    p, p_low = _two_product(a.real, b.real)
-    q, q_low = _two_product(-a.imag, b.imag)
-    u, u_low = _two_product(a.real, b.imag)
-    v, v_low = _two_product(a.imag, b.real)
-    total, rest = two_sum(complex(p, u), complex(q, v))
+    p, p_low = _multiply_exactly(a.real, b.real)
+    q, q_low = _multiply_exactly(-a.imag, b.imag)
+    u, u_low = _multiply_exactly(a.real, b.imag)
+    v, v_low = _multiply_exactly(a.imag, b.real)
+    total, rest = add_exactly(complex(p, u), complex(q, v))
     rest += complex(p_low + q_low, u_low + v_low) + (a * b_low + a_low * b)
     high = total + rest
     return high, rest - (high - total)
 
 
 @njit(cache=True, nogil=True)
-def reciprocal(a: complex, a_low: complex) -> tuple[complex, complex]:
+def compute_reciprocal(a: complex, a_low: complex) -> tuple[complex, complex]:
     """Return 1 / a as a pair (high, low), by one Newton step from the quotient in ordinary precision."""
     first = 1.0 / a
     product, product_low = multiply(a, a_low, first, 0j)

@@ -7,12 +7,10 @@ from __future__ import annotations
 
 from typing import Any
 
-import numpy as np
 from numpy.typing import NDArray
 
+from kinematics.arrays import Complex
 from kinematics.compiling import njit
-
-Complex = NDArray[np.complex128]
 
 
 @njit(cache=True, nogil=True)

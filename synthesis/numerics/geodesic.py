@@ -20,38 +20,36 @@ from typing import Any
 
 import numpy as np
 from numba import types
-from numpy.typing import NDArray
 
+from kinematics.arrays import Real
 from kinematics.compiling import njit
-from synthesis.numerics.levenberg import MATRIX, ROWS, VECTOR, half_square
+from synthesis.numerics.levenberg import MATRIX, ROWS, VECTOR, compute_half_square
 
-Real = NDArray[np.float64]
-
-FIRST_DAMPING, LEAST_DAMPING, MOST_DAMPING = 1e-3, 1e-20, 1e8
+FIRST_DAMPING, MIN_DAMPING, MAX_DAMPING = 1e-3, 1e-20, 1e8
 """Damping μ: initial value, minimum, and the value above which the descent has stalled."""
 
-LOWERED, RAISED = 5.0, 2.0
+DAMPING_DECREASE, DAMPING_INCREASE = 5.0, 2.0
 """Factors by which the damping falls after an accepted step and rises after a refused one."""
 
-ALPHA = 0.75
+MAX_ACCELERATION_RATIO = 0.75
 """Maximum ratio α of acceleration to velocity, both scaled by D."""
 
-DIFFERENCE = 0.1
+DIFFERENCE_STEP = 0.1
 """Step h of the finite difference for the second derivative, as a multiple of the velocity."""
 
-LONGEST = 1.0
+MAX_STEP = 1.0
 """Maximum change of an unknown in one step."""
 
-ROUNDING = 1e-29
+ROUNDING_COST = 1e-29
 """Cost that is pure rounding, as residuals are scaled to the size of the task."""
 
-SMALL_GAIN, PATIENCE = 1e-9, 5
+MIN_RELATIVE_GAIN, MAX_STALLED_STEPS = 1e-9, 5
 """Relative gain at or below which a step counts as idle, and the number of consecutive idle steps that end the descent.
 """
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
-def _decomposed(matrix: Real, rows: int, columns: int, heads: Real) -> bool:
+def _decompose_qr(matrix: Real, rows: int, columns: int, heads: Real) -> bool:
     """Decompose a matrix in place by Householder reflections; return whether it has full rank.
 
     Afterwards R stands above the diagonal and its diagonal in ``heads``; the reflection vectors stand on and below the
@@ -79,7 +77,7 @@ def _decomposed(matrix: Real, rows: int, columns: int, heads: Real) -> bool:
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
-def _solved(matrix: Real, rows: int, columns: int, heads: Real, right: Real, step: Real) -> None:
+def _solve_qr(matrix: Real, rows: int, columns: int, heads: Real, right: Real, step: Real) -> None:
     """Solve the least-squares problem of a decomposed system for ``step``; ``right`` is overwritten."""
     # Apply the reflections to the right side, then substitute backward in R.
     for j in range(columns):
@@ -98,7 +96,7 @@ def _solved(matrix: Real, rows: int, columns: int, heads: Real, right: Real, ste
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
-def _scaled_norm(scale: Real, step: Real) -> float:
+def _compute_scaled_norm(scale: Real, step: Real) -> float:
     total = 0.0
     for j in range(step.size):
         total += (scale[j] * step[j]) ** 2
@@ -129,7 +127,7 @@ def follow_valley(
     m = rows(x, points, setting, multipliers, state, residuals, jacobian)
     if m < 0:
         return math.inf
-    cost = half_square(residuals, m)
+    cost = compute_half_square(residuals, m)
     trial, trial_state = np.empty(n), np.empty(state.size)
     open_, scale = np.zeros(n, np.int64), np.zeros(n)
     # Columns of zeros belong to unknowns that the problem holds fixed; the QR decomposition must not contain them.
@@ -146,7 +144,7 @@ def follow_valley(
     matrix, right = np.zeros((most + free, free)), np.zeros(most + free)
     damping, idle = FIRST_DAMPING, 0
     for _ in range(steps):
-        if cost < ROUNDING or damping > MOST_DAMPING or idle >= PATIENCE:
+        if cost < ROUNDING_COST or damping > MAX_DAMPING or idle >= MAX_STALLED_STEPS:
             break
         for j in range(free):
             norm = 0.0
@@ -157,24 +155,24 @@ def follow_valley(
             for i in range(free):
                 matrix[m + i, j] = 0.0
             matrix[m + j, j] = math.sqrt(damping) * scale[j]
-        if not _decomposed(matrix, m + free, free, heads):
+        if not _decompose_qr(matrix, m + free, free, heads):
             break
         right[: m + free] = 0.0
         right[:m] = -residuals[:m]
-        _solved(matrix, m + free, free, heads, right, velocity)
+        _solve_qr(matrix, m + free, free, heads, right, velocity)
         longest = np.abs(velocity).max()
         if not longest < math.inf:
             break
         # A long step says nothing about the direction of the valley at x: damp it instead of shortening it.
-        if longest > LONGEST:
-            damping *= RAISED
+        if longest > MAX_STEP:
+            damping *= DAMPING_INCREASE
             continue
         trial[:] = x
         for j in range(free):
-            trial[open_[j]] += DIFFERENCE * velocity[j]
+            trial[open_[j]] += DIFFERENCE_STEP * velocity[j]
         trial_state[:] = state
         if rows(trial, points, setting, multipliers, trial_state, tried, unused) != m:
-            damping *= RAISED
+            damping *= DAMPING_INCREASE
             continue
         # Second derivative of the residuals along the velocity, by a one-sided difference with the known slope.
         right[: m + free] = 0.0
@@ -182,10 +180,12 @@ def follow_valley(
             along = 0.0
             for j in range(free):
                 along += jacobian[i, open_[j]] * velocity[j]
-            right[i] = -2.0 / DIFFERENCE * ((tried[i] - residuals[i]) / DIFFERENCE - along)
-        _solved(matrix, m + free, free, heads, right, acceleration)
-        if not _scaled_norm(scale, acceleration) <= ALPHA * _scaled_norm(scale, velocity):
-            damping *= RAISED
+            right[i] = -2.0 / DIFFERENCE_STEP * ((tried[i] - residuals[i]) / DIFFERENCE_STEP - along)
+        _solve_qr(matrix, m + free, free, heads, right, acceleration)
+        if not _compute_scaled_norm(scale, acceleration) <= MAX_ACCELERATION_RATIO * _compute_scaled_norm(
+            scale, velocity
+        ):
+            damping *= DAMPING_INCREASE
             continue
         trial[:] = x
         # Second-order Taylor step x(1) = x + v + a/2 along the geodesic.
@@ -193,15 +193,15 @@ def follow_valley(
             trial[open_[j]] += velocity[j] + 0.5 * acceleration[j]
         trial_state[:] = state
         reached = rows(trial, points, setting, multipliers, trial_state, tried, unused)
-        gained = half_square(tried, m) if reached == m else math.inf
+        gained = compute_half_square(tried, m) if reached == m else math.inf
         if not gained < cost:
-            damping *= RAISED
+            damping *= DAMPING_INCREASE
             continue
-        idle = idle + 1 if cost - gained <= SMALL_GAIN * cost else 0
+        idle = idle + 1 if cost - gained <= MIN_RELATIVE_GAIN * cost else 0
         cost = gained
         x[:] = trial
         state[:] = trial_state
         residuals, tried = tried, residuals
         jacobian, unused = unused, jacobian
-        damping = max(damping / LOWERED, LEAST_DAMPING)
+        damping = max(damping / DAMPING_DECREASE, MIN_DAMPING)
     return cost

@@ -28,11 +28,10 @@ import numpy as np
 from numba import types
 from numpy.typing import NDArray
 
+from kinematics.arrays import Real
 from kinematics.compiling import njit
 from synthesis.numerics.cholesky import solve_positive
 from synthesis.numerics.status import Status
-
-Real = NDArray[np.float64]
 
 VECTOR = types.Array(types.float64, 1, "C")
 MATRIX = types.Array(types.float64, 2, "C")
@@ -55,16 +54,16 @@ MIN_SCALE = 1e-12
 STEP_TOLERANCE = 1e-15
 """Length of a step, or ratio of the predicted gain to the cost, below which it is rounding."""
 
-_STALLED, _SINGULAR, _IMPOSSIBLE = int(Status.STALLED), int(Status.SINGULAR), int(Status.IMPOSSIBLE)
+_NO_DECREASE, _SINGULAR, _IMPOSSIBLE = int(Status.NO_DECREASE), int(Status.SINGULAR), int(Status.IMPOSSIBLE)
 _STEP_LIMIT, _GRADIENT, _COST = int(Status.STEP_LIMIT), int(Status.GRADIENT), int(Status.COST)
 _STEP, _ZERO = int(Status.STEP), int(Status.ZERO)
 
-ENDED: Any = types.Tuple((types.float64, types.int64))
+DESCENT_RESULT: Any = types.Tuple((types.float64, types.int64))
 """Compiled type of a descent's result: half the sum of squares and the :class:`~synthesis.numerics.status.Status`."""
 
 
 @njit(cache=True, nogil=True)
-def half_square(residuals: Real, m: int) -> float:
+def compute_half_square(residuals: Real, m: int) -> float:
     """Return half the sum of squares of the first m residuals."""
     cost = 0.0
     for k in range(m):
@@ -73,7 +72,7 @@ def half_square(residuals: Real, m: int) -> float:
 
 
 @njit(cache=True, nogil=True)
-def _normal(residuals: Real, jacobian: Real, m: int, n: int, matrix: Real, gradient: Real) -> None:
+def _build_normal_equations(residuals: Real, jacobian: Real, m: int, n: int, matrix: Real, gradient: Real) -> None:
     """Write g and the lower triangle of A for the first m rows."""
     for i in range(n):
         gradient[i] = 0.0
@@ -90,7 +89,7 @@ def _normal(residuals: Real, jacobian: Real, m: int, n: int, matrix: Real, gradi
 
 
 @njit(cache=True, nogil=True)
-def _expected_gain(matrix: Real, gradient: Real, step: Real) -> float:
+def _predict_gain(matrix: Real, gradient: Real, step: Real) -> float:
     """Return the predicted gain −δᵀ(g + A δ/2), from the lower triangle of A."""
     gain = 0.0
     for i in range(step.size):
@@ -102,7 +101,9 @@ def _expected_gain(matrix: Real, gradient: Real, step: Real) -> float:
 
 
 @njit(
-    ENDED(types.FunctionType(ROWS), VECTOR, MATRIX, VECTOR, VECTOR, VECTOR, types.int64, types.int64, types.float64),
+    DESCENT_RESULT(
+        types.FunctionType(ROWS), VECTOR, MATRIX, VECTOR, VECTOR, VECTOR, types.int64, types.int64, types.float64
+    ),
     cache=True,
     nogil=True,
 )
@@ -148,10 +149,10 @@ def descend(
     trial, trial_state = np.empty(n), np.empty(state.size)
     matrix, factor, gradient, step = np.empty((n, n)), np.empty((n, n)), np.empty(n), np.empty(n)
     scale = np.full(n, MIN_SCALE)
-    cost = half_square(residuals, m)
+    cost = compute_half_square(residuals, m)
     if not cost < np.inf:
         return np.inf, _IMPOSSIBLE
-    _normal(residuals, jacobian, m, n, matrix, gradient)
+    _build_normal_equations(residuals, jacobian, m, n, matrix, gradient)
     damping, growth, small = FIRST_DAMPING, 2.0, 0
     for _ in range(steps):
         if cost < ZERO_COST:
@@ -173,11 +174,11 @@ def descend(
             return cost, _SINGULAR
         # Shorten, but keep the direction; the predicted gain is then computed for the shortened step.
         step *= MAX_STEP / longest if longest > MAX_STEP else 1.0
-        expected = _expected_gain(matrix, gradient, step)
+        expected = _predict_gain(matrix, gradient, step)
         trial[:] = x + step
         trial_state[:] = state
         trial_m = rows(trial, points, setting, multipliers, trial_state, trial_residuals, trial_jacobian)
-        trial_cost = half_square(trial_residuals, trial_m) if trial_m >= 0 else np.inf
+        trial_cost = compute_half_square(trial_residuals, trial_m) if trial_m >= 0 else np.inf
         if trial_cost < cost:
             ratio = (cost - trial_cost) / expected if expected > 0.0 else 1.0
             small = small + 1 if cost - trial_cost <= tolerance * cost else 0
@@ -186,7 +187,7 @@ def descend(
             state[:] = trial_state
             residuals, trial_residuals = trial_residuals, residuals
             jacobian, trial_jacobian = trial_jacobian, jacobian
-            _normal(residuals, jacobian, m, n, matrix, gradient)
+            _build_normal_equations(residuals, jacobian, m, n, matrix, gradient)
             damping = max(damping * max(1.0 / 3.0, 1.0 - (2.0 * ratio - 1.0) ** 3), MIN_DAMPING)
             growth = 2.0
             if small >= 2:
@@ -200,7 +201,7 @@ def descend(
         damping *= growth
         growth *= 2.0
         if damping > MAX_DAMPING:
-            return cost, _STALLED
+            return cost, _NO_DECREASE
     return cost, _STEP_LIMIT
 
 

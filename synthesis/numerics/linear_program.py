@@ -11,19 +11,18 @@ from typing import NamedTuple
 
 import highspy
 import numpy as np
-from numpy.typing import NDArray
 
-Real = NDArray[np.float64]
+from kinematics.arrays import Real
 
 
-class Least(NamedTuple):
+class LinearMinimum(NamedTuple):
     """Minimizer of a linear program and the minimum."""
 
     at: Real
     value: float
 
 
-def least(cost: Real, rows: Real, limits: Real, low: Real, high: Real) -> Least | None:
+def solve_linear_program(cost: Real, rows: Real, limits: Real, low: Real, high: Real) -> LinearMinimum | None:
     """Minimise cost · x subject to rows x ≤ limits and low ≤ x ≤ high.
 
     Parameters
@@ -65,4 +64,4 @@ def least(cost: Real, rows: Real, limits: Real, low: Real, high: Real) -> Least 
     program.run()
     if program.getModelStatus() != highspy.HighsModelStatus.kOptimal:
         return None
-    return Least(np.array(program.getSolution().col_value), float(program.getInfo().objective_function_value))
+    return LinearMinimum(np.array(program.getSolution().col_value), float(program.getInfo().objective_function_value))

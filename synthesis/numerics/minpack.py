@@ -10,21 +10,18 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import NamedTuple
 
-import numpy as np
-from numpy.typing import NDArray
 from scipy.optimize import least_squares
 
+from kinematics.arrays import Real
 from synthesis.numerics.status import Status
-
-Real = NDArray[np.float64]
 
 Function = Callable[[Real], Real]
 """Residuals of shape (m,), or their Jacobian of shape (m, n), at a point of shape (n,)."""
 
-TIGHT = 1e-13
+DEFAULT_TOLERANCE = 1e-13
 """Relative change of cost or point below which a fit has converged: a few hundred rounding errors."""
 
-EVALUATIONS = 200
+MAX_EVALUATIONS = 200
 """Maximum number of evaluations; a start near a minimum takes ten or twenty."""
 
 _STATUS = {
@@ -47,7 +44,12 @@ class Fit(NamedTuple):
 
 
 def fit(
-    residuals: Function, jacobian: Function, start: Real, *, tolerance: float = TIGHT, evaluations: int = EVALUATIONS
+    residuals: Function,
+    jacobian: Function,
+    start: Real,
+    *,
+    tolerance: float = DEFAULT_TOLERANCE,
+    evaluations: int = MAX_EVALUATIONS,
 ) -> Fit:
     """Descend from one start to a local minimum of half the sum of squared residuals.
 

@@ -17,37 +17,35 @@ from collections.abc import Callable
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
-from synthesis.numerics.linear_program import least
+from kinematics.arrays import Real
+from synthesis.numerics.linear_program import solve_linear_program
 
-Real = NDArray[np.float64]
-
-PENALTIES = (10.0, 1000.0)
+VIOLATION_PENALTIES = (10.0, 1000.0)
 """Penalties per unit of violation, in units of the values e. The first one lets steps cut corners. The second one is
 for shapes that then still violate a constraint; it exceeds the multipliers of useful designs: straightness to 1e-4
 costs about 50 times as much in the evenness of the velocity."""
 
-MET = 1e-6
+VIOLATION_TOLERANCE = 1e-6
 """Violation up to which a constraint counts as satisfied."""
 
-STEP = 1e-5
+DIFFERENCE_STEP = 1e-5
 """Relative step of the central differences. Their error, about 1e-10, only slows the last steps."""
 
-FIRST_TRUST, LARGEST_TRUST, LEAST_TRUST = 0.1, 0.5, 1e-10
+FIRST_TRUST_RADIUS, MAX_TRUST_RADIUS, MIN_TRUST_RADIUS = 0.1, 0.5, 1e-10
 """Trust radius as a share of 1 + |x|: initial, maximum, and the minimum at which the descent ends."""
 
-ARRIVED = 1e-6
+CONVERGENCE_TOLERANCE = 1e-6
 """Relative gain below which the band counts as narrowest."""
 
-LEAST_BAND = 1e-15
+MIN_BAND = 1e-15
 """Half width of a band that is pure rounding."""
 
-STEPS = 40
+MAX_STEPS = 40
 """Maximum number of accepted steps, each a linear program or several; ten to twenty are usual."""
 
 
-class Values(NamedTuple):
+class ShapeValues(NamedTuple):
     """Values of m shapes, the first axis; NaN for a shape that is no linkage.
 
     Attributes
@@ -65,7 +63,7 @@ class Values(NamedTuple):
     positive: Real
 
 
-class Narrowest(NamedTuple):
+class NarrowestBand(NamedTuple):
     """Shape, half the width of its band, and its largest violation of a constraint."""
 
     shape: Real
@@ -73,15 +71,15 @@ class Narrowest(NamedTuple):
     violation: float
 
 
-def narrowest(
-    values: Callable[[Real], Values],
+def find_narrowest_band(
+    values: Callable[[Real], ShapeValues],
     start: Real,
     low: Real,
     high: Real,
     *,
     half_limit: float = np.inf,
-    arrived: float = ARRIVED,
-) -> Narrowest | None:
+    arrived: float = CONVERGENCE_TOLERANCE,
+) -> NarrowestBand | None:
     """Descend from one start to a shape with a locally narrowest band.
 
     Parameters
@@ -100,43 +98,43 @@ def narrowest(
     Narrowest or None
         None if the start is no linkage.
     """
-    narrowest: Narrowest | None = None
-    for penalty in PENALTIES:
-        narrowest = _descent(values, start, low, high, half_limit, arrived, penalty)
-        if narrowest is None or narrowest.violation <= MET:
+    narrowest: NarrowestBand | None = None
+    for penalty in VIOLATION_PENALTIES:
+        narrowest = _descend_with_penalty(values, start, low, high, half_limit, arrived, penalty)
+        if narrowest is None or narrowest.violation <= VIOLATION_TOLERANCE:
             break
         start = narrowest.shape
     return narrowest
 
 
-def _descent(
-    values: Callable[[Real], Values],
+def _descend_with_penalty(
+    values: Callable[[Real], ShapeValues],
     start: Real,
     low: Real,
     high: Real,
     half_limit: float,
     arrived: float,
     penalty: float,
-) -> Narrowest | None:
+) -> NarrowestBand | None:
     """Descend with one penalty of violations."""
     x = np.clip(start, low, high)
     here = values(x[None])
-    merit, half_width, violation = _merit(here, half_limit, penalty)
+    merit, half_width, violation = _compute_merit(here, half_limit, penalty)
     if not np.isfinite(merit):
         return None
-    trust = FIRST_TRUST
-    for _ in range(STEPS):
-        tangents = _tangents(values, x)
+    trust = FIRST_TRUST_RADIUS
+    for _ in range(MAX_STEPS):
+        tangents = _compute_tangents(values, x)
         if tangents is None:
             break
-        while trust > LEAST_TRUST:
+        while trust > MIN_TRUST_RADIUS:
             reach = trust * (1.0 + np.abs(x))
             bounds = np.maximum(low - x, -reach), np.minimum(high - x, reach)
-            step, predicted = _step(here, tangents, *bounds, half_limit, penalty)
+            step, predicted = _solve_step(here, tangents, *bounds, half_limit, penalty)
             if step is None:
-                return Narrowest(x, half_width, violation)
+                return NarrowestBand(x, half_width, violation)
             tried = values((x + step)[None])
-            tried_merit = _merit(tried, half_limit, penalty)
+            tried_merit = _compute_merit(tried, half_limit, penalty)
             gain, hoped = merit - tried_merit[0], merit - predicted
             # A tenth of the predicted gain is enough to accept a step; otherwise the trust region shrinks around it.
             if np.isfinite(tried_merit[0]) and gain > 0.1 * hoped and hoped > 0.0:
@@ -145,15 +143,15 @@ def _descent(
         else:
             break
         # Enlarge the trust region only if the tangents predicted the gain well.
-        trust = min(LARGEST_TRUST, 2.0 * trust) if gain > 0.75 * hoped else trust
+        trust = min(MAX_TRUST_RADIUS, 2.0 * trust) if gain > 0.75 * hoped else trust
         x, here = x + step, tried
         merit, half_width, violation = tried_merit
         if gain <= arrived * merit:
             break
-    return Narrowest(x, half_width, violation)
+    return NarrowestBand(x, half_width, violation)
 
 
-def merits(values: Values, half_limit: float = np.inf, penalty: float = PENALTIES[0]) -> Real:
+def compute_merits(values: ShapeValues, half_limit: float = np.inf, penalty: float = VIOLATION_PENALTIES[0]) -> Real:
     """Return half width, largest violation and merit of m shapes, shape (3, m); infinite if a shape is no linkage.
 
     The merit is the half width plus the penalty times the violation.
@@ -166,22 +164,22 @@ def merits(values: Values, half_limit: float = np.inf, penalty: float = PENALTIE
     return np.where(np.isfinite(measures).all(axis=0), measures, np.inf)
 
 
-def _merit(values: Values, half_limit: float, penalty: float) -> tuple[float, float, float]:
-    half_width, violation, merit = merits(values, half_limit, penalty)[:, 0].tolist()
+def _compute_merit(values: ShapeValues, half_limit: float, penalty: float) -> tuple[float, float, float]:
+    half_width, violation, merit = compute_merits(values, half_limit, penalty)[:, 0].tolist()
     return merit, half_width, violation
 
 
-def _tangents(values: Callable[[Real], Values], x: Real) -> Values | None:
+def _compute_tangents(values: Callable[[Real], ShapeValues], x: Real) -> ShapeValues | None:
     """Differentiate the values by each coordinate: shapes (n, k), (n, j), (n, q); None at the edge of the linkages."""
-    h = STEP * (1.0 + np.abs(x))
+    h = DIFFERENCE_STEP * (1.0 + np.abs(x))
     around = values(np.concatenate([x + np.diag(h), x - np.diag(h)]))
     n = len(x)
-    derivatives = Values(*((part[:n] - part[n:]) / (2.0 * h[:, None]) for part in around))
+    derivatives = ShapeValues(*((part[:n] - part[n:]) / (2.0 * h[:, None]) for part in around))
     return derivatives if all(np.isfinite(part).all() for part in derivatives) else None
 
 
-def _step(
-    here: Values, tangents: Values, low: Real, high: Real, half_limit: float, penalty: float
+def _solve_step(
+    here: ShapeValues, tangents: ShapeValues, low: Real, high: Real, half_limit: float, penalty: float
 ) -> tuple[Real | None, float]:
     """Return the best step within bounds by the tangents, and the merit that they predict there.
 
@@ -192,17 +190,17 @@ def _step(
     j = here.limited.shape[1] if limited else 0
     # Scale steps by their bounds, and values by the present band around its middle: differences of 1e-9 between values
     # near 100 then survive the tolerances of the linear program.
-    unit = max(0.5 * float(np.ptp(here.banded)), LEAST_BAND)
-    reach = np.maximum(high - low, LEAST_BAND)
+    unit = max(0.5 * float(np.ptp(here.banded)), MIN_BAND)
+    reach = np.maximum(high - low, MIN_BAND)
     matrix = np.zeros((2 * k + 2 * j + q, n + 4))
     limit = np.empty(len(matrix))
-    banded = (here.banded[0] - _middle(here.banded)) / unit
+    banded = (here.banded[0] - _center_band(here.banded)) / unit
     slopes = tangents.banded.T * (reach / unit)
     for rows, sign in ((slice(0, k), 1.0), (slice(k, 2 * k), -1.0)):
         matrix[rows, :n], matrix[rows, n], matrix[rows, n + 2] = sign * slopes, -sign, -1.0
         limit[rows] = -sign * banded
     if limited:
-        centred = (here.limited[0] - _middle(here.limited)) / unit
+        centred = (here.limited[0] - _center_band(here.limited)) / unit
         slopes = tangents.limited.T * (reach / unit)
         for rows, sign in ((slice(2 * k, 2 * k + j), 1.0), (slice(2 * k + j, 2 * k + 2 * j), -1.0)):
             matrix[rows, :n], matrix[rows, n + 1], matrix[rows, n + 3] = sign * slopes, -sign, -1.0
@@ -217,11 +215,11 @@ def _step(
     # Drop rows that no step within the bounds can violate; they only cost time.
     slack = limit - np.where(matrix[:, :n] > 0.0, matrix[:, :n] * ceilings[:n], matrix[:, :n] * floors[:n]).sum(axis=1)
     needed = (matrix[:, n : n + 2] != 0.0).any(axis=1) | ~(slack >= 0.0)
-    done = least(cost, matrix[needed], limit[needed], floors, ceilings)
+    done = solve_linear_program(cost, matrix[needed], limit[needed], floors, ceilings)
     if done is None:
         return None, np.inf
     return done.at[:n] * reach, done.value * unit
 
 
-def _middle(values: Real) -> float:
+def _center_band(values: Real) -> float:
     return 0.5 * float(values.min() + values.max())

@@ -9,18 +9,18 @@ from __future__ import annotations
 from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
 
-THREADS = 2
+THREAD_COUNT = 2
 """Number of threads: most machines have a second core."""
 
 
-def in_portions(work: Callable[[slice], None], count: int, portion: int) -> None:
+def run_in_portions(work: Callable[[slice], None], count: int, portion: int) -> None:
     """Call ``work`` with consecutive slices of ``portion`` of the ``count`` rows, and re-raise its errors."""
     slices = [slice(first, first + portion) for first in range(0, count, portion)]
-    if len(slices) < THREADS:
+    if len(slices) < THREAD_COUNT:
         for some in slices:
             work(some)
         return
-    with ThreadPoolExecutor(THREADS) as pool:
+    with ThreadPoolExecutor(THREAD_COUNT) as pool:
         # Consume the results: that re-raises an exception of a worker here.
         for _ in pool.map(work, slices):
             pass

@@ -20,35 +20,35 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-Real = NDArray[np.float64]
-Complex = NDArray[np.complex128]
+from kinematics.arrays import Complex, Real
+
 Numbers = NDArray[Any]
 """Real or complex: what is real stays so."""
 
-DEGENERATE = 1e-11
+DEGENERACY_TOLERANCE = 1e-11
 """Relative singular value of the monomial equations below which the quadrics have a whole curve in common."""
 
-NEWTON_STEPS = 6
+MAX_NEWTON_STEPS = 6
 """Maximum number of Newton steps; eigenvectors of simple roots already have ten digits or more."""
 
-NEARLY_REAL = 1e-4
+IMAGINARY_TOLERANCE = 1e-4
 """Imaginary part of a unit vector below which a real root is searched nearby. Of 16 digits in the data a double root
 keeps half, a triple root a third."""
 
-CLUSTER = 1e-5
+CLUSTER_TOLERANCE = 1e-5
 """Assumed radius of a cluster of roots that cannot be proved individually."""
 
-ROUNDING = 4e-15
+ROUNDING_ERROR = 4e-15
 """Error of a computed residual: a few tens of rounding errors of numbers of size 1."""
 
-MET = 1e-13
+RESIDUAL_TOLERANCE = 1e-13
 """Residual up to which a real point counts as common to all quadrics without proof. Such a point is a double root,
 which data a few rounding errors away may or may not have."""
 
-NOTHING = 1e-150
+MIN_NORM = 1e-150
 """Substitute for a singular value that may be zero; its square does not underflow."""
 
-SAME_DIRECTION = 1e-14
+DIRECTION_TOLERANCE = 1e-14
 """Maximum 1 − |cos| between two unit vectors that are the same point, found twice: a few rounding errors."""
 
 
@@ -74,7 +74,7 @@ class CommonPoints(NamedTuple):
     unproved: Complex
 
 
-def common_points(forms: Real, error: float = 0.0) -> CommonPoints:
+def find_common_points(forms: Real, error: float = 0.0) -> CommonPoints:
     """Compute the real common points of quadrics xᵀ Q x = 0.
 
     Parameters
@@ -85,7 +85,7 @@ def common_points(forms: Real, error: float = 0.0) -> CommonPoints:
         Norm of the matrices' error beyond rounding. The proofs hold for all quadrics within this distance.
     """
     m = forms.shape[-1]
-    frame = _frame(m)
+    frame = _build_frame(m)
     equations = np.zeros((len(frame.shift) * (m - 1), frame.monomials))
     for j, q in enumerate(forms):
         coefficients = q[frame.rows, frame.columns] * frame.twice
@@ -94,7 +94,7 @@ def common_points(forms: Real, error: float = 0.0) -> CommonPoints:
     _, s, vh = np.linalg.svd(equations)
     roots = 2 ** (m - 1)
     # A null space larger than the number of roots means that the quadrics share a curve.
-    if s[frame.monomials - roots - 1] <= DEGENERATE * s[0]:
+    if s[frame.monomials - roots - 1] <= DEGENERACY_TOLERANCE * s[0]:
         return CommonPoints(np.empty((0, m)), np.empty(0, np.bool_), False, np.empty((0, m), np.complex128))
     basis = vh[frame.monomials - roots :].T
     above = np.tensordot(frame.first, basis[frame.lift], (0, 1))
@@ -104,10 +104,10 @@ def common_points(forms: Real, error: float = 0.0) -> CommonPoints:
     # Read each point from the monomials x_i^(m−1) x_j of its largest coordinate i, which cannot be 0.
     largest = np.abs(monomials[frame.powers]).argmax(axis=0)
     points = monomials[frame.lines[largest], np.arange(roots)[:, None]]
-    return _refined(forms, points, error)
+    return _refine_points(forms, points, error)
 
 
-class _Frame(NamedTuple):
+class _MonomialFrame(NamedTuple):
     """Indices of monomials: of degree m in a solution, of degree m − 2 as multipliers, and of their products."""
 
     monomials: int
@@ -123,79 +123,79 @@ class _Frame(NamedTuple):
 
 
 @cache
-def _frame(m: int) -> _Frame:
+def _build_frame(m: int) -> _MonomialFrame:
     place = {mono: k for k, mono in enumerate(combinations_with_replacement(range(m), m))}
     squares = list(combinations_with_replacement(range(m), 2))
     multipliers = list(combinations_with_replacement(range(m), m - 2))
     lower = list(combinations_with_replacement(range(m), m - 1))
 
-    def product(*factors: tuple[int, ...]) -> int:
+    def index_product(*factors: tuple[int, ...]) -> int:
         return place[tuple(sorted(sum(factors, ())))]
 
     angles = 1.0 + 2.0 * np.arange(m)  # linear forms in general position
-    return _Frame(
+    return _MonomialFrame(
         monomials=len(place),
         rows=np.array([i for i, _ in squares]),
         columns=np.array([j for _, j in squares]),
         twice=np.array([1.0 if i == j else 2.0 for i, j in squares]),
-        shift=np.array([[product(mono, square) for square in squares] for mono in multipliers]),
-        lift=np.array([[product(mono, (i,)) for mono in lower] for i in range(m)]).T,
+        shift=np.array([[index_product(mono, square) for square in squares] for mono in multipliers]),
+        lift=np.array([[index_product(mono, (i,)) for mono in lower] for i in range(m)]).T,
         powers=np.array([place[(i,) * m] for i in range(m)]),
-        lines=np.array([[product((i,) * (m - 1), (j,)) for j in range(m)] for i in range(m)]),
+        lines=np.array([[index_product((i,) * (m - 1), (j,)) for j in range(m)] for i in range(m)]),
         first=np.cos(angles),
         second=np.sin(angles * math.sqrt(2.0)),
     )
 
 
-def _refined(forms: Real, points: Numbers, error: float) -> CommonPoints:
+def _refine_points(forms: Real, points: Numbers, error: float) -> CommonPoints:
     """Refine each point by Newton's method, nearly real ones in real arithmetic, and prove which roots are simple."""
     m = forms.shape[-1]
-    points = _newton(forms, points / np.linalg.norm(points, axis=1)[:, None])
+    points = _iterate_newton(forms, points / np.linalg.norm(points, axis=1)[:, None])
     # Rotate the phase so that the largest coordinate is real: a real point then has no imaginary part.
     pivot = np.take_along_axis(points, np.abs(points).argmax(axis=1)[:, None], axis=1)
     points = points * (np.conj(pivot) / np.abs(pivot))
-    nearly = np.abs(points.imag).max(axis=1) <= NEARLY_REAL
+    nearly = np.abs(points.imag).max(axis=1) <= IMAGINARY_TOLERANCE
     reals = points[nearly].real
-    reals = _newton(forms, reals / np.linalg.norm(reals, axis=1)[:, None])
-    real_radius, real_alone, residual = _certificate(forms, reals, error)
-    radius, alone, _ = _certificate(forms, points[~nearly], error)
+    reals = _iterate_newton(forms, reals / np.linalg.norm(reals, axis=1)[:, None])
+    real_radius, real_alone, residual = _certify_roots(forms, reals, error)
+    radius, alone, _ = _certify_roots(forms, points[~nearly], error)
     imaginary = np.abs(points[~nearly].imag).max(axis=1)
     everywhere = np.concatenate([reals, points[~nearly]])
-    apart = _apart(everywhere, np.concatenate([real_radius, radius]))
+    apart = _mark_separated(everywhere, np.concatenate([real_radius, radius]))
     # A complex root is proved complex if its imaginary part exceeds the radius of its ball.
     proved = apart & np.concatenate([real_alone, alone & (imaginary > radius)])
     kept: list[int] = []
-    for k in np.flatnonzero(real_alone | (residual <= MET)):
+    for k in np.flatnonzero(real_alone | (residual <= RESIDUAL_TOLERANCE)):
         gaps = [1.0 - abs(float(reals[k] @ reals[j])) for j in kept]
-        if min(gaps, default=1.0) > SAME_DIRECTION:
+        if min(gaps, default=1.0) > DIRECTION_TOLERANCE:
             kept.append(int(k))
     double = ~proved[: len(reals)][kept]
     return CommonPoints(reals[kept].reshape(-1, m), double, True, everywhere[~proved].astype(np.complex128))
 
 
-def _newton(forms: Real, points: Numbers) -> Numbers:
+def _iterate_newton(forms: Real, points: Numbers) -> Numbers:
     """Run Newton's method on the unit sphere, with steps perpendicular to the point; return the best iterates."""
     best, least = points, np.full(len(points), np.inf)
-    for step in range(NEWTON_STEPS + 1):
+    for step in range(MAX_NEWTON_STEPS + 1):
         images = np.einsum("qij,kj->kqi", forms, points)
         values = np.einsum("kqi,ki->kq", images, points)
         size = np.abs(values).max(axis=1, initial=0.0)
         better = size < least
         best = np.where(better[:, None], points, best)
         least = np.where(better, size, least)
-        if step == NEWTON_STEPS or not len(points) or least.max() <= ROUNDING / 8.0:
+        if step == MAX_NEWTON_STEPS or not len(points) or least.max() <= ROUNDING_ERROR / 8.0:
             break
         jacobian = np.concatenate([2.0 * images, np.conj(points)[:, None, :]], axis=1)
         right = np.concatenate([values, np.zeros((len(points), 1))], axis=1)
         u, s, vh = np.linalg.svd(jacobian)
-        inverse = np.where(s > ROUNDING, 1.0 / np.maximum(s, ROUNDING), 0.0)
+        inverse = np.where(s > ROUNDING_ERROR, 1.0 / np.maximum(s, ROUNDING_ERROR), 0.0)
         move = np.einsum("kji,kj->ki", vh.conj(), inverse * np.einsum("kij,ki->kj", u.conj(), right))
         points = points - move
         points = points / np.linalg.norm(points, axis=1)[:, None]
     return best
 
 
-def _certificate(forms: Real, points: Numbers, error: float) -> tuple[Real, NDArray[np.bool_], Real]:
+def _certify_roots(forms: Real, points: Numbers, error: float) -> tuple[Real, NDArray[np.bool_], Real]:
     """Apply the Newton–Kantorovich theorem at unit vectors: radius that contains a root, whether proved, and residual.
 
     With K a Lipschitz constant of the Jacobian J and η = |J⁻¹f|, a root lies within 2η where K|J⁻¹|η ≤ 1/2
@@ -207,15 +207,15 @@ def _certificate(forms: Real, points: Numbers, error: float) -> tuple[Real, NDAr
     jacobian = np.concatenate([2.0 * images, np.conj(points)[:, None, :]], axis=1)
     least = np.linalg.svd(jacobian, compute_uv=False)[:, -1] if len(points) else np.empty(0)
     error *= math.sqrt(len(forms))
-    least = np.maximum(least - 2.0 * error, NOTHING)
+    least = np.maximum(least - 2.0 * error, MIN_NORM)
     residual = np.linalg.norm(values, axis=1)
-    step = (residual + ROUNDING + error) / least
+    step = (residual + ROUNDING_ERROR + error) / least
     lipschitz = 2.0 * math.sqrt(len(forms))
     alone = lipschitz * step / least <= 0.5
-    return np.where(alone, 2.0 * step, CLUSTER), alone, np.abs(values).max(axis=1, initial=0.0)
+    return np.where(alone, 2.0 * step, CLUSTER_TOLERANCE), alone, np.abs(values).max(axis=1, initial=0.0)
 
 
-def _apart(points: Complex, radius: Real) -> NDArray[np.bool_]:
+def _mark_separated(points: Complex, radius: Real) -> NDArray[np.bool_]:
     """Return a mask of the points whose projective distance from every other exceeds the sum of both radii."""
     closeness = np.minimum(np.abs(points.conj() @ points.T), 1.0)
     distance = np.sqrt(2.0 * (1.0 - closeness))

@@ -14,7 +14,7 @@ class Status(IntEnum):
 
     INFEASIBLE = -4
     """Limits are violated at the end although the multipliers were updated as often as permitted."""
-    STALLED = -3
+    NO_DECREASE = -3
     """No step decreases the cost at any damping although the linear model predicts a decrease."""
     SINGULAR = -2
     """The normal equations have no finite solution."""
@@ -32,6 +32,6 @@ class Status(IntEnum):
     """The cost itself is rounding."""
 
     @property
-    def converged(self) -> bool:
+    def is_converged(self) -> bool:
         """Whether the end is a stationary point to the given tolerance."""
         return self > 0

@@ -8,7 +8,7 @@ import pytest
 import shapely
 from ezdxf import recover
 
-from service.parts.extra import installed
+from service.parts.export.cad_available import is_installed
 from tests.browser.conftest import DESKTOP, Studio
 from tests.service.running import until
 from tests.support.browser.studio import stated
@@ -203,7 +203,7 @@ def test_a_lid_is_drawn_solved_compared_changed_taken_home_and_sent(studio, chro
     for one, other in (("O2", "O4"), ("O2", "A"), ("A", "B"), ("B", "O4")):
         wanted = abs(pins[one] - pins[other])
         assert min(abs(wanted - far) for far in apart) < 1e-3 * wanted
-    assert page.locator("#downloads").get_by_role("button", name="Printed parts").is_enabled() == installed()
+    assert page.locator("#downloads").get_by_role("button", name="Printed parts").is_enabled() == is_installed()
     studio.screen("way-home")
 
     # Its address, opened by somebody else who has nothing but that, shows the same.

@@ -2,7 +2,7 @@
 
 import pytest
 
-from synthesis.registry import KINDS, examples
+from synthesis.registry import KINDS, list_examples
 from tests.campaign import further
 from tests.service.running import until
 from tests.support.browser.accessibility import violations
@@ -13,9 +13,9 @@ pytestmark = [pytest.mark.browser, pytest.mark.timeout(300)]
 
 CASES = {
     "motion": PLAIN,
-    "path": examples("path")[1],
-    "cam": examples("cam")[0],
-    "gear_train": examples("gear_train")[0],
+    "path": list_examples("path")[1],
+    "cam": list_examples("cam")[0],
+    "gear_train": list_examples("gear_train")[0],
 }
 OTHERS = {"function": 2, "dwell": 1}
 """The example of each further kind that is soon solved, where that is not the first."""
@@ -29,7 +29,7 @@ TABS = ("task", "answers", "explore", "files", "jobs", "plots", "numbers")
 def test_no_violation(open_studio, kind):
     studio = open_studio(reduced_motion="reduce")
     page = studio.page
-    state(page, CASES.get(kind) or examples(kind)[OTHERS.get(kind, 0)])
+    state(page, CASES.get(kind) or list_examples(kind)[OTHERS.get(kind, 0)])
     studio.solve()
     until(lambda: drawn(page), 90, "the drawing")
     page.evaluate(OPEN_ALL)

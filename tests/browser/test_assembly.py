@@ -7,7 +7,7 @@ import ezdxf
 import pytest
 from PIL import Image, ImageChops
 
-from service.parts.extra import installed
+from service.parts.export.cad_available import is_installed
 from tests.browser.conftest import SCREENS
 from tests.service.running import until
 from tests.support.browser.accessibility import violations
@@ -105,7 +105,7 @@ def test_it_is_drawn_moves_comes_apart_and_is_taken_home(open_studio):
     assert len(document.modelspace().query("CIRCLE")) == 3
     with zipfile.ZipFile(taken(page, "All files as a zip").path()) as archive:
         assert {"bom.csv", "isometric.svg"} <= set(archive.namelist())
-    assert page.locator(PLACES).get_by_role("button", name="coupler as STL").count() == int(installed())
+    assert page.locator(PLACES).get_by_role("button", name="coupler as STL").count() == int(is_installed())
     report = taken_of_design(page, "Report").read_text(encoding="utf-8")
     assert 'data-panel="isometric"' in report
 

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from synthesis.registry import examples
+from synthesis.registry import list_examples
 from tests.browser.conftest import ANSWERED, PUT
 from tests.service.running import until
 from tests.support.browser.accessibility import violations
@@ -43,7 +43,7 @@ def shown_cards(page):
 
 @pytest.fixture
 def answered(studio):
-    state(studio.page, examples("motion")[0])
+    state(studio.page, list_examples("motion")[0])
     studio.solve()
     studio.page.wait_for_selector(".moving .live .link")
     studio.page.evaluate("document.activeElement.blur()")

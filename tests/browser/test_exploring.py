@@ -5,14 +5,14 @@ import re
 
 import pytest
 
-from synthesis.registry import examples
+from synthesis.registry import list_examples
 from tests.service.running import until
 from tests.support.browser.motion_view import number, solved
 from tests.support.browser.studio import drag, stated
 
 pytestmark = pytest.mark.browser
 
-FOUR = examples("motion")[2]
+FOUR = list_examples("motion")[2]
 
 
 def at(page, selector):
@@ -84,7 +84,7 @@ def test_a_pivot_is_dragged_along_burmesters_curve(studio):
 )  # fmt: skip
 def test_the_pins_of_any_linkage_are_dragged(studio, kind, n, pin):
     page = studio.page
-    solved(studio, examples(kind)[n])
+    solved(studio, list_examples(kind)[n])
     page.click("#tab-explore")
     until(lambda: page.get_attribute("#exploring .curve", "d"), 30, "the curve")
     curve, angle = page.get_attribute("#exploring .curve", "d"), page.inner_text("#explore .facts")
@@ -108,7 +108,7 @@ def test_the_pins_of_any_linkage_are_dragged(studio, kind, n, pin):
 
 def test_a_statement_begins_with_what_was_found(studio):
     page = studio.page
-    solved(studio, {**examples("motion")[0], "constraints": {"full_rotation": True}})
+    solved(studio, {**list_examples("motion")[0], "constraints": {"full_rotation": True}})
     page.click("#tab-explore")
     page.wait_for_selector("#explore button:has-text('positions')")
     assert page.locator("#explore .checks li").count() == 2
@@ -130,7 +130,7 @@ def test_a_statement_begins_with_what_was_found(studio):
 def test_what_cannot_be_assembled_is_said(studio):
     """A link of no length drives nothing: the reason stands there, and the page goes on."""
     page = studio.page
-    solved(studio, examples("quick_return")[0])
+    solved(studio, list_examples("quick_return")[0])
     page.click("#tab-explore")
     until(lambda: page.get_attribute("#exploring .curve", "d"), 30, "the curve")
     pivot, pin = "#exploring .target:has(text:text-is('O2')) .dot", "#exploring .target:has(text:text-is('A')) .dot"
@@ -165,7 +165,7 @@ def type_in(page, name, value):
 
 def test_dimensions_are_typed_held_and_made_equal_and_the_fit_goes_on_from_there(studio, server):
     page = studio.page
-    solved(studio, {**examples("path")[0], "rounds": 1, "max_designs": 1})
+    solved(studio, {**list_examples("path")[0], "rounds": 1, "max_designs": 1})
     page.click("#tab-explore")
     until(lambda: page.get_attribute("#exploring .curve", "d"), 30, "the curve")
     first = sizes(page)

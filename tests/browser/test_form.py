@@ -4,7 +4,7 @@ import re
 
 import pytest
 
-from synthesis.registry import KINDS, example, examples
+from synthesis.registry import KINDS, get_first_example, list_examples
 from tests.service.running import until
 from tests.support.browser.form import OPEN_ALL
 from tests.support.browser.studio import PLAIN, state, stated
@@ -26,7 +26,7 @@ def test_every_field_of_a_kind_has_its_control(kept_studio, kind):
     """No field is left to the JSON alone, and what is only looked at is not stated with the next change."""
     page = kept_studio.page
     page.select_option("#kind", kind)
-    for n, _ in enumerate(examples(kind)):
+    for n, _ in enumerate(list_examples(kind)):
         page.select_option("#example", str(n))
         before = stated(page)
         page.evaluate(OPEN_ALL)
@@ -43,7 +43,7 @@ def test_every_field_of_a_kind_has_its_control(kept_studio, kind):
 
 def test_units_stand_beside_the_fields_and_follow_the_length_unit(studio):
     page = studio.page
-    show(page, {**example("cam"), "dynamics": {"mass": 0.1, "spring_rate": 5.0}})
+    show(page, {**get_first_example("cam"), "dynamics": {"mass": 0.1, "spring_rate": 5.0}})
 
     def label(path):
         return page.locator(f".field:has(> {at(path)}) > label").inner_text()
@@ -61,7 +61,7 @@ def test_units_stand_beside_the_fields_and_follow_the_length_unit(studio):
 
 def test_a_number_becomes_a_range_and_a_number_again(studio):
     page = studio.page
-    show(page, example("cam"))
+    show(page, get_first_example("cam"))
     way = page.get_by_label("Roller radius: how it is stated")
     way.select_option("a range")
     page.fill(at("follower/roller_radius/min"), "6")
@@ -74,7 +74,7 @@ def test_a_number_becomes_a_range_and_a_number_again(studio):
 
 def test_lists_within_the_rows_of_a_table(studio):
     page = studio.page
-    problem = examples("cam")[1]
+    problem = list_examples("cam")[1]
     show(page, problem)
     page.locator(at("segments/0/conditions")).get_by_role("button", name="Add a row").click()
     page.fill(at("segments/0/conditions/0/angle"), "45")
@@ -106,27 +106,27 @@ def test_a_tolerance_by_coordinate(studio):
 
 def test_choices_names_and_stocks(studio):
     page = studio.page
-    show(page, example("path"))
+    show(page, get_first_example("path"))
     page.locator(at("placement_free")).get_by_label("rotation").check()
     page.locator(at("placement_free")).get_by_label("position").check()
     assert stated(page)["placement_free"] == ["position", "rotation"]
 
-    show(page, example("gear_train"))
+    show(page, get_first_example("gear_train"))
     page.fill(at("stock"), "20, 24 × 3; 30")
     assert stated(page)["stock"] == [20, {"teeth": 24, "count": 3}, 30]
 
-    show(page, example("planetary_train"))
+    show(page, get_first_example("planetary_train"))
     page.get_by_label("Name of another one").fill("sun")
     page.locator(at("teeth/gears")).get_by_role("button", name="Add").click()
     page.fill(at("teeth/gears/sun/min"), "20")
     assert stated(page)["teeth"]["gears"]["sun"]["min"] == 20
 
-    show(page, example("dwell"))
+    show(page, get_first_example("dwell"))
     page.select_option(at("output/type"), "slider")
     page.fill(at("output/stroke"), "30")
     assert stated(page)["output"] == {"type": "slider", "stroke": 30}
 
-    show(page, examples("dwell")[2])
+    show(page, list_examples("dwell")[2])
     page.fill(at("dwells/0/angle"), "80")
     page.fill(at("dwells/1/at"), "0.6")
     assert stated(page)["dwells"] == [{"angle": 80, "at": "low"}, {"angle": 40, "at": 0.6}]

@@ -9,7 +9,7 @@ import re
 
 import pytest
 
-from synthesis.registry import examples
+from synthesis.registry import list_examples
 from tests.browser.conftest import DESKTOP, Studio
 from tests.service.running import until
 from tests.support.browser.accessibility import violations
@@ -19,7 +19,11 @@ from tools.studio.messages import messages, spoken
 
 pytestmark = [pytest.mark.browser, pytest.mark.timeout(400)]
 
-KINDS = {"motion": examples("motion")[0], "gear_train": examples("gear_train")[0], "cam": examples("cam")[0]}
+KINDS = {
+    "motion": list_examples("motion")[0],
+    "gear_train": list_examples("gear_train")[0],
+    "cam": list_examples("cam")[0],
+}
 TABS = ("explore", "files", "jobs", "plots", "numbers")
 PHONE = {"width": 390, "height": 844}
 
@@ -132,7 +136,7 @@ def test_german_is_spoken_with_decimal_commas(open_studio, server):
 def test_a_gear_is_engaged_by_what_the_service_calls_it(open_studio):
     studio = open_studio(locale="de-DE", reduced_motion="reduce")
     page = studio.page
-    state(page, examples("layshaft_gearbox")[0])
+    state(page, list_examples("layshaft_gearbox")[0])
     studio.solve()
     page.wait_for_selector(".speeds")
     reverse = page.locator("#engaged option", has_text="Rückwärtsgang: −")

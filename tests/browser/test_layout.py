@@ -2,7 +2,7 @@
 
 import pytest
 
-from synthesis.registry import KINDS, examples
+from synthesis.registry import KINDS, list_examples
 from tests.browser.conftest import ANSWERED
 from tests.campaign import further
 from tests.service.running import until
@@ -132,7 +132,7 @@ def test_progress_and_cancel_stand_where_solve_stood(open_studio):
     for size in ("desktop", "tablet", "phone"):
         studio = open_studio(viewport={"width": SIZES[size][0], "height": SIZES[size][1]})
         page = studio.page
-        state(page, {**examples("path")[0], "rounds": 10})
+        state(page, {**list_examples("path")[0], "rounds": 10})
         before = inside(page, "#solve")
         page.evaluate(f"{WATCH}; window.watching = true")
         page.click("#solve")
@@ -217,7 +217,7 @@ def test_what_moves_fills_the_stage_of_another_window(own_studio):
     """Something high in a wide window, which is then made narrow and high: its empty sides are not kept."""
     page = own_studio.page
     page.set_viewport_size({"width": 1920, "height": 700})
-    state(page, examples("spring_balancing")[0])
+    state(page, list_examples("spring_balancing")[0])
     own_studio.solve()
     page.wait_for_selector(".moving .springs .spring")
     for size in ((1920, 700), (560, 1000)):

@@ -6,7 +6,7 @@ import zlib
 
 import pytest
 
-from synthesis.registry import KINDS, example, examples
+from synthesis.registry import KINDS, get_first_example, list_examples
 from tests.browser.conftest import DESKTOP, Studio
 from tests.support.browser.studio import PLAIN, state, stated
 
@@ -72,7 +72,7 @@ def test_a_link_has_the_statement_and_a_linkage_that_is_driven_where_it_is_opene
 
 def test_what_an_address_claims_is_not_taken_on_trust(chromium, server):
     """Damaged, endless, foreign and impossible contents are refused with a sentence, and the page goes on."""
-    motion = example("motion")
+    motion = get_first_example("motion")
     links = {"ground": ["O2", "O4"], "input": ["O2", "A"], "coupler": ["A", "B"], "output": ["O4", "B"]}
     skeleton = {
         "joints": {"O2": [0, 0], "O4": [9, 0], "A": [0, 1], "B": [9, 1]},
@@ -104,7 +104,7 @@ def test_what_an_address_claims_is_not_taken_on_trust(chromium, server):
 
 
 def test_every_example_has_the_form_that_an_address_may_have(kept_studio):
-    every = [[kind, one] for kind in KINDS for one in examples(kind)]
+    every = [[kind, one] for kind in KINDS for one in list_examples(kind)]
     assert kept_studio.page.evaluate(MISFITS, every) == [None] * len(every)
 
 
@@ -115,7 +115,7 @@ def test_a_draft_is_there_again_with_its_steps(own_studio):
     page.fill('[data-path="/problem/positions/0/angle"]', "12")
     draft = stated(page)
     page.select_option("#kind", "cam")
-    assert stated(page) == example("cam")
+    assert stated(page) == get_first_example("cam")
     page.select_option("#kind", "motion")
     assert stated(page) == draft
     page.reload()
@@ -124,7 +124,7 @@ def test_a_draft_is_there_again_with_its_steps(own_studio):
     assert page.locator(".moving .live").count() == 0, "no example moves beside what it does not answer"
     own_studio.screen("draft")
     page.click("#draft button")
-    assert stated(page) == example("motion")
+    assert stated(page) == get_first_example("motion")
     assert page.is_hidden("#draft")
     # That was one step, as all others are, those of the page before too.
     page.click("#undo")
@@ -138,7 +138,7 @@ def test_a_draft_is_there_again_with_its_steps(own_studio):
 
 def test_what_is_edited_beside_answers_is_there_again_with_them(own_studio):
     page = own_studio.page
-    example = examples("motion")[3]
+    example = list_examples("motion")[3]
     state(page, example)
     own_studio.solve()
     page.reload()
@@ -173,5 +173,5 @@ def test_a_browser_that_keeps_nothing_keeps_the_page_working(chromium, server):
     assert stated(page) == draft
     page.reload()
     page.wait_for_selector("#fields .field")
-    assert stated(page) == example("motion")
+    assert stated(page) == get_first_example("motion")
     studio.close()

@@ -2,7 +2,7 @@
 
 import pytest
 
-from synthesis.registry import examples
+from synthesis.registry import list_examples
 from tests.browser.conftest import ANSWERED
 from tests.support.browser.studio import state, stated
 
@@ -38,7 +38,7 @@ MISSED = {
         ("layout", "max_planes"),
     ),
     "dwell": (
-        {**examples("dwell")[1], "count": 1, "dwell_angle": 300.0, "max_designs": 1},
+        {**list_examples("dwell")[1], "count": 1, "dwell_angle": 300.0, "max_designs": 1},
         "Solve with dwell angle",
         ("dwell_angle",),
     ),

@@ -5,7 +5,7 @@ import re
 
 import pytest
 
-from synthesis.registry import examples
+from synthesis.registry import list_examples
 from tests.service.running import until
 from tests.support.browser import studio as studio_steps
 from tests.support.browser.motion_view import motion_of, number, solved
@@ -13,7 +13,7 @@ from tests.support.browser.studio import PLAIN
 
 pytestmark = pytest.mark.browser
 
-TIMED = examples("path")[1]
+TIMED = list_examples("path")[1]
 """A crank-rocker through five points; its right cognate is one too, with the same crank angles."""
 
 
@@ -46,7 +46,7 @@ def test_the_other_circuit_is_drawn_faint_and_goes_with_the_crank(studio, server
     assert not page.locator(".others").is_visible()
 
 
-@pytest.mark.parametrize("problem", [TIMED, examples("dwell")[1]], ids=["path", "dwell"])
+@pytest.mark.parametrize("problem", [TIMED, list_examples("dwell")[1]], ids=["path", "dwell"])
 @pytest.mark.parametrize("width", [390, 1360])
 def test_nothing_below_moves_while_the_motion_plays(studio, problem, width):
     """Numbers grow and shrink; a button below that moved under the hand would be missed."""
@@ -74,7 +74,7 @@ def test_nothing_below_moves_while_the_motion_plays(studio, problem, width):
 
 def test_a_rocker_shows_its_toggles(studio, server):
     page = studio.page
-    solved(studio, examples("function")[1])
+    solved(studio, list_examples("function")[1])
     motion = motion_of(studio, server)
     assert page.locator(".stop").count() == len(motion["toggles"]) > 0
     assert page.locator(".faint.toggle").count() == 2, "the linkage at both ends of its branch"
@@ -119,7 +119,7 @@ def test_a_click_in_a_plot_leads_the_motion(studio):
 def test_a_peak_that_is_cut_is_marked_and_told(studio, server):
     """Towards a toggle rates grow beyond all bounds."""
     page = studio.page
-    solved(studio, examples("function")[1])
+    solved(studio, list_examples("function")[1])
     page.click("#tab-plots")
     page.select_option("#part", "link output")
     motion = motion_of(studio, server)
@@ -154,7 +154,7 @@ def test_a_peak_that_is_cut_is_marked_and_told(studio, server):
 )
 def test_the_error_of_a_function_is_plotted_over_its_range(studio, server, kind, n, title):
     page = studio.page
-    solved(studio, examples(kind)[n])
+    solved(studio, list_examples(kind)[n])
     line = page.locator(".plot", has_text=title).locator(".series").get_attribute("d")
     xs = [float(x) for x in re.findall(r"[ML]([\d.]+) ", line)]
     motion = motion_of(studio, server)
@@ -251,7 +251,7 @@ def test_every_number_beside_a_cognate_is_the_cognates_own(studio, server):
 )
 def test_other_linkages_have_their_parts(studio, kind, n, kind_of_link):
     page = studio.page
-    solved(studio, examples(kind)[n])
+    solved(studio, list_examples(kind)[n])
     assert page.locator(kind_of_link).count() >= 1
     assert page.locator(".gauge .reading").inner_text().endswith("°")
     links = page.locator(".live .link").evaluate_all("links => links.map(one => one.getAttribute('d'))")

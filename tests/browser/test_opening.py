@@ -4,7 +4,7 @@ import json
 
 import pytest
 
-from synthesis.registry import KINDS, examples
+from synthesis.registry import KINDS, list_examples
 from tests.browser.conftest import ANSWERED
 from tests.campaign import further
 from tests.service.running import until
@@ -43,7 +43,7 @@ def test_a_machine_moves_when_the_page_opens(studio):
     assert len(jobs()) == before
     # What is stated beside it is what it answers.
     kept = page.evaluate("fetch('/studio/opening.json').then(answer => answer.json())")
-    assert stated(page) == kept["problem"] == examples("motion")[0]
+    assert stated(page) == kept["problem"] == list_examples("motion")[0]
     assert page.locator("#design-title").inner_text().startswith("Example: Hatch lid")
     # It makes room for whatever else is stated.
     page.fill('[data-path="/problem/positions/1/angle"]', "-20")
@@ -71,7 +71,7 @@ def test_the_gallery_has_every_example_and_solves_it_by_two_clicks(studio):
     )
     told = page.evaluate("fetch('/v1/problems').then(answer => answer.json())")["problems"]
     named = {f"{kind['kind']}-{n}": one for kind in told for n, one in enumerate(kind["examples"])}
-    assert set(named) == {f"{kind}-{n}" for kind in KINDS for n in range(len(examples(kind)))}
+    assert set(named) == {f"{kind}-{n}" for kind in KINDS for n in range(len(list_examples(kind)))}
     assert len(cards) == len(named)
     for key, name, line, drawn in cards:
         assert (name, line) == (named[key]["name"], named[key]["line"])
@@ -84,7 +84,7 @@ def test_the_gallery_has_every_example_and_solves_it_by_two_clicks(studio):
     studio.screen("gallery")
     page.click('[data-example="motion-3"]')
     page.wait_for_selector(ANSWERED, timeout=200_000)
-    assert stated(page) == examples("motion")[3]
+    assert stated(page) == list_examples("motion")[3]
     assert page.input_value("#label") == "Arm, five positions"
     page.wait_for_selector(".moving .live .link")
 
@@ -141,7 +141,7 @@ def test_the_gallery_and_the_sheet_of_keys_work_by_keys(studio):
 def test_every_key_of_the_sheet_does_what_it_says(studio):
     page = studio.page
     studio.context.grant_permissions(["clipboard-read", "clipboard-write"])
-    state(page, examples("motion")[0])
+    state(page, list_examples("motion")[0])
     page.evaluate("document.activeElement.blur()")
     page.keyboard.press("Control+Enter")
     page.wait_for_selector(ANSWERED, timeout=200_000)
@@ -201,7 +201,9 @@ def test_every_card_of_the_gallery_is_reached_by_tab(studio):
     assert reached[: len(cards)] == cards
 
 
-@pytest.mark.parametrize(("kind", "n"), further([(kind, n) for kind in KINDS for n in range(len(examples(kind)))], ()))
+@pytest.mark.parametrize(
+    ("kind", "n"), further([(kind, n) for kind in KINDS for n in range(len(list_examples(kind)))], ())
+)
 def test_each_example_is_solved_by_two_clicks(studio, kind, n):
     page = studio.page
     page.click("#gallery-open")

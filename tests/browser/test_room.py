@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 import shapely
 
-from synthesis.registry import KINDS, example
+from synthesis.registry import KINDS, get_first_example
 from tests.browser.conftest import PUT
 from tests.support.browser.accessibility import violations
 from tests.support.browser.room import field
@@ -243,7 +243,7 @@ def test_a_zone_is_drawn_by_touch(open_studio):
 @pytest.mark.parametrize("kind", KINDS)
 def test_every_linkage_has_room_and_nothing_else(kept_studio, kind):
     page = kept_studio.page
-    state(page, example(kind))
+    state(page, get_first_example(kind))
     assert page.locator("#room-tools").count() == (kind in LINKAGES)
     if kind not in LINKAGES:
         return

@@ -5,7 +5,7 @@ from itertools import pairwise
 
 import pytest
 
-from synthesis.registry import example, examples
+from synthesis.registry import get_first_example, list_examples
 from tests.service.running import until
 from tests.support.browser.opening import FIRST_S, MOVES
 from tests.support.browser.studio import PLAIN, state
@@ -30,7 +30,7 @@ SCRIPT_MS = 4.0
 
 FRAME_MS = 1000.0 / 60.0
 
-MANY_LINKS = {"sixbar": examples("motion")[8], "eight links": examples("straight_line")[1]}
+MANY_LINKS = {"sixbar": list_examples("motion")[8], "eight links": list_examples("straight_line")[1]}
 
 
 def test_the_first_machine_moves_soon(own_studio):
@@ -79,7 +79,7 @@ def test_two_hundred_designs_are_shown_and_one_of_them_moves_smoothly(own_studio
     page.add_init_script(MEASURE)
     page.reload()
     page.wait_for_selector("#fields .field")
-    state(page, {**example("motion"), "max_designs": 200})
+    state(page, {**get_first_example("motion"), "max_designs": 200})
     studio.solve()
     page.wait_for_selector(".moving svg .curve[d]")
     assert page.locator(".card").count() == 200

@@ -4,7 +4,7 @@ import math
 
 import pytest
 
-from synthesis.registry import KINDS, examples
+from synthesis.registry import KINDS, list_examples
 from tests.support.browser.studio import drag, state, stated
 
 pytestmark = pytest.mark.browser
@@ -25,7 +25,7 @@ def press(page, name, *keys):
 def test_pivots_and_regions_of_a_motion_are_dragged(studio):
     page = studio.page
     problem = {
-        **examples("motion")[0],
+        **list_examples("motion")[0],
         "ground_line": {"point": [0, -40], "angle": 10},
         "constraints": {"fixed_pivot_region": {"x": [-20, 60], "y": [-70, -10]}},
     }
@@ -140,7 +140,7 @@ def test_every_example_stands_on_its_canvas(kept_studio, kind):
     """Each example is one click away, and planar kinds show what they place, if they place anything."""
     page = kept_studio.page
     page.select_option("#kind", kind)
-    for n, example in enumerate(examples(kind)):
+    for n, example in enumerate(list_examples(kind)):
         page.select_option("#example", str(n))
         assert stated(page) == example
         handles = page.locator("#sketch .target").count()
@@ -158,7 +158,7 @@ def test_every_example_stands_on_its_canvas(kept_studio, kind):
 
 def test_a_pasted_statement_of_another_kind_says_what_it_is_about(studio):
     page = studio.page
-    state(page, examples("steering")[0])
+    state(page, list_examples("steering")[0])
     assert page.input_value("#kind") == "steering"
     assert "steer" in page.inner_text("#about").lower()
     assert "NaN" not in page.locator("#sketch").inner_html()

@@ -5,7 +5,7 @@ import re
 
 import pytest
 
-from synthesis.registry import KINDS, examples
+from synthesis.registry import KINDS, list_examples
 from tests.service.running import until
 from tests.support.browser.studio import PLAIN, drag, drawn, solved, state, stated, unfold, written
 
@@ -182,7 +182,7 @@ def without_empty(value, example):
 def test_the_form_changes_nothing_that_nobody_edits(kept_studio, kind):
     page = kept_studio.page
     page.select_option("#kind", kind)
-    for n, example in enumerate(examples(kind)):
+    for n, example in enumerate(list_examples(kind)):
         page.select_option("#example", str(n))
         page.locator("#fields").evaluate(
             "form => form.querySelectorAll('details').forEach(one => { one.open = true; })"
@@ -242,7 +242,7 @@ def test_a_pin_is_dragged_and_the_analysis_follows(studio):
 
 def test_where_nothing_is_found_the_page_shows_what_comes_nearest(studio):
     page = studio.page
-    state(page, {**examples("quick_return")[0], "constraints": {"min_transmission_angle": 88.5}})
+    state(page, {**list_examples("quick_return")[0], "constraints": {"min_transmission_angle": 88.5}})
     studio.solve()
     page.wait_for_selector("#miss")
     told = page.inner_text("#miss")

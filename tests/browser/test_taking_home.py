@@ -13,7 +13,7 @@ import pytest
 from ezdxf import recover
 from PIL import Image, ImageChops
 
-from service.parts.extra import installed
+from service.parts.export.cad_available import is_installed
 from synthesis.registry import KINDS
 from tests.browser.numbers import told_as_answered
 from tests.service.running import until
@@ -237,8 +237,8 @@ def test_parts_are_taken_home_and_printed_ones_where_solids_are_made(studio):
     with zipfile.ZipFile(taken(page, "Parts")) as archive:
         assert {"bom.csv", "assembly.svg", "dxf/base.dxf"} <= set(archive.namelist())
     printed = page.locator("#downloads").get_by_role("button", name="Printed parts", exact=True)
-    assert printed.is_enabled() == installed()
-    assert ("without its extra cad" in printed.get_attribute("title")) != installed()
+    assert printed.is_enabled() == is_installed()
+    assert ("without its extra cad" in printed.get_attribute("title")) != is_installed()
 
 
 def test_what_leaves_no_room_for_parts_is_said_beside_the_button(studio):

@@ -5,7 +5,7 @@ import re
 
 import pytest
 
-from synthesis.registry import examples
+from synthesis.registry import list_examples
 from tests.service.running import until
 from tests.support.browser.motion_view import motion_of, number
 from tests.support.browser.studio import solved
@@ -22,12 +22,12 @@ ARM = {
     "rotation": "cw",
 }
 FOLLOWERS = {
-    "translating_roller": examples("cam")[0],
+    "translating_roller": list_examples("cam")[0],
     "oscillating_roller": {
         **ARM,
         "follower": {"type": "oscillating_roller", "roller_radius": 8, "arm": 80, "pivot_distance": 100},
     },
-    "translating_flat": examples("cam")[3],
+    "translating_flat": list_examples("cam")[3],
     "oscillating_flat": {**ARM, "follower": {"type": "oscillating_flat", "pivot_distance": 100, "face_offset": 5}},
 }
 
@@ -115,7 +115,7 @@ def test_the_diagrams_have_their_marks_and_lead(studio, server):
 
 def test_a_barrels_roller_stays_in_its_groove(studio, server):
     page = studio.page
-    solved(studio, examples("cam")[4])
+    solved(studio, list_examples("cam")[4])
     heights = []
     for degrees in (0, 75, 165, 250):
         scrub(page, degrees)
@@ -138,7 +138,7 @@ def test_a_barrels_roller_stays_in_its_groove(studio, server):
 )
 def test_gears_turn_at_their_speeds(studio, server, kind, n):
     page = studio.page
-    solved(studio, examples(kind)[n])
+    solved(studio, list_examples(kind)[n])
     motion = motion_of(studio, server, steps=360)
     wheels = page.locator(".wheel:not(.idle)")
     names = [name.split(":")[0] for name in wheels.locator("title").all_text_contents()]
@@ -177,7 +177,7 @@ def test_gears_turn_at_their_speeds(studio, server, kind, n):
 def test_meshing_gears_have_teeth_in_spaces(studio):
     """Between two gears that mesh the tooth of one stands where the other has a space."""
     page = studio.page
-    solved(studio, examples("gear_train")[0])
+    solved(studio, list_examples("gear_train")[0])
     for at in (0, 7, 133):
         scrub(page, at)
         one, other = placed(page, ".wheel", 0), placed(page, ".wheel", 1)
@@ -190,7 +190,7 @@ def test_meshing_gears_have_teeth_in_spaces(studio):
 @pytest.mark.parametrize(("kind", "least"), [("gearbox", 6), ("layshaft_gearbox", 5)])
 def test_another_gear_is_engaged(studio, kind, least):
     page = studio.page
-    solved(studio, examples(kind)[0])
+    solved(studio, list_examples(kind)[0])
     assert page.locator("#engaged option").count() == least
     before = page.inner_text(".speeds")
     page.select_option("#engaged", "1")

@@ -2,9 +2,9 @@
 
 import pytest
 
-from service.api.measures import measures
+from service.api.http.metric_units import measures
 from service.units import symbols
-from synthesis.registry import KINDS, examples, parse_problem
+from synthesis.registry import KINDS, list_examples, parse_problem
 from tests.support.browser.studio import PLAIN, state
 
 pytestmark = pytest.mark.browser
@@ -19,7 +19,7 @@ ASKED = """async asked => {
 def test_the_page_has_the_units_of_the_service(kept_studio, kind):
     """In millimetres and in inches; a field that an example leaves out has its default there, as jobs have it."""
     wanted = sorted(set(measures(KINDS[kind].result).values()))
-    stated = [parse_problem({**one, "length_unit": unit}) for one in examples(kind) for unit in ("mm", "in")]
+    stated = [parse_problem({**one, "length_unit": unit}) for one in list_examples(kind) for unit in ("mm", "in")]
     asked = [[one.model_dump(mode="json", by_alias=True), [str(of) for of in wanted]] for one in stated]
     told = kept_studio.page.evaluate(ASKED, asked)
     for problem, units in zip(stated, told, strict=True):

@@ -45,10 +45,12 @@ def _quick(mechanism: str, scale: float = 1.0, **more: float) -> Row:
 
 def _example(kind: str, mechanism: str) -> Row:
     """The first example of a kind whose answer begins with the type of mechanism."""
-    from synthesis.registry import examples
+    from synthesis.registry import list_examples
 
     found = {"rotor": "rotor", "skeleton": "linkage"}
-    return Row(next(one for one in examples(kind) if one.get("object", "linkage") == found.get(mechanism, "linkage")))
+    return Row(
+        next(one for one in list_examples(kind) if one.get("object", "linkage") == found.get(mechanism, "linkage"))
+    )
 
 
 MADE: dict[Key, Row] = {

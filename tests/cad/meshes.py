@@ -21,17 +21,16 @@ from itertools import combinations
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
-from service.parts import cad
-from service.parts.bodies import Prism
-from service.parts.model import Assembly, Part
-from service.parts.shapes import Disc
+from kinematics.arrays import Real
+from service.parts.assembly.model import Assembly, Part
+from service.parts.export import cad
+from service.parts.geometry.regions import Disc
+from service.parts.geometry.solids import Prism
 
 if TYPE_CHECKING:
     from manifold3d import Manifold
 
-Real = NDArray[np.float64]
 
 ROUNDING = 1e-9
 """Share of the assembly's size by which places may differ that are one, and a layer is thick that is none."""
@@ -65,7 +64,7 @@ def meshed(solids: Sequence[Any]) -> list[Manifold]:
 
     made = []
     for solid in solids:
-        corners, triangles = cad.surface(solid)
+        corners, triangles = cad.triangulate(solid)
         mesh = Manifold(Mesh64(np.ascontiguousarray(corners), np.ascontiguousarray(triangles, np.uint64)))
         assert mesh.status() == Error.NoError, (solid.label, mesh.status())
         assert mesh.volume() > 0.0, solid.label
@@ -75,7 +74,7 @@ def meshed(solids: Sequence[Any]) -> list[Manifold]:
 
 def places(whole: Assembly, part: Part, inputs: Real) -> Real:
     """Where the motion takes a part from the reference configuration, shape (n, 4, 4)."""
-    at = whole.motion.placed(part.carrier, whole.motion.at(inputs))
+    at = whole.motion.compute_placement(part.carrier, whole.motion.compute_state(inputs))
     plane = np.zeros((len(inputs), 4, 4))
     plane[:, 0, 0] = plane[:, 1, 1] = at.turn.real
     plane[:, 1, 0], plane[:, 0, 1] = at.turn.imag, -at.turn.imag

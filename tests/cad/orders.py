@@ -4,13 +4,13 @@ from __future__ import annotations
 
 from typing import Any
 
-from service.parts.orders import Order
-from service.stated import written
+from service.parts.export.requests import PartsRequest
+from service.requests import written
 
 
 def order(problem: Any, result: Any, query: dict[str, Any]) -> dict[str, Any]:
     """An order of the first design of a result."""
-    return Order(
+    return PartsRequest(
         kind=problem.kind,
         problem=written(problem),
         label=None,

@@ -8,8 +8,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from service.parts import cad
-from service.parts.model import Assembly
+from service.parts.assembly.model import Assembly
+from service.parts.export import cad
 
 FLAT = 1e-4
 """Millimetres of height or width that two boxes may share: the kernel's boxes are a little too large."""
@@ -39,8 +39,8 @@ def shared_room(whole: Assembly, solids: list[Any], inputs: NDArray[np.float64])
     found: dict[str, float] = {}
     tried = 0
     for input_ in inputs:
-        driven = whole.motion.at(np.array([input_]))
-        placed = cad.placed(whole, solids, float(input_))
+        driven = whole.motion.compute_state(np.array([input_]))
+        placed = cad.place_solids(whole, solids, float(input_))
         boxes = [one.bounding_box(optimal=False) for one in placed]
         for n, m in combinations(range(len(placed)), 2):
             one, other = boxes[n], boxes[m]
@@ -51,7 +51,7 @@ def shared_room(whole: Assembly, solids: list[Any], inputs: NDArray[np.float64])
             ):  # fmt: skip
                 continue
             # Two that have not moved towards each other since need not be tried again.
-            a, b = (whole.motion.placed(whole.parts[k].carrier, driven) for k in (n, m))
+            a, b = (whole.motion.compute_placement(whole.parts[k].carrier, driven) for k in (n, m))
             towards = complex((b.shift[0] - a.shift[0]) / a.turn[0]), complex(b.turn[0] / a.turn[0])
             if (
                 resting.get((n, m)) is not None

@@ -12,15 +12,15 @@ from typing import Any
 import numpy as np
 import pytest
 
-from service.parts import cad
-from service.parts.curves import Curve
-from service.parts.items import items
-from service.parts.made import made
-from service.parts.model import Assembly, Part
-from service.parts.orders import filled
-from service.parts.package import package
-from service.parts.shapes import Disc
-from service.parts.sizes import PartsQuery
+from service.parts.assembly.items import list_items
+from service.parts.assembly.model import Assembly, Part
+from service.parts.assembly.sizes import PartsQuery
+from service.parts.export import cad
+from service.parts.export.requests import make_file
+from service.parts.export.zip_package import write_package
+from service.parts.geometry.regions import Disc
+from service.parts.geometry.splines import Curve
+from service.parts.registry import make_parts
 from synthesis.dispatch import solve
 from synthesis.registry import parse_problem
 from tests.cad.meshes import looked_through, meshed, places
@@ -46,12 +46,12 @@ def solved(name: str) -> tuple[Any, Any, Any]:
 @cache
 def assembly(name: str, process: str = "laser") -> Assembly:
     problem, _, design = solved(name)
-    return made(design, problem, PartsQuery(process=process))
+    return make_parts(design, problem, PartsQuery(process=process))
 
 
 @cache
 def solids(name: str) -> list[Any]:
-    return [cad.solid(part) for part in assembly(name).parts]
+    return [cad.make_solid(part) for part in assembly(name).parts]
 
 
 def curved(part: Part) -> bool:
@@ -76,13 +76,13 @@ def test_solids_are_valid_and_as_large_as_the_model_says(name: str) -> None:
             assert solid.volume == pytest.approx(part.volume, rel=1e-6)
         box = solid.bounding_box()
         assert pytest.approx((part.low, part.high), abs=1e-5) == (box.min.Z, box.max.Z)
-    assert_valid_glb(cad.glb(solids(name), "assembly"))
+    assert_valid_glb(cad.write_glb(solids(name), "assembly"))
 
 
 @pytest.mark.parametrize("name", OTHERS)
 def test_no_two_meshes_share_room_at_72_inputs(name: str) -> None:
     whole = assembly(name)
-    looked = looked_through(whole, meshed(solids(name)), whole.motion.inputs(72))
+    looked = looked_through(whole, meshed(solids(name)), whole.motion.sample_inputs(72))
     assert looked.stood > 72
     assert looked.tried >= len(whole.parts) - 1
     assert looked.overlaps == []
@@ -95,12 +95,12 @@ def test_a_step_file_has_all_parts_by_name_and_its_shafts_on_their_axes(name: st
     whole = assembly(name)
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder) / "a.step"
-        path.write_bytes(cad.step(solids(name), "assembly"))
+        path.write_bytes(cad.write_step(solids(name), "assembly"))
         found = {child.label: child for child in import_step(path).children}
     assert found.keys() == {part.name for part in whole.parts}
     base = next(part for part in whole.parts if part.name == "base")
     stated = [hole.centre for hole in base.region.holes if isinstance(hole, Disc)]
-    bores = [face for face in found["base"].faces() if face.geom_type == GeomType.CYLINDER]
+    bores = [face for face in found["base"].list_faces() if face.geom_type == GeomType.CYLINDER]
     axes = [complex(face.axis_of_rotation.position.X, face.axis_of_rotation.position.Y) for face in bores]
     assert stated
     for place in stated:
@@ -119,7 +119,7 @@ def test_a_follower_stays_in_touch_with_its_cam(name: str) -> None:
     whole = assembly(name)
     at = {part.name: k for k, part in enumerate(whole.parts)}
     for input_ in (0.3, 1.1, 2.9, 4.4):
-        shown = cad.placed(whole, solids(name), input_)
+        shown = cad.place_solids(whole, solids(name), input_)
         for pair in whole.touching:
             one, other = (shown[at[part]] for part in pair)
             assert one.distance_to(other) < 3e-3
@@ -130,7 +130,7 @@ def test_the_roller_of_a_barrel_has_its_clearance_from_both_walls_of_its_groove(
     whole = assembly("barrel")
     at = {part.name: k for k, part in enumerate(whole.parts)}
     roller, barrel = meshed([solids("barrel")[at[name]] for name in ("roller", "barrel")])
-    inputs = whole.motion.inputs(72)
+    inputs = whole.motion.sample_inputs(72)
     towards = np.linalg.inv(places(whole, whole.parts[at["barrel"]], inputs)) @ places(
         whole, whole.parts[at["roller"]], inputs
     )
@@ -143,9 +143,9 @@ def test_a_printed_cam_with_its_groove_is_a_watertight_mesh_on_the_plate() -> No
     import trimesh
 
     whole = assembly("groove", "print")
-    with zipfile.ZipFile(io.BytesIO(package(whole, "print", "A", whole.motion.reference))) as archive:
+    with zipfile.ZipFile(io.BytesIO(write_package(whole, "print", "A", whole.motion.reference))) as archive:
         files = {file: archive.read(file) for file in archive.namelist()}
-    for item in items(whole):
+    for item in list_items(whole):
         mesh = trimesh.load_mesh(io.BytesIO(files[f"stl/{item.name}.stl"]), file_type="stl")
         assert mesh.is_watertight
         assert mesh.volume == pytest.approx(item.part.volume, rel=0.02)
@@ -160,7 +160,7 @@ def test_an_assembly_is_shown_at_the_input_that_is_asked_for() -> None:
 
     def shown(degrees: float) -> Any:
         query = {"input_angle": degrees}
-        content = filled(order(problem, result, query), "glb")
+        content = make_file(order(problem, result, query), "glb")
         assert isinstance(content, bytes)
         return trimesh.load(io.BytesIO(content), file_type="glb").bounds
 

@@ -18,14 +18,14 @@ import ezdxf
 import pytest
 from pydantic import ValidationError
 
-from service.parts import cad
-from service.parts.linkage_motion import LinkageMotion
-from service.parts.made import NotMade, made
-from service.parts.model import Assembly
-from service.parts.overlaps import overlaps
-from service.parts.package import package
-from service.parts.shapes import Disc
-from service.parts.sizes import PartsQuery
+from service.parts.assembly.interference import find_overlaps
+from service.parts.assembly.model import Assembly
+from service.parts.assembly.sizes import PartsQuery
+from service.parts.export import cad
+from service.parts.export.zip_package import write_package
+from service.parts.geometry.regions import Disc
+from service.parts.linkage.motion import LinkageMotion
+from service.parts.registry import NotMade, make_parts
 from synthesis.dispatch import solve
 from synthesis.registry import KINDS, parse_problem
 from tests.cad.every_type import MADE, NEVER, REFUSED, STAGES, Row
@@ -68,12 +68,12 @@ def designed(key: tuple[str, str]) -> tuple[Any, Any]:
 def assembly(key: tuple[str, str]) -> Assembly:
     """As it is printed: every part is then written as STL and 3MF, beside STEP and DXF."""
     problem, design = designed(key)
-    return made(design, problem, PartsQuery(**{"process": "print", **ALL[key].query}))
+    return make_parts(design, problem, PartsQuery(**{"process": "print", **ALL[key].query}))
 
 
 def solids(key: tuple[str, str]) -> tuple[Any, ...]:
     """Those of the last design are kept: tests of one design follow one another."""
-    return cad.solids_of(assembly(key))
+    return cad.make_solids(assembly(key))
 
 
 @lru_cache(maxsize=1)
@@ -101,15 +101,15 @@ def test_what_has_no_parts_says_why(key: tuple[str, str]) -> None:
     problem, design = solved(row)
     assert design.mechanism.type == key[1]
     with pytest.raises(NotMade, match=reason):
-        made(design, problem, PartsQuery())
+        make_parts(design, problem, PartsQuery())
 
 
 @pytest.mark.parametrize("key", [*ROWS, *CROSSING], scope="module")
 def test_no_two_parts_meet_at_72_inputs(key: tuple[str, str]) -> None:
     """By the model that the service looks at, and by the meshes that it exports."""
     whole = assembly(key)
-    assert overlaps(whole, 72) == []
-    looked = looked_through(whole, meshes(key), whole.motion.inputs(72))
+    assert find_overlaps(whole, 72) == []
+    looked = looked_through(whole, meshes(key), whole.motion.sample_inputs(72))
     assert looked.stood > 72
     assert looked.tried >= len(whole.parts) - 1
     assert looked.overlaps == []
@@ -131,7 +131,7 @@ def test_what_is_not_where_it_belongs_is_seen_in_its_mesh(moved: str, by: dict[s
     number = next(k for k, part in enumerate(whole.parts) if part.name == moved)
     shift = (by.get("aside", 0.0), 0.0, by.get("up", 0.0))
     found[number] = found[number].rotate((0.0, 0.0, by.get("turn", 0.0))).translate(shift)
-    overlapping = {frozenset(one.parts) for one in looked_through(whole, found, whole.motion.inputs(3)).overlaps}
+    overlapping = {frozenset(one.parts) for one in looked_through(whole, found, whole.motion.sample_inputs(3)).overlaps}
     assert frozenset((moved, into)) in overlapping
     assert all(moved in pair for pair in overlapping)
 
@@ -146,7 +146,7 @@ def test_solids_are_valid_and_every_file_is_read_by_another_library(key: tuple[s
         assert solid.is_valid
         assert solid.volume > 0.0
         assert solid.volume == pytest.approx(part.volume, rel=1e-3)
-    with zipfile.ZipFile(io.BytesIO(package(whole, "print", "A", whole.motion.reference))) as archive:
+    with zipfile.ZipFile(io.BytesIO(write_package(whole, "print", "A", whole.motion.reference))) as archive:
         files = {name: archive.read(name) for name in archive.namelist()}
     by_folder = {name.partition("/")[0] for name in files}
     assert by_folder >= {"dxf", "stl", "3mf", "assembly.step", "assembly.svg", "isometric.svg", "bom.csv"}
@@ -161,13 +161,13 @@ def test_solids_are_valid_and_every_file_is_read_by_another_library(key: tuple[s
             document = ezdxf.read(io.StringIO(content.decode()))
             assert not document.audit().has_errors, name
             assert len(document.modelspace()) > 0, name
-    assert_valid_glb(cad.glb(cad.placed(whole, solids(key), whole.motion.reference), "assembly"))
+    assert_valid_glb(cad.write_glb(cad.place_solids(whole, solids(key), whole.motion.reference), "assembly"))
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder) / "assembly.step"
         path.write_bytes(files["assembly.step"])
         read = {child.label: child for child in import_step(path).children}
     assert read.keys() == {part.name for part in whole.parts}
-    placed = cad.placed(whole, solids(key), whole.motion.reference)
+    placed = cad.place_solids(whole, solids(key), whole.motion.reference)
     for part, solid in zip(whole.parts, placed, strict=True):
         # The kernel integrates over the splines of a file another way than over the cones that they were.
         assert read[part.name].is_valid
@@ -185,7 +185,7 @@ def test_gears_of_crossing_shafts_are_as_large_as_the_model_says(key: tuple[str,
         assert solid.is_valid
         # Sections of bevel teeth are polygons in the model.
         assert solid.volume == pytest.approx(part.volume, rel=1e-4 if part.sort == "gear" else 1e-6)
-    assert_valid_glb(cad.glb(cad.placed(whole, solids(key), 0.3), "assembly"))
+    assert_valid_glb(cad.write_glb(cad.place_solids(whole, solids(key), 0.3), "assembly"))
 
 
 def holes_are_as_far_apart_as_the_joints(whole: Assembly, read: dict[str, Any]) -> int:
@@ -197,7 +197,7 @@ def holes_are_as_far_apart_as_the_joints(whole: Assembly, read: dict[str, Any]) 
     for part in whole.parts:
         if part.sort not in ("link", "base"):
             continue
-        bores = [face for face in read[part.name].faces() if face.geom_type == GeomType.CYLINDER]
+        bores = [face for face in read[part.name].list_faces() if face.geom_type == GeomType.CYLINDER]
         axes = [complex(at.X, at.Y) for at in (face.axis_of_rotation.position for face in bores)]
         held = [hole.centre for hole in part.region.holes if isinstance(hole, Disc)]
         joints = [complex(mechanism.joints[name]) for name in mechanism.links.get(part.carrier.link, ())]
@@ -215,6 +215,6 @@ def test_the_kernel_sees_no_plate_in_another(key: tuple[str, str]) -> None:
     plates = [k for k, part in enumerate(whole.parts) if part.sort not in BY_MESH]
     whole = replace(whole, parts=tuple(whole.parts[k] for k in plates))
     made_ = [solids(key)[k] for k in plates]
-    tried, found = shared_room(whole, made_, whole.motion.inputs(72)[[5, 29, 53]])
+    tried, found = shared_room(whole, made_, whole.motion.sample_inputs(72)[[5, 29, 53]])
     assert tried > 0
     assert sum(found.values()) < 1e-6 * min(solid.volume for solid in made_), found

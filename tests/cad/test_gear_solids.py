@@ -13,12 +13,12 @@ from typing import Any
 import numpy as np
 import pytest
 
-from service.parts import cad
+from service.parts.assembly.model import Assembly
+from service.parts.assembly.sizes import PartsQuery
+from service.parts.export import cad
 from service.parts.gears.motion import TrainMotion
-from service.parts.made import made
-from service.parts.model import Assembly
-from service.parts.shapes import Disc
-from service.parts.sizes import PartsQuery
+from service.parts.geometry.regions import Disc
+from service.parts.registry import make_parts
 from synthesis.dispatch import solve
 from synthesis.registry import parse_problem
 from tests.cad.meshes import looked_through, meshed
@@ -54,12 +54,12 @@ def solved(name: str) -> tuple[Any, Any]:
 @cache
 def assembly(name: str) -> Assembly:
     problem, design = solved(name)
-    return made(design, problem, PartsQuery())
+    return make_parts(design, problem, PartsQuery())
 
 
 @cache
 def solids(name: str) -> dict[str, Any]:
-    return {part.name: cad.solid(part) for part in assembly(name).parts}
+    return {part.name: cad.make_solid(part) for part in assembly(name).parts}
 
 
 @pytest.mark.parametrize("name", SOLID)
@@ -71,7 +71,7 @@ def test_solids_are_valid_and_as_large_as_the_model_says(name: str) -> None:
         assert solid.volume == pytest.approx(part.volume, rel=1e-5 if name in SWEPT else 1e-6)
         box = solid.bounding_box()
         assert pytest.approx((part.low, part.high), abs=1e-5) == (box.min.Z, box.max.Z)
-    assert_valid_glb(cad.glb(list(solids(name).values()), "assembly"))
+    assert_valid_glb(cad.write_glb(list(solids(name).values()), "assembly"))
 
 
 @pytest.mark.parametrize("name", ["pair", "internal"])
@@ -82,7 +82,7 @@ def test_bores_are_as_far_apart_as_the_answer_says(name: str) -> None:
     _, design = solved(name)
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder) / "a.step"
-        path.write_bytes(cad.step([*solids(name).values()], "assembly"))
+        path.write_bytes(cad.write_step([*solids(name).values()], "assembly"))
         found = {child.label: child for child in import_step(path).children}
     assert found.keys() == {part.name for part in whole.parts}
     outer = next(part for part in whole.parts if part.name == "pin_input_shaft").region.outer
@@ -95,7 +95,7 @@ def test_bores_are_as_far_apart_as_the_answer_says(name: str) -> None:
             one = found[webbed if webbed in found else f"gear_{number}_{role}"]
             bores = [
                 face
-                for face in one.faces()
+                for face in one.list_faces()
                 if face.geom_type == GeomType.CYLINDER and shaft < face.radius < 1.1 * shaft
             ]
             bore = max(bores, key=lambda face: face.area)
@@ -106,7 +106,7 @@ def test_bores_are_as_far_apart_as_the_answer_says(name: str) -> None:
 @pytest.mark.parametrize("name", OTHERS)
 def test_no_two_meshes_share_room_at_72_inputs(name: str) -> None:
     whole = assembly(name)
-    looked = looked_through(whole, meshed(list(solids(name).values())), whole.motion.inputs(72))
+    looked = looked_through(whole, meshed(list(solids(name).values())), whole.motion.sample_inputs(72))
     assert looked.stood > 72
     assert looked.tried >= len(whole.parts) - 1
     assert looked.overlaps == []
@@ -120,7 +120,7 @@ def test_planets_go_round_with_the_carrier_and_turn_about_themselves() -> None:
     teeth = design.mechanism.teeth
     away = 0.5 * (teeth["sun"] + teeth["planet"])
     for angle in (0.0, 1.0, 7.0):
-        placed = cad.placed(whole, [*solids("planetary").values()], angle)
+        placed = cad.place_solids(whole, [*solids("planetary").values()], angle)
         middle = placed[numbers["gear_planet_1"]].center()
         assert abs(complex(middle.X, middle.Y) - away * np.exp(0.25j * angle)) < 1e-6
         axle = placed[numbers["pin_axle_of_planet_1"]].center()

@@ -14,15 +14,15 @@ from xml.etree import ElementTree
 import numpy as np
 import pytest
 
-from service.parts import cad
-from service.parts.items import items
-from service.parts.linkage_motion import LinkageMotion
-from service.parts.made import made
-from service.parts.model import Assembly
-from service.parts.orders import filled
-from service.parts.package import package
-from service.parts.shapes import Disc
-from service.parts.sizes import PartsQuery, Refused
+from service.parts.assembly.items import list_items
+from service.parts.assembly.model import Assembly
+from service.parts.assembly.sizes import FileRefusal, PartsQuery
+from service.parts.export import cad
+from service.parts.export.requests import make_file
+from service.parts.export.zip_package import write_package
+from service.parts.geometry.regions import Disc
+from service.parts.linkage.motion import LinkageMotion
+from service.parts.registry import make_parts
 from synthesis.dispatch import solve
 from synthesis.registry import parse_problem
 from tests.cad.meshes import looked_through, meshed
@@ -66,12 +66,12 @@ def solved(kind: str) -> tuple[Any, Any, Any]:
 @cache
 def assembly(kind: str, process: str = "laser") -> Assembly:
     problem, _, design = solved(kind)
-    return made(design, problem, PartsQuery(process=process))
+    return make_parts(design, problem, PartsQuery(process=process))
 
 
 @cache
 def solids(kind: str) -> list[Any]:
-    return [cad.solid(part) for part in assembly(kind).parts]
+    return [cad.make_solid(part) for part in assembly(kind).parts]
 
 
 @pytest.mark.parametrize("kind", TYPES)
@@ -89,7 +89,7 @@ def test_a_step_file_has_all_parts_by_name_with_holes_at_the_joints(kind: str) -
     from build123d import GeomType, import_step
 
     whole, made_ = assembly(kind), solids(kind)
-    text = cad.step(made_, "assembly")
+    text = cad.write_step(made_, "assembly")
     assert b"AP242_MANAGED_MODEL_BASED_3D_ENGINEERING" in text
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder) / "a.step"
@@ -106,7 +106,7 @@ def test_a_step_file_has_all_parts_by_name_with_holes_at_the_joints(kind: str) -
         assert tuple(one.color)[:3] == pytest.approx(colour, abs=0.01)
         if part.sort != "link":
             continue
-        bores = [face for face in one.faces() if face.geom_type == GeomType.CYLINDER]
+        bores = [face for face in one.list_faces() if face.geom_type == GeomType.CYLINDER]
         axes = {complex(round(a.X, 7), round(a.Y, 7)) for a in (face.axis_of_rotation.position for face in bores)}
         joints = [complex(mechanism.joints[joint]) for joint in mechanism.links[part.carrier.link]]
         held = {hole.centre for hole in part.region.holes if isinstance(hole, Disc)}
@@ -120,7 +120,7 @@ def nearest(places: set[complex], joint: complex) -> complex:
 
 def test_geared_links_have_room_at_72_inputs() -> None:
     whole = assembly(GEARED)
-    looked = looked_through(whole, meshed(solids(GEARED)), whole.motion.inputs(72))
+    looked = looked_through(whole, meshed(solids(GEARED)), whole.motion.sample_inputs(72))
     assert looked.stood > 72
     assert looked.tried >= len(whole.parts) - 1
     assert looked.overlaps == []
@@ -132,9 +132,9 @@ def test_printed_parts_are_watertight_meshes_that_lie_on_the_plate(kind: str) ->
 
     whole = assembly(kind, "print")
     at = whole.motion.reference
-    with zipfile.ZipFile(io.BytesIO(package(whole, "print", "A", at))) as archive:
+    with zipfile.ZipFile(io.BytesIO(write_package(whole, "print", "A", at))) as archive:
         files = {name: archive.read(name) for name in archive.namelist()}
-    listed = items(whole)
+    listed = list_items(whole)
     assert {name for name in files if name.startswith("stl/")} == {f"stl/{item.name}.stl" for item in listed}
     for item in listed:
         mesh = trimesh.load_mesh(io.BytesIO(files[f"stl/{item.name}.stl"]), file_type="stl")
@@ -163,7 +163,7 @@ def three_mf(content: bytes) -> tuple[Any, Any, str | None]:
 
 def test_a_file_that_is_cut_short_is_not_valid() -> None:
     with pytest.raises(AssertionError, match="GLB_"):
-        assert_valid_glb(cad.glb(solids("fourbar")[:1], "assembly")[:-8])
+        assert_valid_glb(cad.write_glb(solids("fourbar")[:1], "assembly")[:-8])
 
 
 def test_a_glb_file_is_in_metres_with_the_shafts_along_y_and_moves_with_the_input() -> None:
@@ -174,7 +174,7 @@ def test_a_glb_file_is_in_metres_with_the_shafts_along_y_and_moves_with_the_inpu
     stated = [float(np.degrees(x)) for x in (whole.motion.low, whole.motion.high)]
     bounds = []
     for degrees in stated:
-        content = filled(order(problem, result, {"input_angle": degrees}), "glb")
+        content = make_file(order(problem, result, {"input_angle": degrees}), "glb")
         assert isinstance(content, bytes)
         assert_valid_glb(content)
         scene = trimesh.load(io.BytesIO(content), file_type="glb")
@@ -197,6 +197,6 @@ def test_an_input_that_is_none_is_refused_by_its_path(query: dict[str, float], p
     )
     if "input_angle" in query:
         query = {"input_angle": 0.5 * (low + high) + (0.0 if high < low else 180.0)}
-    answer = filled(order(problem, result, query), "step")
-    assert isinstance(answer, Refused)
+    answer = make_file(order(problem, result, query), "step")
+    assert isinstance(answer, FileRefusal)
     assert answer.path == path

@@ -10,9 +10,9 @@ from alembic.migration import MigrationContext
 from sqlalchemy import inspect, text
 
 from service.access.keys import api_keys
-from service.jobs.database import connect, upgrade
-from service.jobs.schema import hosts, jobs, metadata
-from service.jobs.store import JobStore
+from service.jobs.job_store import JobStore
+from service.jobs.store.database import connect, upgrade
+from service.jobs.store.schema import hosts, jobs, metadata
 from tests.cluster.backend import CHOSEN
 
 pytestmark = [pytest.mark.cluster]

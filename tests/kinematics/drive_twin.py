@@ -11,9 +11,9 @@ import numpy as np
 from kinematics.linkage.kernels import TOGGLE_SINE
 from kinematics.linkage.planar.closures import decompose
 from kinematics.linkage.planar.drive import MechanismMotion
-from kinematics.linkage.planar.drive_kernels import AT_LIMIT, COINCIDENT
+from kinematics.linkage.planar.drive_kernels import COINCIDENCE_TOLERANCE, LIMIT_TOLERANCE
 from kinematics.linkage.planar.mechanism import GROUND
-from kinematics.linkage.planar.program import assembly_signs, unit_frame
+from kinematics.linkage.planar.program import compute_unit_frame, find_assembly_signs
 
 
 def product(a, b):
@@ -67,7 +67,9 @@ def solve_angle(k, r, sign, reach, slack=0.0):
         margin = [excess]
         if len(k) > 1:
             margin.append(2.0 * ((np.conj(k[0]) * k[1]).real - r[0] * r[1]))
-        exists = (excess >= -AT_LIMIT * length * np.maximum(length, slack)) & (length > COINCIDENT * reach)
+        exists = (excess >= -LIMIT_TOLERANCE * length * np.maximum(length, slack)) & (
+            length > COINCIDENCE_TOLERANCE * reach
+        )
         root = np.sqrt(np.where(exists, np.maximum(excess, 0.0), np.nan))
         rows = [np.angle(k[0]) - sign * np.arctan2(root, r[0])]
         determinant = sign * root
@@ -108,8 +110,8 @@ class _Drive:
 
     def __init__(self, mechanism, input, rates, signs):
         self.mechanism, self.steps = mechanism, decompose(mechanism).steps
-        self.signs = assembly_signs(mechanism, self.steps) if signs is None else signs
-        self.frame = unit_frame(mechanism)
+        self.signs = find_assembly_signs(mechanism, self.steps) if signs is None else signs
+        self.frame = compute_unit_frame(mechanism)
         given = [np.asarray(x, float) for x in (input, *rates)]
         signs_shape = np.broadcast_shapes(*(np.shape(sign) for sign in self.signs))
         self.shape = np.broadcast_shapes((*mechanism.shape, 1), (*signs_shape, 1), *(x.shape for x in given))
@@ -139,7 +141,7 @@ class _Drive:
         mechanism = self.mechanism
         moved = self.input.copy()
         moved[0] -= mechanism.reference_input[..., None]
-        if mechanism.driven_by_slide:
+        if mechanism.has_slide_input:
             slide = next(s for s in mechanism.slides if s.joint == mechanism.input and s.link == GROUND)
             along = np.exp(1j * slide.angle)[..., None] / self.frame.size[..., None]
             point = moved * along

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from kinematics.errors import DimensionError
-from kinematics.linkage.planar.catalogue import SIXBAR_LINKS, peaucellier, quick_return, sixbar
+from kinematics.linkage.planar.catalogue import SIXBAR_LINKS, make_peaucellier, make_quick_return, make_sixbar
 from kinematics.linkage.planar.mechanism import GearPair, Mechanism, Slide
 
 Rng = np.random.Generator
@@ -83,7 +83,7 @@ def _quick_return(rng: Rng, n: int, low: float, high: float) -> Mechanism:
         crank = abs(o4 - o2) * rng.uniform(low, high)
         try:
             made.append(
-                quick_return(
+                make_quick_return(
                     o2,
                     o4,
                     crank,
@@ -123,7 +123,7 @@ def geared_fivebar(rng: Rng, n: int, ratio: float | None = None) -> Mechanism:
 
 def _sixbar(kind: str, input: str) -> Make:
     names = " ".join(dict.fromkeys(joint for listed in SIXBAR_LINKS[kind].values() for joint in listed))
-    return lambda rng, n: sixbar(kind, {**points(rng, names, n)}, input)
+    return lambda rng, n: make_sixbar(kind, {**points(rng, names, n)}, input)
 
 
 def _drag_link(rng: Rng, n: int) -> list[tuple[complex, ...]]:
@@ -150,7 +150,7 @@ def drag_link_rocker(rng: Rng, n: int) -> Mechanism:
     joints = dict(zip(("O2", "O4", "A", "B", "C"), made, strict=True))
     joints["O6"] = joints["O4"] + rng.uniform(2.0, 5.0, n) * np.exp(1j * rng.uniform(-np.pi, np.pi, n))
     joints["D"] = joints["C"] + rng.uniform(2.0, 5.0, n) * np.exp(1j * rng.uniform(-np.pi, np.pi, n))
-    return sixbar("watt_2", joints)
+    return make_sixbar("watt_2", joints)
 
 
 def drag_link_slider(rng: Rng, n: int) -> Mechanism:
@@ -176,7 +176,7 @@ def peaucellier_cell(rng: Rng, n: int) -> Mechanism:
         arm = side + rng.uniform(0.2, 4.0)
         try:
             made.append(
-                peaucellier(o2, o2 - crank * np.exp(1j * turn), crank, arm, side, turn + rng.uniform(-2.5, 2.5))
+                make_peaucellier(o2, o2 - crank * np.exp(1j * turn), crank, arm, side, turn + rng.uniform(-2.5, 2.5))
             )
         except DimensionError:
             continue

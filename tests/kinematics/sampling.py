@@ -5,11 +5,9 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from kinematics.arrays import Integers, Real
 from kinematics.linkage.fourbar import Fourbar
 from tests.oracles.continuation import Linkages
-
-Real = NDArray[np.float64]
-Signs = NDArray[np.int64]
 
 
 def random_fourbars(rng: np.random.Generator, n: int, gap: float = 0.0) -> Fourbar:
@@ -46,7 +44,7 @@ def assembled_angles(rng: np.random.Generator, linkage: Fourbar, m: int, margin:
     return np.where(np.take_along_axis(good, first, axis=-1)[..., 0], found, np.nan)
 
 
-def signs(rng: np.random.Generator, *shape: int) -> Signs:
+def signs(rng: np.random.Generator, *shape: int) -> Integers:
     return rng.choice(np.array([1, -1]), shape)
 
 

@@ -12,11 +12,11 @@ from collections.abc import Sequence
 import numpy as np
 import pytest
 
-from kinematics.linkage.fourbar import CROSSED, OPEN, Fourbar, positions, toggle_angles
+from kinematics.linkage.fourbar import CROSSED_ASSEMBLY, OPEN_ASSEMBLY, Fourbar, find_toggle_angles, positions
 from kinematics.linkage.planar import catalogue
-from kinematics.linkage.planar.branches import Branch, cycle
+from kinematics.linkage.planar.branches import Branch, compute_cycle
 from kinematics.linkage.planar.drive import drive
-from kinematics.linkage.planar.limits import branches, holding_reference, toggles
+from kinematics.linkage.planar.limits import find_branches, find_reference_branch, list_toggles
 from kinematics.linkage.planar.mechanism import Mechanism, Slide, TopologyError
 from tests.kinematics import mechanism_sampling as sampling
 from tests.kinematics.mechanism_sampling import EVERY, RATIOS, take
@@ -87,13 +87,13 @@ def test_short_branch_between_two_closures() -> None:
 def test_gears_that_do_not_repeat_are_refused() -> None:
     mechanism = take(sampling.geared_fivebar(np.random.default_rng(50), 1, float(np.sqrt(2.0))), 0)
     with pytest.raises(TopologyError, match="repeat"):
-        branches(mechanism)
+        find_branches(mechanism)
 
 
 def test_cycle_is_as_many_turns_as_the_gears_need() -> None:
     for ratio in (*RATIOS, 0.0, 1.2, -0.75):
         mechanism = take(sampling.geared_fivebar(np.random.default_rng(46), 1, ratio), 0)
-        assert cycle(mechanism) == pytest.approx(period_of(mechanism), rel=1e-15)
+        assert compute_cycle(mechanism) == pytest.approx(period_of(mechanism), rel=1e-15)
 
 
 @pytest.mark.parametrize("ratio", [pytest.param(ratio, marks=effort(ratio, (-1.0, 0.5), ())) for ratio in RATIOS])
@@ -115,11 +115,11 @@ def test_fourbars_as_grashofs_rule_counts_them(n: int) -> None:
         expected = count_circuits(linkage)
         theta = np.linspace(0.0, TURN, 3000)
         closes = positions(linkage, theta).valid
-        mechanism = catalogue.fourbar(linkage, theta[int(np.argmax(closes))], OPEN)
-        found = branches(mechanism)
+        mechanism = catalogue.make_fourbar(linkage, theta[int(np.argmax(closes))], OPEN_ASSEMBLY)
+        found = find_branches(mechanism)
         assert 1 + max(b.circuit for b in found) == expected.circuits
         assert len(found) == expected.circuits * expected.branches
-        mine, theirs = toggles(mechanism, found), np.sort(np.mod(toggle_angles(linkage), TURN))
+        mine, theirs = list_toggles(mechanism, found), np.sort(np.mod(find_toggle_angles(linkage), TURN))
         assert len(mine) == len(theirs)
         assert np.abs(np.array(mine) - theirs).max(initial=0.0) < 1e-10
         seen.add(tuple(expected))
@@ -143,10 +143,10 @@ def test_change_points_join_all_into_one_circuit(name: str) -> None:
     linkage = Fourbar.from_lengths(*lengths)
     theta = np.linspace(0.05, TURN, 100)
     at = float(theta[int(np.argmax(positions(linkage, theta).valid))])
-    for sign in (OPEN, CROSSED):
-        found = branches(catalogue.fourbar(linkage, at, sign))
+    for sign in (OPEN_ASSEMBLY, CROSSED_ASSEMBLY):
+        found = find_branches(catalogue.make_fourbar(linkage, at, sign))
         assert {b.circuit for b in found} == {0}
-        held = holding_reference(catalogue.fourbar(linkage, at, sign), found)
+        held = find_reference_branch(catalogue.make_fourbar(linkage, at, sign), found)
         assert held is not None
         assert held.signs == (-sign,)  # open is B to the left of A → O4, where the closure's angle is negative
         if points is not None:
@@ -165,8 +165,8 @@ def crossing(found: list[Branch], at: float) -> list[Branch]:
 def test_flat_rhombus_of_peaucelliers_cell_is_a_change_point() -> None:
     """Where A and P meet, |O4 A|² = arm² − side², the motion on the line and the one with P on A cross."""
     crank, arm, side = 1.3, 2.5, 1.1
-    mechanism = catalogue.peaucellier(0j, -crank + 0j, crank, arm, side, 0.6)
-    found = branches(mechanism)
+    mechanism = catalogue.make_peaucellier(0j, -crank + 0j, crank, arm, side, 0.6)
+    found = find_branches(mechanism)
     flat = np.arccos((arm**2 - side**2) / (2.0 * crank**2) - 1.0)
     assert {b.circuit for b in found} == {0}
     assert len(found) == 12
@@ -174,7 +174,7 @@ def test_flat_rhombus_of_peaucelliers_cell_is_a_change_point() -> None:
         assert not crossing(found, at)
         ends = np.array([end for b in found for end in (b.low, b.high)])
         assert (np.abs(np.exp(1j * ends) - np.exp(1j * at)) < 1e-12).sum() == 8
-    held = holding_reference(mechanism, found)
+    held = find_reference_branch(mechanism, found)
     assert held is not None
     assert held.high_closure == "side_3"
     motion = drive(mechanism, np.linspace(-flat, flat, 9)[1:-1])
@@ -189,8 +189,8 @@ def test_pin_that_passes_the_pivot_of_its_slide(offset: float) -> None:
     Beside it the motion goes on with the other assembly, which turns the output on smoothly. With the line beside the
     pivot the mechanism ends before.
     """
-    crank = catalogue.inverted_slider_crank(0j, 1.0, 1.0, offset, np.pi / 2.0, 2.0)
-    found = branches(crank)
+    crank = catalogue.make_inverted_slider_crank(0j, 1.0, 1.0, offset, np.pi / 2.0, 2.0)
+    found = find_branches(crank)
     assert not crossing(found, 0.0)
     if offset:
         ends = sorted((b.low, b.high) for b in found)
@@ -210,15 +210,15 @@ def test_pin_that_passes_the_pivot_of_its_slide(offset: float) -> None:
 def test_ram_on_a_rocker_that_swings_freely_is_refused() -> None:
     """There the ram may go with the rocker or stop it: the circuits are not listed, and it is said why."""
     with pytest.raises(TopologyError, match="'rocker' swings freely"):
-        branches(catalogue.quick_return(0j, -1.0, 1.0, 1.0, 3.0, 1j, 0.0, 0.5))
+        find_branches(catalogue.make_quick_return(0j, -1.0, 1.0, 1.0, 3.0, 1j, 0.0, 0.5))
 
 
 def test_slider_that_drives_a_crank_as_long_as_its_coupler() -> None:
     """With the slider on the pivot the crank turns freely: a branch for it, and a change point for the slider."""
-    by_slider = catalogue.slider_crank(0j, 0j, 0.0, 1.0, 1.0, 0.3, driven_by="slider")
-    found = branches(catalogue.slider_crank(0j, 0j, 0.0, 1.0, 1.0, 0.3))
+    by_slider = catalogue.make_slider_crank(0j, 0j, 0.0, 1.0, 1.0, 0.3, driven_by="slider")
+    found = find_branches(catalogue.make_slider_crank(0j, 0j, 0.0, 1.0, 1.0, 0.3))
     assert {b.circuit for b in found} == {0}
-    spans = branches(by_slider)
+    spans = find_branches(by_slider)
     assert sorted((round(b.low, 9), round(b.high, 9)) for b in spans) == [(-2.0, 0.0)] * 2 + [(0.0, 2.0)] * 2
 
 
@@ -231,8 +231,8 @@ def test_slide_of_a_link_without_a_way() -> None:
         "crank",
         (line,),
     )
-    assert branches(mechanism) == []
-    assert holding_reference(mechanism, []) is None
+    assert find_branches(mechanism) == []
+    assert find_reference_branch(mechanism, []) is None
 
 
 @pytest.mark.parametrize("name", EVERY)
@@ -245,11 +245,11 @@ def test_dyad_that_is_always_folded_is_refused() -> None:
     joints = {"O2": 0j, "O4": 0j, "A": 3.0 + 0j, "B": 1.0 + 0j, "P": 1.0 + 1j}
     links = {"ground": ("O2", "O4"), "input": ("O2", "A"), "coupler": ("A", "B", "P"), "output": ("O4", "B")}
     with pytest.raises(TopologyError, match="folded flat at every input"):
-        branches(Mechanism({**joints}, links, "input"))
+        find_branches(Mechanism({**joints}, links, "input"))
 
 
 def test_slide_that_cannot_be_moved_has_no_branch() -> None:
     """A crank as long as its coupler, and a line square to the way out: the slider rests, the crank turns."""
     line = Slide("B", "ground", np.asarray(0j), np.asarray(0.0))
     links = {"ground": ("O2",), "crank": ("O2", "A"), "coupler": ("A", "B")}
-    assert branches(Mechanism({"O2": 2j, "A": 1j, "B": 0j}, links, "B", (line,))) == []
+    assert find_branches(Mechanism({"O2": 2j, "A": 1j, "B": 0j}, links, "B", (line,))) == []

@@ -6,19 +6,19 @@ import numpy as np
 import pytest
 
 from kinematics.linkage.fourbar import (
-    CROSSED,
-    OPEN,
+    CROSSED_ASSEMBLY,
+    OPEN_ASSEMBLY,
     Fourbar,
     barker_class,
     can_assemble,
-    full_rotation,
-    input_limits,
+    find_input_limits,
+    find_toggle_angles,
+    find_transmission_extremes,
+    has_full_rotation,
+    is_same_circuit,
     positions,
-    same_circuit,
     stays_on_branch,
-    toggle_angles,
     transmission_angle,
-    transmission_extremes,
     traverse,
 )
 from tests.kinematics.sampling import assembled_angles, plain, random_fourbars, signs, take
@@ -73,7 +73,7 @@ def test_same_circuit_and_branch(n: int) -> None:
     circuit = follow(plain(linkage), *configurations(plain(linkage), theta, sign))
     assert not np.isnan(circuit.length).any()
     for k in (1, 2):
-        found = same_circuit(linkage, theta[:, 0], sign[:, 0], theta[:, k], sign[:, k])
+        found = is_same_circuit(linkage, theta[:, 0], sign[:, 0], theta[:, k], sign[:, k])
         np.testing.assert_array_equal(found, circuit.same_circuit[:, k])
         onward = [stays_on_branch(linkage, theta[:, 0], theta[:, k] + turn) for turn in (-TURN, 0.0, TURN)]
         one_branch = np.any(onward, axis=0) & (sign[:, 0] == sign[:, k])
@@ -88,7 +88,9 @@ def test_reaches_names_the_three_cases() -> None:
     start = np.radians([30.0, 88.0, 88.0]), np.array([1, 1, 1])
     target = np.radians([30.0, 80.0, 80.0]), np.array([-1, -1, 1])
     assert reaches(plain(linkages), start, target) == ["other circuit", "same circuit", "same branch"]
-    np.testing.assert_array_equal(same_circuit(linkages, start[0], start[1], target[0], target[1]), [False, True, True])
+    np.testing.assert_array_equal(
+        is_same_circuit(linkages, start[0], start[1], target[0], target[1]), [False, True, True]
+    )
 
 
 def test_every_toggle_is_met_once_in_a_round() -> None:
@@ -97,9 +99,9 @@ def test_every_toggle_is_met_once_in_a_round() -> None:
     circuit = follow(plain(linkage), *configurations(plain(linkage), theta, np.ones((1, 1))))
     for k in range(linkage.input.size):
         one = take(linkage, k)
-        on_circuit = toggle_angles(one).size // count_circuits(one).circuits
+        on_circuit = find_toggle_angles(one).size // count_circuits(one).circuits
         assert circuit.toggles[k] == on_circuit
-        assert bool(full_rotation(one)) == (on_circuit == 0)
+        assert bool(has_full_rotation(one)) == (on_circuit == 0)
 
 
 def test_stays_on_branch_is_assembled_all_the_way() -> None:
@@ -111,7 +113,7 @@ def test_stays_on_branch_is_assembled_all_the_way() -> None:
     on_the_way = start[:, None] + (end - start)[:, None] * np.linspace(0.0, 1.0, 601)
     mu = transmission_angle(linkage, on_the_way)
     sampled = ~np.isnan(mu).any(axis=1)
-    limits = input_limits(linkage)
+    limits = find_input_limits(linkage)
     tight = np.nan_to_num(mu).min(axis=1) < 0.2
     found = stays_on_branch(linkage, start, end)
     np.testing.assert_array_equal(found, stays_on_branch(linkage, end, start))
@@ -138,7 +140,7 @@ def routes(seed: int, n: int, m: int) -> tuple[Fourbar, np.ndarray, np.ndarray]:
     sort = rng.integers(0, 5, n)[:, None]
     delta = np.where(sort >= 2, np.abs(delta) * rng.choice([-1, 1], (n, 1)), delta)
     ordered = np.sort(delta, axis=1) * rng.choice([-1, 1], (n, 1))
-    crank = full_rotation(linkage)[:, None]
+    crank = has_full_rotation(linkage)[:, None]
     rolled = np.sort(np.remainder(theta, TURN), axis=1)
     rolled = np.take_along_axis(rolled, (np.arange(m) + rng.integers(0, m, (n, 1))) % m, axis=1)
     flip = rng.random((n, 1)) < 0.5
@@ -188,12 +190,12 @@ def compare_traversals(seed: int, n: int, m: int) -> None:
             assert (found.start, found.end) == (found.angles[0], found.angles[-1])
             assert abs(found.end - found.start) < TURN
             assert stays_on_branch(one, found.start, found.end)
-            if full_rotation(one) and m == 2:
+            if has_full_rotation(one) and m == 2:
                 assert abs(found.end - found.start) <= np.pi
-        if found.same_branch and (found.in_order or not full_rotation(one)):
-            if full_rotation(one) and abs(abs(found.end - found.start) - np.pi) < 0.05:
+        if found.same_branch and (found.in_order or not has_full_rotation(one)):
+            if has_full_rotation(one) and abs(abs(found.end - found.start) - np.pi) < 0.05:
                 continue  # both ways are half a turn long
-            mu, _ = transmission_extremes(one, found.start, found.end)
+            mu, _ = find_transmission_extremes(one, found.start, found.end)
             assert float(mu) == pytest.approx(least[k], abs=0.03)
     expected = {(True, True), (False, False)} | ({(True, False), (False, True)} if m > 2 else {(False, True)})
     assert expected <= met.keys()
@@ -223,7 +225,7 @@ def test_traverse_both_ways_over_the_ground_line() -> None:
 def test_traverse_follows_a_planted_round_over_a_toggle() -> None:
     """A triple rocker goes up one branch and, over the toggle, down the other: one circuit, in order, two branches."""
     linkage = Fourbar.from_lengths(6.0, 10.0, 7.0, 4.0)
-    limits = input_limits(linkage)
+    limits = find_input_limits(linkage)
     up = float(limits.upper) - np.array([0.6, 0.2])
     theta, sign = np.concatenate([up, up[::-1]]), np.array([1, 1, -1, -1])
     for route in (slice(None), slice(None, None, -1)):
@@ -237,11 +239,11 @@ def test_traverse_follows_a_planted_round_over_a_toggle() -> None:
 def test_targets_on_different_circuits_are_never_in_order() -> None:
     """A double rocker on both sides of the ground line, with one assembly and with two."""
     linkage = Fourbar.from_lengths(5.0, 2.0, 5.0, 4.0)
-    limits = input_limits(linkage)
+    limits = find_input_limits(linkage)
     inside = 0.5 * float(limits.lower + limits.upper)
     for sign in ([1, 1], [1, -1]):
         found = traverse(linkage, [inside, -inside], sign)
-        assert not same_circuit(linkage, inside, sign[0], -inside, sign[1])
+        assert not is_same_circuit(linkage, inside, sign[0], -inside, sign[1])
         assert not found.same_branch
         assert not found.in_order
     assert not traverse(Fourbar.from_lengths(2.0, 7.0, 9.0, 6.0), [0.1, 0.2], [1, -1]).in_order
@@ -272,7 +274,7 @@ def test_equal_targets_are_not_in_order() -> None:
 def test_target_on_a_toggle_is_on_no_branch(lengths: tuple[float, ...], at: int) -> None:
     """It has a transmission angle of 0 and no direction; its angle stays within the range and does not jump a turn."""
     linkage = Fourbar(0.2 - 1j, 0.2 - 1j + lengths[3] * np.exp(2.1j), *lengths[:3])
-    limits = input_limits(linkage)
+    limits = find_input_limits(linkage)
     toggle = float(limits.upper if at else limits.lower) if limits.folded_toggle and limits.extended_toggle else None
     toggle = toggle or float(limits.upper if limits.extended_toggle else limits.lower)
     inward = toggle + 0.05 * (1.0 if toggle == limits.lower else -1.0)
@@ -283,7 +285,7 @@ def test_target_on_a_toggle_is_on_no_branch(lengths: tuple[float, ...], at: int)
         assert not found.in_order
     sharp = traverse(linkage, float(linkage.ground_angle) + np.array([inward, toggle]), [1, 1])
     assert not sharp.same_branch
-    assert transmission_extremes(linkage, sharp.start, sharp.end)[0] < 1e-6
+    assert find_transmission_extremes(linkage, sharp.start, sharp.end)[0] < 1e-6
 
 
 def test_crank_over_several_turns() -> None:
@@ -291,7 +293,9 @@ def test_crank_over_several_turns() -> None:
     assert stays_on_branch(crank, -20.0, 50.0)
     assert not stays_on_branch(rocker, 1.0, 1.0 + TURN)
     assert stays_on_branch(rocker, 1.0 + 6.0 * np.pi, 1.2 + 6.0 * np.pi)
-    np.testing.assert_allclose(transmission_extremes(crank, -20.0, 50.0), transmission_extremes(crank, 0.0, TURN))
+    np.testing.assert_allclose(
+        find_transmission_extremes(crank, -20.0, 50.0), find_transmission_extremes(crank, 0.0, TURN)
+    )
     theta = np.array([0.3, 1.3, 2.3])
     np.testing.assert_allclose(positions(crank, theta + 40.0 * np.pi).b, positions(crank, theta).b, atol=1e-12)
     assert traverse(crank, theta + TURN * np.array([3, -7, 0]), [1, 1, 1]).in_order
@@ -320,34 +324,34 @@ def test_change_point(name: str, scale: float) -> None:
     linkage = Fourbar.from_lengths(*(scale * x for x in (a, b, c, d)))
     assert barker_class(linkage).code == code
     assert can_assemble(linkage)
-    assert not full_rotation(linkage)
+    assert not has_full_rotation(linkage)
     assert count_circuits(linkage) == (1, 2)
-    limits = input_limits(linkage)
+    limits = find_input_limits(linkage)
     lines = [0.0] * (abs(abs(b - c) - abs(d - a)) < 1e-12) + [np.pi] * (abs(b + c - d - a) < 1e-12)
     assert lines
     for line in lines:
         assert line in (limits.lower, limits.upper)
         assert not stays_on_branch(linkage, line - 0.3, line + 0.3)
-        assert transmission_extremes(linkage, line - 0.3, line + 0.3)[0] == pytest.approx(0.0, abs=1e-6)
+        assert find_transmission_extremes(linkage, line - 0.3, line + 0.3)[0] == pytest.approx(0.0, abs=1e-6)
         apart = abs(linkage.ground - linkage.input * np.exp(1j * line)) > 1e-6 * scale
         assert positions(linkage, line).valid == apart
-    toggles = toggle_angles(linkage)
+    toggles = find_toggle_angles(linkage)
     assert all(min(abs(np.exp(1j * line) - np.exp(1j * toggles))) < 1e-12 for line in lines)
     assert len(toggles) == len(np.unique(np.round(np.exp(1j * toggles), 9)))
     for turn in (4.5e-16, 0.7, -2.1):
-        turned = toggle_angles(Fourbar(0.0, scale * d * np.exp(1j * turn), *(scale * x for x in (a, b, c))))
+        turned = find_toggle_angles(Fourbar(0.0, scale * d * np.exp(1j * turn), *(scale * x for x in (a, b, c))))
         assert len(turned) == len(toggles)
         assert np.all((turned > -np.pi) & (turned <= np.pi))
     middle = 0.5 * float(limits.lower + limits.upper)
-    assert same_circuit(linkage, middle, OPEN, -middle, CROSSED)
+    assert is_same_circuit(linkage, middle, OPEN_ASSEMBLY, -middle, CROSSED_ASSEMBLY)
     assert traverse(linkage, [middle, -middle], [1, 1]).same_branch == (len(lines) == 1 and len(toggles) == 1)
     assert traverse(linkage, [middle, middle + 0.1], [1, 1]).same_branch
 
 
 def test_parallelogram_swings_in_parallel() -> None:
     theta = np.radians(np.arange(1.0, 180.0))
-    at = positions(Fourbar.from_lengths(0.3, 0.7, 0.3, 0.7), theta, CROSSED)
-    other = positions(Fourbar.from_lengths(0.3, 0.7, 0.3, 0.7), theta, OPEN)
+    at = positions(Fourbar.from_lengths(0.3, 0.7, 0.3, 0.7), theta, CROSSED_ASSEMBLY)
+    other = positions(Fourbar.from_lengths(0.3, 0.7, 0.3, 0.7), theta, OPEN_ASSEMBLY)
     parallel = [np.abs(np.exp(1j * x.output_angle) - np.exp(1j * theta)).max() < 1e-9 for x in (at, other)]
     assert sorted(parallel) == [False, True]
     assert positions(Fourbar.from_lengths(0.3, 0.7, 0.3, 0.7), np.radians(np.arange(361.0))).valid.all()
@@ -364,11 +368,11 @@ def test_near_a_change_point(excess: float) -> None:
         assert found.circuits == (2 if excess < 0 else 1)
         if abs(excess) < 1e-6:
             continue
-        limits = input_limits(linkage)
+        limits = find_input_limits(linkage)
         theta = 0.4 * float(limits.lower) + 0.6 * float(limits.upper)
         angles, sign = np.array([[theta, theta, -theta, -theta]]), np.array([[1, -1, 1, -1]])
         circuit = follow(plain(linkage), *configurations(plain(linkage), angles, sign))
-        expected = [same_circuit(linkage, theta, 1, x, s) for x, s in zip(angles[0], sign[0], strict=True)]
+        expected = [is_same_circuit(linkage, theta, 1, x, s) for x, s in zip(angles[0], sign[0], strict=True)]
         np.testing.assert_array_equal(circuit.same_circuit[0], expected)
         assert circuit.same_circuit[0].sum() == (4 if found.circuits == 1 else 2)
         assert max(1, circuit.toggles[0]) == found.branches
@@ -390,10 +394,10 @@ def test_can_assemble_up_to_the_straight_line() -> None:
 def test_linkage_that_cannot_be_assembled_has_no_circuit() -> None:
     linkage = Fourbar.from_lengths(1.0, 1.0, 1.0, 10.0)
     assert count_circuits(linkage) == (0, 0)
-    assert not full_rotation(linkage)
+    assert not has_full_rotation(linkage)
     assert not stays_on_branch(linkage, 0.0, 0.1)
-    assert not same_circuit(linkage, 0.0, 1, 0.0, 1)
+    assert not is_same_circuit(linkage, 0.0, 1, 0.0, 1)
     assert not traverse(linkage, [0.0, 0.1], [1, 1]).same_branch
-    assert toggle_angles(linkage).size == 0
-    assert np.isnan(input_limits(linkage).lower)
-    assert transmission_extremes(linkage, 0.0, 6.0) == (0.0, 0.0)
+    assert find_toggle_angles(linkage).size == 0
+    assert np.isnan(find_input_limits(linkage).lower)
+    assert find_transmission_extremes(linkage, 0.0, 6.0) == (0.0, 0.0)

@@ -8,7 +8,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from kinematics.linkage.planar.limits import branches
+from kinematics.linkage.planar.limits import find_branches
 from tests.kinematics.mechanism_sampling import CLASS_THREE, EVERY, take
 from tests.oracles.constraints import Constraints
 from tests.support.kinematics.circuits_from_other_links import TURNED, same_circuit, same_circuits, turning_of
@@ -37,7 +37,7 @@ def test_toggles_that_lie_close_together() -> None:
 @pytest.mark.parametrize("name", CLASS_THREE)
 def test_a_branch_less_or_a_toggle_elsewhere_would_be_seen(name: str) -> None:
     mechanism = take(EVERY[name](np.random.default_rng([53, TURNED.index(name)]), 1), 0)
-    found, theirs = branches(mechanism), turning_of(name, mechanism).circuits()
+    found, theirs = find_branches(mechanism), turning_of(name, mechanism).circuits()
     own = [branch for branch in found if branch.circuit == 0]
     assert same_circuit(own, theirs[0], 1.0, False)
     assert not same_circuit(own[1:], theirs[0], 1.0, False)

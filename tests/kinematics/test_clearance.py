@@ -6,8 +6,8 @@ import shapely
 
 from kinematics.errors import DimensionError
 from kinematics.linkage import Fourbar, catalogue
-from kinematics.linkage.clearance import Part, free_inputs, free_ranges, swept
-from kinematics.linkage.clearance.outlines import distance, distances, stretches_of
+from kinematics.linkage.clearance import Part, find_free_inputs, find_free_ranges, sweep_pairs
+from kinematics.linkage.clearance.outlines import build_stretches, measure_distance, measure_distances
 from kinematics.linkage.clearance.scene import Scene
 from kinematics.linkage.planar.drive import drive
 from tests.campaign import further
@@ -17,7 +17,7 @@ ROUNDING = 3e-9
 """Share of the size by which positions are known after a small step near a toggle."""
 
 ARM = 2.0
-CRANK_ROCKER = catalogue.fourbar(Fourbar.from_lengths(ARM, 7.0, 9.0, 6.0), input_angle=0.5)
+CRANK_ROCKER = catalogue.make_fourbar(Fourbar.from_lengths(ARM, 7.0, 9.0, 6.0), input_angle=0.5)
 """Its crank turns through."""
 
 
@@ -167,7 +167,7 @@ def test_distances_of_cores_are_those_of_shapely():
             angles = np.sort(rng.uniform(0.0, 2.0 * np.pi, k))
             centre = complex(*rng.uniform(-2.0, 2.0, 2))
             cores.append(centre + rng.uniform(0.2, 2.0, k) * np.exp(1j * angles))  # a star, seldom convex
-        found, apart = distance(*cores), shape(cores[0]).distance(shape(cores[1]))
+        found, apart = measure_distance(*cores), shape(cores[0]).distance(shape(cores[1]))
         assert found == (pytest.approx(apart, abs=1e-12) if apart > 0.0 else -np.inf)
         crossing = shape(cores[0]).boundary.intersects(shape(cores[1]).boundary)
         seen.add((apart > 0.0, crossing))
@@ -199,10 +199,10 @@ def test_many_edges_are_as_far_apart_as_every_edge_says():
         turn = turn.real.round() + 1j * turn.imag.round()
         shift = rng.normal(size=(2, 1)) * (turn != 1.0) + 0j
         parts, every = np.arange(2), np.zeros((1, 2), np.int64)
-        tree = stretches_of(vertices, starts)
-        found = distances(vertices, starts, parts, parts[None], every, turn, shift, tree)[0]
+        tree = build_stretches(vertices, starts)
+        found = measure_distances(vertices, starts, parts, parts[None], every, turn, shift, tree)[0]
         first, second = (turn[n, 0] * cores[n] + shift[n, 0] for n in range(2))
-        assert found == max(distance(first, second), -1e-6)
+        assert found == max(measure_distance(first, second), -1e-6)
         met += found == -1e-6
         touched += found == 0.0
     assert met > 50
@@ -224,7 +224,7 @@ def test_least_distances_agree_with_a_dense_drive(name):
     wall = Part("ground", np.array([complex(*rng.normal(size=2)) * scene.size for _ in range(2)]), 0.0)
     parts = [*bars(mechanism), wall]
     pairs = [(n, len(parts) - 1) for n in range(len(parts) - 1)] + [(0, n) for n in range(1, len(parts) - 1)]
-    for pair, found in zip(pairs, swept(mechanism, parts, pairs, low, high, 0.0), strict=True):
+    for pair, found in zip(pairs, sweep_pairs(mechanism, parts, pairs, low, high, 0.0), strict=True):
         places = [carried(mechanism, parts[n], inputs) for n in pair]
         dense = np.nanmin(bar_distance(*places))
         assert found.decided
@@ -245,11 +245,11 @@ def test_the_nearest_of_all_pairs_is_that_of_each(name):
     posts = [Part("ground", size * (rng.normal(size=1) + 1j * rng.normal(size=1)), 0.02 * size) for _ in range(4)]
     parts = [*bars(mechanism), *posts]
     pairs = [(n, m) for n in range(len(parts) - 4) for m in range(len(parts) - 4, len(parts))]
-    each = swept(mechanism, parts, pairs, start, start + reach, 0.0)
+    each = sweep_pairs(mechanism, parts, pairs, start, start + reach, 0.0)
     distances = sorted(pair.least for pair in each)
     for wanted in (distances[0] - 0.01 * size, distances[0] + 1e-6 * size, distances[len(pairs) // 2], 9.0 * size):
-        each = swept(mechanism, parts, pairs, start, start + reach, wanted)
-        every = swept(mechanism, parts, pairs, start, start + reach, wanted, nearest="all")
+        each = sweep_pairs(mechanism, parts, pairs, start, start + reach, wanted)
+        every = sweep_pairs(mechanism, parts, pairs, start, start + reach, wanted, nearest="all")
         assert min(pair.least for pair in every) == pytest.approx(distances[0], abs=1e-7 * size)
         assert all(pair.keeps for pair in every) == all(pair.keeps for pair in each)
         for alone, together in zip(each, every, strict=True):
@@ -261,7 +261,7 @@ def test_a_crank_passes_a_point_at_a_distance_that_is_known():
     parts = [Part("input", np.array([ARM + 0.0j]) * np.exp(0.5j), 0.25), Part("ground", np.array([3.0 + 4.0j]), 0.5)]
     exact = abs(3.0 + 4.0j) - ARM - 0.75
     for wanted, kept in ((exact - 1e-6, True), (exact + 1e-6, False)):
-        (found,) = swept(CRANK_ROCKER, parts, [(0, 1)], 0.0, 2.0 * np.pi, wanted)
+        (found,) = sweep_pairs(CRANK_ROCKER, parts, [(0, 1)], 0.0, 2.0 * np.pi, wanted)
         assert (found.keeps, found.decided) == (kept, True)
         assert found.least == pytest.approx(exact, abs=1e-9)
         assert found.at == pytest.approx(np.angle(3.0 + 4.0j), abs=1e-4)
@@ -287,7 +287,7 @@ def test_nothing_in_the_way_is_passed_over(name):
             bar = carried(mechanism, part, np.array([at]))[0]
             normal = 1j * np.diff(bar)[0]
             dot = Part("ground", bar[1:] + 1e-5 * normal, 0.0)
-            (found,) = swept(mechanism, [part, dot], [(0, 1)], start, high, 2e-5 * abs(normal))
+            (found,) = sweep_pairs(mechanism, [part, dot], [(0, 1)], start, high, 2e-5 * abs(normal))
             assert not found.keeps
             assert found.least <= 1e-5 * abs(normal) * (1.0 + 1e-6)
 
@@ -301,7 +301,7 @@ def test_free_inputs_are_free_and_nearly_all_of_them():
     post = Part("ground", np.array([middle]), 0.3)
     apart = bar_distance(places, np.repeat(middle + np.array([[0.0, 1e-7]]), len(inputs), axis=0)) - 0.3
     fine = 1e-4
-    free = free_inputs(CRANK_ROCKER, [part, post], [(0, 1)], 0.0, 2.0 * np.pi, 0.1, fine)
+    free = find_free_inputs(CRANK_ROCKER, [part, post], [(0, 1)], 0.0, 2.0 * np.pi, 0.1, fine)
     assert 1 <= len(free) <= 4
     within = np.zeros(len(inputs), np.bool_)
     for low, high in free:
@@ -318,11 +318,11 @@ def test_each_pair_has_its_own_free_ranges():
     parts += [Part("ground", np.array([middle]), 0.3), Part("ground", np.array([middle + 2.0]), 0.3)]
     pairs = [(1, 3), (1, 4), (0, 3)]
     asked = (0.0, 2.0 * np.pi, 0.1, 1e-4)
-    each = free_ranges(CRANK_ROCKER, parts, pairs, *asked)
-    assert each == [free_inputs(CRANK_ROCKER, parts, [pair], *asked) for pair in pairs]
+    each = find_free_ranges(CRANK_ROCKER, parts, pairs, *asked)
+    assert each == [find_free_inputs(CRANK_ROCKER, parts, [pair], *asked) for pair in pairs]
     inputs = np.linspace(0.0, 2.0 * np.pi, 5001)
     within = [np.any([(low <= inputs) & (inputs <= high) for low, high in own], axis=0) for own in each]
-    both = free_inputs(CRANK_ROCKER, parts, pairs, *asked)
+    both = find_free_inputs(CRANK_ROCKER, parts, pairs, *asked)
     assert (np.any([(low <= inputs) & (inputs <= high) for low, high in both], axis=0) == np.all(within, axis=0)).all()
 
 
@@ -337,27 +337,27 @@ def test_a_part_that_is_far_away_is_free_all_over_even_where_the_bound_is_coarse
         "D": -2.0371 + 0.0719j,
         "E": 0.4141 - 0.1078j,
     }
-    mechanism = catalogue.sixbar("stephenson_2", joints, "output")
+    mechanism = catalogue.make_sixbar("stephenson_2", joints, "output")
     parts = [*bars(mechanism), Part("ground", np.array([4.0]), 0.1)]
     at = float(mechanism.reference_input)
     pairs = [(n, len(parts) - 1) for n in range(len(parts) - 1)]
-    for own in free_ranges(mechanism, parts, pairs, at - np.pi, at + np.pi, 0.1, 1e-4):
+    for own in find_free_ranges(mechanism, parts, pairs, at - np.pi, at + np.pi, 0.1, 1e-4):
         assert len(own) == 1
 
 
 def test_overlapping_outlines_say_by_how_much():
     """Bars that share a pin: their cores meet, so that the outlines overlap by both radii."""
     parts = [part._replace(radius=0.2) for part in bars(CRANK_ROCKER)]
-    (found,) = swept(CRANK_ROCKER, parts, [(0, 1)], 0.0, 1.0, 0.0)
+    (found,) = sweep_pairs(CRANK_ROCKER, parts, [(0, 1)], 0.0, 1.0, 0.0)
     assert (found.least, found.keeps, found.decided) == (pytest.approx(-0.4, abs=1e-4), False, True)
 
 
 def test_what_cannot_be_reached_is_not_kept():
     """A range that the mechanism does not reach the end of: nothing is proven there."""
-    rocker = catalogue.fourbar(Fourbar.from_lengths(5.0, 4.0, 3.0, 7.0), input_angle=0.9)
+    rocker = catalogue.make_fourbar(Fourbar.from_lengths(5.0, 4.0, 3.0, 7.0), input_angle=0.9)
     part = bars(rocker)[0]
     far = Part("ground", np.array([100.0 + 0.0j]), 0.0)
-    (found,) = swept(rocker, [part, far], [(0, 1)], 0.9, 3.0, 1.0)
+    (found,) = sweep_pairs(rocker, [part, far], [(0, 1)], 0.9, 3.0, 1.0)
     assert (found.keeps, found.decided) == (False, False)
 
 
@@ -374,7 +374,7 @@ def test_what_cannot_be_reached_is_not_kept():
 )
 def test_what_makes_no_sense_is_refused(part, low, high):
     with pytest.raises(DimensionError):
-        swept(CRANK_ROCKER, [part, bars(CRANK_ROCKER)[0]], [(0, 1)], low, high, 0.0)
+        sweep_pairs(CRANK_ROCKER, [part, bars(CRANK_ROCKER)[0]], [(0, 1)], low, high, 0.0)
 
 
 @pytest.mark.parametrize(
@@ -394,12 +394,12 @@ def test_what_makes_no_sense_is_refused(part, low, high):
 )
 def test_cores_that_meet_are_nearer_than_those_that_touch(first, second, found):
     cores = np.array(first, np.complex128), np.array(second, np.complex128)
-    assert distance(*cores) == found
-    assert distance(*cores[::-1]) == found
+    assert measure_distance(*cores) == found
+    assert measure_distance(*cores[::-1]) == found
 
 
 def test_links_without_width_that_cross_do_not_keep_even_no_distance():
     crossing = Part("ground", np.array([1.0 + 0.5j, 3.0 + 3.0j]), 0.0)
-    (found,) = swept(CRANK_ROCKER, [bars(CRANK_ROCKER)[0], crossing], [(0, 1)], 0.0, 2.0 * np.pi, 0.0)
+    (found,) = sweep_pairs(CRANK_ROCKER, [bars(CRANK_ROCKER)[0], crossing], [(0, 1)], 0.0, 2.0 * np.pi, 0.0)
     assert (found.keeps, found.decided) == (False, True)
     assert found.least < 0.0

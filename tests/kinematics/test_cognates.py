@@ -10,22 +10,22 @@ from numpy.typing import NDArray
 
 from kinematics.errors import DimensionError
 from kinematics.linkage.fourbar import (
-    CROSSED,
-    OPEN,
+    CROSSED_ASSEMBLY,
+    OPEN_ASSEMBLY,
     Fourbar,
     Positions,
     barker_class,
     barker_type,
-    full_rotation,
+    find_transmission_extremes,
+    has_full_rotation,
     positions,
     transmission_angle,
-    transmission_extremes,
 )
 from kinematics.linkage.fourbar.cognates import (
     Cognate,
-    cognates,
-    geared_fivebar_cognate,
-    parallel_motion,
+    build_cognates,
+    build_geared_fivebar_cognate,
+    build_parallel_motion,
 )
 from tests.cases import Case, cases
 from tests.kinematics.sampling import assembled_angles, random_fourbars, signs, take
@@ -68,12 +68,12 @@ def size_of(linkage: Fourbar) -> NDArray[np.float64]:
 def stand(cognate: Cognate, theta: NDArray[np.float64], assembly: NDArray[np.int64]) -> Positions:
     """The cognate driven, by its own dimensions, to where the source stands."""
     there = cognate.configuration(theta, assembly)
-    one, other = (positions(cognate.linkage, there.input_angle, sign) for sign in (OPEN, CROSSED))
-    return Positions(*(np.where(there.assembly == OPEN, x, y) for x, y in zip(one, other, strict=True)))
+    one, other = (positions(cognate.linkage, there.input_angle, sign) for sign in (OPEN_ASSEMBLY, CROSSED_ASSEMBLY))
+    return Positions(*(np.where(there.assembly == OPEN_ASSEMBLY, x, y) for x, y in zip(one, other, strict=True)))
 
 
 def four_drives(linkage: Fourbar) -> list[Cognate]:
-    pair = cognates(linkage)
+    pair = build_cognates(linkage)
     return [*pair, *(cognate_driven_at_output(cognate) for cognate in pair)]
 
 
@@ -87,7 +87,7 @@ def same_direction(one, other) -> NDArray[np.float64]:
 @pytest.mark.parametrize("case", cases("cognates"))
 def test_cognates_of_a_printed_linkage(case: Case) -> None:
     """The cranks of both stand on the pivots of the source."""
-    pair = cognates(linkage_of(case))
+    pair = build_cognates(linkage_of(case))
     found = {}
     for side, linkage in (("left", pair.left.linkage), ("right", cognate_driven_at_output(pair.right).linkage)):
         found |= {
@@ -104,9 +104,9 @@ def test_cognates_of_a_printed_linkage(case: Case) -> None:
 @pytest.mark.parametrize("case", cases("cognate_types"))
 def test_types_of_cognates(case: Case) -> None:
     source = linkage_of(case)
-    pair = cognates(source)
+    pair = build_cognates(source)
     types = [TYPES[barker_class(cognate.linkage).motion] for cognate in (pair.right, pair.left)]
-    least = [transmission_extremes(linkage, 0.0, 2.0 * np.pi)[0] for linkage in (source, pair.right.linkage)]
+    least = [find_transmission_extremes(linkage, 0.0, 2.0 * np.pi)[0] for linkage in (source, pair.right.linkage)]
     case.check(cognate_types=types, mu_min_difference=np.degrees(least[1] - least[0]))
 
 
@@ -114,7 +114,7 @@ def test_types_of_cognates(case: Case) -> None:
 def test_geared_fivebar_of_a_printed_linkage(case: Case) -> None:
     source = linkage_of(case)
     at = positions(source, np.radians(np.arange(-180.0, 180.0, 0.5)))
-    fivebar = geared_fivebar_cognate(source)
+    fivebar = build_geared_fivebar_cognate(source)
     assert at.valid.any()
     x = case.inputs
     assert [fivebar.input, fivebar.coupler_1, fivebar.coupler_2] == pytest.approx([x["p"], x["a"], x["c"]])
@@ -127,8 +127,8 @@ def test_geared_fivebar_of_a_printed_linkage(case: Case) -> None:
 @pytest.mark.parametrize("case", cases("parallel_motion"))
 def test_parallel_motion_of_a_printed_linkage(case: Case) -> None:
     """Link 8 keeps its direction; the added links have the sizes that were computed for the same data elsewhere."""
-    found = parallel_motion(linkage_of(case))
-    case.check(closure_error=sixbar_misfit(found, np.radians(np.arange(0.0, 360.0)), OPEN).max())
+    found = build_parallel_motion(linkage_of(case))
+    case.check(closure_error=sixbar_misfit(found, np.radians(np.arange(0.0, 360.0)), OPEN_ASSEMBLY).max())
     assert abs(found.crank_point) == pytest.approx(1.000157787, abs=1e-9)
     assert np.degrees(np.angle(found.crank_point)) == pytest.approx(-58.98224219, abs=1e-8)
     assert found.guide == pytest.approx(7.714285714, abs=1e-9)
@@ -159,8 +159,8 @@ def test_cognate_has_no_position_less_than_the_source(drive: int) -> None:
     there = cognate.configuration(theta, sign)
     np.testing.assert_array_equal(there.valid, at.valid)
     np.testing.assert_array_equal(np.isnan(there.input_angle), ~at.valid)
-    assert set(np.unique(there.assembly)) <= {OPEN, CROSSED}
-    assert (there.assembly[~at.valid] == OPEN).all()
+    assert set(np.unique(there.assembly)) <= {OPEN_ASSEMBLY, CROSSED_ASSEMBLY}
+    assert (there.assembly[~at.valid] == OPEN_ASSEMBLY).all()
     reached = stand(cognate, theta, sign)
     close = np.abs(reached.p - at.p) / size_of(linkage) < 1e-6
     assert close[at.valid].mean() > 0.9999
@@ -185,7 +185,7 @@ def test_each_link_turns_with_its_link_of_the_source(drive: int) -> None:
 def test_three_pivots_form_a_triangle_like_the_coupler() -> None:
     rng = np.random.default_rng(14)
     linkage = random_fourbars(rng, BATCH)
-    pair = cognates(linkage)
+    pair = build_cognates(linkage)
     third = pair.left.linkage.output_pivot
     np.testing.assert_array_equal(third, pair.right.linkage.input_pivot)
     np.testing.assert_array_equal(pair.left.linkage.input_pivot, linkage.input_pivot)
@@ -196,20 +196,20 @@ def test_three_pivots_form_a_triangle_like_the_coupler() -> None:
 
 def test_right_cognate_keeps_crank_and_transmission_angle_in_the_other_assembly() -> None:
     _, linkage, theta, sign = sample(15, margin=1e-3)
-    right = cognates(linkage).right
+    right = build_cognates(linkage).right
     there = right.configuration(theta, sign)
     np.testing.assert_array_equal(there.assembly, np.broadcast_to(-sign[:, None], theta.shape))
     np.testing.assert_allclose(
         transmission_angle(right.linkage, there.input_angle), transmission_angle(linkage, theta), atol=1e-9
     )
-    np.testing.assert_array_equal(full_rotation(right.linkage), full_rotation(linkage))
+    np.testing.assert_array_equal(has_full_rotation(right.linkage), has_full_rotation(linkage))
 
 
 def test_types_of_cognates_follow_the_rule() -> None:
     """Crank-rocker: crank-rocker and double-rocker; double crank: double cranks; double rocker: crank-rockers;
     non-Grashof: non-Grashof (Norton, Sec. 3.7)."""
     linkage = random_fourbars(np.random.default_rng(16), BATCH, gap=1e-6)
-    pair = cognates(linkage)
+    pair = build_cognates(linkage)
     kinds = [barker_type(x) for x in (linkage, pair.left.linkage, pair.right.linkage)]
     rule = {1: {(1, 1)}, 2: {(3, 2)}, 3: {(2, 4)}, 4: {(4, 3)}}
     for source, others in rule.items():
@@ -223,10 +223,10 @@ def test_types_of_cognates_follow_the_rule() -> None:
 def test_cognates_of_cognates_are_the_three() -> None:
     """The left cognate's left is the source again; the right one's right is the source driven at its output."""
     linkage = random_fourbars(np.random.default_rng(17), BATCH)
-    pair = cognates(linkage)
-    back = cognates(pair.left.linkage).left.linkage
-    around = driven_at_output(cognates(cognate_driven_at_output(pair.right).linkage).left.linkage)
-    same = cognates(pair.left.linkage).right.linkage
+    pair = build_cognates(linkage)
+    back = build_cognates(pair.left.linkage).left.linkage
+    around = driven_at_output(build_cognates(cognate_driven_at_output(pair.right).linkage).left.linkage)
+    same = build_cognates(pair.left.linkage).right.linkage
     for found, expected in ((back, linkage), (around, linkage), (same, cognate_driven_at_output(pair.right).linkage)):
         scale = np.abs(linkage.coupler_point / linkage.coupler) + 1.0
         for name in FIELDS:
@@ -241,10 +241,10 @@ def test_driving_at_the_other_end_is_the_same_mechanism() -> None:
         np.testing.assert_allclose(getattr(twice, name), getattr(linkage, name), rtol=1e-12, atol=1e-15)
     at = positions(linkage, theta, sign)
     other = driven_at_output(linkage)
-    found = [positions(other, at.output_angle, side) for side in (OPEN, CROSSED)]
+    found = [positions(other, at.output_angle, side) for side in (OPEN_ASSEMBLY, CROSSED_ASSEMBLY)]
     error = np.minimum(*(np.abs(x.p - at.p) + np.abs(x.a - at.b) + np.abs(x.b - at.a) for x in found))
     assert np.quantile(error / size_of(linkage), 0.999) < 1e-9
-    cognate = cognates(linkage).left
+    cognate = build_cognates(linkage).left
     again = cognate_driven_at_output(cognate_driven_at_output(cognate))
     assert again.turns_with == cognate.turns_with
     assert same_direction(again.offset, cognate.offset).max() < 1e-12
@@ -262,13 +262,13 @@ def test_coupler_point_in_line(place: float) -> None:
     for cognate in four_drives(linkage):
         assert np.abs(stand(cognate, theta, np.int64(1)).p - at.p).max() < 1e-11
         assert abs(cognate.linkage.input_pivot.imag) + abs(cognate.linkage.output_pivot.imag) < 1e-14
-    fivebar = geared_fivebar_cognate(linkage)
+    fivebar = build_geared_fivebar_cognate(linkage)
     assert fivebar_misfit(fivebar, at.coupler_angle, at.p).max() < 1e-10
     assert fivebar.phase == pytest.approx(np.pi if 0.0 < place < 1.0 else 0.0)
-    assert sixbar_misfit(parallel_motion(linkage), theta, OPEN).max() < 1e-10
+    assert sixbar_misfit(build_parallel_motion(linkage), theta, OPEN_ASSEMBLY).max() < 1e-10
 
 
-@pytest.mark.parametrize("make", [cognates, geared_fivebar_cognate, parallel_motion])
+@pytest.mark.parametrize("make", [build_cognates, build_geared_fivebar_cognate, build_parallel_motion])
 @pytest.mark.parametrize("point", [0.0, 7.0, 5e-9j, 7.0 - 5e-9, [1j, 7.0, 2.0]])
 def test_point_at_a_moving_pivot_has_no_cognate(make, point) -> None:
     with pytest.raises(DimensionError, match=r"^coupler_point must be away from the moving pivots") as caught:
@@ -286,13 +286,13 @@ def test_point_near_a_moving_pivot_has_cognates() -> None:
 
 
 @pytest.mark.parametrize("lengths", [(2.0, 3.0, 3.0, 2.0), (1.0, 2.0, 3.0, 2.0), (2.0, 3.0, 2.0, 3.0)])
-@pytest.mark.parametrize("assembly", [OPEN, CROSSED])
+@pytest.mark.parametrize("assembly", [OPEN_ASSEMBLY, CROSSED_ASSEMBLY])
 def test_change_point_linkages(lengths: tuple[float, ...], assembly: int) -> None:
     """In a parallelogram the coupler does not turn: a link that turns with it stands still and drives nothing."""
     linkage = Fourbar.from_lengths(*lengths, 1.0 + 2.0j)
     theta = np.linspace(0.3, 2.8, 30)
     point = positions(linkage, theta, assembly).p
-    still = lengths[0] == lengths[2] and assembly == OPEN
+    still = lengths[0] == lengths[2] and assembly == OPEN_ASSEMBLY
     for cognate in four_drives(linkage):
         if still and cognate.turns_with[0] == "coupler":
             assert np.ptp(cognate.configuration(theta, assembly).input_angle) < 1e-14
@@ -332,13 +332,13 @@ def test_batches_equal_single_designs() -> None:
                 np.testing.assert_allclose(getattr(alone.linkage, name), getattr(cognate.linkage, name)[index])
             for whole, part in zip(together, alone.configuration(theta, sign[index]), strict=True):
                 np.testing.assert_allclose(whole[index], part, rtol=1e-12)
-    for make in (geared_fivebar_cognate, parallel_motion):
+    for make in (build_geared_fivebar_cognate, build_parallel_motion):
         for field in dataclasses.fields(make(linkage)):
             if field.name != "linkage":
                 whole = getattr(make(linkage), field.name)
                 assert whole.shape == (2, 3)
                 np.testing.assert_allclose(whole[1, 2], getattr(make(take(linkage, (1, 2))), field.name))
-    one = cognates(take(linkage, (0, 0))).left.configuration(0.1)
+    one = build_cognates(take(linkage, (0, 0))).left.configuration(0.1)
     assert one.valid.shape == one.input_angle.shape == one.assembly.shape == ()
 
 
@@ -375,7 +375,7 @@ def sixbar_misfit(sixbar, theta, assembly) -> NDArray[np.float64]:
 def test_geared_fivebar_traces_the_curve() -> None:
     _, linkage, theta, sign = sample(21, margin=1e-3)
     at = positions(linkage, theta, sign)
-    fivebar = geared_fivebar_cognate(linkage)
+    fivebar = build_geared_fivebar_cognate(linkage)
     error = fivebar_misfit(fivebar, at.coupler_angle, at.p) / size_of(linkage)
     assert np.quantile(error, 0.99) < 1e-10
     assert error.max() < 1e-6
@@ -388,7 +388,7 @@ def test_geared_fivebar_traces_the_curve() -> None:
 
 def test_parallel_motion_carries_a_link_without_turning_it() -> None:
     _, linkage, theta, sign = sample(22, margin=1e-3)
-    sixbar = parallel_motion(linkage)
+    sixbar = build_parallel_motion(linkage)
     error = sixbar_misfit(sixbar, theta, sign) / size_of(linkage)
     assert np.quantile(error, 0.99) < 1e-10
     assert error.max() < 1e-6
@@ -396,7 +396,7 @@ def test_parallel_motion_carries_a_link_without_turning_it() -> None:
 
 def test_parallel_motion_is_the_right_cognate_moved_to_the_input_pivot() -> None:
     _, linkage, theta, sign = sample(23, margin=1e-3, n=500)
-    sixbar, right = parallel_motion(linkage), cognates(linkage).right
+    sixbar, right = build_parallel_motion(linkage), build_cognates(linkage).right
     there = stand(right, theta, sign)
     moved = there.a - right.linkage.input_pivot[:, None]
     np.testing.assert_allclose(sixbar.crank_point[:, None] * np.exp(1j * theta), moved, atol=1e-9)

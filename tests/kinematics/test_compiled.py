@@ -4,8 +4,8 @@ from pathlib import Path
 
 import pytest
 
-from kinematics import compiled
-from kinematics.compiled import claimed, is_compiled, mark_compiled
+from kinematics import kernel_marks
+from kinematics.kernel_marks import claim_part, is_compiled, mark_compiled
 
 
 @pytest.fixture
@@ -14,9 +14,9 @@ def source(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     file = tmp_path / "synthesis" / "part.py"
     file.parent.mkdir()
     file.write_text("TEETH = 17\n")
-    monkeypatch.setattr(compiled, "ROOT", tmp_path)
-    monkeypatch.setattr(compiled, "_folder", lambda: tmp_path / "kept")
-    monkeypatch.setattr(compiled, "_state", compiled._state.__wrapped__)
+    monkeypatch.setattr(kernel_marks, "ROOT", tmp_path)
+    monkeypatch.setattr(kernel_marks, "_find_cache_folder", lambda: tmp_path / "kept")
+    monkeypatch.setattr(kernel_marks, "_compute_state_digest", kernel_marks._compute_state_digest.__wrapped__)
     return file
 
 
@@ -33,13 +33,13 @@ def test_a_mark_counts_for_its_part_and_its_sources(source: Path) -> None:
 
 def test_a_mark_counts_for_its_processor(source: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     mark_compiled("path")
-    codegen = compiled.cpu_target.target_context.codegen()
+    codegen = kernel_marks.cpu_target.target_context.codegen()
     monkeypatch.setattr(type(codegen), "magic_tuple", lambda self: ("x86_64", "another", "+none"))
     assert not is_compiled("path")
 
 
 def test_a_part_is_compiled_by_one(source: Path) -> None:
-    with claimed("path") as first, claimed("path") as second, claimed("dwell") as other:
+    with claim_part("path") as first, claim_part("path") as second, claim_part("dwell") as other:
         assert (first, second, other) == (True, False, True)
-    with claimed("path") as again:
+    with claim_part("path") as again:
         assert again

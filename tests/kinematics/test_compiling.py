@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 from numba import types
 
-from kinematics.compiling import digest, njit, sources
+from kinematics.compiling import compute_digest, find_sources, njit
 
 ROOT = Path(__file__).resolve().parents[2]
 
@@ -76,9 +76,9 @@ def test_sources_are_reached_through_packages_and_lists_of_names(tmp_path: Path)
     }
     for file, text in texts.items():
         file.write_text(text)
-    names = [file.stem for file in sources(tmp_path, package / "first.py")]
+    names = [file.stem for file in find_sources(tmp_path, package / "first.py")]
     assert names == ["__init__", "first", "fourth", "last", "second", "third"]
-    assert digest(tmp_path, package / "first.py") != digest(tmp_path, package / "third.py")
+    assert compute_digest(tmp_path, package / "first.py") != compute_digest(tmp_path, package / "third.py")
 
 
 def test_every_kernel_of_the_project_is_compiled_so() -> None:

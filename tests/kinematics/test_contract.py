@@ -10,24 +10,24 @@ import numpy as np
 import pytest
 
 from kinematics.errors import DimensionError, MechanismError, ShapeError
-from kinematics.linkage import mobility
+from kinematics.linkage import compute_mobility
 from kinematics.linkage.fourbar import (
-    CROSSED,
-    OPEN,
+    CROSSED_ASSEMBLY,
+    OPEN_ASSEMBLY,
     Fourbar,
     barker_class,
     barker_type,
     can_assemble,
-    full_rotation,
+    find_input_limits,
+    find_transmission_extremes,
     grashof_class,
     grashof_excess,
-    input_limits,
+    has_full_rotation,
+    is_same_circuit,
     motion,
     positions,
-    same_circuit,
     stays_on_branch,
     transmission_angle,
-    transmission_extremes,
 )
 from tests.kinematics.sampling import random_fourbars, signs, take
 
@@ -98,7 +98,7 @@ def test_linkage_of_no_class_is_refused() -> None:
 @pytest.mark.parametrize("field", ["links", "full_joints", "half_joints", "grounded"])
 def test_negative_counts_are_refused_by_name(field: str) -> None:
     with pytest.raises(DimensionError, match=f"^{field} must be a count"):
-        mobility(**{"links": 4, "full_joints": 4, field: -1})
+        compute_mobility(**{"links": 4, "full_joints": 4, field: -1})
 
 
 def test_shapes_that_do_not_broadcast_are_refused() -> None:
@@ -116,11 +116,11 @@ def test_shapes_that_do_not_broadcast_are_refused() -> None:
         lambda: motion(three, np.zeros(5), acceleration=np.ones((3, 4))),
         lambda: motion(three, np.zeros(5), jerk=np.ones((2, 5))),
         lambda: transmission_angle(three, np.zeros((2, 5))),
-        lambda: transmission_extremes(three, two, 1.0),
-        lambda: transmission_extremes(three, 0.0, two),
+        lambda: find_transmission_extremes(three, two, 1.0),
+        lambda: find_transmission_extremes(three, 0.0, two),
         lambda: stays_on_branch(three, two, 0.0),
-        lambda: same_circuit(three, two, 1, 0.0, 1),
-        lambda: same_circuit(three, 0.0, 1, 0.0, one),
+        lambda: is_same_circuit(three, two, 1, 0.0, 1),
+        lambda: is_same_circuit(three, 0.0, 1, 0.0, one),
     ]
     for call in calls:
         with pytest.raises(ShapeError, match="broadcast"):
@@ -155,7 +155,7 @@ def test_calls_leave_their_arguments_alone() -> None:
     for array in (theta, sign):
         array.flags.writeable = False
     motion(ROW_A, theta, sign)
-    transmission_extremes(ROW_A, theta[0], theta[1])
+    find_transmission_extremes(ROW_A, theta[0], theta[1])
     stays_on_branch(ROW_A, theta[0], theta[1])
 
 
@@ -203,22 +203,22 @@ def test_batches_equal_single_designs(name: str, linkage: Fourbar) -> None:
     sign, other = signs(rng, *shape), signs(rng, *shape)
     with_angles = {
         "positions": lambda x, i: positions(x, theta[i], sign[i]),
-        "positions, shared angles": lambda x, i: positions(x, many, CROSSED),
+        "positions, shared angles": lambda x, i: positions(x, many, CROSSED_ASSEMBLY),
         "motion": lambda x, i: motion(x, theta[i], sign[i], speed=2.0, acceleration=0.5, jerk=-1.0),
         "motion, rates vary": lambda x, i: motion(x, theta[i], sign[i], speed=theta[i], jerk=many),
         "transmission_angle": lambda x, i: transmission_angle(x, theta[i]),
     }
     plain = {
-        "transmission_extremes": lambda x, i: transmission_extremes(x, start[i], end[i]),
-        "extremes from one start": lambda x, i: transmission_extremes(x, 0.3, 1.0),
-        "input_limits": lambda x, i: input_limits(x),
-        "full_rotation": lambda x, i: full_rotation(x),
+        "transmission_extremes": lambda x, i: find_transmission_extremes(x, start[i], end[i]),
+        "extremes from one start": lambda x, i: find_transmission_extremes(x, 0.3, 1.0),
+        "input_limits": lambda x, i: find_input_limits(x),
+        "full_rotation": lambda x, i: has_full_rotation(x),
         "can_assemble": lambda x, i: can_assemble(x),
         "barker_type": lambda x, i: barker_type(x),
         "stays_on_branch": lambda x, i: stays_on_branch(x, start[i], end[i]),
         "stays_on_branch from one start": lambda x, i: stays_on_branch(x, 0.3, 0.5),
-        "same_circuit": lambda x, i: same_circuit(x, start[i], sign[i], end[i], other[i]),
-        "same_circuit as one": lambda x, i: same_circuit(x, 0.3, OPEN, 0.5, CROSSED),
+        "same_circuit": lambda x, i: is_same_circuit(x, start[i], sign[i], end[i], other[i]),
+        "same_circuit as one": lambda x, i: is_same_circuit(x, 0.3, OPEN_ASSEMBLY, 0.5, CROSSED_ASSEMBLY),
         "ground": lambda x, i: (x.ground, x.ground_angle),
         "link_lengths": lambda x, i: x.lengths,
         "grashof": lambda x, i: (grashof_class(x.lengths), grashof_excess(x.lengths)),

@@ -7,16 +7,16 @@ import pytest
 from numpy.typing import NDArray
 
 from kinematics.errors import DimensionError, ShapeError
-from kinematics.linkage.fourbar import CROSSED, OPEN, Fourbar, input_limits, motion, positions
-from kinematics.linkage.fourbar.cognates import cognates
+from kinematics.linkage.fourbar import CROSSED_ASSEMBLY, OPEN_ASSEMBLY, Fourbar, find_input_limits, motion, positions
+from kinematics.linkage.fourbar.cognates import build_cognates
 from kinematics.linkage.fourbar.coupler_curve import (
     ACNODE,
     CRUNODE,
     CUSP,
+    compute_sextic_coefficients,
     coupler_curve_degree,
     curve_unit,
-    double_points,
-    sextic_coefficients,
+    find_double_points,
 )
 from tests.cases import Case, cases
 from tests.kinematics.sampling import assembled_angles, random_fourbars, signs, take
@@ -46,12 +46,12 @@ def whole_curve(linkage: Fourbar, n: int) -> list[NDArray[np.complex128]]:
 
     Between toggles the input angle is a cosine of the parameter, and the assembly changes half way.
     """
-    limits, ground = input_limits(linkage), float(linkage.ground_angle)
+    limits, ground = find_input_limits(linkage), float(linkage.ground_angle)
     low, high = float(limits.lower), float(limits.upper)
     t = np.arange(n) * (2.0 * np.pi / n)
     folded, extended = bool(limits.folded_toggle), bool(limits.extended_toggle)
     if not folded and not extended:
-        return [positions(linkage, t, sign).p for sign in (OPEN, CROSSED)]
+        return [positions(linkage, t, sign).p for sign in (OPEN_ASSEMBLY, CROSSED_ASSEMBLY)]
     if folded and extended:
         ranges = [(low, high), (-high, -low)]
     else:
@@ -60,7 +60,7 @@ def whole_curve(linkage: Fourbar, n: int) -> list[NDArray[np.complex128]]:
     for start, end in ranges:
         theta = ground + 0.5 * (start + end) - 0.5 * (end - start) * np.cos(t)
         theta = np.where(t == 0.0, ground + start + 1e-13, theta)
-        both = [positions(linkage, theta, sign).p for sign in (OPEN, CROSSED)]
+        both = [positions(linkage, theta, sign).p for sign in (OPEN_ASSEMBLY, CROSSED_ASSEMBLY)]
         curve = np.where(t < np.pi, *both)
         found.append(curve[~np.isnan(curve)])
     return found
@@ -149,7 +149,7 @@ def test_coefficients_are_those_of_the_sextic() -> None:
     """Hermitian, monic, of degree three in p and in p̄, and equal to the factored form everywhere."""
     rng = np.random.default_rng(34)
     linkage = random_fourbars(rng, BATCH)
-    found = sextic_coefficients(linkage)
+    found = compute_sextic_coefficients(linkage)
     assert found.shape == (BATCH, 4, 4)
     assert np.abs(found - found.conj().swapaxes(-1, -2)).max() < 1e-12
     np.testing.assert_allclose(found[:, 3, 3], 1.0, rtol=1e-12)
@@ -168,7 +168,7 @@ def test_cognates_have_one_sextic() -> None:
     unit = curve_unit(linkage)[:, None]
     point = linkage.input_pivot[:, None] + unit * (rng.normal(size=(BATCH, 5)) + 1j * rng.normal(size=(BATCH, 5)))
     here = sextic(linkage, point).value
-    for cognate in cognates(linkage):
+    for cognate in build_cognates(linkage):
         there = sextic(cognate.linkage, point).value * (curve_unit(cognate.linkage)[:, None] / unit) ** 6
         assert np.quantile(np.abs(there / here - 1.0), 0.999) < 1e-8
         assert np.median(np.abs(there / here - 1.0)) < 1e-13
@@ -186,13 +186,13 @@ def test_parallelogram_curve_holds_a_circle() -> None:
 
 
 def driven(linkage: Fourbar, theta, assembly):
-    one, other = (positions(linkage, theta, sign).p for sign in (OPEN, CROSSED))
-    return np.where(assembly == OPEN, one, other)
+    one, other = (positions(linkage, theta, sign).p for sign in (OPEN_ASSEMBLY, CROSSED_ASSEMBLY))
+    return np.where(assembly == OPEN_ASSEMBLY, one, other)
 
 
 def test_double_points_are_singular_points_on_the_circle_of_foci() -> None:
     linkage = random_fourbars(np.random.default_rng(41), BATCH)
-    found = double_points(linkage)
+    found = find_double_points(linkage)
     assert set(np.unique(found.valid.sum(axis=1))) == {1, 3}
     np.testing.assert_array_equal(np.isnan(found.point), ~found.valid)
     assert np.all(found.valid[:, :-1] >= found.valid[:, 1:])
@@ -201,7 +201,7 @@ def test_double_points_are_singular_points_on_the_circle_of_foci() -> None:
     reach = 1.0 + np.abs(found.point - linkage.input_pivot[:, None]) / unit
     assert (np.abs(at.value) / reach**6)[found.valid].max() < 1e-13
     assert (np.abs(at.gradient) * unit / reach**5)[found.valid].max() < 1e-8
-    pivots = (linkage.input_pivot, linkage.output_pivot, cognates(linkage).left.linkage.output_pivot)
+    pivots = (linkage.input_pivot, linkage.output_pivot, build_cognates(linkage).left.linkage.output_pivot)
     o2, o4, third = (np.broadcast_to(pivot[:, None], (BATCH, 3))[found.valid] for pivot in pivots)
     point = found.point[found.valid]
     ratio = (point - o2) * (third - o4) / ((point - o4) * (third - o2))
@@ -210,7 +210,7 @@ def test_double_points_are_singular_points_on_the_circle_of_foci() -> None:
 
 def test_crunodes_are_passed_twice() -> None:
     linkage = random_fourbars(np.random.default_rng(42), BATCH, gap=1e-3)
-    found = double_points(linkage)
+    found = find_double_points(linkage)
     crunode = found.valid & (found.kind == CRUNODE)
     assert 0.3 < crunode.any(axis=1).mean() < 0.9
     np.testing.assert_array_equal(np.isnan(found.input_angle).any(axis=-1), ~crunode)
@@ -229,7 +229,7 @@ def test_crunodes_are_passed_twice() -> None:
 def test_signs_around_double_points() -> None:
     """Round a crunode the sextic changes its sign four times, round an acnode never."""
     linkage = random_fourbars(np.random.default_rng(43), 1000, gap=1e-2)
-    found = double_points(linkage)
+    found = find_double_points(linkage)
     unit = curve_unit(linkage)
     for kind, changes in ((CRUNODE, 4), (ACNODE, 0)):
         seen = []
@@ -289,7 +289,7 @@ def polished(linkage: Fourbar, point: complex) -> complex:
 @pytest.mark.campaign
 def test_crunodes_are_all_self_crossings_of_the_sampled_curve() -> None:
     batch = random_fourbars(np.random.default_rng(44), 40, gap=2e-2)
-    found = double_points(batch)
+    found = find_double_points(batch)
     total = 0
     for k in range(40):
         linkage, unit = take(batch, k), float(curve_unit(take(batch, k)))
@@ -305,7 +305,7 @@ def test_crunodes_are_all_self_crossings_of_the_sampled_curve() -> None:
 def test_acnodes_are_never_reached() -> None:
     """A pin A in reach of O2 and the point, on either side, does not let B reach O4; at a crunode both sides do."""
     linkage = random_fourbars(np.random.default_rng(45), BATCH, gap=1e-2)
-    found = double_points(linkage)
+    found = find_double_points(linkage)
     a, z, b, c, o2, o4 = (
         getattr(linkage, name)[:, None]
         for name in ("input", "coupler_point", "coupler", "output", "input_pivot", "output_pivot")
@@ -334,7 +334,7 @@ def test_planted_cusps() -> None:
     near = (np.abs(place) < 5.0) & (np.abs(place) > 0.2) & (np.abs(place - plain.coupler) > 0.2)
     assert near.mean() > 0.3
     linkage = Fourbar(*(getattr(plain, name)[near] for name in FIELDS[:5]), place[near])
-    found = double_points(linkage)
+    found = find_double_points(linkage)
     cusp = found.valid & (found.kind == CUSP)
     one = cusp.sum(axis=1) == 1
     assert one.mean() > 0.999
@@ -354,7 +354,7 @@ def test_coupler_point_in_line_has_its_double_points_on_the_ground_line() -> Non
     rng = np.random.default_rng(47)
     linkage = random_fourbars(rng, 1000, gap=1e-3)
     straight = Fourbar(*(getattr(linkage, name) for name in FIELDS[:5]), rng.uniform(-3.0, 3.0, 1000))
-    found = double_points(straight)
+    found = find_double_points(straight)
     assert (found.valid.sum(axis=1) >= 1).all()
     base = (straight.output_pivot - straight.input_pivot)[:, None]
     off = ((found.point - straight.input_pivot[:, None]) / base).imag
@@ -438,7 +438,7 @@ def test_line_needs_a_direction() -> None:
 @pytest.mark.parametrize("point", [0.0, 7.0, 1e-10, [2.0j, 7.0 + 1e-9]])
 def test_point_at_a_moving_pivot_draws_no_sextic(point: object) -> None:
     linkage = Fourbar.from_lengths(2.0, 7.0, 9.0, 6.0, point)
-    for call in (lambda: double_points(linkage), lambda: line_crossings(linkage, 0.0, 1.0)):
+    for call in (lambda: find_double_points(linkage), lambda: line_crossings(linkage, 0.0, 1.0)):
         with pytest.raises(DimensionError, match=r"^coupler_point must be away from the moving pivots"):
             call()
 
@@ -457,7 +457,7 @@ def test_curve_moves_with_rotation_translation_and_scale(scale: float) -> None:
     here, there = sextic(linkage, point), sextic(other, scale * turn * (point + shift))
     np.testing.assert_allclose(there.value, here.value, rtol=1e-7, atol=1e-11)
     np.testing.assert_allclose(there.gradient * scale / turn, here.gradient, rtol=1e-7, atol=1e-11)
-    one, two = double_points(linkage), double_points(other)
+    one, two = find_double_points(linkage), find_double_points(other)
     same = one.valid.sum(axis=1) == two.valid.sum(axis=1)
     assert same.mean() > 0.99
     for k in range(3):
@@ -483,11 +483,11 @@ def test_batches_equal_single_designs() -> None:
     point, way = rng.normal(size=5) + 1j, np.exp(1j * rng.uniform(-3.0, 3.0, (2, 3)))
     calls = {
         (5,): lambda x, i: sextic(x, point),
-        (4, 4): lambda x, i: (sextic_coefficients(x),),
+        (4, 4): lambda x, i: (compute_sextic_coefficients(x),),
         (6,): lambda x, i: line_crossings(x, 0.1, way[i]),
         (): lambda x, i: (curve_unit(x),),
-        (3,): lambda x, i: double_points(x)[:3],
-        (3, 2): lambda x, i: double_points(x)[3:],
+        (3,): lambda x, i: find_double_points(x)[:3],
+        (3, 2): lambda x, i: find_double_points(x)[3:],
     }
     for tail, call in calls.items():
         together = call(linkage, ...)

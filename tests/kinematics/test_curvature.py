@@ -7,8 +7,16 @@ import pytest
 from numpy.typing import NDArray
 
 from kinematics.errors import DimensionError, ShapeError
-from kinematics.linkage.fourbar import CROSSED, OPEN, Fourbar, motion, positions, toggle_angles, transmission_angle
-from kinematics.linkage.fourbar.curvature import path_curvature, pole
+from kinematics.linkage.fourbar import (
+    CROSSED_ASSEMBLY,
+    OPEN_ASSEMBLY,
+    Fourbar,
+    find_toggle_angles,
+    motion,
+    positions,
+    transmission_angle,
+)
+from kinematics.linkage.fourbar.curvature import compute_path_curvature, find_pole
 from tests.cases import Case, cases
 from tests.kinematics.sampling import assembled_angles, random_fourbars, signs, take
 from tests.oracles.differences import derivative
@@ -26,7 +34,7 @@ BATCH = 10_000
 FIELDS = ("input_pivot", "output_pivot", "input", "coupler", "output", "coupler_point")
 CRANK_ROCKER = Fourbar.from_lengths(2.0, 7.0, 9.0, 6.0, 6.0 * np.exp(0.5j))
 PARALLELOGRAM = Fourbar.from_lengths(2.0, 5.0, 2.0, 5.0, 1.0 + 3.0j)
-ASSEMBLY = {"open": OPEN, "crossed": CROSSED}
+ASSEMBLY = {"open": OPEN_ASSEMBLY, "crossed": CROSSED_ASSEMBLY}
 
 
 def sample(seed: int, margin: float, n: int = BATCH, m: int = 3, share: float = 0.95):
@@ -75,7 +83,7 @@ def test_velocity_by_instant_centers(case: Case) -> None:
     arm = x["p"] * np.exp(1j * np.radians(x["delta3"]))
     linkage = Fourbar.from_lengths(x["a"], x["b"], x["c"], x["d"], arm)
     theta, assembly = np.radians(x["theta2"]), ASSEMBLY[x["circuit"]]
-    at, found = positions(linkage, theta, assembly), pole(linkage, theta, assembly)
+    at, found = positions(linkage, theta, assembly), find_pole(linkage, theta, assembly)
     omega3 = x["omega2"] * (at.a / (at.a - found.point)).real
     velocity = 1j * omega3 * (at.p - found.point)
     case.check(
@@ -139,13 +147,13 @@ def test_parallelogram_has_its_centers_at_infinity() -> None:
     np.testing.assert_array_equal(np.isnan(found.direction), found.finite)
     assert np.abs(cross(found.direction[:, 1], np.exp(1j * theta))).max() < 1e-12
     assert np.abs(found.direction[:, 4].imag).max() < 1e-12
-    at = pole(PARALLELOGRAM, theta)
+    at = find_pole(PARALLELOGRAM, theta)
     assert at.valid.all()
     assert not at.finite.any()
     for values in at[2:]:
         assert np.isnan(values).all()
     assert not bresse_circles(PARALLELOGRAM, theta).finite.any()
-    path = path_curvature(PARALLELOGRAM, theta)
+    path = compute_path_curvature(PARALLELOGRAM, theta)
     np.testing.assert_allclose(path.curvature, 0.5, rtol=1e-12)
     np.testing.assert_allclose(path.center, 1.0 + 3.0j, rtol=1e-12)
     np.testing.assert_allclose(velocity_ratio(PARALLELOGRAM, theta).value, 1.0, rtol=1e-12)
@@ -154,8 +162,8 @@ def test_parallelogram_has_its_centers_at_infinity() -> None:
 def test_change_point_has_no_instant_centers() -> None:
     for found in (
         instant_centers(PARALLELOGRAM, 0.0),
-        pole(PARALLELOGRAM, np.pi),
-        path_curvature(PARALLELOGRAM, 0.0),
+        find_pole(PARALLELOGRAM, np.pi),
+        compute_path_curvature(PARALLELOGRAM, 0.0),
     ):
         assert not found.valid
     for ratio in (velocity_ratio, torque_ratio):
@@ -165,7 +173,7 @@ def test_change_point_has_no_instant_centers() -> None:
 
 def test_no_configuration_no_answer() -> None:
     rocker = Fourbar.from_lengths(6.0, 2.0, 3.0, 4.0, 1j)
-    for call in (instant_centers, pole, path_curvature):
+    for call in (instant_centers, find_pole, compute_path_curvature):
         found = call(rocker, [np.pi, 1.0])
         assert not found.valid[0]
         assert np.isnan(found[2][0]).all() or not found[2][0].any()
@@ -173,18 +181,18 @@ def test_no_configuration_no_answer() -> None:
         assert not call(rocker, np.pi).finite
 
 
-@pytest.mark.parametrize("sign", [OPEN, CROSSED])
+@pytest.mark.parametrize("sign", [OPEN_ASSEMBLY, CROSSED_ASSEMBLY])
 def test_pole_at_a_toggle_is_the_input_pin(sign: int) -> None:
     """There the input stands and the coupler turns about A; ω4/ω2 is infinite, ω2/ω4 nothing."""
     rocker = Fourbar.from_lengths(6.0, 10.0, 7.0, 4.0, 2.0 + 3.0j)
-    theta = toggle_angles(rocker)
+    theta = find_toggle_angles(rocker)
     assert theta.size == 2
-    found, at = pole(rocker, theta, sign), positions(rocker, theta, sign)
+    found, at = find_pole(rocker, theta, sign), positions(rocker, theta, sign)
     assert found.finite.all()
     assert np.abs(found.point - at.a).max() < 1e-6
-    path = path_curvature(rocker, theta, sign)
+    path = compute_path_curvature(rocker, theta, sign)
     assert path.curved.all()
-    near = path_curvature(rocker, theta * (1.0 + 1e-9), sign)
+    near = compute_path_curvature(rocker, theta * (1.0 + 1e-9), sign)
     np.testing.assert_allclose(path.curvature, near.curvature, rtol=1e-3)
     assert not velocity_ratio(rocker, theta, sign).finite.any()
     torque = torque_ratio(rocker, theta, sign)
@@ -197,7 +205,7 @@ def test_pole_at_a_toggle_is_the_input_pin(sign: int) -> None:
 
 def test_pole_does_not_move() -> None:
     _, linkage, theta, sign = sample(73, margin=1e-2)
-    at, state = pole(linkage, theta, sign), motion(linkage, theta, sign)
+    at, state = find_pole(linkage, theta, sign), motion(linkage, theta, sign)
     assert at.finite.all()
     turn = 1j * state.velocity.coupler * (at.point - state.position.a)
     assert (np.abs(state.velocity.a + turn) / np.abs(state.velocity.a)).max() < 1e-10
@@ -208,21 +216,21 @@ def test_pole_does_not_move() -> None:
 
 def test_pole_as_coupler_point_stands_still() -> None:
     _, linkage, theta, sign = sample(74, margin=0.1, m=1, share=0.7)
-    at = pole(linkage, theta, sign)
+    at = find_pole(linkage, theta, sign)
     pinned = with_point(linkage, at.moving[:, 0])
     speed = np.abs(motion(pinned, theta, sign).velocity.p)[:, 0] / linkage.input
     assert np.quantile(speed, 0.999) < 1e-10
-    assert (~path_curvature(pinned, theta, sign).valid).mean() > 0.99
+    assert (~compute_path_curvature(pinned, theta, sign).valid).mean() > 0.99
 
 
 def test_centrodes_roll_without_slip() -> None:
     """Both have the same velocity at the pole, which ``rate`` is, per radian of the coupler."""
     _, linkage, theta, sign = sample(75, margin=0.1, share=0.6)
-    at, state = pole(linkage, theta, sign), motion(linkage, theta, sign)
+    at, state = find_pole(linkage, theta, sign), motion(linkage, theta, sign)
     calm = (np.abs(state.velocity.coupler) > 0.03) & (np.abs(at.point - state.position.a) < 10.0 * size_of(linkage))
     assert calm.mean() > 0.6
-    fixed = derivative(lambda h: pole(linkage, theta + h, sign).point, 1, 3e-4)
-    moving = derivative(lambda h: pole(linkage, theta + h, sign).moving, 1, 3e-4)
+    fixed = derivative(lambda h: find_pole(linkage, theta + h, sign).point, 1, 3e-4)
+    moving = derivative(lambda h: find_pole(linkage, theta + h, sign).moving, 1, 3e-4)
     turned = moving * np.exp(1j * state.position.coupler_angle)
     expected = at.rate * state.velocity.coupler
     scale = np.abs(expected) + size_of(linkage)
@@ -235,7 +243,7 @@ def test_centrodes_have_equal_arcs() -> None:
     """Between any two poles, measured along the sampled curves."""
     linkage = Fourbar.from_lengths(5.0, 2.0, 5.0, 4.0)
     theta = np.linspace(1.32, 1.7, 20_001)
-    at = pole(linkage, theta)
+    at = find_pole(linkage, theta)
     assert at.finite.all()
     fixed, moving = (np.abs(np.diff(curve)) for curve in (at.point, at.moving))
     assert fixed.sum() > 1.0
@@ -246,7 +254,7 @@ def test_centrodes_of_equal_opposite_cranks_are_ellipses() -> None:
     """Crossed equal cranks, the longer links equal: the centrodes are congruent ellipses with foci at the pivots."""
     linkage = Fourbar.from_lengths(3.0, 2.0, 3.0, 2.0)
     theta = np.linspace(0.2, 2.9, 50)
-    at = pole(linkage, theta, CROSSED)
+    at = find_pole(linkage, theta, CROSSED_ASSEMBLY)
     assert at.finite.all()
     np.testing.assert_allclose(np.abs(at.point) + np.abs(at.point - 2.0), 3.0, rtol=1e-12)
     np.testing.assert_allclose(np.abs(at.moving) + np.abs(at.moving - 2.0), 3.0, rtol=1e-12)
@@ -258,7 +266,7 @@ def test_centrodes_of_equal_opposite_cranks_are_ellipses() -> None:
 def test_curvature_is_that_of_the_path() -> None:
     """Against velocity and acceleration, and against finite differences of the positions alone."""
     _, linkage, theta, sign = sample(81, margin=3e-2, share=0.9)
-    state, found = motion(linkage, theta, sign), path_curvature(linkage, theta, sign)
+    state, found = motion(linkage, theta, sign), compute_path_curvature(linkage, theta, sign)
     velocity, acceleration = state.velocity.p, state.acceleration.p
     size = size_of(linkage)
     moving = np.abs(velocity) > 1e-2 * size
@@ -282,7 +290,7 @@ def test_curvature_is_that_of_the_path() -> None:
 def test_euler_savary() -> None:
     """|XI|² = |XC| |XJ| along the ray from the pole I through X; J on the inflection circle, C the centre."""
     _, linkage, theta, sign = sample(82, margin=3e-2, share=0.9)
-    at, found = pole(linkage, theta, sign), path_curvature(linkage, theta, sign)
+    at, found = find_pole(linkage, theta, sign), compute_path_curvature(linkage, theta, sign)
     point = positions(linkage, theta, sign).p
     ray, length = (point - at.point) / np.abs(point - at.point), np.abs(point - at.point)
     to_circle = ((at.inflection_pole - at.point) * ray.conj()).real
@@ -297,24 +305,24 @@ def test_euler_savary() -> None:
 def test_moving_pivots_run_on_circles() -> None:
     _, linkage, theta, sign = sample(83, margin=1e-2)
     for point, center in ((0.0, linkage.input_pivot), (linkage.coupler, linkage.output_pivot)):
-        found = path_curvature(with_point(linkage, point), theta, sign)
+        found = compute_path_curvature(with_point(linkage, point), theta, sign)
         assert found.valid.mean() > 0.999
         error = np.abs(found.center - center[:, None])[found.valid]
         assert np.quantile(error, 0.99) < 1e-9
     np.testing.assert_allclose(
-        path_curvature(with_point(linkage, 0.0), theta, sign).curvature * linkage.input[:, None], 1.0, rtol=1e-6
+        compute_path_curvature(with_point(linkage, 0.0), theta, sign).curvature * linkage.input[:, None], 1.0, rtol=1e-6
     )
 
 
 def test_points_of_the_inflection_circle_run_straight() -> None:
     rng, linkage, theta, sign = sample(84, margin=0.1, m=1, share=0.7)
-    at, state = pole(linkage, theta, sign), positions(linkage, theta, sign)
+    at, state = find_pole(linkage, theta, sign), positions(linkage, theta, sign)
     turn = np.exp(1j * rng.uniform(0.3, 2.0 * np.pi - 0.3, theta.shape))
     center = 0.5 * (at.point + at.inflection_pole)
     chosen = center + (at.point - center) * turn
     arm = (state.b - state.a) / linkage.coupler[:, None]
     near = (np.abs(chosen - state.a) < 10.0 * size_of(linkage))[:, 0]
-    found = path_curvature(with_point(linkage, ((chosen - state.a) / arm)[:, 0]), theta, sign)
+    found = compute_path_curvature(with_point(linkage, ((chosen - state.a) / arm)[:, 0]), theta, sign)
     straight = np.abs(found.curvature * size_of(linkage))[near, 0]
     assert near.mean() > 0.7
     assert np.quantile(straight, 0.99) < 1e-8
@@ -324,10 +332,10 @@ def test_points_of_the_inflection_circle_run_straight() -> None:
 def test_watt_linkage_has_an_inflection_at_the_middle() -> None:
     """Both rockers level, the middle of the coupler on its straight line."""
     linkage = Fourbar(0.0, 6.0 + 2.0j, 3.0, 2.0, 3.0, 1.0)
-    for sign in (OPEN, CROSSED):
+    for sign in (OPEN_ASSEMBLY, CROSSED_ASSEMBLY):
         at = positions(linkage, 0.0, sign)
         if abs(at.b - (3.0 + 2.0j)) < 1e-9:
-            found = path_curvature(linkage, 0.0, sign)
+            found = compute_path_curvature(linkage, 0.0, sign)
             assert found.valid
             assert abs(found.curvature) < 1e-12
             assert not found.curved
@@ -346,13 +354,13 @@ def test_curvature_where_the_coupler_does_not_turn() -> None:
     v = np.exp(1j * rng.uniform(-np.pi, np.pi, n)) * rng.uniform(0.5, 2.0, n)
     point = rng.normal(size=n) + 1j * rng.normal(size=n)
     linkage = Fourbar(0.0, u + v - w, np.abs(u), np.abs(v), np.abs(w), point)
-    sign = np.where(cross(v, w) > 0.0, OPEN, CROSSED)
+    sign = np.where(cross(v, w) > 0.0, OPEN_ASSEMBLY, CROSSED_ASSEMBLY)
     theta = np.angle(u)[:, None]
     sound = (np.abs(cross(v, w)) > 0.2 * np.abs(v) * np.abs(w))[:, None]
-    found, state = path_curvature(linkage, theta, sign), motion(linkage, theta, sign)
+    found, state = compute_path_curvature(linkage, theta, sign), motion(linkage, theta, sign)
     expected = cross(state.velocity.p, state.acceleration.p) / np.abs(state.velocity.p) ** 3
     assert np.abs(found.curvature - expected)[sound].max() < 1e-9
-    at = pole(linkage, theta, sign)
+    at = find_pole(linkage, theta, sign)
     assert at.valid.all()
     assert (np.abs(at.point[at.finite & sound]) > 1e10).all()
     assert (~at.finite)[sound].mean() > 0.9
@@ -361,7 +369,11 @@ def test_curvature_where_the_coupler_does_not_turn() -> None:
 def test_bresse_circles() -> None:
     """At constant input speed: no normal acceleration on one, no tangential acceleration on the other."""
     rng, linkage, theta, sign = sample(86, margin=3e-2, share=0.9)
-    at, found, state = pole(linkage, theta, sign), bresse_circles(linkage, theta, sign), motion(linkage, theta, sign)
+    at, found, state = (
+        find_pole(linkage, theta, sign),
+        bresse_circles(linkage, theta, sign),
+        motion(linkage, theta, sign),
+    )
     assert found.finite.all()
     assert found.circle.mean() > 0.999
     turn = np.exp(1j * rng.uniform(0.3, 2.0 * np.pi - 0.3, theta.shape))
@@ -440,7 +452,7 @@ def test_similar_linkages_have_similar_motions(scale: float) -> None:
         scale * turn * (linkage.output_pivot + shift),
         *(scale * x for x in (linkage.input, linkage.coupler, linkage.output, linkage.coupler_point)),
     )
-    here, there = pole(linkage, theta, sign), pole(other, theta + 0.7, sign)
+    here, there = find_pole(linkage, theta, sign), find_pole(other, theta + 0.7, sign)
     size = np.abs(here.point) + np.abs(here.rate) + size_of(linkage)
     for name in ("point", "inflection_pole"):
         moved = scale * turn * (getattr(here, name) + shift)
@@ -448,7 +460,7 @@ def test_similar_linkages_have_similar_motions(scale: float) -> None:
         assert np.quantile(error, 0.99) < 1e-8
     assert np.quantile(np.abs(there.moving / scale - here.moving) / size, 0.99) < 1e-8
     assert np.quantile(np.abs(there.inflection_diameter / scale - here.inflection_diameter) / size, 0.99) < 1e-8
-    path, also = path_curvature(linkage, theta, sign), path_curvature(other, theta + 0.7, sign)
+    path, also = compute_path_curvature(linkage, theta, sign), compute_path_curvature(other, theta + 0.7, sign)
     error = np.abs(also.curvature * scale - path.curvature) * size_of(linkage)
     assert np.quantile(error / (1.0 + np.abs(path.curvature) * size_of(linkage)), 0.99) < 1e-8
     np.testing.assert_allclose(
@@ -462,9 +474,9 @@ def test_batches_equal_single_designs() -> None:
     linkage = Fourbar(*(getattr(batch, name).reshape(2, 3) for name in FIELDS))
     theta, sign = rng.uniform(-3.0, 3.0, 5), signs(rng, 2, 3)
     calls = (
-        pole,
+        find_pole,
         bresse_circles,
-        path_curvature,
+        compute_path_curvature,
         velocity_ratio,
         torque_ratio,
         instant_centers,
@@ -480,7 +492,7 @@ def test_batches_equal_single_designs() -> None:
         for values in call(CRANK_ROCKER, 0.5):
             assert values.shape in {(), (6,)}
         with pytest.raises(ShapeError, match="broadcast"):
-            call(linkage, np.zeros((4, 5)), OPEN)
+            call(linkage, np.zeros((4, 5)), OPEN_ASSEMBLY)
         with pytest.raises(DimensionError, match=r"^assembly must be"):
             call(linkage, theta, 0)
 
@@ -491,8 +503,8 @@ def test_numbers_are_finite_where_they_are_valid() -> None:
     linkage = random_fourbars(rng, 2000)
     theta = rng.uniform(-np.pi, np.pi, (2000, 10))
     with np.errstate(all="raise", under="ignore"):
-        for sign in (OPEN, CROSSED):
-            at, path = pole(linkage, theta, sign), path_curvature(linkage, theta, sign)
+        for sign in (OPEN_ASSEMBLY, CROSSED_ASSEMBLY):
+            at, path = find_pole(linkage, theta, sign), compute_path_curvature(linkage, theta, sign)
             circles, centers = bresse_circles(linkage, theta, sign), instant_centers(linkage, theta, sign)
             ratios = (velocity_ratio(linkage, theta, sign), torque_ratio(linkage, theta, sign))
             masks = [(at.finite, values) for values in at[2:]]

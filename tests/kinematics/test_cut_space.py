@@ -10,7 +10,7 @@ import pytest
 import shapely
 from shapely.affinity import affine_transform
 
-from kinematics.gear.cut_space import tip_depth
+from kinematics.gear.cut_space import measure_tip_depth
 from kinematics.gear.teeth import Gear, Mesh
 
 ANGLE = math.radians(20.0)
@@ -47,7 +47,7 @@ def test_tips_of_a_ring_against_polygons(planet: int, ring: int, addendum: float
         corner = shapely.Point(at.real, at.imag)
         if cut.contains(corner):
             deepest = max(deepest, cut.exterior.distance(corner))
-    told = tip_depth(Mesh(Gear(planet, 1.0), rim), 20)
+    told = measure_tip_depth(Mesh(Gear(planet, 1.0), rim), 20)
     assert told == pytest.approx(deepest, abs=2e-4)
     assert (told > 1e-3) == (addendum > 0.914276 or planet == 18)
 
@@ -56,4 +56,4 @@ def test_tips_of_a_ring_against_polygons(planet: int, ring: int, addendum: float
 def test_tips_that_foul_or_reach_a_ring_are_found(teeth: tuple[int, int], addendum: float, depth: float) -> None:
     """Planets of many teeth in the fillets of a ring, and of few teeth of difference beside the line of action."""
     mesh = Mesh(Gear(teeth[0], 1.0), Gear(teeth[1], 1.0, addendum=addendum, internal=True))
-    assert 1e-5 < tip_depth(mesh, 20) < depth
+    assert 1e-5 < measure_tip_depth(mesh, 20) < depth

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from kinematics.linkage.planar.closures import decompose
-from kinematics.linkage.planar.drive import assembly_signs, drive
+from kinematics.linkage.planar.drive import drive, find_assembly_signs
 from tests.kinematics import drive_twin
 from tests.kinematics.mechanism_sampling import DYADIC
 
@@ -27,7 +27,7 @@ def test_the_kernel_and_the_plain_formulas_agree(name, order):
     steps = decompose(mechanism).steps
     signs = tuple(
         sign * (rng.choice([1, -1], sign.shape) if step.has_two_solutions else 1)
-        for sign, step in zip(assembly_signs(mechanism, steps), steps, strict=True)
+        for sign, step in zip(find_assembly_signs(mechanism, steps), steps, strict=True)
     )
     found = drive(mechanism, at, signs=signs, order=order, **named)
     expected = drive_twin.drive(mechanism, at, rates, signs)

@@ -14,8 +14,8 @@ import pytest
 from scipy.optimize import minimize_scalar
 
 from kinematics.linkage.planar.drive import MechanismMotion, drive
-from kinematics.linkage.planar.instant_centers import instant_centers
-from kinematics.linkage.planar.limits import branches, holding_reference, limit_positions
+from kinematics.linkage.planar.instant_centers import find_instant_centers
+from kinematics.linkage.planar.limits import find_branches, find_limit_positions, find_reference_branch
 from kinematics.linkage.planar.mechanism import GROUND, Mechanism
 from tests.kinematics.mechanism_sampling import CLASS_THREE, DYADIC, EVERY, geared_fivebar, take
 
@@ -81,7 +81,7 @@ def test_every_type_that_closes_by_dyads_is_here() -> None:
 def test_transmission_angles_at_every_dyad(name: str) -> None:
     rng = np.random.default_rng([71, list(EVERY).index(name)])
     mechanism = EVERY[name](rng, 60)
-    unit = 0.3 if mechanism.driven_by_slide else 1.0
+    unit = 0.3 if mechanism.has_slide_input else 1.0
     at = mechanism.reference_input[:, None] + unit * rng.uniform(-1.0, 1.0, (60, 8))
     compared = 0
     for k in range(60):
@@ -118,12 +118,12 @@ def test_limit_positions_are_the_extremes_along_the_branch(name: str) -> None:
     bounded = 0
     for _ in range(3):
         mechanism = design(name, rng)
-        here = holding_reference(mechanism, branches(mechanism))
+        here = find_reference_branch(mechanism, find_branches(mechanism))
         assert here is not None
         links = [link for link in mechanism.links if link != GROUND]
         slides = list(mechanism.slide_names)
         at = float(mechanism.reference_input)
-        low = here.low if mechanism.driven_by_slide else at - float(np.mod(at - here.low, 1e9 if here.full else TURN))
+        low = here.low if mechanism.has_slide_input else at - float(np.mod(at - here.low, 1e9 if here.full else TURN))
         low = at if here.full else low
         way = here.high - here.low
         share = 0.5 - 0.5 * np.cos(np.pi * np.linspace(0.0, 1.0, 3001)[1:-1])
@@ -132,7 +132,7 @@ def test_limit_positions_are_the_extremes_along_the_branch(name: str) -> None:
         motion = drive(mechanism, grid, order=0)
         grid, known = grid[motion.valid], float(motion.valid.mean())
         assert known > 0.99
-        of_links, of_slides = limit_positions(mechanism, here, links, slides)
+        of_links, of_slides = find_limit_positions(mechanism, here, links, slides)
         z = np.array([complex(joint) for joint in mechanism.joints.values()])
         size = float(np.abs(z[:, None] - z).max())
         spans = [(motion.angles[n], span, 1.0) for n, span in zip(links, of_links, strict=True)]
@@ -168,13 +168,13 @@ def test_two_links_carry_their_instant_centre_alike(name: str) -> None:
         mechanism = design(name, rng)
         z = np.array([complex(joint) for joint in mechanism.joints.values()])
         size = float(np.abs(z[:, None] - z).max())
-        step = 1e-5 * (size if mechanism.driven_by_slide else 1.0)
+        step = 1e-5 * (size if mechanism.has_slide_input else 1.0)
         at = mechanism.reference_input + np.array([-step, 0.0, step])
         motion = drive(mechanism, at, order=1)
         sines = [np.abs(s).min() for s in motion.sines.values()]
         if not motion.smooth.all() or (sines and min(sines) < 0.1):
             continue
-        centers = instant_centers(mechanism, motion)
+        centers = find_instant_centers(mechanism, motion)
         count = len(mechanism.links)
         assert len(centers) == count * (count - 1) // 2
 

@@ -9,7 +9,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from kinematics.errors import DimensionError
-from kinematics.gear.bevel import GLEASON_TEETH, BevelPair, cone_angles
+from kinematics.gear.bevel import GLEASON_TEETH, BevelPair, compute_cone_angles
 from kinematics.gear.helical import HelicalGear
 from kinematics.gear.teeth import Mesh
 from kinematics.gear.worm import WormSet
@@ -44,7 +44,7 @@ def test_helical_pair(case: Case) -> None:
         D3=2.0 * other.pitch_radius,
         pnd=1.0 / one.normal_module,
         pt=one.transverse_pitch,
-        F_min=one.least_face_width(),
+        F_min=one.min_face_width(),
     )
 
 
@@ -53,7 +53,7 @@ def test_helix_angle_of_a_face(case: Case) -> None:
     x = case.inputs
     angle = helix_angle_for_face(1.0 / x["pnd"], x["F"])
     case.check(psi=deg(angle), ptd=x["pnd"] * math.cos(angle))
-    assert HelicalGear(20, 1.0 / x["pnd"], angle).least_face_width() == pytest.approx(x["F"])
+    assert HelicalGear(20, 1.0 / x["pnd"], angle).min_face_width() == pytest.approx(x["F"])
 
 
 @pytest.mark.parametrize("case", cases("helical_replace", "gear"))
@@ -62,7 +62,7 @@ def test_helical_replacement(case: Case) -> None:
     pair = helical_replacement(x["t"], x["T"], 1.0 / x["pd"], x["width"])
     assert pair is not None
     one, other = pair
-    case.check(t=one.teeth, T=other.teeth, psi=deg(one.helix_angle), F_min=one.least_face_width())
+    case.check(t=one.teeth, T=other.teeth, psi=deg(one.helix_angle), F_min=one.min_face_width())
     assert one.pitch_radius + other.pitch_radius == pytest.approx(0.5 * (x["t"] + x["T"]) / x["pd"])
     assert helical_replacement(7, 11, 1.0, 100.0) is None
 
@@ -117,7 +117,7 @@ def test_helical_teeth_in_the_transverse_plane(first: int, second: int, angle: f
 
 @pytest.mark.parametrize("case", cases("bevel", "gear"))
 def test_cone_angles(case: Case) -> None:
-    pinion, gear = cone_angles(rad(case.inputs["theta"]), case.inputs["ratio"])
+    pinion, gear = compute_cone_angles(rad(case.inputs["theta"]), case.inputs["ratio"])
     case.check(gamma_pinion=deg(pinion), gamma_gear=deg(gear))
     assert math.sin(gear) == pytest.approx(case.inputs["ratio"] * math.sin(pinion))
 
@@ -203,8 +203,8 @@ def test_worm_by_helix(case: Case) -> None:
         lambda: helix_angle_for_distance(20, 30, 1.0, 24.9),
         lambda: helix_angle_for_face(1.0, 3.0),
         lambda: crossed_by_diameters(1.5, (10.0, 25.0), 0.0),
-        lambda: cone_angles(0.0, 2.0),
-        lambda: cone_angles(1.0, 0.5),
+        lambda: compute_cone_angles(0.0, 2.0),
+        lambda: compute_cone_angles(1.0, 0.5),
         lambda: BevelPair(30, 20, 2.0),
         lambda: WormSet(1, 20, 1.0, -2.0),
         lambda: worm_of_lead(5.0, 20, 15.0),

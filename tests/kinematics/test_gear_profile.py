@@ -9,9 +9,9 @@ import numpy as np
 import pytest
 
 from kinematics.errors import DimensionError
-from kinematics.gear.flanks import corner_rounding
+from kinematics.gear.flanks import compute_corner_rounding
 from kinematics.gear.helical import HelicalGear
-from kinematics.gear.profile import half_space, outline
+from kinematics.gear.profile import draw_half_space, draw_outline
 from kinematics.gear.teeth import Gear, Mesh
 
 GEARS = [
@@ -28,7 +28,7 @@ GEARS = [
 def test_outline_is_what_a_rack_leaves(gear: Gear) -> None:
     """No point of the outline is ever inside the rack's tooth, and every point below the tip is touched by it."""
     phi, m = gear.pressure_angle, gear.module
-    points = half_space(gear)
+    points = draw_half_space(gear)
     points = points[np.abs(points) < _tip_of(points) - 1e-9]
     least = np.full(points.shape, np.inf)
     reach = 4.0 * m / math.tan(phi) + 2.0 * m
@@ -66,8 +66,8 @@ def _rounded(gear: Gear, side: np.ndarray, depth: np.ndarray, flank: np.ndarray,
 @pytest.mark.parametrize(("pinion", "gear"), [(20, 40), (18, 19), (25, 90)])
 def test_two_outlines_touch_and_do_not_overlap(pinion: int, gear: int) -> None:
     mesh = Mesh(Gear(pinion, 1.0), Gear(gear, 1.0))
-    first = outline(mesh.pinion, 0.0)
-    second = outline(mesh.gear, math.pi + math.pi / gear)
+    first = draw_outline(mesh.pinion, 0.0)
+    second = draw_outline(mesh.gear, math.pi + math.pi / gear)
     for turned in np.linspace(0.0, 2.0 * math.pi / pinion, 7):
         driver = first * np.exp(1j * turned)
         driven = second * np.exp(-1j * turned * pinion / gear) + mesh.centre_distance
@@ -91,7 +91,7 @@ def _signed_distance(point: complex, closed: np.ndarray, centre: complex) -> flo
 
 def test_flanks_are_unwound_strings() -> None:
     gear = Gear(40, 1.5, shift=0.2)
-    points = half_space(gear)
+    points = draw_half_space(gear)
     flank = points[(np.abs(points) > 29.0) & (np.abs(points) < gear.tip_radius * (1.0 - 1e-12))]
     roll = np.sqrt((np.abs(flank) / gear.base_radius) ** 2 - 1.0)
     unwound = gear.base_radius * (1.0 - 1j * roll) * np.exp(1j * roll)
@@ -99,7 +99,7 @@ def test_flanks_are_unwound_strings() -> None:
 
 
 def test_outline_closes_once_round() -> None:
-    closed = outline(Gear(17, 1.0), 0.3)
+    closed = draw_outline(Gear(17, 1.0), 0.3)
     steps = np.angle(np.roll(closed, -1) / closed)
     assert steps.sum() == pytest.approx(2.0 * math.pi)
     assert (steps > -0.02).all()
@@ -110,8 +110,8 @@ def test_outline_closes_once_round() -> None:
 def test_internal_outline_fits_round_the_pinion() -> None:
     mesh = Mesh(Gear(30, 1.0), Gear(60, 1.0, addendum=0.8, internal=True))
     # With the full addendum the ring's tips would reach below the involute that a rack leaves on the pinion.
-    ring = outline(mesh.gear, math.pi / 60)
-    pinion = outline(mesh.pinion, 0.0) + mesh.centre_distance
+    ring = draw_outline(mesh.gear, math.pi / 60)
+    pinion = draw_outline(mesh.pinion, 0.0) + mesh.centre_distance
     near = pinion[pinion.real > mesh.gear.tip_radius - 0.5]
     gaps = [-_signed_distance(point, ring, 0.0) for point in near]
     assert -2e-3 < min(gaps) < 2e-3
@@ -120,14 +120,14 @@ def test_internal_outline_fits_round_the_pinion() -> None:
 def test_a_pointed_tooth_ends_where_its_flanks_meet() -> None:
     gear = Gear(10, 1.0, shift=1.2)
     assert gear.is_pointed
-    tip = half_space(gear)[-1]
+    tip = draw_half_space(gear)[-1]
     assert abs(tip) < gear.tip_radius
     assert np.angle(tip) == pytest.approx(math.pi / 10)
 
 
 def test_a_rack_that_comes_to_a_point_is_refused() -> None:
     with pytest.raises(DimensionError):
-        half_space(Gear(20, 1.0, math.radians(34.0)))
+        draw_half_space(Gear(20, 1.0, math.radians(34.0)))
 
 
 @pytest.mark.parametrize("helix", [0.0, 15.0, 30.0, -42.0])
@@ -140,12 +140,12 @@ def test_a_rack_that_rolls_past_touches_the_outline_and_cuts_nothing_of_it(
     beta = math.radians(helix)
     plain = HelicalGear(teeth, 1.0, beta).transverse_gear
     gear = replace(plain, shift=shift * math.cos(beta))
-    points = half_space(gear, beta)
+    points = draw_half_space(gear, beta)
     radii = np.abs(points)
     inside = (radii > gear.root_radius * (1 + 1e-9)) & (radii < gear.tip_radius * (1 - 1e-9))
     points = points[inside]
     phi, depth, stretch = math.radians(20.0), 1.25 - shift, 1.0 / math.cos(beta)
-    rounding = corner_rounding(phi, 1.25)
+    rounding = compute_corner_rounding(phi, 1.25)
     centre = depth - rounding
     half_tip = 0.25 * math.pi - 1.25 * math.tan(phi) + rounding * (math.tan(phi) - 1.0 / math.cos(phi))
 

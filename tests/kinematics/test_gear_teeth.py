@@ -13,11 +13,11 @@ from kinematics.errors import DimensionError
 from kinematics.gear.teeth import (
     Gear,
     Mesh,
-    inverse_involute,
+    compute_min_teeth,
+    find_largest_gear,
+    find_saving_shift,
+    invert_involute,
     involute,
-    largest_gear,
-    least_teeth_with_rack,
-    saving_shift,
 )
 from tests.cases import Case, cases
 from tests.oracles.gear_formulas import (
@@ -65,7 +65,7 @@ def test_diametral_pitch_of_module(case: Case) -> None:
 
 @pytest.mark.parametrize("case", cases("min_rack", "gear"))
 def test_least_teeth_with_rack(case: Case) -> None:
-    case.check(t_min=least_teeth_with_rack(math.radians(case.inputs["phi"])))
+    case.check(t_min=compute_min_teeth(math.radians(case.inputs["phi"])))
 
 
 @pytest.mark.parametrize("case", cases("phi_for_rack", "gear"))
@@ -80,7 +80,7 @@ def test_pressure_angle_for_a_rack(case: Case) -> None:
 @pytest.mark.parametrize("case", cases("max_gear", "gear"))
 def test_largest_gear(case: Case) -> None:
     pinion, phi = case.inputs["Np"], case.inputs["phi"]
-    largest = largest_gear(pinion, math.radians(phi))
+    largest = find_largest_gear(pinion, math.radians(phi))
     case.check(Ng=largest)
     assert not mesh_of(pinion, largest, 1.0, phi).interferes
     assert mesh_of(pinion, largest + 1, 1.0, phi).interferes
@@ -106,7 +106,7 @@ def test_spur_pair(case: Case) -> None:
 @pytest.mark.parametrize("case", cases("largest_tooth", "gear"))
 def test_largest_tooth(case: Case) -> None:
     x = case.inputs
-    teeth = least_teeth_with_rack(math.radians(x["phi"]))
+    teeth = compute_min_teeth(math.radians(x["phi"]))
     if x.get("method") == "pair_integer":
         ratio = x["d_gear"] / x["d_pinion"]
         teeth = next(n for n in range(5, 40) if not mesh_of(n, ratio * n, 1.0, x["phi"]).interferes)
@@ -259,8 +259,8 @@ def test_least_pinion(case: Case) -> None:
 @given(st.floats(0.0, 1.5))
 def test_inverse_involute(angle: float) -> None:
     value = involute(angle)
-    assert inverse_involute(value) == pytest.approx(angle, rel=1e-9, abs=1e-5)
-    assert involute(inverse_involute(value)) == pytest.approx(value, rel=1e-12, abs=1e-300)
+    assert invert_involute(value) == pytest.approx(angle, rel=1e-9, abs=1e-5)
+    assert involute(invert_involute(value)) == pytest.approx(value, rel=1e-12, abs=1e-300)
 
 
 @given(
@@ -299,7 +299,7 @@ def test_interference_limits_agree_with_the_mesh(pinion: int, degrees: float, ad
     phi = math.radians(degrees)
     one = Gear(pinion, 1.0, phi, addendum)
     free = [n for n in range(pinion, 400) if not Mesh(one, Gear(n, 1.0, phi, addendum)).interferes]
-    largest = largest_gear(pinion, phi, addendum)
+    largest = find_largest_gear(pinion, phi, addendum)
     if largest is None:
         assert free[-1] == 399
     elif largest < pinion:
@@ -354,7 +354,7 @@ def corner_descent(radius: np.ndarray, angle: np.ndarray, turn: np.ndarray) -> t
 def test_a_shift_saves_a_mesh(pinion: int, gear: int) -> None:
     mesh = mesh_of(pinion, gear, 1.0, 20.0)
     assert mesh.interferes or mesh.pinion.is_undercut
-    saved = saving_shift(mesh)
+    saved = find_saving_shift(mesh)
     assert saved is not None
     assert not saved.interferes
     assert not saved.pinion.is_undercut
@@ -365,8 +365,8 @@ def test_a_shift_saves_a_mesh(pinion: int, gear: int) -> None:
 
 
 def test_no_shift_where_none_is_needed_or_none_helps() -> None:
-    assert saving_shift(mesh_of(20, 40, 1.0, 20.0)) is None
-    assert saving_shift(mesh_of(5, 5, 1.0, 20.0)) is None
+    assert find_saving_shift(mesh_of(20, 40, 1.0, 20.0)) is None
+    assert find_saving_shift(mesh_of(5, 5, 1.0, 20.0)) is None
 
 
 def test_loss_of_a_mesh() -> None:
@@ -394,7 +394,7 @@ def test_loss_of_a_mesh() -> None:
         (lambda: Mesh(Gear(20, 1.0), Gear(40, 2.0)), "module and pressure angle"),
         (lambda: Mesh(Gear(20, 1.0), Gear(20, 1.0, internal=True)), "internal gear"),
         (lambda: Mesh(Gear(20, 1.0), Gear(40, 1.0), given_distance=20.0), "centre distance"),
-        (lambda: inverse_involute(-1.0), "value"),
+        (lambda: invert_involute(-1.0), "value"),
     ],
 )
 def test_wrong_calls(call: object, name: str) -> None:

@@ -12,7 +12,7 @@ from typing import Any
 
 import pytest
 
-from kinematics.gear.gearbox import spindle_speeds
+from kinematics.gear.gearbox import list_spindle_speeds
 from kinematics.gear.helical import HelicalGear
 from kinematics.gear.teeth import Gear
 from tests.cases import Case, cases, load
@@ -66,7 +66,7 @@ def cosine_by_tooth(inputs: dict[str, Any]) -> float:
 
 def step_of_a_pair(inputs: dict[str, Any]) -> float:
     """Driven over driving speed of a pair whose driver has ``value`` teeth, and its mate 1/scale."""
-    [only] = spindle_speeds(1, [[(inputs["value"], round(1.0 / inputs["scale"]))]])
+    [only] = list_spindle_speeds(1, [[(inputs["value"], round(1.0 / inputs["scale"]))]])
     return float(only.speed)
 
 

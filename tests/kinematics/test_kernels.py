@@ -13,13 +13,13 @@ from numba import njit
 from kinematics.linkage.fourbar import (
     Fourbar,
     barker_type,
-    input_limits,
-    same_circuit,
+    find_input_limits,
+    find_transmission_extremes,
+    is_same_circuit,
     stays_on_branch,
-    transmission_extremes,
 )
 from kinematics.linkage.fourbar import closed_form as fourbar_module
-from kinematics.linkage.kernels import TILE, direction
+from kinematics.linkage.kernels import TILE_SIZE, compute_direction
 from kinematics.linkage.slider_crank import closed_form as slider_module
 from kinematics.linkage.slider_crank.closed_form import SliderCrank
 from tests.kinematics import twins
@@ -105,7 +105,7 @@ def test_masks_agree_where_closing_is_in_doubt(sample: Callable, module: Any, tw
     np.testing.assert_array_equal(found.velocity.valid[firm], expected[1]["valid"][firm])
 
 
-@pytest.mark.parametrize("n", [1, 3, TILE - 1, TILE, TILE + 1, 3 * TILE + 2])
+@pytest.mark.parametrize("n", [1, 3, TILE_SIZE - 1, TILE_SIZE, TILE_SIZE + 1, 3 * TILE_SIZE + 2])
 def test_coupler_point_alone_equals_the_whole(n: int) -> None:
     """Also over every remainder that a vector loop and a tile can leave."""
     rng = np.random.default_rng(83)
@@ -162,7 +162,7 @@ def test_direction_is_the_arc_tangent() -> None:
 def _directions(x: np.ndarray, y: np.ndarray) -> np.ndarray:
     out = np.empty_like(x)
     for k in range(len(x)):
-        out[k] = direction(x[k], y[k])
+        out[k] = compute_direction(x[k], y[k])
     return out
 
 
@@ -186,17 +186,17 @@ def test_verdicts_on_a_design_agree_with_the_plain_twin() -> None:
     linkage = Fourbar.from_lengths(*lengths.T)
     np.testing.assert_array_equal(barker_type(linkage), twins.barker_type(linkage))
     assert set(barker_type(linkage)) == set(range(15))
-    for found, expected in zip(input_limits(linkage), twins.input_limits(linkage), strict=True):
+    for found, expected in zip(find_input_limits(linkage), twins.input_limits(linkage), strict=True):
         np.testing.assert_allclose(found, expected, rtol=1e-14, atol=1e-15)
     start = rng.uniform(-7.0, 7.0, 8000)
     end = start + rng.uniform(-1.0, 1.0, 8000) * rng.choice([0.1, 1.0, 7.0], 8000)
     np.testing.assert_array_equal(stays_on_branch(linkage, start, end), twins.stays_on_branch(linkage, start, end))
     signs = rng.choice([-1, 1], (2, 8000))
-    found = same_circuit(linkage, start, signs[0], end, signs[1])
+    found = is_same_circuit(linkage, start, signs[0], end, signs[1])
     np.testing.assert_array_equal(found, twins.same_circuit(linkage, start, signs[0], end, signs[1]))
     assert 0.1 < found.mean() < 0.9
     extremes = zip(
-        transmission_extremes(linkage, start, end), twins.transmission_extremes(linkage, start, end), strict=True
+        find_transmission_extremes(linkage, start, end), twins.transmission_extremes(linkage, start, end), strict=True
     )
     for found, expected in extremes:
         np.testing.assert_allclose(found, expected, atol=1e-7)

@@ -8,16 +8,16 @@ from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
 from kinematics.linkage.fourbar import (
-    CROSSED,
-    OPEN,
+    CROSSED_ASSEMBLY,
+    OPEN_ASSEMBLY,
     Fourbar,
     can_assemble,
-    input_limits,
+    find_input_limits,
+    find_toggle_angles,
+    find_transmission_extremes,
     motion,
     positions,
-    toggle_angles,
     transmission_angle,
-    transmission_extremes,
 )
 from tests.kinematics.sampling import assembled_angles, hand_of_b, random_fourbars, signs, take
 from tests.oracles.differences import derivative
@@ -30,7 +30,7 @@ CLOSURE = 1e-12
 length = st.floats(0.01, 100.0)
 angle = st.floats(-10.0, 10.0)
 point = st.builds(complex, st.floats(-50.0, 50.0), st.floats(-50.0, 50.0))
-assembly = st.sampled_from([OPEN, CROSSED])
+assembly = st.sampled_from([OPEN_ASSEMBLY, CROSSED_ASSEMBLY])
 
 
 @st.composite
@@ -53,7 +53,7 @@ def configurations(draw: st.DrawFn) -> tuple[Fourbar, float, int]:
     c = abs(pin_b - o4)
     assume(c > 0.01 and abs(side) > 0.01 * b * c)
     shift = draw(point)
-    return Fourbar(o2 + shift, o4 + shift, a, b, c, draw(point)), theta, OPEN if side > 0 else CROSSED
+    return Fourbar(o2 + shift, o4 + shift, a, b, c, draw(point)), theta, OPEN_ASSEMBLY if side > 0 else CROSSED_ASSEMBLY
 
 
 def batch(seed: int, gap: float = 0.0, n: int = BATCH) -> tuple[np.random.Generator, Fourbar]:
@@ -64,7 +64,7 @@ def batch(seed: int, gap: float = 0.0, n: int = BATCH) -> tuple[np.random.Genera
 # -- position ----------------------------------------------------------------------------------------------------------
 
 
-@pytest.mark.parametrize("sign", [OPEN, CROSSED])
+@pytest.mark.parametrize("sign", [OPEN_ASSEMBLY, CROSSED_ASSEMBLY])
 def test_loop_closes_with_rigid_links(sign: int) -> None:
     rng, linkage = batch(1)
     theta = rng.uniform(-10.0, 10.0, (BATCH, 8))
@@ -101,7 +101,7 @@ def test_point_on_the_coupler_is_rigid() -> None:
 def test_open_is_left_and_crossed_is_right() -> None:
     rng, linkage = batch(3)
     theta = assembled_angles(rng, linkage, 3, margin=1e-4)
-    for sign in (OPEN, CROSSED):
+    for sign in (OPEN_ASSEMBLY, CROSSED_ASSEMBLY):
         at = positions(linkage, theta, sign)
         assert np.all(at.valid | np.isnan(theta))
         assert np.all((hand_of_b(linkage, at.a, at.b) == sign) | np.isnan(theta))
@@ -122,13 +122,13 @@ def test_valid_means_that_a_solver_from_many_starts_finds_a_pin() -> None:
     """SciPy's solver on the raw closure finds two pins where positions are valid and none where they are not."""
     rng, linkage = batch(5, n=40)
     theta = rng.uniform(-np.pi, np.pi, 40)
-    both = {sign: positions(linkage, theta[:, None], sign) for sign in (OPEN, CROSSED)}
+    both = {sign: positions(linkage, theta[:, None], sign) for sign in (OPEN_ASSEMBLY, CROSSED_ASSEMBLY)}
     counts = []
     for k in range(40):
         pin_a = complex(linkage.input_pivot[k] + linkage.input[k] * np.exp(1j * theta[k]))
         pins = all_pins(pin_a, complex(linkage.output_pivot[k]), float(linkage.coupler[k]), float(linkage.output[k]))
         counts.append(len(pins))
-        assert len(pins) == 2 * both[OPEN].valid[k, 0]
+        assert len(pins) == 2 * both[OPEN_ASSEMBLY].valid[k, 0]
         for at in both.values():
             assert not at.valid[k, 0] or min(abs(pin - at.b[k, 0]) for pin in pins) < 1e-6
     assert {0, 2} == set(counts)
@@ -178,7 +178,7 @@ def test_scale_changes_no_verdict(scale: float) -> None:
     _, linkage = batch(6)
     fields = (linkage.input_pivot, linkage.output_pivot, linkage.input, linkage.coupler, linkage.output)
     scaled = Fourbar(*(scale * field for field in fields))
-    for one, other in zip(input_limits(linkage), input_limits(scaled), strict=True):
+    for one, other in zip(find_input_limits(linkage), find_input_limits(scaled), strict=True):
         np.testing.assert_allclose(one, other, atol=1e-9)
 
 
@@ -193,7 +193,7 @@ def test_reflection_swaps_the_assemblies() -> None:
         linkage.output,
         linkage.coupler_point.conj(),
     )
-    here, there = positions(linkage, theta, OPEN), positions(mirror, -theta, CROSSED)
+    here, there = positions(linkage, theta, OPEN_ASSEMBLY), positions(mirror, -theta, CROSSED_ASSEMBLY)
     size = np.abs(here.b) + (np.abs(here.p) + 1.0) / linkage.coupler[:, None]
     assert np.nanmax(np.abs(here.b - there.b.conj()) / size) < 1e-9
     assert np.nanmax(np.abs(here.p - there.p.conj()) / size) < 1e-9
@@ -271,8 +271,8 @@ def test_derivatives_are_withheld_at_a_toggle() -> None:
     """The position at the computed toggle angle exists; its sine is rounding alone, and no rate can be had from it."""
     for lengths in ((0.72, 0.68, 0.85, 1.82), (6.0, 10.0, 7.0, 4.0), (5.0, 2.0, 5.0, 4.0), (9.0, 7.0, 2.0, 6.0)):
         linkage = Fourbar.from_lengths(*lengths)
-        assert toggle_angles(linkage).size in (2, 4)
-        for toggle in toggle_angles(linkage):
+        assert find_toggle_angles(linkage).size in (2, 4)
+        for toggle in find_toggle_angles(linkage):
             found = motion(linkage, toggle)
             assert found.position.valid
             assert not any(part.valid for part in found[1:])
@@ -287,7 +287,7 @@ def test_derivatives_are_withheld_at_a_toggle() -> None:
 def test_transmission_angle_is_between_coupler_and_output() -> None:
     rng, linkage = batch(11)
     theta = assembled_angles(rng, linkage, 3)
-    for sign in (OPEN, CROSSED):
+    for sign in (OPEN_ASSEMBLY, CROSSED_ASSEMBLY):
         at = positions(linkage, theta, sign)
         sine = np.abs(np.sin(at.output_angle - at.coupler_angle))
         cosine = np.abs(np.cos(at.output_angle - at.coupler_angle))
@@ -303,7 +303,7 @@ def test_extremes_bound_dense_samples_and_are_attained() -> None:
     rng, linkage = batch(12)
     start = rng.uniform(-10.0, 10.0, BATCH)
     end = start + rng.choice([-1.0, 1.0], BATCH) * np.where(rng.random(BATCH) < 0.2, 7.0, rng.uniform(0.0, 6.0, BATCH))
-    least, greatest = transmission_extremes(linkage, start, end)
+    least, greatest = find_transmission_extremes(linkage, start, end)
     share = np.linspace(0.0, 1.0, 721)
     dense = transmission_angle(linkage, start[:, None] + (end - start)[:, None] * share)
     broken = np.isnan(dense).any(axis=1)
@@ -324,12 +324,12 @@ def test_extremes_bound_dense_samples_and_are_attained() -> None:
 def test_extremes_at_the_ends_and_on_the_ground_line_are_exact() -> None:
     """A crank over a full turn: the extremes are where it lies along the ground line."""
     _, linkage = batch(13)
-    limits = input_limits(linkage)
+    limits = find_input_limits(linkage)
     cranks = take(linkage, np.flatnonzero(~limits.folded_toggle & ~limits.extended_toggle))
     both = cranks.ground_angle[:, None] + np.array([0.0, np.pi])
-    least, _ = transmission_extremes(cranks, 0.3, 0.3 + 2.0 * np.pi)
+    least, _ = find_transmission_extremes(cranks, 0.3, 0.3 + 2.0 * np.pi)
     np.testing.assert_allclose(least, transmission_angle(cranks, both).min(axis=1), atol=1e-12)
-    point_least, point_greatest = transmission_extremes(cranks, 1.1, 1.1)
+    point_least, point_greatest = find_transmission_extremes(cranks, 1.1, 1.1)
     alone = transmission_angle(cranks, np.array([1.1]))[:, 0]
     np.testing.assert_allclose(point_least, alone, atol=1e-9)
     np.testing.assert_allclose(point_greatest, alone, atol=1e-9)
@@ -338,10 +338,10 @@ def test_extremes_at_the_ends_and_on_the_ground_line_are_exact() -> None:
 def test_greatest_counts_the_part_that_can_be_assembled() -> None:
     """A range that starts beyond the folded toggle still passes the right angle on its way."""
     linkage = Fourbar.from_lengths(2.0, 2.0, 1.0, 2.5)
-    lower = float(input_limits(linkage).lower)
-    least, greatest = transmission_extremes(linkage, lower - 0.2, np.pi)
+    lower = float(find_input_limits(linkage).lower)
+    least, greatest = find_transmission_extremes(linkage, lower - 0.2, np.pi)
     assert (float(least), float(greatest)) == (0.0, pytest.approx(np.pi / 2))
-    assert [float(x) for x in transmission_extremes(linkage, -lower + 0.1, lower - 0.1)] == [0.0, 0.0]
+    assert [float(x) for x in find_transmission_extremes(linkage, -lower + 0.1, lower - 0.1)] == [0.0, 0.0]
 
 
 # -- toggles and limits ------------------------------------------------------------------------------------------------
@@ -355,13 +355,13 @@ def determinant(linkage: Fourbar, theta: np.ndarray, sign: int) -> np.ndarray:
 
 def test_toggles_are_where_the_determinant_vanishes() -> None:
     _, linkage = batch(14, gap=1e-4)
-    limits = input_limits(linkage)
+    limits = find_input_limits(linkage)
     for toggle, exists in ((limits.lower, limits.folded_toggle), (limits.upper, limits.extended_toggle)):
         chosen = take(linkage, np.flatnonzero(exists))
         for side in (1.0, -1.0):
             theta = (chosen.ground_angle + side * toggle[exists])[:, None]
             inward = side * np.where(toggle is limits.lower, 1e-10, -1e-10)
-            sine = determinant(chosen, theta + inward, OPEN)
+            sine = determinant(chosen, theta + inward, OPEN_ASSEMBLY)
             assert np.nanmax(np.abs(sine)) < 5e-3
             assert np.isfinite(sine).mean() > 0.99
 
@@ -369,7 +369,7 @@ def test_toggles_are_where_the_determinant_vanishes() -> None:
 def test_folded_toggle_folds_and_extended_toggle_extends() -> None:
     """Folded: B beyond or before O4 with coupler and output overlapping; extended: A, B, O4 in this order in line."""
     _, linkage = batch(15, gap=1e-4)
-    limits = input_limits(linkage)
+    limits = find_input_limits(linkage)
     for toggle, exists, sign in (
         (limits.lower, limits.folded_toggle, 1.0),
         (limits.upper, limits.extended_toggle, -1.0),
@@ -383,7 +383,7 @@ def test_folded_toggle_folds_and_extended_toggle_extends() -> None:
 
 def test_limits_are_where_positions_end() -> None:
     _, linkage = batch(16, gap=1e-4)
-    limits = input_limits(linkage)
+    limits = find_input_limits(linkage)
     ground = linkage.ground_angle
     width = limits.upper - limits.lower
     share = np.linspace(1e-6, 1.0 - 1e-6, 41)
@@ -401,10 +401,10 @@ def test_limits_are_where_positions_end() -> None:
 @given(fourbars())
 @settings(max_examples=200)
 def test_toggle_angles_lie_in_one_turn_and_are_configurations(linkage: Fourbar) -> None:
-    toggles = toggle_angles(linkage)
+    toggles = find_toggle_angles(linkage)
     assert np.all(np.diff(toggles) > 0.0)
     assert np.all((toggles > -np.pi) & (toggles <= np.pi))
-    limits = input_limits(linkage)
+    limits = find_input_limits(linkage)
     assert len(toggles) <= 2 * (int(limits.folded_toggle) + int(limits.extended_toggle))
     if not can_assemble(linkage):
         assert toggles.size == 0

@@ -12,24 +12,24 @@ import pytest
 
 from kinematics.errors import DimensionError
 from kinematics.linkage import Fourbar, GearPair, Mechanism, Slide, TopologyError, catalogue
-from kinematics.linkage.layout import Layout, laid_out
-from kinematics.linkage.layout.parts import parts_of
+from kinematics.linkage.layout import Layout, arrange_planes
+from kinematics.linkage.layout.parts import build_parts
 from tests.campaign import further
 from tests.support.problems.layout import Task, drive_of, judged, tasks
 
 TURN = 2.0 * math.pi
 
-CRANK_ROCKER = catalogue.fourbar(Fourbar(0.0, 6.0, 2.0, 7.0, 9.0, 3.0 + 1.0j), 0.5)
+CRANK_ROCKER = catalogue.make_fourbar(Fourbar(0.0, 6.0, 2.0, 7.0, 9.0, 3.0 + 1.0j), 0.5)
 """Norton, Table P4-1, row a; the crank sweeps no pivot."""
 
-DRAG_LINK = catalogue.fourbar(Fourbar(0.0, 2.0, 6.0, 7.0, 5.0), 0.5)
+DRAG_LINK = catalogue.make_fourbar(Fourbar(0.0, 2.0, 6.0, 7.0, 5.0), 0.5)
 
 SMALL: dict[str, Any] = {"link_width": 0.4, "pin_diameter": 0.2, "gap": 0.05}
 
 
 def over_a_turn(mechanism: Mechanism, **changes: Any) -> Layout:
     at = float(mechanism.reference_input)
-    return laid_out(mechanism, at, at + TURN, **{**SMALL, "closed": True, **changes})
+    return arrange_planes(mechanism, at, at + TURN, **{**SMALL, "closed": True, **changes})
 
 
 def test_a_crank_rocker_takes_two_planes() -> None:
@@ -84,7 +84,7 @@ def test_every_size_takes_of_the_free_range(field: str, value: float) -> None:
 
 
 def test_a_part_of_the_motion_meets_less() -> None:
-    whole, part = over_a_turn(DRAG_LINK), laid_out(DRAG_LINK, 1.5, 1.7, **SMALL)
+    whole, part = over_a_turn(DRAG_LINK), arrange_planes(DRAG_LINK, 1.5, 1.7, **SMALL)
     assert set(part.crossings) < set(whole.crossings)
     assert part.clashes == []
     assert part.free == (1.5, 1.7)
@@ -94,19 +94,19 @@ def test_the_free_range_of_a_cycle_may_begin_anywhere_in_it() -> None:
     """It is found whichever input the cycle is said to begin with, and laid out over it nothing clashes."""
     ranges = []
     for start in (0.5, 2.0, 4.0):
-        layout = laid_out(DRAG_LINK, start, start + TURN, closed=True, **SMALL)
+        layout = arrange_planes(DRAG_LINK, start, start + TURN, closed=True, **SMALL)
         assert layout.free is not None
         low, high = layout.free
-        assert laid_out(DRAG_LINK, low, high, **SMALL).clashes == []
+        assert arrange_planes(DRAG_LINK, low, high, **SMALL).clashes == []
         ranges.append((low % TURN, high - low))
     assert np.ptp(ranges, axis=0) == pytest.approx([0.0, 0.0], abs=1e-3)
 
 
 def test_a_slotted_link_reaches_as_far_as_its_block_does() -> None:
     """Crank-shaper: the block's way in the rocker is from ground − crank to ground + crank beyond O4."""
-    shaper = catalogue.quick_return(0.0, -5.0j, 2.0, 4.0, 9.0, 3.0j, 0.0, 0.3)
+    shaper = catalogue.make_quick_return(0.0, -5.0j, 2.0, 4.0, 9.0, 3.0j, 0.0, 0.3)
     at = float(shaper.reference_input)
-    parts = parts_of(shaper, 0.4, 0.2, at, at + TURN)
+    parts = build_parts(shaper, 0.4, 0.2, at, at + TURN)
     (rocker,) = [plate for plate in parts.plates if plate.name == "rocker"]
     reach = np.abs(rocker.outline.points + 5.0j)
     assert reach.min() == pytest.approx(0.0, abs=1e-9)
@@ -118,9 +118,9 @@ def test_a_slotted_link_reaches_as_far_as_its_block_does() -> None:
 
 
 def test_a_slot_for_a_longer_block_reaches_farther() -> None:
-    shaper = catalogue.quick_return(0.0, -5.0j, 2.0, 4.0, 9.0, 3.0j, 0.0, 0.3)
+    shaper = catalogue.make_quick_return(0.0, -5.0j, 2.0, 4.0, 9.0, 3.0j, 0.0, 0.3)
     at = float(shaper.reference_input)
-    plates = parts_of(shaper, 0.4, 0.2, at, at + TURN, slot_ends=0.75).plates
+    plates = build_parts(shaper, 0.4, 0.2, at, at + TURN, slot_ends=0.75).plates
     (rocker,) = [plate for plate in plates if plate.name == "rocker"]
     assert np.abs(rocker.outline.points + 5.0j).max() == pytest.approx(7.75, abs=1e-9)
 
@@ -132,22 +132,22 @@ def test_where_only_the_whole_motion_will_do_no_free_range_is_looked_for() -> No
 
 
 def test_a_coupler_point_is_part_of_its_plate_and_no_pin() -> None:
-    parts = parts_of(CRANK_ROCKER, 0.4, 0.2, 0.0, 1.0)
+    parts = build_parts(CRANK_ROCKER, 0.4, 0.2, 0.0, 1.0)
     (coupler,) = [plate for plate in parts.plates if plate.name == "coupler"]
     assert set(coupler.outline.points) == {complex(CRANK_ROCKER.joints[name]) for name in "ABP"}
     assert sorted(pin.joint for pin in parts.pins) == ["A", "B", "O2", "O4"]
 
 
 def test_a_joint_of_three_links_has_one_pin_through_all_of_them() -> None:
-    cell = catalogue.peaucellier(0.0, -2.0, 2.0, 6.0, 3.0, 0.4)
-    layout = laid_out(cell, 0.1, 0.7, **SMALL)
+    cell = catalogue.make_peaucellier(0.0, -2.0, 2.0, 6.0, 3.0, 0.4)
+    layout = arrange_planes(cell, 0.1, 0.7, **SMALL)
     planes = [layout.planes[name] for name in ("input", "side_1", "side_2")]
     assert len(set(planes)) == 3
     assert layout.pins["A"] == (min(planes), max(planes))
 
 
 def five_bar(ratio: float, o5: complex = 6.0) -> Mechanism:
-    return catalogue.geared_fivebar(0.0, o5, 1.0, 7.0, 7.0, 1.0, ratio, 0.6, 0.3)
+    return catalogue.make_geared_fivebar(0.0, o5, 1.0, 7.0, 7.0, 1.0, ratio, 0.6, 0.3)
 
 
 @pytest.mark.parametrize(
@@ -156,7 +156,7 @@ def five_bar(ratio: float, o5: complex = 6.0) -> Mechanism:
      (2.0, [2.4, 1.2, 1.2], [0.0, 6.0, 3.6])],
 )  # fmt: skip
 def test_gears_touch_on_the_line_of_their_pivots(ratio: float, radii: list[float], centres: list[float]) -> None:
-    parts = parts_of(five_bar(ratio), 0.4, 0.2, 0.3, 0.4)
+    parts = build_parts(five_bar(ratio), 0.4, 0.2, 0.3, 0.4)
     (mesh,) = parts.meshes
     outlines = [parts.plates[n].outline for n in mesh]
     assert [outline.radius for outline in outlines] == pytest.approx(radii)
@@ -175,7 +175,7 @@ def test_gears_lie_in_one_plane_apart_from_their_cranks() -> None:
 @pytest.mark.parametrize("mechanism", [five_bar(0.0), five_bar(1.0, 0.0)], ids=["no ratio", "one shaft"])
 def test_gears_that_cannot_be(mechanism: Mechanism) -> None:
     with pytest.raises(TopologyError, match="gears of"):
-        parts_of(mechanism, 0.4, 0.2, 0.3, 0.4)
+        build_parts(mechanism, 0.4, 0.2, 0.3, 0.4)
 
 
 def test_a_gear_needs_a_shaft() -> None:
@@ -189,7 +189,7 @@ def test_a_gear_needs_a_shaft() -> None:
     }
     mechanism = Mechanism(joints, links, "input", gears=(GearPair("input", "coupler", -1.0),))
     with pytest.raises(TopologyError, match="no shaft"):
-        parts_of(mechanism, 0.4, 0.2, 0.3, 0.4)
+        build_parts(mechanism, 0.4, 0.2, 0.3, 0.4)
 
 
 def test_joints_of_one_link_at_one_place_have_one_pin() -> None:
@@ -203,7 +203,7 @@ def test_joints_of_one_link_at_one_place_have_one_pin() -> None:
         "link_5": ("C", "D"),
     }
     slide = Slide("D", "ground", np.asarray(8.0 + 4.0j), np.asarray(0.2))
-    parts = parts_of(Mechanism(joints, links, "input", (slide,)), 0.4, 0.2, 0.75, 0.8)
+    parts = build_parts(Mechanism(joints, links, "input", (slide,)), 0.4, 0.2, 0.75, 0.8)
     (pin,) = [pin for pin in parts.pins if pin.joint in ("B", "C")]
     assert {parts.plates[n].name for n in pin.plates} == {"coupler", "output", "link_5"}
 
@@ -272,8 +272,8 @@ def many_pivots(count: int) -> Mechanism:
 def test_what_takes_too_long_is_refused_and_not_begun() -> None:
     row = many_pivots(6)
     low, high = float(row.reference_input), float(row.reference_input) + 0.01
-    assert max(laid_out(row, low, high, **SMALL).planes.values()) >= 2
+    assert max(arrange_planes(row, low, high, **SMALL).planes.values()) >= 2
     with pytest.raises(DimensionError, match="stub shafts must be fewer"):
-        laid_out(row, low, high, through=True, **{**SMALL, "link_width": 6.0})
+        arrange_planes(row, low, high, through=True, **{**SMALL, "link_width": 6.0})
     with pytest.raises(DimensionError, match="plates must be at most 12"):
-        laid_out(many_pivots(8), low, high, **SMALL)
+        arrange_planes(many_pivots(8), low, high, **SMALL)

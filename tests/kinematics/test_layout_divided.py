@@ -11,7 +11,7 @@ import pytest
 import shapely
 
 from kinematics.linkage import Fourbar, Mechanism, catalogue
-from kinematics.linkage.layout import Division, divisions, laid_out, laid_out_divided
+from kinematics.linkage.layout import Division, arrange_divided, arrange_planes, list_divisions
 
 TURN = 2.0 * math.pi
 
@@ -29,7 +29,7 @@ GROUNDED = ("O2", "O4", "D")
 
 def quick_return(ground: float, crank: float, arm: float, coupler: float) -> Mechanism:
     """A Whitworth where the crank is longer than the ground, and a crank shaper where it is shorter."""
-    return catalogue.quick_return(1j * ground, 0j, crank, arm, coupler, 0j, 0.0, 0.3)
+    return catalogue.make_quick_return(1j * ground, 0j, crank, arm, coupler, 0j, 0.0, 0.3)
 
 
 def cores(ground: float, crank: float, arm: float, coupler: float) -> dict[str, np.ndarray]:
@@ -92,10 +92,10 @@ def test_planes_are_found_where_any_arrangement_has_room() -> None:
         if expected != buildable(lines, width, pin, gap - 2e-3):
             continue
         mechanism = quick_return(*sizes)
-        ways = divisions(mechanism)
+        ways = list_divisions(mechanism)
         assert {way.inside for way in ways} == {frozenset({"input"}), frozenset({"coupler"})}
         for way in ways:
-            layout = laid_out_divided(mechanism, 0.0, TURN, way, link_width=width, pin_diameter=pin, gap=gap)
+            layout = arrange_divided(mechanism, 0.0, TURN, way, link_width=width, pin_diameter=pin, gap=gap)
             side = "crank" if "input" in way.inside else "ram"
             assert (not layout.clashes) == expected[side], (sizes, width)
             seen[side].add(expected[side])
@@ -105,14 +105,14 @@ def test_planes_are_found_where_any_arrangement_has_room() -> None:
 def test_the_lever_of_a_whitworth_is_on_either_side_of_a_base() -> None:
     mechanism = quick_return(0.5, 2.0, 2.5, 9.0)
     for through in (False, True):
-        whole = laid_out(
+        whole = arrange_planes(
             mechanism, 0.0, TURN, link_width=1e-3, pin_diameter=5e-4, gap=1e-4, through=through, whole=True
         )
         assert whole.clashes
     lower = frozenset({"O4", "A"})
-    (way,) = (way for way in divisions(mechanism) if way.inside == {"input"})
+    (way,) = (way for way in list_divisions(mechanism) if way.inside == {"input"})
     assert way == Division("rocker", "O4", lower, frozenset({"O4", "C"}), frozenset({"input"}))
-    layout = laid_out_divided(mechanism, 0.0, TURN, way, link_width=0.5, pin_diameter=0.3, gap=0.02)
+    layout = arrange_divided(mechanism, 0.0, TURN, way, link_width=0.5, pin_diameter=0.3, gap=0.02)
     assert layout.clashes == []
     assert layout.planes == {"input": 1, "lower rocker": 2, "upper rocker": 4, "coupler": 5}
     assert layout.pins == {"O2": (0, 1), "A": (1, 2), "O4": (2, 4), "C": (4, 5), "D": (3, 5)}
@@ -122,10 +122,10 @@ def test_the_lever_of_a_whitworth_is_on_either_side_of_a_base() -> None:
 @pytest.mark.parametrize(
     "mechanism",
     [
-        catalogue.fourbar(Fourbar(0.0, 6.0, 2.0, 7.0, 9.0, 3.0 + 1.0j), 0.5),
-        catalogue.geared_fivebar(0j, 5.0, 2.0, 4.0, 4.0, 2.0, 2.0, 0.3, 0.5),
+        catalogue.make_fourbar(Fourbar(0.0, 6.0, 2.0, 7.0, 9.0, 3.0 + 1.0j), 0.5),
+        catalogue.make_geared_fivebar(0j, 5.0, 2.0, 4.0, 4.0, 2.0, 2.0, 0.3, 0.5),
     ],
     ids=["nothing hangs by one link", "gears"],
 )
 def test_links_that_hold_nothing_apart_are_not_divided(mechanism: Mechanism) -> None:
-    assert divisions(mechanism) == []
+    assert list_divisions(mechanism) == []

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from kinematics.errors import DimensionError
-from kinematics.linkage.layout.planes import MOST_PLATES, Spindle, in_the_way, reach, stacked
+from kinematics.linkage.layout.planes import MAX_PLATES, Spindle, find_reach, is_in_the_way, stack_plates
 from tests.support.loops import check_each
 
 Pairs = list[tuple[int, int]]
@@ -56,7 +56,7 @@ def drawn(rng: np.random.Generator) -> tuple[int, Pairs, list[Spindle], list[lis
 
 def check_none_is_better(seed: int) -> None:
     count, apart, pins, meshes = drawn(np.random.default_rng(seed))
-    planes = stacked(count, apart, pins, meshes)
+    planes = stack_plates(count, apart, pins, meshes)
     every = arrangements(count, apart, meshes)
     assert planes in every
     best = min(merit(other, pins) for other in every)
@@ -74,11 +74,11 @@ def test_none_is_better() -> None:
 
 def check_what_a_pin_reaches(seed: int) -> None:
     count, apart, pins, meshes = drawn(np.random.default_rng(seed))
-    planes = stacked(count, apart, pins, meshes)
+    planes = stack_plates(count, apart, pins, meshes)
     for pin in pins:
-        assert set(range(reach(planes, pin)[0], reach(planes, pin)[1] + 1)) == filled(planes, pin)
+        assert set(range(find_reach(planes, pin)[0], find_reach(planes, pin)[1] + 1)) == filled(planes, pin)
         for plate in range(count):
-            assert in_the_way(planes, pin, plate) == (planes[plate] in filled(planes, pin))
+            assert is_in_the_way(planes, pin, plate) == (planes[plate] in filled(planes, pin))
 
 
 def test_what_a_pin_reaches() -> None:
@@ -89,19 +89,19 @@ def test_a_double_crank_on_one_base_is_never_free_but_on_two_bases_it_is() -> No
     """Either crank sweeps over the other's pivot: a drag link has its shafts on two sides."""
     apart = [(0, 1), (1, 2), (0, 2)]
     cranks = [Spindle(frozenset({0}), frozenset({2}), below=True), Spindle(frozenset({2}), frozenset({0}), below=True)]
-    assert merit(stacked(3, apart, cranks), cranks) == (1, 3)
+    assert merit(stack_plates(3, apart, cranks), cranks) == (1, 3)
     cranks[1] = cranks[1]._replace(below=False, above=True)
-    assert merit(stacked(3, apart, cranks), cranks) == (0, 3)
+    assert merit(stack_plates(3, apart, cranks), cranks) == (0, 3)
 
 
 def test_as_many_plates_as_are_promised() -> None:
-    apart = [(n, n + 1) for n in range(MOST_PLATES - 1)]
-    assert max(stacked(MOST_PLATES, apart, [])) == 2
-    with pytest.raises(DimensionError, match=f"at most {MOST_PLATES}"):
-        stacked(MOST_PLATES + 1, apart, [])
+    apart = [(n, n + 1) for n in range(MAX_PLATES - 1)]
+    assert max(stack_plates(MAX_PLATES, apart, [])) == 2
+    with pytest.raises(DimensionError, match=f"at most {MAX_PLATES}"):
+        stack_plates(MAX_PLATES + 1, apart, [])
 
 
 def test_a_mesh_counts_as_one() -> None:
-    planes = stacked(MOST_PLATES + 1, [(0, 1)], [], [[2, 3]])
+    planes = stack_plates(MAX_PLATES + 1, [(0, 1)], [], [[2, 3]])
     assert planes[2] == planes[3]
     assert planes[0] != planes[1]

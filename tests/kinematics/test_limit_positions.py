@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from kinematics.linkage.planar.limits import branches, holding_reference, limit_positions
+from kinematics.linkage.planar.limits import find_branches, find_limit_positions, find_reference_branch
 from kinematics.linkage.planar.roots import find_roots
 from tests.kinematics.mechanism_sampling import fourbar, take
 
@@ -15,7 +15,7 @@ def test_limits_of_fourbars_stand_where_links_are_in_line() -> None:
     compared = 0
     for n in range(60):
         mechanism = take(pool, n)
-        here = holding_reference(mechanism, found := branches(mechanism))
+        here = find_reference_branch(mechanism, found := find_branches(mechanism))
         assert here is not None, found
         o2, o4, a, b = (complex(mechanism.joints[name]) for name in ("O2", "O4", "A", "B"))
         candidates = []
@@ -27,7 +27,7 @@ def test_limits_of_fourbars_stand_where_links_are_in_line() -> None:
             cosine = (base**2 + side**2 - reach**2) / (2.0 * base * side)
             if abs(cosine) <= 1.0:
                 candidates += [np.angle(o2 - o4) + sign * np.arccos(cosine) for sign in (1.0, -1.0)]
-        span = limit_positions(mechanism, here, ["output"], [])[0][0]
+        span = find_limit_positions(mechanism, here, ["output"], [])[0][0]
         if span is not None:
             off = np.abs(np.exp(1j * np.array(span)[:, None]) - np.exp(1j * np.array(candidates))).min(axis=1)
             assert off.max() < 1e-8

@@ -5,25 +5,25 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from kinematics.linkage import mobility
+from kinematics.linkage import compute_mobility
 from kinematics.linkage.fourbar import (
     BARKER,
-    CROSSED,
-    OPEN,
+    CROSSED_ASSEMBLY,
+    OPEN_ASSEMBLY,
     Fourbar,
     barker_class,
+    find_input_limits,
+    find_toggle_angles,
+    find_transmission_extremes,
     grashof_class,
-    input_limits,
     motion,
     positions,
-    toggle_angles,
     transmission_angle,
-    transmission_extremes,
 )
 from tests.cases import Case, cases, load, search_tasks
 from tests.oracles.grashof_circuits import count_circuits
 
-ASSEMBLY = {"open": OPEN, "crossed": CROSSED}
+ASSEMBLY = {"open": OPEN_ASSEMBLY, "crossed": CROSSED_ASSEMBLY}
 NO_INPUTS = {"ch2-mobility-app-2-3", "ch2-mobility-app-2-10", "ch2-mobility-app-2-24", "ch5-P5-15"}
 TRADITIONAL = {
     "double_crank": "double-crank",
@@ -47,7 +47,7 @@ def polar(vector: complex) -> tuple[float, float]:
 @pytest.mark.parametrize("case", cases("mobility"))
 def test_mobility(case: Case) -> None:
     x = case.inputs
-    case.check(M=mobility(links=x["L"], full_joints=x["J1"], half_joints=x["J2"], grounded=x["G"]))
+    case.check(M=compute_mobility(links=x["L"], full_joints=x["J1"], half_joints=x["J2"], grounded=x["G"]))
 
 
 @pytest.mark.parametrize("case", cases("grashof_class"))
@@ -98,17 +98,17 @@ def test_transmission_angle(case: Case) -> None:
 @pytest.mark.parametrize("case", cases("transmission_range"))
 def test_transmission_range(case: Case) -> None:
     linkage = linkage_of(case)
-    least, greatest = transmission_extremes(linkage, 0.0, 2.0 * np.pi)
+    least, greatest = find_transmission_extremes(linkage, 0.0, 2.0 * np.pi)
     case.check(mu_min=np.degrees(least), mu_max=np.degrees(greatest), code=barker_class(linkage).code)
 
 
 @pytest.mark.parametrize("case", cases("toggle"))
 def test_toggle(case: Case) -> None:
     linkage = linkage_of(case)
-    angles = np.degrees(toggle_angles(linkage))
+    angles = np.degrees(find_toggle_angles(linkage))
     case.check(theta2_toggle=list(angles[angles > 0.0]))
     np.testing.assert_allclose(angles, -angles[::-1], atol=1e-9)
-    limits = input_limits(linkage)
+    limits = find_input_limits(linkage)
     toggles = [limits.lower] * bool(limits.folded_toggle) + [limits.upper] * bool(limits.extended_toggle)
     case.check(theta2_toggle=list(np.degrees(toggles)))
 

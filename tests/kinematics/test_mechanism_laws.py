@@ -57,7 +57,7 @@ def test_fourbar_agrees_with_the_fourbars_closed_form() -> None:
     linkage = Fourbar(o2, o4, np.abs(a - o2), np.abs(b - a), np.abs(b - o4), arm)
     sign = np.where(((b - a) * np.conj(o4 - a)).imag > 0.0, 1, -1)
     theta = np.angle(a - o2)
-    made = catalogue.fourbar(linkage, theta, sign)
+    made = catalogue.make_fourbar(linkage, theta, sign)
     for name in joints:
         np.testing.assert_allclose(made.joints[name], joints[name], atol=1e-9)
     inputs = rng.uniform(-10.0, 10.0, (500, 20))
@@ -124,7 +124,7 @@ def test_every_assembly_and_no_other(name: str) -> None:
     """At each input the configurations of all choices are those that Newton's iteration finds from random starts."""
     rng, mechanism = batch(name, 6, SETS)
     constraints = Constraints.of(mechanism)
-    unit = constraints.size if mechanism.driven_by_slide else np.ones(SETS)
+    unit = constraints.size if mechanism.has_slide_input else np.ones(SETS)
     steps = decompose(mechanism).steps
     closing = [k for k, step in enumerate(steps) if step.has_two_solutions]
     counts = set()
@@ -210,8 +210,8 @@ def test_similar_mechanisms_move_alike(name: str, factor: float, reflected: bool
         return turn * (np.conj(z) if reflected else z) + factor * shift
 
     other = moved_by(mechanism, place, reflected)
-    unit = factor if mechanism.driven_by_slide else 1.0
-    hand = -1.0 if reflected and not mechanism.driven_by_slide else 1.0
+    unit = factor if mechanism.has_slide_input else 1.0
+    hand = -1.0 if reflected and not mechanism.has_slide_input else 1.0
     here = drive(mechanism, mechanism.reference_input[:, None] + way)
     there = drive(other, other.reference_input[:, None] + hand * unit * way, speed=hand * unit)
     edge = np.min([np.abs(m[0]) for m in here.margins.values()], axis=0) if here.margins else np.ones(way.shape)
@@ -297,12 +297,12 @@ WRONG: dict[str, tuple[type[Exception], str, Callable]] = {
     "inversion's assembly": (
         DimensionError,
         "assembly",
-        lambda: catalogue.inverted_slider_crank(0j, 2.0, 1.0, 0.5, 1.0, 0.4, 0),
+        lambda: catalogue.make_inverted_slider_crank(0j, 2.0, 1.0, 0.5, 1.0, 0.4, 0),
     ),
     "inversion's pin on O4": (
         DimensionError,
         "O4",
-        lambda: catalogue.inverted_slider_crank(0j, 1.0, 1.0, 0.0, 1.0, 0.0),
+        lambda: catalogue.make_inverted_slider_crank(0j, 1.0, 1.0, 0.0, 1.0, 0.0),
     ),
     "not a number": (DimensionError, "B", lambda: Mechanism({**JOINTS, "B": np.nan}, LINKS, "input")),
     "off its slide": (DimensionError, "slide", lambda: slider(2.0 + 0.1j, 0.0)),
@@ -321,23 +321,23 @@ WRONG: dict[str, tuple[type[Exception], str, Callable]] = {
     "fivebar's ratio": (
         DimensionError,
         "gear_ratio",
-        lambda: catalogue.geared_fivebar(0j, 3.0, 1.0, 3.0, 3.0, 1.0, np.nan, 0.5, 0.3),
+        lambda: catalogue.make_geared_fivebar(0j, 3.0, 1.0, 3.0, 3.0, 1.0, np.nan, 0.5, 0.3),
     ),
     "crank pin on O4": (
         DimensionError,
         "O4",
-        lambda: catalogue.quick_return(0j, -1.0, 1.0, 1.0, 3.0, 1j, 0.0, np.pi),
+        lambda: catalogue.make_quick_return(0j, -1.0, 1.0, 1.0, 3.0, 1j, 0.0, np.pi),
     ),
     "arms that miss the rhombus": (
         DimensionError,
         "rhombus",
-        lambda: catalogue.peaucellier(0j, 1.0, 1.0, 3.0, 1.0, 0.0),
+        lambda: catalogue.make_peaucellier(0j, 1.0, 1.0, 3.0, 1.0, 0.0),
     ),
-    "assembly": (DimensionError, "assembly", lambda: catalogue.slider_crank(0j, 0j, 0.0, 1.0, 3.0, 0.3, 0)),
+    "assembly": (DimensionError, "assembly", lambda: catalogue.make_slider_crank(0j, 0j, 0.0, 1.0, 3.0, 0.3, 0)),
     "joint missing": (
         TopologyError,
         "mobility",
-        lambda: catalogue.sixbar(
+        lambda: catalogue.make_sixbar(
             "watt_1", {k: complex(n, n * n) for n, k in enumerate(("O2", "O4", "A", "C", "D", "E"))}
         ),
     ),
@@ -375,14 +375,14 @@ def test_wrong_calls_get_a_clear_error(case: str) -> None:
 TURN = np.linspace(0.0, 2.0 * np.pi, 9)
 
 ODD: dict[str, Callable[[], Mechanism]] = {
-    "parallelogram": lambda: catalogue.fourbar(Fourbar.from_lengths(1.0, 3.0, 1.0, 3.0), 0.0),
-    "rhombus": lambda: catalogue.fourbar(Fourbar.from_lengths(1.0, 1.0, 1.0, 1.0), 1.0),
-    "collinear coupler point": lambda: catalogue.fourbar(Fourbar.from_lengths(1.0, 3.0, 2.5, 3.0, 1.5), 0.3),
-    "crank as long as the coupler": lambda: catalogue.slider_crank(0j, 0j, 0.0, 1.0, 1.0, 0.3),
-    "slide through the pivot": lambda: catalogue.inverted_slider_crank(0j, 2.0, 1.0, 0.0, 0.0, 0.4),
-    "crank pin that passes O4": lambda: catalogue.quick_return(0j, -1.0, 1.0, 1.0, 3.0, 1j, 0.0, 0.5),
-    "gear that stands still": lambda: catalogue.geared_fivebar(0j, 3.0, 1.0, 3.0, 3.0, 1.0, 0.0, 0.5, 0.3),
-    "irrational ratio": lambda: catalogue.geared_fivebar(0j, 3.0, 1.0, 3.0, 3.0, 1.0, np.sqrt(2.0), 0.5, 0.3),
+    "parallelogram": lambda: catalogue.make_fourbar(Fourbar.from_lengths(1.0, 3.0, 1.0, 3.0), 0.0),
+    "rhombus": lambda: catalogue.make_fourbar(Fourbar.from_lengths(1.0, 1.0, 1.0, 1.0), 1.0),
+    "collinear coupler point": lambda: catalogue.make_fourbar(Fourbar.from_lengths(1.0, 3.0, 2.5, 3.0, 1.5), 0.3),
+    "crank as long as the coupler": lambda: catalogue.make_slider_crank(0j, 0j, 0.0, 1.0, 1.0, 0.3),
+    "slide through the pivot": lambda: catalogue.make_inverted_slider_crank(0j, 2.0, 1.0, 0.0, 0.0, 0.4),
+    "crank pin that passes O4": lambda: catalogue.make_quick_return(0j, -1.0, 1.0, 1.0, 3.0, 1j, 0.0, 0.5),
+    "gear that stands still": lambda: catalogue.make_geared_fivebar(0j, 3.0, 1.0, 3.0, 3.0, 1.0, 0.0, 0.5, 0.3),
+    "irrational ratio": lambda: catalogue.make_geared_fivebar(0j, 3.0, 1.0, 3.0, 3.0, 1.0, np.sqrt(2.0), 0.5, 0.3),
     "pivots on each other": lambda: Mechanism({**JOINTS, "O4": 0.0}, LINKS, "input"),
     "three links at one joint": lambda: Mechanism(
         {**JOINTS, "O6": 6.0, "C": 5.0 + 2j},
@@ -439,7 +439,7 @@ def test_open_inversions_have_the_pin_ahead_on_the_line(output: float) -> None:
     """Ahead of the point of the line that is nearest to O4, by the line's own direction, γ from O4 → B."""
     gamma = 0.8
     for assembly in (1, -1):
-        made = catalogue.inverted_slider_crank(0j, 2.0, 1.0, output, gamma, 0.4, assembly)
+        made = catalogue.make_inverted_slider_crank(0j, 2.0, 1.0, output, gamma, 0.4, assembly)
         along = np.exp(1j * gamma) * (made.joints["B"] - 2.0) / np.abs(made.joints["B"] - 2.0)
         point = made.slides[0].point
         nearest = point + along * ((2.0 - point) * np.conj(along)).real
@@ -449,7 +449,7 @@ def test_open_inversions_have_the_pin_ahead_on_the_line(output: float) -> None:
 
 def test_links_on_each_other_have_no_rotation() -> None:
     """A rhombus folded with B on C leaves P free on a circle: no position is given, on whichever assembly."""
-    cell = catalogue.peaucellier(0j, -1.3 + 0j, 1.3, 2.5, 1.1, 0.6)
+    cell = catalogue.make_peaucellier(0j, -1.3 + 0j, 1.3, 2.5, 1.1, 0.6)
     signs = tuple(np.array(s) for s in (1, 1, 1))
     assert not drive(cell, np.linspace(-0.5, 0.5, 50), signs=signs).valid.any()
 
@@ -460,10 +460,10 @@ def test_class_three_reference_at_a_toggle_is_refused() -> None:
     meet = 1.7 + 2.1j
     for leg, foot, part in (("B", "A", 0.6), ("D", "C", 1.4), ("E", "O4", 0.5)):
         joints[leg] = joints[foot] + part * (meet - joints[foot])
-    folded = catalogue.sixbar("stephenson_2", joints)
+    folded = catalogue.make_sixbar("stephenson_2", joints)
     with pytest.raises(DimensionError, match="toggle"):
         drive(folded, [folded.reference_input + 0.01])
-    beside = catalogue.sixbar("stephenson_2", {**joints, "B": joints["B"] + 1e-3})
+    beside = catalogue.make_sixbar("stephenson_2", {**joints, "B": joints["B"] + 1e-3})
     way = np.array([-1e-3, 0.0, 1e-3])
     assert drive(beside, beside.reference_input + way).valid.sum() == 2
 

@@ -5,13 +5,13 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from kinematics.linkage.fourbar import CROSSED, OPEN, Fourbar
+from kinematics.linkage.fourbar import CROSSED_ASSEMBLY, OPEN_ASSEMBLY, Fourbar
 from kinematics.linkage.planar import catalogue
 from kinematics.linkage.planar.drive import MechanismMotion, drive
 from kinematics.linkage.planar.mechanism import Mechanism
 from tests.cases import Case, cases
 
-ASSEMBLY = {"open": OPEN, "crossed": CROSSED}
+ASSEMBLY = {"open": OPEN_ASSEMBLY, "crossed": CROSSED_ASSEMBLY}
 
 
 def degrees(angle: np.ndarray) -> float:
@@ -37,7 +37,9 @@ def driven(case: Case, mechanism: Mechanism) -> MechanismMotion:
 def slider_crank(case: Case) -> MechanismMotion:
     x = case.inputs
     theta = np.radians(x["theta2"])
-    return driven(case, catalogue.slider_crank(0j, 1j * x["c"], 0.0, x["a"], x["b"], theta, ASSEMBLY[x["circuit"]]))
+    return driven(
+        case, catalogue.make_slider_crank(0j, 1j * x["c"], 0.0, x["a"], x["b"], theta, ASSEMBLY[x["circuit"]])
+    )
 
 
 @pytest.mark.parametrize("case", cases("slider_crank_position"))
@@ -67,7 +69,7 @@ def test_slider_crank_driven_by_its_slider(case: Case) -> None:
     """Pushed by its slider from a quarter turn away, it comes to the same place when the crank is on the same side."""
     x = case.inputs
     forward = slider_crank(case)
-    made = catalogue.slider_crank(
+    made = catalogue.make_slider_crank(
         0j, 1j * x["c"], 0.0, x["a"], x["b"], np.radians(x["theta2"]), ASSEMBLY[x["circuit"]], driven_by="slider"
     )
     back = drive(made, forward.slides["B"][0])
@@ -84,7 +86,7 @@ def inverted_slider_crank(case: Case) -> MechanismMotion:
     theta, gamma = np.radians(x["theta2"]), np.radians(x["gamma"])
     return driven(
         case,
-        catalogue.inverted_slider_crank(0j, x["d"], x["a"], x["c"], gamma, theta, ASSEMBLY[x["circuit"]]),
+        catalogue.make_inverted_slider_crank(0j, x["d"], x["a"], x["c"], gamma, theta, ASSEMBLY[x["circuit"]]),
     )
 
 
@@ -117,7 +119,7 @@ def geared_fivebar(case: Case) -> MechanismMotion:
     x = case.inputs
     return driven(
         case,
-        catalogue.geared_fivebar(
+        catalogue.make_geared_fivebar(
             0j,
             x["f"],
             x["a"],
@@ -174,11 +176,11 @@ def exact_line(case: Case) -> np.ndarray:
     x = case.inputs
     theta = np.linspace(0.0, 2.0 * np.pi, 181)
     if x["mechanism"] == "peaucellier":
-        made = catalogue.peaucellier(0j, -1.0, 1.0, 3.0, 1.25, 0.4)
+        made = catalogue.make_peaucellier(0j, -1.0, 1.0, 3.0, 1.25, 0.4)
         found = drive(made, theta, order=0)
         return found.joints["P"][0][found.valid]
     a, b = x["link2"], x["link3"]
-    made = catalogue.geared_fivebar(0j, x["link1"], a, b, b, a, x["lambda"], np.radians(x["phi"]), 0.4)
+    made = catalogue.make_geared_fivebar(0j, x["link1"], a, b, b, a, x["lambda"], np.radians(x["phi"]), 0.4)
     found = drive(made, theta, order=0)
     return found.joints["C"][0][found.valid]
 
@@ -194,7 +196,7 @@ def test_exact_straight_line(case: Case) -> None:
 def hoeken(ground: float, coupler: float) -> Mechanism:
     """Links L1, L2 = 1, L3 = L4 = BP with A, B, P in line (Norton Fig. 3-29, Table 3-1)."""
     linkage = Fourbar.from_lengths(1.0, coupler, coupler, ground, 2.0 * coupler)
-    return catalogue.fourbar(linkage, np.pi)
+    return catalogue.make_fourbar(linkage, np.pi)
 
 
 def line_errors(ground: float, coupler: float, beta: float, step: float) -> dict[str, float]:

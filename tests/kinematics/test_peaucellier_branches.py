@@ -12,8 +12,8 @@ import numpy as np
 import pytest
 
 from kinematics.errors import DimensionError
-from kinematics.linkage.planar.catalogue import peaucellier
-from kinematics.linkage.planar.limits import branches
+from kinematics.linkage.planar.catalogue import make_peaucellier
+from kinematics.linkage.planar.limits import find_branches
 from kinematics.linkage.planar.mechanism import Mechanism
 from tests.kinematics.mechanism_sampling import EVERY, take
 from tests.support.kinematics.peaucellier_branches import TURN, pieces, same_cell
@@ -27,7 +27,7 @@ def general_cell(rng: np.random.Generator) -> Mechanism:
         o2 = complex(*rng.normal(size=2))
         o4 = o2 + ground * np.exp(1j * rng.uniform(-np.pi, np.pi))
         try:
-            return peaucellier(o2, complex(o4), crank, arm, side, rng.uniform(-np.pi, np.pi))
+            return make_peaucellier(o2, complex(o4), crank, arm, side, rng.uniform(-np.pi, np.pi))
         except DimensionError:
             continue
 
@@ -48,7 +48,7 @@ def test_branches_of_cells_that_draw_a_circle() -> None:
 
 def test_a_branch_less_would_be_seen(monkeypatch: pytest.MonkeyPatch) -> None:
     cell = take(EVERY["Peaucellier"](np.random.default_rng(63), 1), 0)
-    found = branches(cell)
+    found = find_branches(cell)
     monkeypatch.setattr("tests.support.kinematics.peaucellier_branches.branches", lambda _: found[1:])
     with pytest.raises(AssertionError):
         same_cell(cell)

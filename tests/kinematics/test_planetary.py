@@ -12,9 +12,9 @@ from hypothesis import strategies as st
 
 from kinematics.errors import DimensionError
 from kinematics.gear.arrangements import ARRANGEMENTS, Arrangement
-from kinematics.gear.assembly import fits_at, gaps, is_coaxial, pin_distances, pins
-from kinematics.gear.planetary import EXTERNAL, GROUND, INTERNAL, Mesh, Train, speed_ratio, speeds
-from kinematics.gear.power import PowerFlow, power_flow
+from kinematics.gear.assembly import compute_pin_distances, has_fit_at, is_coaxial, measure_gaps, place_pins
+from kinematics.gear.planetary import EXTERNAL, GROUND, INTERNAL, Mesh, Train, compute_speed_ratio, solve_speeds
+from kinematics.gear.power import PowerFlow, solve_power_flow
 from tests.cases import Case, cases
 
 ROWS = tuple(ARRANGEMENTS.values())
@@ -52,7 +52,7 @@ def known_speeds(stated: dict[str, Any]) -> dict[str, Fraction]:
 @pytest.mark.parametrize("case", cases("epicyclic", "gear"))
 def test_speeds_as_printed(case: Case) -> None:
     train = train_of(case.inputs["train"])
-    found = speeds(train, known_speeds(case.inputs["train"]))
+    found = solve_speeds(train, known_speeds(case.inputs["train"]))
     assert found.contradiction is None
     values = {body: float(speed) for body, speed in found.values.items() if speed is not None}
     computed = {body: values[body] for body in case.inputs["out"]} | {"dof": found.freedom}
@@ -66,7 +66,7 @@ def test_speeds_as_printed(case: Case) -> None:
 @pytest.mark.parametrize("case", cases("fundamental", "gear"))
 def test_one_row_by_its_train_value(case: Case) -> None:
     train = Train((row("first", "last", "arm", Fraction(case.inputs["train_value"])),))
-    found = speeds(train, {"first": case.inputs["first"], "arm": case.inputs["arm"]})
+    found = solve_speeds(train, {"first": case.inputs["first"], "arm": case.inputs["arm"]})
     case.check(R=float(case.inputs["train_value"]), last=float(found.values["last"] or 0))
 
 
@@ -78,7 +78,7 @@ def test_train_value_with_the_carrier_held(case: Case) -> None:
     for k, (over, under) in enumerate(pairs):
         sign = EXTERNAL if over * under < 0 else INTERNAL
         meshes.append(Mesh(f"b{k}", f"b{k + 1}", "arm", abs(over), abs(under), sign))
-    last = speeds(Train(tuple(meshes)), {"arm": 0, "b0": 1}).values[f"b{len(pairs)}"]
+    last = solve_speeds(Train(tuple(meshes)), {"arm": 0, "b0": 1}).values[f"b{len(pairs)}"]
     assert last is not None
     case.check(rho=float(last), fraction=f"{last.numerator}/{last.denominator}")
 
@@ -89,8 +89,8 @@ def test_efficiency_of_a_row_with_three_shafts(case: Case) -> None:
     given_ = case.inputs
     train = Train((row("2", "1", "arm", Fraction(given_["rho"])),))
     (out,) = {"1", "2", "arm"} - {given_["fixed"], given_["inp"]}
-    turning = speeds(train, {given_["fixed"]: 0, given_["inp"]: 1}).values
-    flow = power_flow(train, turning, {"1", "2", "arm"}, {given_["inp"]: 1}, Fraction(given_["E0"]))
+    turning = solve_speeds(train, {given_["fixed"]: 0, given_["inp"]: 1}).values
+    flow = solve_power_flow(train, turning, {"1", "2", "arm"}, {given_["inp"]: 1}, Fraction(given_["E0"]))
     assert flow is not None
     unit = flow.torques[given_.get("T_known", given_["inp"])]
     assert flow.efficiency is not None
@@ -105,9 +105,9 @@ def test_efficiency_of_a_row_with_three_shafts(case: Case) -> None:
 @pytest.mark.parametrize("case", cases("epicyclic_torque", "gear"))
 def test_torques_as_printed(case: Case) -> None:
     train = train_of(case.inputs["train"], case.inputs["free"])
-    turning = speeds(train, known_speeds(case.inputs["train"])).values
+    turning = solve_speeds(train, known_speeds(case.inputs["train"])).values
     known = {body: Fraction(str(torque)) for body, torque in case.inputs["known"].items()}
-    flow = power_flow(train, turning, train.members, known, Fraction(str(case.inputs.get("eta", 1))))
+    flow = solve_power_flow(train, turning, train.members, known, Fraction(str(case.inputs.get("eta", 1))))
     assert flow is not None
     computed: dict[str, Any] = {f"T_{body}": float(torque) for body, torque in flow.torques.items()}
     computed |= {f"w_{body}": float(speed) for body, speed in turning.items() if speed is not None}
@@ -123,9 +123,9 @@ def test_axle_of_a_car(case: Case) -> None:
     final = row("engine", "cage", GROUND, Fraction(1 / ratio))
     sides = Mesh("left", "planet", "cage", 16, 10), Mesh("planet", "right", "cage", 10, 16, INTERNAL)
     train = Train((final, *sides), frozenset({"planet"}))
-    straight = speeds(train, {"engine": stated["engine_rpm"], "left": Fraction(wheel)}).values
+    straight = solve_speeds(train, {"engine": stated["engine_rpm"], "left": Fraction(wheel)}).values
     assert float(straight["right"] or 0) == pytest.approx(wheel, rel=1e-12)
-    curve = speeds(train, {"engine": stated["engine_rpm"], "left": stated["wheel2"]}).values
+    curve = solve_speeds(train, {"engine": stated["engine_rpm"], "left": stated["wheel2"]}).values
     case.check(wheel=wheel, ratio=ratio, other=float(curve["right"] or 0))
 
 
@@ -136,8 +136,8 @@ def test_least_ratio_of_a_winch(case: Case) -> None:
     torque = stated["load_lb"] * stated["drum_in"] / 2.0 / 12.0
     least = torque / stated["motor_lbft"]
     train = Train((row("drum", "motor", GROUND, Fraction(least)),))
-    turning = speeds(train, {"motor": stated["rpm"]}).values
-    flow = power_flow(train, turning, ("motor", "drum"), {"motor": Fraction(stated["motor_lbft"])})
+    turning = solve_speeds(train, {"motor": stated["rpm"]}).values
+    flow = solve_power_flow(train, turning, ("motor", "drum"), {"motor": Fraction(stated["motor_lbft"])})
     assert flow is not None
     assert float(-flow.torques["drum"]) == pytest.approx(torque)
     rate = float(turning["drum"] or 0) * math.pi * stated["drum_in"] / 12.0
@@ -151,8 +151,8 @@ def test_planets_that_fit(case: Case) -> None:
     turns = [Fraction(k, stated["n"]) for k in range(stated["n"])]
     case.check(
         closure=is_coaxial(simple, teeth),
-        assembly=all(fits_at(simple, teeth, ("planet",), turn) for turn in turns),
-        neighbour=min(gap.room for gap in gaps(simple, teeth, {"planet": turns})) > 0.0,
+        assembly=all(has_fit_at(simple, teeth, ("planet",), turn) for turn in turns),
+        neighbour=min(gap.room for gap in measure_gaps(simple, teeth, {"planet": turns})) > 0.0,
     )
 
 
@@ -177,7 +177,7 @@ def tabular(arrangement: Arrangement, teeth: dict[str, int], set_of: str, turns:
                 own = {arrangement.carriers[planet] for planet in arrangement.carriers if planet in past}
                 own |= {
                     arrangement.carriers[b]
-                    for g in arrangement.meshing(set_of)
+                    for g in arrangement.list_mates(set_of)
                     if (b := arrangement.places[g].body) in arrangement.carriers
                 }
                 if known in past and unknown not in past and carriers <= own:
@@ -195,13 +195,13 @@ def test_speeds_agree_with_the_tabular_method(
         first = next(
             g
             for g in arrangement.gear_names
-            if set(arrangement.meshing(g)) & {gear.name for gear in arrangement.gears if gear.body in planets}
+            if set(arrangement.list_mates(g)) & {gear.name for gear in arrangement.gears if gear.body in planets}
             and not arrangement.is_planet(g)
         )
         carrier = arrangement.carriers[planets[0]]
         past = tabular(arrangement, teeth, first, turns)
         body = arrangement.places[first].body
-        found = speeds(arrangement.train(teeth), {carrier: carried, body: carried + turns}).values
+        found = solve_speeds(arrangement.build_train(teeth), {carrier: carried, body: carried + turns}).values
         for other, relative in past.items():
             assert found[other] == carried + relative
 
@@ -210,12 +210,12 @@ def test_speeds_agree_with_the_tabular_method(
 def test_speeds_scale_and_add_up(given_: tuple[Arrangement, dict[str, int]], data: st.DataObject) -> None:
     """Linear: a multiple of all speeds, and all speeds raised by the same, are motions too."""
     arrangement, teeth = given_
-    train = arrangement.train(teeth)
+    train = arrangement.build_train(teeth)
     one, other = data.draw(st.permutations(arrangement.members))[:2]
     known = {one: Fraction(3), other: Fraction(-2)}
-    first = speeds(train, known)
-    scaled = speeds(train, {body: 7 * speed for body, speed in known.items()})
-    raised = speeds(train, {body: speed + 5 for body, speed in known.items()})
+    first = solve_speeds(train, known)
+    scaled = solve_speeds(train, {body: 7 * speed for body, speed in known.items()})
+    raised = solve_speeds(train, {body: speed + 5 for body, speed in known.items()})
     assert first.freedom == 2
     for body, speed in first.values.items():
         if speed is not None:
@@ -228,35 +228,35 @@ def test_willis(given_: tuple[Arrangement, dict[str, int]], data: st.DataObject)
     """With each of the other two held, the ratios from one member to the third add up to 1; and back is the inverse."""
     arrangement, teeth = given_
     one, two, three = data.draw(st.permutations(arrangement.members))[:3]
-    train = arrangement.train(teeth)
-    around = [speed_ratio(train, a, b, [c]) for a, b, c in ((one, two, three), (two, one, three))]
+    train = arrangement.build_train(teeth)
+    around = [compute_speed_ratio(train, a, b, [c]) for a, b, c in ((one, two, three), (two, one, three))]
     if None not in around:
         assert around[0] * around[1] == 1
-    value, other = speed_ratio(train, one, two, [three]), speed_ratio(train, one, three, [two])
+    value, other = compute_speed_ratio(train, one, two, [three]), compute_speed_ratio(train, one, three, [two])
     if value is not None and other is not None:
         assert value + other == 1 or len(arrangement.members) > 3
 
 
 def test_contradictions_and_freedoms_are_told() -> None:
-    simple = ARRANGEMENTS["simple"].train({"sun": 24, "planet": 18, "ring": 60})
-    free = speeds(simple, {"sun": 1})
+    simple = ARRANGEMENTS["simple"].build_train({"sun": 24, "planet": 18, "ring": 60})
+    free = solve_speeds(simple, {"sun": 1})
     assert (free.freedom, free.open, free.contradiction) == (2, 1, None)
     assert free.values["ring"] is None
-    over = speeds(simple, {"sun": 1, "carrier": 1, "ring": 2})
+    over = solve_speeds(simple, {"sun": 1, "carrier": 1, "ring": 2})
     assert over.contradiction == "ring"
     assert over.values["ring"] == 1
-    locked = speeds(simple, {"sun": 3}, locked=[("sun", "carrier")])
+    locked = solve_speeds(simple, {"sun": 3}, locked=[("sun", "carrier")])
     assert (locked.freedom, locked.open) == (1, 0)
     assert set(locked.values.values()) == {Fraction(3)}
     stuck = Train((Mesh("a", "b", GROUND, 20, 30), Mesh("b", "a", GROUND, 20, 31)))
-    assert speeds(stuck, {}).freedom == 0
-    assert speeds(stuck, {"a": 1}).contradiction == "a"
+    assert solve_speeds(stuck, {}).freedom == 0
+    assert solve_speeds(stuck, {"a": 1}).contradiction == "a"
 
 
 def test_wrong_calls() -> None:
-    train = ARRANGEMENTS["simple"].train({"sun": 24, "planet": 18, "ring": 60})
+    train = ARRANGEMENTS["simple"].build_train({"sun": 24, "planet": 18, "ring": 60})
     with pytest.raises(DimensionError, match="body"):
-        speeds(train, {"moon": 1})
+        solve_speeds(train, {"moon": 1})
     with pytest.raises(DimensionError, match="teeth"):
         Mesh("a", "b", "c", 0, 20)
     with pytest.raises(DimensionError, match="three different"):
@@ -264,14 +264,14 @@ def test_wrong_calls() -> None:
     with pytest.raises(DimensionError, match="sense"):
         Mesh("a", "b", "c", 20, 20, 0)
     with pytest.raises(DimensionError, match="teeth"):
-        ARRANGEMENTS["simple"].train({"sun": 24, "planet": 18})
-    turning = speeds(train, {"sun": 1, "ring": 0}).values
+        ARRANGEMENTS["simple"].build_train({"sun": 24, "planet": 18})
+    turning = solve_speeds(train, {"sun": 1, "ring": 0}).values
     with pytest.raises(DimensionError, match="efficiency"):
-        power_flow(train, turning, ("sun", "carrier", "ring"), {"sun": 1}, 0)
+        solve_power_flow(train, turning, ("sun", "carrier", "ring"), {"sun": 1}, 0)
     with pytest.raises(DimensionError, match="load"):
-        power_flow(train, turning, ("sun", "planet"), {"sun": 1})
+        solve_power_flow(train, turning, ("sun", "planet"), {"sun": 1})
     with pytest.raises(DimensionError, match="speeds"):
-        power_flow(train, {"sun": Fraction(1)}, ("sun", "carrier", "ring"), {"sun": 1})
+        solve_power_flow(train, {"sun": Fraction(1)}, ("sun", "carrier", "ring"), {"sun": 1})
 
 
 @st.composite
@@ -284,11 +284,11 @@ def driven(draw: st.DrawFn) -> tuple[Arrangement, dict[str, int], tuple[str, str
 def flow_of(
     arrangement: Arrangement, teeth: dict[str, int], roles: tuple[str, str, str], efficiency: Fraction
 ) -> PowerFlow | None:
-    train = arrangement.train(teeth)
-    turning = speeds(train, {roles[2]: 0, roles[0]: 1}).values
+    train = arrangement.build_train(teeth)
+    turning = solve_speeds(train, {roles[2]: 0, roles[0]: 1}).values
     if None in turning.values() or not turning[roles[1]]:
         return None
-    return power_flow(train, turning, roles, {roles[0]: 1}, efficiency)
+    return solve_power_flow(train, turning, roles, {roles[0]: 1}, efficiency)
 
 
 @given(driven())
@@ -303,7 +303,7 @@ def test_no_power_is_lost_without_friction(given_: tuple[Arrangement, dict[str, 
         assert sum(flow.torques.values()) == 0
     assert flow.efficiency == 1
     assert not flow.self_locking
-    ratio = speed_ratio(arrangement.train(teeth), roles[0], roles[1], [roles[2]])
+    ratio = compute_speed_ratio(arrangement.build_train(teeth), roles[0], roles[1], [roles[2]])
     assert flow.torques[roles[1]] == -ratio * flow.torques[roles[0]]
 
 
@@ -363,8 +363,8 @@ def test_circulating_power_is_told() -> None:
 def test_branch_power_that_circulates() -> None:
     """Two rows joined by two shafts: what one row takes too much the other gives back (Müller, Sec. 24)."""
     linked = Train((row("in", "link", "out", Fraction(-3)), row("in", "link", GROUND, Fraction(-2))))
-    turning = speeds(linked, {"in": 1}).values
-    flow = power_flow(linked, turning, ("in", "out"), {"in": 1})
+    turning = solve_speeds(linked, {"in": 1}).values
+    flow = solve_power_flow(linked, turning, ("in", "out"), {"in": 1})
     assert flow is not None
     assert flow.circulates == (flow.largest_branch_power > 1)
     assert flow.circulates
@@ -376,14 +376,14 @@ def test_phases_against_the_divisibility_rules(sun: int, one: int, two: int, cop
     """Trying every tooth finds what (S + R)/n and (S P₂ + R P₁)/(n gcd(P₁, P₂)) say."""
     turn = Fraction(1, copies)
     teeth = {"sun": sun, "planet": one, "ring": sun + 2 * one}
-    fits = fits_at(ARRANGEMENTS["simple"], teeth, ("planet",), turn)
+    fits = has_fit_at(ARRANGEMENTS["simple"], teeth, ("planet",), turn)
     assert fits == (2 * (sun + one) % copies == 0)
     ring = sun + one + two
     teeth = {"sun": sun, "planet_1": one, "planet_2": two, "ring": ring}
-    fits = fits_at(ARRANGEMENTS["stepped"], teeth, ("planet",), turn)
+    fits = has_fit_at(ARRANGEMENTS["stepped"], teeth, ("planet",), turn)
     assert fits == ((sun * two + ring * one) % (copies * math.gcd(one, two)) == 0)
     teeth = {"sun": sun, "planet_1": one, "planet_2": two, "ring": ring}
-    fits = fits_at(ARRANGEMENTS["double_planet"], teeth, ("planet_1", "planet_2"), turn)
+    fits = has_fit_at(ARRANGEMENTS["double_planet"], teeth, ("planet_1", "planet_2"), turn)
     assert fits == ((ring - sun) % copies == 0)
 
 
@@ -391,15 +391,15 @@ def test_pins_of_a_ravigneaux_set() -> None:
     """The pins of short and long planet are as far apart as their pitch radii say; not coaxial teeth have none."""
     arrangement = ARRANGEMENTS["ravigneaux"]
     teeth = {"sun_small": 30, "planet_short": 18, "planet_long": 20, "sun_large": 38, "ring": 78}
-    placed = pins(arrangement, teeth)
+    placed = place_pins(arrangement, teeth)
     assert placed is not None
     assert abs(placed["planet_short"] - placed["planet_long"]) == pytest.approx(19.0)
     assert abs(placed["planet_short"]) == pytest.approx(24.0)
-    assert pin_distances(arrangement, teeth)["planet_long"] == [29, 29]
+    assert compute_pin_distances(arrangement, teeth)["planet_long"] == [29, 29]
     assert not is_coaxial(arrangement, teeth | {"ring": 79})
     assert not is_coaxial(arrangement, teeth | {"sun_small": 10, "planet_short": 6})
     turns = {planet: [Fraction(k, 3) for k in range(3)] for planet in arrangement.carriers}
-    found = {(gap.one, gap.other): gap.room for gap in gaps(arrangement, teeth, turns)}
+    found = {(gap.one, gap.other): gap.room for gap in measure_gaps(arrangement, teeth, turns)}
     # Long planet beside the small sun, in the plane of the short planets: 29 − (15 + 1) − (10 + 1).
     assert found["planet_long", "sun_small"] == pytest.approx(2.0)
 
@@ -408,6 +408,6 @@ def test_bevel_planets_have_room_by_their_cones() -> None:
     """Four miter planets of the side gears' size would overlap; two never touch."""
     arrangement = ARRANGEMENTS["bevel_differential"]
     teeth = {"side_1": 20, "planet": 20, "side_2": 20}
-    four = gaps(arrangement, teeth, {"planet": [Fraction(k, 4) for k in range(4)]})
+    four = measure_gaps(arrangement, teeth, {"planet": [Fraction(k, 4) for k in range(4)]})
     assert min(gap.room for gap in four) == pytest.approx(-math.sqrt(2.0))
-    assert not gaps(arrangement, teeth, {"planet": [Fraction(0), Fraction(1, 2)]})
+    assert not measure_gaps(arrangement, teeth, {"planet": [Fraction(0), Fraction(1, 2)]})

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from kinematics.linkage.planar.drive import drive
-from kinematics.linkage.planar.limits import branches
+from kinematics.linkage.planar.limits import find_branches
 from kinematics.linkage.planar.mechanism import Mechanism, Slide, TopologyError
 from tests.support.kinematics.redundant_constraints import CRANK, LINKS, geared, parallelogram
 
@@ -30,7 +30,7 @@ def test_third_crank_leads_through_the_change_point(pivot: complex) -> None:
             np.testing.assert_allclose(there, (1j**n * np.exp(1j * at))[motion.smooth], atol=1e-11)
     np.testing.assert_allclose(motion.angles["coupler"][1:, motion.smooth], 0.0, atol=1e-11)
     assert mechanism.mobility == 1
-    assert mechanism.counted_mobility == 0
+    assert mechanism.gruebler_mobility == 0
 
 
 def test_parallel_cranks_stay_parallel_beside_their_change_points() -> None:
@@ -141,7 +141,7 @@ def test_dimensions_that_do_not_agree_are_no_mechanism(make: Callable[[], Mechan
 
 def test_circuits_are_not_listed() -> None:
     with pytest.raises(TopologyError, match="redundant"):
-        branches(parallelogram(5.0 + 1.3j))
+        find_branches(parallelogram(5.0 + 1.3j))
 
 
 @pytest.mark.campaign

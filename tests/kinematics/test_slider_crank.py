@@ -8,22 +8,22 @@ import numpy as np
 import pytest
 
 from kinematics.errors import DimensionError, ShapeError
-from kinematics.linkage.batch import CROSSED, OPEN
+from kinematics.linkage.batch import CROSSED_ASSEMBLY, OPEN_ASSEMBLY
 from kinematics.linkage.slider_crank.closed_form import (
     SliderCrank,
     coupler_points,
-    crank_limits,
-    full_rotation,
+    find_crank_limits,
+    find_toggle_angles,
+    has_full_rotation,
     motion,
     positions,
-    toggle_angles,
 )
 from tests.cases import Case, cases
 from tests.kinematics.sampling import signs
 from tests.oracles.differences import derivative
 from tests.support.kinematics.kernels import random_slider_cranks
 
-ASSEMBLY = {"open": OPEN, "crossed": CROSSED}
+ASSEMBLY = {"open": OPEN_ASSEMBLY, "crossed": CROSSED_ASSEMBLY}
 N = 5000
 
 
@@ -150,7 +150,7 @@ def test_derivatives_agree_with_differences(order: int, step: float, close: floa
 
 def test_limits_are_where_positions_end() -> None:
     linkage, _, _ = sample(95)
-    limits, crank, turn = crank_limits(linkage), full_rotation(linkage), np.linspace(-np.pi, np.pi, 721)
+    limits, crank, turn = find_crank_limits(linkage), has_full_rotation(linkage), np.linspace(-np.pi, np.pi, 721)
     at = positions(linkage, turn)
     assert at.valid[crank].all()
     none = np.isnan(limits.lower)
@@ -170,7 +170,7 @@ def test_toggle_angles_are_configurations_without_rates() -> None:
     for k in range(300):
         fields = ("pivot", "slide_point", "slide_angle", "crank", "coupler", "coupler_point")
         one = SliderCrank(*(getattr(linkage, name)[k] for name in fields))
-        toggles = toggle_angles(one)
+        toggles = find_toggle_angles(one)
         met.add(toggles.size)
         assert np.all(np.diff(toggles) > 0.0)
         assert np.all((toggles > -np.pi) & (toggles <= np.pi))

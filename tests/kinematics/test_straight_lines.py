@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from kinematics.errors import DimensionError
-from kinematics.linkage.fourbar.closed_form import CROSSED, OPEN, Fourbar
+from kinematics.linkage.fourbar.closed_form import CROSSED_ASSEMBLY, OPEN_ASSEMBLY, Fourbar
 from kinematics.linkage.planar import catalogue
 from kinematics.linkage.planar.drive import drive
 from tests.cases import cases
@@ -29,8 +29,8 @@ def test_how_straight_a_locus_is(case):
     lengths = (given[name] for name in ("crank", "coupler", "rocker", "ground"))
     linkage = Fourbar.from_lengths(*lengths, complex(given["px"], given["py"]))
     degrees = np.linspace(given["t0"], given["t1"], 61)
-    assembly = CROSSED if given["side"] < 0 else OPEN
-    line = across(locus(catalogue.fourbar(linkage, np.radians(degrees[0]), assembly), degrees))
+    assembly = CROSSED_ASSEMBLY if given["side"] < 0 else OPEN_ASSEMBLY
+    line = across(locus(catalogue.make_fourbar(linkage, np.radians(degrees[0]), assembly), degrees))
     deviation, length = np.abs(line.imag).max(), np.ptp(line.real)
     case.check(max_dev=deviation, length=length, ratio=deviation / length)
 
@@ -39,7 +39,7 @@ def test_how_straight_a_locus_is(case):
 def test_scott_russell_draws_an_exact_line(case):
     r = case.inputs["r"]
     degrees = np.linspace(-85.0, 85.0, 171)
-    mechanism = catalogue.slider_crank(0.0, 0.0, 0.0, r, r, 0.1, OPEN, -r)
+    mechanism = catalogue.make_slider_crank(0.0, 0.0, 0.0, r, r, 0.1, OPEN_ASSEMBLY, -r)
     points = locus(mechanism, degrees)
     assert np.isclose(np.ptp(points.imag), 4.0 * r * np.sin(np.radians(85.0)))
     case.check(max_dev=np.abs(across(points).imag).max())
@@ -51,7 +51,7 @@ def test_watts_mean_position(case):
     given = case.inputs
     linkage = Fourbar.from_lengths(given["arm"], 2.0 * given["half"], given["arm"], given["O2O4"], given["half"])
     degrees = np.linspace(0.0, 30.0, 30001)
-    points = locus(catalogue.fourbar(linkage, 0.2, CROSSED), degrees)
+    points = locus(catalogue.make_fourbar(linkage, 0.2, CROSSED_ASSEMBLY), degrees)
     nearest = int(np.abs(points - given["O2O4"] / 2.0).argmin())
     assert abs(points[nearest] - given["O2O4"] / 2.0) < 1e-3
     before, after = points[nearest - 1], points[nearest + 1]
@@ -67,13 +67,13 @@ def test_inversors_draw_an_exact_line(case):
     if given["mech"] == "peaucellier":
         # Rao's circle of diameter 3 = a − b touches what the cell reaches in one point; a wider one draws as well.
         with pytest.raises(DimensionError):
-            catalogue.peaucellier(0.0, -r, r, given["a"], given["b"], 0.3)
+            catalogue.make_peaucellier(0.0, -r, r, given["a"], given["b"], 0.3)
         r = 2.0 * r
-        mechanism = catalogue.peaucellier(0.0, -r, r, given["a"], given["b"], 0.3)
+        mechanism = catalogue.make_peaucellier(0.0, -r, r, given["a"], given["b"], 0.3)
         degrees = np.linspace(-60.0, 60.0, 181)
         constant = given["a"] ** 2 - given["b"] ** 2
     else:
-        mechanism = catalogue.hart(0.0, -r, r, given["long"], given["short"], given["f"], 2.0)
+        mechanism = catalogue.make_hart(0.0, -r, r, given["long"], given["short"], given["f"], 2.0)
         bases = np.linspace(given["x0"], given["x1"], 181)
         degrees = 2.0 * np.degrees(np.arccos(given["f"] * bases / (2.0 * r)))
         constant = given["f"] * (1.0 - given["f"]) * (given["long"] ** 2 - given["short"] ** 2)
@@ -100,7 +100,7 @@ def test_the_pantograph_enlarges(case):
     ratio, reach = given["ratio"], given["DQ"]
     near, far = given["OA"], given["OA"] / ratio
     # The crank takes P round a circle through the printed place.
-    mechanism = catalogue.pantograph(ratio * reach - 3.0, 0.0, 3.0, near, far, 20.0, 0.0)
+    mechanism = catalogue.make_pantograph(ratio * reach - 3.0, 0.0, 3.0, near, far, 20.0, 0.0)
     motion = drive(mechanism, np.linspace(0.0, 2.0 * np.pi, 181), order=0)
     assert motion.valid.all()
     p, q, b = (motion.joints[name][0] for name in ("P", "Q", "B"))
@@ -113,12 +113,12 @@ def test_the_pantograph_enlarges(case):
 @pytest.mark.parametrize(
     ("made", "what"),
     [
-        (lambda: catalogue.hart(0.0, -1.2, 1.2, 4.0, 1.5, 0.4, 0.1), "input_angle"),
-        (lambda: catalogue.hart(0.0, -1.2, 1.2, 1.5, 4.0, 0.4, 2.0), "short"),
-        (lambda: catalogue.hart(0.0, -1.2, 1.2, 4.0, 1.5, 1.0, 2.0), "share"),
-        (lambda: catalogue.hart(0.0, -1.2, 1.2, 4.0, 1.5, 0.4, 2.0, 0), "side"),
-        (lambda: catalogue.pantograph(5.0, 0.0, 6.0, 10.0, 40.0, 20.0, 1.0), "input_angle"),
-        (lambda: catalogue.pantograph(22.0, 0.0, 3.0, 10.0, 10.0, 20.0, 1.0), "far"),
+        (lambda: catalogue.make_hart(0.0, -1.2, 1.2, 4.0, 1.5, 0.4, 0.1), "input_angle"),
+        (lambda: catalogue.make_hart(0.0, -1.2, 1.2, 1.5, 4.0, 0.4, 2.0), "short"),
+        (lambda: catalogue.make_hart(0.0, -1.2, 1.2, 4.0, 1.5, 1.0, 2.0), "share"),
+        (lambda: catalogue.make_hart(0.0, -1.2, 1.2, 4.0, 1.5, 0.4, 2.0, 0), "side"),
+        (lambda: catalogue.make_pantograph(5.0, 0.0, 6.0, 10.0, 40.0, 20.0, 1.0), "input_angle"),
+        (lambda: catalogue.make_pantograph(22.0, 0.0, 3.0, 10.0, 10.0, 20.0, 1.0), "far"),
     ],
 )
 def test_impossible_dimensions_are_refused(made, what):

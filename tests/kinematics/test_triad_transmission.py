@@ -7,10 +7,10 @@ import pytest
 from scipy.optimize import root
 
 from kinematics.linkage.planar import catalogue
-from kinematics.linkage.planar.drive import drive, followed_to
-from kinematics.linkage.planar.limits import branches, holding_reference
+from kinematics.linkage.planar.drive import drive, is_reachable
+from kinematics.linkage.planar.limits import find_branches, find_reference_branch
 from kinematics.linkage.planar.mechanism import Mechanism
-from kinematics.linkage.planar.triad_transmission import Leg, triad_of
+from kinematics.linkage.planar.triad_transmission import Leg, find_triad
 from tests.kinematics.mechanism_sampling import CLASS_THREE, fourbar, take
 
 NAMES = ["stephenson_2 driven by its input", "stephenson_3 driven by its output"]
@@ -20,14 +20,14 @@ MOVED, TURN = 1e-5, 2.0 * np.pi
 def test_the_legs_are_found() -> None:
     """Stephenson II driven by its output has two ternary links in a loop and no triad; a fourbar has none either."""
     rng = np.random.default_rng(5)
-    triads = {name: triad_of(take(CLASS_THREE[name](rng, 2), 0)) for name in CLASS_THREE}
+    triads = {name: find_triad(take(CLASS_THREE[name](rng, 2), 0)) for name in CLASS_THREE}
     legs = {name: None if triad is None else [leg.link for leg in triad] for name, triad in triads.items()}
     assert legs == {
         NAMES[0]: ["link_3", "link_5", "output"],
         "stephenson_2 driven by its output": None,
         NAMES[1]: ["input", "rocker", "link_5"],
     }
-    assert triad_of(take(fourbar(rng, 2), 0)) is None
+    assert find_triad(take(fourbar(rng, 2), 0)) is None
 
 
 def carried(legs: tuple[Leg, Leg], pins: dict[str, complex], third: str, turn: float) -> complex:
@@ -49,7 +49,7 @@ def test_the_sine_is_that_of_the_leg_and_the_normal_of_the_path(name: str, at: i
     compared = 0
     for n in range(40):
         mechanism = take(designs, n)
-        triad = triad_of(mechanism)
+        triad = find_triad(mechanism)
         assert triad is not None
         motion = drive(mechanism, mechanism.reference_input + np.array([0.0, 0.05]), order=0)
         if not motion.valid.all():
@@ -72,9 +72,9 @@ def test_the_angles_vanish_at_toggles_and_only_there(name: str) -> None:
     met = 0
     for n in range(12):
         mechanism: Mechanism = take(designs, n)
-        triad = triad_of(mechanism)
+        triad = find_triad(mechanism)
         assert triad is not None
-        branch = holding_reference(mechanism, branches(mechanism))
+        branch = find_reference_branch(mechanism, find_branches(mechanism))
         if branch is None:
             continue
         at = float(mechanism.reference_input)
@@ -96,7 +96,7 @@ def test_the_angles_vanish_at_toggles_and_only_there(name: str) -> None:
 def test_where_two_legs_meet_near_the_third_pin_they_point_at_it() -> None:
     """The output is pushed at a right angle, at an arm of a thousandth: a little play and link 4 turns over."""
     joints = {"O2": 0j, "A": -2.0 - 1.0j, "C": -2.0 + 1.0j, "B": -1.0 - 0.5j, "D": -1.0 + 0.5j, "E": 1e-3 + 0j}
-    mechanism = catalogue.sixbar("stephenson_2", {**joints, "P": 0.2 + 0.2j, "O4": 1e-3 - 1.0j})
+    mechanism = catalogue.make_sixbar("stephenson_2", {**joints, "P": 0.2 + 0.2j, "O4": 1e-3 - 1.0j})
     motion = drive(mechanism, [float(mechanism.reference_input)], order=0)
     angles = {link: float(np.degrees(np.arcsin(abs(sine[0])))) for link, sine in motion.sines.items()}
     assert angles["output"] == pytest.approx(90.0)
@@ -110,9 +110,9 @@ def test_the_references_branch_does_not_depend_on_the_order_of_branches(name: st
     designs = CLASS_THREE[name](np.random.default_rng(23), 12)
     for n in range(12):
         mechanism: Mechanism = take(designs, n)
-        found = branches(mechanism)
-        held = holding_reference(mechanism, found)
-        other = holding_reference(
+        found = find_branches(mechanism)
+        held = find_reference_branch(mechanism, found)
+        other = find_reference_branch(
             mechanism, sorted(found, key=lambda branch: (branch.circuit, -branch.low, -branch.high))
         )
         assert (held is None) == (other is None)
@@ -124,4 +124,4 @@ def test_the_references_branch_does_not_depend_on_the_order_of_branches(name: st
             at = float(mechanism.reference_input)
             low = at - np.mod(at - held.low, TURN)
             inside = np.linspace(low, low + held.high - held.low, 60)[1:-1]
-            assert followed_to(mechanism, inside).all() or held.high - held.low > TURN
+            assert is_reachable(mechanism, inside).all() or held.high - held.low > TURN

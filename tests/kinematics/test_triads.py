@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 
 from kinematics.linkage.planar import catalogue
-from kinematics.linkage.planar.drive import decompose, drive, given_up
-from kinematics.linkage.planar.limits import branches, holding_reference
+from kinematics.linkage.planar.drive import decompose, drive, has_given_up
+from kinematics.linkage.planar.limits import find_branches, find_reference_branch
 from kinematics.linkage.planar.mechanism import Mechanism, Slide, TopologyError
 from tests.kinematics.mechanism_sampling import CLASS_THREE, take
 from tests.oracles.constraints import Constraints, Trace
@@ -210,7 +210,7 @@ def test_an_input_is_reached_from_whichever_side_of_the_reference(name: str) -> 
     mechanisms, bounded = batch(name, 33, 12), 0
     for k in range(12):
         mechanism = take(mechanisms, k)
-        here = holding_reference(mechanism, branches(mechanism))
+        here = find_reference_branch(mechanism, find_branches(mechanism))
         assert here is not None
         at = np.linspace(0.0, TURN, 91) + 1e-3
         first = drive(mechanism, at, order=1)
@@ -243,11 +243,11 @@ def test_all_but_singular_equations_give_no_wrong_position() -> None:
         "D": -1.0j,
         "E": 8.3e-10 + 0.999999999626716j,
     }
-    mechanism = catalogue.sixbar("stephenson_2", joints)
+    mechanism = catalogue.make_sixbar("stephenson_2", joints)
     found = drive(mechanism, np.linspace(0.0, TURN, 361), order=0)
     assert found.valid.sum() > 50
     for listed in mechanism.links.values():
         for one, other in pairwise(listed):
             length = np.abs(found.joints[one][0] - found.joints[other][0])[found.valid]
             assert np.abs(length - abs(joints[one] - joints[other])).max() < 1e-12
-    assert found.valid.all() or given_up(mechanism)
+    assert found.valid.all() or has_given_up(mechanism)

@@ -10,7 +10,13 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from kinematics.errors import DimensionError
-from kinematics.linkage.universal_joint import Joint, angle_of_fluctuation, angle_within, shaft_extremes, shaft_motion
+from kinematics.linkage.universal_joint import (
+    Joint,
+    compute_joint_angle,
+    compute_max_joint_angle,
+    compute_shaft_motion,
+    find_shaft_extremes,
+)
 from tests.cases import cases
 
 RPM = math.pi / 30.0
@@ -24,7 +30,7 @@ def one(degrees):
 @pytest.mark.parametrize("case", cases("hooke", "steering_hooke"))
 def test_speeds_and_greatest_acceleration(case):
     joint, speed = one(case.inputs["delta"]), case.inputs.get("rpm", 0.0) * RPM
-    found = shaft_extremes(joint)
+    found = find_shaft_extremes(joint)
     # The book puts the greatest acceleration where cos 2α = 2 sin² δ/(2 − sin² δ).
     s = math.sin(joint[0].angle) ** 2
     near = 0.5 * math.acos(2.0 * s / (2.0 - s))
@@ -34,7 +40,7 @@ def test_speeds_and_greatest_acceleration(case):
         "wmin": found.least * speed,
         "cos2a": math.cos(2.0 * near),
         "a_approx": math.degrees(near),
-        "acc_approx": abs(float(shaft_motion(joint, near).ratio_rate)) * speed**2,
+        "acc_approx": abs(float(compute_shaft_motion(joint, near).ratio_rate)) * speed**2,
         "a_exact": math.degrees(found.steepest_at),
         "acc_exact": found.acceleration * speed**2,
         "min_num": found.least,
@@ -46,23 +52,23 @@ def test_speeds_and_greatest_acceleration(case):
 
 @pytest.mark.parametrize("case", cases("hooke_delta", "steering_hooke"))
 def test_angle_for_a_fluctuation(case):
-    angle = angle_of_fluctuation(case.inputs["fluct"])
-    found, rpm = shaft_extremes([Joint(angle)]), case.inputs["rpm"]
+    angle = compute_joint_angle(case.inputs["fluct"])
+    found, rpm = find_shaft_extremes([Joint(angle)]), case.inputs["rpm"]
     case.check(delta=math.degrees(angle), rpm_max=found.greatest * rpm, rpm_min=found.least * rpm)
 
 
 @pytest.mark.parametrize("case", cases("hooke_band", "steering_hooke"))
 def test_angle_for_limits_of_the_speed(case):
     rpm = case.inputs["rpm"]
-    angle = angle_within(case.inputs["lo"] / rpm, case.inputs["hi"] / rpm)
-    found = shaft_extremes([Joint(angle)])
+    angle = compute_max_joint_angle(case.inputs["lo"] / rpm, case.inputs["hi"] / rpm)
+    found = find_shaft_extremes([Joint(angle)])
     case.check(delta=math.degrees(angle), rpm_max=found.greatest * rpm, rpm_min=found.least * rpm)
 
 
 @pytest.mark.parametrize("case", cases("hooke_double_wrong", "steering_hooke"))
 def test_a_double_joint_with_forks_at_right_angles_is_twice_as_uneven(case):
     angle, rpm = math.radians(case.inputs["delta"]), case.inputs["rpm"]
-    found = shaft_extremes([Joint(angle), Joint(angle, 0.5 * math.pi)])
+    found = find_shaft_extremes([Joint(angle), Joint(angle, 0.5 * math.pi)])
     case.check(min=found.least * rpm, max=found.greatest * rpm)
 
 
@@ -72,7 +78,7 @@ def test_torque_of_an_inertia(case):
     at = math.radians(stated["alpha_or_beta"])
     if stated.get("by") != "alpha":
         at = math.atan(math.tan(at) * math.cos(joint[0].angle))
-    moved = shaft_motion(joint, at)
+    moved = compute_shaft_motion(joint, at)
     acceleration = abs(float(moved.ratio_rate)) * speed**2
     computed = {
         "alpha": math.degrees(at),
@@ -89,7 +95,7 @@ def test_torque_of_a_shaft(case):
     stated, joint, speed = case.inputs, one(case.inputs["delta"]), case.inputs["rpm"] * RPM
     s = math.sin(joint[0].angle) ** 2
     near = 0.5 * math.acos(2.0 * s / (2.0 - s))
-    acceleration = abs(float(shaft_motion(joint, near).ratio_rate)) * speed**2
+    acceleration = abs(float(compute_shaft_motion(joint, near).ratio_rate)) * speed**2
     share = stated["inertia"] * acceleration
     # The book rounds 2π and the acceleration; its tolerances allow for the former.
     assert acceleration == pytest.approx(case.expected["acc"].value, abs=4.0)
@@ -125,15 +131,15 @@ def cross_in_space(angle, alpha):
 def test_one_joint_is_a_cross_in_space(degrees):
     for alpha in np.linspace(-3.0, 3.0, 13):
         expected = cross_in_space(math.radians(degrees), alpha)
-        assert float(shaft_motion(one(degrees), alpha).angle) == pytest.approx(expected, abs=1e-12)
+        assert float(compute_shaft_motion(one(degrees), alpha).angle) == pytest.approx(expected, abs=1e-12)
 
 
 @given(st.lists(st.tuples(ANGLES, st.floats(-7.0, 7.0)), min_size=1, max_size=4))
 def test_rates_are_derivatives_and_stay_within_the_extremes(stated):
     joints = [Joint(*joint) for joint in stated]
     at, step = np.linspace(0.0, 2.0 * math.pi, 181), 1e-5
-    here, after, before = (shaft_motion(joints, at + d) for d in (0.0, step, -step))
-    found = shaft_extremes(joints)
+    here, after, before = (compute_shaft_motion(joints, at + d) for d in (0.0, step, -step))
+    found = find_shaft_extremes(joints)
     scale = found.greatest**4
     assert np.allclose((after.angle - before.angle) / (2.0 * step), here.ratio, atol=1e-6 * scale)
     assert np.allclose((after.ratio - before.ratio) / (2.0 * step), here.ratio_rate, atol=1e-5 * scale)
@@ -141,24 +147,24 @@ def test_rates_are_derivatives_and_stay_within_the_extremes(stated):
     assert here.ratio.min() >= found.least * (1.0 - 1e-9)
     assert np.abs(here.ratio_rate).max() <= found.acceleration * (1.0 + 1e-9) + 1e-12
     assert here.angle[-1] - here.angle[0] == pytest.approx(2.0 * math.pi, abs=1e-9)
-    assert float(shaft_motion(joints, found.fastest_at).ratio) == pytest.approx(found.greatest, rel=1e-9)
-    steepest = shaft_motion(joints, found.fastest_at + found.steepest_at)
+    assert float(compute_shaft_motion(joints, found.fastest_at).ratio) == pytest.approx(found.greatest, rel=1e-9)
+    steepest = compute_shaft_motion(joints, found.fastest_at + found.steepest_at)
     assert abs(float(steepest.ratio_rate)) == pytest.approx(found.acceleration, rel=1e-6, abs=1e-9)
 
 
 @given(ANGLES, st.floats(0.0, 6.0))
 def test_two_equal_joints_with_forks_in_one_plane_even_the_speed(angle, alpha):
     joints = [Joint(angle), Joint(angle)]
-    assert float(shaft_motion(joints, alpha).ratio) == pytest.approx(1.0, abs=1e-11 / math.cos(angle) ** 2)
+    assert float(compute_shaft_motion(joints, alpha).ratio) == pytest.approx(1.0, abs=1e-11 / math.cos(angle) ** 2)
 
 
 def test_what_no_joint_has_is_refused():
     for joints in ([], [Joint(0.5 * math.pi)], [Joint(-0.1)], [Joint(math.nan)]):
         with pytest.raises(DimensionError):
-            shaft_extremes(joints)
+            find_shaft_extremes(joints)
     with pytest.raises(DimensionError):
-        angle_of_fluctuation(-0.1)
+        compute_joint_angle(-0.1)
     with pytest.raises(DimensionError):
-        angle_within(1.1, 2.0)
+        compute_max_joint_angle(1.1, 2.0)
     with pytest.raises(DimensionError):
-        angle_within(0.5, 0.9)
+        compute_max_joint_angle(0.5, 0.9)

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from kinematics.errors import ShapeError
-from kinematics.linkage.variation import Task, deviations, shares
+from kinematics.linkage.variation import Task, measure_deviations, measure_shares
 from tests.kinematics.variation_twin import Twin, crank_rocker, slider
 
 TASKS = [(make, sort) for make in (crank_rocker, slider) for sort in ("poses", "points", "outputs")]
@@ -24,7 +24,7 @@ def test_variants_deviate_as_roots_say(make, sort: str, adjusted: bool, greatest
     task = dataclasses.replace(task, greatest=greatest)
     rng = np.random.default_rng([7, adjusted, greatest])
     rows = nominal + rng.uniform(-0.05, 0.05, (3, len(nominal)))
-    driven = deviations(task, rows)
+    driven = measure_deviations(task, rows)
     for i, row in enumerate(rows):
         twin = Twin(task, nominal, row)
         for k in range(len(task.inputs)):
@@ -42,9 +42,9 @@ def test_variants_deviate_as_roots_say(make, sort: str, adjusted: bool, greatest
 def test_the_share_of_a_variant_is_that_of_its_deviations(make, sort: str) -> None:
     nominal, task = make(sort)
     rows = nominal + np.random.default_rng(3).uniform(-0.02, 0.02, (2000, len(nominal)))
-    driven = deviations(task, rows)
+    driven = measure_deviations(task, rows)
     most = np.maximum(driven.distances / 0.05, driven.angles / 0.01).max(axis=1)
-    share = shares(task, rows)
+    share = measure_shares(task, rows)
     assert 50 < np.count_nonzero(share <= 1.0) < 1950
     assert np.array_equal(share <= 1.0, most <= 1.0)
     assert share[share <= 1.0] == pytest.approx(most[most <= 1.0], rel=1e-12)
@@ -52,14 +52,14 @@ def test_the_share_of_a_variant_is_that_of_its_deviations(make, sort: str) -> No
 
 def test_targets_that_are_met_exactly_have_no_deviation() -> None:
     nominal, task = crank_rocker("poses")
-    at = deviations(task, nominal[None])
+    at = measure_deviations(task, nominal[None])
     exact = dataclasses.replace(
         task,
         points=task.points + at.offsets[0, :, 0] + 1j * at.offsets[0, :, 1],
         angles=task.angles + at.offsets[0, :, 2],
         inputs=at.inputs[0],
     )
-    driven = deviations(exact, nominal[None])
+    driven = measure_deviations(exact, nominal[None])
     # The last step is taken along the tangent, and leaves the square of a hundred-thousandth of the crank.
     assert driven.distances.max() < 1e-9
     assert driven.angles.max() < 1e-9
@@ -81,28 +81,28 @@ def test_variants_that_cannot_be_assembled_or_leave_their_branch_have_no_deviati
     nominal, task = folding((0.6, 1.1))
     shorter = nominal - [0, 0, 0, 0, 0, 0, 0.4, 0, 0]
     longer = 2.0 * nominal - shorter
-    driven = deviations(task, [nominal, shorter, longer])
+    driven = measure_deviations(task, [nominal, shorter, longer])
     assert np.isfinite(driven.offsets[[0, 2]]).all()
     assert np.isfinite(driven.offsets[1, 0]).all()
     assert np.isnan(driven.offsets[1, 1]).all()
     # The range that is used goes on to 1.25 rad, where the nominal linkage has folded already.
     beyond = folding((0.6, 1.25))[1]
-    driven = deviations(beyond, [nominal, longer])
+    driven = measure_deviations(beyond, [nominal, longer])
     assert np.isnan(driven.offsets[0]).all()
     assert np.isfinite(driven.offsets[1]).all()
     # Targets on both sides of a place where the linkage cannot be assembled.
     across = dataclasses.replace(folding(None)[1], inputs=np.array([0.6, math.tau - 0.6]))
-    assert np.isfinite(deviations(across, [nominal]).offsets).all()
+    assert np.isfinite(measure_deviations(across, [nominal]).offsets).all()
     held = dataclasses.replace(across, used=(0.6, math.tau - 0.6))
-    assert np.isnan(deviations(held, [nominal]).offsets).all()
+    assert np.isnan(measure_deviations(held, [nominal]).offsets).all()
 
 
 def test_a_variant_that_folds_before_a_target_comes_as_near_as_it_can() -> None:
     nominal, task = folding(None, adjusted=True)
     shorter = nominal - [0, 0, 0, 0, 0, 0, 0.02, 0, 0]
-    first = deviations(dataclasses.replace(task, adjusted=False), [nominal])
+    first = measure_deviations(dataclasses.replace(task, adjusted=False), [nominal])
     task = dataclasses.replace(task, points=first.offsets[0, :, 0] + 1j * first.offsets[0, :, 1])
-    driven = deviations(task, [shorter])
+    driven = measure_deviations(task, [shorter])
     assert np.isfinite(driven.offsets).all()
     twin = Twin(task, nominal, shorter)
     assert driven.distances[0, 1] == pytest.approx(twin.share(1, twin.nearest(1, reach=0.2)), rel=1e-3)
@@ -111,26 +111,26 @@ def test_a_variant_that_folds_before_a_target_comes_as_near_as_it_can() -> None:
 def test_a_slider_crank_is_held_to_its_branch() -> None:
     nominal, task = slider("points")
     through = dataclasses.replace(task, used=(-0.4, -0.4 + math.tau))
-    assert np.isfinite(deviations(through, nominal[None]).offsets).all()
+    assert np.isfinite(measure_deviations(through, nominal[None]).offsets).all()
     # With a coupler shorter than crank and offset together the crank does not turn through.
     short = nominal.copy()
     short[4] = abs(nominal[2]) + 1.5
-    assert np.isfinite(deviations(task, short[None]).offsets).all()
-    assert np.isnan(deviations(through, short[None]).offsets).all()
+    assert np.isfinite(measure_deviations(task, short[None]).offsets).all()
+    assert np.isnan(measure_deviations(through, short[None]).offsets).all()
 
 
 def test_links_without_a_length_make_no_linkage() -> None:
     for nominal, task in (crank_rocker("poses"), slider("poses")):
         rows = np.repeat(nominal[None], 2, axis=0)
         rows[0, 4], rows[1, 4] = 0.0, -rows[1, 4]
-        assert np.isnan(deviations(task, rows).offsets).all()
-        assert np.isinf(shares(task, rows)).all()
+        assert np.isnan(measure_deviations(task, rows).offsets).all()
+        assert np.isinf(measure_shares(task, rows)).all()
 
 
 def test_rows_of_another_linkage_are_refused() -> None:
     nominal, task = crank_rocker("outputs")
     with pytest.raises(ShapeError, match="variants"):
-        deviations(task, np.zeros((2, len(nominal) + 2)))
+        measure_deviations(task, np.zeros((2, len(nominal) + 2)))
 
 
 @pytest.mark.parametrize(("make", "sort"), TASKS)
@@ -144,8 +144,8 @@ def test_what_is_set_on_a_variant_is_what_is_demanded_less(make, sort: str) -> N
         changed["angles"] = task.angles - less
     if task.travels is not None:
         changed["travels"] = task.travels - less
-    expected = deviations(dataclasses.replace(task, used=None, **changed), rows)
-    given = deviations(dataclasses.replace(task, used=None), rows, np.full((4, 2), [farther, more]))
+    expected = measure_deviations(dataclasses.replace(task, used=None, **changed), rows)
+    given = measure_deviations(dataclasses.replace(task, used=None), rows, np.full((4, 2), [farther, more]))
     assert given.offsets == pytest.approx(expected.offsets, abs=1e-13)
     assert given.inputs == pytest.approx(expected.inputs, abs=1e-13)
 
@@ -157,11 +157,13 @@ def test_dials_counted_from_the_ground_turn_with_it() -> None:
     turned = nominal.copy()
     around = o2 + (o4 - o2) * np.exp(0.3j)
     turned[2:4] = around.real, around.imag
-    assert deviations(dials, turned[None]).offsets == pytest.approx(deviations(task, nominal[None]).offsets, abs=1e-13)
-    assert np.abs(deviations(task, turned[None]).offsets).max() > 0.1
+    assert measure_deviations(dials, turned[None]).offsets == pytest.approx(
+        measure_deviations(task, nominal[None]).offsets, abs=1e-13
+    )
+    assert np.abs(measure_deviations(task, turned[None]).offsets).max() > 0.1
 
 
 def test_settings_of_other_variants_are_refused() -> None:
     nominal, task = crank_rocker("poses")
     with pytest.raises(ShapeError, match="settings"):
-        deviations(task, nominal[None], np.zeros((2, 2)))
+        measure_deviations(task, nominal[None], np.zeros((2, 2)))

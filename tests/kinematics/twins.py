@@ -3,15 +3,14 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from kinematics.arrays import Complex, Real
 from kinematics.linkage.fourbar import Fourbar, can_assemble, grashof_class
-from kinematics.linkage.fourbar.circuit_kernels import AT_TOGGLE, CHANGE_POINT
-from kinematics.linkage.kernels import ON_TOGGLE, TOGGLE_SINE
+from kinematics.linkage.fourbar.circuit_kernels import CHANGE_POINT_TOLERANCE, TOGGLE_TOLERANCE
+from kinematics.linkage.kernels import TOGGLE_SINE, TOGGLE_SLACK
 from kinematics.linkage.slider_crank.closed_form import SliderCrank
 
-Real = NDArray[np.float64]
-Complex = NDArray[np.complex128]
 Orders = list[dict[str, np.ndarray]]
 """Position and three derivatives, each with the fields of the result that it is the twin of."""
 
@@ -24,7 +23,7 @@ def fourbar(linkage: Fourbar, theta: ArrayLike, sign: ArrayLike, w2: float, a2: 
     diagonal = (linkage.output_pivot - linkage.input_pivot)[..., None] - crank
     f = np.abs(diagonal)
     product = (b + c + f) * (b + c - f) * (f + (b - c)) * (f - (b - c))
-    valid = (product >= -4.0 * ON_TOGGLE * f * f * b * c) & (f > 0.0)
+    valid = (product >= -4.0 * TOGGLE_SLACK * f * f * b * c) & (f > 0.0)
     with np.errstate(divide="ignore", invalid="ignore"):
         along = (f * f + (b - c) * (b + c)) / (2.0 * f)
         height = np.sqrt(np.where(valid, np.maximum(product, 0.0), np.nan)) / (2.0 * f)
@@ -58,7 +57,7 @@ def slider_crank(linkage: SliderCrank, theta: ArrayLike, sign: ArrayLike, w2: fl
     to_a = np.conj(slide) * (pin_a - linkage.slide_point[..., None])
     across, offset = -to_a.imag, linkage.offset[..., None]
     square = (b - across) * (b + across)
-    valid = square >= -2.0 * ON_TOGGLE * b * np.maximum(np.maximum(a, b), np.abs(offset))
+    valid = square >= -2.0 * TOGGLE_SLACK * b * np.maximum(np.maximum(a, b), np.abs(offset))
     with np.errstate(divide="ignore", invalid="ignore"):
         local = sigma * np.sqrt(np.where(valid, np.maximum(square, 0.0), np.nan)) + 1j * across
         coupler, turned = slide * local, np.conj(slide) * crank
@@ -102,7 +101,7 @@ TURN = 2.0 * np.pi
 def input_limits(linkage: Fourbar) -> tuple[Real, ...]:
     """Lower and upper limit of |δ|, and whether they are toggles."""
     a, b, c, d = linkage.input, linkage.coupler, linkage.output, linkage.ground
-    slack, sound = CHANGE_POINT * (a + b + c + d), can_assemble(linkage)
+    slack, sound = CHANGE_POINT_TOLERANCE * (a + b + c + d), can_assemble(linkage)
     found = []
     for t, end in ((np.abs(b - c), 0.0), (b + c, np.pi)):
         below, above = t - np.abs(d - a), (d + a) - t
@@ -122,8 +121,8 @@ def stays_on_branch(linkage: Fourbar, start: Real, end: Real) -> Real:
     free = can_assemble(linkage)
     for toggle, exists in ((lower, folded), (upper, extended)):
         for sign in (1.0, -1.0):
-            turns = np.ceil((low - AT_TOGGLE - sign * toggle) / TURN)
-            free = free & ~(exists & (sign * toggle + turns * TURN <= high + AT_TOGGLE))
+            turns = np.ceil((low - TOGGLE_TOLERANCE - sign * toggle) / TURN)
+            free = free & ~(exists & (sign * toggle + turns * TURN <= high + TOGGLE_TOLERANCE))
     middle = np.abs(np.angle(np.exp(0.5j * (low + high))))
     return np.asarray(free & (lower <= middle) & (middle <= upper))
 
@@ -162,7 +161,7 @@ def transmission_extremes(linkage: Fourbar, start: Real, end: Real) -> tuple[Rea
 def barker_type(linkage: Fourbar) -> Real:
     """Barker's table by sorting the lengths."""
     lengths = linkage.lengths
-    equal, kind = CHANGE_POINT * lengths.sum(axis=-1), grashof_class(lengths)
+    equal, kind = CHANGE_POINT_TOLERANCE * lengths.sum(axis=-1), grashof_class(lengths)
     ordered = np.sort(lengths, axis=-1)
     pairs = (ordered[..., 1] - ordered[..., 0] <= equal) & (ordered[..., 3] - ordered[..., 2] <= equal)
     special = np.where(pairs, 13, 9 + lengths.argmin(axis=-1))

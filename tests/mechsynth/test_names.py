@@ -9,8 +9,8 @@ import pytest
 import mechsynth
 from mechsynth import kinds, parts
 from mechsynth.statements import statement_of
-from synthesis.model.mechanism_types import models_within
-from synthesis.registry import KINDS, examples, parse_problem
+from synthesis.model.mechanism_types import collect_models
+from synthesis.registry import KINDS, list_examples, parse_problem
 
 ROOT = Path(__file__).parents[2]
 MADE = {"GearTrainUnit", "PlanetaryUnit"}
@@ -24,7 +24,7 @@ def class_of(kind):
 def stated(model, seen):
     """All models that a statement can hold."""
     for field in model.model_fields.values():
-        for part in models_within(field.annotation):
+        for part in collect_models(field.annotation):
             if part not in seen:
                 seen.add(part)
                 stated(part, seen)
@@ -36,7 +36,7 @@ def test_every_kind_is_a_class_that_states_its_kind(kind):
     of_kind = class_of(kind)
     assert of_kind.__name__ in kinds.__all__
     assert of_kind.model_fields.keys() == KINDS[kind].problem.model_fields.keys()
-    for example in examples(kind):
+    for example in list_examples(kind):
         fields = {name: value for name, value in example.items() if name != "kind"}
         statement = statement_of(of_kind.model_validate(fields))
         assert statement["kind"] == kind

@@ -12,7 +12,7 @@ import pytest
 import synthesis
 from mechsynth import Cancelled, GearTrain, InvalidProblem, Motion, NoSuchExport, Position, solve
 from mechsynth.parts import TeethRange
-from synthesis.registry import example, parse_problem
+from synthesis.registry import get_first_example, parse_problem
 
 MOTION = {
     "kind": "motion",
@@ -113,7 +113,7 @@ def test_designs_are_drawn_and_written(motion, tmp_path):
 
 
 def test_what_has_no_animation_says_so(tmp_path):
-    design = solve(example("flywheel")).designs[0]
+    design = solve(get_first_example("flywheel")).designs[0]
     with pytest.raises(NoSuchExport):
         design.to_gif(tmp_path / "a.gif")
     assert list(tmp_path.iterdir()) == []

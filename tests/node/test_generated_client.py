@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from synthesis.registry import KINDS, examples
+from synthesis.registry import KINDS, list_examples
 from tests.service.running import ROOT, RunningServer
 
 HERE = Path(__file__).parent
@@ -32,7 +32,7 @@ def compiled(tmp_path_factory):
     (folder / "node_modules").symlink_to(MODULES)
     (folder / "package.json").write_text('{"type": "module"}')
     (folder / "client.ts").write_text((HERE / "client.ts").read_text())
-    stated = [one for kind in KINDS for one in examples(kind)]
+    stated = [one for kind in KINDS for one in list_examples(kind)]
     (folder / "examples.ts").write_text(
         'import type { components } from "./api.js";\n'
         f'export const examples: components["schemas"]["JobRequest"]["problem"][] = {json.dumps(stated, indent=1)};\n'

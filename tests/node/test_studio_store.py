@@ -6,8 +6,8 @@ import subprocess
 
 import pytest
 
-from service.stated import filled_in
-from synthesis.registry import KINDS, examples
+from service.requests import filled_in
+from synthesis.registry import KINDS, list_examples
 from tests.service.running import ROOT
 
 STUDIO = ROOT / "service" / "studio"
@@ -95,7 +95,7 @@ def test_an_example_whose_defaults_are_written_out_is_the_example_yet(tmp_path):
     cases = [
         [KINDS[kind].problem.model_json_schema(), one, json.loads(filled_in(kind, json.dumps(one)))]
         for kind in KINDS
-        for one in examples(kind)
+        for one in list_examples(kind)
     ]
     for name in ("schema.js", "pointer.js"):
         shutil.copy(STUDIO / name, tmp_path)

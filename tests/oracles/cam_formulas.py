@@ -9,8 +9,8 @@ from numpy.typing import ArrayLike, NDArray
 
 from kinematics.cam.barrel import BarrelCam
 from kinematics.cam.dynamics import FollowerLoad
-from kinematics.cam.extremes import Extremes, extremes
 from kinematics.cam.follower import OscillatingFlat, TranslatingFlat
+from kinematics.cam.motion.extremes import Extremes, find_extremes
 from kinematics.cam.profile import Cam
 
 POINTED = 1e-9
@@ -29,7 +29,9 @@ def profile_radius(cam: Cam, angle: ArrayLike) -> NDArray[np.float64]:
 
 def pressure_angle_extremes(cam: Cam) -> Extremes:
     """Exact extremes of the pressure angle, radians."""
-    return extremes(lambda angle: cam.follower.pressure_angle(cam.program.pieces.motion(angle)), cam.program.breaks)
+    return find_extremes(
+        lambda angle: cam.follower.pressure_angle(cam.program.pieces.motion(angle)), cam.program.breaks
+    )
 
 
 def reach_extremes(cam: Cam) -> Extremes:
@@ -44,7 +46,7 @@ def reach_extremes(cam: Cam) -> Extremes:
         motion = cam.program.pieces.motion(angle)
         return motion.v if isinstance(flat, TranslatingFlat) else flat.reach(motion)
 
-    return extremes(reach, cam.program.breaks)
+    return find_extremes(reach, cam.program.breaks)
 
 
 def largest_cutter(cam: Cam) -> float:
@@ -84,7 +86,7 @@ def least_groove_radius(cam: BarrelCam) -> float:
         motion = cam.program.pieces.motion(angle)
         return np.asarray(motion.a * cam.radius / np.hypot(cam.radius, motion.v) ** 3)
 
-    worst = extremes(curvature, cam.program.breaks).largest
+    worst = find_extremes(curvature, cam.program.breaks).largest
     return 1.0 / worst if worst > 0.0 else math.inf
 
 

@@ -26,8 +26,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-Real = NDArray[np.float64]
-Complex = NDArray[np.complex128]
+from kinematics.arrays import Complex, Real
 
 TURN = 0.985
 """Least cosine between the tangents at both ends of a step: ten degrees."""

@@ -28,11 +28,8 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from kinematics.arrays import Complex, Mask, Real
 from tests.oracles.positions import meet, newton_step
-
-Real = NDArray[np.float64]
-Complex = NDArray[np.complex128]
-Mask = NDArray[np.bool_]
 
 TURN = 0.985
 """Least cosine between the directions at both ends of a step: ten degrees."""

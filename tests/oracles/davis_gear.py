@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import ArrayLike
 
-from kinematics.linkage.steering import Real
+from kinematics.arrays import Real
 
 
 def davis_angles(height: ArrayLike, arm_angle: ArrayLike, travel: ArrayLike) -> tuple[Real, Real]:

@@ -24,8 +24,7 @@ import numpy as np
 from numpy.polynomial import chebyshev
 from numpy.typing import ArrayLike, NDArray
 
-Complex = NDArray[np.complex128]
-Real = NDArray[np.float64]
+from kinematics.arrays import Complex, Real
 
 ORDER = 24
 NODES = np.cos(np.pi * (np.arange(ORDER) + 0.5) / ORDER)

@@ -14,9 +14,17 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike
 
+from kinematics.arrays import Complex, Mask, Real
 from kinematics.errors import DimensionError
-from kinematics.linkage.fourbar.closed_form import OPEN, TOGGLE_SINE, Complex, Fourbar, Mask, Real, one_shape, require
-from kinematics.linkage.fourbar.curvature import PARALLEL, _accelerations, _cross, _crossing, _vectors, pole
+from kinematics.linkage.fourbar.closed_form import OPEN_ASSEMBLY, TOGGLE_SINE, Fourbar, broadcast_shape, require
+from kinematics.linkage.fourbar.curvature import (
+    PARALLEL_SINE,
+    _build_vectors,
+    _compute_accelerations,
+    _cross,
+    _is_crossing,
+    find_pole,
+)
 
 PAIRS = ((1, 2), (1, 3), (1, 4), (2, 3), (2, 4), (3, 4))
 """Links (1 ground, 2 input, 3 coupler, 4 output) of the six instant centres, in the order of their axis."""
@@ -75,18 +83,18 @@ def instant_center_count(links: int) -> int:
     return links * (links - 1) // 2
 
 
-def instant_centers(linkage: Fourbar, input_angle: ArrayLike, assembly: ArrayLike = OPEN) -> InstantCenters:
+def instant_centers(linkage: Fourbar, input_angle: ArrayLike, assembly: ArrayLike = OPEN_ASSEMBLY) -> InstantCenters:
     """All instant centres of the fourbar (Norton, Sec. 6.4).
 
     Parameters and errors as for :func:`kinematics.linkage.positions`, here and in all functions of this module; the
     results have shape S + (N, 6).
     """
-    x = _vectors(linkage, input_angle, assembly)
+    x = _build_vectors(linkage, input_angle, assembly)
     o2 = np.broadcast_to(linkage.input_pivot[x.axis], x.valid.shape)
     o4 = np.broadcast_to(linkage.output_pivot[x.axis], x.valid.shape)
     ground = (linkage.output_pivot - linkage.input_pivot)[x.axis] / x.unit
-    coupler_finite = _crossing(x.u, x.w) & x.valid
-    input_finite = _crossing(x.v, ground) & x.valid
+    coupler_finite = _is_crossing(x.u, x.w) & x.valid
+    input_finite = _is_crossing(x.v, ground) & x.valid
     nowhere = np.full_like(o2, np.nan)
     with np.errstate(divide="ignore", invalid="ignore"):
         i13 = x.at.a + x.unit * x.u * (_cross(x.v, x.w) / _cross(x.u, x.w))
@@ -110,41 +118,41 @@ def instant_centers(linkage: Fourbar, input_angle: ArrayLike, assembly: ArrayLik
     )
 
 
-def bresse_circles(linkage: Fourbar, input_angle: ArrayLike, assembly: ArrayLike = OPEN) -> BresseCircles:
+def bresse_circles(linkage: Fourbar, input_angle: ArrayLike, assembly: ArrayLike = OPEN_ASSEMBLY) -> BresseCircles:
     """Centres of the inflection circle and of the circle of no tangential acceleration, at constant input speed.
 
     At a toggle the input cannot turn at constant speed; ``circle`` is False there too.
     """
-    x = _vectors(linkage, input_angle, assembly)
-    at = pole(linkage, input_angle, assembly)
+    x = _build_vectors(linkage, input_angle, assembly)
+    at = find_pole(linkage, input_angle, assembly)
     two, three, _ = x.rates
-    first, second, _ = _accelerations(x)
+    first, second, _ = _compute_accelerations(x)
     # α3/ω3² at constant ω2, from rates ω = ω(s) along the smooth motion: d(ω3/ω2)/dθ2 · (ω2/ω3)².
     turning = second * two - first * three
-    circle = at.finite & (np.abs(two) > TOGGLE_SINE) & (np.abs(turning) > PARALLEL)
+    circle = at.finite & (np.abs(two) > TOGGLE_SINE) & (np.abs(turning) > PARALLEL_SINE)
     with np.errstate(divide="ignore", invalid="ignore"):
         diameter = np.where(circle, at.rate * three**2 * two / turning, np.nan)
     return BresseCircles(at.finite, 0.5 * (at.point + at.inflection_pole), circle, at.point + 0.5 * diameter)
 
 
-def velocity_ratio(linkage: Fourbar, input_angle: ArrayLike, assembly: ArrayLike = OPEN) -> Ratio:
+def velocity_ratio(linkage: Fourbar, input_angle: ArrayLike, assembly: ArrayLike = OPEN_ASSEMBLY) -> Ratio:
     """Angular velocity ratio m_V = ω4/ω2 (Norton 6.10); not finite at toggles of the input."""
-    x = _vectors(linkage, input_angle, assembly)
+    x = _build_vectors(linkage, input_angle, assembly)
     two, _, four = x.rates
-    return _ratio(four, two, x.valid & _crossing(x.v, x.w, TOGGLE_SINE))
+    return _ratio(four, two, x.valid & _is_crossing(x.v, x.w, TOGGLE_SINE))
 
 
-def torque_ratio(linkage: Fourbar, input_angle: ArrayLike, assembly: ArrayLike = OPEN) -> Ratio:
+def torque_ratio(linkage: Fourbar, input_angle: ArrayLike, assembly: ArrayLike = OPEN_ASSEMBLY) -> Ratio:
     """Torque ratio T4/T2 = ω2/ω4 of a linkage without losses (Norton 6.12); not finite at dead points of the output."""
-    x = _vectors(linkage, input_angle, assembly)
+    x = _build_vectors(linkage, input_angle, assembly)
     two, _, four = x.rates
-    return _ratio(two, four, x.valid & _crossing(x.u, x.v, TOGGLE_SINE))
+    return _ratio(two, four, x.valid & _is_crossing(x.u, x.v, TOGGLE_SINE))
 
 
 def mechanical_advantage(
     linkage: Fourbar,
     input_angle: ArrayLike,
-    assembly: ArrayLike = OPEN,
+    assembly: ArrayLike = OPEN_ASSEMBLY,
     *,
     input_radius: ArrayLike,
     output_radius: ArrayLike,
@@ -160,7 +168,7 @@ def mechanical_advantage(
     for name, radius in (("input_radius", inner), ("output_radius", outer)):
         require(name, "positive and finite", radius, np.isfinite(radius) & (radius > 0.0))
     found = torque_ratio(linkage, input_angle, assembly)
-    shape = one_shape(positions=found.value.shape, input_radius=inner.shape, output_radius=outer.shape)
+    shape = broadcast_shape(positions=found.value.shape, input_radius=inner.shape, output_radius=outer.shape)
     return Ratio(np.broadcast_to(found.finite, shape), found.value * (inner / outer))
 
 

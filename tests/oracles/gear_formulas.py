@@ -6,8 +6,8 @@ import math
 
 from kinematics.errors import DimensionError
 from kinematics.gear.bevel import BevelPair
-from kinematics.gear.helical import OVERLAP, HelicalGear
-from kinematics.gear.teeth import FULL_DEPTH_ADDENDUM, ON_LIMIT, PRESSURE_ANGLE, Gear, Mesh, involute
+from kinematics.gear.helical import USUAL_OVERLAP, HelicalGear
+from kinematics.gear.teeth import FULL_DEPTH_ADDENDUM, LIMIT_TOLERANCE, PRESSURE_ANGLE, Gear, Mesh, involute
 from kinematics.gear.worm import WormSet
 
 
@@ -25,7 +25,7 @@ def helix_angle_for_distance(teeth: int, other: int, normal_module: float, dista
     return math.acos(cosine)
 
 
-def helix_angle_for_face(normal_module: float, face: float, overlap: float = OVERLAP) -> float:
+def helix_angle_for_face(normal_module: float, face: float, overlap: float = USUAL_OVERLAP) -> float:
     """Least helix angle with which a tooth advances enough over a face: sin ψ = overlap π m_n / F.
 
     Raises
@@ -40,7 +40,7 @@ def helix_angle_for_face(normal_module: float, face: float, overlap: float = OVE
 
 
 def helical_replacement(
-    teeth: int, other: int, module: float, face: float, overlap: float = OVERLAP
+    teeth: int, other: int, module: float, face: float, overlap: float = USUAL_OVERLAP
 ) -> tuple[HelicalGear, HelicalGear] | None:
     """Helical gears for a spur pair: same distance, ratio and cutter, the smallest helix angle that the face allows.
 
@@ -51,7 +51,7 @@ def helical_replacement(
         pair = teeth // step * share, other // step * share
         angle = helix_angle_for_distance(*pair, module, distance)
         first, second = (HelicalGear(z, module, sign * angle) for z, sign in zip(pair, (1, -1), strict=True))
-        if first.least_face_width(overlap) <= face:
+        if first.min_face_width(overlap) <= face:
             return first, second
     return None
 
@@ -135,7 +135,7 @@ def fine_pitch_dedendum(diametral_pitch: float) -> float:
 
 def rack_interferes(gear: Gear, rack_addendum: float) -> bool:
     """Whether a rack of this addendum (a length) reaches below the gear's base tangent: a > r sin² φ."""
-    return rack_addendum > gear.pitch_radius * math.sin(gear.pressure_angle) ** 2 * (1.0 + ON_LIMIT)
+    return rack_addendum > gear.pitch_radius * math.sin(gear.pressure_angle) ** 2 * (1.0 + LIMIT_TOLERANCE)
 
 
 def rack_path(gear: Gear, rack_addendum: float) -> tuple[float, float]:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
-from kinematics.linkage.fourbar.circuits import full_rotation
+from kinematics.linkage.fourbar.circuits import has_full_rotation
 from kinematics.linkage.fourbar.classification import can_assemble, grashof_class
 from kinematics.linkage.fourbar.closed_form import Fourbar
 
@@ -21,4 +21,4 @@ def count_circuits(linkage: Fourbar) -> Circuits:
     if not can_assemble(linkage):
         return Circuits(0, 0)
     kind = int(grashof_class(linkage.lengths))
-    return Circuits(2 if kind == 1 else 1, 1 if full_rotation(linkage) else 2)
+    return Circuits(2 if kind == 1 else 1, 1 if has_full_rotation(linkage) else 2)

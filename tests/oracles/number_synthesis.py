@@ -16,11 +16,10 @@ import itertools
 from collections.abc import Iterator
 
 import numpy as np
-from numpy.typing import NDArray
 
+from kinematics.arrays import Integers
 from kinematics.errors import DimensionError
 
-Matrix = NDArray[np.int64]
 Joints = tuple[tuple[int, int], ...]
 """Pairs of links that are joined, links by number."""
 
@@ -130,21 +129,21 @@ Lengths = tuple[tuple[int, int, tuple[int, ...]], ...]
 """For two links: the numbers of binary links on each path between them, ascending."""
 
 
-def _permutations(orders: list[int]) -> Matrix:
+def _permutations(orders: list[int]) -> Integers:
     """Permutations of the links that keep their orders, shape (n, links)."""
     groups = [[n for n, k in enumerate(orders) if k == order] for order in sorted(set(orders))]
     every = itertools.product(*(itertools.permutations(group) for group in groups))
     return np.array([list(itertools.chain(*parts)) for parts in every], np.int64)
 
 
-def _multigraphs(orders: list[int], alike: Matrix) -> list[Matrix]:
+def _multigraphs(orders: list[int], alike: Integers) -> list[Integers]:
     """How many paths there are between every two links, (links, links); one of each class under permutations."""
     count = len(orders)
     pairs = list(itertools.combinations(range(count), 2))
-    found: list[Matrix] = []
+    found: list[Integers] = []
     seen: set[bytes] = set()
 
-    def fill(n: int, paths: Matrix, left: list[int]) -> None:
+    def fill(n: int, paths: Integers, left: list[int]) -> None:
         if n == len(pairs):
             if not any(left) and paths.tobytes() not in seen:
                 found.append(paths.copy())
@@ -164,7 +163,7 @@ def _multigraphs(orders: list[int], alike: Matrix) -> list[Matrix]:
     return found
 
 
-def _lengths(paths: Matrix, binary: int) -> Iterator[Lengths]:
+def _lengths(paths: Integers, binary: int) -> Iterator[Lengths]:
     """All ways to put the binary links on the paths; at most one path between two links is a joint."""
     pairs = [(i, j) for i, j in itertools.combinations(range(len(paths)), 2) if paths[i, j]]
 

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from scipy import optimize
 
-Complex = NDArray[np.complex128]
+from kinematics.arrays import Complex
 
 QUADRATIC = 60
 """Newton iterations: halving steps far from the root, quadratic ones near it; at a toggle the error halves each time,

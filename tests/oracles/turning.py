@@ -19,12 +19,9 @@ from collections.abc import Callable, Mapping, Sequence
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
+from kinematics.arrays import Complex, Real
 from tests.oracles.elimination import BRACKET, Elimination, Pair, Piece, Undecided
-
-Complex = NDArray[np.complex128]
-Real = NDArray[np.float64]
 
 CLEARING = 3
 """Power of each dyad's d d̄ that clears the determinant of its denominators."""

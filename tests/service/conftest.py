@@ -1,7 +1,7 @@
 import pytest
 
-from service.jobs.database import connect, upgrade
-from service.jobs.schema import metadata
+from service.jobs.store.database import connect, upgrade
+from service.jobs.store.schema import metadata
 from tests.cluster.backend import CHOSEN
 from tests.service.running import SCRIPTED, RunningServer
 from tests.support import cpu_time

@@ -4,7 +4,7 @@ import copy
 import json
 from collections.abc import Iterator
 
-from synthesis.registry import example
+from synthesis.registry import get_first_example
 
 SPOILT = {
     "nan": "NaN",
@@ -19,7 +19,7 @@ _MARK = "@spoilt@"
 
 def of_kind(kind: str) -> Iterator[tuple[str, bytes]]:
     """Each field of the example, outermost first, with each of the spoilt values in its place."""
-    problem = example(kind)
+    problem = get_first_example(kind)
     for path in _fields(problem):
         body = copy.deepcopy(problem)
         place = body

@@ -15,7 +15,7 @@ from prometheus_client.parser import text_string_to_metric_families
 from tests.cluster.backend import CHOSEN
 
 ROOT = Path(__file__).parents[2]
-REAL = ("-m", "service.cli")
+REAL = ("-m", "service.command.cli")
 SCRIPTED = (str(Path(__file__).with_name("scripted_server.py")),)
 STACKS = signal.SIGUSR1
 """A scripted process writes the stacks of its threads to its log when it gets this signal."""

@@ -12,8 +12,8 @@ import threading
 import time
 from pathlib import Path
 
-from service import analyst
-from service.cli import main
+from service import warm_analysis
+from service.command.cli import main
 from synthesis import dispatch
 from synthesis.model.answer import Result, Search
 
@@ -121,7 +121,7 @@ def warm_up():
 def crash_points():
     """Let the process die before or after a write to the store is committed, when a file says so."""
     from service.jobs.batches.store import BatchStore
-    from service.jobs.store import JobStore
+    from service.jobs.job_store import JobStore
 
     def deadly(name, store=JobStore, called=""):
         write = getattr(store, name)
@@ -159,7 +159,7 @@ if __name__ in ("__main__", "__mp_main__"):
     dispatch.solve = solve
     dispatch.warm_up = warm_up
     dispatch.warm_up_rest = lambda: None
-    analyst.warm_up = lambda: None
+    warm_analysis.warm_up = lambda: None
     crash_points()
 if __name__ == "__mp_main__" and (FOLDER / "slow-start").exists():
     time.sleep(60)  # it is killed before
@@ -170,7 +170,7 @@ def break_lanes():
     from pebble import ProcessPool
     from pebble.pool.base_pool import PoolStatus
 
-    from service.jobs import lane, worker
+    from service.jobs.workers import lane, worker
 
     call, get_context, schedule = lane.Lane._call, lane.get_context, ProcessPool.schedule
     check_stay = lane.Lane._check_stay

@@ -9,7 +9,7 @@ import pytest
 
 from service.access.gate import Gate, NoKey
 from service.access.keys import KeyStore, TenantExists, digest
-from service.jobs.database import connect, upgrade
+from service.jobs.store.database import connect, upgrade
 from tests.campaign import further
 from tests.service.running import PROBLEM, SCRIPTED, RunningServer, until
 from tests.service.scripted_server import GATED, INSTANT

@@ -12,9 +12,9 @@ import httpx
 import numpy as np
 import pytest
 
-from service.parts.answer import AssemblyView
-from service.parts.extra import installed
-from synthesis.registry import examples
+from service.parts.export.cad_available import is_installed
+from service.parts.export.viewer_schema import AssemblyView
+from synthesis.registry import list_examples
 from tests.service.answers import SVG, finished
 from tests.support.service.parts import DRIVEN, MOTION, SIZES, SLIDER, parts, refused
 
@@ -111,7 +111,7 @@ def test_parts_are_where_the_analysis_has_them(client: Any, jobs: Any, name: str
 
 
 def test_a_follower_goes_as_its_cam_is_analysed_to_lift_it(client: Any) -> None:
-    job = finished(client, examples("cam")[0])
+    job = finished(client, list_examples("cam")[0])
     answer = seen(client, job, positions=12)
     assert answer["input"]["values"] == pytest.approx([30.0 * k for k in range(12)])
     lift = client.get(f"{place(job)}/motion", params={"steps": 12}).json()["follower"]["position"][:12]
@@ -214,7 +214,7 @@ def test_a_single_part_is_the_one_in_the_zip(client: Any, jobs: Any) -> None:
         assert answer.status_code == 404, answer.text
     for form in ("stl", "step", "3mf"):
         answer = client.get(f"{place(jobs['fourbar'])}/parts/link_coupler.{form}", params=SIZES)
-        assert answer.status_code == (200 if installed() else 501), answer.text
+        assert answer.status_code == (200 if is_installed() else 501), answer.text
 
 
 @pytest.mark.cad

@@ -10,7 +10,7 @@ from typing import Any
 import httpx
 import pytest
 
-from synthesis.registry import examples
+from synthesis.registry import list_examples
 from tests.cases import Case, cases
 from tests.service.answers import SVG, finished
 
@@ -79,7 +79,7 @@ def test_a_wheel_is_balanced_by_the_forces_on_its_bearings(client: httpx.Client,
 
 @pytest.mark.parametrize("n", [0, 1])
 def test_what_is_answered_is_drawn_and_can_be_analysed(client: httpx.Client, n: int) -> None:
-    job = finished(client, examples("balancing")[n])
+    job = finished(client, list_examples("balancing")[n])
     design = job["result"]["designs"][0]
     place = f"/v1/jobs/{job['id']}/designs/0"
     root = ET.fromstring(client.get(f"{place}.svg").raise_for_status().text)
@@ -94,13 +94,13 @@ def test_what_is_answered_is_drawn_and_can_be_analysed(client: httpx.Client, n: 
     for speed in (300.0, 3000.0):
         body = {"mechanism": design["mechanism"], "motion": {"speed_rpm": speed}}
         answer = client.post("/v1/analyses", json=body).raise_for_status().json()
-        square = (speed / examples("balancing")[n]["rpm"]) ** 2
+        square = (speed / list_examples("balancing")[n]["rpm"]) ** 2
         for bearing, told in zip(answer["bearings"], design["metrics"]["bearings"], strict=True):
             assert bearing["peak"] == pytest.approx(square * told["after"], rel=1e-6, abs=1e-9 * square)
 
 
-TRIALS = examples("balancing")[1]["influence"]["trials"]
-INITIAL = examples("balancing")[1]["influence"]["initial"]
+TRIALS = list_examples("balancing")[1]["influence"]["trials"]
+INITIAL = list_examples("balancing")[1]["influence"]["initial"]
 
 REFUSED = {
     "/masses": {"masses": []},
@@ -163,7 +163,7 @@ def test_two_planes_at_one_place_are_one(client: httpx.Client) -> None:
     assert two["metrics"]["residual_couple"] == one["metrics"]["residual_couple"] > 0.0
 
 
-LINKAGE: Statement = examples("balancing")[2]
+LINKAGE: Statement = list_examples("balancing")[2]
 
 
 def fourbar(links: dict[str, float]) -> Statement:
@@ -256,7 +256,7 @@ def test_a_fourbar_shakes_neither_by_force_nor_by_moment(client: httpx.Client, c
 
 @pytest.mark.parametrize("n", [2, 3])
 def test_what_is_balanced_goes_to_an_analysis_as_it_is(client: httpx.Client, n: int) -> None:
-    problem = examples("balancing")[n]
+    problem = list_examples("balancing")[n]
     job = finished(client, problem)
     design = job["result"]["designs"][0]
     place = f"/v1/jobs/{job['id']}/designs/0"
@@ -328,7 +328,7 @@ def test_what_contradicts_itself_of_a_linkage_is_refused_by_its_field(client: ht
 
 def test_the_best_weights_are_measured_as_they_are_promised(client: httpx.Client) -> None:
     """Peaks of an analysis of the answer, before and after, weighed as the objective says, are its value."""
-    problem = examples("balancing")[4]
+    problem = list_examples("balancing")[4]
     job = finished(client, problem)
     design = job["result"]["designs"][0]
     metrics = design["metrics"]
@@ -357,7 +357,7 @@ def test_the_best_weights_are_measured_as_they_are_promised(client: httpx.Client
 
 
 def test_caps_that_cannot_be_kept_are_named(client: httpx.Client) -> None:
-    problem = {**examples("balancing")[4], "caps": {"shaking_moment": 0.05, "drive": 0.3}}
+    problem = {**list_examples("balancing")[4], "caps": {"shaking_moment": 0.05, "drive": 0.3}}
     result = finished(client, problem)["result"]
     assert result["designs"] == []
     assert result["search"]["complete"]

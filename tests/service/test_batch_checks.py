@@ -4,10 +4,10 @@ import time
 
 import pytest
 
-from service.api.batch_plans import plan_of
-from service.api.batch_schemas import BatchRequest
-from service.api.errors import Refusal
-from service.explained import MAX_FAULTS
+from service.api.http.problem_details import Refusal
+from service.api.routes.batch_plans import plan_of
+from service.api.routes.batch_schemas import BatchRequest
+from service.error_messages import MAX_FAULTS
 
 SEEDS = {"field": "/seed", "from": 0, "to": 9999, "count": 10_000}
 MOTION = {"kind": "motion", "positions": [{"x": 0, "y": 0, "angle": 0}, {"x": 9, "y": 5, "angle": 30}]}
@@ -54,9 +54,9 @@ def test_a_spaced_value_is_told_by_itself():
 
 def test_a_field_that_another_goes_by_does_not_condemn_the_problem():
     """With the first value of `motion` the lift is a field that there is not, with others it is one."""
-    from synthesis.registry import example
+    from synthesis.registry import get_first_example
 
-    cam = example("cam")
+    cam = get_first_example("cam")
     segment = next(k for k, each in enumerate(cam["segments"]) if "lift" in each)
     motions = ["dwell", cam["segments"][segment]["motion"]]
     body = {"problem": cam, "vary": [{"field": f"/segments/{segment}/motion", "values": motions}]}

@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 from ulid import ULID
 
-from service.api.batch_plans import by_default
-from service.api.batch_schemas import MOST_SAMPLES
+from service.api.routes.batch_plans import by_default
+from service.api.routes.batch_schemas import MOST_SAMPLES
 from service.jobs.batches import identity
 from service.jobs.batches import table as table_module
 from service.jobs.batches.plan import NoSuchPlace, Plan
@@ -18,8 +18,8 @@ from service.jobs.batches.reading import sample_id
 from service.jobs.batches.rows import BatchSummary, TableRow
 from service.jobs.batches.sampling import Span, evenly, latin_hypercube
 from service.jobs.batches.table import Table, table_of, unbeaten
-from service.jobs.states import Status
-from synthesis.registry import KINDS, example, parse_problem
+from service.jobs.store.states import Status
+from synthesis.registry import KINDS, get_first_example, parse_problem
 
 PROBLEM = {"kind": "motion", "positions": [{"x": 0.0, "a/b~": 1}, {"x": 1.0}]}
 
@@ -86,10 +86,10 @@ def test_ids_of_samples_are_none_that_are_made_in_the_same_millisecond():
 
 @pytest.mark.parametrize("kind", KINDS)
 def test_equal_problems_have_one_digest(kind, monkeypatch):
-    problem = parse_problem(example(kind))
+    problem = parse_problem(get_first_example(kind))
     spelt_out = json.loads(problem.model_dump_json())
     assert identity.digest(parse_problem(dict(reversed(spelt_out.items())))) == identity.digest(problem)
-    assert identity.digest(parse_problem({**example(kind), "seed": 7})) != identity.digest(problem)
+    assert identity.digest(parse_problem({**get_first_example(kind), "seed": 7})) != identity.digest(problem)
     before = identity.digest(problem)
     monkeypatch.setattr(identity, "solvers", lambda: "another version")
     assert identity.digest(problem) != before

@@ -9,17 +9,17 @@ import pytest
 from sqlalchemy import select, update
 from ulid import ULID
 
-from service.jobs.admission import KeyReused, QueueFull, Repeatable
 from service.jobs.batches import removal
 from service.jobs.batches.plan import Plan
 from service.jobs.batches.reading import sample_id
 from service.jobs.batches.rows import Ended, OwnAnswer, Share
 from service.jobs.batches.store import SHARES, BatchStore, _one_result_each
-from service.jobs.leases import LeaseStore
-from service.jobs.schema import batches, jobs, samples
-from service.jobs.statements import MAX_CRASHES, MAX_KILLS
-from service.jobs.states import Cost, Status
-from service.jobs.store import JobStore
+from service.jobs.cluster.leases import LeaseStore
+from service.jobs.job_store import JobStore
+from service.jobs.store.admission import KeyReused, QueueFull, Repeatable
+from service.jobs.store.schema import batches, jobs, samples
+from service.jobs.store.statements import MAX_CRASHES, MAX_KILLS
+from service.jobs.store.states import Cost, Status
 
 
 @pytest.fixture

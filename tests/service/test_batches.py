@@ -5,7 +5,7 @@ import time
 
 import pytest
 
-from service.api.batch_schemas import EXAMPLE, MOST_SAMPLES
+from service.api.routes.batch_schemas import EXAMPLE, MOST_SAMPLES
 from tests.campaign import further
 from tests.service.running import PROBLEM, SCRIPTED, SOON_S, RunningServer, until
 from tests.service.scripted_server import BRIEF, BROKEN, DIES_ONCE, GATED, GREEDY, INSTANT

@@ -11,14 +11,14 @@ import pytest
 
 from kinematics.cam.dynamics import Camshaft, FollowerLoad, RunningCam
 from kinematics.cam.follower import Follower, OscillatingFlat, OscillatingRoller, TranslatingFlat, TranslatingRoller
-from kinematics.cam.motion_laws import LAWS
-from kinematics.cam.profile import Cam, even_angles
-from kinematics.cam.program import TURN, Program
-from kinematics.cam.segments import dwell, law_segment
+from kinematics.cam.motion.laws import LAWS
+from kinematics.cam.motion.program import TURN, Program
+from kinematics.cam.motion.segments import build_dwell, build_law_segment
+from kinematics.cam.profile import Cam, space_angles
 from synthesis.analyses import parse_request
-from synthesis.analyses.cam import CamAnalysis, CamAnalysisRequest
-from synthesis.analyses.camshaft import CamshaftAnalysis, CamshaftAnalysisRequest
-from synthesis.analyses.contour_cam import ContourCamAnalysis, ContourCamAnalysisRequest
+from synthesis.analyses.cams.cam import CamAnalysis, CamAnalysisRequest
+from synthesis.analyses.cams.camshaft import CamshaftAnalysis, CamshaftAnalysisRequest
+from synthesis.analyses.cams.contour_cam import ContourCamAnalysis, ContourCamAnalysisRequest
 from synthesis.mechanisms import MechanismError
 from tests.oracles.cam_formulas import cutter_path, largest_cutter
 
@@ -59,13 +59,13 @@ def cam_of(kind: str, rotation: str = "cw", rise: float = 8.0) -> tuple[Cam, dic
     lift = math.radians(rise) if kind.startswith("oscillating") else rise
     program = Program(
         [
-            law_segment(LAWS["cycloidal"], TURN / 3.0, 0.0, lift),
-            dwell(TURN / 6.0, lift),
-            law_segment(LAWS["polynomial_4567"], TURN / 2.0, lift, 0.0),
+            build_law_segment(LAWS["cycloidal"], TURN / 3.0, 0.0, lift),
+            build_dwell(TURN / 6.0, lift),
+            build_law_segment(LAWS["polynomial_4567"], TURN / 2.0, lift, 0.0),
         ]
     )
     cam = Cam(program, follower, rotation)
-    points = cam.profile(even_angles(720))
+    points = cam.profile(space_angles(720))
     profile = {"x": points.real.tolist(), "y": points.imag.tolist()}
     return cam, {"type": "cam", "rotation": rotation, "profile": profile, **stated}
 
@@ -88,7 +88,7 @@ def test_motion_and_forces_from_the_profile_are_the_programs(kind: str, rotation
             "cutter": {"radius": 20.0},
         }
     )
-    found = request.answer()
+    found = request.build_answer()
     CamAnalysis.model_validate_json(json.dumps(found))
     angles = np.radians(found["input_angle"])
     motion = cam.program.motion(angles)
@@ -112,11 +112,11 @@ def test_motion_and_forces_from_the_profile_are_the_programs(kind: str, rotation
 def test_a_cutters_path_keeps_its_chords() -> None:
     cam, mechanism = cam_of("translating_roller", rise=45.0)
     body = {"mechanism": mechanism, "cutter": {"radius": 12.0, "chordal_tolerance": 0.02}}
-    path = CamAnalysisRequest.model_validate(body).answer()["cutter_path"]
+    path = CamAnalysisRequest.model_validate(body).build_answer()["cutter_path"]
     points = np.array(path["x"]) + 1j * np.array(path["y"])
-    fine = cutter_path(cam, even_angles(20_000), 12.0)
+    fine = cutter_path(cam, space_angles(20_000), 12.0)
     at = np.radians([*path["angle"], 360.0])
-    index = np.searchsorted(at, even_angles(20_000), side="right") - 1
+    index = np.searchsorted(at, space_angles(20_000), side="right") - 1
     chord = np.roll(points, -1) - points
     off = np.abs(((fine - points[index]) * np.conj(chord[index])).imag / np.abs(chord[index]))
     assert 0.005 < off.max() < 0.025
@@ -124,14 +124,14 @@ def test_a_cutters_path_keeps_its_chords() -> None:
     assert path["gouges"] is False
     hollow = largest_cutter(cam)
     body["cutter"] = {"radius": 1.01 * hollow}
-    assert CamAnalysisRequest.model_validate(body).answer()["cutter_path"]["gouges"] is True
+    assert CamAnalysisRequest.model_validate(body).build_answer()["cutter_path"]["gouges"] is True
 
 
 def test_vibration_of_an_elastic_follower() -> None:
     _, mechanism = cam_of("translating_roller")
     train = {"mass": 1.0, "stiffness": 9000.0, "damping": 20.0, "spring_rate": 100.0, "preload": 500.0}
     body = {"mechanism": mechanism, "motion": {"steps": 360, "speed": 8.0}, "train": train}
-    found = CamAnalysisRequest.model_validate(body).answer()["response"]
+    found = CamAnalysisRequest.model_validate(body).build_answer()["response"]
     assert found["natural_frequency"] == pytest.approx(math.sqrt(9100.0))
     assert found["too_slow"] is False
     rest = -500.0 / 9100.0
@@ -141,10 +141,10 @@ def test_vibration_of_an_elastic_follower() -> None:
 
 
 def test_a_profile_that_crosses_itself_is_told() -> None:
-    angles = even_angles(2000)
+    angles = space_angles(2000)
     bad = (30.0 + 24.0 * np.cos(3.0 * angles)) * np.exp(1j * (angles + 0.9 * np.sin(3.0 * angles)))
     mechanism = {**cam_of("translating_roller")[1], "profile": {"x": bad.real.tolist(), "y": bad.imag.tolist()}}
-    found = CamAnalysisRequest.model_validate({"mechanism": mechanism}).answer()
+    found = CamAnalysisRequest.model_validate({"mechanism": mechanism}).build_answer()
     assert found["profile"]["crossings"]
 
 
@@ -174,7 +174,7 @@ def test_contour_cams_over_http(client: Any) -> None:
         ),
     ):
         face = ContourCamAnalysisRequest.model_validate({"mechanism": {"type": "contour_cam", "contour": contour}})
-        assert face.answer()["base_radius"] == radius
+        assert face.build_answer()["base_radius"] == radius
     body = {"mechanism": {"type": "contour_cam", "contour": {**contour, "flank_radius": 60.0}}}
     assert client.post("/v1/analyses", json=body).status_code == 422
 
@@ -196,9 +196,9 @@ def test_several_cams_on_one_shaft_over_http(client: Any) -> None:
     assert found["min_torque"] == pytest.approx(shaft.torque_extremes.least, rel=1e-3)
     assert found["mean_torque"] == pytest.approx(shaft.mean_torque, rel=1e-3)
     assert found["energy_fluctuation"] == pytest.approx(shaft.energy_fluctuation, rel=1e-3)
-    assert found["flywheel_inertia"] == pytest.approx(shaft.flywheel_inertia(0.05), rel=1e-3)
+    assert found["flywheel_inertia"] == pytest.approx(shaft.compute_flywheel_inertia(0.05), rel=1e-3)
     assert np.sum(found["torques"], axis=0) == pytest.approx(found["torque"])
-    jump = RunningCam(one.program, core, 1.0).jump_speed()
+    jump = RunningCam(one.program, core, 1.0).find_jump_speed()
     assert found["jump_speeds"][0] == pytest.approx(jump, rel=2e-2)
 
 
@@ -216,14 +216,14 @@ def test_bad_cams_are_refused_by_field(client: Any) -> None:
         assert response.json()["errors"][0]["path"] == path
     beside = {**good, "follower": {"type": "translating_roller", "roller_radius": 10.0, "offset": 39.0}}
     moved = {**beside, "profile": {axis: [0.1 * v for v in good["profile"][axis]] for axis in ("x", "y")}}
-    found = CamAnalysisRequest.model_validate({"mechanism": moved}).answer()
+    found = CamAnalysisRequest.model_validate({"mechanism": moved}).build_answer()
     assert not any(found["valid"])
     with pytest.raises(MechanismError, match="too many points"):
-        _many().answer()
+        _many().build_answer()
 
 
 def _many() -> CamAnalysisRequest:
-    circle = 40.0 * np.exp(1j * even_angles(20_000))
+    circle = 40.0 * np.exp(1j * space_angles(20_000))
     profile = {"x": circle.real.tolist(), "y": circle.imag.tolist()}
     mechanism = {"type": "cam", "follower": {"type": "translating_flat"}, "base_radius": 40.0, "profile": profile}
     return CamAnalysisRequest.model_validate({"mechanism": mechanism, "motion": {"steps": 9999}})
@@ -240,17 +240,17 @@ def test_faults_of_motions() -> None:
         ({**shaft, "motion": {"speed": 0.0}}, "/motion/speed"),
         ({**shaft, "motion": {"acceleration": 1.0}}, "/motion/acceleration"),
     ):
-        assert parse_request(body).faults()[0][0] == path
+        assert parse_request(body).find_errors()[0][0] == path
 
 
 def test_the_cycle_of_a_given_cam() -> None:
     cam, mechanism = cam_of("translating_flat")
-    found = CamAnalysisRequest.over_the_cycle(mechanism, 36)
+    found = CamAnalysisRequest.analyze_cycle(mechanism, 36)
     assert found["input_angle"] == [10.0 * k for k in range(37)]
     assert found["follower"]["position"] == pytest.approx(
         cam.program.motion(np.radians(found["input_angle"])).s, abs=1e-6
     )
     contour = ContourCamAnalysisRequest.model_json_schema()["examples"][0]["mechanism"]
-    assert len(ContourCamAnalysisRequest.over_the_cycle(contour, 12)["input_angle"]) == 13
+    assert len(ContourCamAnalysisRequest.analyze_cycle(contour, 12)["input_angle"]) == 13
     shaft = CamshaftAnalysisRequest.model_json_schema()["examples"][0]["mechanism"]
-    assert len(CamshaftAnalysisRequest.over_the_cycle(shaft, 12)["input_angle"]) == 13
+    assert len(CamshaftAnalysisRequest.analyze_cycle(shaft, 12)["input_angle"]) == 13

@@ -14,10 +14,10 @@ import numpy as np
 import pytest
 from ezdxf.path import make_path
 
-from service.render import exported
-from service.render.cam.animation import _holder
+from service.render import export_design
+from service.render.cam.animation import _draw_holder
 from service.render.cam.scene import CamScene
-from service.render.page.diagrams import ticks
+from service.render.page.diagrams import find_ticks
 from synthesis.kinds.cam.design import CamDesign
 from synthesis.kinds.cam.problem import CamProblem
 from synthesis.kinds.cam.solver import solve_cam
@@ -53,7 +53,7 @@ def solved(kind: str, rotation: str = "ccw") -> tuple[CamDesign, CamProblem]:
 
 
 def sheet(kind: str, rotation: str = "ccw", title: str = "A cam") -> ElementTree.Element:
-    return ElementTree.fromstring(exported(*solved(kind, rotation), title, "svg"))
+    return ElementTree.fromstring(export_design(*solved(kind, rotation), title, "svg"))
 
 
 def part(drawing: ElementTree.Element, name: str) -> ElementTree.Element | None:
@@ -77,13 +77,13 @@ def test_a_sheet_shows_every_part_of_its_cam(kind: str) -> None:
 
 @pytest.mark.parametrize("kind", FOLLOWERS)
 def test_a_sheet_stands_alone(kind: str) -> None:
-    text = exported(*solved(kind), "A <cam> & more", "svg")
+    text = export_design(*solved(kind), "A <cam> & more", "svg")
     drawing = ElementTree.fromstring(text)
     assert "nan" not in text
     assert "inf" not in text.replace("info", "")
     assert not [found for found in drawing.iter() if found.get("id") or found.tag in (f"{SVG}script", f"{SVG}style")]
     assert drawing.find(f"{SVG}title").text == "A <cam> & more"
-    assert text == exported(*solved(kind), "A <cam> & more", "svg")
+    assert text == export_design(*solved(kind), "A <cam> & more", "svg")
     height, width = float(drawing.get("height")), float(drawing.get("width"))
     for found in drawing.iter(f"{SVG}text"):
         assert 0.0 <= float(found.get("x")) <= width
@@ -130,13 +130,13 @@ def circles_of(drawing: ElementTree.Element, name: str) -> list[tuple[complex, f
 def test_drawn_faces_lie_along_the_profile(kind: str, rotation: str) -> None:
     scene = CamScene(solved(kind, rotation)[0].mechanism)
     every = 20
-    for k, (start, end) in enumerate(scene.faces(every)):
+    for k, (start, end) in enumerate(scene.list_faces(every)):
         along = (end - start) / abs(end - start)
         height = ((scene.profile - start) * np.conj(along)).imag
         # The whole cam is on one side of every face and touches it.
         assert min(height.max(), -height.min()) == pytest.approx(0.0, abs=2e-3), k
         if scene.pivot is not None:
-            pivot = scene.pivot * scene.station(float(scene.angle[k * every]))
+            pivot = scene.pivot * scene.find_station(float(scene.angle[k * every]))
             assert abs(((pivot - start) * np.conj(along)).imag) == pytest.approx(6.0, abs=1e-4)
 
 
@@ -146,14 +146,14 @@ def test_an_animated_face_lies_along_the_turned_profile(rotation: str) -> None:
     theta = np.radians(np.arange(0.0, 360.0, 15.0))
     contact = scene.contour.follow(scene.follower, theta, scene.mechanism.rotation)
     for turn, point in zip(np.exp(1j * scene.sense * theta), contact.point, strict=True):
-        start, end = _holder(scene, complex(point * turn), 0j, 0.0)[0].points
+        start, end = _draw_holder(scene, complex(point * turn), 0j, 0.0)[0].points
         along = (end - start) / abs(end - start)
         height = ((scene.profile * turn - start) * np.conj(along)).imag
         assert min(height.max(), -height.min()) == pytest.approx(0.0, abs=2e-3)
 
 
 def drawing_of(kind: str) -> ezdxf.document.Drawing:
-    return ezdxf.read(io.StringIO(exported(*solved(kind), "A cam", "dxf")))
+    return ezdxf.read(io.StringIO(export_design(*solved(kind), "A cam", "dxf")))
 
 
 @pytest.mark.parametrize("kind", FOLLOWERS)
@@ -166,7 +166,7 @@ def test_a_dxf_is_sound_and_layered(kind: str) -> None:
     layers = {entity.dxf.layer for entity in document.modelspace()}
     expected = {"PROFILE", "PROFILE_ARCS", "BASE_CIRCLE", "FOLLOWER", "CENTRE"}
     assert layers == (expected | {"PRIME_CIRCLE", "PITCH_CURVE"} if kind.endswith("roller") else expected)
-    assert exported(*solved(kind), "A cam", "dxf") == exported(*solved(kind), "A cam", "dxf")
+    assert export_design(*solved(kind), "A cam", "dxf") == export_design(*solved(kind), "A cam", "dxf")
 
 
 def distances(points: np.ndarray, curve: np.ndarray) -> np.ndarray:
@@ -209,7 +209,7 @@ def turns_at_vertices(polyline: ezdxf.entities.LWPolyline) -> np.ndarray:
 @pytest.mark.parametrize("kind", FOLLOWERS)
 def test_the_table_lists_program_contact_and_profile(kind: str) -> None:
     design, _ = solved(kind)
-    text = exported(design, solved(kind)[1], "A cam", "csv")
+    text = export_design(design, solved(kind)[1], "A cam", "csv")
     lines = [line for line in text.splitlines() if not line.startswith("#")]
     rows = list(csv.DictReader(lines))
     assert len(rows) == len(design.mechanism.program.angle)
@@ -229,7 +229,7 @@ def test_the_table_lists_program_contact_and_profile(kind: str) -> None:
 
 def test_ticks_are_round_and_cover_the_values() -> None:
     for low, high in ((0.0, 1.0), (-3.7, 12.2), (1e-7, 3e-7), (5.0, 5.0), (0.0, 0.0), (-1e6, -2e5)):
-        marks = ticks([low, high])
+        marks = find_ticks([low, high])
         assert marks[0] <= low + 1e-9 * abs(low)
         assert marks[-1] >= high - 1e-9 * abs(high)
         assert 2 <= len(marks) <= 8

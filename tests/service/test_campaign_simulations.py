@@ -12,19 +12,19 @@ from typing import Any
 import numpy as np
 import pytest
 
-from kinematics.dynamics import Body, Machine, Places, body, reactions
+from kinematics.dynamics import Body, Machine, Places, compute_reactions, make_body
 from kinematics.linkage.planar.drive import drive
 from kinematics.linkage.planar.mechanism import GROUND, GearPair, Mechanism, Slide
-from service.simulation.export import simulation
-from service.simulation.linkage import linkage
-from service.simulation.mjcf import mjcf, steps_between
+from service.simulation.export import write_simulation
+from service.simulation.linkage import build_linkage
+from service.simulation.mjcf import count_steps, write_mjcf
 from service.simulation.model import Multibody
-from service.simulation.modelica import modelica
+from service.simulation.modelica import write_modelica
 from service.simulation.query import SimulationQuery
-from service.simulation.urdf import urdf
+from service.simulation.urdf import write_urdf
 from service.simulation.weights import Weights
 from synthesis.dispatch import solve
-from synthesis.registry import example, parse_problem
+from synthesis.registry import get_first_example, parse_problem
 from tests.campaign import sampled
 from tests.support.service.parts import MOTION, SLIDER
 
@@ -100,7 +100,7 @@ def weighed(mechanism: Mechanism, size: float = 1.0) -> dict[str, Body]:
     bodies = {}
     for n, link in enumerate(link for link in mechanism.links if link != GROUND):
         first, second = (complex(mechanism.joints[joint]) for joint in mechanism.links[link][:2])
-        bodies[link] = body(0.4 + 0.2 * n, first + (0.4 + 0.1j) * (second - first), (0.001 + 0.002 * n) * size**2)
+        bodies[link] = make_body(0.4 + 0.2 * n, first + (0.4 + 0.1j) * (second - first), (0.001 + 0.002 * n) * size**2)
     return bodies
 
 
@@ -113,7 +113,7 @@ def made(
     inputs = float(mechanism.reference_input) + np.linspace(0.0, turn, SAMPLES + 1)
     weights = Weights(bodies, pins, (0.0, 0.0), gravity, 0.02 * size, ())
     machine = Machine(mechanism, bodies, {joint: np.asarray(mass) for joint, mass in pins.items()}, gravity)
-    return linkage(mechanism, inputs, speed, weights, 1.0, "machine"), machine
+    return build_linkage(mechanism, inputs, speed, weights, 1.0, "machine"), machine
 
 
 class Run:
@@ -163,7 +163,7 @@ def compared(
     inputs = float(mechanism.reference_input) + np.linspace(0.0, turn, SAMPLES + 1)
     driven = drive(mechanism, inputs, speed=speed, order=2)
     start = {joint: complex(jet[0, 0]) for joint, jet in driven.joints.items()}
-    run = Run(mjcf(simulated), steps_between(simulated), mechanism, start)
+    run = Run(write_mjcf(simulated), count_steps(simulated), mechanism, start)
     apart = 0.0
     for link, listed in mechanism.links.items():
         if link == GROUND:
@@ -175,7 +175,7 @@ def compared(
         for joint in listed:
             missed = np.abs(np.array(run.places[link, joint]) - driven.joints[joint][0]).max()
             assert missed < ANGLE * float(mechanism.frame[1])
-    forces = reactions(machine, Places(mechanism, driven))
+    forces = compute_reactions(machine, Places(mechanism, driven))
     shares = [np.abs(np.array(run.drive) - forces.drive).max() / np.abs(forces.drive).max()]
     for closure in simulated.closures:
         joint = closure.name.split("_")[1]
@@ -212,10 +212,10 @@ DESIGNS: dict[str, dict[str, Any]] = {
     "sixbar": {**MOTION, "driver_dyad": True},
     "shaper": {"kind": "quick_return", "time_ratio": 1.4, "stroke": 100, "mechanism": "crank_shaper", "max_designs": 1},
     "train": {"kind": "gear_train", "ratio": "pi", "max_designs": 1, "module": 2.0},
-    "planets": example("planetary_train"),
-    "series": example("train_series"),
-    "gearbox": example("gearbox"),
-    "layshaft": example("layshaft_gearbox"),
+    "planets": get_first_example("planetary_train"),
+    "series": get_first_example("train_series"),
+    "gearbox": get_first_example("gearbox"),
+    "layshaft": get_first_example("layshaft_gearbox"),
 }
 
 
@@ -224,7 +224,7 @@ def test_scripts_of_designs_run_and_find_the_motion_of_the_analysis(tmp_path: Pa
         problem = parse_problem(statement)
         design = solve(problem).designs[0]
         path = tmp_path / f"{name}.py"
-        path.write_text(simulation(design, problem, name, "sim.py", SimulationQuery()))
+        path.write_text(write_simulation(design, problem, name, "sim.py", SimulationQuery()))
         ran = subprocess.run(
             [sys.executable, str(path), "--csv", str(tmp_path / f"{name}.csv")],
             capture_output=True,
@@ -240,9 +240,9 @@ def test_scripts_of_designs_run_and_find_the_motion_of_the_analysis(tmp_path: Pa
 
 def test_a_script_says_so_where_joints_miss(tmp_path: Path) -> None:
     simulated, _ = made(MECHANISMS["fourbar"], 6.0, 6.28, 0j)
-    from service.simulation.script import script
+    from service.simulation.script import write_script
 
-    text = script(simulated)
+    text = write_script(simulated)
     path = tmp_path / "off.py"
     path.write_text(text.replace("MOTION = [\n", "MOTION = [\n    [0.001, 0, 0],\n", 1))
     ran = subprocess.run([sys.executable, str(path)], capture_output=True, text=True, check=False)
@@ -257,7 +257,7 @@ def test_mujoco_reads_the_urdf() -> None:
 
     for mechanism in MECHANISMS.values():
         simulated, _ = made(mechanism, 4.0, 1.0, -9.81j)
-        text = urdf(simulated)
+        text = write_urdf(simulated)
         # MuJoCo merges what it takes for equal bodies, and scales inertias, unless it is told not to.
         head, tail = text.split("<robot ", 1)
         name, rest = tail.split(">", 1)
@@ -279,7 +279,7 @@ def test_a_parser_of_modelica_finds_every_part_connected_and_every_loop_closed()
 
     for name, mechanism in MECHANISMS.items():
         simulated, _ = made(mechanism, 4.0, 1.0, -9.81j)
-        machine = parser.parse(modelica(simulated)).classes["Machine"]
+        machine = parser.parse(write_modelica(simulated)).classes["Machine"]
         ends: dict[str, list[str]] = {}
         for equation in machine.equations:
             one, other = (str(side).replace("[None]", "") for side in (equation.left, equation.right))

@@ -12,7 +12,7 @@ import time
 import pytest
 
 from service.client import AsyncClient, Client, JobFailed, JobSummary, Progress, Refused, Unreachable
-from synthesis.registry import KINDS, example
+from synthesis.registry import KINDS, get_first_example
 from tests.campaign import further
 from tests.service.running import PROBLEM, REAL, SCRIPTED, RunningServer, environment, until
 from tests.service.scripted_server import BROKEN, GATED, INSTANT, NATIVE, STEPS
@@ -37,7 +37,7 @@ def stated(seed):
 
 
 def test_a_problem_is_solved_and_drawn(real):
-    job = real.solve(example("gear_train"), label="gears")
+    job = real.solve(get_first_example("gear_train"), label="gears")
     assert (job.status, job.kind, job.label) == ("succeeded", "gear_train", "gears")
     assert job.result["search"]["complete"]
     assert real.file(job.id, 0, "svg").startswith(b"<svg")
@@ -58,7 +58,7 @@ def test_a_mechanism_is_analysed_and_moved(real):
         "links": {"input": 2.0, "coupler": 7.0, "output": 9.0},
     }
     assert len(real.analyse(fourbar, {"steps": 12})["input_angle"]) == 13
-    job = real.solve(example("motion"))
+    job = real.solve(get_first_example("motion"))
     assert set(real.motion(job.id, 0, steps=10)["joints"]) >= {"O2", "O4", "A", "B"}
 
 
@@ -226,7 +226,7 @@ def solve(folder, url, *arguments, stdin=None, **settings):
 @pytest.mark.slow
 @pytest.mark.parametrize("kind", ["motion", "gear_train"])
 def test_the_command_prints_the_answer_and_writes_the_drawings(server, tmp_path, kind):
-    (tmp_path / "task.json").write_text(json.dumps(example(kind)))
+    (tmp_path / "task.json").write_text(json.dumps(get_first_example(kind)))
     done = solve(tmp_path, server.url, "task.json")
     assert done.returncode == 0, done.stderr
     job = server.client.get("/v1/jobs?limit=1").json()["jobs"][0]
@@ -248,12 +248,12 @@ def test_the_command_prints_the_answer_and_writes_the_drawings(server, tmp_path,
 def test_every_kind_can_be_printed(real):
     from rich.console import Console
 
-    from service.solve import report
+    from service.command.solve import report
 
     for kind in ("cam", "planetary_train", "gearbox", "layshaft_gearbox", "quick_return", "function"):
         if kind in KINDS:
             console = Console(record=True, width=200, file=io.StringIO())
-            job = real.solve(example(kind))
+            job = real.solve(get_first_example(kind))
             report(job, console)
             printed = console.export_text()
             design = job.result["designs"][0]
@@ -269,7 +269,7 @@ def test_every_kind_can_be_printed(real):
 
 @pytest.mark.slow
 def test_the_command_takes_the_body_of_a_request_from_standard_input(server, tmp_path):
-    body = json.dumps({"problem": example("gear_train"), "label": "piped"})
+    body = json.dumps({"problem": get_first_example("gear_train"), "label": "piped"})
     done = solve(tmp_path, server.url, "-", "--forms", "csv", "--output", "tables", stdin=body)
     assert done.returncode == 0, done.stderr
     assert {path.suffix for path in (tmp_path / "tables").iterdir()} == {".csv"}

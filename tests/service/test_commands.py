@@ -9,8 +9,8 @@ from typing import NamedTuple
 
 import pytest
 
-from service.cli import main
-from service.sources import problem_of
+from service.command.cli import main
+from service.command.inputs import problem_of
 from synthesis.registry import parse_problem
 
 TRAIN = {"kind": "gear_train", "ratio": "7/3", "max_stages": 1, "max_designs": 2}

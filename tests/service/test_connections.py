@@ -11,10 +11,10 @@ import httpx
 import pytest
 import uvicorn
 
-from service import connections
-from service.connections import IDLE_S, MOST_AHEAD, MOST_HEAD_BYTES, ImpatientProtocol
-from service.metrics import Metrics
-from service.telemetry import Telemetry
+from service.observability.metrics import Metrics
+from service.observability.telemetry import Telemetry
+from service.server import connections
+from service.server.connections import IDLE_S, MOST_AHEAD, MOST_HEAD_BYTES, ImpatientProtocol
 
 IDLE_HERE_S = 1
 REQUEST = b"GET / HTTP/1.1\r\nHost: x\r\n\r\n"

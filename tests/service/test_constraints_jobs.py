@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from synthesis.registry import example
+from synthesis.registry import get_first_example
 from tests.service.answers import finished
 from tests.support.synthesis.constraints import TIMED_PATH
 
@@ -16,21 +16,21 @@ STATED = {
 CHECKED = {"same_branch", "visits_in_order", "link_ratio", "fixed_pivot_region", "shortest_link", "longest_link"}
 
 QUICK = {
-    "motion": example("motion") | {"max_designs": 2},
+    "motion": get_first_example("motion") | {"max_designs": 2},
     "path": TIMED_PATH,
-    "function": example("function")
+    "function": get_first_example("function")
     | {"function": None, "input_range": None, "output_range": None, "criterion": None}
     | {"pairs": [{"input": 40.0, "output": 70.0}, {"input": 45.0, "output": 76.0}]},
-    "quick_return": example("quick_return"),
+    "quick_return": get_first_example("quick_return"),
     "straight_line": {"kind": "straight_line", "length": 60.0, "mechanism": "peaucellier"},
-    "steering": example("steering") | {"mechanism": "davis"},
-    "dwell": example("dwell") | {"max_designs": 1},
-    "parallel_motion": example("parallel_motion"),
+    "steering": get_first_example("steering") | {"mechanism": "davis"},
+    "dwell": get_first_example("dwell") | {"max_designs": 1},
+    "parallel_motion": get_first_example("parallel_motion"),
 }
 
 REFUSED = {
     "motion": ({"output_side": {"dyad": "PR"}}, "grashof", "double_rocker"),
-    "path": (example("path") | {"timing": "free", "mechanism": "slider_crank"}, "grashof", "crank_rocker"),
+    "path": (get_first_example("path") | {"timing": "free", "mechanism": "slider_crank"}, "grashof", "crank_rocker"),
     "function": ({"mechanism": "slider_crank"}, "grashof", "crank_rocker"),
     "quick_return": ({}, "grashof", "double_rocker"),
     "straight_line": ({}, "grashof", "crank_rocker"),

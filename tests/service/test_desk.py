@@ -5,13 +5,13 @@ import time
 
 import pytest
 
-from service.jobs.database import connect, upgrade
 from service.jobs.desk import JobDesk
-from service.jobs.finished import FinishedJobs
-from service.jobs.notifier import ChangeNotifier
-from service.jobs.states import Cost, Status
-from service.jobs.store import JobStore
-from service.metrics import Metrics
+from service.jobs.events.notifier import ChangeNotifier
+from service.jobs.job_store import JobStore
+from service.jobs.store.database import connect, upgrade
+from service.jobs.store.finished_cache import FinishedJobs
+from service.jobs.store.states import Cost, Status
+from service.observability.metrics import Metrics
 
 
 class QuickLane(JobStore):

@@ -10,16 +10,16 @@ import xml.etree.ElementTree as ET
 import numpy as np
 import pytest
 
-from kinematics.linkage.fourbar import CROSSED, OPEN, Fourbar, positions
-from service.render import exported
-from service.render.linkage.fourbar import MARKED, OTHERS
-from service.render.page.blocks import SIZE, CheckRow, checks
-from service.render.page.svg import Box, clipped, clipped_polygon, number, shortened, text_width
+from kinematics.linkage.fourbar import CROSSED_ASSEMBLY, OPEN_ASSEMBLY, Fourbar, positions
+from service.render import export_design
+from service.render.linkage.fourbar import MAX_GHOSTS, MAX_TARGETS
+from service.render.page.blocks import FONT_SIZE, CheckRow, make_checks
+from service.render.page.svg import Box, clip_polygon, clip_polyline, estimate_text_width, format_number, truncate_text
 from synthesis.kinds.motion.problem import MotionProblem
 from synthesis.model.answer import Check, Verification
 from synthesis.model.dimension import ANGLE
-from synthesis.model.linkage_answer import LinkageDesign, LinkageMetrics, Target
-from synthesis.model.linkages import FourbarConfiguration, fourbar_mechanism
+from synthesis.model.linkage.answer import LinkageDesign, LinkageMetrics, Target
+from synthesis.model.linkage.conversion import FourbarConfiguration, build_fourbar
 
 SVG = "{http://www.w3.org/2000/svg}"
 
@@ -28,7 +28,7 @@ PIXEL = 0.011
 
 
 def drawing(design: LinkageDesign, problem: MotionProblem, title: str) -> str:
-    text = exported(design, problem, title, "svg")
+    text = export_design(design, problem, title, "svg")
     assert isinstance(text, str)
     return text
 
@@ -43,7 +43,7 @@ def _case(
     """A linkage, and the problem whose positions it reaches at these input angles (degrees) in these assemblies."""
     at = [positions(linkage, math.radians(t), s) for t, s in zip(angles, signs, strict=True)]
     assert all(bool(c.valid) for c in at)
-    mechanism = fourbar_mechanism(
+    mechanism = build_fourbar(
         FourbarConfiguration(
             o2=complex(linkage.input_pivot),
             a=complex(at[0].a),
@@ -102,24 +102,36 @@ def _norton_5_2(size: float = 1.0) -> tuple[LinkageDesign, MotionProblem]:
     """Norton, Example 5-2 (crossed)."""
     o2, o4 = complex(-1.233833828, -7.771417129) * size, complex(2.736718211, 0.3385457838) * size
     bare = Fourbar(o2, o4, 6.831999238 * size, 1.399320056 * size, 3.199669641 * size)
-    first = positions(bare, math.radians(89.5412), CROSSED)
+    first = positions(bare, math.radians(89.5412), CROSSED_ASSEMBLY)
     point = complex((0.0 - first.a) / cmath.exp(1j * float(first.coupler_angle)))
     linkage = Fourbar(o2, o4, bare.input, bare.coupler, bare.output, point)
-    return _case(linkage, [89.5412, 71.84, 54.34], [CROSSED] * 3, "in")
+    return _case(linkage, [89.5412, 71.84, 54.34], [CROSSED_ASSEMBLY] * 3, "in")
 
 
 CASES = {
     "norton_5_2": lambda: _norton_5_2(),
-    "crank_rocker": lambda: _case(Fourbar(0, 100 + 10j, 30, 90, 70, _polar(60, 40)), [30, 120, 200], [OPEN] * 3),
-    "two_positions": lambda: _case(Fourbar(0, 10, 35, 30, 40, _polar(25, -70)), [0, 140], [OPEN] * 2),
-    "collinear": lambda: _case(Fourbar(0, 80, 40, 60, 55, 110), [40, 70, 100], [CROSSED] * 3),
-    "p_at_a": lambda: _case(Fourbar(0, 80, 40, 60, 55, 0), [40, 70, 100], [CROSSED] * 3),
-    "far_pivot": lambda: _case(Fourbar(0, 5e6 - 3e6j, 12, 30, 5830951.9, _polar(20, 30)), [60, 100, 160], [OPEN] * 3),
-    "tiny_crank": lambda: _case(Fourbar(0, 1e-4, 2e-6, 9e-5, 6e-5, _polar(5e-5, 50)), [0, 90, 200], [OPEN] * 3, "m"),
-    "small_task": lambda: _case(Fourbar(0, 1e3, 600, 900, 800, _polar(500, 40)), [60, 60.001, 60.002], [OPEN] * 3),
-    "far_from_origin": lambda: _case(Fourbar(9e8, 9e8 + 80, 40, 60, 55, _polar(40, 50)), [40, 70, 100], [OPEN] * 3),
-    "parallelogram": lambda: _case(Fourbar(0, 80, 40, 80, 40, 40 + 30j), [40, 70, 100], [OPEN] * 3),
-    "branch_defect": lambda: _case(Fourbar(0, 80, 50, 60, 45, _polar(40, 50)), [60, 85, 50], [OPEN, OPEN, CROSSED]),
+    "crank_rocker": lambda: _case(
+        Fourbar(0, 100 + 10j, 30, 90, 70, _polar(60, 40)), [30, 120, 200], [OPEN_ASSEMBLY] * 3
+    ),
+    "two_positions": lambda: _case(Fourbar(0, 10, 35, 30, 40, _polar(25, -70)), [0, 140], [OPEN_ASSEMBLY] * 2),
+    "collinear": lambda: _case(Fourbar(0, 80, 40, 60, 55, 110), [40, 70, 100], [CROSSED_ASSEMBLY] * 3),
+    "p_at_a": lambda: _case(Fourbar(0, 80, 40, 60, 55, 0), [40, 70, 100], [CROSSED_ASSEMBLY] * 3),
+    "far_pivot": lambda: _case(
+        Fourbar(0, 5e6 - 3e6j, 12, 30, 5830951.9, _polar(20, 30)), [60, 100, 160], [OPEN_ASSEMBLY] * 3
+    ),
+    "tiny_crank": lambda: _case(
+        Fourbar(0, 1e-4, 2e-6, 9e-5, 6e-5, _polar(5e-5, 50)), [0, 90, 200], [OPEN_ASSEMBLY] * 3, "m"
+    ),
+    "small_task": lambda: _case(
+        Fourbar(0, 1e3, 600, 900, 800, _polar(500, 40)), [60, 60.001, 60.002], [OPEN_ASSEMBLY] * 3
+    ),
+    "far_from_origin": lambda: _case(
+        Fourbar(9e8, 9e8 + 80, 40, 60, 55, _polar(40, 50)), [40, 70, 100], [OPEN_ASSEMBLY] * 3
+    ),
+    "parallelogram": lambda: _case(Fourbar(0, 80, 40, 80, 40, 40 + 30j), [40, 70, 100], [OPEN_ASSEMBLY] * 3),
+    "branch_defect": lambda: _case(
+        Fourbar(0, 80, 50, 60, 45, _polar(40, 50)), [60, 85, 50], [OPEN_ASSEMBLY, OPEN_ASSEMBLY, CROSSED_ASSEMBLY]
+    ),
 }
 
 
@@ -269,7 +281,7 @@ def test_a_long_title_is_cut_on_the_sheet_and_whole_in_the_description() -> None
     heading = next(iter(root.iter(f"{SVG}text")))
     assert heading.text is not None
     assert heading.text.endswith("…")
-    assert text_width(heading.text, float(heading.attrib["font-size"])) < float(root.attrib["width"])
+    assert estimate_text_width(heading.text, float(heading.attrib["font-size"])) < float(root.attrib["width"])
 
 
 def test_the_document_stands_alone(case: tuple[LinkageDesign, MotionProblem]) -> None:
@@ -371,9 +383,9 @@ def _boxes(root: ET.Element) -> list[tuple[str, Box]]:
         words, size = "".join(e.itertext()), float(e.attrib["font-size"])
         sub = e.find(f"{SVG}tspan")
         width = (
-            text_width(words, size)
+            estimate_text_width(words, size)
             if sub is None
-            else text_width(e.text or "", size) + text_width(sub.text or "", 0.75 * size)
+            else estimate_text_width(e.text or "", size) + estimate_text_width(sub.text or "", 0.75 * size)
         )
         share = {"middle": 0.5, "end": 1.0}.get(e.get("text-anchor", "start"), 0.0)
         x, y = float(e.attrib["x"]) - share * width, float(e.attrib["y"])
@@ -389,58 +401,58 @@ def test_no_text_overlaps_other_text_or_leaves_the_sheet(case: tuple[LinkageDesi
         (one, other) for k, (one, box) in enumerate(boxes) for other, beside in boxes[:k] if box.overlaps(beside)
     ]
     assert clashes == []
-    assert [words for words, box in boxes if not (sheet.holds(box.centre) and box.common(sheet) == box)] == []
+    assert [words for words, box in boxes if not (sheet.holds(box.centre) and box.intersect_with(sheet) == box)] == []
 
 
 def test_clipping_keeps_what_is_inside() -> None:
     box = Box(0.0, 0.0, 10.0, 10.0)
-    pieces = clipped(np.array([-5 + 5j, 5 + 5j, 5 + 15j, 8 + 15j, 8 + 5j, np.nan, 1 + 1j, 2 + 2j]), box)
+    pieces = clip_polyline(np.array([-5 + 5j, 5 + 5j, 5 + 15j, 8 + 15j, 8 + 5j, np.nan, 1 + 1j, 2 + 2j]), box)
     assert [piece.tolist() for piece in pieces] == [[5j, 5 + 5j, 5 + 10j], [8 + 10j, 8 + 5j], [1 + 1j, 2 + 2j]]
-    assert clipped(np.array([20 + 0j, 30 + 5j]), box) == []
-    corners = clipped_polygon([-1e9 - 1e9j, 1e9 - 1e9j, 1e9 + 1e9j, -1e9 + 1e9j], box)
+    assert clip_polyline(np.array([20 + 0j, 30 + 5j]), box) == []
+    corners = clip_polygon([-1e9 - 1e9j, 1e9 - 1e9j, 1e9 + 1e9j, -1e9 + 1e9j], box)
     assert {(round(c.real, 6), round(c.imag, 6)) for c in corners} == {(0, 0), (10, 0), (10, 10), (0, 10)}
 
 
 def test_of_many_targets_some_are_drawn_evenly_spread_with_both_ends() -> None:
     angles = list(np.linspace(30.0, 330.0, 200))
-    design, problem = _case(Fourbar(0, 80, 25, 70, 60, _polar(40, 50)), angles, [OPEN] * 200)
+    design, problem = _case(Fourbar(0, 80, 25, 70, 60, _polar(40, 50)), angles, [OPEN_ASSEMBLY] * 200)
     root = _parsed(design, problem)
     main = _Main(root)
     drawn = sorted(int(e.attrib["data-configuration"]) for e in main.panel.iter() if e.get("data-configuration"))
     assert drawn[0] == 1
     assert drawn[-1] == 200
-    assert 3 < len(drawn) <= OTHERS + 1
+    assert 3 < len(drawn) <= MAX_GHOSTS + 1
     for count in (1, drawn[3], 200):
         pose, at = problem.positions[count - 1], main.joints(count)
         assert abs(at["P"] - pose.point) * main.scale < 2.0 * PIXEL
     words = " ".join(e.text or "" for e in root.iter(f"{SVG}text"))
-    assert f"{MARKED} of 200 targets" in words
+    assert f"{MAX_TARGETS} of 200 targets" in words
     assert float(root.attrib["height"]) < 1200.0
     description = root.find(f"{SVG}desc")
     assert description is not None
-    assert f"shown at 200 of 200 target positions, of which {MARKED} are drawn" in (description.text or "")
+    assert f"shown at 200 of 200 target positions, of which {MAX_TARGETS} are drawn" in (description.text or "")
 
 
 def test_numbers_and_cut_text() -> None:
-    assert [number(v) for v in (-0.001, 1.0, 2.345678, -3.5)] == ["0", "1", "2.35", "-3.5"]
+    assert [format_number(v) for v in (-0.001, 1.0, 2.345678, -3.5)] == ["0", "1", "2.35", "-3.5"]
     with pytest.raises(ValueError, match="finite"):
-        number(math.nan)
-    assert shortened("short", 10.0, 100.0) == "short"
-    cut = shortened("a rather long line of text", 10.0, 60.0)
+        format_number(math.nan)
+    assert truncate_text("short", 10.0, 100.0) == "short"
+    cut = truncate_text("a rather long line of text", 10.0, 60.0)
     assert cut.endswith("…")
-    assert text_width(cut, 10.0) <= 60.0
+    assert estimate_text_width(cut, 10.0) <= 60.0
 
 
 @pytest.mark.parametrize(("width", "lines"), [(480.0, 1), (240.0, 2)])
 def test_the_name_of_a_check_is_whole_and_clear_of_its_value(width: float, lines: int) -> None:
     row = CheckRow("max_overturning_moment", True, "12.3456 N·m", "120.125 N·m")
-    block, end = checks([row])(0.0, 0.0, width)
-    _, empty = checks([])(0.0, 0.0, width)
+    block, end = make_checks([row])(0.0, 0.0, width)
+    _, empty = make_checks([])(0.0, 0.0, width)
     root = ET.fromstring(block.write())
     name, measure = (e for e in root.iter("text") if e.get("font-weight") is None)
     assert (name.text, measure.text) == ("max overturning moment", "12.3456 N·m  (limit 120.125 N·m)")
     apart = float(measure.attrib["y"]) - float(name.attrib["y"])
     assert (apart > 0.0) == (lines == 2)
-    reach = float(name.attrib["x"]) + text_width(name.text, SIZE)
-    assert lines == 2 or reach < width - text_width(measure.text, SIZE)
+    reach = float(name.attrib["x"]) + estimate_text_width(name.text, FONT_SIZE)
+    assert lines == 2 or reach < width - estimate_text_width(measure.text, FONT_SIZE)
     assert end - empty > apart

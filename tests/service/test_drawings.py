@@ -9,10 +9,10 @@ import pytest
 
 from service.answers.designs import draw_design
 from service.answers.job_result import SolvedJob
-from service.api.computation import draw_in_turn
-from service.api.errors import Refusal
-from service.jobs.request_pool import Busy, GivenUp
-from synthesis.registry import example
+from service.api.http.computation import draw_in_turn
+from service.api.http.problem_details import Refusal
+from service.jobs.processes.request_pool import Busy, GivenUp
+from synthesis.registry import get_first_example
 from tests.support.service.request_pool import never
 
 
@@ -37,7 +37,7 @@ FILES = [(kind, form) for kind in LINKAGES for form in ("svg", "gif") if (kind, 
 
 @pytest.mark.parametrize(("kind", "form"), FILES)
 def test_a_design_beyond_what_can_be_stated_is_not_drawn_but_said_to_be_so(server, kind, form):
-    found = server.post(problem=example(kind), wait=30)
+    found = server.post(problem=get_first_example(kind), wait=30)
     assert found["status"] == "succeeded"
     result = copy.deepcopy(found["result"])
     joints = result["designs"][0]["mechanism"]["skeleton"]["joints"]

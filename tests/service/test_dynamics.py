@@ -10,7 +10,7 @@ import httpx
 import numpy as np
 import pytest
 
-from synthesis.analyses.linkage import LinkageAnalysis
+from synthesis.analyses.linkages.linkage import LinkageAnalysis
 from tests.support.service.analyses import STUCK
 from tests.support.service.dynamics import (
     BAR,

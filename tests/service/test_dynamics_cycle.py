@@ -12,7 +12,7 @@ import pytest
 from scipy.integrate import solve_ivp
 from scipy.optimize import brentq
 
-from synthesis.analyses.linkage import LinkageAnalysis
+from synthesis.analyses.linkages.linkage import LinkageAnalysis
 from tests.cases import Case, cases
 from tests.support.service.dynamics import BLOCK, CRANK, OTHER_TYPES, Statement, asked, refused
 from tests.support.service.dynamics_literature import analysed, stated

@@ -14,7 +14,7 @@ import httpx
 import numpy as np
 import pytest
 
-from synthesis.analyses.linkage import LinkageAnalysis
+from synthesis.analyses.linkages.linkage import LinkageAnalysis
 from tests.support.service.dynamics import CRANK, OTHER_TYPES
 
 Statement = dict[str, Any]

@@ -10,7 +10,7 @@ import httpx
 import numpy as np
 import pytest
 
-from synthesis.registry import example, examples
+from synthesis.registry import get_first_example, list_examples
 from tests.cases import Case, cases
 from tests.service.answers import SVG, finished
 
@@ -262,7 +262,7 @@ def test_weights_on_the_crankshaft(client: httpx.Client, case: Case) -> None:
 
 
 def test_arrangements_are_found_and_the_best_is_drawn(client: httpx.Client) -> None:
-    job = finished(client, examples("engine")[1])
+    job = finished(client, list_examples("engine")[1])
     result = job["result"]
     assert result["search"]["complete"]
     assert result["count"] == len(result["designs"]) == 6
@@ -317,7 +317,7 @@ def second_harmonics(client: httpx.Client, pair: Any, weight: float, height: flo
 
 def test_balance_shafts_are_driven_as_geared_bodies(client: httpx.Client) -> None:
     """The second harmonic of the force goes; that of the roll too, up to A₂/λ − 1, with Nakamura's height alone."""
-    (design,) = finished(client, example("engine"))["result"]["designs"]
+    (design,) = finished(client, get_first_example("engine"))["result"]["designs"]
     pair = next(one for one in design["balancers"] if one["order"] == 2 and one["against"] == "force")
     force, roll = second_harmonics(client, pair, 0.0, 130.0)
     for height, left in ((pair["height_difference"], 0.03), (0.0, 1.001), (-130.0, 2.05)):
@@ -328,7 +328,7 @@ def test_balance_shafts_are_driven_as_geared_bodies(client: httpx.Client) -> Non
 
 def test_pistons_stand_on_their_throws(client: httpx.Client) -> None:
     """An inline four: the outer pistons are at their top and the inner ones at their bottom, a stroke lower."""
-    job = finished(client, example("engine"))
+    job = finished(client, get_first_example("engine"))
     root = ET.fromstring(client.get(f"/v1/jobs/{job['id']}/designs/0.svg").raise_for_status().text)
     tops = {
         mark.get("data-side"): min(float(pair.split(",")[1]) for pair in str(mark.get("points")).split())
@@ -346,7 +346,7 @@ def test_pistons_stand_on_their_throws(client: httpx.Client) -> None:
 
 
 def test_the_example_with_all_its_parts(client: httpx.Client) -> None:
-    job = finished(client, example("engine"))
+    job = finished(client, get_first_example("engine"))
     (design,) = job["result"]["designs"]
     names = [check["name"] for check in design["verification"]["checks"]]
     assert {"torque", "shaking_force", "pin_forces", "coefficient"} <= set(names)

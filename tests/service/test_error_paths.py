@@ -6,15 +6,15 @@ import time
 import httpx
 import pytest
 
-from synthesis.analyses import families
-from synthesis.registry import KINDS, examples
+from synthesis.analyses import list_families
+from synthesis.registry import KINDS, list_examples
 from tests.service.running import SCRIPTED, RunningServer
 
 STRANGE = ("odd", -7.5, {"odd": 1}, [[]], None)
 FEW = 2
 """Of a long list the first members stand for all."""
 
-ANALYSES = {family.request.__name__: family.request.model_json_schema()["examples"][0] for family in families()}
+ANALYSES = {family.request.__name__: family.request.model_json_schema()["examples"][0] for family in list_families()}
 
 
 @pytest.fixture(scope="module")
@@ -99,7 +99,7 @@ def astray(client, url, bodies):
 @pytest.mark.timeout(400)
 @pytest.mark.parametrize("kind", KINDS)
 def test_of_a_problem(asked, kind):
-    wrong, refused = astray(asked, "/v1/jobs", variations({"problem": examples(kind)[0], "label": "varied"}))
+    wrong, refused = astray(asked, "/v1/jobs", variations({"problem": list_examples(kind)[0], "label": "varied"}))
     assert not wrong
     assert refused > 20
 
@@ -125,6 +125,6 @@ def test_of_an_analysis(asked, family):
     ids=["tagged", "missing", "unknown", "one of several", "like a tag"],
 )
 def test_a_path_has_no_step_that_is_not_in_the_body(asked, kind, change, path):
-    body = {"problem": copy.deepcopy(examples(kind)[0])}
+    body = {"problem": copy.deepcopy(list_examples(kind)[0])}
     change(body["problem"])
     assert path in [fault["path"] for fault in asked.post("/v1/jobs", json=body).json()["errors"]]

@@ -10,14 +10,14 @@ import httpx
 import pytest
 from starlette.requests import Request
 
-from service.api import events
-from service.api.errors import Refusal
-from service.api.schemas import list_item
-from service.jobs.database import connect, upgrade
-from service.jobs.notifier import ChangeNotifier
-from service.jobs.poller import PERIOD_S, JobPoller
-from service.jobs.states import Cost
-from service.jobs.store import JobStore
+from service.api.http.problem_details import Refusal
+from service.api.http.schemas import list_item
+from service.api.routes import events
+from service.jobs.events.notifier import ChangeNotifier
+from service.jobs.events.poller import PERIOD_S, JobPoller
+from service.jobs.job_store import JobStore
+from service.jobs.store.database import connect, upgrade
+from service.jobs.store.states import Cost
 from tests.service.running import SCRIPTED, SOON_S, RunningServer, until
 from tests.service.scripted_server import GATED, INSTANT, NATIVE, STEPS
 

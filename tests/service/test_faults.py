@@ -11,8 +11,8 @@ from pathlib import Path
 
 import pytest
 
-from service.jobs.notifier import ChangeNotifier
-from service.jobs.progress import PERIOD_S
+from service.jobs.events.notifier import ChangeNotifier
+from service.jobs.workers.progress_writer import PERIOD_S
 from tests.campaign import further
 from tests.service.running import (
     PROBLEM,

@@ -1,8 +1,8 @@
 """Finished jobs at hand: only such as are finished, no more than there is room for, and none that was removed."""
 
-from service.jobs.finished import FinishedJobs
-from service.jobs.schema import JobRow
-from service.jobs.states import Status
+from service.jobs.store.finished_cache import FinishedJobs
+from service.jobs.store.schema import JobRow
+from service.jobs.store.states import Status
 
 CAPACITY = 100_000
 

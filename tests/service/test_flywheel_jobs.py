@@ -9,7 +9,7 @@ import httpx
 import numpy as np
 import pytest
 
-from synthesis.registry import example, examples
+from synthesis.registry import get_first_example, list_examples
 from tests.cases import Case, cases
 from tests.service.answers import finished
 from tests.support.service.dynamics_literature import stated
@@ -72,7 +72,7 @@ def test_the_mass_of_discs_by_their_slenderness(client: httpx.Client, case: Case
 
 
 def test_files_and_motion_of_a_design(client: httpx.Client) -> None:
-    job = finished(client, example("flywheel"))
+    job = finished(client, get_first_example("flywheel"))
     place = f"/v1/jobs/{job['id']}/designs/0"
     for form, size in (("svg", 5_000), ("dxf", 5_000), ("csv", 5_000)):
         file = client.get(f"{place}.{form}")
@@ -101,25 +101,28 @@ def test_a_wheel_is_analysed(client: httpx.Client) -> None:
 
 
 def by_machine(**changes: Any) -> dict[str, Any]:
-    problem = examples("flywheel")[1]
+    problem = list_examples("flywheel")[1]
     return problem | {"machine": problem["machine"] | changes}
 
 
 LOST = {"point_masses": [{"joint": "Q", "mass": 1.0}]}
-CRANK = examples("flywheel")[1]["machine"]["mechanism"]
+CRANK = list_examples("flywheel")[1]["machine"]["mechanism"]
 
 
 @pytest.mark.parametrize(
     ("problem", "path"),
     [
-        (example("flywheel") | {"limits": {}}, "/problem/limits"),
-        (example("flywheel") | {"coefficient": 0.0}, "/problem/coefficient"),
-        (example("flywheel") | {"coefficient": 1e-30}, "/problem/coefficient"),
-        (example("flywheel") | {"speed_rpm": -3.0}, "/problem/speed_rpm"),
-        (example("flywheel") | {"density": 1e10}, "/problem/density"),
-        (example("flywheel") | {"torque": {"table": [[10.0, 1.0], [5.0, 2.0]]}}, "/problem/torque/table"),
-        (example("flywheel") | {"torque": {"table": [[0.0, 1.0], [360.0, 2.0]]}}, "/problem/torque/table"),
-        (example("flywheel") | {"limits": {"thickness": {"min": 3.0, "max": 2.0}}}, "/problem/limits/thickness"),
+        (get_first_example("flywheel") | {"limits": {}}, "/problem/limits"),
+        (get_first_example("flywheel") | {"coefficient": 0.0}, "/problem/coefficient"),
+        (get_first_example("flywheel") | {"coefficient": 1e-30}, "/problem/coefficient"),
+        (get_first_example("flywheel") | {"speed_rpm": -3.0}, "/problem/speed_rpm"),
+        (get_first_example("flywheel") | {"density": 1e10}, "/problem/density"),
+        (get_first_example("flywheel") | {"torque": {"table": [[10.0, 1.0], [5.0, 2.0]]}}, "/problem/torque/table"),
+        (get_first_example("flywheel") | {"torque": {"table": [[0.0, 1.0], [360.0, 2.0]]}}, "/problem/torque/table"),
+        (
+            get_first_example("flywheel") | {"limits": {"thickness": {"min": 3.0, "max": 2.0}}},
+            "/problem/limits/thickness",
+        ),
         (by_machine(mechanism={"type": "fourbar", "links": 3}), "/problem/machine/mechanism/fixed_pivots"),
         (by_machine(mechanism={}), "/problem/machine/mechanism/skeleton"),
         (by_machine(mechanism=CRANK | {"driven_by": "slider"}), "/problem/machine/mechanism"),

@@ -8,7 +8,7 @@ import re
 import numpy as np
 import pytest
 
-from synthesis.model.linkage_statement import FORCES
+from synthesis.model.linkage.problem import FORCE_NAMES
 from tests.service.answers import finished
 from tests.service.stated.linkages import DWELL, MOTION, PARALLEL, QUICK_RETURN, STEERING
 
@@ -146,7 +146,7 @@ def test_a_torque_of_an_input_that_slides_is_refused(client):
         assert path in [error["path"] for error in refused.json()["errors"]]
 
 
-@pytest.mark.parametrize("name", sorted(FORCES))
+@pytest.mark.parametrize("name", sorted(FORCE_NAMES))
 def test_each_limit_is_kept_and_each_order_is_held(client, name):
     asked = {**MOTION, "dynamics": BLOCK, "max_designs": 4}
     job, ordered = designs(client, {**asked, "rank_by": name})
@@ -225,7 +225,7 @@ def test_a_body_that_a_design_does_not_have_is_named(client):
 @pytest.mark.parametrize(
     ("changes", "path"),
     [
-        *(({"constraints": {f"max_{name}": 1.0}}, f"/problem/constraints/max_{name}") for name in sorted(FORCES)),
+        *(({"constraints": {f"max_{name}": 1.0}}, f"/problem/constraints/max_{name}") for name in sorted(FORCE_NAMES)),
         ({"rank_by": "joint_force"}, "/problem/rank_by"),
         ({"dynamics": PAYLOAD, "rank_by": "joint_force_index"}, "/problem/rank_by"),
         ({"dynamics": {**PAYLOAD, "speed_rpm": "fast"}}, "/problem/dynamics/speed_rpm"),

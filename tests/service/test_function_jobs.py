@@ -6,9 +6,9 @@ import re
 
 import pytest
 
-from synthesis.registry import examples
+from synthesis.registry import list_examples
 
-EXAMPLES = examples("function")
+EXAMPLES = list_examples("function")
 
 
 def solved(server, problem):

@@ -6,7 +6,7 @@ from xml.etree import ElementTree
 
 import service
 from synthesis.model.kind import Group
-from synthesis.registry import KINDS, examples
+from synthesis.registry import KINDS, list_examples
 
 SVG = "{http://www.w3.org/2000/svg}"
 
@@ -15,7 +15,7 @@ def test_examples_are_named_in_their_order(client):
     told = client.get("/v1/problems").json()["problems"]
     assert [kind["kind"] for kind in told] == list(KINDS)
     for kind in told:
-        assert len(kind["examples"]) == len(kind["schema"]["examples"]) == len(examples(kind["kind"]))
+        assert len(kind["examples"]) == len(kind["schema"]["examples"]) == len(list_examples(kind["kind"]))
         assert kind["example"] == kind["schema"]["examples"][0]
         assert kind["examples"] == [one._asdict() for one in KINDS[kind["kind"]].gallery]
 
@@ -33,5 +33,5 @@ def test_names_are_told_apart_and_lines_are_short_sentences():
 def test_every_example_has_its_picture():
     drawn = ElementTree.parse(Path(service.__file__).parent / "studio" / "gallery.svg").getroot()
     symbols = {symbol.get("id"): len(list(symbol.iter())) for symbol in drawn.iter(f"{SVG}symbol")}
-    assert set(symbols) == {f"{kind}-{n}" for kind in KINDS for n in range(len(examples(kind)))}
+    assert set(symbols) == {f"{kind}-{n}" for kind in KINDS for n in range(len(list_examples(kind)))}
     assert min(symbols.values()) > 1

@@ -14,8 +14,8 @@ import ezdxf
 import numpy as np
 import pytest
 
-from service.render import exported
-from service.render.gears.train_layout import TrainGear, placed_gears
+from service.render import export_design
+from service.render.gears.train_layout import TrainGear, place_gears
 from synthesis.dispatch import solve
 from synthesis.kinds.gear_train.design import GearTrainDesign, GearTrainResult
 from synthesis.kinds.gear_train.problem import GearTrainProblem
@@ -55,7 +55,7 @@ def task(request: pytest.FixtureRequest) -> tuple[GearTrainDesign, GearTrainProb
 
 
 def drawn(task: tuple[GearTrainDesign, GearTrainProblem]) -> list[TrainGear]:
-    return placed_gears(task[0].mechanism, task[1].reverted)
+    return place_gears(task[0].mechanism, task[1].reverted)
 
 
 def test_meshing_pitch_circles_touch(task: tuple[GearTrainDesign, GearTrainProblem]) -> None:
@@ -91,7 +91,7 @@ def test_meshing_teeth_stand_in_spaces(task: tuple[GearTrainDesign, GearTrainPro
 
 def test_svg_shows_every_gear_to_scale(task: tuple[GearTrainDesign, GearTrainProblem]) -> None:
     design, problem = task
-    sheet = ET.fromstring(exported(design, problem, "A <train> & more", "svg"))
+    sheet = ET.fromstring(export_design(design, problem, "A <train> & more", "svg"))
     groups = [group for group in sheet.iter(f"{SVG}g") if "data-gear" in group.attrib]
     gears = drawn(task)
     assert [int(group.get("data-teeth", "0")) for group in groups] == [placed.gear.teeth for placed in gears]
@@ -114,8 +114,8 @@ def test_svg_shows_every_gear_to_scale(task: tuple[GearTrainDesign, GearTrainPro
 @pytest.mark.slow  # reading the file back takes seconds
 def test_dxf_has_pitch_circles_and_involute_teeth(task: tuple[GearTrainDesign, GearTrainProblem]) -> None:
     design, problem = task
-    text = exported(design, problem, "train", "dxf")
-    assert text == exported(design, problem, "train", "dxf")
+    text = export_design(design, problem, "train", "dxf")
+    assert text == export_design(design, problem, "train", "dxf")
     document = ezdxf.read(io.StringIO(text))
     assert not document.audit().has_errors
     assert document.units == {"mm": 4, "cm": 5, "m": 6, "in": 1}[problem.length_unit]
@@ -133,7 +133,7 @@ def test_dxf_has_pitch_circles_and_involute_teeth(task: tuple[GearTrainDesign, G
 
 def test_csv_lists_every_gear(task: tuple[GearTrainDesign, GearTrainProblem]) -> None:
     design, problem = task
-    rows = list(csv.DictReader(io.StringIO(exported(design, problem, "train", "csv"))))
+    rows = list(csv.DictReader(io.StringIO(export_design(design, problem, "train", "csv"))))
     gears = drawn(task)
     assert [int(row["teeth"]) for row in rows] == [placed.gear.teeth for placed in gears]
     for row, placed in zip(rows, gears, strict=True):
@@ -147,7 +147,7 @@ def test_numbers_of_the_table_by_hand() -> None:
     problem = parse_problem({**stated, "module": 2.5, "pressure_angle": 25.0})
     assert isinstance(problem, GearTrainProblem)
     design = solve(problem, lambda fraction, message: None).designs[0]
-    rows = list(csv.DictReader(io.StringIO(exported(design, problem, "train", "csv"))))
+    rows = list(csv.DictReader(io.StringIO(export_design(design, problem, "train", "csv"))))
     stages = design.mechanism.stages
     teeth = [n for stage in stages for n in (stage.driver, stage.driven)]
     assert len(teeth) == 4

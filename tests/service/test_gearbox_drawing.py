@@ -11,15 +11,15 @@ import ezdxf
 import numpy as np
 import pytest
 
-from service.render import exported
-from service.render.gears.gearbox_layout import BoxGear, BoxLayout, gearbox_layout, layshaft_layout
+from service.render import export_design
+from service.render.gears.gearbox_layout import BoxGear, BoxLayout, arrange_gearbox, arrange_layshaft
 from synthesis.dispatch import solve
-from synthesis.registry import example, parse_problem
+from synthesis.registry import get_first_example, parse_problem
 from tests.campaign import further
 from tests.support.service.gear_drawing import assert_involute
 
 TASKS: dict[str, dict[str, Any]] = {
-    "six_speeds": example("gearbox"),
+    "six_speeds": get_first_example("gearbox"),
     "three_stages": {
         "kind": "gearbox",
         "input_speed": 300.0,
@@ -29,7 +29,7 @@ TASKS: dict[str, dict[str, Any]] = {
         "tolerance": 0.05,
         "module": 2.5,
     },
-    "layshaft": example("layshaft_gearbox"),
+    "layshaft": get_first_example("layshaft_gearbox"),
     "inches": {
         "kind": "layshaft_gearbox",
         "ratios": [2.5, 1.6, 1.0, 0.8],
@@ -51,7 +51,7 @@ def task(request: pytest.FixtureRequest) -> tuple[Any, Any]:
 
 
 def layout_of(design: Any) -> BoxLayout:
-    lay = gearbox_layout if design.mechanism.type == "gearbox" else layshaft_layout
+    lay = arrange_gearbox if design.mechanism.type == "gearbox" else arrange_layshaft
     return lay(design.mechanism)
 
 
@@ -102,8 +102,8 @@ def test_the_teeth_are_those_of_the_design(task: tuple[Any, Any]) -> None:
 @pytest.mark.slow  # reading the files back takes seconds
 def test_dxf_is_sound_and_true(task: tuple[Any, Any]) -> None:
     design, problem = task
-    text = exported(design, problem, "Box", "dxf")
-    assert text == exported(design, problem, "Box", "dxf")
+    text = export_design(design, problem, "Box", "dxf")
+    assert text == export_design(design, problem, "Box", "dxf")
     document = ezdxf.read(io.StringIO(text))
     audit = document.audit()
     assert not audit.errors
@@ -135,7 +135,7 @@ def test_dxf_is_sound_and_true(task: tuple[Any, Any]) -> None:
 @pytest.mark.slow
 @pytest.mark.parametrize("kind", ["gearbox", "layshaft_gearbox"])
 def test_files_of_gearboxes_through_http(client: Any, kind: str) -> None:
-    job = client.post("/v1/jobs", json={"problem": example(kind)}, headers={"Prefer": "wait=30"})
+    job = client.post("/v1/jobs", json={"problem": get_first_example(kind)}, headers={"Prefer": "wait=30"})
     assert job.status_code == 200, job.text
     body = job.json()
     assert body["status"] == "succeeded"

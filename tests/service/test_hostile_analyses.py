@@ -12,7 +12,7 @@ import pytest
 
 from service.answers.numerical import refuse_numerical_errors
 from service.refusals import Refusal
-from synthesis.analyses import families
+from synthesis.analyses import list_families
 from tests.service.running import until
 from tests.support.problems.fuzz_bodies import BLOCKS, analysis_corpus, spoil
 
@@ -103,7 +103,9 @@ def test_a_yoke_that_slides_alone_hold_is_refused_by_its_links(client: httpx.Cli
 
 
 def test_a_point_of_a_cam_far_away_is_refused(client: httpx.Client) -> None:
-    example = next(f.request for f in families() if "Camshaft" in f.request.__name__).model_json_schema()["examples"][0]
+    example = next(f.request for f in list_families() if "Camshaft" in f.request.__name__).model_json_schema()[
+        "examples"
+    ][0]
     for far in (1e9, -1e9, 1e8):
         body = copy.deepcopy(example)
         body["mechanism"]["cams"][1]["cam"]["profile"]["x"][0] = far

@@ -17,7 +17,7 @@ from PIL import Image
 from service.imports import desk as desks
 from service.imports.desk import ImportDesk
 from service.outlines import DrawingError
-from service.outlines.faults import Malformed, NoOutline, Unsuitable
+from service.outlines.faults import MalformedDrawing, NoOutline, UnsuitableDrawing
 from tests.service.drawn_files import dxf, page
 from tests.service.running import RunningServer, workers_of
 from tests.support.service.hostile_drawings import HOSTILE, everything, mutated
@@ -290,16 +290,16 @@ def test_a_file_that_takes_too_much_is_given_up_and_the_next_one_is_read(desk, m
     line = page('<path d="M0 0h9"/>')
     assert b'"length":9' in asked(desk, line)
     large = SPOILT["nothing but white"]()
-    with pytest.raises(Unsuitable, match="more memory"):
+    with pytest.raises(UnsuitableDrawing, match="more memory"):
         asked(desk, large)
     assert b'"length":9' in asked(desk, line)
-    for content, error in ((b"<svg", Malformed), (page("<text/>"), NoOutline)):
+    for content, error in ((b"<svg", MalformedDrawing), (page("<text/>"), NoOutline)):
         with pytest.raises(DrawingError) as caught:
             asked(desk, content)
         assert type(caught.value) is error
     assert caught.value.reasons == (("text", "It is text; turn it into paths."),)
     monkeypatch.setattr(desks, "READ_S", 1e-4)
     impatient = ImportDesk("warning", "text")
-    with pytest.raises(Unsuitable, match="takes longer"):
+    with pytest.raises(UnsuitableDrawing, match="takes longer"):
         asked(impatient, page('<rect width="9" height="9"/>' * 900), "outlines")
     impatient.stop()

@@ -6,7 +6,7 @@ import socket
 
 import pytest
 
-from service.api.prefer import wait_seconds
+from service.api.http.prefer import wait_seconds
 from synthesis.registry import KINDS
 from tests.service.answers import finished
 

@@ -10,7 +10,7 @@ import ezdxf
 import httpx
 import pytest
 
-from synthesis.registry import examples
+from synthesis.registry import list_examples
 from tests.campaign import further
 from tests.service.answers import finished
 
@@ -28,8 +28,8 @@ def outcome(client: httpx.Client, problem: Statement) -> Any:
     return job["result"]
 
 
-GENEVA = [one for one in examples("indexing") if one["drive"] != "ratchet" and "driver" not in one]
-RATCHET = next(one for one in examples("indexing") if one["drive"] == "ratchet")
+GENEVA = [one for one in list_examples("indexing") if one["drive"] != "ratchet" and "driver" not in one]
+RATCHET = next(one for one in list_examples("indexing") if one["drive"] == "ratchet")
 
 
 @pytest.mark.parametrize("example", further(GENEVA, GENEVA[2:3]), ids=lambda one: f"{one['drive']} {one['stations']}")

@@ -6,7 +6,7 @@ from datetime import datetime
 
 import pytest
 
-from service.api.schemas import Job, JobList
+from service.api.http.schemas import Job, JobList
 from tests.service.running import PROBLEM
 from tests.service.scripted_server import GATED
 

@@ -3,8 +3,8 @@
 import pytest
 from sqlalchemy.exc import IntegrityError, OperationalError
 
-from service.jobs import lane
-from service.jobs.lane import Lane
+from service.jobs.workers import lane
+from service.jobs.workers.lane import Lane
 
 
 @pytest.fixture

@@ -6,7 +6,7 @@ import math
 
 import pytest
 
-from synthesis.model.linkage_statement import LinkageProblem
+from synthesis.model.linkage.problem import LinkageProblem
 from synthesis.registry import KINDS
 from tests.service.answers import drawn, finished
 from tests.service.stated.linkages import BOTH_OPEN, DWELL, LINE, MOTION, PARALLEL, QUICK_RETURN, STEERING

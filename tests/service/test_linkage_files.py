@@ -13,7 +13,7 @@ import ezdxf
 import numpy as np
 import pytest
 
-from service.render import exported
+from service.render import export_design
 from synthesis.dispatch import solve
 from synthesis.registry import parse_problem
 
@@ -40,7 +40,7 @@ def solved(kind: str, unit: str = "mm") -> tuple[Any, Any]:
 
 
 def drawing(kind: str, unit: str = "mm") -> Any:
-    document = ezdxf.read(io.StringIO(exported(*solved(kind, unit), "A linkage", "dxf")))
+    document = ezdxf.read(io.StringIO(export_design(*solved(kind, unit), "A linkage", "dxf")))
     auditor = document.audit()
     assert not auditor.has_errors
     assert not auditor.has_fixes
@@ -96,7 +96,7 @@ def test_units_are_those_of_the_problem() -> None:
 
 
 def table(kind: str) -> tuple[list[str], np.ndarray]:
-    text = exported(*solved(kind), "A linkage", "csv")
+    text = export_design(*solved(kind), "A linkage", "csv")
     rows = list(csv.reader(line for line in text.splitlines() if not line.startswith("#")))
     return rows[0], np.array([[float(x) if x else math.nan for x in row] for row in rows[1:]])
 
@@ -137,18 +137,18 @@ def test_the_table_keeps_every_link_rigid_and_its_rates_are_differences(kind: st
 def test_linkages_of_other_kinds_have_the_same_files(statement: dict[str, Any]) -> None:
     problem = parse_problem({**statement, "max_designs": 1})
     design = solve(problem, lambda _fraction, _message: None).designs[0]
-    document = ezdxf.read(io.StringIO(exported(design, problem, "A linkage", "dxf")))
+    document = ezdxf.read(io.StringIO(export_design(design, problem, "A linkage", "dxf")))
     assert not document.audit().has_errors
     space = document.modelspace()
     assert len(space.query('CIRCLE[layer=="JOINTS"]')) == len(design.mechanism.skeleton.joints)
     assert len(space.query('CIRCLE[layer=="TARGETS"]')) == len(statement.get("points", []))
-    text = exported(design, problem, "A linkage", "csv")
+    text = export_design(design, problem, "A linkage", "csv")
     assert len(text.splitlines()) == 2 + 1 + 361
 
 
 def test_a_hostile_title_is_only_text() -> None:
     for form in ("dxf", "csv", "svg"):
-        text = exported(*solved("fourbar"), 'A "<b>\x00\n= 1+1', form)
+        text = export_design(*solved("fourbar"), 'A "<b>\x00\n= 1+1', form)
         assert "\x00" not in text
         if form == "dxf":
             assert not ezdxf.read(io.StringIO(text)).audit().has_errors

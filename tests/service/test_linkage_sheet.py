@@ -7,8 +7,8 @@ from typing import Any
 
 import pytest
 
-from service.render import exported
-from service.render.checks import checks, compared
+from service.render import export_design
+from service.render.checks import format_check, make_checks_block
 from service.units import symbols
 from synthesis.dispatch import solve
 from synthesis.model.answer import Check, Verification
@@ -33,7 +33,7 @@ def test_all_links_joints_and_targets_are_drawn(asked: dict[str, Any], kind: str
     problem = parse_problem({"kind": "motion", "positions": POSITIONS, "max_designs": 1, **asked})
     design = solve(problem, lambda fraction, message: None).designs[0]
     assert design.mechanism.type == kind
-    text = exported(design, problem, "A <title> & more", "svg")
+    text = export_design(design, problem, "A <title> & more", "svg")
     root = ET.fromstring(text)
     joints = {e.get("data-joint") for e in root.iter(f"{SVG}circle")} - {None}
     assert joints == set(design.mechanism.skeleton.joints)
@@ -47,7 +47,7 @@ def test_all_links_joints_and_targets_are_drawn(asked: dict[str, Any], kind: str
     assert len([g for g in root.iter() if g.get("data-rail")]) == rails
     checks = {g.get("data-check") for g in root.iter() if g.get("data-check")}
     assert checks == {check.name for check in design.verification.checks}
-    assert exported(design, problem, "A <title> & more", "svg") == text
+    assert export_design(design, problem, "A <title> & more", "svg") == text
 
 
 def test_numbers_of_checks_have_the_unit_of_what_they_measure() -> None:
@@ -58,7 +58,7 @@ def test_numbers_of_checks_have_the_unit_of_what_they_measure() -> None:
         Check(name="reaches_targets", passed=True, value=1.23e-15, limit=1e-9),
         Check(name="same_branch", passed=True),
     ]
-    block, _ = checks(Verification(passed=False, checks=stated), problem)(0.0, 0.0, 370.0)
+    block, _ = make_checks_block(Verification(passed=False, checks=stated), problem)(0.0, 0.0, 370.0)
     words = list(ET.fromstring(block.write()).itertext())
     assert words[0] == "Checks: not all passed"
     assert words[2::2] == ["41.234°  (limit 30°)", "120 in  (limit 100 in)", "1.2e−15  (limit 1e−9)"]
@@ -80,7 +80,7 @@ def test_a_value_that_misses_its_limit_does_not_read_like_the_limit(
 ) -> None:
     problem = parse_problem({"kind": "motion", "positions": POSITIONS})
     check = Check(name="longest_link", passed=passed, value=value, limit=limit, dimension=LENGTH)
-    assert compared(check, symbols(problem)) == written
-    block, _ = checks(Verification(passed=passed, checks=[check]), problem)(0.0, 0.0, 370.0)
+    assert format_check(check, symbols(problem)) == written
+    block, _ = make_checks_block(Verification(passed=passed, checks=[check]), problem)(0.0, 0.0, 370.0)
     words = list(ET.fromstring(block.write()).itertext())
     assert words[2:] == ([f"{written[0]}  (limit {written[1]})"] if written[0] else [])

@@ -8,20 +8,20 @@ import threading
 
 import pytest
 
-from service import analyst, render
+from service import render, warm_analysis
 from service.loading import IMPORTS
 from synthesis.dispatch import solve
-from synthesis.registry import example, parse_problem
+from synthesis.registry import get_first_example, parse_problem
 
 
 def drawn() -> None:
-    problem = parse_problem(example("quick_return"))
+    problem = parse_problem(get_first_example("quick_return"))
     design = solve(problem, lambda fraction, message: None).designs[0]
-    assert render.exported(design, problem, "", "svg")
+    assert render.export_design(design, problem, "", "svg")
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("work", [drawn, analyst.warm_up], ids=["drawing", "analyst"])
+@pytest.mark.parametrize("work", [drawn, warm_analysis.warm_up], ids=["drawing", "analyst"])
 def test_who_imports_waits_for_another_import(work) -> None:
     work()
     thread = threading.Thread(target=work, daemon=True)

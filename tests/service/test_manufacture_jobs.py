@@ -8,8 +8,8 @@ from typing import Any
 
 import pytest
 
-from synthesis.model.manufacture import Manufacture
-from synthesis.registry import examples
+from synthesis.model.manufacture.request import Manufacture
+from synthesis.registry import list_examples
 from tests.service.answers import finished
 from tests.service.stated.linkages import BOTH_OPEN, DRIVEN, MOTION, PATH, QUICK_RETURN, TOLERATED
 from tests.statements import fields
@@ -56,7 +56,7 @@ def made(client, problem, block):
 GRID = {"round": {"length": 0.5, "coordinates": 0.5}}
 SLIDES = {**OPEN, "output_side": {"dyad": "PR", "slide_angle": 15.0}}
 
-LOGARITHM = {**examples("function")[2], "max_designs": 2}
+LOGARITHM = {**list_examples("function")[2], "max_designs": 2}
 TRAVELS = {"tolerances": {"length": 0.1}, "quality": {"max_error": 40.0}, "samples": 1000, **GRID}
 
 FIELDS: dict[str, Any] = {

@@ -2,7 +2,7 @@
 
 import pytest
 
-from service.api.measures import measures
+from service.api.http.metric_units import measures
 from synthesis.registry import KINDS
 
 

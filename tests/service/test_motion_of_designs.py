@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from service.answers import designs
-from service.api.errors import Refusal
+from service.api.http.problem_details import Refusal
 from tests.service.running import PROBLEM
 from tests.support.service.analyses import assert_as_documented, joint
 

@@ -4,14 +4,14 @@ import re
 
 import pytest
 
-from synthesis.registry import examples
+from synthesis.registry import list_examples
 
 
 @pytest.fixture(scope="module")
 def job(server):
     answer = server.client.post(
         "/v1/jobs",
-        json={"problem": {**examples("motion")[3], "max_designs": 2}, "label": "lid"},
+        json={"problem": {**list_examples("motion")[3], "max_designs": 2}, "label": "lid"},
         headers={"Prefer": "wait=60"},
         timeout=120.0,
     ).json()

@@ -4,8 +4,8 @@ import copy
 
 import pytest
 
-from synthesis.model.linkage_statement import LinkageProblem
-from synthesis.registry import KINDS, examples
+from synthesis.model.linkage.problem import LinkageProblem
+from synthesis.registry import KINDS, list_examples
 from tests.campaign import further
 from tests.service.answers import finished
 from tests.support.problems.room_cases import ANSWERED, REFUSED, size_of, star
@@ -23,7 +23,7 @@ QUICK = [
 
 
 def problem_of(kind, **more):
-    return {**copy.deepcopy(examples(kind)[SOON.get(kind, 0)]), **more}
+    return {**copy.deepcopy(list_examples(kind)[SOON.get(kind, 0)]), **more}
 
 
 @pytest.mark.parametrize("kind", LINKAGES)

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from service.app import api_document, application
+from service.server.app import api_document, application
 
 KEPT = Path(__file__).parents[2] / "docs" / "openapi.json"
 

@@ -7,14 +7,14 @@ import xml.etree.ElementTree as ET
 import numpy as np
 import pytest
 
-from synthesis.registry import example
+from synthesis.registry import get_first_example
 from tests.service.answers import finished
 from tests.support.service.analyses import assert_as_documented, joint
 
 
 @pytest.mark.timeout(300)
 def test_the_example_is_solved_drawn_and_driven(client):
-    problem = example("parallel_motion")
+    problem = get_first_example("parallel_motion")
     job = finished(client, problem)
     assert job["status"] == "succeeded"
     assert job["result"]["designs"]

@@ -9,7 +9,7 @@ from typing import Any
 import ezdxf
 import pytest
 
-from service.parts.extra import installed
+from service.parts.export.cad_available import is_installed
 from tests.service.answers import finished
 from tests.support.service.parts import DRIVEN, MOTION, SIZES, SLIDER, THREE, bill, parts, refused
 
@@ -75,7 +75,7 @@ def test_the_bill_names_what_is_bought_by_its_standard(client: Any, jobs: Any) -
 )
 def test_every_field_of_the_query_counts(client: Any, jobs: Any, field: str, value: Any, name: str) -> None:
     base = {**SIZES, "process": "laser", "shafts": "one_side", "over": "used", "scale": 1.0}
-    if field == "process" and not installed():
+    if field == "process" and not is_installed():
         assert refused(client, jobs[name], 501, **(base | {field: value}))["type"] == "/problems/no-cad"
         return
     files, others = parts(client, jobs[name], **base), parts(client, jobs[name], **(base | {field: value}))
@@ -152,10 +152,10 @@ def test_blocks_and_slots_of_slides(client: Any, jobs: Any) -> None:
 
 def test_without_the_extra_there_are_outlines_alone(client: Any, jobs: Any) -> None:
     files = parts(client, jobs["fourbar"], **SIZES)
-    assert ("assembly.step" in files) == installed()
-    assert (b"without its extra" in files["README.txt"]) != installed()
+    assert ("assembly.step" in files) == is_installed()
+    assert (b"without its extra" in files["README.txt"]) != is_installed()
     for form in ("step", "glb"):
-        assert client.get(f"{jobs['fourbar']}.{form}").status_code == (200 if installed() else 501)
+        assert client.get(f"{jobs['fourbar']}.{form}").status_code == (200 if is_installed() else 501)
 
 
 def test_there_are_no_parts_of_no_design(client: Any, jobs: Any) -> None:

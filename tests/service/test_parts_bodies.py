@@ -12,14 +12,23 @@ import pytest
 import shapely
 from scipy.spatial import ConvexHull
 
-from service.parts.bodies import Mesh, Prism, Tapered, Turned, Twisted, slices
-from service.parts.curves import Curve
-from service.parts.dxf import cutting
-from service.parts.gears.motion import TrainMotion, Turning
-from service.parts.model import Assembly, Carrier, Frame, Part
-from service.parts.overlaps import overlaps
-from service.parts.painted import nearest
-from service.parts.shapes import Disc, Loop, Region, area, extent, ring, ring_of, turned
+from service.parts.assembly.interference import find_overlaps
+from service.parts.assembly.model import Assembly, Carrier, Frame, Part
+from service.parts.drawings.dxf import write_cutting_dxf
+from service.parts.drawings.rendered import find_nearest
+from service.parts.gears.motion import BodyRotation, TrainMotion
+from service.parts.geometry.regions import (
+    Disc,
+    Loop,
+    Region,
+    make_polygon,
+    make_ring,
+    measure_area,
+    measure_extent,
+    rotate_outline,
+)
+from service.parts.geometry.solids import Mesh, Prism, RevolvedBody, TaperedBody, TwistedPrism, divide_heights
+from service.parts.geometry.splines import Curve
 
 WAVE = 60
 """Points of a contour of three lobes."""
@@ -36,24 +45,24 @@ def test_a_curve_is_the_smooth_line_through_its_points() -> None:
     angles = np.linspace(0.0, 2.0 * math.pi, 4001)
     true = (20.0 + 3.0 * np.cos(3.0 * angles)) * np.exp(1j * angles)
     assert LOBES.area == pytest.approx(polygon(true).area, rel=2e-5)
-    assert extent(LOBES, 1.0 + 0j) == pytest.approx((true.real.min(), true.real.max()), abs=2e-3)
-    inner, outer = (polygon(LOBES.ring(beyond=beyond)) for beyond in (False, True))
+    assert measure_extent(LOBES, 1.0 + 0j) == pytest.approx((true.real.min(), true.real.max()), abs=2e-3)
+    inner, outer = (polygon(LOBES.make_polygon(beyond=beyond)) for beyond in (False, True))
     dense = polygon(LOBES.spline(np.linspace(0.0, LOBES.spline.t[-4], 4000, endpoint=False)) @ (1.0, 1j))
     assert outer.contains(dense)
     assert dense.contains(inner)
     assert outer.area - inner.area < 2e-3 * dense.area
     at = np.linspace(0.0, LOBES.spline.t[-4], 101)
-    assert np.abs(LOBES.clamped(at) - LOBES.spline(at)).max() < 1e-12
-    quarter = turned(LOBES, 1j, 5.0 + 0j)
-    assert extent(quarter, 1j) == pytest.approx(np.add(extent(LOBES, 1.0 + 0j), -5.0), abs=1e-12)
+    assert np.abs(LOBES.b_spline(at) - LOBES.spline(at)).max() < 1e-12
+    quarter = rotate_outline(LOBES, 1j, 5.0 + 0j)
+    assert measure_extent(quarter, 1j) == pytest.approx(np.add(measure_extent(LOBES, 1.0 + 0j), -5.0), abs=1e-12)
 
 
 def test_a_drawing_has_a_curve_as_the_same_spline() -> None:
     part = Part("cam", "cam", "cam", Carrier("cam", None), (Prism(Region(LOBES), 0.0, 1.0),), 1j, (1, 1), "", "#000000")
-    (drawn,) = ezdxf.read(io.StringIO(cutting(part, "A"))).modelspace().query("SPLINE")
+    (drawn,) = ezdxf.read(io.StringIO(write_cutting_dxf(part, "A"))).modelspace().query("SPLINE")
     found = np.array([p.x + 1j * p.y for p in drawn.construction_tool().points(np.linspace(0.0, drawn.knots[-1], 60))])
     true = (LOBES.spline(np.linspace(0.0, LOBES.spline.t[-4], 60)) @ (1.0, 1j)) / 1j
-    corner = complex(extent(LOBES, 1j)[0], extent(LOBES, -1.0 + 0j)[0])
+    corner = complex(measure_extent(LOBES, 1j)[0], measure_extent(LOBES, -1.0 + 0j)[0])
     assert np.abs(found + corner - true).max() < 1e-9
 
 
@@ -61,29 +70,29 @@ def test_arcs_that_turn_to_the_right_are_kept_on_the_right_side() -> None:
     """Of a square with a bite out of one side the polygon beyond covers all of it, the other none of what is cut."""
     bitten = Loop((0j, 3 + 0j, 7 + 0j, 10 + 0j, 10 + 10j, 10j), (0.0, -1.0, 0.0, 0.0, 0.0, 0.0))
     true = shapely.box(0, 0, 10, 10).difference(shapely.Point(5, 0).buffer(2.0, quad_segs=4096))
-    assert area(bitten) == pytest.approx(true.area, rel=1e-6)
-    inner, outer = (polygon(ring_of(bitten, beyond=beyond)) for beyond in (False, True))
-    assert inner.area < area(bitten) < outer.area
+    assert measure_area(bitten) == pytest.approx(true.area, rel=1e-6)
+    inner, outer = (polygon(make_polygon(bitten, beyond=beyond)) for beyond in (False, True))
+    assert inner.area < measure_area(bitten) < outer.area
     assert true.difference(outer).area < 1e-5
     assert inner.difference(true).area < 1e-5
 
 
 def test_a_cone_is_as_large_as_the_formula_says_and_its_slices_hold_it() -> None:
-    cone = Turned((0j, 5.0 + 0j, 2.0 + 6j, 6j), 1.0 + 1j)
+    cone = RevolvedBody((0j, 5.0 + 0j, 2.0 + 6j, 6j), 1.0 + 1j)
     assert cone.volume == pytest.approx(math.pi * 6.0 / 3.0 * (25.0 + 10.0 + 4.0))
     assert (cone.low, cone.high) == (0.0, 6.0)
-    assert cone.within(2.0, 4.0)[0] == ring(1.0 + 1j, 4.0)
-    assert cone.within(7.0, 8.0) == ()
-    hollow = Turned((1.0 + 0j, 5.0 + 0j, 3.0 + 6j))
-    assert hollow.within(3.0, 6.0)[0] == ring(0j, 4.0, 2.0)
+    assert cone.cut_between(2.0, 4.0)[0] == make_ring(1.0 + 1j, 4.0)
+    assert cone.cut_between(7.0, 8.0) == ()
+    hollow = RevolvedBody((1.0 + 0j, 5.0 + 0j, 3.0 + 6j))
+    assert hollow.cut_between(3.0, 6.0)[0] == make_ring(0j, 4.0, 2.0)
 
 
 def test_a_twisted_prism_turns_evenly() -> None:
     bar = Region(Loop((4 - 1j, 4 + 1j, -4 + 1j, -4 - 1j), (0.0,) * 4), (Disc(0j, 0.5),))
-    body = Twisted(bar, 2.0, 10.0, math.pi, 0j)
+    body = TwistedPrism(bar, 2.0, 10.0, math.pi, 0j)
     assert body.volume == pytest.approx(8.0 * (16.0 - math.pi * 0.25))
-    (middle,) = body.within(5.0, 7.0)
-    assert extent(middle.outer, 1j)[1] == pytest.approx(4.0)
+    (middle,) = body.cut_between(5.0, 7.0)
+    assert measure_extent(middle.outer, 1j)[1] == pytest.approx(4.0)
     assert body.region == Region(Disc(0j, pytest.approx(abs(4 + 1j))), (Disc(0j, 0.5),))
 
 
@@ -99,25 +108,25 @@ def test_a_mesh_of_a_prism_has_its_volume_and_its_sections() -> None:
     box = Mesh(corners, triangles)
     assert box.volume == pytest.approx(24.0)
     for low, high in ((1.0, 2.0), (0.0, 0.0)):
-        (region,) = box.within(low, high)
-        assert area(region.outer) == pytest.approx(6.0)
-    assert area(box.region.outer) == pytest.approx(6.0)
+        (region,) = box.cut_between(low, high)
+        assert measure_area(region.outer) == pytest.approx(6.0)
+    assert measure_area(box.region.outer) == pytest.approx(6.0)
     # Two boxes in one are a box with a hole in every section, where the inner one is turned inside out.
     shell = Mesh(
         np.concatenate([corners, 0.5 + 0.5 * corners]), np.concatenate([triangles, triangles[:, ::-1] + len(corners)])
     )
     assert shell.volume == pytest.approx(21.0)
-    (hollow,) = shell.within(2.0, 2.2)
-    assert area(hollow.outer) - sum(map(area, hollow.holes)) == pytest.approx(4.5)
+    (hollow,) = shell.cut_between(2.0, 2.2)
+    assert measure_area(hollow.outer) - sum(map(measure_area, hollow.holes)) == pytest.approx(4.5)
 
 
 def test_bodies_are_compared_along_the_height_that_they_share() -> None:
-    low, high = Prism(ring(0j, 1.0), 0.0, 4.0), Prism(ring(0j, 1.0), 3.0, 5.0)
-    assert slices(low, high, 1e-9) == [(3.0, 4.0)]
-    assert slices(low, Prism(ring(0j, 1.0), 4.0, 5.0), 1e-9) == []
-    cone = Turned((0j, 5.0 + 0j, 6j))
-    assert slices(low, cone, 1e-9)[0][0] == 0.0
-    assert slices(low, cone, 1e-9)[-1][1] == 4.0
+    low, high = Prism(make_ring(0j, 1.0), 0.0, 4.0), Prism(make_ring(0j, 1.0), 3.0, 5.0)
+    assert divide_heights(low, high, 1e-9) == [(3.0, 4.0)]
+    assert divide_heights(low, Prism(make_ring(0j, 1.0), 4.0, 5.0), 1e-9) == []
+    cone = RevolvedBody((0j, 5.0 + 0j, 6j))
+    assert divide_heights(low, cone, 1e-9)[0][0] == 0.0
+    assert divide_heights(low, cone, 1e-9)[-1][1] == 4.0
 
 
 def test_a_cone_to_an_apex_is_as_large_as_its_frustum_and_its_surface_is_closed() -> None:
@@ -126,7 +135,7 @@ def test_a_cone_to_an_apex_is_as_large_as_its_frustum_and_its_surface_is_closed(
     square = Loop((half - 1j * half, half + 1j * half, -half + 1j * half, -half - 1j * half), (0.0,) * 4)
     wide = 20.0
     profile = (low * 1j, 3.0 + low * 1j, wide + low * 1j, wide + high * 1j, 3.0 + high * 1j, high * 1j)
-    body = Tapered(Region(square, (Disc(0j, 1.0),)), profile, apex=0.0, at=10.0, teeth=4)
+    body = TaperedBody(Region(square, (Disc(0j, 1.0),)), profile, apex=0.0, at=10.0, teeth=4)
     areas = [(2.0 * half * height / 10.0) ** 2 for height in (low, high)]
     frustum = (high - low) / 3.0 * (areas[0] + areas[1] + math.sqrt(areas[0] * areas[1]))
     assert body.volume == pytest.approx(frustum - math.pi * (high - low), rel=1e-3)
@@ -151,9 +160,9 @@ def test_parts_of_crossing_axes_meet_where_they_do(gap: float, meets: bool) -> N
         Part(f"part_{n}", "", "gear", Carrier(f"shaft_{n}", None), (body,), 1.0 + 0j, (n, n), "", "#000000")
         for n, body in enumerate(bodies)
     )
-    motion = TrainMotion({f"shaft_{n}": Turning(0j, 1.0 + n, frame=frame) for n, frame in enumerate(frames)}, 40.0)
+    motion = TrainMotion({f"shaft_{n}": BodyRotation(0j, 1.0 + n, frame=frame) for n, frame in enumerate(frames)}, 40.0)
     # The bar's corners are √104 = 10.198 from its axis, and the shaft leaves 10.2 and the gap.
-    found = overlaps(Assembly(parts, motion, 1, 1, 1.0, 1.0), 720)
+    found = find_overlaps(Assembly(parts, motion, 1, 1, 1.0, 1.0), 720)
     assert [one.parts for one in found] == ([("part_0", "part_1")] if meets else [])
 
 
@@ -161,7 +170,7 @@ def test_of_triangles_in_a_picture_the_nearest_is_seen() -> None:
     """Sample by sample, each triangle by the shares that its corners have of it."""
     corners = np.random.default_rng(5).uniform(-4.0, 30.0, (25, 3, 3))
     rows, columns = 20, 24
-    found = nearest(corners, columns, rows)
+    found = find_nearest(corners, columns, rows)
     for row in range(rows):
         for column in range(columns):
             flat = np.concatenate([corners[:, :, :2], np.ones((25, 3, 1))], axis=2)

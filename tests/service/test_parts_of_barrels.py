@@ -13,14 +13,14 @@ import ezdxf
 import numpy as np
 import pytest
 
-from service.parts.barrel import BarrelMotion
-from service.parts.bodies import Mesh, Prism
-from service.parts.groove import Groove
-from service.parts.made import made
-from service.parts.model import Assembly
-from service.parts.overlaps import overlaps
-from service.parts.shapes import Disc, ring
-from service.parts.sizes import PartsQuery
+from service.parts.assembly.interference import find_overlaps
+from service.parts.assembly.model import Assembly
+from service.parts.assembly.sizes import PartsQuery
+from service.parts.cam.barrel import BarrelMotion
+from service.parts.cam.barrel_groove import Groove
+from service.parts.geometry.regions import Disc, make_ring
+from service.parts.geometry.solids import Mesh, Prism
+from service.parts.registry import make_parts
 from synthesis.dispatch import solve
 from synthesis.registry import parse_problem
 from tests.service.answers import finished
@@ -39,7 +39,7 @@ def solved() -> tuple[Any, Any]:
 @cache
 def assembly() -> Assembly:
     problem, design = solved()
-    return made(design, problem, PartsQuery(pin=6.0, thickness=4.0, clearance=0.1))
+    return make_parts(design, problem, PartsQuery(pin=6.0, thickness=4.0, clearance=0.1))
 
 
 @pytest.mark.campaign
@@ -51,11 +51,11 @@ def test_walls_on_the_cylinder_of_the_rollers_middle_are_those_of_the_answer() -
     radius, roller = mechanism.cylinder_radius, mechanism.follower.roller_radius
     # The answer's walls are told at its own cam angles; a clockwise barrel comes by the other way.
     theta = np.radians(mechanism.program.angle)
-    groove = Groove(lambda at: (motion.displacement(at), motion.displacement.slope(at)), roller, 1.0, 2.0)
+    groove = Groove(lambda at: (motion.displacement(at), motion.displacement.compute_slope(at)), roller, 1.0, 2.0)
     for side, told in ((-1, mechanism.lower_wall), (1, mechanism.upper_wall)):
         slope = np.array(mechanism.program.v)
         away = np.hypot(radius, roller * slope / np.hypot(radius, slope))
-        found = [groove.wall(theta[k : k + 1], float(away[k]), side) for k in range(len(theta))]
+        found = [groove.compute_wall(theta[k : k + 1], float(away[k]), side) for k in range(len(theta))]
         heights = np.array([float(wall.height[0]) for wall in found])
         lateral = np.array([float(away[k] * np.sin(wall.angle[0] - theta[k])) for k, wall in enumerate(found)])
         assert heights == pytest.approx(np.array(told.y), abs=1e-6)
@@ -70,8 +70,8 @@ def test_the_barrel_is_a_closed_surface_and_moves_across_the_follower() -> None:
     edges = np.concatenate([mesh.triangles[:, [0, 1]], mesh.triangles[:, [1, 2]], mesh.triangles[:, [2, 0]]])
     assert len(np.unique(edges, axis=0)) == len(edges)
     assert {tuple(edge) for edge in edges.tolist()} == {tuple(edge[::-1]) for edge in edges.tolist()}
-    state = assembly().motion.at(np.array([0.0, 1.0, 2.0]))
-    placed = {part.name: assembly().motion.placed(part.carrier, state) for part in assembly().parts}
+    state = assembly().motion.compute_state(np.array([0.0, 1.0, 2.0]))
+    placed = {part.name: assembly().motion.compute_placement(part.carrier, state) for part in assembly().parts}
     assert placed["barrel"].turn == pytest.approx(np.exp(-1j * np.array([0.0, 1.0, 2.0])))
     assert placed["barrel"].frame is placed["upright_1"].frame
     assert placed["follower"].frame is None
@@ -87,10 +87,10 @@ def test_the_roller_has_its_clearance_in_the_groove_and_no_more(grown: float, me
     assert isinstance(body, Prism)
     assert isinstance(body.region.outer, Disc)
     wide = body.region.outer.radius + grown
-    wider = replace(roller, bodies=(body._replace(region=ring(body.region.outer.centre, wide, 3.0)),))
+    wider = replace(roller, bodies=(body._replace(region=make_ring(body.region.outer.centre, wide, 3.0)),))
     barrel = next(part for part in whole.parts if part.name == "barrel")
     pair = replace(whole, parts=(wider, barrel))
-    assert bool(overlaps(pair)) == meets
+    assert bool(find_overlaps(pair)) == meets
 
 
 @pytest.mark.campaign

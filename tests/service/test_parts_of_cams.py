@@ -12,14 +12,14 @@ import pytest
 import shapely
 from ezdxf.math import bulge_center
 
-from kinematics.cam.contact import Contour
-from service.parts.cam_contours import outline
-from service.parts.cams import CamBuilder, Planes
-from service.parts.extra import installed
-from service.parts.made import NotMade
-from service.parts.overlaps import too_thin
-from service.parts.sizes import WALL, Sizes
-from synthesis.analyses.cam import CamAnalysisRequest
+from kinematics.cam.finished.contact import Contour
+from service.parts.assembly.interference import find_thin_walls
+from service.parts.assembly.sizes import MIN_WALL_PER_PIN, Sizes
+from service.parts.cam.contours import fit_outline
+from service.parts.cam.radial import CamBuilder, CamPlanes
+from service.parts.export.cad_available import is_installed
+from service.parts.registry import NotMade
+from synthesis.analyses.cams.cam import CamAnalysisRequest
 from synthesis.dispatch import solve
 from synthesis.registry import parse_problem
 from tests.campaign import further
@@ -84,7 +84,7 @@ def analysed(mechanism: dict[str, Any], points: np.ndarray) -> tuple[np.ndarray,
     given = {name: mechanism[name] for name in ("type", "follower", "rotation", "prime_radius", "base_radius")
              if mechanism.get(name) is not None}  # fmt: skip
     given["profile"] = {"x": points.real.tolist(), "y": points.imag.tolist()}
-    answer = CamAnalysisRequest.model_validate({"mechanism": given}).answer()
+    answer = CamAnalysisRequest.model_validate({"mechanism": given}).build_answer()
     return np.array(answer["input_angle"]), np.array(answer["follower"]["position"])
 
 
@@ -165,7 +165,7 @@ CHANGED = [
 @pytest.mark.parametrize(("field", "value", "cell"), CHANGED)
 def test_every_field_counts_for_a_cam(client: Any, jobs: Any, field: str, value: Any, cell: Any) -> None:
     place, _ = jobs["roller"]
-    if field == "process" and not installed():
+    if field == "process" and not is_installed():
         assert refused(client, place, 501, **(SIZES | {field: value}))["type"] == "/problems/no-cad"
         return
     rows, others = bill(parts(client, place, **SIZES)), bill(parts(client, place, **(SIZES | {field: value})))
@@ -261,8 +261,8 @@ def test_the_inner_wall_of_a_groove_in_one_piece_is_looked_at() -> None:
     design = solve(parse_problem(PROBLEMS["groove"]), lambda _fraction, _message: None).designs[0]
     for pin, thin in ((8.0, False), (26.0, True)):
         sizes = Sizes("mill", 2.5 * pin, pin, 5.0, 0.1)
-        whole = CamBuilder(design.mechanism, sizes, 1.0, Planes(2, 3, back=1)).assembled(1.0)
-        assert ("cam" in {found.part for found in too_thin(whole, WALL * pin)}) == thin
+        whole = CamBuilder(design.mechanism, sizes, 1.0, CamPlanes(2, 3, back=1)).build_assembly(1.0)
+        assert ("cam" in {found.part for found in find_thin_walls(whole, MIN_WALL_PER_PIN * pin)}) == thin
 
 
 def test_a_contour_with_an_edge_is_not_drawn_as_a_spline() -> None:
@@ -270,7 +270,7 @@ def test_a_contour_with_an_edge_is_not_drawn_as_a_spline() -> None:
         [np.linspace(a, b, 20, endpoint=False) for a, b in ((1, 1j), (1j, -1), (-1, -1j), (-1j, 1))]
     )
     with pytest.raises(NotMade, match="edge"):
-        outline(Contour(40.0 * square), 1.0)
+        fit_outline(Contour(40.0 * square), 1.0)
 
 
 def test_the_studio_is_told_that_cams_and_drives_are_had_as_parts(client: Any) -> None:

@@ -13,12 +13,12 @@ import ezdxf
 import numpy as np
 import pytest
 
-from service.parts.bodies import Prism
-from service.parts.made import made
-from service.parts.model import Assembly
-from service.parts.overlaps import overlaps
-from service.parts.shapes import Disc
-from service.parts.sizes import NotMade, PartsQuery
+from service.parts.assembly.interference import find_overlaps
+from service.parts.assembly.model import Assembly
+from service.parts.assembly.sizes import NotMade, PartsQuery
+from service.parts.geometry.regions import Disc
+from service.parts.geometry.solids import Prism
+from service.parts.registry import make_parts
 from synthesis.dispatch import solve
 from synthesis.registry import parse_problem
 from tests.service.answers import finished
@@ -37,7 +37,7 @@ def solved(ratio: float) -> tuple[Any, Any]:
 
 
 def assembly(ratio: float = 1.4, **query: Any) -> Assembly:
-    return made(*solved(ratio), PartsQuery(**query))
+    return make_parts(*solved(ratio), PartsQuery(**query))
 
 
 def keyed(content: bytes) -> tuple[complex, float]:
@@ -125,7 +125,7 @@ def test_a_plate_on_the_other_side_of_the_base_would_be_in_the_way(part: str, pl
     for one in whole.parts:
         bodies = tuple(Prism(body.region, body.low + up, body.high + up) for body in one.bodies if one.name == part)
         moved.append(replace(one, bodies=bodies or one.bodies))
-    assert any(part in pair.parts for pair in overlaps(replace(whole, parts=tuple(moved)), 24))
+    assert any(part in pair.parts for pair in find_overlaps(replace(whole, parts=tuple(moved)), 24))
 
 
 @pytest.mark.slow

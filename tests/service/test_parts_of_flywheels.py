@@ -13,7 +13,7 @@ import pytest
 import shapely
 from ezdxf.math import bulge_center
 
-from synthesis.registry import examples
+from synthesis.registry import list_examples
 from tests.service.answers import finished
 from tests.service.stated.shafts import FLYWHEEL
 from tests.support.service.parts import bill, parts, refused
@@ -76,12 +76,12 @@ def test_a_bore_too_wide_for_a_flywheel_is_refused_with_one_that_does(client: An
     assert answer["errors"][0]["path"] == "/query/face_width"
 
 
-ROTOR = next(one for one in examples("balancing") if one.get("object") == "rotor")
+ROTOR = next(one for one in list_examples("balancing") if one.get("object") == "rotor")
 
 
 @pytest.mark.parametrize(
     ("problem", "reason"),
-    [(ROTOR, "no shape of it; use"), (examples("engine")[0], "bore, journal or web; use")],
+    [(ROTOR, "no shape of it; use"), (list_examples("engine")[0], "bore, journal or web; use")],
     ids=["rotor", "engine"],
 )
 def test_what_states_no_shape_says_why_and_what_to_ask_for(client: Any, problem: Any, reason: str) -> None:

@@ -7,12 +7,12 @@ from typing import Any
 import numpy as np
 import pytest
 
+from service.parts.assembly.interference import find_overlaps
+from service.parts.assembly.sizes import PartsQuery
 from service.parts.gears.motion import TrainMotion
-from service.parts.made import made
-from service.parts.overlaps import overlaps
-from service.parts.sizes import PartsQuery
+from service.parts.registry import make_parts
 from synthesis.dispatch import solve
-from synthesis.registry import examples, parse_problem
+from synthesis.registry import list_examples, parse_problem
 from tests.service.answers import finished
 from tests.support.service.parts import bill, parts, refused
 from tests.support.service.parts_of_gearboxes import BOX
@@ -77,11 +77,11 @@ def test_a_train_has_no_speeds_to_choose_from(client: Any) -> None:
 @pytest.mark.slow
 @pytest.mark.parametrize("process", ["laser", "mill"])
 def test_no_two_parts_meet_in_any_speed(process: Any) -> None:
-    problem = parse_problem(examples("gearbox")[0])
+    problem = parse_problem(list_examples("gearbox")[0])
     design = solve(problem, lambda _fraction, _message: None).designs[0]
     for number in range(1, 7):
-        whole = made(design, problem, PartsQuery(process=process, speed=number))
-        assert overlaps(whole, 72) == []
+        whole = make_parts(design, problem, PartsQuery(process=process, speed=number))
+        assert find_overlaps(whole, 72) == []
         assert isinstance(whole.motion, TrainMotion)
         turns = [body.speed for body in whole.motion.bodies.values()]
         assert turns[-1] == pytest.approx(design.metrics.speeds[number - 1].speed / 200.0, rel=1e-9)

@@ -8,26 +8,26 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from kinematics.linkage.planar.catalogue import geared_fivebar
+from kinematics.linkage.planar.catalogue import make_geared_fivebar
 from kinematics.linkage.planar.mechanism import GearPair
-from service.parts.bodies import Prism
-from service.parts.geared import pair_wheels, teeth_for
-from service.parts.made import NotMade, made
-from service.parts.overlaps import overlaps
-from service.parts.shapes import Region, turned
-from service.parts.sizes import PartsQuery
+from service.parts.assembly.interference import find_overlaps
+from service.parts.assembly.sizes import PartsQuery
+from service.parts.geometry.regions import Region, rotate_outline
+from service.parts.geometry.solids import Prism
+from service.parts.linkage.gears import find_teeth, make_pair_wheels
+from service.parts.registry import NotMade, make_parts
 from tests.support.service.parts_of_geared_linkages import planted
 
 
 @pytest.mark.parametrize("ratio", [-2.0, 1.5])
 def test_gears_turn_with_their_links_and_would_bite_in_any_other_phase(ratio: float) -> None:
     problem, design = planted(ratio)
-    whole = made(design, problem, PartsQuery(thickness=4.0, pin=2.0, clearance=0.1))
+    whole = make_parts(design, problem, PartsQuery(thickness=4.0, pin=2.0, clearance=0.1))
     gears = {part.name: part for part in whole.parts if part.sort == "gear"}
     assert ("idler" in gears) == (ratio > 0.0)
     inputs = whole.motion.low + np.array([0.0, 1.0, 4.5])
-    state = whole.motion.at(inputs)
-    turns = {name: whole.motion.placed(part.carrier, state).turn for name, part in gears.items()}
+    state = whole.motion.compute_state(inputs)
+    turns = {name: whole.motion.compute_placement(part.carrier, state).turn for name, part in gears.items()}
     since = inputs - whole.motion.reference
     assert turns["gear_of_input"] == pytest.approx(np.exp(1j * since), abs=1e-9)
     assert turns["gear_of_output"] == pytest.approx(np.exp(1j * ratio * since), abs=1e-9)
@@ -35,17 +35,17 @@ def test_gears_turn_with_their_links_and_would_bite_in_any_other_phase(ratio: fl
     gear = gears["gear_of_output"]
     (body,) = gear.bodies
     assert isinstance(body, Prism)
-    moved = turned(body.region.outer, np.exp(1j * math.pi / 18.0), 60.0 + 0.0j)
+    moved = rotate_outline(body.region.outer, np.exp(1j * math.pi / 18.0), 60.0 + 0.0j)
     bitten = replace(gear, bodies=(body._replace(region=Region(moved, body.region.holes)),))
     changed = replace(whole, parts=tuple(bitten if part is gear else part for part in whole.parts))
-    assert overlaps(whole) == []
-    assert any("gear_of_output" in found.parts for found in overlaps(changed))
+    assert find_overlaps(whole) == []
+    assert any("gear_of_output" in found.parts for found in find_overlaps(changed))
 
 
 @pytest.mark.parametrize("ratio", [-2.0, 2.0, -0.75, 21.0 / 19.0])
 def test_teeth_have_the_ratio_on_the_given_pivots(ratio: float) -> None:
-    linkage = geared_fivebar(0.0, 60.0, 10.0, 70.0, 70.0, 12.0, ratio, 0.5, 0.3, 1, 0.0)
-    first, second, *idler = pair_wheels(linkage, GearPair("input", "output", ratio))
+    linkage = make_geared_fivebar(0.0, 60.0, 10.0, 70.0, 70.0, 12.0, ratio, 0.5, 0.3, 1, 0.0)
+    first, second, *idler = make_pair_wheels(linkage, GearPair("input", "output", ratio))
     assert first.gear.teeth / second.gear.teeth == pytest.approx(abs(ratio), rel=1e-12)
     for wheel in (second, *idler):
         assert wheel.gear.module == pytest.approx(first.gear.module, rel=1e-12)
@@ -63,6 +63,6 @@ def test_teeth_have_the_ratio_on_the_given_pivots(ratio: float) -> None:
 
 def test_a_ratio_that_no_teeth_have_is_refused() -> None:
     with pytest.raises(NotMade, match="exactly"):
-        teeth_for(math.sqrt(2.0))
+        find_teeth(math.sqrt(2.0))
     with pytest.raises(NotMade, match="teeth"):
-        teeth_for(1.0 / 40.0)
+        find_teeth(1.0 / 40.0)

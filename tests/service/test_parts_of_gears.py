@@ -12,7 +12,7 @@ import pytest
 import shapely
 
 from kinematics.gear.teeth import involute
-from service.parts.extra import installed
+from service.parts.export.cad_available import is_installed
 from tests.campaign import further
 from tests.service.answers import finished
 from tests.support.service.parts import bill, parts, refused
@@ -106,7 +106,7 @@ def test_the_bill_of_a_pair_names_keys_and_shafts(client: Any, pair: str) -> Non
 )
 def test_every_field_counts_for_gears(client: Any, pair: str, field: str, value: Any) -> None:
     base = {**SIZES, "process": "laser", "scale": 1.0}
-    if field == "process" and not installed():
+    if field == "process" and not is_installed():
         assert refused(client, pair, 501, **(base | {field: value}))["type"] == "/problems/no-cad"
         return
     files, others = parts(client, pair, **base), parts(client, pair, **(base | {field: value}))

@@ -10,10 +10,10 @@ import zipfile
 import numpy as np
 import pytest
 
-from synthesis.registry import examples
+from synthesis.registry import list_examples
 
 SVG = "{http://www.w3.org/2000/svg}"
-DRAWN = next(example for example in examples("path") if example.get("method") == "curve_match")
+DRAWN = next(example for example in list_examples("path") if example.get("method") == "curve_match")
 
 
 @pytest.mark.slow

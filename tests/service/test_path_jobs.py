@@ -7,11 +7,11 @@ import re
 import numpy as np
 import pytest
 
-from kinematics.linkage.fourbar import OPEN, Fourbar, positions
-from synthesis.registry import examples
+from kinematics.linkage.fourbar import OPEN_ASSEMBLY, Fourbar, positions
+from synthesis.registry import list_examples
 from tests.service.running import SOON_S, until
 
-TIMED = [example for example in examples("path") if example.get("timing") == "prescribed"]
+TIMED = [example for example in list_examples("path") if example.get("timing") == "prescribed"]
 
 
 @pytest.mark.parametrize("example", TIMED, ids=["exact", "fitted"])
@@ -113,7 +113,7 @@ def test_tolerances_for_some_points_alone_are_refused(client):
 
 def test_a_fit_begins_at_a_linkage_that_is_stated(client):
     planted = Fourbar(1.0 - 2.0j, 7.0 + 1.0j, 2.0, 6.0, 5.0, 3.0 + 2.0j)
-    way = positions(planted, np.linspace(0.3, 4.0, 12), OPEN)
+    way = positions(planted, np.linspace(0.3, 4.0, 12), OPEN_ASSEMBLY)
     points = [{"x": z.real, "y": z.imag} for z in way.p]
     joints = {"O2": 1.0 - 2.0j, "A": way.a[3], "B": way.b[3], "O4": 7.0 + 1.0j, "P": way.p[3]}
     start = {name: [1.04 * z.real, z.imag] for name, z in joints.items()}

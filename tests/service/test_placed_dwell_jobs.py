@@ -10,13 +10,13 @@ from itertools import combinations
 import numpy as np
 import pytest
 
-from synthesis.registry import examples
+from synthesis.registry import list_examples
 from tests.campaign import further
 from tests.service.answers import finished
 from tests.service.stated.linkages import WEIGHED
 from tests.support.synthesis.triad_dwells import ELSEWHERE, built
 
-UNEQUAL = {**examples("dwell")[2], "max_designs": 1}
+UNEQUAL = {**list_examples("dwell")[2], "max_designs": 1}
 HIGH = {
     "kind": "dwell",
     "dwells": [{"angle": 60.0, "at": "high"}],

@@ -13,10 +13,10 @@ import ezdxf
 import pytest
 
 from kinematics.gear.arrangements import ARRANGEMENTS
-from service.render import exported
-from service.render.gears.planetary_layout import PlanetaryGear, placed_planetary_gears
+from service.render import export_design
+from service.render.gears.planetary_layout import PlanetaryGear, place_planetary_gears
 from synthesis.dispatch import solve
-from synthesis.registry import example, parse_problem
+from synthesis.registry import get_first_example, parse_problem
 
 TRAINS: list[dict[str, Any]] = [
     {"ratio": 5.0, "arrangement": "simple", "input": "sun", "output": "carrier", "planets": 4},
@@ -41,7 +41,7 @@ def test_teeth_of_all_copies_stand_in_spaces(stated: dict[str, Any]) -> None:
     """At every contact of every copy the tooth of one gear faces the middle of a space of the other."""
     design, _ = solved(**stated)
     arrangement = ARRANGEMENTS[design.mechanism.arrangement]
-    placed = placed_planetary_gears(design.mechanism)
+    placed = place_planetary_gears(design.mechanism)
     by_name: dict[str, list[PlanetaryGear]] = {}
     for gear in placed:
         by_name.setdefault(gear.name, []).append(gear)
@@ -69,20 +69,20 @@ def test_teeth_of_all_copies_stand_in_spaces(stated: dict[str, Any]) -> None:
 @pytest.mark.slow
 def test_sheet_dxf_and_table_of_a_planetary_train() -> None:
     design, problem = solved(**TRAINS[0])
-    drawn = ElementTree.fromstring(exported(design, problem, "A & <b>", "svg"))
+    drawn = ElementTree.fromstring(export_design(design, problem, "A & <b>", "svg"))
     circles = [node for node in drawn.iter() if node.get("data-gear")]
     assert len(circles) == 2 + design.mechanism.planets
     radii = {node.get("data-gear"): float(list(node)[1].get("r", "0")) for node in circles}
     teeth = design.mechanism.teeth
     assert radii["ring"] / radii["sun"] == pytest.approx(teeth["ring"] / teeth["sun"], rel=1e-3)
-    text = exported(design, problem, "Train", "dxf")
-    assert text == exported(design, problem, "Train", "dxf")
+    text = export_design(design, problem, "Train", "dxf")
+    assert text == export_design(design, problem, "Train", "dxf")
     document = ezdxf.read(io.StringIO(text))
     assert not document.audit().errors
     pitch = [entity.dxf.radius for entity in document.modelspace().query("CIRCLE")]
     assert max(pitch) == pytest.approx(0.5 * teeth["ring"])
     assert len(document.modelspace().query("LWPOLYLINE")) == 2 + design.mechanism.planets
-    rows = list(csv.DictReader(io.StringIO(exported(design, problem, "Train", "csv"))))
+    rows = list(csv.DictReader(io.StringIO(export_design(design, problem, "Train", "csv"))))
     assert len(rows) == 2 + design.mechanism.planets
     assert {row["gear"]: int(row["teeth"]) for row in rows} == teeth
 
@@ -90,17 +90,17 @@ def test_sheet_dxf_and_table_of_a_planetary_train() -> None:
 def test_bevel_differential_is_drawn() -> None:
     design, problem = solved(ratio=2, arrangement="bevel_differential")
     for form in ("svg", "dxf", "csv"):
-        assert exported(design, problem, "Differential", form)
+        assert export_design(design, problem, "Differential", form)
 
 
 @pytest.mark.parametrize("kind", ["gearbox", "layshaft_gearbox"])
 def test_ray_diagrams_and_tables(kind: str) -> None:
-    problem = parse_problem(example(kind))
+    problem = parse_problem(get_first_example(kind))
     design: Any = solve(problem, lambda fraction, message: None).designs[0]
-    drawn = ElementTree.fromstring(exported(design, problem, "Box", "svg"))
+    drawn = ElementTree.fromstring(export_design(design, problem, "Box", "svg"))
     rays = [tuple(map(float, node.get("data-ray", "").split())) for node in drawn.iter() if node.get("data-ray")]
     nodes = [node.get("data-node", "").split() for node in drawn.iter() if node.get("data-node")]
-    rows = list(csv.reader(io.StringIO(exported(design, problem, "Box", "csv"))))
+    rows = list(csv.reader(io.StringIO(export_design(design, problem, "Box", "csv"))))
     if kind == "gearbox":
         assert len(rays) == 3 + 3 * 2
         spindle = sorted(float(speed) for shaft, speed in nodes if shaft == "3")

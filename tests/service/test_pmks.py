@@ -8,10 +8,10 @@ from typing import Any, NamedTuple
 
 import pytest
 
-from service.simulation.pmks import pmks
+from service.simulation.pmks import write_pmks
 from service.simulation.query import NotSimulated
-from synthesis.mechanisms.skeleton import assembled_skeleton
-from synthesis.model.stated_linkage import StatedSkeleton
+from synthesis.mechanisms.skeleton import assemble_skeleton
+from synthesis.model.linkage.given_linkage import SkeletonSpec
 from tests.service.answers import finished
 from tests.support.service.parts import MOTION, SLIDER
 
@@ -126,11 +126,11 @@ def skeleton_of(gears: list[Any]) -> Any:
         links.append({"name": "rocker", "joints": ["O4", "B"]})
         angle = math.degrees(cmath.phase(-15.0 + 3.0j))
         stated["slides"] = [{"joint": "A", "link": "rocker", "point": [20.0, 0.0], "angle": angle}]
-    return assembled_skeleton(StatedSkeleton.model_validate(stated))
+    return assemble_skeleton(SkeletonSpec.model_validate(stated))
 
 
 def test_a_slot_of_a_link_lies_through_two_of_its_points() -> None:
-    _, _, joints, links = decoded(pmks(skeleton_of([]), 60.0).url.split("?")[1])
+    _, _, joints, links = decoded(write_pmks(skeleton_of([]), 60.0).url.split("?")[1])
     (own,) = (name for name, joint in joints.items() if joint.flags & 1)
     carrier, one, other = joints[own].slot
     sort, members = links[carrier]
@@ -145,7 +145,7 @@ def test_a_slot_of_a_link_lies_through_two_of_its_points() -> None:
 
 def test_gears_cannot_be_opened() -> None:
     with pytest.raises(NotSimulated, match="does not support gears"):
-        pmks(skeleton_of([{"links": ["crank", "rocker"], "ratio": -2.0}]), 60.0)
+        write_pmks(skeleton_of([{"links": ["crank", "rocker"], "ratio": -2.0}]), 60.0)
 
 
 def test_what_is_no_linkage_is_told(client: Any) -> None:

@@ -5,7 +5,7 @@ import threading
 import pytest
 from sqlalchemy.exc import OperationalError
 
-from service.jobs.progress import ProgressWriter
+from service.jobs.workers.progress_writer import ProgressWriter
 from tests.service.running import SOON_S, until
 
 

@@ -5,8 +5,8 @@ import time
 import pytest
 from sqlalchemy.exc import OperationalError
 
-from service.jobs import recovery
-from service.jobs.recovery import Recovery
+from service.jobs.cluster import recovery
+from service.jobs.cluster.recovery import Recovery
 from tests.service.running import SOON_S, until
 
 LEASE_S, PERIOD_S = 0.6, 0.02

@@ -8,15 +8,15 @@ from html.parser import HTMLParser
 
 import pytest
 
-from service.render.outline import MOST_ROWS, outline
-from service.render.page.numbers import length
-from service.render.report import POLICY, Occasion, report
+from service.render.outline import MAX_ROWS, make_outline
+from service.render.page.numbers import format_length
+from service.render.report import POLICY, ReportedJob, report
 from service.units import symbols
 from synthesis.dispatch import solve
-from synthesis.registry import KINDS, examples, parse_problem
+from synthesis.registry import KINDS, list_examples, parse_problem
 
 VOID = {"meta", "link", "br", "img", "input", "hr"}
-OCCASION = Occasion("01K6WM2B7Q3W9Z0V5N8XJ4R1TD", "", None, "2026-01-31T12:00:00.000000Z", None, "1.2.3")
+OCCASION = ReportedJob("01K6WM2B7Q3W9Z0V5N8XJ4R1TD", "", None, "2026-01-31T12:00:00.000000Z", None, "1.2.3")
 
 # The examples of each kind that are solved at once.
 QUICK = {"motion": 3, "path": 1, "function": 1, "cam": 0, "straight_line": 1, "quick_return": 0}
@@ -63,7 +63,7 @@ class Page(HTMLParser):
 
 
 def solved(kind, n):
-    problem = parse_problem(examples(kind)[n])
+    problem = parse_problem(list_examples(kind)[n])
     return problem, solve(problem)
 
 
@@ -102,7 +102,9 @@ def test_the_report_of_each_kind_has_problem_answer_drawings_checks_and_dimensio
             )
     # Every number of the mechanism that is a row of its own is there, with its unit beside it.
     units = symbols(problem)
-    rows = [row for design in shown for row in outline(design.mechanism, units, leave_out={"type", "skeleton"}).rows]
+    rows = [
+        row for design in shown for row in make_outline(design.mechanism, units, leave_out={"type", "skeleton"}).rows
+    ]
     # A linkage that is stated by its skeleton has no dimensions beside it.
     assert rows or all(set(type(design.mechanism).model_fields) == {"type", "skeleton"} for design in shown)
     for row in rows:
@@ -110,28 +112,32 @@ def test_the_report_of_each_kind_has_problem_answer_drawings_checks_and_dimensio
 
 
 def test_lengths_have_their_unit_and_angles_theirs():
-    problem = parse_problem({**examples("motion")[3], "length_unit": "in"})
+    problem = parse_problem({**list_examples("motion")[3], "length_unit": "in"})
     result = solve(problem)
     page = Page(report(problem, result, OCCASION, 1))
     mechanism = result.designs[0].mechanism
-    assert any(row[:3] == ["Links: coupler", length(mechanism.links.coupler), "in"] for row in page.rows)
-    assert any(row[:3] == ["Coupler point: angle", length(mechanism.coupler_point.angle), "°"] for row in page.rows)
+    assert any(row[:3] == ["Links: coupler", format_length(mechanism.links.coupler), "in"] for row in page.rows)
+    assert any(
+        row[:3] == ["Coupler point: angle", format_length(mechanism.coupler_point.angle), "°"] for row in page.rows
+    )
     assert any(row[:3] == ["Constraints: min transmission angle", "20", "°"] for row in page.rows) == (
         problem.constraints.min_transmission_angle == 20.0
     )
 
 
 def test_long_lists_are_thinned_with_both_ends_and_say_so():
-    problem = parse_problem(examples("cam")[0])
+    problem = parse_problem(list_examples("cam")[0])
     result = solve(problem)
-    (program,) = [one for one in outline(result.designs[0].mechanism, symbols(problem)).lists if one.title == "Program"]
+    (program,) = [
+        one for one in make_outline(result.designs[0].mechanism, symbols(problem)).lists if one.title == "Program"
+    ]
     table = result.designs[0].mechanism.program
     assert [head for head, _ in program.heads] == ["Angle", "S", "V", "A", "J"]
     assert [unit for _, unit in program.heads] == ["°", "mm", "mm/rad", "mm/rad²", "mm/rad³"]
-    assert len(program.rows) == MOST_ROWS
+    assert len(program.rows) == MAX_ROWS
     assert program.rows[0][0] == "0"
-    assert program.rows[-1][0] == length(table.angle[-1])
-    assert f"{MOST_ROWS} of {len(table.angle)}" in program.omitted
+    assert program.rows[-1][0] == format_length(table.angle[-1])
+    assert f"{MAX_ROWS} of {len(table.angle)}" in program.omitted
 
 
 def test_where_nothing_was_found_the_report_says_whether_that_is_a_proof():
@@ -160,7 +166,7 @@ def test_a_design_that_fails_a_check_is_shown_to_fail():
 
 def test_the_report_by_http(server, client):
     label = '<script>alert("x")</script> & "hinge"'
-    job = server.post(wait=20, problem=examples("motion")[3], label=label)
+    job = server.post(wait=20, problem=list_examples("motion")[3], label=label)
     answer = client.get(f"/v1/jobs/{job['id']}/report.html")
     assert answer.status_code == 200
     assert answer.headers["content-type"] == "text/html; charset=utf-8"
@@ -178,7 +184,7 @@ def test_the_report_by_http(server, client):
 
 def test_what_cannot_be_reported_is_refused(server, client):
     assert client.get("/v1/jobs/01K6WM2B7Q3W9Z0V5N8XJ4R1TD/report.html").status_code == 404
-    job = server.post(wait=20, problem=examples("motion")[3])
+    job = server.post(wait=20, problem=list_examples("motion")[3])
     refused = client.get(f"/v1/jobs/{job['id']}/report.html", params={"designs": 21})
     assert refused.status_code == 422
     assert refused.json()["errors"][0]["path"] == "/query/designs"

@@ -12,8 +12,8 @@ from typing import Any
 
 import pytest
 
-from service.jobs.request_pool import Busy, GivenUp, Gone, Limits, Lost, RequestPool
-from service.jobs.request_queue import Call, RequestQueue
+from service.jobs.processes.request_pool import Busy, GivenUp, Gone, Limits, Lost, RequestPool
+from service.jobs.processes.request_queue import Call, RequestQueue
 from tests.support.service.request_pool import never
 
 

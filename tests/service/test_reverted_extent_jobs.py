@@ -11,7 +11,7 @@ from typing import Any
 import httpx
 import pytest
 
-from synthesis.kinds.gear_train import extent
+from synthesis.kinds.gear_train.statement import search_size
 from synthesis.registry import parse_problem
 from tests.service.answers import finished
 
@@ -62,5 +62,5 @@ def test_the_extent_is_that_of_meshes_of_one_distance(
     choices = sum(math.comb(count + stages - 2, stages - 1) for count in meshes.values())
     problem = parse_problem({key: value for key, value in stated.items() if value is not None})
     for most, refused in ((choices, False), (choices - 1, True)):
-        monkeypatch.setattr(extent, "COAXIAL", (most, "combinations of meshes"))
-        assert any("combinations" in fault.detail for fault in problem.contradictions()) == refused
+        monkeypatch.setattr(search_size, "COAXIAL_LIMIT", (most, "combinations of meshes"))
+        assert any("combinations" in fault.detail for fault in problem.find_contradictions()) == refused

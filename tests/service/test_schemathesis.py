@@ -9,8 +9,8 @@ from pathlib import Path
 
 import pytest
 
-from service.app import api_document
-from synthesis.registry import example
+from service.server.app import api_document
+from synthesis.registry import get_first_example
 from tests.service.running import RunningServer
 from tests.support.service.access import client_with, made
 
@@ -51,7 +51,7 @@ def kept(tmp_path_factory):
 
 
 def solved(client, kind):
-    body = {"problem": example(kind), "label": kind}
+    body = {"problem": get_first_example(kind), "label": kind}
     job = client.post("/v1/jobs", json=body, headers={"Idempotency-Key": f"of-{kind}"}).json()
     # The first job of a kind compiles its kernels, where that has not been done before.
     for _ in range(300):

@@ -15,7 +15,7 @@ import httpx
 import pytest
 import shapely
 
-from synthesis.registry import example
+from synthesis.registry import get_first_example
 from tests.service.answers import finished
 from tests.support.service.parts import MOTION, SLIDER
 
@@ -35,12 +35,12 @@ PROBLEMS = {
     "weighed": {**MOTION, "dynamics": WEIGHED},
     "laid out": {**MOTION, "layout": {"link_width": 9.0, "pin_diameter": 3.0, "thickness": 2.0}},
     "consistent": {**MOTION, "dynamics": {**WEIGHED, "units": "consistent"}},
-    "unit size": example("quick_return"),
+    "unit size": get_first_example("quick_return"),
     "train": TRAIN,
-    "planets": example("planetary_train"),
-    "gearbox": example("gearbox"),
-    "layshaft": example("layshaft_gearbox"),
-    "engine": example("engine"),
+    "planets": get_first_example("planetary_train"),
+    "gearbox": get_first_example("gearbox"),
+    "layshaft": get_first_example("layshaft_gearbox"),
+    "engine": get_first_example("engine"),
 }
 FORMS = ("mjcf", "urdf", "mo", "sim.py")
 

@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from synthesis.kinds.function import by_type
+from synthesis.kinds.function import type_selection
 from synthesis.kinds.function.design import FunctionResult
 from synthesis.model.answer import Search
 from tests.campaign import further
@@ -189,8 +189,8 @@ def test_what_is_ordered_by_forces_and_then_cut_is_not_said_to_be_offered(client
     ],
 )  # fmt: skip
 def test_what_is_offered_beside_a_fourbar_is_what_is_told(monkeypatch, fourbars, sixbars, most, later, offered, told):
-    monkeypatch.setattr(by_type, "ordered", lambda _, designs: sorted(designs, key=_error))
-    monkeypatch.setattr(by_type, "error_of", lambda _, design: _error(design))
+    monkeypatch.setattr(type_selection, "rank_by_error", lambda _, designs: sorted(designs, key=_error))
+    monkeypatch.setattr(type_selection, "get_error", lambda _, design: _error(design))
     limits = SimpleNamespace(min_transmission_angle=None)
     problem = SimpleNamespace(max_designs=most, constraints=limits, listed_later=later)
     results = [
@@ -209,7 +209,7 @@ def test_what_is_offered_beside_a_fourbar_is_what_is_told(monkeypatch, fourbars,
         )
         for designs in (fourbars, sixbars)
     ]  # fmt: skip
-    answer = by_type.joined(problem, *results)
+    answer = type_selection.merge_type_results(problem, *results)
     assert [_error(design) for design in answer.designs] == offered
     assert answer.summary.strip() == told
     assert answer.search.accepted == len(offered)

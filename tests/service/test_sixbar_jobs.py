@@ -14,11 +14,11 @@ import numpy as np
 import pytest
 from scipy.optimize import least_squares
 
-from synthesis.kinds.motion import by_type
+from synthesis.kinds.motion import type_selection
 from synthesis.kinds.motion.design import MotionResult
-from synthesis.kinds.motion.sixbar_makes import MAKES
+from synthesis.kinds.motion.sixbar.topologies import TOPOLOGIES
 from synthesis.model.answer import Search
-from synthesis.model.sixbars import IN_WORDS
+from synthesis.model.linkage.sixbars import SIXBAR_NAMES
 from tests.campaign import further
 from tests.oracles.loops import Loops
 from tests.service.answers import finished
@@ -75,7 +75,7 @@ def test_every_type_is_solved_proved_drawn_and_driven(client, kind):
     place = f"/v1/jobs/{body['id']}/designs/0"
     root = ET.fromstring(client.get(f"{place}.svg").text)
     assert {e.get("data-joint") for e in root.iter()} - {None} == set(designs[0]["mechanism"]["skeleton"]["joints"])
-    assert IN_WORDS[kind] in client.get(f"{place}.svg").text
+    assert SIXBAR_NAMES[kind] in client.get(f"{place}.svg").text
     for ending in ("dxf", "csv"):
         assert client.get(f"{place}.{ending}").status_code == 200, ending
     motion = client.get(f"{place}/motion?steps=72").json()
@@ -181,7 +181,7 @@ def _as_of(sort: str, least: float) -> SimpleNamespace:
     ],
 )
 def test_what_is_offered_beside_a_fourbar_is_what_is_told(monkeypatch, fourbar, sixbars, most, offered, told):
-    monkeypatch.setattr(by_type, "order_of", lambda _: partial(sorted, key=_least, reverse=True))
+    monkeypatch.setattr(type_selection, "make_ranking", lambda _: partial(sorted, key=_least, reverse=True))
     problem = SimpleNamespace(max_designs=most, rank_by="quality", listed_later=False)
     results = [
         MotionResult.model_construct(
@@ -192,7 +192,7 @@ def test_what_is_offered_beside_a_fourbar_is_what_is_told(monkeypatch, fourbar, 
         )
         for angles in ([fourbar], sixbars)
     ]  # fmt: skip
-    answer = by_type.joined(problem, *results)
+    answer = type_selection.merge_type_results(problem, *results)
     assert [_least(design) for design in answer.designs] == offered
     assert told in answer.summary
     assert answer.search.accepted == len(offered)
@@ -233,7 +233,7 @@ def test_of_nine_positions_the_ends_are_met_and_the_rest_nearer_than_by_fourbars
 @pytest.mark.timeout(700)
 def test_many_positions_of_a_sixbar_are_met_again_under_its_demands(client):
     """24 of a planted Watt I, which transmits with 20° and stays within a box."""
-    positions = planted(np.random.default_rng(0), [make.type for make in MAKES].index("watt_1"), 24)
+    positions = planted(np.random.default_rng(0), [make.type for make in TOPOLOGIES].index("watt_1"), 24)
     size = max(abs(complex(p["x"] - q["x"], p["y"] - q["y"])) for p in positions for q in positions)
     far = 6.0 * size
     box = [[-far, -far], [far, far]]

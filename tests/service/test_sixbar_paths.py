@@ -11,10 +11,10 @@ import numpy as np
 import pytest
 
 from kinematics.linkage.fourbar import Fourbar, positions
-from synthesis.kinds.path import by_type
+from synthesis.kinds.path import type_selection
 from synthesis.kinds.path.design import PathResult
 from synthesis.model.answer import Search
-from synthesis.model.sixbars import IN_WORDS
+from synthesis.model.linkage.sixbars import SIXBAR_NAMES
 from tests.campaign import further
 from tests.oracles.loops import Loops
 from tests.service.answers import drawn, finished
@@ -88,8 +88,8 @@ def test_every_type_is_solved_proved_drawn_and_driven(client, kind):
     assert designs[0]["point_link"] in body["result"]["summary"]
     place = f"/v1/jobs/{body['id']}/designs/0"
     drawn(client, place, designs[0])
-    assert IN_WORDS[kind] in client.get(f"{place}.svg").text
-    assert f"a {IN_WORDS[kind]} with P on" in body["result"]["summary"]
+    assert SIXBAR_NAMES[kind] in client.get(f"{place}.svg").text
+    assert f"a {SIXBAR_NAMES[kind]} with P on" in body["result"]["summary"]
     assert client.post("/v1/analyses", json={"mechanism": designs[0]["mechanism"]}).status_code == 200
     assert client.get(f"/v1/jobs/{body['id']}/report.html").status_code == 200
 
@@ -342,7 +342,7 @@ def _as_of(error: float, least: float) -> SimpleNamespace:
     ],
 )
 def test_what_is_offered_beside_a_fourbar_is_what_is_told(monkeypatch, fourbars, sixbars, most, offered, told):
-    monkeypatch.setattr(by_type, "order_of", lambda _: lambda designs: sorted(designs, key=_error))
+    monkeypatch.setattr(type_selection, "build_ordering", lambda _: lambda designs: sorted(designs, key=_error))
     limits = SimpleNamespace(min_transmission_angle=None)
     problem = SimpleNamespace(
         max_designs=most, task_size=100.0, length_unit="mm", constraints=limits, listed_later=False
@@ -356,7 +356,7 @@ def test_what_is_offered_beside_a_fourbar_is_what_is_told(monkeypatch, fourbars,
         )
         for designs in (fourbars, sixbars)
     ]  # fmt: skip
-    answer = by_type.joined(problem, *results, ["fourbar"], "sixbar")
+    answer = type_selection.combine_results(problem, *results, ["fourbar"], "sixbar")
     assert [_error(design) for design in answer.designs] == offered
     assert told in answer.summary
     assert answer.search.accepted == len(offered)

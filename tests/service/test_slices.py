@@ -5,20 +5,20 @@ import json
 import pytest
 from sqlalchemy import select
 
-from service.explained import MAX_FAULTS
+from service.error_messages import MAX_FAULTS
 from service.jobs import faults
 from service.jobs.batches import slices
 from service.jobs.batches.plan import Plan
 from service.jobs.batches.reading import sample_id
 from service.jobs.batches.slices import Slices
 from service.jobs.batches.store import BatchStore
-from service.jobs.schema import samples
-from service.jobs.solving import Solving
-from service.jobs.states import Cost
-from service.jobs.store import JobStore
+from service.jobs.job_store import JobStore
+from service.jobs.processes.stop_flag import Solving
+from service.jobs.store.schema import samples
+from service.jobs.store.states import Cost
 from synthesis import dispatch
 from synthesis.model.answer import Result, Search
-from synthesis.model.statement import Contradiction, ContradictionError
+from synthesis.model.problem import Contradiction, ContradictionError
 from tests.service.running import PROBLEM
 
 INVALID, DEFECT, MEMORY = "/problems/invalid-problem", "/problems/internal-error", "/problems/out-of-memory"

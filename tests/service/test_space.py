@@ -9,8 +9,8 @@ import shapely
 
 from kinematics.linkage.planar.drive import drive
 from kinematics.linkage.planar.mechanism import GearPair, Mechanism, Slide
-from synthesis.model.space import Space
-from synthesis.registry import examples
+from synthesis.model.linkage.workspace import Space
+from synthesis.registry import list_examples
 from tests.campaign import further
 from tests.service.answers import finished
 from tests.service.stated.linkages import FITTED as SIX
@@ -233,8 +233,8 @@ def test_a_field_of_a_space_makes_another_answer(client, name):
 
 OTHERS = {
     "path": {"kind": "path", "points": [{"x": 1.0 * k, "y": 0.3 * k * (4 - k)} for k in range(5)], "rounds": 1},
-    "function": examples("function")[0],
-    "quick_return": examples("quick_return")[0],
+    "function": list_examples("function")[0],
+    "quick_return": list_examples("quick_return")[0],
     "straight_line": {"kind": "straight_line", "length": 100.0},
 }
 

@@ -8,12 +8,12 @@ from typing import Any
 import httpx
 import pytest
 
-from synthesis.registry import examples
+from synthesis.registry import list_examples
 from tests.service.answers import SVG, finished
 
 Statement = dict[str, Any]
 
-LEVER, REAL, BOTH, SOUGHT = examples("spring_balancing")
+LEVER, REAL, BOTH, SOUGHT = list_examples("spring_balancing")
 
 TWO_LEVERS: Statement = {
     "kind": "spring_balancing",

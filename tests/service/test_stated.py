@@ -12,8 +12,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 from pydantic import BaseModel, ValidationError
 
-from service import stated
-from synthesis.model.statement import StatedProblem
+from service import requests
+from synthesis.model.problem import ProblemBase
 from synthesis.registry import KINDS, parse_problem
 from tests.campaign import further
 from tests.service.answers import finished
@@ -40,18 +40,20 @@ def explicit(value: Any) -> Any:
     return [explicit(entry) for entry in value] if isinstance(value, list | tuple) else None
 
 
-def keeps(statement: dict[str, Any]) -> StatedProblem:
+def keeps(statement: dict[str, Any]) -> ProblemBase:
     """What is stored of a statement is read as the same, with the same faults; so is what is shown of it."""
     problem = parse_problem(statement)
-    stored = stated.written(problem)
-    read = stated.read(problem.kind, stored)
+    stored = requests.written(problem)
+    read = requests.read(problem.kind, stored)
     assert read == problem
     assert explicit(read) == explicit(problem)
-    assert read.contradictions() == problem.contradictions()
-    shown = json.loads(stated.filled_in(problem.kind, stored))
+    assert read.find_contradictions() == problem.find_contradictions()
+    shown = json.loads(requests.filled_in(problem.kind, stored))
     again = parse_problem(shown)
     assert again == problem
-    assert again.contradictions() == problem.contradictions(), "a default that is written out states something"
+    assert again.find_contradictions() == problem.find_contradictions(), (
+        "a default that is written out states something"
+    )
     assert hashed(shown) == hashed(statement)
     return problem
 
@@ -99,18 +101,18 @@ def test_fields_together_are_kept(kind: str, seed: int) -> None:
 @pytest.mark.parametrize("kind", KINDS)
 def test_examples_are_kept(kind: str) -> None:
     for example in KINDS[kind].examples:
-        assert keeps(example).contradictions() == []
+        assert keeps(example).find_contradictions() == []
 
 
 def test_a_stock_is_a_statement() -> None:
-    assert keeps(STOCK).contradictions() == []
+    assert keeps(STOCK).find_contradictions() == []
     both = parse_problem({**STOCK, "teeth": {"max": 100}})
-    assert [fault.path for fault in both.contradictions()] == ["/stock"]
+    assert [fault.path for fault in both.find_contradictions()] == ["/stock"]
 
 
 def test_a_problem_of_an_earlier_version_is_shown_as_it_was_stated() -> None:
     stored = '{"kind":"motion","former":1}'
-    assert stated.filled_in("motion", stored) == stored
+    assert requests.filled_in("motion", stored) == stored
 
 
 QUICK = {name: kind.examples[name == "path"] for name, kind in KINDS.items()}

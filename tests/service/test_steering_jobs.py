@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import pytest
 
-from synthesis.registry import example
+from synthesis.registry import get_first_example
 from tests.service.answers import drawn, finished
 
 
 @pytest.fixture(scope="module")
 def job(server):
-    return finished(server.client, example("steering"))
+    return finished(server.client, get_first_example("steering"))
 
 
 def test_the_example_has_linkages_and_gears(job):
@@ -44,6 +44,6 @@ def test_designs_are_drawn_and_driven(client, job):
 
 @pytest.mark.parametrize(("stated", "path"), [({"lock": 90.0}, "/problem/lock"), ({"track": 1.0}, "/problem/track")])
 def test_a_refusal_names_the_field(client, stated, path):
-    answer = client.post("/v1/jobs", json={"problem": {**example("steering"), **stated}})
+    answer = client.post("/v1/jobs", json={"problem": {**get_first_example("steering"), **stated}})
     assert answer.status_code == 422
     assert [error["path"] for error in answer.json()["errors"]] == [path]

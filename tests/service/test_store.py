@@ -10,13 +10,13 @@ from alembic.config import Config
 from sqlalchemy import delete, insert, select, text, update
 
 from service.access.keys import api_keys
-from service.jobs.admission import KeyReused, QueueFull, Repeatable
-from service.jobs.database import LaterTables, connect, upgrade
-from service.jobs.leases import LeaseStore
-from service.jobs.schema import StoreClock, hosts, jobs, metadata, now
-from service.jobs.statements import CLAIM, LEASE_S, MAX_CRASHES, MAX_KILLS, new_row
-from service.jobs.states import FINISHED, MOVES, Cost, Status
-from service.jobs.store import JobStore
+from service.jobs.cluster.leases import LeaseStore
+from service.jobs.job_store import JobStore
+from service.jobs.store.admission import KeyReused, QueueFull, Repeatable
+from service.jobs.store.database import LaterTables, connect, upgrade
+from service.jobs.store.schema import StoreClock, hosts, jobs, metadata, now
+from service.jobs.store.statements import CLAIM, LEASE_S, MAX_CRASHES, MAX_KILLS, new_row
+from service.jobs.store.states import FINISHED, MOVES, Cost, Status
 from tests.cluster.backend import CHOSEN
 
 ANY = tuple(Cost)

@@ -6,8 +6,8 @@ from pathlib import Path
 import pytest
 
 import service
-from service.api.bundle import BundleError, bundles, name_of
-from service.api.studio import POLICY, studio_files
+from service.api.routes.studio_bundle import BundleError, bundles, name_of
+from service.api.routes.studio_page import POLICY, studio_files
 from tests.support.loops import check_each
 
 FOLDER = Path(service.__file__).parent / "studio"

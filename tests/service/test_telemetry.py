@@ -8,9 +8,9 @@ import threading
 import httpx
 import pytest
 
-from service.jobs import host
-from service.jobs.host import HostError, show
-from service.metrics import HostMetrics, Metrics
+from service.jobs.cluster import worker_host
+from service.jobs.cluster.worker_host import HostError, show
+from service.observability.metrics import HostMetrics, Metrics
 from service.settings import Settings
 from tests.service.running import PROBLEM, SCRIPTED, SOON_S, RunningServer, until
 from tests.service.scripted_server import BROKEN, DIES_ONCE, GATED, INSTANT, NATIVE
@@ -166,7 +166,7 @@ def test_a_worker_host_shows_its_metrics_where_it_is_told_to():
 
 
 def test_a_worker_host_that_is_not_told_to_shows_nothing(monkeypatch):
-    monkeypatch.setattr(host, "start_http_server", lambda *_: pytest.fail("it listens"))
+    monkeypatch.setattr(worker_host, "start_http_server", lambda *_: pytest.fail("it listens"))
     show(HostMetrics(), Settings())
 
 

@@ -140,7 +140,7 @@ def test_a_collector_that_is_not_there_holds_nobody_up(tmp_path, monkeypatch):
 @pytest.mark.slow
 def test_the_exporters_are_not_imported_by_a_service_without_them():
     program = (
-        "import sys, service.web, service.server; "
+        "import sys, service.server.web, service.server.run; "
         "print([name for name in sys.modules if name.startswith(('opentelemetry.sdk', 'opentelemetry.exporter', "
         "'google.protobuf', 'requests'))])"
     )

@@ -11,10 +11,10 @@ import ezdxf
 import httpx
 import pytest
 
-from synthesis.registry import examples
+from synthesis.registry import list_examples
 from tests.service.answers import finished
 
-STATED = examples("train_series")[2]
+STATED = list_examples("train_series")[2]
 SET = STATED["units"][1]
 GEARS = STATED["units"][0]
 WHEELS = {"type": "gear_train", "stages": [{"driver": 20, "driven": 30}]}

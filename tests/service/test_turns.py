@@ -7,9 +7,9 @@ from dataclasses import dataclass
 import pytest
 from sqlalchemy.exc import OperationalError
 
-from service.jobs.states import Cost
-from service.jobs.store import JobStore
-from service.jobs.turns import ASK_PERIOD_S, PATIENCE_S, Turns
+from service.jobs.job_store import JobStore
+from service.jobs.store.states import Cost
+from service.jobs.workers.scheduler import ASK_PERIOD_S, PATIENCE_S, Turns
 from synthesis.registry import KINDS, parse_problem
 from tests.service.running import PROBLEM, REACHED_S, SCRIPTED, SOON_S, RunningServer, until
 from tests.service.scripted_server import GATED, INSTANT, NATIVE, STEPS

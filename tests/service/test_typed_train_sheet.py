@@ -11,9 +11,9 @@ import ezdxf
 import numpy as np
 import pytest
 
-from service.render import exported
-from service.render.gears.train_layout import placed_gears
-from service.render.page.svg import Box, text_width
+from service.render import export_design
+from service.render.gears.train_layout import place_gears
+from service.render.page.svg import Box, estimate_text_width
 from synthesis.dispatch import solve
 from synthesis.kinds.gear_train.design import GearTrainDesign, GearTrainResult
 from synthesis.kinds.gear_train.problem import GearTrainProblem
@@ -50,7 +50,7 @@ def task(request: pytest.FixtureRequest) -> tuple[GearTrainDesign, GearTrainProb
 
 def around(polygon: ET.Element) -> Box:
     points = [complex(*map(float, pair.split(","))) for pair in polygon.get("points", "").split()]
-    return Box.around(np.array(points))
+    return Box.enclose(np.array(points))
 
 
 def words_of(sheet: ET.Element) -> dict[str, Box]:
@@ -60,12 +60,12 @@ def words_of(sheet: ET.Element) -> dict[str, Box]:
         words = node.text or ""
         if words.startswith("stage ") and ": " in words:
             x, y, size = (float(node.get(name, "nan")) for name in ("x", "y", "font-size"))
-            found[words] = Box(x, y - 0.75 * size, x + text_width(words, size), y + 0.2 * size)
+            found[words] = Box(x, y - 0.75 * size, x + estimate_text_width(words, size), y + 0.2 * size)
     return found
 
 
 def test_captions_stand_beside_gears_and_one_another(task: tuple[GearTrainDesign, GearTrainProblem]) -> None:
-    sheet = ET.fromstring(exported(*task, "train", "svg"))
+    sheet = ET.fromstring(export_design(*task, "train", "svg"))
     captions = words_of(sheet)
     assert len(captions) == len(task[0].mechanism.stages)
     for one, other in itertools.combinations(captions.values(), 2):
@@ -85,7 +85,7 @@ def test_captions_stand_beside_gears_and_one_another(task: tuple[GearTrainDesign
 
 
 def test_tooth_numbers_leave_a_worm_in_sight(task: tuple[GearTrainDesign, GearTrainProblem]) -> None:
-    sheet = ET.fromstring(exported(*task, "train", "svg"))
+    sheet = ET.fromstring(export_design(*task, "train", "svg"))
     worm = next(stage for stage in task[0].mechanism.stages if stage.type == "worm")
     body = next(
         polygon
@@ -102,7 +102,7 @@ def test_tooth_numbers_leave_a_worm_in_sight(task: tuple[GearTrainDesign, GearTr
 def test_tables_say_threads_and_no_distance_of_shafts_that_meet(task: tuple[GearTrainDesign, GearTrainProblem]) -> None:
     stages = task[0].mechanism.stages
     worm = next(stage for stage in stages if stage.type == "worm")
-    words = [node.text or "" for node in ET.fromstring(exported(*task, "train", "svg")).iter(f"{SVG}text")]
+    words = [node.text or "" for node in ET.fromstring(export_design(*task, "train", "svg")).iter(f"{SVG}text")]
     said = "1 thread," if worm.driver == 1 else f"{worm.driver} threads,"
     assert [one for one in words if "thread" in one and one.startswith(said)]
     assert words.count("shaft distance") == sum(stage.type != "bevel" for stage in stages)
@@ -110,8 +110,8 @@ def test_tables_say_threads_and_no_distance_of_shafts_that_meet(task: tuple[Gear
 
 def test_captions_of_the_cad_file_stand_above_all_views(task: tuple[GearTrainDesign, GearTrainProblem]) -> None:
     """Letters as wide as they are high."""
-    space = ezdxf.read(io.StringIO(exported(*task, "train", "dxf"))).modelspace()
-    top = max(float(gear.corners().imag.max()) for gear in placed_gears(task[0].mechanism, task[1].reverted))
+    space = ezdxf.read(io.StringIO(export_design(*task, "train", "dxf"))).modelspace()
+    top = max(float(gear.get_corners().imag.max()) for gear in place_gears(task[0].mechanism, task[1].reverted))
     boxes = []
     for entity in space.query("TEXT"):
         words, height = entity.dxf.text, entity.dxf.height

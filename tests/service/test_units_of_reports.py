@@ -8,10 +8,10 @@ from xml.etree import ElementTree
 import pytest
 from pydantic import BaseModel
 
-from service.render import NoSuchExport, exported
-from service.render.outline import MOST_NUMBERS, words, written
-from service.render.page.numbers import angle, length
-from service.render.report import Occasion, report
+from service.render import NoSuchExport, export_design
+from service.render.outline import MAX_NUMBERS, format_name, format_value
+from service.render.page.numbers import format_angle, format_length
+from service.render.report import ReportedJob, report
 from service.units import symbols
 from synthesis.dispatch import solve
 from synthesis.model.dimension import (
@@ -27,11 +27,11 @@ from synthesis.model.dimension import (
     SPEED,
     TORQUE,
     VELOCITY,
-    dimensions,
+    collect_dimensions,
 )
-from synthesis.registry import KINDS, examples, parse_problem
+from synthesis.registry import KINDS, list_examples, parse_problem
 
-OCCASION = Occasion("01K6WM2B7Q3W9Z0V5N8XJ4R1TD", "", None, "2026-01-31T12:00:00.000000Z", None, "1.2.3")
+OCCASION = ReportedJob("01K6WM2B7Q3W9Z0V5N8XJ4R1TD", "", None, "2026-01-31T12:00:00.000000Z", None, "1.2.3")
 
 # The example of each kind that is solved at once; the others take longer.
 QUICK = {"motion": 3, "path": 1, "function": 1, "cam": 0, "straight_line": 1, "quick_return": 0}
@@ -151,7 +151,7 @@ def numbers(model, path=()):
                 for k, entry in enumerate(member):
                     yield from numbers(entry, (*there, k))
             elif holds_floats(member):
-                yield there, member, dimensions(type(model)).get(name)
+                yield there, member, collect_dimensions(type(model)).get(name)
 
 
 def holds_floats(value):
@@ -166,7 +166,7 @@ def check_written(tables, model, units, leave_out=()):
             continue
         unit = "" if dimension is None else units[dimension]
         members = [k for k, part in enumerate(path) if isinstance(part, int)]
-        long = isinstance(value, list) and len(value) > MOST_NUMBERS
+        long = isinstance(value, list) and len(value) > MAX_NUMBERS
         if members:
             # In a list of models: a row for each of them, where there are not too many, and a column for the field.
             k = members[0]
@@ -175,8 +175,8 @@ def check_written(tables, model, units, leave_out=()):
         elif long and shown_as_column(tables, path, value, unit):
             pass
         else:
-            name = words(": ".join(part.replace("_", " ") for part in path))
-            text = f"{len(value)} values" if long else written(value)
+            name = format_name(": ".join(part.replace("_", " ") for part in path))
+            text = f"{len(value)} values" if long else format_value(value)
             rows = [row[:3] for table in tables for row in table["rows"] if not table["caption"]]
             assert [name.lower(), text, unit] in [[row[0].lower(), *row[1:]] for row in rows], path
         seen += 1
@@ -184,22 +184,22 @@ def check_written(tables, model, units, leave_out=()):
 
 
 def head(name, unit):
-    return (words(name) + (f" ({unit})" if unit else "")).lower()
+    return (format_name(name) + (f" ({unit})" if unit else "")).lower()
 
 
 def shown_in_list(tables, path, k, value, unit):
-    caption, name = words(": ".join(path[:k])), " ".join(map(str, path[k + 1 :]))
+    caption, name = format_name(": ".join(path[:k])), " ".join(map(str, path[k + 1 :]))
     (table,) = [t for t in tables if t["caption"].lower() == caption.lower()]
     heads = [cell.lower() for cell in table["rows"][0]]
     if head(name, unit) not in heads:
         # More columns than a page is wide: the last ones are in the JSON only, whatever their units.
         assert len(heads) == 10
-        assert not any(re.fullmatch(rf"{re.escape(words(name).lower())}( \(.*\))?", h) for h in heads)
+        assert not any(re.fullmatch(rf"{re.escape(format_name(name).lower())}( \(.*\))?", h) for h in heads)
         return False
     if len(table["rows"]) - 1 <= path[k]:
         return False
     listed = [row[heads.index(head(name, unit))] for row in table["rows"][1:]]
-    text = value if isinstance(value, str) else written(value)
+    text = value if isinstance(value, str) else format_value(value)
     assert text in listed if len(listed) == 40 else listed[path[k]] == text, path
     return True
 
@@ -207,23 +207,23 @@ def shown_in_list(tables, path, k, value, unit):
 def shown_as_column(tables, path, value, unit):
     for table in tables:
         heads = [cell.lower() for cell in table["rows"][0]] if table["rows"] else []
-        if table["caption"].lower() == words(": ".join(path[:-1])).lower() and head(path[-1], unit) in heads:
+        if table["caption"].lower() == format_name(": ".join(path[:-1])).lower() and head(path[-1], unit) in heads:
             column = [row[heads.index(head(path[-1], unit))] for row in table["rows"][1:]]
-            assert (column[0], column[-1]) == (written(value[0]), written(value[-1])), path
+            assert (column[0], column[-1]) == (format_value(value[0]), format_value(value[-1])), path
             return True
     return False
 
 
 @cache
 def solved(kind, n):
-    problem = parse_problem(examples(kind)[n])
+    problem = parse_problem(list_examples(kind)[n])
     return problem, solve(problem)
 
 
 EXAMPLES = [
     pytest.param(kind, n, marks=pytest.mark.campaign if n != QUICK.get(kind, 0) or kind in SLOW else pytest.mark.slow)
     for kind in KINDS
-    for n in range(len(examples(kind)))
+    for n in range(len(list_examples(kind)))
 ]
 
 
@@ -236,13 +236,13 @@ def test_numbers_of_a_report_are_those_of_the_answer_with_their_units(kind, n):
     check_written(page.under("Problem", ""), problem, units)
     check_written(page.under("Search", ""), result.search, units)
     for number, design in enumerate(result.designs, 1):
-        section = f"Design {number}: {words(design.mechanism.type)}"
+        section = f"Design {number}: {format_name(design.mechanism.type)}"
         (checks,) = page.under(section, "Checks")
         for row, check in zip(checks["rows"][1:], design.verification.checks, strict=True):
             symbol = "" if check.dimension is None else units[check.dimension]
             unit = symbol if symbol in ("", "°") else f" {symbol}"
-            stated = ["" if value is None else f"{length(value)}{unit}" for value in (check.value, check.limit)]
-            assert row == [words(check.name), "✓ passed" if check.passed else "✗ failed", *stated]
+            stated = ["" if value is None else f"{format_length(value)}{unit}" for value in (check.value, check.limit)]
+            assert row == [format_name(check.name), "✓ passed" if check.passed else "✗ failed", *stated]
         assert check_written(page.under(section, "Dimensions"), design.mechanism, units, {"skeleton"}) or kind in (
             "layshaft_gearbox",
             "balancing",  # a linkage has its skeleton alone
@@ -269,7 +269,7 @@ def test_checks_on_a_sheet_are_those_of_the_answer_with_their_units(kind, n):
     units = symbols(problem)
     for design in result.designs:
         try:
-            drawing = ElementTree.fromstring(exported(design, problem, "sheet", "svg"))
+            drawing = ElementTree.fromstring(export_design(design, problem, "sheet", "svg"))
         except NoSuchExport:
             continue
         rows = [group for group in drawing.iter() if group.get("data-check")]
@@ -299,17 +299,17 @@ def test_quantities_on_a_sheet_are_those_of_the_answer_with_their_units(kind, n)
     problem, result = solved(kind, n)
     units = symbols(problem)
     for design in result.designs:
-        drawing = ElementTree.fromstring(exported(design, problem, "sheet", "svg"))
+        drawing = ElementTree.fromstring(export_design(design, problem, "sheet", "svg"))
         blocks = [group for group in drawing.iter() if group.get("data-block") == "metrics"]
         assert len(blocks) == (0 if kind in ("gearbox", "layshaft_gearbox") else 1)
         shown = [part.text for block in blocks for part in block.iter() if part.tag.endswith("text")]
         metrics = type(design.metrics)
         for name, value in design.metrics if blocks else ():
             if isinstance(value, float) and name not in LEFT_OUT.get(metrics.__name__, ()):
-                dimension = dimensions(metrics).get(name)
+                dimension = collect_dimensions(metrics).get(name)
                 unit = "" if dimension is None else units[dimension]
                 blank = "" if unit in ("", "°") else " "
-                assert f"{written(value)}{blank}{unit}" in shown, name
+                assert f"{format_value(value)}{blank}{unit}" in shown, name
 
 
 @pytest.mark.parametrize(
@@ -317,4 +317,4 @@ def test_quantities_on_a_sheet_are_those_of_the_answer_with_their_units(kind, n)
     [(0.0, 0, "0°"), (30.0, 0, "30°"), (-100.2, 0, "−100°"), (30.0, 3, "30°"), (0.25, 3, "0.25°")],
 )
 def test_angles_keep_their_own_zeros(degrees: float, decimals: int, told: str) -> None:
-    assert angle(degrees, decimals) == told
+    assert format_angle(degrees, decimals) == told

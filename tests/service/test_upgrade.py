@@ -7,9 +7,9 @@ from sqlalchemy import text
 
 from service.jobs.batches.plan import Plan
 from service.jobs.batches.store import BatchStore
-from service.jobs.database import connect, upgrade
-from service.jobs.states import Cost, Status
-from service.jobs.store import JobStore
+from service.jobs.job_store import JobStore
+from service.jobs.store.database import connect, upgrade
+from service.jobs.store.states import Cost, Status
 from tests.cluster.backend import CHOSEN
 from tests.service.upgrades import dies_everywhere
 

@@ -9,16 +9,16 @@ import time
 import pytest
 from numba import njit
 
-from kinematics.compiled import is_compiled
-from service.jobs.first_use import SAID, FirstUse
-from service.jobs.solving import Solving
+from kinematics.kernel_marks import is_compiled
+from service.jobs.processes.stop_flag import Solving
+from service.jobs.workers.compile_watch import SAID, FirstUse
 from service.kernels import KernelsState, Progress
-from service.warming import every_part
+from service.server.precompile import every_part
 from synthesis.registry import KINDS
 from tests.service.running import ROOT, RunningServer, alive, until, workers_of
 
 PROGRAM = """
-from service.warming import Compilation
+from service.server.precompile import Compilation
 
 if __name__ == "__main__":
     compilation = Compilation(lambda: ["gearbox", "no such part"], "warning", "text", ahead=True)

@@ -6,8 +6,8 @@ import sqlite3
 
 from sqlalchemy import event, func, select
 
-from service.jobs.database import connect, upgrade
-from service.jobs.schema import jobs
+from service.jobs.store.database import connect, upgrade
+from service.jobs.store.schema import jobs
 
 JOBS = 3  # in a store of an older version
 

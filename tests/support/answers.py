@@ -6,14 +6,14 @@ from time import process_time
 from typing import Any
 
 from synthesis import dispatch
-from synthesis.model.statement import StatedProblem
+from synthesis.model.problem import ProblemBase
 from tests.support import cpu_time
 
 _answers: dict[str, tuple[Any, float]] = {}
 """Answers by their requests, with the CPU seconds that each took. Answers are frozen models."""
 
 
-def solve(problem: StatedProblem) -> Any:
+def solve(problem: ProblemBase) -> Any:
     """Return the answer to a problem, solved once in a session.
 
     A case is charged for every answer that it needs, whichever case came first: its mark `slow` does not depend on the

@@ -8,10 +8,10 @@ from itertools import pairwise
 
 import numpy as np
 
-from kinematics.cam.motion_laws import LAWS
-from kinematics.cam.pieces import Motion
-from kinematics.cam.program import TURN, Program
-from kinematics.cam.segments import dwell, law_segment
+from kinematics.cam.motion.laws import LAWS
+from kinematics.cam.motion.pieces import Motion
+from kinematics.cam.motion.program import TURN, Program
+from kinematics.cam.motion.segments import build_dwell, build_law_segment
 
 SMOOTH = ("cycloidal", "modified_trapezoid", "modified_sine", "polynomial_345", "polynomial_4567", "trapezoidal")
 
@@ -30,10 +30,10 @@ def random_program(rng: np.random.Generator, lift: float) -> Program:
         h = lift * rng.uniform(0.4, 1.0)
         up, down = rng.choice(SMOOTH, 2)
         segments += [
-            law_segment(LAWS[str(up)], float(angles[4 * k]), 0.0, h),
-            dwell(float(angles[4 * k + 1]), h),
-            law_segment(LAWS[str(down)], float(angles[4 * k + 2]), h, 0.0),
-            dwell(float(angles[4 * k + 3]), 0.0),
+            build_law_segment(LAWS[str(up)], float(angles[4 * k]), 0.0, h),
+            build_dwell(float(angles[4 * k + 1]), h),
+            build_law_segment(LAWS[str(down)], float(angles[4 * k + 2]), h, 0.0),
+            build_dwell(float(angles[4 * k + 3]), 0.0),
         ]
     return Program(segments)
 

@@ -8,7 +8,7 @@ import math
 import numpy as np
 
 from synthesis.kinds.motion.problem import MotionProblem
-from synthesis.model.linkage_answer import LinkageDesign
+from synthesis.model.linkage.answer import LinkageDesign
 from tests.oracles.constraints import Constraints, Line
 
 
@@ -29,7 +29,7 @@ def assert_drives_through(design: LinkageDesign, problem: MotionProblem, within:
     constraints = constraints_of(design)
     pushed = constraints.pushed
     unit = float(constraints.size[0]) if pushed else 1.0
-    angles = np.array([target.at for target in design.targets])
+    angles = np.array([target.position for target in design.targets])
     ways = (angles - angles[0]) / unit if pushed else np.radians(angles - angles[0])
     assert np.all(np.diff(ways) > 0.0) or np.all(np.diff(ways) < 0.0), "not in order"
     side = 1.0 if ways[-1] > 0.0 else -1.0

@@ -28,7 +28,7 @@ def silent(_fraction, _message):
 
 def solved(**fields):
     problem = FunctionProblem(kind="function", **fields)
-    assert problem.contradictions() == []
+    assert problem.find_contradictions() == []
     return solve_function(problem, silent)
 
 

@@ -7,7 +7,7 @@ import time
 import numpy as np
 import pytest
 
-from synthesis.analyses import family, parse_request
+from synthesis.analyses import get_family, parse_request
 from synthesis.dispatch import solve
 from synthesis.kinds.motion.problem import MotionProblem
 from synthesis.mechanisms import MechanismError
@@ -26,7 +26,9 @@ FOURBAR = {
 
 
 def answer(mechanism, **motion):
-    return parse_request({"mechanism": mechanism, "motion": motion} if motion else {"mechanism": mechanism}).answer()
+    return parse_request(
+        {"mechanism": mechanism, "motion": motion} if motion else {"mechanism": mechanism}
+    ).build_answer()
 
 
 @pytest.mark.parametrize("name", EVERY)
@@ -188,7 +190,7 @@ def test_the_designs_of_the_documented_problems_move(example):
     assert result.designs
     for design in result.designs:
         mechanism = design.model_dump(mode="json")["mechanism"]
-        moved = family(mechanism).request.over_the_cycle(mechanism, 36)
+        moved = get_family(mechanism).request.analyze_cycle(mechanism, 36)
         assert sum(moved["valid"]) > 30
 
 
@@ -212,7 +214,7 @@ def test_joints_that_coincide_may_differ_by_rounding():
             "input_link": "crank",
         },
     }  # fmt: skip
-    answer = parse_request({"mechanism": mechanism, "motion": {"at": math.degrees(0.7)}}).answer()
+    answer = parse_request({"mechanism": mechanism, "motion": {"at": math.degrees(0.7)}}).build_answer()
     assert answer["joints"]["P"]["x"] == pytest.approx(answer["joints"]["B"]["x"])
 
 
@@ -221,7 +223,7 @@ def test_the_joints_along_a_branch_keep_every_link(name):
     """Rigid bodies on each branch, other places on another one, and the reference on its own."""
     mechanism = stated(name)
     skeleton = mechanism["skeleton"]
-    found = parse_request({"mechanism": mechanism, "include": ["branches"]}).answer()
+    found = parse_request({"mechanism": mechanism, "include": ["branches"]}).build_answer()
     joints = {n: complex(*z) for n, z in skeleton["joints"].items()}
     size = max(abs(one - other) for one in joints.values() for other in joints.values())
     listed = [branch for circuit in found["circuits"] for branch in circuit["branches"]]
@@ -250,8 +252,8 @@ def test_branches_are_for_any_linkage_and_the_rest_for_fourbars():
     skeleton = stated("watt_1 driven by its input")
     asked = parse_request({"mechanism": skeleton, "include": ["branches", "cognates"]})
     with pytest.raises(MechanismError, match="fourbar has cognates"):
-        asked.answer()
-    plain = parse_request({"mechanism": FOURBAR, "motion": {"at": 30.0}}).answer()
+        asked.build_answer()
+    plain = parse_request({"mechanism": FOURBAR, "motion": {"at": 30.0}}).build_answer()
     assert "joints" not in plain["circuits"][0]["branches"][0]
 
 

@@ -16,10 +16,10 @@ from pydantic import ValidationError
 from pydantic_core import to_json
 
 from kinematics.errors import MechanismError as KinematicsError
-from kinematics.linkage.planar.limits import branches
+from kinematics.linkage.planar.limits import find_branches
 from kinematics.linkage.planar.mechanism import GROUND
 from synthesis.analyses import parse_request
-from synthesis.analyses.linkage import LinkageAnalysis
+from synthesis.analyses.linkages.linkage import LinkageAnalysis
 from synthesis.mechanisms import MechanismError
 from tests.kinematics.mechanism_sampling import EVERY
 from tests.support.kinematics.branches import on_whole_numbers
@@ -234,9 +234,9 @@ def right_or_refused(statement, steps=72):
     try:
         request = parse_request(body)
         mechanism = request.mechanism.mechanism()
-        if mechanism.driven_by_slide:
+        if mechanism.has_slide_input:
             request = parse_request({"mechanism": statement})
-        found = request.answer()
+        found = request.build_answer()
     except REFUSED:
         assert time.process_time() - begun < SOON_S
         return False
@@ -302,7 +302,7 @@ def test_joints_on_whole_numbers(name):
 def test_a_reference_is_found_in_less_than_a_degree():
     """Where the lengths close in a small part of a turn that holds no whole degree, it is not said that they do not."""
     for name, at in (("a coupler of a hair", 5.0), ("an output of a hair", 5.0)):
-        found = parse_request({"mechanism": STATED[name], "motion": {"at": 0.0}}).answer()
+        found = parse_request({"mechanism": STATED[name], "motion": {"at": 0.0}}).build_answer()
         (limits,) = [span for circuit in found["circuits"] for span in circuit["branches"] if span["reference"]]
         assert 0.0 < limits["to"] - limits["from"] < 1e-6
         # Pins on each other: the law of cosines in the triangle of input, ground and the long link.
@@ -323,15 +323,15 @@ def test_gears_count_full_turns_of_the_stated_input(reference, with_skeleton):
         bare = parse_request({"mechanism": statement}).mechanism.mechanism()
         statement["skeleton"] = by_skeleton(bare)["skeleton"]
     for at in (30.0, 200.0, 390.0, -160.0, 1000.0):
-        found = parse_request({"mechanism": statement, "motion": {"at": at}}).answer()
+        found = parse_request({"mechanism": statement, "motion": {"at": at}}).build_answer()
         arm = complex(found["joints"]["B"]["x"][0] - 6.0, found["joints"]["B"]["y"][0]) / 4.0
         assert arm == pytest.approx(np.exp(1j * math.radians(0.5 * at + 60.0)), abs=1e-12)
 
 
 def test_a_wild_gear_ratio_is_driven_but_not_searched():
-    found = parse_request({"mechanism": STATED["fivebar, a wild ratio"]}).answer()
+    found = parse_request({"mechanism": STATED["fivebar, a wild ratio"]}).build_answer()
     assert found["circuits"] == []
     assert any(note.startswith("circuits, toggles, limits: ") for note in found["notes"])
     mechanism = parse_request({"mechanism": STATED["fivebar, a wild ratio"]}).mechanism.mechanism()
     with pytest.raises(KinematicsError, match="more than 1000 times"):
-        branches(mechanism)
+        find_branches(mechanism)

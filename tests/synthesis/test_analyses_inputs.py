@@ -65,10 +65,10 @@ def driven(name: str) -> Driven:
     statement = stated(name)
     request = parse_request({"mechanism": statement})
     mechanism = request.mechanism.mechanism()
-    slide, reference = mechanism.driven_by_slide, float(mechanism.reference_input)
+    slide, reference = mechanism.has_slide_input, float(mechanism.reference_input)
     constraints = Constraints.of(mechanism)
     at = reference if slide else math.degrees(reference)
-    listed = parse_request({"mechanism": statement, "motion": {"at": at}}).answer()["circuits"]
+    listed = parse_request({"mechanism": statement, "motion": {"at": at}}).build_answer()["circuits"]
     (here,) = [branch for circuit in listed for branch in circuit["branches"] if branch["reference"]]
     unit = float(constraints.size[0]) if slide else 1.0
     way = WAY * unit
@@ -90,8 +90,8 @@ def answer(case: Driven, **motion: Any) -> dict[str, Any]:
         if link["name"] != "ground"
     }
     request = parse_request({"mechanism": case.statement, "motion": motion, "points": points})
-    assert request.faults() == []
-    found: dict[str, Any] = request.answer()
+    assert request.find_errors() == []
+    found: dict[str, Any] = request.build_answer()
     assert all(found["valid"])
     assert case.misfit(found) < 1e-12
     return found

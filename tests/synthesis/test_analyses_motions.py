@@ -9,10 +9,10 @@ from pydantic_core import to_json
 from kinematics.errors import MechanismError
 from kinematics.linkage import Fourbar, catalogue
 from kinematics.linkage.planar.drive import drive
-from synthesis.analyses import families, parse_request
-from synthesis.analyses.cycle import cycle_of
+from synthesis.analyses import list_families, parse_request
+from synthesis.analyses.linkages.cycle import find_cycle
 
-DRIVEN = [family.request for family in families() if "motion" in family.request.model_fields]
+DRIVEN = [family.request for family in list_families() if "motion" in family.request.model_fields]
 LONG = {"time": {"end": 1e9, "step": 1e-25}}
 BACKWARDS = {"time": {"start": 1.0, "end": 0.0, "step": 0.1}}
 TWO_SPEEDS = {"from": 0.0, "to": 90.0, "speed": 1.0, "speed_rpm": 60.0}
@@ -38,7 +38,7 @@ def test_the_documented_example_has_no_faults(request_):
     assert request_.example().faults() == []
 
 
-@pytest.mark.parametrize("family", families(), ids=lambda family: family.request.__name__)
+@pytest.mark.parametrize("family", list_families(), ids=lambda family: family.request.__name__)
 def test_a_default_that_is_written_out_states_nothing(family):
     request = family.request.example()
     written = family.request.model_validate(request.model_dump(mode="json", by_alias=True))
@@ -61,7 +61,7 @@ def test_an_end_that_is_left_out_is_a_toggle_of_a_slider(motion, ends):
         "driven_by": "slider",
     }
     stated = {"mechanism": slider_crank, "motion": motion}
-    places = parse_request(stated).answer()["input_angle"]
+    places = parse_request(stated).build_answer()["input_angle"]
     assert (places[0], places[-1]) == pytest.approx(ends)
 
 
@@ -71,10 +71,10 @@ def test_rates_end_where_a_cycle_ends_at_toggles():
     while ended < 40:
         lengths, at = 10.0 ** drawn.uniform(-1.0, 1.0, 4), drawn.uniform(0.0, 2.0 * math.pi)
         try:
-            fourbar = catalogue.fourbar(Fourbar.from_lengths(*lengths), input_angle=at)
+            fourbar = catalogue.make_fourbar(Fourbar.from_lengths(*lengths), input_angle=at)
         except MechanismError:
             continue
-        low, high = cycle_of(fourbar)
+        low, high = find_cycle(fourbar)
         if math.isclose(high - low, 2.0 * math.pi):
             continue
         motion = drive(fourbar, np.radians(np.degrees([low, 0.5 * (low + high), high])))

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from synthesis.analyses.peaks import peaks
+from synthesis.analyses.linkages.peaks import find_peaks
 
 
 @pytest.mark.parametrize(("begin", "end"), [(0.0, 1.0), (1.0, 0.0), (0.0, 4.0), (-2.0, 5.0)])
@@ -15,7 +15,7 @@ def test_a_peak_at_an_end_is_that_of_the_end_and_one_between_is_that_of_the_func
     def measure(inputs, _speeds):
         return {"sine": np.sin(inputs), "fall": np.exp(-inputs)}
 
-    found = peaks(at, np.ones_like(at), measure(at, at), measure, closed=False)
+    found = find_peaks(at, np.ones_like(at), measure(at, at), measure, closed=False)
     low, high = min(begin, end), max(begin, end)
     assert (found["fall"].at, found["fall"].value) == (low, np.exp(-low))
     if high < 0.5 * np.pi:
@@ -33,7 +33,7 @@ def test_a_narrow_peak_between_positions_is_found_beside_a_broad_one_of_higher_p
     def measure(inputs, _speeds):
         return {"both": 0.9 * np.cos(inputs - 0.7) ** 4 + 1.2 / (1.0 + ((inputs - place) / 0.05) ** 2)}
 
-    found = peaks(at, np.ones_like(at), measure(at, at), measure, closed=True)["both"]
+    found = find_peaks(at, np.ones_like(at), measure(at, at), measure, closed=True)["both"]
     dense = np.linspace(0.0, 2.0 * np.pi, 2_000_001)
     assert found.value == pytest.approx(measure(dense, dense)["both"].max(), rel=1e-7)
 
@@ -46,7 +46,7 @@ def test_of_many_doubtful_places_those_that_may_be_highest_are_looked_at():
         ripple = 0.3 * np.cos(3000.0 * inputs + 1.0)
         return {"rippled": 1.0 + ripple + 0.3 / (1.0 + ((inputs - 6.2) / 0.001) ** 2)}
 
-    found = peaks(at, np.ones_like(at), measure(at, at), measure, closed=True)["rippled"]
+    found = find_peaks(at, np.ones_like(at), measure(at, at), measure, closed=True)["rippled"]
     dense = np.linspace(6.19, 6.21, 2_000_001)
     assert found.value == pytest.approx(measure(dense, dense)["rippled"].max(), rel=1e-4)
 
@@ -57,7 +57,7 @@ def test_a_peak_at_the_end_of_a_motion_that_closes_is_beyond_it():
     def measure(inputs, _speeds):
         return {"cosine": np.cos(inputs + 1e-5)}
 
-    found = peaks(at, np.ones_like(at), measure(at, at), measure, closed=True)["cosine"]
+    found = find_peaks(at, np.ones_like(at), measure(at, at), measure, closed=True)["cosine"]
     assert found.value == pytest.approx(1.0, abs=1e-12)
 
 
@@ -67,5 +67,5 @@ def test_positions_without_values_hide_no_peak_beside_them():
     def measure(inputs, _speeds):
         return {"sine": np.where(inputs > 2.0, np.nan, np.sin(inputs))}
 
-    found = peaks(at, np.ones_like(at), measure(at, at), measure, closed=False)["sine"]
+    found = find_peaks(at, np.ones_like(at), measure(at, at), measure, closed=False)["sine"]
     assert found == pytest.approx((1.0, 0.5 * np.pi), rel=1e-6)

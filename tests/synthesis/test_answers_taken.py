@@ -9,7 +9,7 @@ from typing import Any
 import pytest
 from pydantic import ValidationError
 
-from synthesis.analyses import families, parse_request
+from synthesis.analyses import list_families, parse_request
 from synthesis.dispatch import solve
 from synthesis.registry import KINDS, parse_problem
 from tests.campaign import further
@@ -52,8 +52,8 @@ def answered(kind: str, number: int) -> list[dict[str, Any]]:
 
 def analysed(mechanism: dict[str, Any]) -> None:
     request = parse_request({"mechanism": mechanism})
-    assert request.faults() == []
-    answer = request.answer()
+    assert request.find_errors() == []
+    answer = request.build_answer()
     assert any(answer.get("valid", [True])), "it stands nowhere"
 
 
@@ -67,7 +67,7 @@ def carried(mechanism: dict[str, Any]) -> None:
         assert (fault["loc"], fault["type"]) == (("<parallel_motion>", "linkage"), "no_fourbar")
         return
     assert mechanism["type"] == "fourbar"
-    faults = problem.contradictions()
+    faults = problem.find_contradictions()
     if faults:
         assert [fault.path for fault in faults] == ["/linkage/coupler_point"]
         assert "on a pin" in faults[0].detail
@@ -85,8 +85,8 @@ def on_a_shaft(mechanism: dict[str, Any]) -> None:
         assert (fault["loc"][-1], fault["type"]) == ("cam", "no_plate_cam")
         return
     assert mechanism["type"] == "cam"
-    assert request.faults() == []
-    assert request.answer()["input_angle"]
+    assert request.find_errors() == []
+    assert request.build_answer()["input_angle"]
 
 
 TAKERS = {
@@ -108,7 +108,7 @@ def test_every_mechanism_of_an_answer_is_taken_or_refused_in_a_sentence(kind: st
 def test_cognates_of_an_analysis_are_taken() -> None:
     example = KINDS["parallel_motion"].examples[0]["linkage"]
     asked = {"mechanism": {"type": "fourbar", **example}, "motion": {"at": 30.0}, "include": ["cognates"]}
-    cognates = parse_request(asked).answer()["fourbar"]["cognates"]
+    cognates = parse_request(asked).build_answer()["fourbar"]["cognates"]
     found = [value for value in cognates.values() if isinstance(value, dict) and "type" in value]
     found = found or list(mechanisms_in(cognates))
     assert len(found) >= 4
@@ -131,7 +131,7 @@ def taking(schema: Schema) -> list[str]:
 @pytest.mark.slow
 def test_no_field_that_takes_a_mechanism_is_left_out() -> None:
     found = {f"{name}.{field}" for name, kind in KINDS.items() for field in taking(kind.problem.model_json_schema())}
-    for family in families():
+    for family in list_families():
         for field in taking(family.request.model_json_schema()):
             found.add("analysis" if field == "mechanism" else f"{family.request.model_config['title']}: {field}")
     assert found == set(TAKERS)

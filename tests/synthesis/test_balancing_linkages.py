@@ -8,13 +8,13 @@ from typing import Any
 import numpy as np
 import pytest
 
-from synthesis.analyses.driven import placed
+from synthesis.analyses.linkages.requested_motion import place_machine
 from synthesis.dispatch import solve
-from synthesis.kinds.balancing.driven import task_of
-from synthesis.kinds.balancing.force_balance import balanceable, force_balances, unpinned
+from synthesis.kinds.balancing.linkage.force_balance import find_force_balances, is_balanceable, list_unpinned_links
+from synthesis.kinds.balancing.linkage.motion import build_balancing_task
 from synthesis.kinds.balancing.problem import BalancingProblem
-from synthesis.kinds.balancing.verify_linkage import machine_of_answer, verify_linkage
-from synthesis.registry import examples
+from synthesis.kinds.balancing.verification.linkage import build_answer_machine, verify_linkage
+from synthesis.registry import list_examples
 from tests.synthesis.balanced_linkages import fourbar, sixbar, stated
 
 
@@ -26,9 +26,9 @@ def problem_of(statement: dict[str, Any]) -> BalancingProblem:
 
 def centre_of_gravity(problem: BalancingProblem, design: Any) -> tuple[Any, float]:
     """Over the motion: Σ m r of all that moves, and the sum of the masses."""
-    machine = machine_of_answer(problem, design.mechanism, design.dynamics)
-    task = task_of(problem)
-    now = placed(machine, task.positions(50))
+    machine = build_answer_machine(problem, design.mechanism, design.dynamics)
+    task = build_balancing_task(problem)
+    now = place_machine(machine, task.list_positions(50))
     moments = sum(float(part.mass) * now.point(link, part.cg)[0] for link, part in machine.bodies.items())
     moments = moments + sum(float(mass) * now.joints[joint][0] for joint, mass in machine.pin_masses.items())
     return moments, sum(float(part.mass) for part in machine.bodies.values())
@@ -117,7 +117,7 @@ def test_a_link_without_a_path_of_pins_is_named() -> None:
     masses = {"bodies": {"bar": {"mass": 2.0, "cg": [30.0, 40.0], "inertia": 0.01}}}
     base = {"kind": "balancing", "object": "linkage", "mechanism": trammel(), "dynamics": masses}
     problem = problem_of({**base, "motion": {"from": 20.0, "to": 80.0, "speed": 100.0}})
-    assert unpinned(task_of(problem).machine.mechanism) == ["bar"]
+    assert list_unpinned_links(build_balancing_task(problem).machine.mechanism) == ["bar"]
     result = solve(problem)
     assert result.designs == []
     assert result.search.complete
@@ -130,15 +130,15 @@ def test_the_theorem_and_the_rank_agree() -> None:
     rng = np.random.default_rng(10)
     for make in (fourbar, sixbar):
         for _ in range(5):
-            task = task_of(problem_of(stated(rng, make)))
-            assert unpinned(task.machine.mechanism) == []
-            assert balanceable(task)
+            task = build_balancing_task(problem_of(stated(rng, make)))
+            assert list_unpinned_links(task.machine.mechanism) == []
+            assert is_balanceable(task)
 
 
 def test_a_weight_that_is_moved_fails_the_proof() -> None:
     problem = problem_of(stated(np.random.default_rng(12)))
-    task = task_of(problem)
-    weights = force_balances(task, problem.counterweights)[0]
+    task = build_balancing_task(problem)
+    weights = find_force_balances(task, problem.counterweights)[0]
     assert verify_linkage(problem, task, task.machine.mechanism, weights, {}).verification.passed
     wrong = [weights[0]._replace(at=weights[0].at + 1e-6), *weights[1:]]
     assert not verify_linkage(problem, task, task.machine.mechanism, wrong, {}).verification.passed
@@ -147,7 +147,7 @@ def test_a_weight_that_is_moved_fails_the_proof() -> None:
 @pytest.mark.parametrize("inertia", [0.0, 0.002, 0.02])
 def test_couplers_of_any_inertia_are_two_masses_with_what_is_added(inertia: float) -> None:
     """Too little inertia gets more, too much a mass in the middle between the pins."""
-    statement = {**examples("balancing")[3], "counterweights": {"density": 7800.0, "thickness": 30.0}}
+    statement = {**list_examples("balancing")[3], "counterweights": {"density": 7800.0, "thickness": 30.0}}
     coupler = {"mass": 1.0, "cg": {"distance": 120.0}, "inertia": inertia}
     bodies = {**statement["dynamics"]["bodies"], "coupler": coupler}
     problem = problem_of({**statement, "dynamics": {"bodies": bodies, "point_masses": [{"joint": "B", "mass": 0.2}]}})
@@ -155,8 +155,8 @@ def test_couplers_of_any_inertia_are_two_masses_with_what_is_added(inertia: floa
     assert design.verification.passed
     assert design.metrics.shaking_moment < 1e-9 * design.metrics.unbalanced_shaking_moment
     # Against the definition: twice the angular momentum of all that turns, over the motion, is constant 0.
-    machine = machine_of_answer(problem, design.mechanism, design.dynamics)
-    now = placed(machine, np.linspace(0.0, 6.0, 40))
+    machine = build_answer_machine(problem, design.mechanism, design.dynamics)
+    now = place_machine(machine, np.linspace(0.0, 6.0, 40))
     momentum = sum(
         float(part.mass) * (np.conj(now.point(link, part.cg)[0]) * now.point(link, part.cg)[1]).imag
         + float(part.inertia) * now.spins[link][1]
@@ -175,7 +175,7 @@ def test_couplers_of_any_inertia_are_two_masses_with_what_is_added(inertia: floa
     ],
 )
 def test_what_gears_cannot_balance_is_said(coupler: dict[str, Any], why: str) -> None:
-    statement = {**examples("balancing")[3], "counterweights": {"density": 7800.0, "thickness": 1.0}}
+    statement = {**list_examples("balancing")[3], "counterweights": {"density": 7800.0, "thickness": 1.0}}
     bodies = {**statement["dynamics"]["bodies"], "coupler": coupler}
     result = solve(problem_of({**statement, "dynamics": {"bodies": bodies}}))
     assert result.designs == []
@@ -223,7 +223,7 @@ def test_what_is_balanced_already_is_said_to_be() -> None:
 @pytest.mark.parametrize("radius", [10.0, 60.0, 200.0])
 def test_a_weight_that_is_allowed_and_of_no_use_is_left_out(radius: float) -> None:
     weights = {"links": ["coupler", "input", "output"], "radius": radius}
-    result = solve(problem_of({**examples("balancing")[2], "counterweights": weights}))
+    result = solve(problem_of({**list_examples("balancing")[2], "counterweights": weights}))
     (design,) = result.designs
     assert [weight.link for weight in design.counterweights] == ["input", "output"]
     assert design.metrics.value < 1e-12

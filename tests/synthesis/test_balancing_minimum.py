@@ -9,16 +9,16 @@ from typing import Any
 import numpy as np
 import pytest
 
-from kinematics.dynamics.bodies import body, joined
-from kinematics.dynamics.reactions import reactions
-from synthesis.analyses.driven import placed
+from kinematics.dynamics.bodies import join_bodies, make_body
+from kinematics.dynamics.reactions import compute_reactions
+from synthesis.analyses.linkages.requested_motion import place_machine
 from synthesis.dispatch import solve
-from synthesis.kinds.balancing.driven import task_of
-from synthesis.kinds.balancing.effects import quantities
-from synthesis.kinds.balancing.minimize import minimum, setting_of
+from synthesis.kinds.balancing.linkage.effects import compute_quantities
+from synthesis.kinds.balancing.linkage.minimize import build_setting, find_minimum
+from synthesis.kinds.balancing.linkage.motion import build_balancing_task
 from synthesis.kinds.balancing.problem import BalancingProblem
-from synthesis.kinds.balancing.verify_minimum import verify_minimum
-from synthesis.numerics.conic import Rows, minimized
+from synthesis.kinds.balancing.verification.minimum import verify_minimum
+from synthesis.numerics.conic import ConeRows, solve_conic_program
 from tests.synthesis.balanced_linkages import crank_rocker, fourbar, pair, sixbar, stated, turning_sixbar
 
 
@@ -41,24 +41,24 @@ def test_what_a_weight_does_is_linear_in_its_parameters(make: Any) -> None:
     statement = least(rng, make)
     statement["dynamics"]["gravity"] = {"magnitude": 9.81, "angle": 250.0}
     statement["motion"]["acceleration"] = 200.0
-    task = task_of(problem_of(statement))
+    task = build_balancing_task(problem_of(statement))
     machine, links = task.machine, ["coupler", "output"]
-    now = placed(machine, task.positions(40), task.speed, task.acceleration)
-    known = quantities(machine, now, links, ["A", "O2"])
+    now = place_machine(machine, task.list_positions(40), task.speed, task.acceleration)
+    known = compute_quantities(machine, now, links, ["A", "O2"])
     bodies, parameters = dict(machine.bodies), []
     for link in links:
         about = complex(now.reference(now.mechanism.links[link][0]))
         mass, arm, own = rng.uniform(0.2, 2.0), complex(*rng.normal(size=2)) * 0.1, rng.uniform(0.001, 0.01)
-        bodies[link] = joined([bodies[link], body(mass, about + arm, own)])
+        bodies[link] = join_bodies([bodies[link], make_body(mass, about + arm, own)])
         parameters += [mass, mass * arm.real, mass * arm.imag, own + mass * abs(arm) ** 2]
-    found = reactions(replace(machine, bodies=bodies), now)
+    found = compute_reactions(replace(machine, bodies=bodies), now)
     named = {"shaking_force": found.shaking_force, "shaking_moment": found.shaking_moment, "drive": found.drive}
     for name, values in named.items():
         (part,) = known[name]
-        assert np.abs(part.at(np.array(parameters)) - values).max() < 1e-9 * np.abs(values).max()
+        assert np.abs(part.evaluate(np.array(parameters)) - values).max() < 1e-9 * np.abs(values).max()
     for joint in ("A", "O2"):
         for part, values in zip(known[f"joint {joint}"], found.joints[joint].values(), strict=True):
-            assert np.abs(part.at(np.array(parameters)) - values).max() < 1e-9 * np.abs(values).max()
+            assert np.abs(part.evaluate(np.array(parameters)) - values).max() < 1e-9 * np.abs(values).max()
 
 
 def test_the_force_alone_is_balanced_as_the_exact_goal_balances_it() -> None:
@@ -80,9 +80,9 @@ def test_no_weights_of_the_set_go_below_the_bound(make: Any, norm: str) -> None:
     statement = least(rng, make)
     statement["objective"] = {**statement["objective"], "norm": norm}
     problem = problem_of(statement)
-    task = task_of(problem)
-    setting = setting_of(problem, task)
-    found = minimum(setting, task)
+    task = build_balancing_task(problem)
+    setting = build_setting(problem, task)
+    found = find_minimum(setting, task)
     design = verify_minimum(problem, task, found)
     assert design.verification.passed
     assert found.bound <= design.metrics.value
@@ -96,7 +96,7 @@ def test_no_weights_of_the_set_go_below_the_bound(make: Any, norm: str) -> None:
     # Convex combinations with the optimum are in the set, and come as near to it as one likes.
     shares = np.where(rng.random(count) < 0.5, 1.0, 10.0 ** rng.uniform(-4.0, -1.0, count))[:, None]
     parameters = found.parameters + shares * (drawn - found.parameters)
-    reached = sum(level.weight * level.reached(parameters) for level in setting.levels)
+    reached = sum(level.weight * level.evaluate_level(parameters) for level in setting.levels)
     assert np.all(reached >= found.bound)
 
 
@@ -133,8 +133,8 @@ def test_more_of_everything_is_never_worse() -> None:
 
 def test_weights_that_are_moved_fail_the_proof() -> None:
     problem = problem_of(least(np.random.default_rng(8)))
-    task = task_of(problem)
-    found = minimum(setting_of(problem, task), task)
+    task = build_balancing_task(problem)
+    found = find_minimum(build_setting(problem, task), task)
     moved = [weight._replace(at=weight.at + 0.02) for weight in found.weights]
     assert not verify_minimum(problem, task, found._replace(weights=moved)).verification.passed
     heavy = [weight._replace(mass=1.5 * weight.mass) for weight in found.weights]
@@ -173,29 +173,29 @@ def test_a_driven_slider_and_consistent_units() -> None:
 
 
 def test_a_conic_program_says_what_it_is() -> None:
-    least_x = Rows("nonnegative", np.array([[-1.0]]), np.array([-2.0]))
-    solved = minimized(np.array([1.0]), [least_x])
+    least_x = ConeRows("nonnegative", np.array([[-1.0]]), np.array([-2.0]))
+    solved = solve_conic_program(np.array([1.0]), [least_x])
     assert (solved.status, solved.value) == ("solved", pytest.approx(2.0, abs=1e-6))
     assert solved.dual == pytest.approx(2.0, abs=1e-6)
-    most_x = Rows("nonnegative", np.array([[1.0]]), np.array([1.0]))
-    assert minimized(np.array([1.0]), [least_x, most_x]).status == "infeasible"
-    assert minimized(np.array([-1.0]), [least_x]).status == "unbounded"
-    disc = Rows("second_order", np.array([[0.0, 0.0], [-1.0, 0.0], [0.0, -1.0]]), np.array([1.0, 0.0, 0.0]), 3)
-    round_one = minimized(np.array([3.0, 4.0]), [disc])
+    most_x = ConeRows("nonnegative", np.array([[1.0]]), np.array([1.0]))
+    assert solve_conic_program(np.array([1.0]), [least_x, most_x]).status == "infeasible"
+    assert solve_conic_program(np.array([-1.0]), [least_x]).status == "unbounded"
+    disc = ConeRows("second_order", np.array([[0.0, 0.0], [-1.0, 0.0], [0.0, -1.0]]), np.array([1.0, 0.0, 0.0]), 3)
+    round_one = solve_conic_program(np.array([3.0, 4.0]), [disc])
     assert round_one.x == pytest.approx([-0.6, -0.8], abs=1e-6)
 
 
 def test_a_conic_program_of_reduced_accuracy_proves_nothing() -> None:
     """A place beyond a disc by 10⁻⁹ only; and x y ≥ 1 with x ≤ 10⁻⁵, where x comes as near to 0 as one likes."""
-    disc = Rows("second_order", np.array([[0.0, 0.0], [-1.0, 0.0], [0.0, -1.0]]), np.array([1.0, 0.0, 0.0]), 3)
+    disc = ConeRows("second_order", np.array([[0.0, 0.0], [-1.0, 0.0], [0.0, -1.0]]), np.array([1.0, 0.0, 0.0]), 3)
     statuses = []
     for beyond in (1e-2, 1e-9):
-        far = Rows("nonnegative", np.array([[-1.0, 0.0]]), np.array([-(1.0 + beyond)]))
-        statuses.append(minimized(np.array([0.0, 1.0]), [disc, far]).status)
+        far = ConeRows("nonnegative", np.array([[-1.0, 0.0]]), np.array([-(1.0 + beyond)]))
+        statuses.append(solve_conic_program(np.array([0.0, 1.0]), [disc, far]).status)
     assert statuses == ["infeasible", "failed"]
-    product = Rows("second_order", np.array([[-1.0, -1.0], [0.0, 0.0], [-1.0, 1.0]]), np.array([0.0, 2.0, 0.0]), 3)
-    small = Rows("nonnegative", np.array([[1.0, 0.0]]), np.array([1e-5]))
-    found = minimized(np.array([1.0, 0.0]), [product, small])
+    product = ConeRows("second_order", np.array([[-1.0, -1.0], [0.0, 0.0], [-1.0, 1.0]]), np.array([0.0, 2.0, 0.0]), 3)
+    small = ConeRows("nonnegative", np.array([[1.0, 0.0]]), np.array([1e-5]))
+    found = solve_conic_program(np.array([1.0, 0.0]), [product, small])
     assert found.status == "solved"
     assert found.dual == -np.inf
 

@@ -11,9 +11,9 @@ import pytest
 
 from synthesis.dispatch import solve
 from synthesis.kinds.balancing.problem import BalancingProblem
-from synthesis.kinds.balancing.rotor import balanced, rotor_of
-from synthesis.kinds.balancing.verify_rotor import verify_rotor
-from synthesis.registry import examples
+from synthesis.kinds.balancing.rotor.solver import balance_rotor, build_rotor
+from synthesis.kinds.balancing.verification.rotor import verify_rotor
+from synthesis.registry import list_examples
 
 
 def stated(**fields: Any) -> BalancingProblem:
@@ -61,7 +61,7 @@ def test_random_rotors_are_balanced_to_rounding() -> None:
 
 def test_trial_weights_find_the_unbalance_of_a_turbine() -> None:
     """Rao, Mechanical Vibrations, Example 9.2: 10.0561 oz at 145.5548° and 5.8774 oz at 248.2559°, at one radius."""
-    design = solve(BalancingProblem.model_validate(examples("balancing")[1])).designs[0]
+    design = solve(BalancingProblem.model_validate(list_examples("balancing")[1])).designs[0]
     for found, (ounces, angle) in zip(
         design.mechanism.unbalances, [(10.0561, 145.5548), (5.8774, 248.2559)], strict=True
     ):
@@ -114,7 +114,7 @@ def test_readings_of_bearings_and_masses_say_the_same() -> None:
 
 
 def test_fewer_holes_leave_more_and_the_bound_holds() -> None:
-    problem = BalancingProblem.model_validate({**examples("balancing")[1], "max_designs": 50})
+    problem = BalancingProblem.model_validate({**list_examples("balancing")[1], "max_designs": 50})
     designs = solve(problem).designs
     assert len(designs) > 3
     places = [design.metrics.places for design in designs]
@@ -137,8 +137,8 @@ def test_weights_in_stock_are_taken_as_they_are() -> None:
 
 def test_a_mass_at_another_angle_fails_the_proof() -> None:
     problem = stated(**random_rotor(np.random.default_rng(7)))
-    rotor = rotor_of(problem)
-    found = balanced(problem, rotor)[0]
+    rotor = build_rotor(problem)
+    found = balance_rotor(problem, rotor)[0]
     assert verify_rotor(problem, rotor, found).verification.passed
     wrong = found._replace(weights=[found.weights[0]._replace(angle=found.weights[0].angle + 1e-6), found.weights[1]])
     checks = verify_rotor(problem, rotor, wrong).verification.checks
@@ -187,13 +187,13 @@ def test_many_places_are_used_where_they_reach_the_unbalance() -> None:
 def test_a_rotor_has_nothing_of_a_linkage(field: dict[str, Any]) -> None:
     fields = {"kind": "balancing", "object": "rotor", "masses": [{"mass": 1.0, "radius": 10.0, "angle": 0.0}]}
     problem = BalancingProblem.model_validate({**fields, **field})
-    assert [fault.path for fault in problem.contradictions()] == [f"/{next(iter(field))}"]
+    assert [fault.path for fault in problem.find_contradictions()] == [f"/{next(iter(field))}"]
 
 
 @pytest.mark.parametrize("field", [{"planes": [0.0, 100.0]}, {"rank_by": "places"}, {"units": "consistent"}])
 def test_a_linkage_has_nothing_of_a_rotor(field: dict[str, Any]) -> None:
-    problem = BalancingProblem.model_validate({**examples("balancing")[2], **field})
-    assert [fault.path for fault in problem.contradictions()] == [f"/{next(iter(field))}"]
+    problem = BalancingProblem.model_validate({**list_examples("balancing")[2], **field})
+    assert [fault.path for fault in problem.find_contradictions()] == [f"/{next(iter(field))}"]
 
 
 @pytest.mark.campaign

@@ -9,14 +9,14 @@ import numpy as np
 import pytest
 
 from synthesis.analyses import parse_request
-from synthesis.analyses.barrel_cam import BarrelCamAnalysisRequest
+from synthesis.analyses.cams.barrel_cam import BarrelCamAnalysisRequest
 from synthesis.dispatch import solve
-from synthesis.kinds.cam.barrel import smallest_barrel
-from synthesis.kinds.cam.barrel_verification import verify_barrel
-from synthesis.registry import examples, parse_problem
+from synthesis.kinds.cam.barrel_solver import size_barrel
+from synthesis.kinds.cam.verification.barrel import verify_barrel
+from synthesis.registry import list_examples, parse_problem
 from tests.synthesis.cam_sampling import dense_motion, random_program
 
-BARREL = next(e for e in examples("cam") if e["follower"]["type"] == "barrel_roller")
+BARREL = next(e for e in list_examples("cam") if e["follower"]["type"] == "barrel_roller")
 
 
 def stated(**changes):
@@ -41,7 +41,7 @@ def test_the_smallest_cylinder_by_brute_force(seed):
     rise, fall = (float(rng.uniform(20.0, 45.0)) for _ in range(2))
     limits = {"pressure_angle": rise, "pressure_angle_fall": fall, "curvature_ratio": ratio}
     problem = stated(follower={"type": "barrel_roller", "roller_radius": roller}, limits=limits)
-    found = smallest_barrel(problem, problem.follower, program).radius
+    found = size_barrel(problem, problem.follower, program).radius
     motion = dense_motion(program)
 
     def sound(radius):
@@ -151,18 +151,18 @@ def test_a_barrel_that_must_be_small_is_proven_not_to_exist():
 def test_the_analysis_drives_the_finished_groove():
     design = only(stated())
     request = {"mechanism": design.mechanism.model_dump(), "load": {"mass": 2.0}}
-    answer = parse_request(request).answer()
+    answer = parse_request(request).build_answer()
     table = design.mechanism.program
     found = np.interp(answer["input_angle"], table.angle, table.s, period=360.0)
     assert np.abs(np.array(answer["follower"]["position"]) - found).max() < 1e-3
     assert np.abs(answer["play"]).max() < 1e-6
     assert max(answer["pressure_angle"]) == pytest.approx(35.0, rel=1e-4)
     example = BarrelCamAnalysisRequest.model_json_schema()["examples"][0]
-    assert np.abs(parse_request(example).answer()["play"]).max() < 1e-3
+    assert np.abs(parse_request(example).build_answer()["play"]).max() < 1e-3
 
 
 @pytest.mark.parametrize("minimize", ["size", "peak_contact_force"])
 def test_criteria_that_have_no_barrel_are_refused(minimize):
     segments = [s | ({"law": "optimal"} if "law" in s else {}) for s in copy.deepcopy(BARREL["segments"])]
     problem = stated(segments=segments, minimize=minimize, dynamics={"mass": 1.0})
-    assert "/minimize" in [contradiction.path for contradiction in problem.contradictions()]
+    assert "/minimize" in [contradiction.path for contradiction in problem.find_contradictions()]

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from synthesis.dispatch import solve
-from synthesis.kinds.motion import branch_rows as rows
-from synthesis.kinds.motion.chain_kernels import MAKES, O4, Q1, Q2, A, B, J, signed_sine
+from synthesis.kinds.motion.sixbar import residuals as rows
+from synthesis.kinds.motion.sixbar.chain_kernels import O4, Q1, Q2, TOPOLOGY_LINKS, A, B, J, compute_signed_sine
 from synthesis.registry import parse_problem
 from tests.support.sixbars.motion import SIXBARS, anyhow, false_claim, sound, within_a_box
 
@@ -16,38 +16,38 @@ LIMITS = {
     "positions": {},
     "angles": {rows.COSINE: 0.6},
     "sizes": {rows.REACH: 1.5, rows.SHORTEST: 0.7, rows.LONGEST: 1.4, rows.RATIO: 1.5},
-    "pivots": {n: (-0.5, 0.5)[n % 2 == 0] for n in range(rows.FIXED_BOX, rows.ROOM)},
-    "room": {n: (-0.5, 0.5)[n % 2 == 0] for n in range(rows.ROOM, rows.WANTED_X)},
+    "pivots": {n: (-0.5, 0.5)[n % 2 == 0] for n in range(rows.FIXED_BOX, rows.JOINT_BOX)},
+    "room": {n: (-0.5, 0.5)[n % 2 == 0] for n in range(rows.JOINT_BOX, rows.TARGET_X)},
 }
-LIMITS["first pose"] = LIMITS["sizes"] | LIMITS["room"] | {rows.WANTED_X: 0.3, rows.WANTED_Y: -0.2}
+LIMITS["first pose"] = LIMITS["sizes"] | LIMITS["room"] | {rows.TARGET_X: 0.3, rows.TARGET_Y: -0.2}
 
 
 def drawn(rng: np.random.Generator, make: int, limits: dict[int, float]) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Unknowns, later positions (some with tolerances) and a setting."""
-    x = rng.normal(size=rows.JOINTS + 4)
-    x[rows.JOINTS :] = np.log(rng.uniform(0.1, 0.5, 4))
-    z = x[: rows.JOINTS].view(complex)
-    setting = np.array([INF if n % 2 == 0 else -INF for n in range(rows.SETTINGS)])
+    x = rng.normal(size=rows.JOINT_COORDINATE_COUNT + 4)
+    x[rows.JOINT_COORDINATE_COUNT :] = np.log(rng.uniform(0.1, 0.5, 4))
+    z = x[: rows.JOINT_COORDINATE_COUNT].view(complex)
+    setting = np.array([INF if n % 2 == 0 else -INF for n in range(rows.SETTING_SIZE)])
     setting[: rows.FIXED_BOX] = make, 1.0, 0.0, 0.0, 1.0, INF, 0.0, INF, INF, 0.1, 0.2
     setting[[rows.FIRST_SIDE, rows.SECOND_SIDE]] = np.sign(
-        [signed_sine(z[A], z[O4], z[B]), signed_sine(z[Q1], z[Q2], z[J])]
+        [compute_signed_sine(z[A], z[O4], z[B]), compute_signed_sine(z[Q1], z[Q2], z[J])]
     )
     for place, limit in limits.items():
         setting[place] = limit
     later = np.column_stack([rng.normal(size=(4, 3)), rng.choice([0.0, 0.1], (4, 3)), rng.uniform(0.1, 2.0, (4, 2))])
-    if rows.WANTED_X in limits:
-        x = np.concatenate([x, rng.normal(size=rows.FREE)])
+    if rows.TARGET_X in limits:
+        x = np.concatenate([x, rng.normal(size=rows.FREE_POSE_SIZE)])
     return x, later, setting
 
 
 @pytest.mark.parametrize("limited", LIMITS)
 def test_rates_are_those_of_differences(limited):
     rng = np.random.default_rng(3)
-    most, met = rows.most_rows(5), 0
+    most, met = rows.count_max_rows(5), 0
     for n in range(400):
-        x, later, setting = drawn(rng, n % len(MAKES), LIMITS[limited])
+        x, later, setting = drawn(rng, n % len(TOPOLOGY_LINKS), LIMITS[limited])
         values, jacobian = np.zeros(most), np.zeros((most, x.size))
-        count = rows.branch_rows(x, later, setting, values, jacobian)
+        count = rows.evaluate_residuals(x, later, setting, values, jacobian)
         if count < 0:
             continue
         step, ends = 1e-6, []
@@ -55,7 +55,7 @@ def test_rates_are_those_of_differences(limited):
             for k in range(x.size):
                 moved, there = x.copy(), np.zeros(most)
                 moved[k] += sense * step
-                same = rows.branch_rows(moved, later, setting, there, jacobian[:0]) == count
+                same = rows.evaluate_residuals(moved, later, setting, there, jacobian[:0]) == count
                 ends.append(there if same else np.full(most, np.nan))
         differences = (np.array(ends[: x.size]) - np.array(ends[x.size :])).T[:count] / (2.0 * step)
         if np.isfinite(differences).all():

@@ -7,10 +7,16 @@ import math
 import numpy as np
 import pytest
 
-from synthesis.kinds.motion.burmester import BurmesterCurve, Window, branches, burmester_curve, cloud
-from synthesis.kinds.motion.dyads import DyadConditions
-from synthesis.kinds.motion.sections import section
-from synthesis.kinds.motion.task import MotionTask, motion_task
+from synthesis.kinds.motion.dyads.burmester import (
+    BurmesterCurve,
+    Window,
+    find_burmester_curve,
+    sample_branches,
+    sample_dyads,
+)
+from synthesis.kinds.motion.dyads.equations import DyadConditions
+from synthesis.kinds.motion.dyads.finite_sets import find_section
+from synthesis.kinds.motion.task.positions import MotionTask, make_motion_task
 from synthesis.registry import parse_problem
 from tests.synthesis.planted import inverted_images, plant
 
@@ -22,7 +28,7 @@ def random_task(rng: np.random.Generator, n: int = 4) -> MotionTask:
 
 
 def curve_of(task: MotionTask) -> BurmesterCurve:
-    curve = burmester_curve(task, DyadConditions(rotations=(None,) * 3))
+    curve = find_burmester_curve(task, DyadConditions(rotations=(None,) * 3))
     assert curve is not None
     return curve
 
@@ -42,7 +48,7 @@ def test_samples_lie_on_the_curves() -> None:
     rng = np.random.default_rng(0)
     for _ in range(20):
         task = random_task(rng)
-        for branch in branches(curve_of(task), PLAIN, 300):
+        for branch in sample_branches(curve_of(task), PLAIN, 300):
             assert centre_cubic(task, branch.dyads.fixed).max() < 1e-10
             links = np.abs(task.images(branch.dyads.moving) - branch.dyads.fixed[:, None])
             assert np.ptp(links, axis=1).max() < 1e-9
@@ -54,7 +60,7 @@ def test_samples_are_even_by_arc_length() -> None:
     rng = np.random.default_rng(1)
     for _ in range(20):
         task = random_task(rng)
-        for branch in branches(curve_of(task), PLAIN, 600):
+        for branch in sample_branches(curve_of(task), PLAIN, 600):
             if len(branch.dyads.fixed) < 60:
                 continue
             steps = np.hypot(np.abs(np.diff(branch.dyads.fixed)), np.abs(np.diff(branch.dyads.moving)))
@@ -68,7 +74,7 @@ def test_every_branch_is_there() -> None:
     met = 0
     for _ in range(20):
         task = random_task(rng)
-        found = branches(curve_of(task), PLAIN, 1500)
+        found = sample_branches(curve_of(task), PLAIN, 1500)
         fixed = np.concatenate([branch.dyads.fixed for branch in found])
         moving = np.concatenate([branch.dyads.moving for branch in found])
         for _ in range(5):
@@ -78,7 +84,7 @@ def test_every_branch_is_there() -> None:
                 DyadConditions(rotations=(None,) * 3, link_angle=np.asarray(np.angle(vector))),
                 DyadConditions(rotations=(np.asarray(rotation), None, None)),
             ):
-                for o, a in zip(*section(task, conditions).dyads, strict=True):
+                for o, a in zip(*find_section(task, conditions).dyads, strict=True):
                     if max(abs(o), abs(a)) < 5.5:
                         assert np.hypot(np.abs(fixed - o), np.abs(moving - a)).min() < 0.05
                         met += 1
@@ -89,8 +95,8 @@ def test_the_curve_passes_through_planted_linkages() -> None:
     rng = np.random.default_rng(3)
     for _ in range(20):
         planted = plant(rng, 4, 20.0)
-        task = motion_task(parse_problem({"kind": "motion", "positions": planted.positions}))
-        dyads = cloud(curve_of(task), Window((complex(task.points.mean()), 0j), 60.0, 0.15), 4000)
+        task = make_motion_task(parse_problem({"kind": "motion", "positions": planted.positions}))
+        dyads = sample_dyads(curve_of(task), Window((complex(task.points.mean()), 0j), 60.0, 0.15), 4000)
         for side in (planted.input_side, planted.output_side):
             gaps = np.hypot(
                 np.abs(dyads.fixed - task.to_task(side.fixed_pivot)),
@@ -104,7 +110,7 @@ def test_closed_branches_close() -> None:
     rng = np.random.default_rng(4)
     closed = 0
     for _ in range(40):
-        for branch in branches(curve_of(random_task(rng)), PLAIN, 600):
+        for branch in sample_branches(curve_of(random_task(rng)), PLAIN, 600):
             if branch.closed:
                 step = np.abs(np.diff(branch.dyads.fixed)) + np.abs(np.diff(branch.dyads.moving))
                 gap = abs(branch.dyads.fixed[0] - branch.dyads.fixed[-1])
@@ -128,7 +134,7 @@ def test_a_line_that_belongs_to_the_curve_is_sampled() -> None:
         task = MotionTask(points - points[0], arm / arm[0], 0j, 1.0)
         curve = curve_of(task)
         of_the_ruling += bool(curve.lines)
-        found = branches(curve, PLAIN, 400)
+        found = sample_branches(curve, PLAIN, 400)
         moving = np.concatenate([branch.dyads.moving for branch in found])
         fixed = np.concatenate([branch.dyads.fixed for branch in found])
         there = np.abs(moving - (pins[0] - points[0])) < 1e-6
@@ -144,10 +150,10 @@ def test_parallel_positions(angles: list[float]) -> None:
     """Without rotation between some positions the curve is found all the same; without any there is none."""
     points = np.array([0.0, 1.0 + 0.2j, 1.5 - 0.4j, 0.3 + 0.8j])
     task = MotionTask(points, np.exp(1j * np.array(angles)), 0j, 1.0)
-    curve = burmester_curve(task, DyadConditions(rotations=(None,) * 3))
+    curve = find_burmester_curve(task, DyadConditions(rotations=(None,) * 3))
     assert (curve is None) == (angles[3] == 0.0)
     if curve is not None:
-        found = branches(curve, PLAIN, 200)
+        found = sample_branches(curve, PLAIN, 200)
         assert found
         for branch in found:
             assert centre_cubic(task, branch.dyads.fixed).max() < 1e-9

@@ -14,8 +14,8 @@ import pytest
 from scipy.optimize import linprog
 from scipy.sparse import lil_matrix
 
-from synthesis.kinds.cam.motion_program import Condition, Demand, Limit
-from synthesis.kinds.cam.optimal import Best, NoMotion, Run, best_derivative, best_flat_size
+from synthesis.kinds.cam.program.convex_programs import Condition, Demand, Limit
+from synthesis.kinds.cam.program.optimal import NoMotion, Optimum, Run, minimize_derivative, minimize_flat_size
 
 HONEST = 0.02
 """Share by which the motions of HiGHS, on a coarse grid, may exceed the bound: else it proves little."""
@@ -116,11 +116,13 @@ def knots(rng, marks, count=150):
 def random_run(rng, order):
     """A rise from rest to rest of random lift and angle, perhaps with a condition within, and random limits."""
     angle, lift = float(rng.uniform(0.3, 4.0)), float(10.0 ** rng.uniform(-3.0, 3.0))
-    conditions = [Condition.at(at, i, lift * (i == 0 and at > 0.0)) for at in (0.0, angle) for i in range(3)]
+    conditions = [
+        Condition.fix_derivative(at, i, lift * (i == 0 and at > 0.0)) for at in (0.0, angle) for i in range(3)
+    ]
     inner = []
     if rng.random() < 0.6:
         inner = [(float(rng.uniform(0.3, 0.7)), 0, float(rng.uniform(0.35, 0.65)))]
-        conditions += [Condition.at(t * angle, i, x * lift / angle**i) for t, i, x in inner]
+        conditions += [Condition.fix_derivative(t * angle, i, x * lift / angle**i) for t, i, x in inner]
     share = {1: (None, 12.0, 90.0), 2: (2.6, None, 90.0), 3: (2.6, 14.0, None)}[order]
     limits = {i: s * float(rng.uniform(1.0, 2.0)) for i, s in enumerate(share, 1) if s is not None}
     stated = tuple(Limit(i, s * lift / angle**i) for i, s in limits.items())
@@ -132,7 +134,7 @@ def random_run(rng, order):
 def test_no_motion_of_another_solver_beats_the_bound(seed, order):
     rng = np.random.default_rng(100 * order + seed)
     run, inner, limits, unit = random_run(rng, order)
-    best = best_derivative(run, "peak", order)
+    best = minimize_derivative(run, "peak", order)
 
     def other(factor=1.0):
         program = Linear(knots(np.random.default_rng(seed), [t for t, _, _ in inner]))
@@ -164,11 +166,13 @@ def test_no_flat_faced_cam_of_another_solver_is_smaller(seed):
     rng = np.random.default_rng(seed)
     angle, lift, rho = float(rng.uniform(0.8, 2.0)), 1.0, float(rng.uniform(0.05, 0.5))
     jerk = 60.0 * float(rng.uniform(1.0, 2.0))
-    conditions = tuple(Condition.at(at, i, lift * (i == 0 and at > 0.0)) for at in (0.0, angle) for i in range(3))
+    conditions = tuple(
+        Condition.fix_derivative(at, i, lift * (i == 0 and at > 0.0)) for at in (0.0, angle) for i in range(3)
+    )
     band = Demand((-1.0,), -0.5 * lift, (), 0.55 * angle, angle)
     run = Run(angle, conditions, 2, (Limit(3, jerk * lift / angle**3),), (band,))
-    best = best_flat_size([run], rho, None, (0.0, 0.0, 0.0))
-    assert isinstance(best, Best)
+    best = minimize_flat_size([run], rho, None, (0.0, 0.0, 0.0))
+    assert isinstance(best, Optimum)
     program = Linear(knots(rng, [0.55]))
     for at, value in ((0.0, 0.0), (1.0, 1.0)):
         for i in range(3):

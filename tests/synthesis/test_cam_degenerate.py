@@ -10,12 +10,12 @@ import pytest
 from pydantic import ValidationError
 
 from synthesis.dispatch import solve
-from synthesis.kinds.cam.critical import smallest_allowed
-from synthesis.registry import examples, parse_problem
+from synthesis.kinds.cam.sizing.critical_points import find_smallest_allowed
+from synthesis.registry import list_examples, parse_problem
 from tests.campaign import further
 from tests.synthesis.cam_sampling import random_program
 
-BASE = examples("cam")[0]
+BASE = list_examples("cam")[0]
 ROLLER = {"type": "translating_roller", "roller_radius": 10.0}
 ARM = {"type": "oscillating_roller", "roller_radius": 8.0, "arm": 80.0, "pivot_distance": 100.0}
 BARREL = {"type": "barrel_roller", "roller_radius": 10.0}
@@ -80,7 +80,7 @@ def stated_at(location, value):
 def test_what_makes_no_sense_is_refused_with_its_field(name):
     statement, path = REFUSED[name]
     try:
-        found = [contradiction.path for contradiction in parse_problem(statement).contradictions()]
+        found = [contradiction.path for contradiction in parse_problem(statement).find_contradictions()]
     except ValidationError as error:
         found = [stated_at(one["loc"][1:], statement) for one in error.errors()]
     assert path in found
@@ -157,7 +157,7 @@ def test_a_face_that_is_too_narrow_is_not_proven_to_be():
 
 
 def test_exchanges_that_do_not_end_prove_nothing(monkeypatch):
-    monkeypatch.setattr("synthesis.kinds.cam.critical.EXCHANGES", 1)
+    monkeypatch.setattr("synthesis.kinds.cam.sizing.critical_points.MAX_EXCHANGES", 1)
     program = random_program(np.random.default_rng(1), 1.0)
-    found = smallest_allowed(program, lambda motion, p: np.abs(motion.a) / p - 1.0 + 0.0 * motion.s, 1e-3, 1e6)
+    found = find_smallest_allowed(program, lambda motion, p: np.abs(motion.a) / p - 1.0 + 0.0 * motion.s, 1e-3, 1e6)
     assert found is not None

@@ -7,26 +7,26 @@ import math
 import numpy as np
 import pytest
 
-from kinematics.cam.contact import Contour
-from kinematics.cam.finished import worst
+from kinematics.cam.finished.contact import Contour
+from kinematics.cam.finished.discretization import Stretches, estimate_uncertainty
+from kinematics.cam.finished.extreme_values import find_worst_values
+from kinematics.cam.finished.local_curves import choose_stencils, select_every_second
 from kinematics.cam.follower import OscillatingFlat, OscillatingRoller, TranslatingFlat, TranslatingRoller
-from kinematics.cam.local_curves import halved, stencils
-from kinematics.cam.motion_laws import LAWS
+from kinematics.cam.motion.laws import LAWS
+from kinematics.cam.motion.program import TURN, Program
+from kinematics.cam.motion.segments import build_dwell, build_law_segment
 from kinematics.cam.profile import Cam
-from kinematics.cam.program import TURN, Program
-from kinematics.cam.segments import dwell, law_segment
-from kinematics.cam.settled import Stretches, doubt
 from synthesis.dispatch import solve
-from synthesis.kinds.cam.composition import Composition, compose
-from synthesis.kinds.cam.mechanism import (
+from synthesis.kinds.cam.profile import (
     MAX_PARTS,
-    cam_mechanism,
-    core_follower,
-    points_of,
-    profile_angles,
-    refined,
-    stretches_of,
+    build_cam_mechanism,
+    build_core_follower,
+    choose_profile_angles,
+    find_stretches,
+    read_points,
+    refine_angles,
 )
+from synthesis.kinds.cam.program.composition import Composition, compose
 from synthesis.registry import parse_problem
 from tests.campaign import further
 from tests.oracles.cam_formulas import least_convex_radius, pressure_angle_extremes
@@ -60,10 +60,10 @@ def stated_program(law: str, lift: float) -> Program:
     rise, fall = math.radians(70.0), math.radians(130.0)
     return Program(
         [
-            dwell(math.radians(65.0), 0.0),
-            law_segment(LAWS[law], rise, 0.0, lift),
-            dwell(math.radians(95.0), lift),
-            law_segment(LAWS[law], fall, lift, 0.0),
+            build_dwell(math.radians(65.0), 0.0),
+            build_law_segment(LAWS[law], rise, 0.0, lift),
+            build_dwell(math.radians(95.0), lift),
+            build_law_segment(LAWS[law], fall, lift, 0.0),
         ]
     )
 
@@ -152,10 +152,10 @@ def test_curvature_is_measured_where_a_step_is_almost_a_break() -> None:
     law = LAWS["modified_sine"]
     program = Program(
         [
-            law_segment(law, rise, 0.0, 13.787),
-            dwell(math.radians(81.353), 13.787),
-            law_segment(law, fall, 13.787, 0.0),
-            dwell(TURN - rise - fall - math.radians(81.353), 0.0),
+            build_law_segment(law, rise, 0.0, 13.787),
+            build_dwell(math.radians(81.353), 13.787),
+            build_law_segment(law, fall, 13.787, 0.0),
+            build_dwell(TURN - rise - fall - math.radians(81.353), 0.0),
         ]
     )
     m = dense_motion(program, 200_001)
@@ -198,7 +198,7 @@ def test_a_spike_of_the_acceleration_is_measured(follower: str, minimize: str, r
     assert design.verification.passed
     composed = compose(problem)
     assert isinstance(composed, Composition)
-    cam = Cam(composed.program, core_follower(design.mechanism), design.mechanism.rotation)
+    cam = Cam(composed.program, build_core_follower(design.mechanism), design.mechanism.rotation)
     exact = least_convex_radius(cam) - cam.roller_radius
     assert exact * (1.0 - rounded) <= design.metrics.min_convex_radius <= exact * (1.0 + 1e-7)
 
@@ -206,9 +206,11 @@ def test_a_spike_of_the_acceleration_is_measured(follower: str, minimize: str, r
 def test_points_are_laid_where_no_equal_step_has_room() -> None:
     """Forty equal steps, and a break every third of a degree."""
     n = 1080
-    moves = [law_segment(LAWS["cycloidal"], TURN / n, *((0.0, 1e-3) if k % 2 == 0 else (1e-3, 0.0))) for k in range(n)]
+    moves = [
+        build_law_segment(LAWS["cycloidal"], TURN / n, *((0.0, 1e-3) if k % 2 == 0 else (1e-3, 0.0))) for k in range(n)
+    ]
     cam = Cam(Program(moves), TranslatingFlat(80.0), "cw")
-    angles = profile_angles(cam.program, cam.profile, 0.0, 40)
+    angles = choose_profile_angles(cam.program, cam.profile, 0.0, 40)
     assert np.all(np.diff(angles) > 0.0)
     assert np.isin(np.round(cam.program.joints[:-1], 9), np.round(angles, 9)).all()
 
@@ -221,7 +223,7 @@ def unsettled_beside(breaks: list[int]) -> set[int]:
     none = np.zeros(40, np.bool_)
     stretches = Stretches(np.array(breaks, dtype=np.int64), none, none, none)
     room = np.where(np.arange(40) == 21, 0.9, 1e3)
-    return set(np.flatnonzero(doubt(near, wide, np.zeros(40), room, stretches)[2]).tolist())
+    return set(np.flatnonzero(estimate_uncertainty(near, wide, np.zeros(40), room, stretches)[2]).tolist())
 
 
 def test_chords_that_are_too_short_are_not_divided() -> None:
@@ -233,9 +235,9 @@ def test_chords_are_divided_no_further_than_there_is_room() -> None:
     """Where a curve runs over a break they are divided as finely as possible, but not into what is rounding."""
     near, chord = np.ones((40, 2)), np.arange(40)
     stretches = Stretches(np.empty(0, np.int64), chord == 20, np.zeros(40, np.bool_), np.zeros(40, np.bool_))
-    unsettled = doubt(near, near, np.zeros(40), np.where(chord == 20, 1.0, 1e3), stretches)[2]
+    unsettled = estimate_uncertainty(near, near, np.zeros(40), np.where(chord == 20, 1.0, 1e3), stretches)[2]
     angle = TURN / 40.0 * chord
-    parts, _ = np.histogram(refined(angle, unsettled, 1.0), np.append(angle, TURN))
+    parts, _ = np.histogram(refine_angles(angle, unsettled, 1.0), np.append(angle, TURN))
     assert parts[17:24].tolist() == [2, MAX_PARTS, MAX_PARTS, 2, MAX_PARTS, MAX_PARTS, 2]
 
 
@@ -249,7 +251,7 @@ def test_short_steps_are_not_divided_beside_long_ones() -> None:
     """The step before the divided one is half as long, the one after it as long: only that is divided with it."""
     angle = np.array([0.0, 1.0, 1.4, 2.2, 3.0, 4.0, 5.0])
     off = np.where(np.arange(7) == 2, 1.0, 0.0)
-    found = refined(angle, off, 1.0)
+    found = refine_angles(angle, off, 1.0)
     assert np.setdiff1d(found, angle) == pytest.approx([1.8, 2.6])
 
 
@@ -260,7 +262,7 @@ def test_a_profile_without_its_breaks_is_measured_worse_never_better() -> None:
     angle = np.linspace(0.0, TURN, 721)[:-1]
     none = np.zeros(720, np.bool_)
     blind = Stretches(np.empty(0, np.int64), none, none, none)
-    found = worst(Contour(cam.profile(angle), angle), cam.follower, "cw", blind)
+    found = find_worst_values(Contour(cam.profile(angle), angle), cam.follower, "cw", blind)
     assert 1.0 / found.convex <= cam.radius_extremes.least * (1.0 + 1e-9)
 
 
@@ -270,19 +272,19 @@ def test_curvature_between_the_places_of_a_chord_is_measured(first: float) -> No
     cam = Cam(stated_program("polynomial_4567", 20.0), TranslatingFlat(83.0), "cw")
     angle = np.radians(0.125 * (np.arange(2880) + first))
     blurred = Stretches(np.empty(0, np.int64), np.ones(2880, np.bool_), *np.zeros((2, 2880), np.bool_))
-    found = worst(Contour(cam.profile(angle), angle), cam.follower, "cw", blurred)
+    found = find_worst_values(Contour(cam.profile(angle), angle), cam.follower, "cw", blurred)
     assert 1.0 / found.convex <= cam.radius_extremes.least * (1.0 + 1e-9)
     assert 1.0 / found.convex == pytest.approx(cam.radius_extremes.least, rel=1e-4)
 
 
 def test_stencils_stay_between_breaks() -> None:
-    first = stencils(40, np.array([3, 20]))
+    first = choose_stencils(40, np.array([3, 20]))
     assert first[3] == 3
     assert first[19] == 15
     assert first[20] == 20
     assert first[2] == 38 - 40 + 0
-    assert (stencils(40, np.empty(0, np.int64)) == np.arange(40) - 2).all()
-    kept, breaks = halved(40, np.array([3, 20]))
+    assert (choose_stencils(40, np.empty(0, np.int64)) == np.arange(40) - 2).all()
+    kept, breaks = select_every_second(40, np.array([3, 20]))
     assert {3, 20} <= set(kept[breaks].tolist())
     assert np.diff(kept).max() == 2
 
@@ -325,11 +327,11 @@ def test_extremes_of_exact_formulas_agree(seed: int) -> None:
     )
     for follower in followers:
         cam = Cam(program, follower, "ccw" if seed % 3 else "cw")
-        angle = profile_angles(program, cam.profile, cam.roller_radius, 1440)
-        mechanism = cam_mechanism(cam, angle)
-        stretches = stretches_of(mechanism.program)
-        contour = Contour(points_of(mechanism.profile), np.radians(mechanism.program.angle), stretches.breaks)
-        found = worst(contour, follower, cam.rotation, stretches)
+        angle = choose_profile_angles(program, cam.profile, cam.roller_radius, 1440)
+        mechanism = build_cam_mechanism(cam, angle)
+        stretches = find_stretches(mechanism.program)
+        contour = Contour(read_points(mechanism.profile), np.radians(mechanism.program.angle), stretches.breaks)
+        found = find_worst_values(contour, follower, cam.rotation, stretches)
         if isinstance(follower, OscillatingFlat):
             reach = follower.reach(dense_motion(program, 100_001))
             assert found.sweep == pytest.approx(np.ptp(reach), rel=1e-6)

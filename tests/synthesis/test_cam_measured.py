@@ -9,11 +9,11 @@ import numpy as np
 import pytest
 
 from synthesis.dispatch import solve
-from synthesis.kinds.cam.composition import compose
-from synthesis.kinds.cam.measured_rates import PEAK_SLACK
-from synthesis.kinds.cam.mechanism import cam_mechanism, profile_angles
-from synthesis.kinds.cam.solver import _sized
-from synthesis.kinds.cam.verification import verify
+from synthesis.kinds.cam.profile import build_cam_mechanism, choose_profile_angles
+from synthesis.kinds.cam.program.composition import compose
+from synthesis.kinds.cam.solver import _size_cam
+from synthesis.kinds.cam.verification.rates import PEAK_SLACK
+from synthesis.kinds.cam.verification.verify import verify
 from synthesis.registry import parse_problem
 
 BASE = {
@@ -39,8 +39,8 @@ def problem(limits=None, conditions=(), bands=(), **changes):
 def made(stated):
     """The finished cam, and its exact program."""
     program = compose(stated).program
-    cam, _ = _sized(stated, program)
-    return cam_mechanism(cam, profile_angles(program, cam.profile, cam.roller_radius, 1440)), program
+    cam, _ = _size_cam(stated, program)
+    return build_cam_mechanism(cam, choose_profile_angles(program, cam.profile, cam.roller_radius, 1440)), program
 
 
 def failed(stated, mechanism):

@@ -8,11 +8,11 @@ import math
 import pytest
 from pydantic import ValidationError
 
-from kinematics.cam.motion_laws import LAWS
-from kinematics.cam.segments import Condition, polynomial_segment
+from kinematics.cam.motion.laws import LAWS
+from kinematics.cam.motion.segments import Condition, build_polynomial_segment
 from synthesis.dispatch import solve
-from synthesis.kinds.cam.joints import END_RATES, polynomial_ends
-from synthesis.kinds.cam.segments import Law
+from synthesis.kinds.cam.statement.segment_ends import END_RATES, compute_polynomial_ends
+from synthesis.kinds.cam.statement.segments import Law
 from synthesis.registry import KINDS, parse_problem
 
 DOUBLE_DWELL = KINDS["cam"].problem.model_config["json_schema_extra"]["examples"][0]
@@ -36,7 +36,7 @@ def test_examples_are_sound():
     examples = KINDS["cam"].problem.model_config["json_schema_extra"]["examples"]
     assert len(examples) >= 4
     for example in examples:
-        assert parse_problem(example).contradictions() == []
+        assert parse_problem(example).find_contradictions() == []
 
 
 def test_laws_are_those_of_the_analysis_core():
@@ -61,11 +61,11 @@ def test_ends_of_polynomials_are_the_analysis_cores():
         (1.3, 1, 0.0),
         (1.3, 2, -2.0),
     ]
-    first, last = polynomial_ends(1.3, conditions)
-    pieces = polynomial_segment(1.3, [Condition(*c) for c in conditions]).pieces
+    first, last = compute_polynomial_ends(1.3, conditions)
+    pieces = build_polynomial_segment(1.3, [Condition(*c) for c in conditions]).pieces
     assert first == pytest.approx([float(x) for x in pieces.motion(0.0)[:3]], abs=1e-12)
     assert last == pytest.approx([float(x) for x in pieces.motion(1.3, before=True)[:3]], abs=1e-11)
-    assert polynomial_ends(1.0, [(0.5, 1, 1.0), (0.5, 1, 1.0)]) is None
+    assert compute_polynomial_ends(1.0, [(0.5, 1, 1.0), (0.5, 1, 1.0)]) is None
 
 
 def up_and_down(lift, **fields):
@@ -83,7 +83,7 @@ def up_and_down(lift, **fields):
 def test_a_polynomial_that_comes_back_joins_a_dwell(lift):
     """Rounding of its ends is small beside what it travels between them."""
     problem = parse_problem(up_and_down(lift, length_unit="m"))
-    assert problem.contradictions() == []
+    assert problem.find_contradictions() == []
     assert problem.program.travel == pytest.approx(lift, rel=0.02)
 
 
@@ -163,7 +163,7 @@ FAULTS = [
 
 @pytest.mark.parametrize(("changes", "path", "detail"), FAULTS, ids=[f"{row[1]} {row[2]}" for row in FAULTS])
 def test_faults_name_the_field(changes, path, detail):
-    found = stated(**changes).contradictions()
+    found = stated(**changes).find_contradictions()
     assert path in [fault.path for fault in found]
     assert any(detail in fault.detail for fault in found if fault.path == path)
 
@@ -220,7 +220,7 @@ def test_a_velocity_that_jumps_up_is_followed_by_a_face(follower):
     ],
 )
 def test_jumps_that_no_follower_keeps_to_are_refused(law, follower, fields):
-    (fault, *_) = jumping(law, follower, **fields).contradictions()
+    (fault, *_) = jumping(law, follower, **fields).find_contradictions()
     assert "edge that no follower can track" in fault.detail
 
 
@@ -241,8 +241,8 @@ def test_a_fall_by_the_name_of_its_rise_mirrors_it(law):
         )
         for fall in (law, f"{law}_reversed")
     )
-    assert named.contradictions() == []
-    assert named.program.laws() == [law, f"{law}_reversed", "dwell"]
+    assert named.find_contradictions() == []
+    assert named.program.list_laws() == [law, f"{law}_reversed", "dwell"]
     found, same = (solve(problem, lambda fraction, message: None) for problem in (named, mirrored))
     assert found.designs[0].verification.passed
     assert found.designs[0].mechanism == same.designs[0].mechanism
@@ -263,15 +263,15 @@ def test_a_fall_that_its_neighbours_join_as_it_rises_is_taken_so(law):
             "follower": {"type": "translating_flat"},
         }
     )
-    assert problem.contradictions() == []
-    assert problem.program.laws() == [f"{law}_reversed", "dwell", law]
+    assert problem.find_contradictions() == []
+    assert problem.program.list_laws() == [f"{law}_reversed", "dwell", law]
 
 
 def test_an_optimal_arm_is_not_sized_with_its_motion():
     follower = {"type": "oscillating_roller", "roller_radius": 5.0, "arm": 60.0, "pivot_distance": 80.0}
     segments = [dict(segment) for segment in DOUBLE_DWELL["segments"]]
     segments[1] = {"motion": "rise", "angle": 90.0, "lift": 20.0, "law": "optimal"}
-    assert stated(follower=follower, segments=segments, minimize="size").contradictions()[0].path == "/minimize"
+    assert stated(follower=follower, segments=segments, minimize="size").find_contradictions()[0].path == "/minimize"
 
 
 @pytest.mark.parametrize(

@@ -7,19 +7,19 @@ import math
 import numpy as np
 import pytest
 
-from kinematics.cam.motion_laws import LAWS
-from kinematics.cam.pieces import Motion
-from kinematics.cam.program import Program
-from kinematics.cam.segments import dwell, law_segment
-from synthesis.kinds.cam.critical import critical_motion
-from synthesis.kinds.cam.sizing import (
+from kinematics.cam.motion.laws import LAWS
+from kinematics.cam.motion.pieces import Motion
+from kinematics.cam.motion.program import Program
+from kinematics.cam.motion.segments import build_dwell, build_law_segment
+from synthesis.kinds.cam.sizing.critical_points import find_critical_motion
+from synthesis.kinds.cam.sizing.sizing import (
     RollerLimits,
-    free_offset,
-    free_pivot,
-    oscillating_flat,
-    oscillating_roller,
-    translating_flat,
-    translating_roller,
+    search_offset,
+    search_pivot,
+    size_oscillating_flat,
+    size_oscillating_roller,
+    size_translating_flat,
+    size_translating_roller,
 )
 from tests.campaign import sampled
 from tests.synthesis.cam_sampling import dense_motion, first_sound, oscillating, random_program, translating
@@ -42,7 +42,7 @@ def check_translating(seed: int) -> None:
     program = random_program(rng, 1.0)
     offset = float(rng.choice([0.0, rng.uniform(-0.5, 0.5)]))
     limits = random_limits(rng, 1.0)
-    size = translating_roller(program, offset, limits)
+    size = size_translating_roller(program, offset, limits)
     start = max(limits.least, abs(offset)) + 1e-6
     stop = 1.5 * (size.radius if size else 30.0)
     brute = first_sound(program, lambda r, m: keeps(*translating(m, r, offset), m.v, limits), start, stop)
@@ -59,7 +59,7 @@ def check_oscillating(seed: int) -> None:
     arm, sense = 1.0, int(rng.choice([-1, 1]))
     pivot = float(rng.uniform(0.8, 1.8))
     limits = random_limits(rng, 0.15)
-    size = oscillating_roller(program, arm, pivot, sense, limits)
+    size = size_oscillating_roller(program, arm, pivot, sense, limits)
     start, stop = max(abs(arm - pivot), limits.least) + 1e-5, arm + pivot - 1e-5
 
     def sound(radius: float, motion: Motion) -> bool:
@@ -87,11 +87,11 @@ def check_flat(seed: int) -> None:
     motion = dense_motion(program := random_program(rng, 1.0))
     radius = float(rng.uniform(0.0, 1.0))
     brute = max(radius - float((motion.s + motion.a).min()), 0.01)
-    assert translating_flat(program, radius, 0.01).radius == pytest.approx(brute, abs=AGREES * brute)
+    assert size_translating_flat(program, radius, 0.01).radius == pytest.approx(brute, abs=AGREES * brute)
     assert face_sweep(program) == pytest.approx(float(np.ptp(motion.v)), abs=1e-6)
     swing = random_program(rng, math.radians(rng.uniform(5.0, 15.0)))
     sense, pivot, face = int(rng.choice([-1, 1])), 3.0, float(rng.uniform(-0.3, 0.3))
-    size = oscillating_flat(swing, pivot, face, sense, 0.4, 0.05, None)
+    size = size_oscillating_flat(swing, pivot, face, sense, 0.4, 0.05, None)
 
     def sound(base: float, motion: Motion) -> bool:
         psi = math.asin((base + face) / pivot) + motion.s
@@ -141,10 +141,10 @@ def one_rise(law: str, degrees: float, lift: float, fall_degrees: float = 150.0)
     rest = 0.5 * (2.0 * math.pi - up - down)
     return Program(
         [
-            law_segment(LAWS[law], up, 0.0, lift),
-            dwell(rest, lift),
-            law_segment(LAWS[law], down, lift, 0.0),
-            dwell(rest, 0.0),
+            build_law_segment(LAWS[law], up, 0.0, lift),
+            build_dwell(rest, lift),
+            build_law_segment(LAWS[law], down, lift, 0.0),
+            build_dwell(rest, 0.0),
         ]
     )
 
@@ -152,11 +152,11 @@ def one_rise(law: str, degrees: float, lift: float, fall_degrees: float = 150.0)
 def test_literature_prime_radii():
     """Rao: the nomogram's cycloidal rise of 2 in 60° at 30°, and the eighth-power rise of SP 5.7 at 45°."""
     limits = RollerLimits(math.radians(30.0), math.radians(30.0), 0.0, 0.1)
-    assert translating_roller(one_rise("cycloidal", 60.0, 2.0), 0.0, limits).radius == pytest.approx(
+    assert size_translating_roller(one_rise("cycloidal", 60.0, 2.0), 0.0, limits).radius == pytest.approx(
         5.67701748, rel=1e-8
     )
     wide = RollerLimits(math.radians(45.0), math.radians(45.0), 0.0, 0.1)
-    assert translating_roller(one_rise("eighth_power", 30.0, 1.0), 0.0, wide).radius == pytest.approx(
+    assert size_translating_roller(one_rise("eighth_power", 30.0, 1.0), 0.0, wide).radius == pytest.approx(
         2.93307636, rel=1e-8
     )
 
@@ -167,13 +167,13 @@ def test_flat_example_of_rao():
     law = LAWS["simple_harmonic"]
     program = Program(
         [
-            law_segment(law, quarter, 0.0, 4.0),
-            dwell(quarter, 4.0),
-            law_segment(law, quarter, 4.0, 0.0),
-            dwell(quarter, 0.0),
+            build_law_segment(law, quarter, 0.0, 4.0),
+            build_dwell(quarter, 4.0),
+            build_law_segment(law, quarter, 4.0, 0.0),
+            build_dwell(quarter, 0.0),
         ]
     )
-    assert translating_flat(program, 0.0, 0.1).radius == pytest.approx(4.0, rel=1e-8)
+    assert size_translating_flat(program, 0.0, 0.1).radius == pytest.approx(4.0, rel=1e-8)
     assert face_sweep(program) == pytest.approx(8.0, rel=1e-12)
 
 
@@ -183,14 +183,14 @@ def test_the_best_offset_beats_its_neighbours():
     program = one_rise("modified_sine", 60.0, 1.0, 110.0)
     for radius, proven in ((0.0, True), (1.5, False)):
         limits = RollerLimits(math.radians(30.0), math.radians(40.0), radius, 0.1)
-        size = free_offset(program, limits, (-1.5, 1.5))
+        size = search_offset(program, limits, (-1.5, 1.5))
         assert size.proven is proven
-        around = [translating_roller(program, float(e), limits) for e in np.linspace(-1.5, 1.5, 21)]
+        around = [size_translating_roller(program, float(e), limits) for e in np.linspace(-1.5, 1.5, 21)]
         best = min(found.radius for found in around if found is not None)
         assert size.radius <= best * (1.0 + 1e-8)
         assert size.radius >= 0.97 * best
         assert size.free == pytest.approx(size.free)
-        again = translating_roller(program, size.free, limits)
+        again = size_translating_roller(program, size.free, limits)
         assert again.radius == pytest.approx(size.radius, rel=1e-6)
 
 
@@ -198,16 +198,16 @@ def test_the_best_offset_beats_its_neighbours():
 def test_the_best_pivot_beats_its_neighbours():
     program = one_rise("cycloidal", 120.0, math.radians(20.0))
     limits = RollerLimits(math.radians(30.0), math.radians(30.0), 0.5, 0.1)
-    size = free_pivot(program, 5.0, (3.0, 9.0), 1, limits)
-    grid = [oscillating_roller(program, 5.0, float(c), 1, limits) for c in np.linspace(3.0, 9.0, 31)]
+    size = search_pivot(program, 5.0, (3.0, 9.0), 1, limits)
+    grid = [size_oscillating_roller(program, 5.0, float(c), 1, limits) for c in np.linspace(3.0, 9.0, 31)]
     assert size.radius <= min(found.radius for found in grid if found is not None) * (1.0 + 1e-9)
     assert not size.proven
 
 
 def test_a_face_too_narrow_needs_another_start_angle():
     program = one_rise("cycloidal", 120.0, math.radians(15.0))
-    free = oscillating_flat(program, 6.0, 0.2, 1, 0.5, 0.1, None)
-    motion = critical_motion(program, lambda m: m.v)
+    free = size_oscillating_flat(program, 6.0, 0.2, 1, 0.5, 0.1, None)
+    motion = find_critical_motion(program, lambda m: m.v)
 
     def sweep(base: float) -> float:
         psi = math.asin((base + 0.2) / 6.0) + dense_motion(program).s
@@ -215,7 +215,7 @@ def test_a_face_too_narrow_needs_another_start_angle():
 
     assert motion.s.max() > 0.0
     width = 0.98 * sweep(free.radius)
-    narrow = oscillating_flat(program, 6.0, 0.2, 1, 0.5, 0.1, width)
+    narrow = size_oscillating_flat(program, 6.0, 0.2, 1, 0.5, 0.1, width)
     assert narrow.radius > free.radius
     assert sweep(narrow.radius) <= width * (1.0 + 1e-6)
 
@@ -224,4 +224,4 @@ def test_no_radius_is_sound():
     """A swing so fast that no start angle keeps the pressure angle."""
     program = one_rise("cycloidal", 25.0, math.radians(60.0))
     limits = RollerLimits(math.radians(20.0), math.radians(20.0), 0.0, 0.1)
-    assert oscillating_roller(program, 5.0, 6.0, -1, limits) is None
+    assert size_oscillating_roller(program, 5.0, 6.0, -1, limits) is None

@@ -7,10 +7,10 @@ import math
 import numpy as np
 import pytest
 
-from kinematics.cam.motion_laws import LAWS
-from kinematics.cam.segments import law_segment
+from kinematics.cam.motion.laws import LAWS
+from kinematics.cam.motion.segments import build_law_segment
 from synthesis.dispatch import solve
-from synthesis.kinds.cam.verification import verify
+from synthesis.kinds.cam.verification.verify import verify
 from synthesis.registry import KINDS, parse_problem
 from tests.campaign import further
 
@@ -416,7 +416,7 @@ def test_the_least_radius_under_a_flat_face_is_measured_within_a_thousandth(law:
     (design,) = solve(parse_problem(statement)).designs
     assert design.verification.passed
     # Norton, eq. 8.31: the radius of curvature is base radius, displacement and acceleration; here of the laws.
-    motions = [law_segment(LAWS[law], math.radians(angle), 0.0, 20.0).pieces for angle in (60.0, 100.0)]
+    motions = [build_law_segment(LAWS[law], math.radians(angle), 0.0, 20.0).pieces for angle in (60.0, 100.0)]
     moved = [pieces.motion(np.linspace(0.0, pieces.length, 100_001)) for pieces in motions]
     least = min(float((m.s + m.a).min()) for m in moved) + design.mechanism.base_radius
     assert design.metrics.min_convex_radius <= least * (1.0 + 1e-8)
@@ -458,10 +458,10 @@ def test_a_least_force_between_two_walls_is_refused(changes) -> None:
     statement = {**DOUBLE_DWELL, "speed_rpm": 60.0, "dynamics": dynamics, **changes}
     if "follower" in changes:
         statement.pop("limits", None)
-    (fault,) = parse_problem(statement).contradictions()
+    (fault,) = parse_problem(statement).find_contradictions()
     assert fault.path == "/dynamics/least_force"
     dynamics["least_force"] = 0.0
-    assert parse_problem(statement).contradictions() == []
+    assert parse_problem(statement).find_contradictions() == []
 
 
 @pytest.mark.parametrize(

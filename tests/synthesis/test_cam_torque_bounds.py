@@ -9,11 +9,11 @@ import numpy as np
 import pytest
 from scipy.optimize import minimize
 
-from kinematics.cam.motion_laws import LAWS
-from synthesis.kinds.cam.composition import Composition, compose
-from synthesis.registry import examples, parse_problem
+from kinematics.cam.motion.laws import LAWS
+from synthesis.kinds.cam.program.composition import Composition, compose
+from synthesis.registry import list_examples, parse_problem
 
-BASE = examples("cam")[0]
+BASE = list_examples("cam")[0]
 BETA, LIFT = 0.5 * math.pi, 10.0
 UNIT = LIFT**2 / BETA**3
 """Of v a: for a unit lift over a unit angle it is 1."""

@@ -9,8 +9,8 @@ from typing import Any
 import numpy as np
 import pytest
 
-from synthesis.model.linkage_answer import LinkageDesign
-from synthesis.proof.carried import carried, ease
+from synthesis.model.linkage.answer import LinkageDesign
+from synthesis.verification.body_motion import compute_ease, measure_body_motion
 from tests.campaign import further
 from tests.support.synthesis.motion_search import ORDINARY, run
 from tests.synthesis.planted import plant
@@ -67,7 +67,7 @@ def test_a_body_that_turns_to_and_fro_is_measured() -> None:
 
     ends = np.array([0.2, 2.6])
     places, turns = pose(ends)
-    found = carried(pose, (0.2, 2.6), places, turns, 5.0, slides=False)
+    found = measure_body_motion(pose, (0.2, 2.6), places, turns, 5.0, slides=False)
     chord = abs(places[1] - places[0])
     assert found.input_turn == pytest.approx(2.4)
     assert found.travel_ratio == pytest.approx(3.0 * 2.4 / chord, rel=1e-8)
@@ -84,16 +84,16 @@ def test_what_is_not_needed_has_no_ratio() -> None:
     def pose(inputs: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         return 1.0 * inputs + 0j, np.zeros(inputs.shape)
 
-    found = carried(pose, (0.0, 2.0), np.array([0.0, 2.0 + 0j]), np.zeros(2), 2.0, slides=True)
+    found = measure_body_motion(pose, (0.0, 2.0), np.array([0.0, 2.0 + 0j]), np.zeros(2), 2.0, slides=True)
     assert found.turn_ratio is None
     assert found.travel_ratio == pytest.approx(1.0)
     assert found.input_turn == 0.0
 
 
 def test_a_long_turn_and_a_wandering_body_cost_quality() -> None:
-    assert ease(0.0, 0.0) == 1.0
-    assert ease(math.pi, 0.0) == pytest.approx(0.5)
-    assert ease(0.0, 1.0) == pytest.approx(0.5)
+    assert compute_ease(0.0, 0.0) == 1.0
+    assert compute_ease(math.pi, 0.0) == pytest.approx(0.5)
+    assert compute_ease(0.0, 1.0) == pytest.approx(0.5)
     designs = run(positions=ORDINARY, max_designs=20).designs
     assert [design.metrics.quality for design in designs] == sorted(
         (design.metrics.quality for design in designs), reverse=True

@@ -17,7 +17,7 @@ from synthesis.dispatch import solve
 from synthesis.kinds.gear_train.design import GearTrainResult
 from synthesis.kinds.gear_train.problem import GearTrainProblem
 from synthesis.kinds.gear_train.verification import verify
-from synthesis.model.gear_strength import CarriedPower, Judge, Loaded, stage_contact
+from synthesis.model.gears.strength import CarriedPower, LoadedPair, StressCalculator, build_stage_contact
 from synthesis.registry import parse_problem
 
 POWER: dict[str, Any] = {
@@ -32,7 +32,7 @@ FEW: dict[str, Any] = {"ratio": "5/4", "max_stages": 2, "teeth": {"min": 18, "ma
 
 def solved(**fields: Any) -> GearTrainResult:
     problem = parse_problem({"kind": "gear_train", **fields})
-    assert problem.contradictions() == []
+    assert problem.find_contradictions() == []
     result = solve(problem, lambda fraction, message: None)
     assert isinstance(result, GearTrainResult)
     assert all(design.verification.passed for design in result.designs)
@@ -45,7 +45,7 @@ def narrowest(driver: int, driven: int, module: float, speed: float) -> float | 
     stated = {name: POWER[name] for name in POWER if name != "speed_rpm"}
     pair = {"type": "gear_pair", "teeth": [driver, driven], "module": module}
     request = parse_request({"mechanism": pair, "speed_rpm": speed, "strength": stated})
-    width = request.answer()["strength"].get("least_face_width")
+    width = request.build_answer()["strength"].get("least_face_width")
     return None if width is None else float(width)
 
 
@@ -197,13 +197,13 @@ def test_an_idler_bears_less_since_its_teeth_are_bent_both_ways() -> None:
         "mechanism": mechanism.model_dump(), "motion": {"at": 0.0, "speed": omega}, "mesh_efficiency": 1.0,
         "input_torque": 1000.0 * bending["power_kw"] / omega, "strength": strength,
     }  # fmt: skip
-    meshes = parse_request(asked).answer()["meshes"]
+    meshes = parse_request(asked).build_answer()["meshes"]
     safeties = []
     for number, pair in enumerate([(stage.driver, idler), (idler, stage.driven)]):
         speed = bending["speed_rpm"] * stage.driver / pair[0]
         alone = {"mechanism": {"type": "gear_pair", "teeth": pair, "module": 4.0, "face_width": stage.face_width}}
         lone = {"power_kw": bending["power_kw"], **strength}
-        gears = parse_request({**alone, "speed_rpm": speed, "strength": lone}).answer()["strength"]["gears"]
+        gears = parse_request({**alone, "speed_rpm": speed, "strength": lone}).build_answer()["strength"]["gears"]
         for place, gear in enumerate(gears):
             is_idler = number + place == 1
             safety = (0.7 if is_idler else 1.0) * bending["allowable_bending"][place] / gear["bending_stress"]
@@ -233,9 +233,13 @@ def test_the_widest_face_bears_most(module: float) -> None:
     """What a mesh carries is judged on the widest face; a pinion of few teeth has the steepest load distribution."""
     stated = CarriedPower(**POWER | {"max_face_width": 100.0})
     gears = TrainStage(7, 60, module, (), (0.6, 0.0))
-    judge = Judge(Loaded(stage_contact(gears, 0, math.radians(20.0), 1.0), 1000.0, 100.0), stated)
+    judge = StressCalculator(LoadedPair(build_stage_contact(gears, 0, math.radians(20.0), 1.0), 1000.0, 100.0), stated)
     safeties = [
-        [row[name] or 0.0 for row in judge.at(width).gears for name in ("bending_safety", "contact_safety")]
+        [
+            row[name] or 0.0
+            for row in judge.compute_stresses(width).gears
+            for name in ("bending_safety", "contact_safety")
+        ]
         for width in np.geomspace(0.1 * module, 100.0 * module, 60)
     ]
     assert (np.diff(np.array(safeties), axis=0) > 0.0).all()

@@ -9,8 +9,8 @@ from kinematics.linkage.fourbar.closed_form import Fourbar
 from kinematics.linkage.planar import catalogue
 from kinematics.linkage.planar.drive import drive
 from synthesis.dispatch import solve
-from synthesis.proof.closer import GRID, least_angles, least_near
 from synthesis.registry import parse_problem
+from synthesis.verification.refined_extremes import GRID_SIZE, find_min_transmission_angles, find_minimum_near
 
 
 def test_the_least_may_lie_beside_a_place_that_is_not_the_lowest():
@@ -21,7 +21,7 @@ def test_the_least_may_lie_beside_a_place_that_is_not_the_lowest():
 
     values = two_valleys(grid)
     assert values.argmin() == 18
-    at, least = least_near(two_valleys, grid, values)
+    at, least = find_minimum_near(two_valleys, grid, values)
     assert at == pytest.approx(0.77, abs=1e-6)
     assert least == pytest.approx(-0.001, abs=1e-6)
 
@@ -32,7 +32,9 @@ def test_even_waves_have_their_deepest(phase):
         return np.cos(40.0 * at + phase) + 1e-6 * at
 
     grid = np.linspace(0.0, 1.0, 60)
-    assert least_near(waves, grid, waves(grid))[1] == pytest.approx(waves(np.linspace(0.0, 1.0, 10**6)).min(), abs=1e-9)
+    assert find_minimum_near(waves, grid, waves(grid))[1] == pytest.approx(
+        waves(np.linspace(0.0, 1.0, 10**6)).min(), abs=1e-9
+    )
 
 
 def test_what_has_no_value_is_passed_over():
@@ -41,8 +43,8 @@ def test_what_has_no_value_is_passed_over():
     def broken(at):
         return np.where(np.abs(at - 0.5) < 0.1, np.nan, (at - 0.71) ** 2)
 
-    assert least_near(broken, grid, broken(grid))[0] == pytest.approx(0.71, abs=1e-5)
-    assert math.isnan(least_near(lambda at: at * math.nan, grid, grid * math.nan)[1])
+    assert find_minimum_near(broken, grid, broken(grid))[0] == pytest.approx(0.71, abs=1e-5)
+    assert math.isnan(find_minimum_near(lambda at: at * math.nan, grid, grid * math.nan)[1])
 
 
 @pytest.mark.parametrize("gap", [3e-3, 1e-3, 1e-5])
@@ -50,12 +52,12 @@ def test_a_gap_between_the_places_of_a_grid_is_no_least_angle(gap):
     """Crank and ground are together longer than coupler and output by so little that a narrow stretch is missing."""
     crank, coupler, output = 1.0, 2.5, 1.9
     ground = coupler + output - crank + 0.25 * gap**2 / 2.0
-    mechanism = catalogue.fourbar(Fourbar(0j, complex(ground), crank, coupler, output), 0.43)
-    inputs = 0.43 + np.linspace(0.0, math.tau, GRID)
+    mechanism = catalogue.make_fourbar(Fourbar(0j, complex(ground), crank, coupler, output), 0.43)
+    inputs = 0.43 + np.linspace(0.0, math.tau, GRID_SIZE)
     motion = drive(mechanism, inputs, order=1)
     assert motion.valid.all()
     assert not drive(mechanism, [math.pi], order=0).valid.any()
-    assert least_angles(lambda at: drive(mechanism, at, order=0), inputs, motion) == {"coupler": 0.0}
+    assert find_min_transmission_angles(lambda at: drive(mechanism, at, order=0), inputs, motion) == {"coupler": 0.0}
 
 
 def test_the_steering_error_is_the_greatest_of_all_peaks():

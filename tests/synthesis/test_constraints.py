@@ -16,12 +16,12 @@ import pytest
 from kinematics.linkage.fourbar import Fourbar, barker_class
 from synthesis.dispatch import solve
 from synthesis.model.answer import Check
-from synthesis.model.linkage_statement import FORCES, Constraints, Region
-from synthesis.model.statement import ContradictionError
-from synthesis.proof.constraints import constraint_checks
-from synthesis.proof.measures import Measures
+from synthesis.model.linkage.problem import FORCE_NAMES, Constraints, Region
+from synthesis.model.problem import ContradictionError
+from synthesis.nearest_miss import check_constraints_of_design
 from synthesis.registry import parse_problem
-from synthesis.relaxation import judged
+from synthesis.verification.constraints import check_constraints
+from synthesis.verification.measures import Measures
 from tests.campaign import further
 from tests.support.synthesis.constraints import CASES, STEERING
 
@@ -166,7 +166,7 @@ def checks_of(design: Any) -> dict[str, Check]:
 def refusal(name: str, field: str, constraints: dict[str, Any]) -> bool:
     """Whether a statement is refused, at the field and with a sentence; every other refusal is an error."""
     statement = CASES[name]
-    found = parse_problem({**statement, "constraints": constraints}).contradictions()
+    found = parse_problem({**statement, "constraints": constraints}).find_contradictions()
     assert [fault.path for fault in found] in ([], [f"/constraints/{field}"])
     assert all(len(fault.detail.split()) > 3 for fault in found)
     return bool(found)
@@ -205,11 +205,12 @@ def test_constraints_are_checked_and_the_order_kept(name: str, rank_by: str) -> 
 
 
 def agrees(name: str, design: Any, demands: dict[str, Any]) -> None:
-    """The constraints as judged by the numbers of the answer (synthesis/relaxation.py) are the checks of the design."""
+    """The constraints as judged by the numbers of the answer (synthesis/nearest_miss.py) are the checks of the
+    design."""
     statement = CASES[name]
     problem = parse_problem({**statement, "constraints": {**statement.get("constraints", {}), **demands}})
     checks = checks_of(design)
-    for name_of_check, check in checks_of(judged(problem, design).design).items():
+    for name_of_check, check in checks_of(check_constraints_of_design(problem, design).design).items():
         own = checks[name_of_check]
         assert (check.passed, check.limit) == (own.passed, own.limit)
         assert check.value == (None if own.value is None else pytest.approx(own.value, rel=1e-9, abs=1e-9))
@@ -290,13 +291,13 @@ def class_of(design: Any) -> str | None:
 def test_steering_is_never_of_a_class_of_grashof() -> None:
     for mechanism in ("ackermann", "davis", "auto"):
         problem = parse_problem({**STEERING, "mechanism": mechanism, "constraints": {"grashof": "double_rocker"}})
-        assert [fault.path for fault in problem.contradictions()] == ["/constraints/grashof"]
+        assert [fault.path for fault in problem.find_contradictions()] == ["/constraints/grashof"]
         with pytest.raises(ContradictionError):
             solve(problem)
 
 
 def test_each_constraint_has_a_check_that_fails_by_itself() -> None:
-    of_forces = {f"max_{name}" for name in FORCES}  # checked where forces are measured, and tested there
+    of_forces = {f"max_{name}" for name in FORCE_NAMES}  # checked where forces are measured, and tested there
     assert {*CHECKS, *of_forces} >= Constraints.model_fields.keys()
     sound = Measures(
         grashof="crank_rocker",
@@ -327,7 +328,7 @@ def test_each_constraint_has_a_check_that_fails_by_itself() -> None:
         }
     )
     inside, outside = [0.5 + 0.5j], [0.5 + 0.5j, 2.0 + 0.5j]
-    assert all(check.passed for check in constraint_checks(demands, sound, inside, inside))
+    assert all(check.passed for check in check_constraints(demands, sound, inside, inside))
     broken = {
         "transmission_angle": (sound._replace(min_transmission_angle=29.0), inside, inside),
         "grashof": (sound._replace(grashof=None), inside, inside),
@@ -340,7 +341,7 @@ def test_each_constraint_has_a_check_that_fails_by_itself() -> None:
         "fixed_pivot_region": (sound, outside, inside),
         "moving_pivot_region": (sound, inside, outside),
     }
-    assert set(broken) == {check.name for check in constraint_checks(demands, sound, inside, inside)}
+    assert set(broken) == {check.name for check in check_constraints(demands, sound, inside, inside)}
     for name, (measures, fixed, moving) in broken.items():
-        checks = constraint_checks(demands, measures, fixed, moving)
+        checks = check_constraints(demands, measures, fixed, moving)
         assert [check.name for check in checks if not check.passed] == [name]

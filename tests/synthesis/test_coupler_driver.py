@@ -5,10 +5,10 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from kinematics.linkage.fourbar import OPEN, Fourbar, positions
+from kinematics.linkage.fourbar import OPEN_ASSEMBLY, Fourbar, positions
 from kinematics.linkage.planar.drive import drive
 from kinematics.linkage.planar.mechanism import Mechanism
-from synthesis.kinds.motion.coupler_driver import LEAST_SINE, least_sines
+from synthesis.kinds.motion.driver.coupler_driver import MIN_SINE, compute_min_sines
 
 LENGTHS = 2.0, 3.0, 2.5, 3.2
 STEPS = 1201
@@ -18,7 +18,7 @@ STEPS = 1201
 @pytest.mark.parametrize("pin", [0.5 + 0.6j, 1.4 + 0.2j, 0.2 - 0.9j])
 def test_the_least_sine_is_that_of_the_sixbar_over_a_turn_of_its_crank(pin: complex, aside: float) -> None:
     linkage = Fourbar.from_lengths(*LENGTHS, 1.0 + 1.0j)
-    at = positions(linkage, np.linspace(0.7, 1.5, STEPS), OPEN)
+    at = positions(linkage, np.linspace(0.7, 1.5, STEPS), OPEN_ASSEMBLY)
     c = at.a + (at.b - at.a) * pin
     chord = c[-1] - c[0]
     o2, o4 = complex(linkage.input_pivot), complex(linkage.output_pivot)
@@ -26,7 +26,7 @@ def test_the_least_sine_is_that_of_the_sixbar_over_a_turn_of_its_crank(pin: comp
     along = np.gradient(c)
     bars = np.array([at.a, at.b, (at.a - o2) / abs(at.a - o2), (at.b - o4) / abs(at.b - o4)])
     least = np.ones((1, 1))
-    least_sines(c[None], (along / np.abs(along))[None], np.array([[o6]]), bars, least)
+    compute_min_sines(c[None], (along / np.abs(along))[None], np.array([[o6]]), bars, least)
 
     first, last = abs(c[0] - o6), abs(c[-1] - o6)
     assert first > last
@@ -45,7 +45,7 @@ def test_the_least_sine_is_that_of_the_sixbar_over_a_turn_of_its_crank(pin: comp
     assert motion.valid.all()
     assert set(motion.sines) == {"driver", "input", "output"}
     expected = min(float(np.abs(sine).min()) for sine in motion.sines.values())
-    if expected < LEAST_SINE:
+    if expected < MIN_SINE:
         assert least[0, 0] == 0.0
     else:
         assert least[0, 0] == pytest.approx(expected, abs=2e-3)

@@ -7,8 +7,8 @@ import pytest
 from pydantic import ValidationError
 
 from kinematics.linkage import SliderCrank
-from kinematics.linkage.fourbar import OPEN, Fourbar, positions
-from kinematics.linkage.planar.catalogue import geared_fivebar
+from kinematics.linkage.fourbar import OPEN_ASSEMBLY, Fourbar, positions
+from kinematics.linkage.planar.catalogue import make_geared_fivebar
 from kinematics.linkage.planar.drive import drive
 from kinematics.linkage.slider_crank import closed_form as sliders
 from synthesis.dispatch import solve
@@ -20,16 +20,16 @@ from synthesis.fit.chart import (
     SLIDER_CRANK,
     SLIDER_ROCKER,
     UNKNOWNS,
-    natural,
+    compute_lengths,
 )
-from synthesis.fit.coupler_curve import place, place_with_slopes, sweep
-from synthesis.kinds.path.curve_candidates import draw
-from synthesis.kinds.path.curve_descent import descend
-from synthesis.kinds.path.curve_fits import with_cognates
-from synthesis.kinds.path.curve_shapes import alike, compared, most_alike
-from synthesis.kinds.path.curve_target import SHAPE_POINTS, equal_steps
-from synthesis.kinds.path.verification import verify_path
-from synthesis.model.linkages import FourbarConfiguration, fourbar_mechanism
+from synthesis.fit.coupler_curve import place_linkage, place_with_slopes, sweep_curves
+from synthesis.kinds.path.curve.fits import list_cognates
+from synthesis.kinds.path.curve.random_linkages import draw_linkages
+from synthesis.kinds.path.curve.shape_matching import compare_shapes, find_similar, select_most_similar
+from synthesis.kinds.path.residuals.curve_descent import descend
+from synthesis.kinds.path.task.target_curve import SHAPE_POINT_COUNT, sample_equal_steps
+from synthesis.kinds.path.verification.fourbar import verify_path
+from synthesis.model.linkage.conversion import FourbarConfiguration, build_fourbar
 from synthesis.registry import parse_problem
 from tests.campaign import sampled
 from tests.support.demands import closed_curves
@@ -46,7 +46,7 @@ def statement(curve, closed=True, **changes):
 
 
 def curve_of(linkage, steps, start=0.0, end=math.tau):
-    return positions(linkage, start + (end - start) * np.arange(steps) / steps, OPEN).p
+    return positions(linkage, start + (end - start) * np.arange(steps) / steps, OPEN_ASSEMBLY).p
 
 
 def random_unknowns(family, rng):
@@ -54,8 +54,8 @@ def random_unknowns(family, rng):
     while True:
         x, sign, theta = rng.normal(size=UNKNOWNS[family]) * 0.5, rng.choice([-1.0, 1.0]), rng.uniform(0.0, 6.0)
         lengths, chart = np.zeros(4), np.zeros((4, 4))
-        natural(family, x, lengths, chart)
-        if place(family, x, lengths, sign, RATIO, theta)[0]:
+        compute_lengths(family, x, lengths, chart)
+        if place_linkage(family, x, lengths, sign, RATIO, theta)[0]:
             return x, lengths, chart, sign, theta
 
 
@@ -74,8 +74,8 @@ def test_slopes_are_the_derivatives(family):
                     moved[k] += step
                 else:
                     angle += step
-                natural(family, moved, lengths, chart)
-                closes, z, _ = place(family, moved, lengths, sign, RATIO, angle)
+                compute_lengths(family, moved, lengths, chart)
+                closes, z, _ = place_linkage(family, moved, lengths, sign, RATIO, angle)
                 ends.append(z if closes else math.nan)
             if np.isfinite(ends).all():
                 assert abs((ends[0] - ends[1]) / 2e-6 - slopes[k]) < 1e-6 * (1.0 + abs(slopes[k])) ** 3
@@ -89,9 +89,11 @@ def test_fourbars_stand_as_the_analysis_core_has_them(family):
         o2 = complex(x[0], x[1])
         linkage = Fourbar(o2, o2 + d * np.exp(1j * x[2]), a, b, c, complex(x[7], x[8]))
         lengths = np.array([d, a, b, c])
-        assert abs(place(family, x, lengths, sign, 0.0, theta)[1] - positions(linkage, theta, int(sign)).p) < 1e-12
+        assert (
+            abs(place_linkage(family, x, lengths, sign, 0.0, theta)[1] - positions(linkage, theta, int(sign)).p) < 1e-12
+        )
         if family != FOURBAR:
-            assert positions(linkage, np.linspace(0.0, math.tau, 200), OPEN).valid.all()
+            assert positions(linkage, np.linspace(0.0, math.tau, 200), OPEN_ASSEMBLY).valid.all()
 
 
 @pytest.mark.parametrize("family", [SLIDER_CRANK, SLIDER_ROCKER])
@@ -103,9 +105,9 @@ def test_slider_cranks_stand_as_the_analysis_core_has_them(family):
         o2, along = complex(x[0], x[1]), np.exp(1j * x[2])
         linkage = SliderCrank(o2, o2 + 1j * offset * along, x[2], a, b, complex(x[6], x[7]))
         found = sliders.coupler_points(linkage, theta, int(sign)).p
-        assert abs(place(family, x, lengths, sign, 0.0, theta)[1] - found) < 1e-12
+        assert abs(place_linkage(family, x, lengths, sign, 0.0, theta)[1] - found) < 1e-12
         if family == SLIDER_CRANK:
-            assert sliders.full_rotation(linkage)
+            assert sliders.has_full_rotation(linkage)
 
 
 def test_geared_fivebars_stand_as_the_analysis_core_has_them():
@@ -115,23 +117,23 @@ def test_geared_fivebars_stand_as_the_analysis_core_has_them():
         o2, o5 = complex(x[0], x[1]), complex(x[2], x[3])
         ground = np.angle(o5 - o2)
         phase = x[8] - ground * (1.0 - RATIO)
-        mechanism = geared_fivebar(o2, o5, a, b, c, e, RATIO, phase, theta, int(sign), complex(x[9], x[10]))
+        mechanism = make_geared_fivebar(o2, o5, a, b, c, e, RATIO, phase, theta, int(sign), complex(x[9], x[10]))
         stands = drive(mechanism, np.array([theta]), order=0).joints["P"][0, 0]
         lengths = np.array([a, b, c, e])
-        assert abs(place(GEARED_FIVEBAR, x, lengths, sign, RATIO, theta)[1] - stands) < 1e-11
+        assert abs(place_linkage(GEARED_FIVEBAR, x, lengths, sign, RATIO, theta)[1] - stands) < 1e-11
 
 
 @pytest.mark.parametrize("family", [CRANK_ROCKER, SLIDER_CRANK, GEARED_FIVEBAR])
 def test_sweeps_are_places(family):
     """The sweep turns its unit vectors by products; they drift by rounding only."""
-    drawn = draw(family, 64, 1.0, 3)
+    drawn = draw_linkages(family, 64, 1.0, 3)
     curves, theta, good = np.empty((64, 96), np.complex128), np.empty((64, 96)), np.empty(64, np.bool_)
-    sweep(family, drawn.x, drawn.sign, 1.0, drawn.begin, drawn.end, np.ones(64, np.bool_), curves, theta, good)
+    sweep_curves(family, drawn.x, drawn.sign, 1.0, drawn.begin, drawn.end, np.ones(64, np.bool_), curves, theta, good)
     assert good.sum() > 5
     for i in np.flatnonzero(good)[:10]:
         lengths, chart = np.zeros(4), np.zeros((4, 4))
-        natural(family, drawn.x[i], lengths, chart)
-        z = [place(family, drawn.x[i], lengths, drawn.sign[i], 1.0, at)[1] for at in theta[i]]
+        compute_lengths(family, drawn.x[i], lengths, chart)
+        z = [place_linkage(family, drawn.x[i], lengths, drawn.sign[i], 1.0, at)[1] for at in theta[i]]
         assert np.abs(np.array(z) - curves[i]).max() < 1e-11 * (1.0 + np.abs(z).max())
 
 
@@ -141,19 +143,19 @@ def test_sweeps_are_places(family):
 def test_a_drawn_curve_is_found_wherever_it_lies(family, mirrored, backward):
     """A candidate's own curve, moved, turned, sized, mirrored and run backward: it comes back, in its place."""
     closed = family in (CRANK_ROCKER, DOUBLE_CRANK, SLIDER_CRANK)
-    drawn = draw(family, 256, 0.0, 5)
+    drawn = draw_linkages(family, 256, 0.0, 5)
     curves, theta, good = np.empty((256, 400), np.complex128), np.empty((256, 400)), np.empty(256, np.bool_)
-    sweep(family, drawn.x, drawn.sign, 0.0, drawn.begin, drawn.end, np.full(256, closed), curves, theta, good)
+    sweep_curves(family, drawn.x, drawn.sign, 0.0, drawn.begin, drawn.end, np.full(256, closed), curves, theta, good)
     chosen = curves[np.flatnonzero(good)[7]]
     target = chosen[::-1] if backward else chosen
     target = np.roll(target, 31) if closed else target
     target = (2.0 - 1.5j) * (target.conj() if mirrored else target) + 3.0 - 7.0j
-    steps, _ = equal_steps(target, closed, SHAPE_POINTS)
-    starts = alike(family, steps, closed, 256, 3, seed=5)
+    steps, _ = sample_equal_steps(target, closed, SHAPE_POINT_COUNT)
+    starts = find_similar(family, steps, closed, 256, 3, seed=5)
     assert starts.unlike[0] < (0.06 if closed else 0.12)
     lengths, chart = np.zeros(4), np.zeros((4, 4))
-    natural(family, starts.x[0], lengths, chart)
-    stands = [place(family, starts.x[0], lengths, starts.sign[0], 0.0, at)[1] for at in starts.theta[0]]
+    compute_lengths(family, starts.x[0], lengths, chart)
+    stands = [place_linkage(family, starts.x[0], lengths, starts.sign[0], 0.0, at)[1] for at in starts.theta[0]]
     norm = np.linalg.norm(steps - steps.mean())
     assert np.linalg.norm(np.array(stands) - steps) < 1.6 * starts.unlike[0] * norm + 0.02 * norm
 
@@ -164,19 +166,19 @@ def test_descents_reach_a_planted_curve_and_a_stationary_point():
     theta = np.arange(60) * math.tau / 60
     lengths, chart = np.zeros(4), np.zeros((4, 4))
     found = descend(CRANK_ROCKER, x[None], np.array([1.0]), theta[None], target, iterations=200)
-    natural(CRANK_ROCKER, found.x[0], lengths, chart)
+    compute_lengths(CRANK_ROCKER, found.x[0], lengths, chart)
     assert found.cost[0] < 1e-20
     assert np.allclose(lengths, [abs(7.0 - 1.0j), 2.0, 6.0, 5.0], atol=1e-8)
 
 
 def test_cognates_draw_the_same_curve():
-    at = positions(EGG, 0.7, OPEN)
+    at = positions(EGG, 0.7, OPEN_ASSEMBLY)
     joints = FourbarConfiguration(*map(complex, (EGG.input_pivot, at.a, at.b, EGG.output_pivot, at.p)))
     target = curve_of(EGG, 200)
-    assert len(with_cognates(joints)) == 6
+    assert len(list_cognates(joints)) == 6
     closed = 0
-    for one in with_cognates(joints):
-        design = verify_path(statement(target), fourbar_mechanism(one))
+    for one in list_cognates(joints):
+        design = verify_path(statement(target), build_fourbar(one))
         if design is not None and design.verification.passed:
             closed += 1
             assert design.metrics.max_distance < 1e-9
@@ -187,9 +189,9 @@ def test_distances_both_ways_are_those_of_brute_force():
     """A linkage that draws another curve than the target: dense samples of both tell how far they are apart."""
     target = curve_of(EGG, 80) * 1.03 + 0.1
     other = Fourbar(3.0 + 2.0j, 10.0 + 1.0j, 2.0, 6.0, 5.0, 3.1 + 2.4j)
-    at = positions(other, 0.0, OPEN)
+    at = positions(other, 0.0, OPEN_ASSEMBLY)
     joints = FourbarConfiguration(*map(complex, (other.input_pivot, at.a, at.b, other.output_pivot, at.p)))
-    metrics = verify_path(statement(target), fourbar_mechanism(joints)).metrics
+    metrics = verify_path(statement(target), build_fourbar(joints)).metrics
     dense = curve_of(other, 20000)
     near = np.array([np.abs(dense - z).min() for z in target])
     assert metrics.rms_distance == pytest.approx(math.sqrt(np.mean(near**2)), rel=1e-4)
@@ -294,14 +296,16 @@ def test_zones_of_pivots_choose_what_the_match_begins_with():
 
 
 def test_starts_that_are_wanted_somewhere_stand_nearer_to_it():
-    target, _ = equal_steps(positions(EGG, np.linspace(0.0, 2.0 * np.pi, 400, endpoint=False), OPEN).p, True, 48)
-    library = compared(CRANK_ROCKER, target, True, 4096)
+    target, _ = sample_equal_steps(
+        positions(EGG, np.linspace(0.0, 2.0 * np.pi, 400, endpoint=False), OPEN_ASSEMBLY).p, True, 48
+    )
+    library = compare_shapes(CRANK_ROCKER, target, True, 4096)
     wanted = complex(target.mean()) + 12.0
 
     def lost(x, theta, sign):
         return np.abs(x[:, 0] + 1j * x[:, 1] - wanted)
 
-    likest, nearest = most_alike(library, 20), most_alike(library, 20, lost=lost)
+    likest, nearest = select_most_similar(library, 20), select_most_similar(library, 20, lost=lost)
     away = [lost(starts.x, starts.theta, starts.sign) for starts in (likest, nearest)]
     assert np.median(away[1]) < 0.6 * np.median(away[0])
     assert np.all(np.diff(np.hypot(nearest.unlike, away[1])) >= 0.0)
@@ -399,7 +403,7 @@ def test_a_thousand_points():
 
 def test_what_is_no_curve_is_refused_with_its_place():
     nowhere = statement(np.full(6, 2.0 + 1.0j))
-    assert [fault.path for fault in nowhere.contradictions()] == ["/points"]
+    assert [fault.path for fault in nowhere.find_contradictions()] == ["/points"]
     timed = parse_problem(
         {
             "kind": "path",
@@ -408,9 +412,9 @@ def test_what_is_no_curve_is_refused_with_its_place():
             "points": [{"x": float(k), "y": float(k * k), "crank_angle": 20.0 * k} for k in range(6)],
         }
     )
-    assert "/timing" in [fault.path for fault in timed.contradictions()]
+    assert "/timing" in [fault.path for fault in timed.find_contradictions()]
     rocker = statement(curve_of(EGG, 20), constraints={"grashof": "non_grashof"})
-    assert [fault.path for fault in rocker.contradictions()] == ["/constraints/grashof"]
+    assert [fault.path for fault in rocker.find_contradictions()] == ["/constraints/grashof"]
     with pytest.raises(ValidationError):
         statement(curve_of(EGG, 5000))
 
@@ -510,4 +514,4 @@ def test_placement_is_for_whole_curves():
             "points": [{"x": float(k), "y": float(k * k)} for k in range(5)],
         }
     )
-    assert [fault.path for fault in problem.contradictions()] == ["/placement_free"]
+    assert [fault.path for fault in problem.find_contradictions()] == ["/placement_free"]

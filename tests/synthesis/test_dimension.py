@@ -7,8 +7,8 @@ from typing import Annotated
 import pytest
 
 from synthesis.model.answer import Answer, Check
-from synthesis.model.dimension import ANGLE, LENGTH, Angle, Length, dimensions
-from synthesis.proof.checks import at_least
+from synthesis.model.dimension import ANGLE, LENGTH, Angle, Length, collect_dimensions
+from synthesis.verification.checks import check_minimum
 
 
 class Inner(Answer):
@@ -27,8 +27,8 @@ class Outer(Answer):
 
 def test_dimension_of_a_field_wherever_the_annotation_stands() -> None:
     expected = {"plain": LENGTH, "several": LENGTH, "perhaps": LENGTH, "named": ANGLE, "outside": ANGLE}
-    assert dimensions(Outer) == expected
-    assert dimensions(Inner) == {"place": LENGTH}
+    assert collect_dimensions(Outer) == expected
+    assert collect_dimensions(Inner) == {"place": LENGTH}
 
 
 def test_schema_says_the_dimensions_of_a_model_and_of_those_in_it() -> None:
@@ -51,11 +51,11 @@ def test_field_of_two_dimensions_is_refused() -> None:
         place: Length | Angle
 
     with pytest.raises(TypeError, match="two fields"):
-        dimensions(Both)
+        collect_dimensions(Both)
 
 
 def test_check_says_its_dimension_or_leaves_it_out() -> None:
-    measured = at_least("transmission_angle", 41.0, 30.0, ANGLE).model_dump(mode="json")
+    measured = check_minimum("transmission_angle", 41.0, 30.0, ANGLE).model_dump(mode="json")
     assert measured == {
         "name": "transmission_angle",
         "passed": True,
@@ -64,4 +64,4 @@ def test_check_says_its_dimension_or_leaves_it_out() -> None:
         "dimension": "angle",
     }
     assert Check.model_validate(measured).dimension is ANGLE
-    assert "dimension" not in at_least("contact_ratio", 1.6, 1.2).model_dump(mode="json")
+    assert "dimension" not in check_minimum("contact_ratio", 1.6, 1.2).model_dump(mode="json")

@@ -3,7 +3,12 @@
 import numpy as np
 import pytest
 
-from synthesis.kinds.quick_return.drag_link import _greatest_ratio, _input_angle, _slow, _slowest
+from synthesis.kinds.quick_return.drag_link import (
+    _compute_input_angle,
+    _compute_max_ratio,
+    _compute_slow_rotation,
+    _find_slowest_direction,
+)
 
 
 def input_angle(a, c, direction):
@@ -30,11 +35,11 @@ def drag_links(count):
 @pytest.mark.parametrize(("a", "c"), list(zip(*drag_links(20), strict=True)))
 def test_kernels_agree_with_their_twins(a, c):
     directions = np.linspace(-np.pi, np.pi, 73)
-    angles = np.array([_input_angle(a, c, direction) for direction in directions])
+    angles = np.array([_compute_input_angle(a, c, direction) for direction in directions])
     assert np.allclose(np.exp(1j * angles), np.exp(1j * input_angle(a, c, directions)), rtol=0.0, atol=1e-9)
-    strokes = np.array([_slow(a, c, direction) for direction in directions])
+    strokes = np.array([_compute_slow_rotation(a, c, direction) for direction in directions])
     assert np.allclose(strokes, slow(a, c, directions), rtol=0.0, atol=1e-9)
     dense = slow(a, c, np.linspace(0.0, 2.0 * np.pi, 20001))
-    assert _slow(a, c, _slowest(a, c)) == pytest.approx(dense.max(), abs=1e-6)
-    assert _slow(a, c, _slowest(a, c)) >= dense.max() - 1e-12
-    assert _greatest_ratio(a, c) == pytest.approx(dense.max() / (2.0 * np.pi - dense.max()), abs=1e-5)
+    assert _compute_slow_rotation(a, c, _find_slowest_direction(a, c)) == pytest.approx(dense.max(), abs=1e-6)
+    assert _compute_slow_rotation(a, c, _find_slowest_direction(a, c)) >= dense.max() - 1e-12
+    assert _compute_max_ratio(a, c) == pytest.approx(dense.max() / (2.0 * np.pi - dense.max()), abs=1e-5)

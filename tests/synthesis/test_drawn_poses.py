@@ -74,8 +74,8 @@ def test_a_link_at_a_stated_angle_uses_the_tolerances() -> None:
 def test_what_holds_at_positions_met_exactly_is_refused_beside_tolerances(side: Statement, field: str) -> None:
     first = {**LID[0], "tolerance": {"x": 20.0, "y": 20.0, "angle": 10.0}}
     problem: Statement = {"kind": "motion", "positions": [first, *LID[1:]], "input_side": side}
-    assert [c.path for c in parse_problem(problem).contradictions()] == [field]
-    assert not parse_problem(problem | {"method": "exact"}).contradictions()
+    assert [c.path for c in parse_problem(problem).find_contradictions()] == [field]
+    assert not parse_problem(problem | {"method": "exact"}).find_contradictions()
 
 
 FIRST_MISSED: list[Statement] = [
@@ -119,7 +119,7 @@ def test_a_driver_dyad_drives_linkages_whose_first_position_is_missed() -> None:
 
 def test_rotations_that_are_all_open_state_nothing() -> None:
     problem: Statement = {"kind": "motion", "positions": LID, "input_side": {"rotations": [None, None]}}
-    assert not parse_problem(problem).contradictions()
+    assert not parse_problem(problem).find_contradictions()
 
 
 @pytest.mark.parametrize("stated", [{"moving_pivot": [10.0, -20.0]}, {"coupler_vector": {"angle": 20.0}}])

@@ -11,10 +11,10 @@ import pytest
 from synthesis.analyses import parse_request
 from synthesis.dispatch import solve
 from synthesis.kinds.motion.design import MotionResult
-from synthesis.kinds.motion.driver_dyad import USABLE, _stages
+from synthesis.kinds.motion.driver.solver import USABLE_ANGLE, _list_stages
 from synthesis.kinds.motion.problem import MotionProblem
-from synthesis.kinds.motion.verification import verify
-from synthesis.model.linkage_answer import LinkageDesign, SixbarMechanism
+from synthesis.kinds.motion.verification.verify import verify
+from synthesis.model.linkage.answer import LinkageDesign, SixbarMechanism
 from synthesis.registry import parse_problem
 from tests.campaign import further
 from tests.synthesis.driving import assert_drives_through, constraints_of, turns_through
@@ -28,7 +28,7 @@ def solved(positions: list[dict[str, float]], **more: Any) -> tuple[MotionProble
     statement = {"kind": "motion", "positions": positions, "driver_dyad": True, "max_designs": 3, **more}
     problem = parse_problem(statement)
     assert isinstance(problem, MotionProblem)
-    assert problem.contradictions() == []
+    assert problem.find_contradictions() == []
     result = solve(problem, lambda fraction, message: None)
     assert isinstance(result, MotionResult)
     return problem, result
@@ -86,7 +86,7 @@ def test_the_crank_lies_in_line_with_its_link_at_both_ends() -> None:
 def test_a_pivot_on_the_chord_has_half_of_it_for_its_crank() -> None:
     """Norton, Example 3-4: the crank is half of the chord between C₁ and C₂."""
     for swing in (0.4, 0.9, 1.5):
-        stage = _stages(swing)
+        stage = _list_stages(swing)
         assert len(stage.score) > 3
         ends = np.exp(np.array([-0.5j, 0.5j]) * swing)
         reach = np.abs(ends - stage.pivot[:, None])
@@ -167,7 +167,7 @@ def test_the_coupler_is_driven_where_no_link_of_the_ground_can_be() -> None:
     assert {design.mechanism.type for design in result.designs} == {"stephenson_3"}
     for link in ("input", "output"):
         _, alone = solved(WIDE, driver_dyad={"link": link})
-        assert all(design.metrics.min_transmission_angle < USABLE for design in alone.designs)
+        assert all(design.metrics.min_transmission_angle < USABLE_ANGLE for design in alone.designs)
         assert not alone.search.complete
     for design in result.designs:
         assert_drives_through(design, problem)
@@ -202,7 +202,7 @@ def test_designs_are_taken_as_they_are_by_an_analysis() -> None:
         "mechanism": design.mechanism.model_dump(exclude_none=True),
         "motion": {"at": design.targets[1].input_angle},
     }
-    answer = parse_request(request).answer()
+    answer = parse_request(request).build_answer()
     assert answer["joints"]["P"]["x"] == pytest.approx([40.0], abs=1e-6)
     assert len(answer["circuits"]) >= 1
 
@@ -219,7 +219,7 @@ def test_fitted_positions_are_driven_too() -> None:
 
 def test_a_slider_cannot_be_driven_so_and_the_field_is_named() -> None:
     problem = parse_problem({"kind": "motion", "positions": THREE, "driver_dyad": True, "output_side": {"dyad": "PR"}})
-    assert "/driver_dyad" in [c.path for c in problem.contradictions()]
+    assert "/driver_dyad" in [c.path for c in problem.find_contradictions()]
 
 
 @pytest.mark.campaign

@@ -11,14 +11,14 @@ import pytest
 from pydantic import ValidationError
 
 from synthesis.dispatch import solve
-from synthesis.kinds.dwell.arcs import arcs, lines
 from synthesis.kinds.dwell.design import DwellMechanism, DwellResult
+from synthesis.kinds.dwell.motion.rests import _average_windows, _measure_ranges
 from synthesis.kinds.dwell.problem import DwellProblem
-from synthesis.kinds.dwell.rests import _means, _ranges
+from synthesis.kinds.dwell.starts.arcs import fit_arcs, fit_lines
 from synthesis.kinds.dwell.verification import verify_dwell
-from synthesis.model.statement import ContradictionError
-from synthesis.proof.rebuilt import rebuilt
+from synthesis.model.problem import ContradictionError
 from synthesis.registry import parse_problem
+from synthesis.verification.reconstruction import rebuild_mechanism
 from tests.campaign import further
 from tests.cases import Case, cases
 from tests.support.synthesis.dwell import assert_measured, rocker, slider
@@ -224,7 +224,7 @@ def test_a_slide_that_may_stand_still_all_the_time_is_no_mechanism() -> None:
             "skeleton": skeleton,
         }
     )
-    assert rebuilt(mechanism) is not None
+    assert rebuild_mechanism(mechanism) is not None
     assert verify_dwell(problem, mechanism) is None
 
 
@@ -233,8 +233,8 @@ def test_windows_of_a_turn(window: int) -> None:
     values = np.random.default_rng(1).normal(size=60)
     around = np.concatenate([values, values])
     pieces = [around[k : k + window] for k in range(60)]
-    assert np.allclose(_ranges(values, window), [np.ptp(piece) for piece in pieces])
-    assert np.allclose(_means(values, window), [piece.mean() for piece in pieces])
+    assert np.allclose(_measure_ranges(values, window), [np.ptp(piece) for piece in pieces])
+    assert np.allclose(_average_windows(values, window), [piece.mean() for piece in pieces])
 
 
 def test_arcs_and_lines_of_pieces() -> None:
@@ -242,12 +242,12 @@ def test_arcs_and_lines_of_pieces() -> None:
     turn = np.linspace(0.0, np.pi, 20)
     curve = np.concatenate([3.0 + 2.0j + 1.5 * np.exp(1j * turn), np.linspace(1.5 + 2.0j, -4.0 - 1.0j, 20)])[None]
     centres, radii, off = np.empty_like(curve), np.empty(curve.shape), np.empty(curve.shape)
-    arcs(curve, 8, centres, radii, off)
+    fit_arcs(curve, 8, centres, radii, off)
     assert np.allclose(centres[0, :12], 3.0 + 2.0j)
     assert np.allclose(radii[0, :12], 1.5)
     assert off[0, :12].max() < 1e-12
     angles = np.empty(curve.shape)
-    lines(curve, 8, centres, angles, off)
+    fit_lines(curve, 8, centres, angles, off)
     assert np.allclose(np.tan(angles[0, 20:32]), 3.0 / 5.5)
     assert off[0, 20:32].max() < 1e-12
     assert off[0, :12].min() > 1e-2

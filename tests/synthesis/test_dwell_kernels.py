@@ -5,10 +5,10 @@ import math
 import numpy as np
 import pytest
 
-from kinematics.linkage.fourbar import OPEN, Fourbar, coupler_points
-from synthesis.kinds.dwell.arcs import arcs, lines
-from synthesis.kinds.dwell.outputs import CYCLE, output
-from synthesis.kinds.dwell.scoring import ROCKER, SLIDER, SLOT, judge
+from kinematics.linkage.fourbar import OPEN_ASSEMBLY, Fourbar, coupler_points
+from synthesis.kinds.dwell.motion.outputs import CYCLE_SAMPLE_COUNT, compute_output
+from synthesis.kinds.dwell.motion.score import ROCKER_CODE, SLIDER_CODE, SLOT_CODE, score_outputs
+from synthesis.kinds.dwell.starts.arcs import fit_arcs, fit_lines
 
 LENGTH, DWELL_WAY, LEAST = 11, 0.9, math.sin(0.5)
 
@@ -21,23 +21,23 @@ def curves(count):
     b, c, d = (part[2.0 * (longest + 1.0) < 1.0 + b + c + d][:count] for part in (b, c, d))
     p = rng.uniform(-2.0, 3.0, len(b)) + 1j * rng.uniform(-2.0, 3.0, len(b))
     linkage = Fourbar.from_lengths(np.ones(len(b)), b, c, d, p)
-    found = coupler_points(linkage, np.linspace(0.0, 2.0 * np.pi, CYCLE, endpoint=False), OPEN).p
+    found = coupler_points(linkage, np.linspace(0.0, 2.0 * np.pi, CYCLE_SAMPLE_COUNT, endpoint=False), OPEN_ASSEMBLY).p
     assert np.isfinite(found).all()
     return np.ascontiguousarray(found)
 
 
 def pieces(curve, start):
-    return curve[(start + np.arange(LENGTH)) % CYCLE]
+    return curve[(start + np.arange(LENGTH)) % CYCLE_SAMPLE_COUNT]
 
 
 def test_arcs_and_lines_are_those_of_least_squares():
     some = curves(6)
     centres, radii, off = np.empty_like(some), np.empty(some.shape), np.empty(some.shape)
-    arcs(some, LENGTH, centres, radii, off)
+    fit_arcs(some, LENGTH, centres, radii, off)
     points, angles, beside = np.empty_like(some), np.empty(some.shape), np.empty(some.shape)
-    lines(some, LENGTH, points, angles, beside)
+    fit_lines(some, LENGTH, points, angles, beside)
     for row in range(len(some)):
-        for start in range(0, CYCLE, 7):
+        for start in range(0, CYCLE_SAMPLE_COUNT, 7):
             z = pieces(some[row], start)
             # |z|² = 2 Re(z̄ c) + k, least squares in c and k, from the middle of the piece.
             w = z - z.mean()
@@ -61,11 +61,11 @@ def scored(kind, curve, numbers, firsts, dwells):
     shape[0, 5:] = numbers[: places - 5]
     found = {}
     for sign in (1, -1) if kind != "slot" else (1,):
-        out, sine = (part[0] for part in output(kind, sign, shape, curve[None]))
+        out, sine = (part[0] for part in compute_output(kind, sign, shape, curve[None]))
         found[sign] = out, sine
 
     def rest(out, first):
-        piece = out[(first + np.arange(LENGTH)) % CYCLE]
+        piece = out[(first + np.arange(LENGTH)) % CYCLE_SAMPLE_COUNT]
         return np.exp(1j * piece) if kind == "rocker" else piece
 
     if kind == "slot":
@@ -85,7 +85,7 @@ def scored(kind, curve, numbers, firsts, dwells):
     low, high = out.min(), out.max()
     score, ending, ends = 0.0, 0.0, []
     for first in firsts[:dwells]:
-        piece = out[(first + np.arange(LENGTH)) % CYCLE]
+        piece = out[(first + np.arange(LENGTH)) % CYCLE_SAMPLE_COUNT]
         score = max(score, np.ptp(piece) / (high - low))
         ends.append(1 if high - piece.mean() < piece.mean() - low else -1)
         ending = max(ending, min(high - piece.mean(), piece.mean() - low) / (high - low))
@@ -100,15 +100,15 @@ def scored(kind, curve, numbers, firsts, dwells):
 
 
 @pytest.mark.parametrize("dwells", [1, 2])
-@pytest.mark.parametrize(("kind", "number"), [("rocker", ROCKER), ("slider", SLIDER), ("slot", SLOT)])
+@pytest.mark.parametrize(("kind", "number"), [("rocker", ROCKER_CODE), ("slider", SLIDER_CODE), ("slot", SLOT_CODE)])
 def test_scores_are_those_of_plain_formulas(kind, number, dwells):
     rng = np.random.default_rng(number)
     some = curves(12)
     centres, radii, off = np.empty_like(some), np.empty(some.shape), np.empty(some.shape)
-    arcs(some, LENGTH, centres, radii, off)
+    fit_arcs(some, LENGTH, centres, radii, off)
     count = 400
-    rows, first = rng.integers(0, len(some), count), rng.integers(0, CYCLE, count)
-    second = (first + 30) % CYCLE
+    rows, first = rng.integers(0, len(some), count), rng.integers(0, CYCLE_SAMPLE_COUNT, count)
+    second = (first + 30) % CYCLE_SAMPLE_COUNT
     centre, radius = centres[rows, first], radii[rows, first]
     if kind == "rocker":
         arm = rng.uniform(1.0, 6.0, count) * np.exp(2j * np.pi * rng.random(count))
@@ -119,7 +119,7 @@ def test_scores_are_those_of_plain_formulas(kind, number, dwells):
     else:
         numbers = np.concatenate([rng.uniform(-5.0, 5.0, (count, 2)), np.zeros((count, 2))], axis=1)
     scores, signs, ends = np.empty(count), np.empty(count, np.int64), np.zeros((count, 2), np.int64)
-    judge(number, some, rows, first, second, numbers, LENGTH, dwells, DWELL_WAY, LEAST, scores, signs, ends)
+    score_outputs(number, some, rows, first, second, numbers, LENGTH, dwells, DWELL_WAY, LEAST, scores, signs, ends)
     compared = 0
     for k in range(count):
         known = scored(kind, some[rows[k]], numbers[k], (first[k], second[k]), dwells)

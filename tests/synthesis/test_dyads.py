@@ -7,10 +7,10 @@ import math
 import numpy as np
 import pytest
 
-from synthesis.kinds.motion.choices import side_dyads, stated_conditions
-from synthesis.kinds.motion.dyads import DyadConditions, Dyads, solve_dyads
-from synthesis.kinds.motion.stated_dyads import DyadChoices
-from synthesis.kinds.motion.task import MotionTask, motion_task
+from synthesis.kinds.motion.dyads.candidates import build_conditions, find_side_dyads
+from synthesis.kinds.motion.dyads.equations import DyadConditions, Dyads, solve_dyads
+from synthesis.kinds.motion.statement.dyad_choices import DyadChoices
+from synthesis.kinds.motion.task.positions import MotionTask, make_motion_task
 from synthesis.registry import parse_problem
 from tests.cases import Case, cases
 from tests.support.synthesis.motion_literature import vector
@@ -157,13 +157,13 @@ def test_every_way_of_stating_a_dyad_finds_the_planted_one(names: tuple[str, ...
         side = planted.input_side if trial % 2 else planted.output_side
         choices = DyadChoices.model_validate(side.choices(*names))
         problem = parse_problem({"kind": "motion", "positions": planted.positions, "input_side": side.choices(*names)})
-        task = motion_task(problem)
-        cloud = side_dyads(task, problem, 0, np.random.default_rng(trial), 1)
+        task = make_motion_task(problem)
+        cloud = find_side_dyads(task, problem, 0, np.random.default_rng(trial), 1)
         gaps = np.abs(cloud.dyads.fixed - task.to_task(side.fixed_pivot))
         gaps += np.abs(cloud.dyads.moving - task.to_task(side.moving_pivot))
         assert gaps.min(initial=math.inf) < 1e-7, (trial, names)
         assert cloud.complete
-        if stated_conditions(task, problem, choices).linear:
+        if build_conditions(task, problem, choices).is_linear:
             assert len(gaps) == 1
 
 
@@ -174,13 +174,13 @@ def test_directions_are_met_forwards_only() -> None:
     stated = planted.input_side.choices("moving", "theta")
     stated["link_angle"] += 180.0
     problem = parse_problem({"kind": "motion", "positions": planted.positions, "input_side": stated})
-    cloud = side_dyads(motion_task(problem), problem, 0, rng, 1)
+    cloud = find_side_dyads(make_motion_task(problem), problem, 0, rng, 1)
     assert len(cloud.dyads.fixed) == 0
 
 
 def test_jacobian_against_differences() -> None:
     """Newton's rows are differentiated right: a step of 1e-6 changes each residual as the Jacobian says."""
-    from synthesis.kinds.motion.dyads import _rows
+    from synthesis.kinds.motion.dyads.equations import _evaluate_rows
 
     rng = np.random.default_rng(6)
     task = random_task(rng, 3)
@@ -199,7 +199,7 @@ def test_jacobian_against_differences() -> None:
         x = rng.normal(size=4)
 
         def rows(x: np.ndarray, stated: DyadConditions = stated) -> tuple[np.ndarray, np.ndarray]:
-            values, jacobian = _rows(task, stated, np.array([x[0] + 1j * x[1]]), np.array([x[2] + 1j * x[3]]))
+            values, jacobian = _evaluate_rows(task, stated, np.array([x[0] + 1j * x[1]]), np.array([x[2] + 1j * x[3]]))
             return values[0], jacobian[0]
 
         _, jacobian = rows(x)

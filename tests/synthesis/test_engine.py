@@ -9,23 +9,23 @@ from typing import Any
 import numpy as np
 import pytest
 
-from kinematics.engine.firing import firing_choices
-from kinematics.engine.pistons import acceleration_harmonics, piston
+from kinematics.engine.firing import list_firing_choices
+from kinematics.engine.pistons import compute_acceleration_harmonics, compute_piston_motion
 from synthesis.dispatch import solve
-from synthesis.kinds.engine.arrangement import cylinders_of
-from synthesis.kinds.engine.balancers import peak_of_shares
+from synthesis.kinds.engine.arrangement import arrange_cylinders
+from synthesis.kinds.engine.balancers import compute_peak
 from synthesis.kinds.engine.design import EngineDesign, EngineResult
 from synthesis.kinds.engine.enumeration import (
-    _counted,
-    _words,
-    distinct,
-    even_arrangements,
-    slots_of,
+    _count_arrangements,
+    _enumerate_words,
+    compute_slots,
+    list_even_arrangements,
+    select_distinct,
 )
-from synthesis.kinds.engine.forces import one_cylinder
+from synthesis.kinds.engine.forces import compute_cylinder
 from synthesis.kinds.engine.problem import EngineLayout, EngineProblem
 from synthesis.kinds.engine.verification import verify_engine
-from synthesis.registry import example, parse_problem
+from synthesis.registry import get_first_example, parse_problem
 from tests.cases import Case, cases
 
 Statement = dict[str, Any]
@@ -75,7 +75,7 @@ LAYOUTS: list[tuple[int, Statement]] = [
 @pytest.mark.parametrize(("count", "layout"), LAYOUTS, ids=[f"{one['type']}-{n}" for n, one in LAYOUTS])
 def test_harmonics_are_those_of_exact_pistons(count: int, layout: Statement) -> None:
     rng = np.random.default_rng(count)
-    throws = EngineLayout.model_validate(layout).throw_count(count) or 0
+    throws = EngineLayout.model_validate(layout).count_throws(count) or 0
     phases = rng.uniform(0.0, 360.0, throws).round(3).tolist()
     design = only(count, layout | {"throws": phases}, strokes=2)
     assert design.verification.passed
@@ -94,29 +94,31 @@ def test_harmonics_are_those_of_exact_pistons(count: int, layout: Statement) -> 
 @pytest.mark.parametrize("ratio", [0.05, 0.2857, 0.6, 0.95])
 def test_the_series_of_the_piston(ratio: float) -> None:
     turn = 2.0 * math.pi * np.arange(4096) / 4096
-    moved = piston(turn, ratio, 1.0)
+    moved = compute_piston_motion(turn, ratio, 1.0)
     waves = 2.0 * np.fft.fft(-moved.bend / ratio).real / 4096
-    found = acceleration_harmonics(ratio, 12)
+    found = compute_acceleration_harmonics(ratio, 12)
     assert [waves[k] for k in found] == pytest.approx(list(found.values()), abs=1e-12)
     small = ratio + ratio**3 / 4.0 + 15.0 * ratio**5 / 128.0
     if ratio < 0.5:
         assert found[2] == pytest.approx(small, abs=0.2 * ratio**7)
     step = 1e-6
-    slope = (piston(turn + step, ratio, 1.0).place - piston(turn - step, ratio, 1.0).place) / (2.0 * step)
+    slope = (
+        compute_piston_motion(turn + step, ratio, 1.0).place - compute_piston_motion(turn - step, ratio, 1.0).place
+    ) / (2.0 * step)
     assert moved.slope == pytest.approx(slope, abs=1e-8)
 
 
 def brute_force(count: int, layout: EngineLayout, strokes: int) -> set[tuple[float, ...]]:
     """All even-firing arrangements with throws at multiples of 360/(2n), by going through all of them."""
-    throws = layout.throw_count(count) or 0
+    throws = layout.count_throws(count) or 0
     steps = [360.0 / (2 * count) * k for k in range(2 * count)]
     even = []
     for others in itertools.product(steps, repeat=throws - 1):
         phases = (0.0, *others)
-        top = cylinders_of(layout, count, phases).top
-        if firing_choices(top, strokes).unevenness < 1e-6:
+        top = arrange_cylinders(layout, count, phases).top
+        if list_firing_choices(top, strokes).unevenness < 1e-6:
             even.append(phases)
-    return set(distinct(iter(even), layout, count))
+    return set(select_distinct(iter(even), layout, count))
 
 
 VEES = ((2, 90.0), (4, 90.0), (6, 60.0), (6, 120.0), (8, 90.0))
@@ -137,7 +139,7 @@ SMALL: list[tuple[int, Statement]] = [
 @pytest.mark.parametrize(("count", "layout"), SMALL, ids=[f"{one['type']}-{n}" for n, one in SMALL])
 def test_all_even_arrangements_are_found(count: int, layout: Statement, strokes: int) -> None:
     problem: Any = parse_problem(stated(count, layout, strokes))
-    found = even_arrangements(problem, problem.layout)
+    found = list_even_arrangements(problem, problem.layout)
     assert found.complete
     assert found.total == len(found.phases)
     assert set(found.phases) == brute_force(count, problem.layout, strokes)
@@ -156,13 +158,13 @@ OWN: list[Statement] = [
 @pytest.mark.parametrize("layout", OWN, ids=["inline", "opposed", "vee", "w"])
 def test_arrangements_are_counted_as_they_are_listed(layout: Statement, count: int, strokes: int) -> None:
     """Burnside's lemma, which counts more than eight throws, against the lists of fewer."""
-    made, slots = EngineLayout.model_validate(layout), slots_of(count, strokes)
+    made, slots = EngineLayout.model_validate(layout), compute_slots(count, strokes)
     problem: Any = parse_problem(stated(count, layout, strokes))
-    assert _counted(made, slots, count) == len(even_arrangements(problem, made).phases)
+    assert _count_arrangements(made, slots, count) == len(list_even_arrangements(problem, made).phases)
 
 
 def test_words_keep_to_the_slots() -> None:
-    words = list(_words([[0]] * 4, slots_of(4, 4)))
+    words = list(_enumerate_words([[0]] * 4, compute_slots(4, 4)))
     assert words == [(0, 0, 1, 1), (0, 1, 0, 1), (0, 1, 1, 0)]
 
 
@@ -253,7 +255,7 @@ def test_more_throws_are_counted(count: int, strokes: int) -> None:
         assert result.designs[0].metrics.secondary_force == 0.0
 
 
-WEIGHED = example("engine")
+WEIGHED = get_first_example("engine")
 
 
 @pytest.mark.parametrize(
@@ -333,7 +335,7 @@ def test_balance_of_one_cylinder(case: Case) -> None:
     problem = book_engine(given)
     speed = given["rpm"] * math.pi / 30.0
     at = np.array([float(given["angle"])])
-    shaking = complex(one_cylinder(problem, at, speed).shaking[0])
+    shaking = complex(compute_cylinder(problem, at, speed).shaking[0])
     unit = given["r"] * speed**2 * complex(np.exp(1j * np.radians(at[0])))
     rod_b = given["m3"] * given["cg3_from_crankpin_over_l"]
     throw = given["m2"] * given["rG2_over_r"]
@@ -341,9 +343,9 @@ def test_balance_of_one_cylinder(case: Case) -> None:
     over = exact - 2.0 / 3.0 * (given["m4"] + rod_b) * unit
     found = {"unbalanced": unbalanced, "exact_balance": exact, "overbalance_2_3": over}
     peaks = {
-        "peak_unbalanced": peak_of_shares(problem, speed, turning=False, share=0.0),
-        "peak_exact_balance": peak_of_shares(problem, speed, turning=True, share=0.0),
-        "peak_overbalance_2_3": peak_of_shares(problem, speed, turning=True, share=2.0 / 3.0),
+        "peak_unbalanced": compute_peak(problem, speed, turning=False, share=0.0),
+        "peak_exact_balance": compute_peak(problem, speed, turning=True, share=0.0),
+        "peak_overbalance_2_3": compute_peak(problem, speed, turning=True, share=2.0 / 3.0),
     }
     case.check(
         **peaks,
@@ -363,7 +365,7 @@ def test_overbalance_of_inferred_masses(case: Case) -> None:
     problem = book_engine(data | {"m3": 0.0, "cg3_from_crankpin_over_l": 0.5, "m4": to_and_fro})
     result: Any = solve(problem, lambda fraction, message: None)
     best = result.designs[0].overbalance
-    over = peak_of_shares(problem, speed, turning=True, share=given["overbalance_fraction"])
+    over = compute_peak(problem, speed, turning=True, share=given["overbalance_fraction"])
     assert best.unbalanced_peak == pytest.approx(given["peak_unbalanced"], rel=1e-9)
     case.check(
         peak_overbalanced=over,
@@ -381,7 +383,7 @@ def test_the_acceleration_of_a_piston(case: Case) -> None:
     given: dict[str, Any] = case.inputs or {}
     turned = np.array([given["omega"] * given["t"]])
     exact, series = (
-        float(piston(turned, given["r"], given["l"], two_term=two).bend[0]) * given["omega"] ** 2
+        float(compute_piston_motion(turned, given["r"], given["l"], two_term=two).bend[0]) * given["omega"] ** 2
         for two in (False, True)
     )
     case.check(
@@ -398,7 +400,7 @@ def test_the_overbalance_is_least() -> None:
     result: Any = solve(problem, lambda fraction, message: None)
     best = result.designs[0].overbalance
     speed = (problem.speed_rpm or 0.0) * math.pi / 30.0
-    others = [peak_of_shares(problem, speed, turning=True, share=share) for share in np.linspace(0.0, 1.0, 101)]
+    others = [compute_peak(problem, speed, turning=True, share=share) for share in np.linspace(0.0, 1.0, 101)]
     assert best.peak <= min(others)
     assert min(others) <= 1.01 * best.peak
     assert 0.4 < best.share < 0.8

@@ -3,10 +3,10 @@
 import numpy as np
 import pytest
 
-from kinematics.linkage.fourbar import OPEN, Fourbar, positions
+from kinematics.linkage.fourbar import OPEN_ASSEMBLY, Fourbar, positions
 from synthesis.dispatch import solve
-from synthesis.fit.chart import CRANK_ROCKER, natural
-from synthesis.kinds.path.curve_descent import UNLIMITED_PIVOTS, descend
+from synthesis.fit.chart import CRANK_ROCKER, compute_lengths
+from synthesis.kinds.path.residuals.curve_descent import UNLIMITED_PIVOTS, descend
 from synthesis.registry import parse_problem
 from tests.campaign import further
 from tests.support.demands import path_constraints
@@ -30,7 +30,7 @@ def planted(n, seed):
         b * complex(rng.uniform(-0.5, 1.5), rng.uniform(-1.0, 1.0)),
     )
     turned = np.linspace(0.0, rng.uniform(2.0, 5.0), n) + rng.uniform(-0.05, 0.05, n)
-    return linkage, positions(linkage, rng.uniform(0.0, 6.28) + turned, OPEN).p
+    return linkage, positions(linkage, rng.uniform(0.0, 6.28) + turned, OPEN_ASSEMBLY).p
 
 
 def answer(points, **changes):
@@ -148,7 +148,7 @@ def test_descents_put_pivots_where_they_are_asked_for():
     theta = np.linspace(0.0, 3.0, 5)[None]
     ends = descend(CRANK_ROCKER, start, np.ones(1), theta, points, within=within, iterations=400)
     lengths, chart = np.zeros(4), np.zeros((4, 4))
-    natural(CRANK_ROCKER, ends.x[0], lengths, chart)
+    compute_lengths(CRANK_ROCKER, ends.x[0], lengths, chart)
     assert ends.cost[0] < 1e-18
     assert 0.5 - 1e-8 <= ends.x[0, 0] <= 0.7 + 1e-8
     assert abs(ends.x[0, 1] + 2.0) < 1e-8

@@ -234,4 +234,4 @@ def test_an_unshifted_pinion_of_few_teeth_is_noticed(at_120: tuple[GearTrainProb
 )
 def test_contradictions(fields: dict[str, Any], path: str) -> None:
     problem = parse_problem({"kind": "gear_train", "ratio": 3, "max_stages": 2, **fields})
-    assert [fault.path for fault in problem.contradictions()][:1] == [path]
+    assert [fault.path for fault in problem.find_contradictions()][:1] == [path]

@@ -6,11 +6,11 @@ import math
 import numpy as np
 import pytest
 
-from kinematics.linkage.fourbar import OPEN, Fourbar, positions
+from kinematics.linkage.fourbar import OPEN_ASSEMBLY, Fourbar, positions
 from synthesis.dispatch import solve
-from synthesis.kinds.path.five_point_system import SOLUTIONS, residuals
-from synthesis.kinds.path.five_points import five_points
-from synthesis.kinds.path.starts import five_point_start
+from synthesis.kinds.path.exact.continuation_starts import load_five_point_start
+from synthesis.kinds.path.exact.five_point_system import SOLUTION_COUNT, compute_residuals
+from synthesis.kinds.path.exact.five_points import solve_five_points
 from synthesis.registry import parse_problem
 from tests.cases import HERE
 
@@ -38,7 +38,7 @@ def drawn(rng):
         o2, o4 = rng.normal(size=2) + 1j * rng.normal(size=2)
         a, b, c = rng.uniform(0.3, 2.0, 3)
         linkage = Fourbar(o2, o4, a, b, c, b * complex(*rng.normal(size=2)))
-        at = positions(linkage, np.sort(rng.uniform(0.0, 2.0 * np.pi, 5)), OPEN)
+        at = positions(linkage, np.sort(rng.uniform(0.0, 2.0 * np.pi, 5)), OPEN_ASSEMBLY)
         if at.valid.all():
             return linkage, at
 
@@ -80,10 +80,10 @@ def real_solutions_by_newton(points, o2, o4, rng, starts):
 
 
 def test_the_stored_start_is_whole():
-    begun = five_point_start()
-    assert begun.y.shape == (SOLUTIONS, 8)
-    assert residuals(begun.y, begun.p).max() < 1e-10
-    gaps = np.abs(begun.y[:, None] - begun.y[None]).max(axis=-1) + 10.0 * np.eye(SOLUTIONS)
+    begun = load_five_point_start()
+    assert begun.y.shape == (SOLUTION_COUNT, 8)
+    assert compute_residuals(begun.y, begun.p).max() < 1e-10
+    gaps = np.abs(begun.y[:, None] - begun.y[None]).max(axis=-1) + 10.0 * np.eye(SOLUTION_COUNT)
     assert gaps.min() > 1e-6
 
 
@@ -91,8 +91,8 @@ def test_planted_linkages_are_among_all_36():
     rng = np.random.default_rng(1)
     for _ in range(30):
         linkage, at = drawn(rng)
-        found = five_points(at.p, complex(linkage.input_pivot), complex(linkage.output_pivot), rng)
-        assert found.found == SOLUTIONS
+        found = solve_five_points(at.p, complex(linkage.input_pivot), complex(linkage.output_pivot), rng)
+        assert found.found == SOLUTION_COUNT
         assert found.complete
         assert min(abs(one.a - at.a[0]) + abs(one.b - at.b[0]) for one in found.linkages) < 1e-7
 
@@ -104,7 +104,7 @@ def test_all_real_solutions_are_those_that_newton_finds():
     for _ in range(2):
         linkage, at = drawn(rng)
         o2, o4 = complex(linkage.input_pivot), complex(linkage.output_pivot)
-        ours = five_points(at.p, o2, o4, rng)
+        ours = solve_five_points(at.p, o2, o4, rng)
         theirs = real_solutions_by_newton(at.p, o2, o4, rng, 400)
         assert len(theirs) >= 3
         scale = max(abs(one.a - one.o2) + abs(one.b - one.o4) for one in ours.linkages)
@@ -129,7 +129,7 @@ def test_every_real_solution_is_a_linkage_through_the_points():
 @pytest.mark.parametrize("size", [1e-6, 1.0, 1e6])
 @pytest.mark.parametrize("away", [0.0, 300.0])
 def test_a_good_crank_rocker_comes_back_at_any_size_and_place(size, away):
-    at = positions(ROCKER, np.array([0.2, 0.8, 1.5, 2.4, 3.1]), OPEN)
+    at = positions(ROCKER, np.array([0.2, 0.8, 1.5, 2.4, 3.1]), OPEN_ASSEMBLY)
     move = away * size * (1.0 - 0.5j)
     points, pivots = at.p * size + move, (move, (8.0 + 1.0j) * size + move)
     result = answer(statement(points, *pivots, constraints={"grashof": "crank_rocker"}, max_designs=50))
@@ -145,7 +145,7 @@ def test_five_points_on_a_line_have_the_known_real_solutions():
     (row,) = (row for row in rows if row["id"] == "mw7_five_points")
     points = np.array([complex(*point) for point in row["inputs"]["points"]])
     o2, o4 = (complex(*pivot) for pivot in row["inputs"]["fixed_pivots"])
-    found = five_points(points, o2, o4, np.random.default_rng(0))
+    found = solve_five_points(points, o2, o4, np.random.default_rng(0))
     assert (found.found, len(found.linkages)) == (33, row["reference"]["value"])
     assert not found.complete
     pins = np.array([[one.a - one.p, one.b - one.p] for one in found.linkages])
@@ -155,10 +155,10 @@ def test_five_points_on_a_line_have_the_known_real_solutions():
 
 
 def test_solutions_move_with_the_points():
-    at = positions(ROCKER, np.array([0.2, 0.8, 1.5, 2.4, 3.1]), OPEN)
+    at = positions(ROCKER, np.array([0.2, 0.8, 1.5, 2.4, 3.1]), OPEN_ASSEMBLY)
     spin, shift = 1.7 * np.exp(0.6j), 3.0 - 11.0j
-    here = five_points(at.p, 0j, 8.0 + 1.0j, np.random.default_rng(0))
-    there = five_points(spin * at.p + shift, shift, spin * (8.0 + 1.0j) + shift, np.random.default_rng(4))
+    here = solve_five_points(at.p, 0j, 8.0 + 1.0j, np.random.default_rng(0))
+    there = solve_five_points(spin * at.p + shift, shift, spin * (8.0 + 1.0j) + shift, np.random.default_rng(4))
     assert len(here.linkages) == len(there.linkages)
     for one in here.linkages:
         gaps = [abs(spin * one.a + shift - other.a) + abs(spin * one.b + shift - other.b) for other in there.linkages]
@@ -178,7 +178,7 @@ def test_an_empty_answer_is_a_proof():
 
 def test_points_that_cannot_be_met_exactly_are_fitted_and_that_is_said():
     """Two degrees more than the best exact linkage transmits at."""
-    points = positions(ROCKER, np.radians([10.0, 60.0, 110.0, 160.0, 210.0]), OPEN).p
+    points = positions(ROCKER, np.radians([10.0, 60.0, 110.0, 160.0, 210.0]), OPEN_ASSEMBLY).p
     asked = {"constraints": {"grashof": "crank_rocker", "min_transmission_angle": 52}}
     assert answer(statement(points, 0j, 8 + 1j, method="exact", **asked)).designs == []
     task = statement(points, 0j, 8 + 1j, **asked)
@@ -221,5 +221,5 @@ def test_special_points_end_without_a_false_promise(points):
     for design in result.designs:
         assert design.verification.passed
     if result.search.complete:
-        assert result.given_pivots.computed == SOLUTIONS
+        assert result.given_pivots.computed == SOLUTION_COUNT
     assert math.isfinite(result.given_pivots.largest_residual)

@@ -12,7 +12,7 @@ from synthesis.dispatch import solve
 from synthesis.kinds.flywheel.design import FlywheelResult
 from synthesis.kinds.flywheel.problem import FlywheelProblem
 from synthesis.kinds.flywheel.verification import verify_flywheel
-from synthesis.registry import example, parse_problem
+from synthesis.registry import get_first_example, parse_problem
 
 Statement = dict[str, Any]
 
@@ -202,7 +202,7 @@ def test_the_integrated_coefficient_is_the_stated_one(coefficient: float) -> Non
     ],
 )
 def test_faults_by_field(changes: Statement, path: str) -> None:
-    assert path in {fault.path for fault in parse_problem(stated(**changes)).contradictions()}
+    assert path in {fault.path for fault in parse_problem(stated(**changes)).find_contradictions()}
 
 
 def test_a_linkage_without_forces_all_round() -> None:
@@ -227,7 +227,7 @@ def test_a_wheel_on_inches() -> None:
 
 
 def test_both_forms_of_the_example_the_lighter_first() -> None:
-    problem: Any = parse_problem(example("flywheel"))
+    problem: Any = parse_problem(get_first_example("flywheel"))
     result: Any = solve(problem, lambda fraction, message: None)
     assert [design.mechanism.form for design in result.designs] == ["rim", "disc"]
     assert result.designs[0].metrics.mass < result.designs[1].metrics.mass

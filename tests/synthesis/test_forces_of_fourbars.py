@@ -5,12 +5,12 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from kinematics.dynamics.fourbar import peaks
+from kinematics.dynamics.fourbar import compute_peaks
 from synthesis.dispatch import solve
-from synthesis.mechanisms.fourbar_weights import closed_form, fourbars, weights
-from synthesis.model.dynamics import DesignDynamics
-from synthesis.outcome.forces import STEPS, shaped, with_forces
+from synthesis.mechanisms.fourbar_weights import build_fourbars, build_weights, is_closed_form
+from synthesis.model.dynamics.request import DesignDynamics
 from synthesis.registry import parse_problem
+from synthesis.results.forces import STEP_COUNT, add_forces, apply_link_shape
 from tests.service.stated.linkages import BOTH_OPEN, MOTION
 
 PLATE = {"density": 7800.0, "thickness": 10.0, "width": 20.0, "holes": {"A": 8.0}}
@@ -62,14 +62,17 @@ def test_what_is_looked_at_is_what_is_measured(best):
     }
     problem = parse_problem({**OPEN, "dynamics": stated})
     for design in best.designs:
-        measured = with_forces(problem, design.model_copy(update={"forces": None})).forces
+        measured = add_forces(problem, design.model_copy(update={"forces": None})).forces
         joints = design.mechanism.skeleton.joints
         row = np.array([[complex(*joints[name]) for name in ("O2", "A", "B", "O4", "P")]])
-        block = shaped(DesignDynamics.model_validate(stated), {})
-        assert closed_form(block)
+        block = apply_link_shape(DesignDynamics.model_validate(stated), {})
+        assert is_closed_form(block)
         turned = np.subtract(*design.metrics.used_range[::-1]) if measured.over == "used" else 360.0
-        found = peaks(
-            fourbars(row, np.radians([turned]), 1e-3), weights(block, row, "mm"), 60.0 * np.pi / 30.0, 400 * STEPS + 1
+        found = compute_peaks(
+            build_fourbars(row, np.radians([turned]), 1e-3),
+            build_weights(block, row, "mm"),
+            60.0 * np.pi / 30.0,
+            400 * STEP_COUNT + 1,
         )[0]
         expected = [
             measured.drive_torque.max,
@@ -93,4 +96,4 @@ def test_what_is_looked_at_is_what_is_measured(best):
     ids=lambda other: next(iter(other)),
 )
 def test_what_the_closed_form_does_not_know_is_not_looked_at(other):
-    assert not closed_form(DesignDynamics.model_validate({**BLOCK, **other}))
+    assert not is_closed_form(DesignDynamics.model_validate({**BLOCK, **other}))

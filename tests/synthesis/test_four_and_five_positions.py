@@ -11,7 +11,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from synthesis.model.linkage_answer import LinkageDesign
+from synthesis.model.linkage.answer import LinkageDesign
 from synthesis.registry import KINDS, parse_problem
 from tests.campaign import sampled
 from tests.cases import search_tasks
@@ -349,7 +349,7 @@ def test_examples_of_partly_stated_sides_are_consistent() -> None:
         {"input_side": {"fixed_pivot": [10.0, -200.0]}},
         {"input_side": {"rotations": [None, 20.0, None]}},
     ):
-        assert parse_problem({"kind": "motion", "positions": FOUR, **statement}).contradictions() == []
+        assert parse_problem({"kind": "motion", "positions": FOUR, **statement}).find_contradictions() == []
 
 
 @pytest.mark.parametrize("number", [1, 2, 3])

@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 
 from kinematics.linkage import SliderCrank, slider_crank
-from synthesis.kinds.function.closure import FOURBAR
-from synthesis.kinds.function.precision import many_exact
+from synthesis.kinds.function.fourbar.closure import FOURBAR
+from synthesis.kinds.function.fourbar.precision_points import solve_many_exact
 from tests.campaign import further, sampled
 from tests.synthesis.function_tasks import (
     CASES,
@@ -218,7 +218,9 @@ class TestOpenScales:
             found = np.sort([design.dials.output.scale for design in result.designs])
             inputs, outputs = np.radians([[p["input"] for p in pairs], [p["output"] for p in pairs]])
             scales = np.geomspace(0.25, min(4.0, math.radians(359.0) / np.ptp(outputs)), 4001)
-            some = many_exact(FOURBAR, np.tile(inputs[:5], (4001, 1)), scales[:, None] * outputs[:5], (None, None))
+            some = solve_many_exact(
+                FOURBAR, np.tile(inputs[:5], (4001, 1)), scales[:, None] * outputs[:5], (None, None)
+            )
             at = scales[some[:, 5].astype(int)]
             a, b, c, phi, psi = some[:, :5].T
             gap = np.abs(1.0 + c * np.exp(1j * (psi + at * outputs[5])) - a * np.exp(1j * (phi + inputs[5])))

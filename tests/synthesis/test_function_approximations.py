@@ -7,11 +7,11 @@ import math
 import numpy as np
 import pytest
 
-from synthesis.kinds.function.descent import Descent
-from synthesis.kinds.function.levelling import levelled
-from synthesis.kinds.function.precision import many_exact
+from synthesis.kinds.function.fourbar.error_levelling import equalize_errors
+from synthesis.kinds.function.fourbar.minimax_descent import Descent
+from synthesis.kinds.function.fourbar.precision_points import solve_many_exact
+from synthesis.kinds.function.fourbar.task import make_function_task
 from synthesis.kinds.function.problem import FunctionProblem
-from synthesis.kinds.function.task import function_task
 from tests.campaign import further
 from tests.synthesis.function_tasks import (
     CASES,
@@ -166,15 +166,15 @@ class TestApproximations:
 def test_levelling_comes_to_the_least_greatest_error_from_anywhere_near():
     # From a linkage through badly spaced points; the errors of what is reached are level and the table's optimum.
     problem = FunctionProblem(kind="function", **task_of(CASES[2]), criterion="minimax")
-    task = function_task(problem)
+    task = make_function_task(problem)
     shares = np.array([[0.05, 0.25, 0.45, 0.7, 0.95]])
     turned = math.radians(90.0)
     outputs = problem.function.share(90.0 * shares)
-    begun = many_exact(task.closure, turned * shares, turned * outputs, task.zeros)[:, :5]
+    begun = solve_many_exact(task.closure, turned * shares, turned * outputs, task.zeros)[:, :5]
     begun = np.column_stack([begun, np.full((len(begun), 2), turned)])
     signs = task.samples().signs(begun)[:, 0]
     before = np.degrees(np.abs(task.samples().errors(begun, signs)).max(axis=1).min())
-    reached, theirs = levelled(task, begun, signs)
+    reached, theirs = equalize_errors(task, begun, signs)
     after = np.degrees(np.abs(task.samples().errors(reached, theirs)).max(axis=1).min())
     assert before > 1.3 * after
     assert after == pytest.approx(CASES[2]["reference"]["value"], rel=0.005)

@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 
 from synthesis import parse_problem
-from synthesis.kinds.function.limits import GeneratorLimits
+from synthesis.kinds.function.fourbar.constraints import GeneratorLimits
+from synthesis.kinds.function.fourbar.task import make_function_task
 from synthesis.kinds.function.problem import FunctionProblem
 from synthesis.kinds.function.solver import solve_function
-from synthesis.kinds.function.task import function_task
 from tests.campaign import further, sampled
 from tests.support.demands import function_constraints
 from tests.support.demands.planted import box
@@ -77,7 +77,7 @@ def test_derivatives_of_the_limits(mechanism, grashof):
             "link_length": {"min": 5.0, "max": 90.0},
         },
     )
-    task = function_task(problem)
+    task = make_function_task(problem)
     limits, generators = GeneratorLimits(task), task.samples()
     rng = np.random.default_rng(0)
     for _ in range(5):
@@ -87,7 +87,7 @@ def test_derivatives_of_the_limits(mechanism, grashof):
         for j in range(len(at)):
             step = np.zeros(len(at))
             step[j] = 1e-6
-            ends = [limits.values(generators.stepped(at, sign * step))[0] for sign in (1.0, -1.0)]
+            ends = [limits.values(generators.apply_step(at, sign * step))[0] for sign in (1.0, -1.0)]
             assert np.allclose(slopes[:, j], (ends[0] - ends[1]) / 2e-6, atol=1e-5)
 
 

@@ -57,7 +57,7 @@ def test_what_cannot_be_meant_is_refused_at_its_field(fields, path):
     if "points" in stated.get("function", {}):
         stated["function"]["points"] = [{"x": float(x), "y": float(y)} for x, y in stated["function"]["points"]]
     problem = FunctionProblem(kind="function", **stated)
-    assert path in [fault.path for fault in problem.contradictions()]
+    assert path in [fault.path for fault in problem.find_contradictions()]
 
 
 @pytest.mark.campaign

@@ -14,8 +14,8 @@ TYPES = ["helical_pair", "bevel_pair", "worm_set"]
 
 def analysed(type_, **fields):
     request = parse_request({"mechanism": {"type": type_, **fields}, "speed_rpm": 60.0 / (2.0 * math.pi)})
-    assert request.faults() == []
-    found = request.answer()
+    assert request.find_errors() == []
+    found = request.build_answer()
     FAMILIES[type_].analysis.model_validate(found)
     return found
 
@@ -23,7 +23,7 @@ def analysed(type_, **fields):
 @pytest.mark.parametrize("type_", TYPES)
 def test_the_example_is_answered(type_):
     family = FAMILIES[type_]
-    family.analysis.model_validate(family.request.example().answer())
+    family.analysis.model_validate(family.request.build_example().build_answer())
 
 
 @pytest.mark.parametrize("case", cases("helical_pair", "gear"))
@@ -77,7 +77,7 @@ def test_bevel_teeth_of_the_book(case, unit):
             "length_unit": name,
         }
     )
-    found = request.answer()
+    found = request.build_answer()
     pinion, gear = found["gears"]
     assert found["tooth_system"] == "rao"
     case.check(
@@ -128,4 +128,4 @@ def test_what_cannot_be_is_refused_with_its_field():
         analysed("helical_pair", teeth=[20, 30], normal_module=2.0, helix_angle=-20.0, shaft_angle=80.0)
     assert caught.value.path == "/helix_angle"
     request = parse_request({"mechanism": {"type": "bevel_pair", "teeth": [40, 20], "module": 2.0}})
-    assert [path for path, _ in request.faults()] == ["/mechanism/teeth"]
+    assert [path for path, _ in request.find_errors()] == ["/mechanism/teeth"]

@@ -9,7 +9,7 @@ import pytest
 from pydantic import ValidationError
 
 from synthesis.analyses import parse_request
-from synthesis.analyses.gear_train import GearTrainAnalysis, GearTrainAnalysisRequest
+from synthesis.analyses.gears.gear_train import GearTrainAnalysis, GearTrainAnalysisRequest
 from synthesis.dispatch import solve
 from synthesis.registry import parse_problem
 from tests.support.synthesis.gear_train_analysis import analysed
@@ -56,9 +56,9 @@ def test_teeth_that_lose_all_power_are_not_driven_back() -> None:
     mechanism = {"type": "gear_train", "stages": [{"driver": 3, "driven": 3}]}
     stated = {"mechanism": mechanism, "friction": 1.0, "motion": {"at": 0.0}}
     forwards = parse_request({**stated, "input_torque": 1.0})
-    assert forwards.faults() == []
-    assert forwards.answer()["efficiency"] == 0.0
-    assert [path for path, _ in parse_request({**stated, "input_torque": -1.0}).faults()] == ["/friction"]
+    assert forwards.find_errors() == []
+    assert forwards.build_answer()["efficiency"] == 0.0
+    assert [path for path, _ in parse_request({**stated, "input_torque": -1.0}).find_errors()] == ["/friction"]
 
 
 def test_an_idler_turns_the_direction_and_costs_a_mesh() -> None:
@@ -114,8 +114,8 @@ def test_over_the_cycle_is_one_turn() -> None:
     problem = parse_problem({"kind": "gear_train", "ratio": -70, "max_stages": 2, "teeth": {"min": 12, "max": 150}})
     design = solve(problem, lambda fraction, message: None).designs[0]
     mechanism = design.mechanism.model_dump(mode="json")
-    assert parse_request({"mechanism": mechanism}).faults() == []
-    found = GearTrainAnalysis.model_validate(GearTrainAnalysisRequest.over_the_cycle(mechanism, 36))
+    assert parse_request({"mechanism": mechanism}).find_errors() == []
+    found = GearTrainAnalysis.model_validate(GearTrainAnalysisRequest.analyze_cycle(mechanism, 36))
     assert found.input_angle[-1] == 360.0
     assert len(found.gears[0].angle) == 37
     assert found.gears[-1].angle[-1] == pytest.approx(-360.0 / 70.0)
@@ -130,7 +130,7 @@ def test_over_the_cycle_is_one_turn() -> None:
 )
 def test_faults(change: dict[str, Any], path: str) -> None:
     request = parse_request({"mechanism": {"type": "gear_train", "stages": TWO, **change}})
-    assert [fault[0] for fault in request.faults()] == [path]
+    assert [fault[0] for fault in request.find_errors()] == [path]
 
 
 @pytest.mark.parametrize(

@@ -9,10 +9,10 @@ import pytest
 
 from kinematics.gear.train import OrdinaryTrain, TrainStage
 from synthesis.kinds.gear_train.problem import GearTrainProblem
-from synthesis.kinds.gear_train.search import Outcome, search
+from synthesis.kinds.gear_train.search.search import Outcome, search
+from synthesis.kinds.gear_train.search.task import build_task
 from synthesis.kinds.gear_train.solver import solve_gear_train
-from synthesis.kinds.gear_train.task import gear_train_task
-from synthesis.model.ratio_target import parse_target
+from synthesis.model.gears.ratio_target import parse_target
 from tests.cases import Case, cases
 
 
@@ -22,7 +22,7 @@ def silent(fraction: float, message: str) -> None:
 
 def found(ratio: str, tolerance: Fraction | None, wanted: int, **fields: object) -> Outcome:
     problem = GearTrainProblem(kind="gear_train", ratio=ratio, **fields)
-    return search(gear_train_task(problem, False), tolerance, wanted, silent)
+    return search(build_task(problem, False), tolerance, wanted, silent)
 
 
 def only(case: Case, **values: object) -> None:
@@ -86,7 +86,7 @@ def test_list_is_exhaustive(case: Case) -> None:
     """All trains within an absolute error, against the printed list of them."""
     x = case.inputs
     target = parse_target(x["target"])[1]
-    low, high = target.enclosure(200)
+    low, high = target.enclose(200)
     tolerance = Fraction(x["eps"]) / ((low + high) / 2)
     outcome = found(x["target"], tolerance, 100, max_stages=2, teeth={"min": x["lo"], "max": x["hi"]})
     trains = {(tuple(sorted(t.drivers)), tuple(sorted(t.driven))) for t in outcome.trains if len(t.drivers) == 2}

@@ -10,11 +10,11 @@ from fractions import Fraction
 import numpy as np
 import pytest
 
-from synthesis.kinds.gear_train import candidates
 from synthesis.kinds.gear_train.problem import GearTrainProblem
-from synthesis.kinds.gear_train.search import Outcome, search
-from synthesis.kinds.gear_train.task import gear_train_task
-from synthesis.model.ratio_target import parse_target
+from synthesis.kinds.gear_train.search import candidates
+from synthesis.kinds.gear_train.search.search import Outcome, search
+from synthesis.kinds.gear_train.search.task import build_task
+from synthesis.model.gears.ratio_target import parse_target
 
 
 def problem(**fields: object) -> GearTrainProblem:
@@ -24,7 +24,7 @@ def problem(**fields: object) -> GearTrainProblem:
 def searched(wanted: int = 10, **fields: object) -> Outcome:
     stated = problem(**fields)
     stated.require_consistent()
-    task = gear_train_task(stated, stated.hunting_tooth == "require")
+    task = build_task(stated, stated.hunting_tooth == "require")
     return search(task, stated.exact_tolerance, wanted, lambda fraction, message: None)
 
 
@@ -62,7 +62,7 @@ def plain() -> Plain:
 def test_finishing_at_once_is_the_same(ratio: str, fields: dict[str, object], monkeypatch: pytest.MonkeyPatch) -> None:
     found = []
     for many in (0, 10**18):
-        monkeypatch.setattr(candidates, "MANY_TRAINS", many)
+        monkeypatch.setattr(candidates, "MIN_SORTED_TRAINS", many)
         found.append(searched(wanted=25, ratio=ratio, max_stages=3, teeth={"min": 12, "max": 40}, **fields))
     assert found[0] == found[1]
     assert len(found[0].pareto) > 4
@@ -98,7 +98,7 @@ def test_three_stages_against_meshes_by_bisection() -> None:
     rng = np.random.default_rng(2)
     for value in np.exp(rng.uniform(np.log(1 / 30), np.log(30), 12)):
         best = searched(ratio=float(value), max_stages=3, teeth={"min": 12, "max": 45}).trains[0]
-        error = abs(parse_target(float(value))[1].relative_error(best.ratio))
+        error = abs(parse_target(float(value))[1].compute_relative_error(best.ratio))
         assert error == pytest.approx(best_of_three(float(value), 12, 45), abs=3e-14)
 
 
@@ -107,7 +107,7 @@ def test_three_stages_of_the_usual_range() -> None:
     rng = np.random.default_rng(3)
     for value in np.exp(rng.uniform(np.log(1 / 100), np.log(100), 12)):
         best = searched(ratio=float(value), max_stages=3, teeth={"min": 12, "max": 100}).trains[0]
-        error = abs(parse_target(float(value))[1].relative_error(best.ratio))
+        error = abs(parse_target(float(value))[1].compute_relative_error(best.ratio))
         assert error == pytest.approx(best_of_three(float(value), 12, 100), abs=3e-14)
 
 
@@ -131,8 +131,8 @@ def brute(
     seen: dict[tuple[object, ...], tuple[Fraction, int]] = {}
     pairings: dict[tuple[object, ...], Fraction] = {}
     limit = stated.max_stage_ratio and Fraction(str(stated.max_stage_ratio))
-    stock = stated.stocked()
-    modules = stated.exact_modules()
+    stock = stated.count_stock()
+    modules = stated.list_exact_modules()
     for k in stages:
         meshes = [
             [(a, b, m) for a in ranges[2 * i] for b in ranges[2 * i + 1] for m in range(len(modules))]
@@ -231,13 +231,13 @@ def test_every_demand_against_plain_search(
     ``at_once``: what is left is finished in one pass as soon as it can be, as large problems are.
     """
     if at_once:
-        monkeypatch.setattr(candidates, "MANY_TRAINS", 0)
+        monkeypatch.setattr(candidates, "MIN_SORTED_TRAINS", 0)
     stated = problem(ratio=ratio, **demands)
     k = stated.max_stages
     if stated.stock is not None:
-        ranges = [sorted(stated.stocked())] * (2 * k)
+        ranges = [sorted(stated.count_stock())] * (2 * k)
     else:
-        ranges = [range(low, high + 1) for low, high in stated.position_ranges()]
+        ranges = [range(low, high + 1) for low, high in stated.list_position_ranges()]
     listed, least, nearest, pairings = brute(stated, (2, 3)[: k - 1] if stated.reverted else (1, 2)[:k], ranges)
     outcome = searched(8, ratio=ratio, **demands)
     tolerance = stated.exact_tolerance
@@ -277,6 +277,6 @@ def test_every_demand_against_plain_search(
         if stated.hunting_tooth == "require":
             assert all(math.gcd(*mesh) == 1 for mesh in train.meshes)
         if stated.reverted:
-            modules = stated.exact_modules()
+            modules = stated.list_exact_modules()
             marks = zip(train.meshes, train.marks, strict=True)
             assert len({modules[mark] * sum(mesh) for mesh, mark in marks}) == 1

@@ -14,10 +14,10 @@ from pydantic import ValidationError
 from synthesis.dispatch import solve
 from synthesis.kinds.gear_train.design import GearTrainMechanism, GearTrainResult, Idler, Stage
 from synthesis.kinds.gear_train.problem import GearTrainProblem
-from synthesis.kinds.gear_train.stated_train import TeethRange
+from synthesis.kinds.gear_train.statement.train import TeethRange
 from synthesis.kinds.gear_train.verification import verify
-from synthesis.model.gear_answer import Ratio
-from synthesis.model.ratio_target import parse_target
+from synthesis.model.gears.answer import Ratio
+from synthesis.model.gears.ratio_target import parse_target
 from synthesis.registry import parse_problem
 
 
@@ -299,7 +299,7 @@ def test_verification_sees_interference() -> None:
 )
 def test_contradictions_are_told_by_field(fields: dict[str, Any], path: str) -> None:
     problem = GearTrainProblem.model_validate({**BASE, **fields})
-    assert path in [contradiction.path for contradiction in problem.contradictions()]
+    assert path in [contradiction.path for contradiction in problem.find_contradictions()]
 
 
 @pytest.mark.parametrize(

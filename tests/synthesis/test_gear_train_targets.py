@@ -10,7 +10,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from synthesis.model.ratio_target import TargetSyntaxError, parse_target
+from synthesis.model.gears.ratio_target import TargetSyntaxError, parse_target
 
 
 @pytest.mark.parametrize(
@@ -81,7 +81,7 @@ def test_enclosures_hold_the_number() -> None:
     ]:
         target = parse_target(text)[1]
         for bits in (16, 64, 256):
-            low, high = target.enclosure(bits)
+            low, high = target.enclose(bits)
             assert low < Fraction(value) < high
             assert high - low < Fraction(1, 1 << (bits - 6))
 
@@ -102,43 +102,43 @@ FRACTIONS = st.fractions(min_value=Fraction(1, 50), max_value=50, max_denominato
 def test_nearer_to_a_rational(number: Fraction, one: Fraction, other: Fraction) -> None:
     target = parse_target(f"{number.numerator}/{number.denominator}")[1]
     first, second = abs(one - number), abs(other - number)
-    assert target.nearer(one, other) == (first > second) - (first < second)
-    assert target.nearer(2 * number - one, one) == 0 or 2 * number <= one
-    assert target.compared(one) == (number > one) - (number < one)
+    assert target.compare_distances(one, other) == (first > second) - (first < second)
+    assert target.compare_distances(2 * number - one, one) == 0 or 2 * number <= one
+    assert target.compare(one) == (number > one) - (number < one)
 
 
 def test_nearer_to_an_irrational_where_floats_are_equal() -> None:
     """Two fractions on both sides of π whose distances agree to 20 digits."""
     getcontext().prec = 60
     pi = parse_target("pi")[1]
-    low, high = pi.enclosure(300)
+    low, high = pi.enclose(300)
     middle = (low + high) / 2
     below = (middle - Fraction(1, 1000)).limit_denominator(10**12)
     above = 2 * middle - below
     farther, nearer = above + Fraction(1, 10**22), above - Fraction(1, 10**22)
-    assert pi.nearer(below, farther) == -1
-    assert pi.nearer(below, nearer) == 1
-    assert pi.nearer(nearer, farther) == -1
+    assert pi.compare_distances(below, farther) == -1
+    assert pi.compare_distances(below, nearer) == 1
+    assert pi.compare_distances(nearer, farther) == -1
 
 
 def test_within_a_tolerance() -> None:
     pi = parse_target("pi")[1]
-    assert pi.within(Fraction(22, 7), Fraction("0.000403"))
-    assert not pi.within(Fraction(22, 7), Fraction("0.000402"))
+    assert pi.is_within(Fraction(22, 7), Fraction("0.000403"))
+    assert not pi.is_within(Fraction(22, 7), Fraction("0.000402"))
     three = parse_target(3)[1]
-    assert three.within(Fraction(33, 10), Fraction(1, 10))
-    assert three.within(Fraction(27, 10), Fraction(1, 10))
-    assert not three.within(Fraction(27, 10) - Fraction(1, 10**30), Fraction(1, 10))
+    assert three.is_within(Fraction(33, 10), Fraction(1, 10))
+    assert three.is_within(Fraction(27, 10), Fraction(1, 10))
+    assert not three.is_within(Fraction(27, 10) - Fraction(1, 10**30), Fraction(1, 10))
 
 
 def test_relative_errors_keep_their_digits() -> None:
     pi = parse_target("pi")[1]
-    near = Fraction(pi.enclosure(400)[0])
-    assert pi.relative_error(near + Fraction(1, 10**40)) == pytest.approx(1e-40 / math.pi, rel=1e-14)
-    assert parse_target("1/3")[1].relative_error(Fraction(1, 3)) == 0.0
+    near = Fraction(pi.enclose(400)[0])
+    assert pi.compute_relative_error(near + Fraction(1, 10**40)) == pytest.approx(1e-40 / math.pi, rel=1e-14)
+    assert parse_target("1/3")[1].compute_relative_error(Fraction(1, 3)) == 0.0
 
 
 @given(FRACTIONS)
 def test_parts_are_twice_as_good_as_a_float(number: Fraction) -> None:
-    head, rest = parse_target(f"{number.numerator}/{number.denominator}")[1].parts()
+    head, rest = parse_target(f"{number.numerator}/{number.denominator}")[1].split_parts()
     assert abs(Fraction(head) + Fraction(rest) - number) <= number / 2**100

@@ -10,13 +10,13 @@ from typing import Any
 import numpy as np
 import pytest
 
-from kinematics.gear.gearbox import spindle_speeds
+from kinematics.gear.gearbox import list_spindle_speeds
 from kinematics.gear.teeth import Gear, Mesh
 from synthesis.dispatch import solve
 from synthesis.kinds.gearbox.design import GearboxResult
 from synthesis.kinds.gearbox.problem import GearboxProblem
-from synthesis.kinds.gearbox.stages import worth_having
-from synthesis.kinds.gearbox.structures import Group, formula, structures
+from synthesis.kinds.gearbox.stages import select_undominated
+from synthesis.kinds.gearbox.structures import Group, format_formula, list_structures
 from synthesis.kinds.gearbox.verification import verify
 from synthesis.kinds.layshaft_gearbox.design import LayshaftResult
 from synthesis.kinds.layshaft_gearbox.problem import LayshaftProblem
@@ -57,18 +57,18 @@ def layshaft(**stated: Any) -> LayshaftResult:
 )
 def test_number_of_structures(count: int, most: int, expected: int) -> None:
     """Orders of the factors times orders of the characteristics (Acherkan: 18 structures of 12 speeds)."""
-    found = structures(count, most)
+    found = list_structures(count, most)
     assert len(found) == expected
     assert len(set(found)) == expected
 
 
 @pytest.mark.parametrize("count", [4, 6, 8, 9, 12, 16, 18, 24])
 def test_every_structure_gives_every_speed_once(count: int) -> None:
-    for structure in structures(count, 4):
+    for structure in list_structures(count, 4):
         steps = itertools.product(*(range(group.pairs) for group in structure))
         places = [sum(k * group.characteristic for k, group in zip(step, structure, strict=True)) for step in steps]
         assert sorted(places) == list(range(count))
-    assert formula((Group(3, 1), Group(1, 1), Group(2, 3))) == "3(1) 1 2(3)"
+    assert format_formula((Group(3, 1), Group(1, 1), Group(2, 3))) == "3(1) 1 2(3)"
 
 
 def brute(problem: GearboxProblem, shape: tuple[int, ...]) -> dict[int, float]:
@@ -142,7 +142,7 @@ def test_what_is_worth_having() -> None:
     rng = np.random.default_rng(5)
     middle, half = rng.uniform(-1.0, 1.0, 400), rng.uniform(0.0, 0.3, 400)
     size = rng.integers(10, 20, 400)
-    kept = worth_having(middle, half, size)
+    kept = select_undominated(middle, half, size)
     serves = (half + np.abs(middle - middle[:, None]) <= half[:, None] + 1e-15) & (size <= size[:, None])
     np.fill_diagonal(serves, False)
     assert not serves[np.ix_(kept, kept)].any()
@@ -159,7 +159,7 @@ def test_the_books_headstock_is_beaten() -> None:
         "stage_ratio": {"min": 0.25, "max": 2.5},
     }
     nominal = gearbox_problem(**stated).speeds.nominal
-    errors = [abs(math.log(float(s.speed) / n)) for s, n in zip(spindle_speeds(352, book), nominal, strict=True)]
+    errors = [abs(math.log(float(s.speed) / n)) for s, n in zip(list_spindle_speeds(352, book), nominal, strict=True)]
     result = gearbox(**stated, max_designs=200)
     assert result.designs[0].metrics.max_error < max(errors)
     assert any(
@@ -268,7 +268,7 @@ def test_impossible_gearboxes_are_proven(stated: dict[str, Any], words: str) -> 
 )
 def test_contradictions_name_their_field(stated: dict[str, Any], path: str) -> None:
     problem = gearbox_problem(**{"input_speed": 100.0, "speeds": {"min": 50.0, "ratio": 1.26, "count": 6}} | stated)
-    assert [found.path for found in problem.contradictions()] == [path]
+    assert [found.path for found in problem.find_contradictions()] == [path]
 
 
 def test_broken_gearboxes_do_not_pass() -> None:
@@ -359,7 +359,7 @@ def test_layshaft_demands() -> None:
     assert "the best has an error of" in none.summary
     narrow = layshaft(**stated, teeth={"min": 40, "max": 41}, tooth_sum={"min": 50, "max": 60})
     assert "No gearbox keeps the limits" in narrow.summary
-    paths = [found.path for found in layshaft_problem(ratios=[2.0, 2.5], rank_by="size").contradictions()]
+    paths = [found.path for found in layshaft_problem(ratios=[2.0, 2.5], rank_by="size").find_contradictions()]
     assert paths == ["/ratios/1", "/tolerance"]
 
 

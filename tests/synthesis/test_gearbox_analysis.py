@@ -7,11 +7,11 @@ from typing import Any
 
 import pytest
 
-from kinematics.gear.planetary import GROUND, Mesh, Train, speeds
-from synthesis.analyses import family, parse_request
-from synthesis.analyses.gearbox import GearboxAnalysis, GearboxAnalysisRequest, LayshaftAnalysisRequest
+from kinematics.gear.planetary import GROUND, Mesh, Train, solve_speeds
+from synthesis.analyses import get_family, parse_request
+from synthesis.analyses.gears.gearbox import GearboxAnalysis, GearboxAnalysisRequest, LayshaftAnalysisRequest
 from synthesis.dispatch import solve
-from synthesis.registry import example, parse_problem
+from synthesis.registry import get_first_example, parse_problem
 
 
 def stated_example(request: Any) -> dict[str, Any]:
@@ -21,15 +21,15 @@ def stated_example(request: Any) -> dict[str, Any]:
 
 def analysis(stated: dict[str, Any]) -> GearboxAnalysis:
     request = parse_request(stated)
-    assert request.faults() == []
-    return GearboxAnalysis.model_validate(request.answer())
+    assert request.find_errors() == []
+    return GearboxAnalysis.model_validate(request.build_answer())
 
 
 @pytest.mark.parametrize("kind", ["gearbox", "layshaft_gearbox"])
 def test_designs_turn_as_they_are(kind: str) -> None:
-    design: Any = solve(parse_problem(example(kind)), lambda fraction, message: None).designs[0]
+    design: Any = solve(parse_problem(get_first_example(kind)), lambda fraction, message: None).designs[0]
     mechanism = design.mechanism.model_dump(mode="json")
-    found = GearboxAnalysis.model_validate(family(mechanism).request.over_the_cycle(mechanism, 4))
+    found = GearboxAnalysis.model_validate(get_family(mechanism).request.analyze_cycle(mechanism, 4))
     assert len(found.input_angle) == 5
     output = found.shafts[-1]
     assert output.angle == pytest.approx([output.speed_ratio * angle for angle in found.input_angle])
@@ -46,7 +46,7 @@ def test_directions_by_the_meshes() -> None:
     stated = stated_example(GearboxAnalysisRequest)
     found = analysis(stated)
     train = Train((Mesh("a", "b", GROUND, 80, 40), Mesh("b", "c", GROUND, 30, 60)))
-    rates = speeds(train, {"a": 1}).values
+    rates = solve_speeds(train, {"a": 1}).values
     assert [Fraction(shaft.speed_ratio) for shaft in found.shafts] == [rates["a"], rates["b"], rates["c"]]
     box = stated_example(LayshaftAnalysisRequest)
     back = analysis(box | {"gear": "reverse"})
@@ -55,7 +55,7 @@ def test_directions_by_the_meshes() -> None:
         Mesh("lay", "idler", GROUND, 15, 14),
         Mesh("idler", "out", GROUND, 14, 33),
     )
-    rates = speeds(Train(meshes), {"in": 1}).values
+    rates = solve_speeds(Train(meshes), {"in": 1}).values
     assert [shaft.speed_ratio for shaft in back.shafts] == pytest.approx([float(rate or 0) for rate in rates.values()])
     assert analysis(box | {"gear": 3}).shafts[-1].speed_ratio == 1.0
 
@@ -71,4 +71,4 @@ def test_directions_by_the_meshes() -> None:
 )
 def test_faults_name_their_field(kind: Any, changed: dict[str, Any], path: str) -> None:
     stated = stated_example(kind) | changed
-    assert [where for where, _ in parse_request(stated).faults()] == [path]
+    assert [where for where, _ in parse_request(stated).find_errors()] == [path]

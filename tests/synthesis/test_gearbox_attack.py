@@ -130,7 +130,7 @@ def check_gearbox(stated: dict[str, Any]) -> bool:
     """Compare one statement; whether it has an answer."""
     problem = parse_problem(stated)
     assert isinstance(problem, GearboxProblem)
-    assert not problem.contradictions(), stated
+    assert not problem.find_contradictions(), stated
     result: Any = solve(problem, lambda fraction, message: None)
     quarter = 0.25 * math.log(problem.speeds.progression_ratio)
     assert result.search.complete == (problem.widest < quarter)

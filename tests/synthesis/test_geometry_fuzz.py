@@ -4,7 +4,7 @@ import math
 
 import pytest
 
-from synthesis.model.statement import TINY
+from synthesis.model.problem import MIN_MAGNITUDE
 from synthesis.registry import KINDS, parse_problem
 from tests.support.problems.geometry_cases import case
 from tests.support.problems.geometry_fuzz import run, tally
@@ -37,7 +37,7 @@ def test_a_defect_is_told(monkeypatch):
     assert all(outcome.wrong == (outcome.what == "exception") for outcome in outcomes)
 
 
-@pytest.mark.parametrize("number", [5e-324, -5e-324, 1e-300, 0.99 * TINY])
+@pytest.mark.parametrize("number", [5e-324, -5e-324, 1e-300, 0.99 * MIN_MAGNITUDE])
 def test_what_is_nearly_nothing_is_nothing(number):
     stated = {
         "kind": "motion",
@@ -47,7 +47,7 @@ def test_what_is_nearly_nothing_is_nothing(number):
     stated["positions"][0]["x"] = 0.0
     assert read == parse_problem(stated)
     assert read.positions[0].x == 0.0
-    stated["positions"][0]["x"] = 1.01 * math.copysign(TINY, number)
+    stated["positions"][0]["x"] = 1.01 * math.copysign(MIN_MAGNITUDE, number)
     assert parse_problem(stated).positions[0].x == stated["positions"][0]["x"]
 
 

@@ -26,8 +26,8 @@ PRINTED = {"bending_geometry": [0.423, 0.529], "form": [0.303, 0.412], "elastic"
 
 def judged(mechanism: dict[str, Any], unit: str = "in", **stated: Any) -> dict[str, Any]:
     request = parse_request({"mechanism": mechanism, "speed_rpm": 1800.0, "length_unit": unit, "strength": stated})
-    assert request.faults() == []
-    found = request.answer()["strength"]
+    assert request.find_errors() == []
+    found = request.build_answer()["strength"]
     assert isinstance(found, dict)
     return found
 
@@ -75,7 +75,7 @@ def test_lines_of_contact_are_no_shorter_than_told(contact_ratio: float) -> None
     nearest = math.inf
     for overlap in np.linspace(1.0, 3.4, 25):
         for helix in (0.15, 0.5):
-            told = strength.load_sharing(contact_ratio, 1.0, helix, overlap / math.tan(helix))
+            told = strength.compute_load_sharing(contact_ratio, 1.0, helix, overlap / math.tan(helix))
             drawn = counted(contact_ratio, float(overlap), helix)
             assert drawn <= told * (1.0 + 1e-9)
             nearest = min(nearest, told / drawn)
@@ -114,7 +114,7 @@ def test_stresses_of_a_helix_that_vanishes_are_those_of_spur_teeth(hand: float) 
 )
 def test_what_is_not_known_is_refused(mechanism: dict[str, Any], stated: dict[str, Any], path: str) -> None:
     body = {"mechanism": {**ENCLOSED, **mechanism}, "speed_rpm": 100.0, "strength": {"power_kw": 1.0, **stated}}
-    assert path in [place for place, _ in parse_request(body).faults()]
+    assert path in [place for place, _ in parse_request(body).find_errors()]
 
 
 TRAIN: dict[str, Any] = {
@@ -155,7 +155,7 @@ def test_a_train_carries_what_its_pairs_carry() -> None:
             for module in TRAIN["modules"]:
                 pair = {"type": "gear_pair", "teeth": [driver, driven], "module": module, "helix_angle": -20.0}
                 body = {"mechanism": pair, "speed_rpm": 1450.0, "strength": stated}
-                width = parse_request(body).answer()["strength"].get("least_face_width")
+                width = parse_request(body).build_answer()["strength"].get("least_face_width")
                 if width is not None:
                     carry.append((error, driver + driven, driver, driven, module, width))
                     break

@@ -10,8 +10,8 @@ import numpy as np
 import pytest
 
 from synthesis.dispatch import solve
-from synthesis.kinds.cam.segments import Law
-from synthesis.model.linkage_answer import Skeleton
+from synthesis.kinds.cam.statement.segments import Law
+from synthesis.model.linkage.answer import Skeleton
 from synthesis.registry import parse_problem
 from tests.campaign import further, sampled
 from tests.support.independent import cam_motion
@@ -92,7 +92,7 @@ def test_every_sort_and_criterion_is_stated() -> None:
     assert {stated.get("minimize") for _, stated in drawn} == {*CRITERIA, None}
     assert {stated["follower"]["type"] for _, stated in drawn} == set(FOLLOWERS)
     for _, stated in drawn:
-        assert parse_problem(stated).contradictions() == []
+        assert parse_problem(stated).find_contradictions() == []
 
 
 def test_a_table_leaves_out_the_bends_of_a_continuous_jerk() -> None:

@@ -11,7 +11,7 @@ import pytest
 
 import synthesis
 from synthesis.dispatch import solve
-from synthesis.registry import KINDS, examples, parse_problem
+from synthesis.registry import KINDS, list_examples, parse_problem
 from tests.support.independent.comparison import Measured
 from tests.support.independent.quantities import COMPARED, NEVER_STATED, NOT_MEASURED, fields_of, models_of
 
@@ -100,7 +100,7 @@ def test_names_from_elsewhere_are_few() -> None:
 
 def test_what_is_stated_and_not_compared_is_told() -> None:
     result = Measured()
-    design = solve(parse_problem(examples("quick_return")[0])).designs[0]
+    design = solve(parse_problem(list_examples("quick_return")[0])).designs[0]
     beside = result.beside("quick_return", design, "nothing")
     beside.metric("size", design.metrics.size, 1.0)
     beside.finish()

@@ -10,17 +10,17 @@ from typing import Any
 import numpy as np
 import pytest
 
-from kinematics.indexing.drag_link import Course, DragLink
+from kinematics.indexing.drag_link import CrankCourse, DragLink
 from kinematics.indexing.geneva import Drive, Geneva
 from kinematics.indexing.ratchet import Ratchet
-from kinematics.linkage.planar.catalogue import quick_return
+from kinematics.linkage.planar.catalogue import make_quick_return
 from kinematics.linkage.planar.drive import drive as core_drive
 from synthesis.dispatch import solve
-from synthesis.kinds.indexing.forces import Load, peaks
-from synthesis.kinds.indexing.plane import margins
-from synthesis.kinds.indexing.verification import verify_indexing
-from synthesis.kinds.indexing.verify_ratchet import verify_ratchet
-from synthesis.registry import examples, parse_problem
+from synthesis.kinds.indexing.forces import Load, find_peaks
+from synthesis.kinds.indexing.plane import compute_margins
+from synthesis.kinds.indexing.verification.ratchet import verify_ratchet
+from synthesis.kinds.indexing.verification.verify import verify_indexing
+from synthesis.registry import list_examples, parse_problem
 from tests.campaign import further
 
 DRIVES: tuple[Drive, ...] = ("geneva_external", "geneva_internal", "geneva_spherical")
@@ -124,7 +124,7 @@ def test_a_driven_slotted_link_is_an_external_drive(stations: int) -> None:
     ratio = drive.ratio
     # A crank shaper with its crank at 1 and its link about 0; its ram is not looked at.
     alpha = np.linspace(-0.95, 0.95, 65) * drive.half
-    mechanism = quick_return(1.0 + 0j, 0j, ratio, 2.0, 9.0, 1.0j, 0.0, math.pi + float(alpha[0]))
+    mechanism = make_quick_return(1.0 + 0j, 0j, ratio, 2.0, 9.0, 1.0j, 0.0, math.pi + float(alpha[0]))
     moved = core_drive(mechanism, math.pi + alpha)
     assert moved.valid.all()
     link = moved.angles["rocker"]
@@ -138,14 +138,14 @@ def test_a_driven_slotted_link_is_an_external_drive(stations: int) -> None:
 def test_a_turn_of_the_crank_is_one_station_for_each_roller(drive: Drive) -> None:
     form = Geneva.shock_free(drive, 5)
     rollers = 3 if drive == "geneva_external" else 1
-    turned = form.turned(np.array([0.0, 2.0 * math.pi, 20.0 * math.pi]), rollers)
+    turned = form.wheel_motion(np.array([0.0, 2.0 * math.pi, 20.0 * math.pi]), rollers)
     assert turned.s == pytest.approx(np.array([0.0, 1.0, 10.0]) * rollers * 2.0 * math.pi / 5.0)
-    resting = form.turned(np.array([2.0 * form.half + 0.01]), rollers)
+    resting = form.wheel_motion(np.array([2.0 * form.half + 0.01]), rollers)
     assert (float(resting.v[0]), float(resting.a[0])) == (0.0, 0.0)
 
 
 @pytest.mark.parametrize(
-    "example", [one for one in examples("indexing") if one["drive"] != "ratchet" and "driver" not in one]
+    "example", [one for one in list_examples("indexing") if one["drive"] != "ratchet" and "driver" not in one]
 )
 def test_a_changed_dimension_is_noticed(example: dict[str, Any]) -> None:
     problem = parse_problem(example)
@@ -178,7 +178,7 @@ def test_a_changed_dimension_is_noticed(example: dict[str, Any]) -> None:
 
 
 def test_forces_that_are_told_wrong_are_noticed() -> None:
-    problem = parse_problem(examples("indexing")[0])
+    problem = parse_problem(list_examples("indexing")[0])
     design = solve(problem, lambda fraction, message: None).designs[0]
     doubled = design.course.model_copy(update={"pin_force": [2.0 * force for force in design.course.pin_force]})
     peaky = design.metrics.model_copy(update={"peak_pin_force": 0.99 * design.metrics.peak_pin_force})
@@ -197,8 +197,8 @@ def test_the_smallest_drive_stands_at_its_demand() -> None:
     )
     drive = Geneva.shock_free("geneva_external", 8)
     size = design.mechanism.center_distance
-    assert min(margins(problem, drive, 1.000001 * size).values()) > 0.0
-    assert min(margins(problem, drive, 0.99999 * size).values()) < 0.0
+    assert min(compute_margins(problem, drive, 1.000001 * size).values()) > 0.0
+    assert min(compute_margins(problem, drive, 0.99999 * size).values()) < 0.0
 
 
 def test_a_pin_force_sets_the_size_and_is_met() -> None:
@@ -206,7 +206,9 @@ def test_a_pin_force_sets_the_size_and_is_met() -> None:
     assert design.metrics.sized_by == "pin_force"
     assert design.metrics.peak_pin_force == pytest.approx(20.0, rel=1e-9)
     load, drive = Load(0.05, 0.0, 2.0 * math.pi), Geneva.shock_free("geneva_external", 6)
-    assert peaks(Course(drive), load, 1.0).pin_force / 20.0 == pytest.approx(design.mechanism.center_distance / 1000.0)
+    assert find_peaks(CrankCourse(drive), load, 1.0).pin_force / 20.0 == pytest.approx(
+        design.mechanism.center_distance / 1000.0
+    )
 
 
 def test_rollers_shorten_the_rest() -> None:
@@ -290,7 +292,7 @@ def test_a_changed_ratchet_is_noticed(count: int) -> None:
 def test_a_pawl_falls_behind_each_tooth() -> None:
     wheel = Ratchet(24, 50.0, 4.0, math.radians(15.0), 40.0)
     angle = wheel.overtravel + wheel.pitch * np.array([1e-9, 0.5, 1.0 - 1e-9, 1.0 + 1e-9])
-    low, half, high, fallen = wheel.lifted(angle)
+    low, half, high, fallen = wheel.pawl_lift(angle)
     assert high == pytest.approx(wheel.lift, abs=1e-6)
     assert low == pytest.approx(fallen, abs=1e-6)
     assert low < half < high
@@ -298,7 +300,7 @@ def test_a_pawl_falls_behind_each_tooth() -> None:
 
 @pytest.fixture(scope="module")
 def dragged() -> Any:
-    problem = parse_problem(next(one for one in examples("indexing") if one.get("driver") == "drag_link"))
+    problem = parse_problem(next(one for one in list_examples("indexing") if one.get("driver") == "drag_link"))
     return problem, solve(problem, lambda fraction, message: None).designs[0]
 
 
@@ -327,11 +329,11 @@ def test_a_changed_drag_link_is_noticed(dragged: Any) -> None:
 def test_a_drag_link_is_differentiated_and_turns_through() -> None:
     link = DragLink(2.0, 1.8, 2.2)
     angle = np.linspace(0.0, 2.0 * math.pi, 4001)
-    moved = link.turned(angle)
+    moved = link.output_motion(angle)
     assert moved.s[-1] - moved.s[0] == pytest.approx(2.0 * math.pi)
     for value, rate in itertools.pairwise(moved):
         assert np.gradient(value, angle)[1:-1] == pytest.approx(rate[1:-1], abs=1e-4)
-    assert float(link.turned(np.array(link.reached(1.0))).s) == pytest.approx(1.0, abs=1e-14)
+    assert float(link.output_motion(np.array(link.find_input_angle(1.0))).s) == pytest.approx(1.0, abs=1e-14)
 
 
 def test_no_room_for_walls() -> None:
@@ -459,7 +461,7 @@ def test_what_is_told_is_measured_again() -> None:
 
 
 def test_the_profile_of_a_hemisphere_is_what_its_bore_is_measured_on() -> None:
-    problem = parse_problem(next(one for one in examples("indexing") if one["drive"] == "geneva_spherical"))
+    problem = parse_problem(next(one for one in list_examples("indexing") if one["drive"] == "geneva_spherical"))
     design = solve(problem, lambda fraction, message: None).designs[0]
     profile = design.mechanism.profile
     deeper = profile.model_copy(update={"x": [0.5 * x for x in profile.x], "y": [0.5 * y for y in profile.y]})

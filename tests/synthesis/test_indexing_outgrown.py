@@ -11,9 +11,9 @@ import pytest
 
 from synthesis.dispatch import solve
 from synthesis.kinds.indexing.design import SphericalGenevaMechanism
-from synthesis.kinds.indexing.on_sphere import _edges, measured_on_sphere
-from synthesis.kinds.indexing.smallest import outgrown
-from synthesis.registry import examples, parse_problem
+from synthesis.kinds.indexing.smallest import enlarge_until_verified
+from synthesis.kinds.indexing.spherical_drive import _list_edges, measure_on_sphere
+from synthesis.registry import list_examples, parse_problem
 from tests.campaign import further
 
 STATED = {"kind": "indexing", "drive": "geneva_external", "rollers": 1, "speed_rpm": 60.0, "load_inertia": 0.02}
@@ -62,7 +62,7 @@ def test_a_larger_drive_that_breaks_something_else_is_not_taken(
         checks = [SimpleNamespace(name=name, passed=False) for name in names]
         return SimpleNamespace(size=size, verification=SimpleNamespace(checks=checks))
 
-    assert outgrown((1.0, "wall"), of_size).size == pytest.approx(found, rel=1e-5)
+    assert enlarge_until_verified((1.0, "wall"), of_size).size == pytest.approx(found, rel=1e-5)
 
 
 def test_a_roller_that_has_no_room_beside_a_horn_is_refused() -> None:
@@ -86,7 +86,7 @@ def test_a_roller_that_has_no_room_beside_a_horn_is_refused() -> None:
 @pytest.mark.parametrize("off", [0.0, 1.5])
 def test_a_roller_is_seen_to_pass_the_resting_hemisphere(off: float) -> None:
     """By dense points the roller's axis is as far from all edges in space; a crank that leans over is noticed."""
-    stated = next(one for one in examples("indexing") if one["drive"] == "geneva_spherical")
+    stated = next(one for one in list_examples("indexing") if one["drive"] == "geneva_spherical")
     (design,) = solve(parse_problem(stated)).designs
     mechanism = design.mechanism
     assert isinstance(mechanism, SphericalGenevaMechanism)
@@ -94,12 +94,12 @@ def test_a_roller_is_seen_to_pass_the_resting_hemisphere(off: float) -> None:
     cone, turn = math.radians(changed.cone_angle), math.radians(changed.cone_angle)
     alpha = np.linspace(0.5, 1.5, 721) * math.pi
     axis = np.stack([np.full(721, math.cos(cone)), math.sin(cone) * np.sin(alpha), math.sin(cone) * np.cos(alpha)])
-    edges = _edges(changed)
+    edges = _list_edges(changed)
     x = edges[:, 0] * math.cos(turn) - edges[:, 1] * math.sin(turn)
     y = edges[:, 0] * math.sin(turn) + edges[:, 1] * math.cos(turn)
     along = np.stack([x, y, edges[:, 2]], 1) @ axis
     least = changed.sphere_radius * float(np.sqrt(np.maximum(1.0 - along**2, 0.0))[along > 0.0].min())
-    found = measured_on_sphere(changed)["passing"]
+    found = measure_on_sphere(changed)["passing"]
     assert found <= least + 1e-9
     assert found == pytest.approx(least, abs=0.05 * mechanism.roller_diameter)
     assert (found < 0.5 * mechanism.roller_diameter - 1e-6) == (off > 0.0)

@@ -160,8 +160,8 @@ GEARED = {
 
 def analysed(mechanism: Statement, layout: Statement, **motion: Any) -> Any:
     request = parse_request({"mechanism": mechanism, "motion": motion or {}, "layout": layout})
-    assert request.faults() == []
-    return request.answer()["layout"]
+    assert request.find_errors() == []
+    return request.build_answer()["layout"]
 
 
 def test_a_given_mechanism_is_laid_out_over_its_motion() -> None:

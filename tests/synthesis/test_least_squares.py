@@ -12,18 +12,18 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from synthesis.dispatch import solve
-from synthesis.kinds.motion.constraint_manifold import of_pivots, pivots_of
 from synthesis.kinds.motion.design import MotionResult
-from synthesis.kinds.motion.fit_starts import starts
-from synthesis.kinds.motion.least_squares import fit_demands
-from synthesis.kinds.motion.linear_fit import dyads_of_poses
-from synthesis.kinds.motion.pose_fit import PoseDemands, PoseFit
+from synthesis.kinds.motion.least_squares.constraint_manifold import compute_pivots, make_surface
+from synthesis.kinds.motion.least_squares.linear_fit import fit_dyads
+from synthesis.kinds.motion.least_squares.pose_fit import PoseConstraints, PoseFit
+from synthesis.kinds.motion.least_squares.solver import make_pose_constraints
+from synthesis.kinds.motion.least_squares.starts import list_starts
 from synthesis.kinds.motion.problem import MotionProblem
-from synthesis.kinds.motion.stated_dyads import DyadChoices
-from synthesis.kinds.motion.task import motion_task
-from synthesis.kinds.motion.verification import verify
-from synthesis.model.linkage_answer import LinkageDesign
-from synthesis.model.linkages import FourbarConfiguration, fourbar_mechanism
+from synthesis.kinds.motion.statement.dyad_choices import DyadChoices
+from synthesis.kinds.motion.task.positions import make_motion_task
+from synthesis.kinds.motion.verification.verify import verify
+from synthesis.model.linkage.answer import LinkageDesign
+from synthesis.model.linkage.conversion import FourbarConfiguration, build_fourbar
 from synthesis.numerics.status import Status
 from synthesis.registry import parse_problem
 from tests.campaign import sampled
@@ -67,7 +67,7 @@ def the_plant(planted: Planted, problem: MotionProblem) -> LinkageDesign:
     joints = FourbarConfiguration(
         one.fixed_pivot, one.moving_pivot, other.moving_pivot, other.fixed_pivot, complex(first["x"], first["y"])
     )
-    design = verify(problem, fourbar_mechanism(joints, first["angle"]))
+    design = verify(problem, build_fourbar(joints, first["angle"]))
     assert design is not None
     return design
 
@@ -268,15 +268,15 @@ def test_the_gradient_agrees_with_differences() -> None:
     rng = np.random.default_rng(8)
     planted = plant_many(rng, 12)
     problem = motion(noisy(planted, 0.05, rng))
-    task = motion_task(problem)
-    demands = fit_demands(problem, task)
+    task = make_motion_task(problem)
+    demands = make_pose_constraints(problem, task)
     tolerances = demands.tolerances.copy()
     tolerances[[0, 11]] = 0.0
     tolerances[5] = [0.0, 0.0, 0.5]
     tolerances[6] = [1.0, 0.0, 1.0]
-    found = [of_pivots(task.to_task(s.fixed_pivot), task.to_task(s.moving_pivot))
+    found = [make_surface(task.to_task(s.fixed_pivot), task.to_task(s.moving_pivot))
              for s in (planted.input_side, planted.output_side)]  # fmt: skip
-    fitting = PoseFit(PoseDemands(demands.poses, tolerances), (found[0][0], found[1][0]))
+    fitting = PoseFit(PoseConstraints(demands.poses, tolerances), (found[0][0], found[1][0]))
     x = fitting.start(found[0][1], found[1][1])
     gradient = fitting.gradient(x)
     step = 1e-6
@@ -289,16 +289,16 @@ def test_a_fit_says_whether_it_has_converged() -> None:
     rng = np.random.default_rng(8)
     planted = plant_many(rng, 12)
     problem = motion(noisy(planted, 0.005, rng))
-    task = motion_task(problem)
-    found = [of_pivots(task.to_task(s.fixed_pivot), task.to_task(s.moving_pivot))
+    task = make_motion_task(problem)
+    found = [make_surface(task.to_task(s.fixed_pivot), task.to_task(s.moving_pivot))
              for s in (planted.input_side, planted.output_side)]  # fmt: skip
-    fitting = PoseFit(fit_demands(problem, task), (found[0][0], found[1][0]))
+    fitting = PoseFit(make_pose_constraints(problem, task), (found[0][0], found[1][0]))
     start = fitting.start(found[0][1], found[1][1])
-    short, whole = fitting.minimum(start, evaluations=2), fitting.minimum(start)
+    short, whole = fitting.minimize(start, evaluations=2), fitting.minimize(start)
     assert short is not None
     assert short.status is Status.STEP_LIMIT
     assert whole is not None
-    assert whole.status.converged
+    assert whole.status.is_converged
     assert whole.cost < short.cost
     assert np.abs(fitting.gradient(whole.point)).max() < 1e-6
 
@@ -309,11 +309,11 @@ def test_a_fit_that_has_lost_a_pose_has_not_converged(seed: int) -> None:
     rng = np.random.default_rng(seed)
     planted = plant_many(rng, 20)
     problem = motion(noisy(planted, 0.05, rng))
-    task = motion_task(problem)
-    dyads = [of_pivots(task.to_task(s.fixed_pivot), task.to_task(s.moving_pivot))
+    task = make_motion_task(problem)
+    dyads = [make_surface(task.to_task(s.fixed_pivot), task.to_task(s.moving_pivot))
              for s in (planted.input_side, planted.output_side)]  # fmt: skip
-    fitting = PoseFit(fit_demands(problem, task), (dyads[0][0], dyads[1][0]))
-    ended = fitting.minimum(fitting.start(dyads[0][1], dyads[1][1]))
+    fitting = PoseFit(make_pose_constraints(problem, task), (dyads[0][0], dyads[1][0]))
+    ended = fitting.minimize(fitting.start(dyads[0][1], dyads[1][1]))
     assert ended is not None
     assert ended.cost > 1e11, "otherwise this seed tests nothing"
     assert ended.status is Status.IMPOSSIBLE
@@ -325,7 +325,7 @@ def test_five_poses_give_all_planted_dyads_by_linear_algebra() -> None:
         planted = plant(rng, 5)
         origin = complex(planted.positions[0]["x"], planted.positions[0]["y"])
         points = np.array([complex(p["x"], p["y"]) - origin for p in planted.positions])
-        fixed, moving = dyads_of_poses(points[None], np.radians([[p["angle"] for p in planted.positions]]))
+        fixed, moving = fit_dyads(points[None], np.radians([[p["angle"] for p in planted.positions]]))
         for side in (planted.input_side, planted.output_side):
             gap = np.abs(fixed - side.fixed_pivot + origin) + np.abs(moving - side.moving_pivot + origin)
             assert gap.min() < 1e-5
@@ -335,21 +335,21 @@ def test_surfaces_keep_their_pivots() -> None:
     rng = np.random.default_rng(10)
     for _ in range(50):
         fixed, moving = (complex(*rng.normal(size=2)) * 10.0 ** rng.uniform(-2, 2) for _ in range(2))
-        assert pivots_of(*of_pivots(fixed, moving)) == pytest.approx((fixed, moving), rel=1e-12)
+        assert compute_pivots(*make_surface(fixed, moving)) == pytest.approx((fixed, moving), rel=1e-12)
 
 
 def test_starts_take_stated_pivots() -> None:
     planted = plant_many(np.random.default_rng(11), 9)
     problem = motion(planted.positions)
-    task = motion_task(problem)
+    task = make_motion_task(problem)
     pivot = planted.input_side.fixed_pivot
-    (start,) = starts(
+    (start,) = list_starts(
         task,
-        fit_demands(problem, task),
+        make_pose_constraints(problem, task),
         DyadChoices(fixed_pivot=(pivot.real, pivot.imag)),
         np.random.default_rng(0),
     )
-    fixed, moving = pivots_of(start.surface, start.numbers)
+    fixed, moving = compute_pivots(start.surface, start.numbers)
     assert task.to_problem(fixed) == pytest.approx(pivot)
     assert task.to_problem(moving) == pytest.approx(planted.input_side.moving_pivot)
 
@@ -392,16 +392,16 @@ def test_similar_tasks_have_similar_answers(turn: float, power: float, x: float,
 )
 def test_contradictions_of_fits_name_the_field(changes: dict[str, Any], path: str) -> None:
     positions = plant_many(np.random.default_rng(13), 6).positions
-    assert path in [c.path for c in motion(positions, **changes).contradictions()]
+    assert path in [c.path for c in motion(positions, **changes).find_contradictions()]
 
 
 def test_contradictions_of_positions_name_the_field() -> None:
     positions: list[dict[str, Any]] = [dict(p) for p in plant_many(np.random.default_rng(14), 8).positions]
     positions[7]["tolerance"] = 0.1
-    assert [c.path for c in motion(positions).contradictions()] == ["/positions/5"]
+    assert [c.path for c in motion(positions).find_contradictions()] == ["/positions/5"]
     positions[7]["exact"] = True
-    assert "/positions/7/exact" in [c.path for c in motion(positions).contradictions()]
-    assert [c.path for c in motion(positions[:3], method="least_squares").contradictions()] == ["/method"]
+    assert "/positions/7/exact" in [c.path for c in motion(positions).find_contradictions()]
+    assert [c.path for c in motion(positions[:3], method="least_squares").find_contradictions()] == ["/method"]
 
 
 @pytest.mark.parametrize("tolerance", [None, {"x": 1.0, "y": 1.0, "angle": 2.0}])

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from scipy.optimize import linprog
 
-from synthesis.numerics.linear_program import least
+from synthesis.numerics.linear_program import solve_linear_program
 
 
 @pytest.mark.parametrize("seed", range(40))
@@ -15,7 +15,7 @@ def test_values_are_those_of_another_door_to_a_solver(seed):
     rows, limits, cost = rng.normal(size=(m, n)), rng.normal(size=m) + rng.choice([0.0, 3.0]), rng.normal(size=n)
     low = np.where(rng.random(n) < 0.4, -np.inf, -rng.random(n))
     high = np.where(rng.random(n) < 0.4, np.inf, rng.random(n))
-    found = least(cost, rows, limits, low, high)
+    found = solve_linear_program(cost, rows, limits, low, high)
     known = linprog(cost, rows, limits, bounds=np.stack([low, high], axis=1), method="highs-ipm")
     assert (found is not None) == (known.status == 0)
     if found is not None:
@@ -27,7 +27,9 @@ def test_values_are_those_of_another_door_to_a_solver(seed):
 
 
 def test_no_rows_leave_the_bounds():
-    found = least(np.array([1.0, -1.0]), np.empty((0, 2)), np.empty(0), np.array([-1.0, 0.0]), np.array([1.0, 2.0]))
+    found = solve_linear_program(
+        np.array([1.0, -1.0]), np.empty((0, 2)), np.empty(0), np.array([-1.0, 0.0]), np.array([1.0, 2.0])
+    )
     assert found is not None
     assert np.array_equal(found.at, [-1.0, 2.0])
 
@@ -36,4 +38,4 @@ def test_no_rows_leave_the_bounds():
 def test_what_is_not_finite_has_no_answer(spoilt):
     given = {"cost": np.ones(2), "rows": np.ones((3, 2)), "limits": np.ones(3)}
     given[spoilt] = np.full_like(given[spoilt], np.nan)
-    assert least(given["cost"], given["rows"], given["limits"], np.zeros(2), np.ones(2)) is None
+    assert solve_linear_program(given["cost"], given["rows"], given["limits"], np.zeros(2), np.ones(2)) is None

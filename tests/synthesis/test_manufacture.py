@@ -11,11 +11,11 @@ from typing import Any
 import numpy as np
 import pytest
 
-from kinematics.linkage.variation import deviations
-from kinematics.linkage.variation.sensitivities import sensitivities
+from kinematics.linkage.variation import measure_deviations
+from kinematics.linkage.variation.sensitivities import compute_sensitivities
 from synthesis.dispatch import solve
-from synthesis.manufacture.sampled import interval
-from synthesis.registry import KINDS, examples, parse_problem
+from synthesis.manufacture.yield_sampling import compute_interval
+from synthesis.registry import KINDS, list_examples, parse_problem
 from tests.campaign import further
 from tests.kinematics.variation_twin import crank_rocker, slider
 from tests.oracles import made_linkages
@@ -26,9 +26,9 @@ Statement = dict[str, Any]
 
 FINE = {"length": 0.1, "pivot": 0.05}
 SLIDES = {**MOTION, **BOTH_OPEN, "output_side": {"dyad": "PR", "slide_angle": 15.0}}
-TIMED = examples("path")[1]
-LOGARITHM = {**examples("function")[2], "max_designs": 2}
-PAIRS = {**examples("function")[1], "constraints": {"max_link_ratio": 10.0}, "max_designs": 2}
+TIMED = list_examples("path")[1]
+LOGARITHM = {**list_examples("function")[2], "max_designs": 2}
+PAIRS = {**list_examples("function")[1], "constraints": {"max_link_ratio": 10.0}, "max_designs": 2}
 
 TASKS: dict[str, tuple[Statement, Statement]] = {
     "motion": ({**MOTION, **BOTH_OPEN}, {"quality": {"max_error": 0.2, "max_angle_error": 0.2}}),
@@ -110,14 +110,14 @@ def test_the_worst_case_is_the_worst_corner(name: str) -> None:
 @pytest.mark.parametrize("adjusted", [True, False])
 def test_derivatives_are_differences(make: Any, sort: str, adjusted: bool) -> None:
     nominal, task = make(sort, adjusted=adjusted)
-    found = sensitivities(task, nominal)
-    driven = deviations(dataclasses.replace(task, greatest=False), nominal[None])
+    found = compute_sensitivities(task, nominal)
+    driven = measure_deviations(dataclasses.replace(task, greatest=False), nominal[None])
     assert found.inputs == pytest.approx(driven.inputs[0], abs=1e-5)
     assert found.offsets == pytest.approx(driven.offsets[0], abs=1e-4)
     step = 1e-3
     for k in range(len(nominal)):
         changes = np.eye(len(nominal))[k] * step * np.array([[2.0], [1.0], [-1.0], [-2.0]])
-        near = [sensitivities(task, nominal + change) for change in changes]
+        near = [compute_sensitivities(task, nominal + change) for change in changes]
         off, least = np.array([one.offsets for one in near]), np.array([one.least for one in near])
         difference = (8.0 * (off[1] - off[2]) - (off[0] - off[3])) / (12.0 * step)
         assert found.rates[:, :, k] == pytest.approx(difference, abs=1e-8)
@@ -186,7 +186,7 @@ def test_a_yield_out_of_reach_is_the_nearest_miss() -> None:
 )
 def test_the_interval_holds_what_the_binomial_says(count: int, low: float, high: float) -> None:
     """Of 10 at 99 %: each end is where as many or more (fewer) good ones have a chance of a half per cent."""
-    ends = interval(count, 10)
+    ends = compute_interval(count, 10)
     assert ends == pytest.approx((low, high), abs=6e-5)
     for end, counts in ((ends[0], range(count, 11)), (ends[1], range(count + 1))):
         chance = sum(math.comb(10, k) * end**k * (1.0 - end) ** (10 - k) for k in counts)
@@ -207,8 +207,8 @@ def test_the_same_seed_gives_the_same_yield_and_another_another() -> None:
 
 @pytest.mark.parametrize("kind", [kind for kind in KINDS if hasattr(KINDS[kind].problem, "made")])
 def test_a_kind_takes_the_block_or_refuses_it_by_its_path(kind: str) -> None:
-    problem = parse_problem({**examples(kind)[0], "manufacture": {"tolerances": {"length": 0.1}}})
-    faults = [fault for fault in problem.contradictions() if fault.path.startswith("/manufacture")]
+    problem = parse_problem({**list_examples(kind)[0], "manufacture": {"tolerances": {"length": 0.1}}})
+    faults = [fault for fault in problem.find_contradictions() if fault.path.startswith("/manufacture")]
     assert bool(faults) == (kind not in ("motion", "path", "function"))
     for fault in faults:
         assert fault.path == "/manufacture"

@@ -9,7 +9,7 @@ from typing import Any
 import pytest
 
 from synthesis.dispatch import solve
-from synthesis.model.linkage_answer import LinkageDesign
+from synthesis.model.linkage.answer import LinkageDesign
 from synthesis.registry import parse_problem
 from tests.cases import Case, cases
 from tests.support.synthesis.motion_literature import vector

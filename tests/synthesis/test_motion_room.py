@@ -8,20 +8,34 @@ from typing import Any
 import numpy as np
 import pytest
 
+from kinematics.arrays import Real
 from synthesis.dispatch import solve
-from synthesis.fit.room_margins import margins_of
-from synthesis.kinds.motion import slider_search
-from synthesis.kinds.motion.choices import side_dyads
+from synthesis.fit.workspace_margins import count_margins
+from synthesis.kinds.motion.constrained.clearance_residuals import CHART_SIZE, ENDS, compute_chart
+from synthesis.kinds.motion.constrained.fit import (
+    ConstrainedFit,
+    make_constrained_fit,
+    make_target_rows,
+    measure_workspace_margins,
+    pack_task_workspace,
+    verify_fit,
+)
+from synthesis.kinds.motion.constrained.residuals import (
+    ASSEMBLY,
+    FIXED_RESIDUAL_COUNT,
+    STEPS,
+    count_pose_margins,
+    evaluate_rows,
+)
+from synthesis.kinds.motion.constrained.workspace_starts import list_workspace_starts
+from synthesis.kinds.motion.dyads.candidates import find_side_dyads
+from synthesis.kinds.motion.exact import slider_cranks
+from synthesis.kinds.motion.exact.clearance_filter import check_slider_clearance
 from synthesis.kinds.motion.problem import MotionProblem
-from synthesis.kinds.motion.room import sliders_fit
-from synthesis.kinds.motion.room_starts import pairs_in_room
-from synthesis.kinds.motion.steered_fit import Steered, begun, demanded_rows, driven, room_left, room_of
-from synthesis.kinds.motion.steered_room import CHART, ENDS, chart_of
-from synthesis.kinds.motion.steered_rows import ASSEMBLY, OTHERS, STEPS, limits, steered_rows
-from synthesis.kinds.motion.task import MotionTask, Real, motion_task
-from synthesis.kinds.motion.verification import demanded, verify
-from synthesis.proof.room import judged_by_room
+from synthesis.kinds.motion.task.positions import MotionTask, make_motion_task
+from synthesis.kinds.motion.verification.verify import make_target_poses, verify
 from synthesis.registry import parse_problem
+from synthesis.verification.shared_constraints import check_workspace_of_design
 from tests.campaign import further
 from tests.support.fit import sliders
 from tests.support.fit.motion import GROUPS, statement
@@ -45,30 +59,30 @@ SPACE: dict[str, Any] = {
 }
 
 
-def begun_in_room(over: str) -> tuple[MotionProblem, MotionTask, Real, list[Steered]]:
+def begun_in_room(over: str) -> tuple[MotionProblem, MotionTask, Real, list[ConstrainedFit]]:
     """Linkages that are to be steered into the room above."""
     stated = {"kind": "motion", "positions": POSITIONS, "space": {**SPACE, "over": over}}
     problem = parse_problem(stated)
     assert isinstance(problem, MotionProblem)
-    task = motion_task(problem)
-    rows, room = demanded_rows(problem, task), room_of(problem, task)
-    listed, scores = pairs_in_room(problem, task, rows)
+    task = make_motion_task(problem)
+    rows, room = make_target_rows(problem, task), pack_task_workspace(problem, task)
+    listed, scores = list_workspace_starts(problem, task, rows)
     assert len(listed) == len(scores) > 50
     assert list(scores) == sorted(scores, reverse=True)
-    return problem, task, rows, [begun(problem, task, rows, start, room) for start in listed[:200:25]]
+    return problem, task, rows, [make_constrained_fit(problem, task, rows, start, room) for start in listed[:200:25]]
 
 
-def evaluated(linkage: Steered, x: Real, rows: Real) -> tuple[Real, Real, Real]:
+def evaluated(linkage: ConstrainedFit, x: Real, rows: Real) -> tuple[Real, Real, Real]:
     """All margins, and residuals and slopes of those of the room that bear a load."""
     n = len(rows)
-    roomy = margins_of(linkage.setting[STEPS + n - 1 :])
-    count = roomy + limits(n)
+    roomy = count_margins(linkage.setting[STEPS + n - 1 :])
+    count = roomy + count_pose_margins(n)
     multipliers, state = np.zeros(count + 1), np.empty(count)
     multipliers[count] = 1.0
-    residuals = np.zeros(len(x) + OTHERS + count)
+    residuals = np.zeros(len(x) + FIXED_RESIDUAL_COUNT + count)
     jacobian = np.zeros((len(residuals), len(x)))
-    assert steered_rows(x, rows, linkage.setting, multipliers, state, residuals, jacobian) > 0
-    first = len(x) - 8 + OTHERS
+    assert evaluate_rows(x, rows, linkage.setting, multipliers, state, residuals, jacobian) > 0
+    first = len(x) - 8 + FIXED_RESIDUAL_COUNT
     loaded = int(np.count_nonzero(state[:roomy] < 0.0))
     return state[:roomy], residuals[first : first + loaded], jacobian[first : first + loaded]
 
@@ -97,14 +111,14 @@ def test_rows_of_a_room_have_the_slopes_of_differences(over: str, share: float) 
 
 def test_a_motion_ends_where_the_greatest_share_of_a_tolerance_is_least() -> None:
     problem, task, rows, linkages = begun_in_room("used")
-    target, ended = demanded(problem), 0
+    target, ended = make_target_poses(problem), 0
     for linkage in linkages:
-        design = driven(problem, task, rows, linkage.x, target)
+        design = verify_fit(problem, task, rows, linkage.x, target)
         if design is None or isinstance(design, str) or not design.verification.passed:
             continue
-        chart, beyond = np.empty(CHART), np.full(2, np.nan)
+        chart, beyond = np.empty(CHART_SIZE), np.full(2, np.nan)
         steps = linkage.setting[STEPS : STEPS + len(rows) - 1].copy()
-        assert chart_of(linkage.x, rows, linkage.setting[ASSEMBLY], steps, beyond, chart)
+        assert compute_chart(linkage.x, rows, linkage.setting[ASSEMBLY], steps, beyond, chart)
         mine = np.degrees(chart[ENDS : ENDS + 2] + chart[2])
         off = mine - np.array([design.targets[0].input_angle, design.targets[-1].input_angle])
         # A start meets its poses to first order only, and the drive goes by the finished linkage.
@@ -118,14 +132,14 @@ def test_what_lacks_nothing_of_the_room_is_found_to_fit() -> None:
     stated = {**statement(generator(1, 6), *GROUPS[6]), "max_designs": 2}
     problem = parse_problem(stated)
     assert isinstance(problem, MotionProblem)
-    task = motion_task(problem)
-    rows, room = demanded_rows(problem, task), room_of(problem, task)
-    listed, _ = pairs_in_room(problem, task, rows)
-    linkages = [begun(problem, task, rows, start, room) for start in listed[:40]]
-    left = room_left(linkages, rows, room)
+    task = make_motion_task(problem)
+    rows, room = make_target_rows(problem, task), pack_task_workspace(problem, task)
+    listed, _ = list_workspace_starts(problem, task, rows)
+    linkages = [make_constrained_fit(problem, task, rows, start, room) for start in listed[:40]]
+    left = measure_workspace_margins(linkages, rows, room)
     assert np.isfinite(left).sum() > 20
     assert (left < 0.0).sum() > 10
-    assert np.isinf(room_left(linkages, rows, np.zeros(0))).all()
+    assert np.isinf(measure_workspace_margins(linkages, rows, np.zeros(0))).all()
 
 
 @pytest.mark.parametrize("number", further(range(4, 27), [8]))
@@ -163,19 +177,19 @@ def test_slider_cranks_that_are_left_out_of_a_room_would_fail_in_it(over: str) -
     stated["space"] = {"obstacles": [post], "link_width": 8.0, "over": over}
     problem = parse_problem(stated)
     assert isinstance(problem, MotionProblem)
-    task, rng = motion_task(problem), np.random.default_rng(5)
-    lines = slider_search.sliders(task, problem.output_side, inverted=False, rng=rng, count=40)
-    links = side_dyads(task, problem, 0, rng, 40).dyads
-    screened = slider_search._screen(problem, task, links, lines, "PR", False, 30.0)
+    task, rng = make_motion_task(problem), np.random.default_rng(5)
+    lines = slider_cranks.find_sliders(task, problem.output_side, inverted=False, rng=rng, count=40)
+    links = find_side_dyads(task, problem, 0, rng, 40).dyads
+    screened = slider_cranks._screen(problem, task, links, lines, "PR", False, 30.0)
     i, j = (some[::7][:60] for some in np.nonzero(screened.score))
     joints = np.stack([links.fixed[i], links.moving[i], lines.points[j]], axis=1)
-    fit = sliders_fit(problem, task, joints, lines.angles[j])
+    fit = check_slider_clearance(problem, task, joints, lines.angles[j])
     told = []
     for n in range(len(fit)):
         pair = int(i[n]), int(j[n])
-        design = verify(problem, slider_search._mechanism(problem, task, links, lines, "PR", False, *pair))
+        design = verify(problem, slider_cranks._build_mechanism(problem, task, links, lines, "PR", False, *pair))
         assert design is not None
-        judged = judged_by_room(problem, design)
+        judged = check_workspace_of_design(problem, design)
         assert judged is not None
         checks = {check.name: check.passed for check in judged.verification.checks}
         told.append(checks["obstacles"])

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from synthesis.dispatch import solve
-from synthesis.registry import examples, parse_problem
+from synthesis.registry import list_examples, parse_problem
 from tests.campaign import sampled
 from tests.cases import search_tasks
 from tests.support.synthesis.motion_search import ORDINARY, confirm, run
@@ -275,7 +275,7 @@ def test_random_tasks_by_independent_continuation(seed: int) -> None:
 
 def test_the_designs_of_a_wide_search_are_not_neighbours_of_the_best() -> None:
     """Each has some pivot half a task size from where every other has it, and none is poor."""
-    result = solve(parse_problem(examples("motion")[0]))
+    result = solve(parse_problem(list_examples("motion")[0]))
     assert len(result.designs) == 5
     quality = [design.metrics.quality for design in result.designs]
     assert min(quality) >= 0.5 * max(quality)
@@ -285,7 +285,7 @@ def test_the_designs_of_a_wide_search_are_not_neighbours_of_the_best() -> None:
             for design in result.designs
         ]
     )
-    places = [complex(position["x"], position["y"]) for position in examples("motion")[0]["positions"]]
+    places = [complex(position["x"], position["y"]) for position in list_examples("motion")[0]["positions"]]
     size = max(abs(a - b) for a in places for b in places)
     apart = [np.abs(joints[i] - joints[j]).max() for i in range(5) for j in range(i)]
     assert min(apart) > 0.5 * size
@@ -293,7 +293,7 @@ def test_the_designs_of_a_wide_search_are_not_neighbours_of_the_best() -> None:
 
 @pytest.mark.parametrize("kind", ["motion", "function", "quick_return", "dwell", "parallel_motion", "steering"])
 def test_answers_of_linkages_tell_what_trades_against_what(kind: str) -> None:
-    result = solve(parse_problem(examples(kind)[0]))
+    result = solve(parse_problem(list_examples(kind)[0]))
     assert len(result.designs) > 1
     best = max(range(len(result.designs)), key=lambda n: result.designs[n].metrics.min_transmission_angle)
     assert set(result.front.quantities) >= {"min_transmission_angle", "size"}

@@ -1,14 +1,15 @@
 """Where no design satisfies all demands the answer says what comes nearest, and what is within reach."""
 
 import math
+from dataclasses import replace
 
 import pytest
 
 from synthesis import parse_problem, solve
 from synthesis.dispatch import SEARCH_SHARE
-from synthesis.outcome.allowance import Allowance
-from synthesis.registry import KINDS, examples
-from synthesis.relaxation import relaxation
+from synthesis.nearest_miss import find_nearest_miss
+from synthesis.registry import KINDS, list_examples
+from synthesis.results.time_budget import SearchBudget
 from tests.campaign import further
 from tests.support.synthesis.drawn_poses import LID, ZONES
 
@@ -24,14 +25,14 @@ def motion(**constraints):
 
 
 OUT_OF_REACH = {
-    "path": limited({**examples("path")[1], "method": "exact"}, min_transmission_angle=88.5),
+    "path": limited({**list_examples("path")[1], "method": "exact"}, min_transmission_angle=88.5),
     "function": limited(
-        {**examples("function")[1], "zeros": {"input": 0.0, "output": 0.0}}, min_transmission_angle=88.5
+        {**list_examples("function")[1], "zeros": {"input": 0.0, "output": 0.0}}, min_transmission_angle=88.5
     ),
-    "quick_return": limited(examples("quick_return")[0], min_transmission_angle=88.5),
-    "straight_line": limited(examples("straight_line")[0], min_transmission_angle=88.5),
-    "dwell": limited(examples("dwell")[1], min_transmission_angle=88.5),
-    "parallel_motion": limited(examples("parallel_motion")[0], min_transmission_angle=88.5),
+    "quick_return": limited(list_examples("quick_return")[0], min_transmission_angle=88.5),
+    "straight_line": limited(list_examples("straight_line")[0], min_transmission_angle=88.5),
+    "dwell": limited(list_examples("dwell")[1], min_transmission_angle=88.5),
+    "parallel_motion": limited(list_examples("parallel_motion")[0], min_transmission_angle=88.5),
 }
 
 
@@ -93,8 +94,8 @@ def test_two_limits_each_out_of_reach_are_told_with_what_the_other_leaves():
     ("statement", "check", "measure"),
     [
         ({"kind": "gear_train", "ratio": "pi", "tolerance": 0.0, "max_stages": 1}, "ratio_error", "relative_error"),
-        ({**examples("planetary_train")[0], "ratio": 5.4321, "tolerance": 0.0}, "ratio", "error"),
-        ({**examples("layshaft_gearbox")[0], "tolerance": 0.0001}, "ratios", "max_error"),
+        ({**list_examples("planetary_train")[0], "ratio": 5.4321, "tolerance": 0.0}, "ratio", "error"),
+        ({**list_examples("layshaft_gearbox")[0], "tolerance": 0.0001}, "ratios", "max_error"),
     ],
     ids=["gear_train", "planetary_train", "layshaft_gearbox"],
 )
@@ -123,13 +124,13 @@ def test_progress_never_goes_back():
 def test_a_design_found_without_a_demand_that_keeps_it_is_an_answer():
     """A solver that loses its designs when a limit is stated, though they are far within it."""
     problem = parse_problem(motion(min_transmission_angle=5.0, max_link_ratio=50.0))
-    real = KINDS["motion"].solve
+    kind = KINDS["motion"]
 
     def spoilt(statement, progress):
-        result = real(statement, progress)
+        result = kind.solve(statement, progress)
         return result.model_copy(update={"designs": []}) if statement.constraints.max_link_ratio else result
 
-    found = relaxation(problem, spoilt, lambda *_: None)
+    found = find_nearest_miss(problem, replace(kind, solve=spoilt), lambda *_: None)
     assert found.nearest_miss is None
     assert found.sound
     for design in found.sound:
@@ -142,13 +143,14 @@ def test_a_design_found_without_a_demand_that_keeps_it_is_an_answer():
 def test_a_limit_that_a_kind_sets_itself_is_no_demand_of_the_clients():
     """Functions keep to a link ratio of 100 unless another is stated; that is never left out."""
     problem = parse_problem(OUT_OF_REACH["function"])
+    kind = KINDS["function"]
     asked = []
 
     def recorded(statement, progress):
         asked.append(statement.constraints)
-        return KINDS["function"].solve(statement, progress)
+        return kind.solve(statement, progress)
 
-    relaxation(problem, recorded, lambda *_: None)
+    find_nearest_miss(problem, replace(kind, solve=recorded), lambda *_: None)
     assert asked
     assert {constraints.max_link_ratio for constraints in asked} == {100.0}
 
@@ -175,13 +177,15 @@ def test_of_a_dwell_out_of_reach_the_longest_that_was_found_is_told(angle, count
 def test_no_search_is_begun_that_the_allowance_has_no_room_for(seconds):
     """Searches that take so long, by a clock of the test's: the first is made, and others while one more fits."""
     problem = parse_problem(motion(min_transmission_angle=85.0, fixed_pivot_region={"x": [20, 30], "y": [-60, -50]}))
+    kind = replace(KINDS["motion"], nearer=None)
     spent = [0.0]
 
     def slow(statement, progress):
         spent[0] += seconds
-        return KINDS["motion"].solve(statement, progress)
+        return kind.solve(statement, progress)
 
-    found = relaxation(problem, slow, lambda *_: None, allowance=Allowance(4.0, lambda: spent[0]))
+    budget = SearchBudget(4.0, lambda: spent[0])
+    found = find_nearest_miss(problem, replace(kind, solve=slow), lambda *_: None, budget)
     assert found.nearest_miss is not None, "the best found so far is told"
     assert spent[0] <= max(4.0, seconds)
     assert spent[0] + seconds > 4.0 or len(found.nearest_miss.gaps) == 1
@@ -230,7 +234,7 @@ def test_a_limit_beside_tolerances_is_approached_by_continuation():
         searched.append(kind.solve(stated, progress))
         return searched[-1]
 
-    found = relaxation(problem, recorded, lambda *_: None, kind.verify, kind.nearer)
+    found = find_nearest_miss(problem, replace(kind, solve=recorded), lambda *_: None)
     longest = min(max(design.mechanism.links.model_dump().values()) for result in searched for design in result.designs)
     designs = found.sound or [found.nearest_miss.design]
     assert max(designs[0].mechanism.links.model_dump().values()) < 0.8 * longest

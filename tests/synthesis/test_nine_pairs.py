@@ -6,17 +6,17 @@ import numpy as np
 import pytest
 
 from synthesis.dispatch import solve
-from synthesis.kinds.function.nine_pair_system import (
-    GROUPS,
-    SCRATCH,
-    SOLUTIONS,
+from synthesis.kinds.function.nine_pairs.continuation import BEND_SIZE, load_nine_pair_start
+from synthesis.kinds.function.nine_pairs.system import (
+    SCALE_GROUPS,
+    SCRATCH_SIZE,
+    SOLUTION_COUNT,
+    compute_residuals,
     nine_pair_system,
     nine_pair_system_extended,
-    residuals,
 )
-from synthesis.kinds.function.nine_pairs import BEND, nine_pair_start
-from synthesis.numerics.continuation import REACHED, follow, refine
-from synthesis.numerics.known import Known
+from synthesis.numerics.continuation import END_REACHED, follow, refine
+from synthesis.numerics.point_set import KnownPoints
 from synthesis.registry import parse_problem
 from tests.support.sixbars.nine_pairs import planted
 from tools.watt_start import nine_pair_problem
@@ -38,7 +38,7 @@ def test_a_drawn_sixbar_solves_its_own_problem():
     rng = np.random.default_rng(3)
     for _ in range(10):
         y, p = nine_pair_problem(rng)
-        assert residuals(y, p) < 1e-9
+        assert compute_residuals(y, p) < 1e-9
         assert np.abs(gaps(y, p)).max() < 1e-8 * np.abs(y).max() ** 4
 
 
@@ -49,7 +49,7 @@ def test_the_compiled_system_is_newtons_step_of_the_couplers_lengths():
         y, p = nine_pair_problem(rng)
         dp = rng.normal(size=16) + 1j * rng.normal(size=16)
         newton, tangent = np.empty((2, 8), np.complex128)
-        low, p_low, work = (np.zeros(count, complex) for count in (8, 16, SCRATCH))
+        low, p_low, work = (np.zeros(count, complex) for count in (8, 16, SCRATCH_SIZE))
         assert nine_pair_system(y, low, p, p_low, dp, newton, tangent, work) == 1
         h = 1e-6
         jacobian = np.stack([(gaps(y + h * k, p) - gaps(y - h * k, p)) / (2 * h) for k in np.eye(8)], axis=1)
@@ -63,8 +63,8 @@ def test_a_change_of_the_turns_below_rounding_moves_the_precise_solution():
     rng = np.random.default_rng(5)
     y, p = nine_pair_problem(rng)
     dp = rng.normal(size=16) + 1j * rng.normal(size=16)
-    zero, work = np.zeros(8, complex), np.empty(SCRATCH, complex)
-    refined, low, _ = refine(nine_pair_system_extended, GROUPS, SCRATCH, y[None], zero[None], p)
+    zero, work = np.zeros(8, complex), np.empty(SCRATCH_SIZE, complex)
+    refined, low, _ = refine(nine_pair_system_extended, SCALE_GROUPS, SCRATCH_SIZE, y[None], zero[None], p)
     newton, tangent = np.empty((2, 8), np.complex128)
     assert nine_pair_system_extended(refined[0], low[0], p, 1e-22 * dp, dp, newton, tangent, work) == 1
     assert np.abs(newton - 1e-22 * tangent).max() < 1e-3 * np.abs(1e-22 * tangent).max()
@@ -77,32 +77,42 @@ def test_a_nearly_singular_end_is_reached_along_a_precise_way_alone():
     turned = np.concatenate([inputs[1:] - inputs[0], outputs[1:] - outputs[0]])
     p = 2j * np.sin(0.5 * turned) * np.exp(0.5j * turned)
     rng = np.random.default_rng(0)
-    bend = [BEND * (rng.normal(size=(16, 2)) @ np.array([1.0, 1.0j])) for _ in range(2)][1]
-    begun, one = nine_pair_start(), [1458]
+    bend = [BEND_SIZE * (rng.normal(size=(16, 2)) @ np.array([1.0, 1.0j])) for _ in range(2)][1]
+    begun, one = load_nine_pair_start(), [1458]
     way = begun.y[one], begun.p, p, bend
     rough, fine = (
-        follow(nine_pair_system_extended, GROUPS, SCRATCH, *way, tolerance=1e-4, most_steps=20_000, precise=precise)
+        follow(
+            nine_pair_system_extended,
+            SCALE_GROUPS,
+            SCRATCH_SIZE,
+            *way,
+            tolerance=1e-4,
+            most_steps=20_000,
+            precise=precise,
+        )
         for precise in (False, True)
     )
-    assert rough.status[0] != REACHED
-    assert fine.status[0] == REACHED
+    assert rough.status[0] != END_REACHED
+    assert fine.status[0] == END_REACHED
     assert np.abs(gaps(fine.y[0], p)).max() < 1e-9
 
 
 def test_the_start_has_all_solutions_each_once():
-    begun = nine_pair_start()
-    assert begun.y.shape == (SOLUTIONS, 8)
-    assert residuals(begun.y, begun.p).max() < 1e-9
-    assert Known(8, 1e-6).add(begun.y).all()
+    begun = load_nine_pair_start()
+    assert begun.y.shape == (SOLUTION_COUNT, 8)
+    assert compute_residuals(begun.y, begun.p).max() < 1e-9
+    assert KnownPoints(8, 1e-6).add(begun.y).all()
 
 
 def test_some_paths_lead_to_solutions_of_another_problem():
-    begun, some = nine_pair_start(), slice(0, SOLUTIONS, 700)
+    begun, some = load_nine_pair_start(), slice(0, SOLUTION_COUNT, 700)
     _, p = nine_pair_problem(np.random.default_rng(8))
-    ends = follow(nine_pair_system, GROUPS, SCRATCH, begun.y[some], begun.p, p, np.zeros(16, complex), tolerance=1e-3)
-    reached = ends.y[ends.status == REACHED]
+    ends = follow(
+        nine_pair_system, SCALE_GROUPS, SCRATCH_SIZE, begun.y[some], begun.p, p, np.zeros(16, complex), tolerance=1e-3
+    )
+    reached = ends.y[ends.status == END_REACHED]
     assert len(reached) > 30
-    assert Known(8, 1e-6).add(reached).all()
+    assert KnownPoints(8, 1e-6).add(reached).all()
     largest = max(np.abs(gaps(one, p)).max() / np.abs(one).max() ** 4 for one in reached)
     assert largest < 1e-7
 

@@ -5,21 +5,21 @@ import json
 import numpy as np
 import pytest
 
-from kinematics.linkage.fourbar import OPEN, Fourbar, positions
-from synthesis.kinds.path.nine_point import all_triples, conjugate
-from synthesis.kinds.path.nine_point_system import (
-    ORBITS,
-    SCRATCH,
-    cognate,
-    cognates,
-    exchanged,
+from kinematics.linkage.fourbar import OPEN_ASSEMBLY, Fourbar, positions
+from synthesis.kinds.path.exact.continuation_starts import load_nine_point_start
+from synthesis.kinds.path.exact.nine_point_system import (
+    ORBIT_COUNT,
+    SCRATCH_SIZE,
+    compute_orbit_keys,
+    compute_residuals,
+    construct_cognate,
+    construct_cognates,
+    evaluate_nine_point_system,
+    evaluate_nine_point_system_extended,
     is_linkage,
-    nine_point_system,
-    nine_point_system_extended,
-    orbit_keys,
-    residuals,
+    swap_dyads,
 )
-from synthesis.kinds.path.starts import nine_point_start
+from synthesis.kinds.path.exact.nine_points import compute_conjugates, compute_triples
 from tests.campaign import sampled
 from tests.cases import HERE
 from tools.path_starts import nine_point_problem
@@ -34,7 +34,7 @@ def silent(share):
 def coupler_points(linkage, rng, count=9):
     """Points of one circuit of a linkage that turns through, at random crank angles in order."""
     angles = np.sort(rng.uniform(0.0, 2.0 * np.pi, count))
-    at = positions(linkage, angles, OPEN)
+    at = positions(linkage, angles, OPEN_ASSEMBLY)
     assert at.valid.all()
     return at.p, at
 
@@ -50,29 +50,29 @@ def crank_rocker(rng):
 
 
 def test_the_start_has_1442_orbits():
-    begun = nine_point_start()
-    assert begun.y.shape == (ORBITS, 16)
-    assert residuals(begun.y, begun.p).max() < 1e-9
+    begun = load_nine_point_start()
+    assert begun.y.shape == (ORBIT_COUNT, 16)
+    assert compute_residuals(begun.y, begun.p).max() < 1e-9
     assert is_linkage(begun.y).all()
-    keys = orbit_keys(begun.y, begun.p)
+    keys = compute_orbit_keys(begun.y, begun.p)
     gaps = np.abs(keys[:, None] - keys[None]).max(axis=-1) / np.abs(keys).max(axis=-1)[:, None]
-    assert (gaps + np.eye(ORBITS)).min() > 1e-4
+    assert (gaps + np.eye(ORBIT_COUNT)).min() > 1e-4
 
 
 def test_cognates_and_exchanged_dyads_solve_the_same_problem():
     rng = np.random.default_rng(7)
     for _ in range(20):
         y, p = nine_point_problem(rng)
-        members = np.stack([y, cognate(y, p), cognate(exchanged(y), p), exchanged(y)])
-        assert residuals(members, p).max() < 1e-9
-        keys = orbit_keys(members, p)
+        members = np.stack([y, construct_cognate(y, p), construct_cognate(swap_dyads(y), p), swap_dyads(y)])
+        assert compute_residuals(members, p).max() < 1e-9
+        keys = compute_orbit_keys(members, p)
         assert np.abs(keys - keys[0]).max() < 1e-9 * np.abs(keys).max()
         # going round the cognates comes back after three times
-        round_ = cognate(exchanged(cognate(exchanged(cognate(exchanged(y), p)), p)), p)
+        round_ = construct_cognate(swap_dyads(construct_cognate(swap_dyads(construct_cognate(swap_dyads(y), p)), p)), p)
         assert np.abs(round_ - y).max() < 1e-9 * np.abs(y).max()
 
 
-@pytest.mark.parametrize("system", [nine_point_system, nine_point_system_extended])
+@pytest.mark.parametrize("system", [evaluate_nine_point_system, evaluate_nine_point_system_extended])
 def test_the_compiled_system_is_newtons_step_of_the_equations(system):
     """Against the whole Jacobian of 16 equations, by differences, and a library's solver."""
     rng = np.random.default_rng(3)
@@ -91,7 +91,7 @@ def test_the_compiled_system_is_newtons_step_of_the_equations(system):
         y = y * (1.0 + 0.01 * rng.normal(size=16))
         dp = rng.normal(size=16) + 1j * rng.normal(size=16)
         newton, tangent = np.empty((2, 16), np.complex128)
-        low, p_low, work = (np.zeros(count, complex) for count in (16, 16, SCRATCH))
+        low, p_low, work = (np.zeros(count, complex) for count in (16, 16, SCRATCH_SIZE))
         assert system(y, low, p, p_low, dp, newton, tangent, work) == 1
         h = 1e-6
         jacobian = np.stack([(gaps(y + h * e, p) - gaps(y - h * e, p)) / (2 * h) for e in np.eye(16)], axis=1)
@@ -109,9 +109,9 @@ def test_dyads_that_agree_in_one_coordinate_are_no_linkage():
     s_back = -p[8:] / y[1]
     y[8:] = -s_back / (1.0 + s_back)
     # β = 0 and r̄ = 0 leave nothing of the equations, whatever x and r are.
-    assert residuals(y, p) < 1e-12
+    assert compute_residuals(y, p) < 1e-12
     assert not is_linkage(y)
-    assert not is_linkage(conjugate(y))
+    assert not is_linkage(compute_conjugates(y))
 
 
 @pytest.mark.campaign
@@ -119,7 +119,7 @@ def test_special_points_are_not_called_complete():
     """Nine points of an ellipse: nearly singular solutions, of which more or fewer are real by the last digits."""
     (case,) = [case for case in PUBLISHED if case["status"] == "non_generic"]
     points = np.array([complex(*point) for point in case["inputs"]["points"]])
-    found = all_triples(points, np.random.default_rng(0), silent, threads=2)
+    found = compute_triples(points, np.random.default_rng(0), silent, threads=2)
     assert not found.complete
     assert found.nearly_singular > 14
 
@@ -130,13 +130,13 @@ def test_a_planted_linkage_and_both_cognates_are_found():
     linkage = crank_rocker(rng)
     points, at = coupler_points(linkage, rng)
     told = []
-    found = all_triples(points, rng, told.append, threads=2)
+    found = compute_triples(points, rng, told.append, threads=2)
     assert found.complete
     assert told == sorted(told)
     assert told[-1] == 1.0
-    assert residuals(found.y, found.p, found.low).max() <= 1e-8
+    assert compute_residuals(found.y, found.p, found.low).max() <= 1e-8
     assert found.self_conjugate
-    assert residuals(conjugate(found.y), found.p).max() < 1e-3
+    assert compute_residuals(compute_conjugates(found.y), found.p).max() < 1e-3
     planted = np.array([linkage.input_pivot, at.a[0], linkage.output_pivot, at.b[0]])
     gaps = np.minimum(
         np.abs(found.real - planted).max(axis=-1), np.abs(found.real - planted[[2, 3, 0, 1]]).max(axis=-1)
@@ -155,7 +155,7 @@ def test_a_planted_linkage_and_both_cognates_are_found():
 
 def test_the_members_of_an_orbit_are_three():
     y, p = nine_point_problem(np.random.default_rng(5))
-    assert cognates(y[None], p).shape == (1, 3, 16)
+    assert construct_cognates(y[None], p).shape == (1, 3, 16)
 
 
 @pytest.mark.campaign
@@ -167,5 +167,5 @@ def test_random_problems_end_with_all_orbits():
             points = rng.normal(size=9) + 1j * rng.normal(size=9)
         else:
             points, _ = coupler_points(crank_rocker(rng), rng)
-        found = all_triples(points, rng, silent, threads=2)
+        found = compute_triples(points, rng, silent, threads=2)
         assert found.complete, (n, found.lost, found.self_conjugate)

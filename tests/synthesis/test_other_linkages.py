@@ -7,14 +7,14 @@ import pytest
 
 from kinematics.linkage import SliderCrank
 from kinematics.linkage.fourbar import Fourbar, positions
-from kinematics.linkage.planar.catalogue import geared_fivebar
+from kinematics.linkage.planar.catalogue import make_geared_fivebar
 from kinematics.linkage.planar.drive import drive
 from kinematics.linkage.slider_crank import closed_form as sliders
 from synthesis.dispatch import solve
 from synthesis.kinds.path.design import PathResult
-from synthesis.kinds.path.other_linkages import cognate_fivebars, geared_fivebar_mechanism
-from synthesis.kinds.path.verify_traced import verify_traced
-from synthesis.model.linkages import FourbarConfiguration, slider_crank_mechanism
+from synthesis.kinds.path.slider_cranks_and_fivebars import build_cognate_fivebars, build_geared_fivebar
+from synthesis.kinds.path.verification.linkage import verify_traced
+from synthesis.model.linkage.conversion import FourbarConfiguration, build_slider_crank
 from synthesis.registry import parse_problem
 
 SLIDER = SliderCrank(1.0 + 2.0j, 1.0 + 2.3j, 0.3, 1.0, 3.2, 1.5 + 1.2j)
@@ -40,7 +40,7 @@ def answer(points, mechanism, **changes) -> PathResult:
 
 def geared(ratio, count=60, turns=1):
     """P of a geared fivebar over its whole cycle."""
-    made = geared_fivebar(0.0, 2.0, 1.0, 2.5, 2.2, 0.8, ratio, 0.7, 0.0, 1, 1.8 + 0.9j)
+    made = make_geared_fivebar(0.0, 2.0, 1.0, 2.5, 2.2, 0.8, ratio, 0.7, 0.0, 1, 1.8 + 0.9j)
     motion = drive(made, np.linspace(0.0, math.tau * turns, count, endpoint=False), order=0)
     assert motion.valid.all()
     return motion.joints["P"][0]
@@ -51,7 +51,7 @@ ELEVEN = [2.2, 2.96, 3.38, 3.8, 4.11, 4.46, 5.16, 6.01, 6.46, 6.93, 7.28]
 
 def test_eleven_points_of_a_geared_fivebar_are_met():
     """As many points as it has numbers: first descents miss them, and perturbed copies of the best reach them."""
-    linkage = geared_fivebar(0.0, 2.219, 1.078, 2.409, 3.151, 0.873, -2.0, 0.481, 0.0, 1, -1.426 + 3.824j)
+    linkage = make_geared_fivebar(0.0, 2.219, 1.078, 2.409, 3.151, 0.873, -2.0, 0.481, 0.0, 1, -1.426 + 3.824j)
     motion = drive(linkage, np.array(ELEVEN), order=0)
     assert motion.valid.all()
     points = 20.0 * motion.joints["P"][0]
@@ -79,7 +79,7 @@ def test_what_no_slider_crank_meets_is_fitted():
 def slider_mechanism(theta):
     at = sliders.positions(SLIDER, theta, 1)
     joints = (complex(z) for z in (SLIDER.pivot, at.a, at.b))
-    return slider_crank_mechanism(*joints, 0.3, complex(at.p))
+    return build_slider_crank(*joints, 0.3, complex(at.p))
 
 
 def test_verification_meets_what_a_slider_crank_draws():
@@ -192,10 +192,10 @@ def test_a_fivebar_is_rebuilt_from_its_dimensions():
     for ratio in (1.0, -2.0, 0.5, 1.5):
         o2, o5, a, b, c, p = rng.normal(size=6) + 1j * rng.normal(size=6)
         angle = float(np.angle(a - o2)) + math.tau
-        made = geared_fivebar_mechanism(o2, a, c, b, o5, p, ratio, angle)
+        made = build_geared_fivebar(o2, a, c, b, o5, p, ratio, angle)
         links, sign = made.links, 1 if made.assembly == "open" else -1
         point = made.coupler_point.distance * np.exp(1j * math.radians(made.coupler_point.angle))
-        again = geared_fivebar(
+        again = make_geared_fivebar(
             o2, o5, links.input, links.coupler_1, links.coupler_2, links.output, ratio,
             math.radians(made.phase), math.radians(made.reference_input_angle), sign, point,
         )  # fmt: skip
@@ -211,7 +211,7 @@ def test_cognate_fivebars_draw_the_fourbars_curve():
     target = positions(crank, np.linspace(0.7, 0.7 + math.tau, 50, endpoint=False), 1).p
     problem = statement(target, "geared_fivebar", method="curve_match", closed=True, gear_ratio=1.0)
     whole = 0
-    for made in cognate_fivebars(joints):
+    for made in build_cognate_fivebars(joints):
         assert made.gear_ratio == 1.0
         design = verify_traced(problem, made)
         if design is not None and design.verification.passed:
@@ -255,7 +255,7 @@ def test_size_and_place_do_not_matter(size, mechanism):
 )
 def test_what_a_mechanism_cannot_be_asked_is_refused_with_its_place(mechanism, changes, where):
     points = sliders.coupler_points(SLIDER, TURN[:12], 1).p
-    assert where in [fault.path for fault in statement(points, mechanism, **changes).contradictions()]
+    assert where in [fault.path for fault in statement(points, mechanism, **changes).find_contradictions()]
 
 
 def test_prescribed_timing_is_for_fourbars():
@@ -267,7 +267,7 @@ def test_prescribed_timing_is_for_fourbars():
             "points": [{"x": float(k), "y": float(k * k), "crank_angle": 20.0 * k} for k in range(4)],
         }
     )
-    assert "/timing" in [fault.path for fault in problem.contradictions()]
+    assert "/timing" in [fault.path for fault in problem.find_contradictions()]
 
 
 @pytest.mark.campaign

@@ -10,11 +10,11 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from synthesis.model.answer import Check, Verification
-from synthesis.model.statement import StatedProblem
-from synthesis.outcome.exhaustive import first_within, pareto, within_tolerance
-from synthesis.outcome.front import front_of
-from synthesis.outcome.ranking import KEYS, ranked
-from synthesis.outcome.sifting import DEFECTS, OUTRANKED, Sifting, reported
+from synthesis.model.problem import ProblemBase
+from synthesis.results.candidate_log import DEFECT_REASONS, OUTRANKED_REASON, CandidateLog, report_candidates
+from synthesis.results.exhaustive import is_within_tolerance, select_pareto, select_within_tolerance
+from synthesis.results.pareto import pareto_front
+from synthesis.results.ranking import SORT_KEYS, rank_designs
 
 
 class Metrics(NamedTuple):
@@ -50,17 +50,17 @@ designs = st.builds(
 verdicts = st.lists(st.one_of(designs, st.none(), st.sampled_from(["degenerate", "link_length"])), max_size=40)
 
 
-def problem(most: int = 10, *, include_failed: bool = False) -> StatedProblem:
-    return StatedProblem(kind="any", max_designs=most, include_failed=include_failed, seed=7)
+def problem(most: int = 10, *, include_failed: bool = False) -> ProblemBase:
+    return ProblemBase(kind="any", max_designs=most, include_failed=include_failed, seed=7)
 
 
-@given(verdicts, st.dictionaries(st.sampled_from(["branch_defect", OUTRANKED]), st.integers(0, 9)))
+@given(verdicts, st.dictionaries(st.sampled_from(["branch_defect", OUTRANKED_REASON]), st.integers(0, 9)))
 def test_the_account_adds_up(met: list[Design | str | None], screened: dict[str, int]) -> None:
-    sifting = Sifting[Design](problem(), DEFECTS)
+    sifting = CandidateLog[Design](problem(), DEFECT_REASONS)
     for reason, count in screened.items():
         sifting.reject(reason, count)
-    sifting.sift(met, lambda verdict: verdict)
-    search = sifting.search("any")
+    sifting.verify_candidates(met, lambda verdict: verdict)
+    search = sifting.build_search("any")
     assert search.candidates == len(met) + sum(screened.values())
     assert search.candidates == search.accepted + sum(search.rejected.values())
     assert search.accepted == len(sifting.passed)
@@ -71,11 +71,11 @@ def test_the_account_adds_up(met: list[Design | str | None], screened: dict[str,
 
 @given(verdicts, st.integers(0, 5))
 def test_what_is_withdrawn_counts_as_rejected(met: list[Design | str | None], kept: int) -> None:
-    sifting = Sifting[Design](problem())
-    sifting.sift(met, lambda verdict: verdict)
+    sifting = CandidateLog[Design](problem())
+    sifting.verify_candidates(met, lambda verdict: verdict)
     accepted = sifting.accepted
     sifting.withdraw(sifting.passed[:kept], "far")
-    search = sifting.search("any")
+    search = sifting.build_search("any")
     assert search.candidates == len(met)
     assert search.accepted == min(kept, accepted)
     assert search.rejected.get("far", 0) == accepted - search.accepted
@@ -83,47 +83,49 @@ def test_what_is_withdrawn_counts_as_rejected(met: list[Design | str | None], ke
 
 @given(verdicts, st.integers(1, 4))
 def test_it_stops_when_enough_have_passed(met: list[Design | str | None], enough: int) -> None:
-    sifting = Sifting[Design](problem())
-    verified = sifting.sift(met, lambda verdict: verdict, enough)
+    sifting = CandidateLog[Design](problem())
+    verified = sifting.verify_candidates(met, lambda verdict: verdict, enough)
     assert verified == sifting.candidates
     assert len(sifting.passed) <= enough
     assert verified == len(met) or len(sifting.passed) == enough
 
 
 def test_reasons_are_those_of_the_first_broken_check() -> None:
-    sifting = Sifting[Design](problem(), DEFECTS, undriven="does_not_turn")
-    sifting.sift([design(("same_circuit", "longest_link")), design(("longest_link",)), None], lambda verdict: verdict)
+    sifting = CandidateLog[Design](problem(), DEFECT_REASONS, undriven="does_not_turn")
+    sifting.verify_candidates(
+        [design(("same_circuit", "longest_link")), design(("longest_link",)), None], lambda verdict: verdict
+    )
     assert sifting.rejected == {"circuit_defect": 1, "longest_link": 1, "does_not_turn": 1}
-    assert sifting.listed("does_not_turn") == "circuit defect 1, longest link 1"
+    assert sifting.format_reasons("does_not_turn") == "circuit defect 1, longest link 1"
 
 
 def test_a_candidate_driven_both_ways_counts_once() -> None:
-    sifting = Sifting[Design](problem())
-    reasons = [sifting.keep(design()), sifting.keep(design())]
+    sifting = CandidateLog[Design](problem())
+    reasons = [sifting.insert_design(design()), sifting.insert_design(design())]
     sifting.count("" if "" in reasons else reasons[0])
     assert sifting.candidates == sifting.accepted == 1
     assert len(sifting.passed) == 2
 
 
-@given(st.lists(designs, max_size=30), st.integers(1, 12), st.booleans(), st.sampled_from(sorted(KEYS)))
+@given(st.lists(designs, max_size=30), st.integers(1, 12), st.booleans(), st.sampled_from(sorted(SORT_KEYS)))
 def test_designs_are_cut_and_those_that_failed_are_last(
     met: list[Design], most: int, include_failed: bool, rank_by: str
 ) -> None:
-    sifting = Sifting[Design](problem(most, include_failed=include_failed))
-    sifting.sift(met, lambda verdict: verdict)
-    returned = sifting.designs(lambda listed: ranked(listed, rank_by))
-    everything = ranked(met if include_failed else [d for d in met if d.verification.passed], rank_by)
+    sifting = CandidateLog[Design](problem(most, include_failed=include_failed))
+    sifting.verify_candidates(met, lambda verdict: verdict)
+    returned = sifting.select_designs(lambda listed: rank_designs(listed, rank_by))
+    everything = rank_designs(met if include_failed else [d for d in met if d.verification.passed], rank_by)
     assert returned == everything[:most]
     passes = [one.verification.passed for one in returned]
     assert passes == sorted(passes, reverse=True)
-    values = [KEYS[rank_by](one) for one in returned if one.verification.passed]
+    values = [SORT_KEYS[rank_by](one) for one in returned if one.verification.passed]
     assert values == sorted(values)
 
 
 @given(st.lists(designs, max_size=20))
 def test_ties_go_by_quality_and_residuals_of_rounding_are_alike(met: list[Design]) -> None:
     exact = [one._replace(targets=[SimpleNamespace(residual=1e-14 * n)]) for n, one in enumerate(met)]
-    order = ranked(exact, "accuracy")
+    order = rank_designs(exact, "accuracy")
     for passed in (True, False):
         qualities = [one.metrics.quality for one in order if one.verification.passed == passed]
         assert qualities == sorted(qualities, reverse=True)
@@ -131,22 +133,30 @@ def test_ties_go_by_quality_and_residuals_of_rounding_are_alike(met: list[Design
 
 def test_a_kind_states_its_own_key_and_group() -> None:
     small, large, best = design(size=1.0), design(size=2.0), design(quality=0.9, size=3.0)
-    assert ranked([large, small, best], "quality", {"quality": lambda one: one.metrics.size}) == [small, large, best]
-    assert ranked([small, large, best], "size", group=lambda one: -one.metrics.quality) == [best, small, large]
+    assert rank_designs([large, small, best], "quality", {"quality": lambda one: one.metrics.size}) == [
+        small,
+        large,
+        best,
+    ]
+    assert rank_designs([small, large, best], "size", group=lambda one: -one.metrics.quality) == [best, small, large]
 
 
 def test_progress_runs_over_its_span() -> None:
     told: list[tuple[float, str]] = []
-    drawn = reported(["a", "b"], lambda share, message: told.append((share, message)), (0.5, 1.0), "{next} of {all}")
+    drawn = report_candidates(
+        ["a", "b"], lambda share, message: told.append((share, message)), (0.5, 1.0), "{next} of {all}"
+    )
     assert list(drawn) == ["a", "b"]
     assert told == [(0.5, "1 of 2"), (0.75, "2 of 2")]
 
 
 def test_nothing_that_is_left_out_as_alike_takes_a_place() -> None:
-    sifting = Sifting[Design](problem(2))
+    sifting = CandidateLog[Design](problem(2))
     first, same, second = design(quality=0.9), design(quality=0.9, size=2.0), design(quality=0.5)
-    sifting.sift([first, same, second], lambda verdict: cast("Design | None", verdict))
-    assert sifting.designs(lambda listed: ranked(listed, "quality"), lambda listed: [listed[0], listed[2]]) == [
+    sifting.verify_candidates([first, same, second], lambda verdict: cast("Design | None", verdict))
+    assert sifting.select_designs(
+        lambda listed: rank_designs(listed, "quality"), lambda listed: [listed[0], listed[2]]
+    ) == [
         first,
         second,
     ]
@@ -160,20 +170,20 @@ class Sized(NamedTuple):
 def test_an_error_exactly_at_the_tolerance_is_within_it():
     """0.1 is no float: the float of it is above the decimal, that of 0.3 below."""
     for decimal in ("0.1", "0.3"):
-        assert within_tolerance(Fraction(decimal), float(decimal))
-        assert not within_tolerance(Fraction(decimal) + Fraction(1, 10**30), float(decimal))
-    assert within_tolerance(Fraction(5), None)
+        assert is_within_tolerance(Fraction(decimal), float(decimal))
+        assert not is_within_tolerance(Fraction(decimal) + Fraction(1, 10**30), float(decimal))
+    assert is_within_tolerance(Fraction(5), None)
 
 
 def test_the_pareto_set_has_what_is_nearer_than_all_smaller_ones():
     by_size = [Sized(Fraction(error, 100), size) for size, error in enumerate((7, 9, 7, 4, 5, 4, 0))]
-    assert [one.size for one in pareto(by_size, lambda one: one.error)] == [0, 3, 6]
-    assert [one.size for one in first_within(by_size, 0.05, 2)] == [3, 4]
+    assert [one.size for one in select_pareto(by_size, lambda one: one.error)] == [0, 3, 6]
+    assert [one.size for one in select_within_tolerance(by_size, 0.05, 2)] == [3, 4]
 
 
 @given(st.lists(designs, max_size=12))
 def test_the_front_is_what_no_other_sound_design_beats(found: list[Design]) -> None:
-    front = front_of(found)
+    front = pareto_front(found)
     sound = [n for n, one in enumerate(found) if one.verification.passed]
     if front is None:
         assert len(sound) < 2

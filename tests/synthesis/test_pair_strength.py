@@ -10,7 +10,7 @@ import pytest
 from kinematics.gear import strength
 from kinematics.gear.teeth import Gear
 from synthesis.analyses import parse_request
-from synthesis.model.gear_strength import StatedStrength, Stresses
+from synthesis.model.gears.strength import StrengthSpec, Stresses
 
 PSI = 0.006894757293168
 HP = 0.745699871582
@@ -29,8 +29,8 @@ PRINTED = {"bending_geometry": [0.30, 0.40], "form": [0.303, 0.412], "elastic": 
 
 def judged(mechanism: dict[str, Any], speed: float, unit: str = "in", **stated: Any) -> dict[str, Any]:
     request = parse_request({"mechanism": mechanism, "speed_rpm": speed, "length_unit": unit, "strength": stated})
-    assert request.faults() == []
-    found = request.answer()["strength"]
+    assert request.find_errors() == []
+    found = request.build_answer()["strength"]
     assert isinstance(found, dict)
     return found
 
@@ -94,7 +94,7 @@ def test_printed_factors_give_the_printed_stresses() -> None:
 )
 def test_form_factors_of_the_true_profile(teeth: int, form: float) -> None:
     """Shigley, Table 14-2, is for another fillet: the true profile is within 5 % of it."""
-    assert strength.lewis_form(Gear(teeth, 2.5)) == pytest.approx(form, rel=0.05)
+    assert strength.compute_lewis_form(Gear(teeth, 2.5)) == pytest.approx(form, rel=0.05)
 
 
 def test_a_shift_makes_a_pinion_stronger() -> None:
@@ -212,7 +212,7 @@ def test_every_field_counts(changes: dict[str, Any], told: str) -> None:
 )
 def test_faults(mechanism: dict[str, Any], body: dict[str, Any], path: str) -> None:
     stated = {"mechanism": {**ENCLOSED, **mechanism}, "speed_rpm": 100.0, "strength": {"power_kw": 1.0}, **body}
-    assert [fault[0] for fault in parse_request(stated).faults()] == [path]
+    assert [fault[0] for fault in parse_request(stated).find_errors()] == [path]
 
 
 @pytest.mark.parametrize(("method", "name"), [("agma", "bending_geometry"), ("lewis", "form")])
@@ -233,10 +233,10 @@ def test_no_least_width_without_all_stresses() -> None:
     unknown = {"bending_safety": None, "contact_safety": 2.0}
     known = {"bending_safety": 1.5, "contact_safety": None}
     load = strength.Load(1.0, 1.0, 1.0, 1.0, 1.0)
-    assert not Stresses(load, 1.0, None, None, [unknown, unknown]).keep(["bending_safety"])
-    assert not Stresses(load, 1.0, None, None, [unknown, known]).keep(["bending_safety"])
-    assert Stresses(load, 1.0, None, None, [known, known]).keep(["bending_safety"])
-    assert StatedStrength(power_kw=1.0, allowable_bending=(1.0, 1.0)).kept == ["bending_safety"]
+    assert not Stresses(load, 1.0, None, None, [unknown, unknown]).has_safeties(["bending_safety"])
+    assert not Stresses(load, 1.0, None, None, [unknown, known]).has_safeties(["bending_safety"])
+    assert Stresses(load, 1.0, None, None, [known, known]).has_safeties(["bending_safety"])
+    assert StrengthSpec(power_kw=1.0, allowable_bending=(1.0, 1.0)).required_safeties == ["bending_safety"]
 
 
 def test_a_ring_is_judged_by_contact() -> None:
@@ -260,8 +260,8 @@ def test_a_stage_of_a_train_has_the_stresses_of_its_pair() -> None:
         "strength": {},
     }
     request = parse_request(body)
-    assert request.faults() == []
-    first, second = (mesh["strength"] for mesh in request.answer()["meshes"])
+    assert request.find_errors() == []
+    first, second = (mesh["strength"] for mesh in request.build_answer()["meshes"])
     for one, other in zip(first["gears"], pair["gears"], strict=True):
         assert {name: one[name] for name in one} == pytest.approx(other)
     assert second["tangential_force"] * second["pitch_line_velocity"] == pytest.approx(3000.0)
@@ -269,7 +269,7 @@ def test_a_stage_of_a_train_has_the_stresses_of_its_pair() -> None:
     shifted = {**stage, "shift": {"driver": 0.3, "driven": -0.1}}
     body["mechanism"] = {"type": "gear_train", "stages": [shifted]}
     alone = {**ENCLOSED, "module": 2.54, "face_width": 38.1, "shift": [0.3, -0.1]}
-    said = parse_request(body).answer()["meshes"][0]["strength"]
+    said = parse_request(body).build_answer()["meshes"][0]["strength"]
     wanted = judged(alone, 1800.0, "mm", power_kw=3.0)
     for one, other in zip(said["gears"], wanted["gears"], strict=True):
         assert one["bending_stress"] == pytest.approx(other["bending_stress"])
@@ -287,4 +287,4 @@ def test_a_stage_of_a_train_has_the_stresses_of_its_pair() -> None:
 def test_faults_of_a_train(changes: dict[str, Any], path: str) -> None:
     train = {"type": "gear_train", "stages": [{"driver": 17, "driven": 52, "module": 2.54}]}
     stated = {"mechanism": train, "motion": {"at": 0.0, "speed_rpm": 100.0}, "strength": {}, **changes}
-    assert path in [fault[0] for fault in parse_request(stated).faults()]
+    assert path in [fault[0] for fault in parse_request(stated).find_errors()]

@@ -12,8 +12,8 @@ from synthesis.dispatch import solve
 from synthesis.kinds.parallel_motion.design import ParallelMotionDesign, ParallelMotionResult
 from synthesis.kinds.parallel_motion.problem import ParallelMotionProblem
 from synthesis.kinds.parallel_motion.verification import verify_parallel_motion
-from synthesis.model.statement import ContradictionError
-from synthesis.registry import example, parse_problem
+from synthesis.model.problem import ContradictionError
+from synthesis.registry import get_first_example, parse_problem
 from tests.cases import Case, cases
 from tests.oracles.positions import meet
 from tests.synthesis.driving import constraints_of
@@ -215,16 +215,16 @@ def test_contradictions_are_told_by_their_field(changed, path) -> None:
 
 
 def test_neither_or_both_is_refused() -> None:
-    for fields in ({}, {"linkage": example("parallel_motion")["linkage"], "path": example("path")}):
+    for fields in ({}, {"linkage": get_first_example("parallel_motion")["linkage"], "path": get_first_example("path")}):
         problem = parse_problem({"kind": "parallel_motion", **fields})
-        assert "/linkage" in [fault.path for fault in problem.contradictions()]
+        assert "/linkage" in [fault.path for fault in problem.find_contradictions()]
     on_pin = stated(20.0, 70.0, 90.0, 60.0, 0.0, 30.0, "open")
-    assert [fault.path for fault in on_pin.contradictions()] == ["/linkage/coupler_point"]
+    assert [fault.path for fault in on_pin.find_contradictions()] == ["/linkage/coupler_point"]
 
 
 def as_answered(changes):
     """A fourbar as an answer has it, with some of it changed."""
-    known = parse_problem(example("parallel_motion")).linkage
+    known = parse_problem(get_first_example("parallel_motion")).linkage
     base = {**known.model_dump(exclude_none=True), "reference_input_angle": 40.0}
     linkage = parse_problem({"kind": "parallel_motion", "linkage": base}).linkage
     joints = {name: [z.real, z.imag] for name, z in linkage.joints.items()}
@@ -256,7 +256,7 @@ def as_answered(changes):
 )
 def test_a_fourbar_of_an_answer_says_one_thing(changes, path):
     problem = as_answered(changes)
-    assert [fault.path for fault in problem.contradictions()] == ([] if path is None else [path])
+    assert [fault.path for fault in problem.find_contradictions()] == ([] if path is None else [path])
     if path is None:
         assert solve(problem, lambda fraction, message: None).designs
 
@@ -269,4 +269,4 @@ def test_an_input_angle_that_there_is_not_is_refused_at_once():
         "reference_input_angle": 180.0,
     }
     problem = parse_problem({"kind": "parallel_motion", "linkage": linkage})
-    assert [fault.path for fault in problem.contradictions()] == ["/linkage/reference_input_angle"]
+    assert [fault.path for fault in problem.find_contradictions()] == ["/linkage/reference_input_angle"]

@@ -7,11 +7,11 @@ import numpy as np
 import pytest
 from pydantic import ValidationError
 
-from kinematics.linkage.fourbar import OPEN, Fourbar, positions
+from kinematics.linkage.fourbar import OPEN_ASSEMBLY, Fourbar, positions
 from synthesis.dispatch import solve
-from synthesis.kinds.path.verification import verify_path
-from synthesis.model.linkages import FourbarConfiguration, fourbar_mechanism
-from synthesis.registry import example, parse_problem
+from synthesis.kinds.path.verification.fourbar import verify_path
+from synthesis.model.linkage.conversion import FourbarConfiguration, build_fourbar
+from synthesis.registry import get_first_example, parse_problem
 from tests.cases import HERE
 
 CRANK_ROCKER = Fourbar(1.0 - 2.0j, 7.0 + 1.0j, 2.0, 6.0, 5.0, 3.0 + 2.0j)
@@ -26,10 +26,10 @@ def statement(points, **changes):
     return parse_problem({"kind": "path", "points": [{"x": z.real, "y": z.imag} for z in points], **changes})
 
 
-def mechanism(linkage, angle, assembly=OPEN):
+def mechanism(linkage, angle, assembly=OPEN_ASSEMBLY):
     at = positions(linkage, angle, assembly)
     joints = (linkage.input_pivot, at.a, at.b, linkage.output_pivot, at.p)
-    return fourbar_mechanism(FourbarConfiguration(*map(complex, joints)))
+    return build_fourbar(FourbarConfiguration(*map(complex, joints)))
 
 
 def checks(design):
@@ -38,7 +38,7 @@ def checks(design):
 
 def test_a_linkage_that_draws_the_points_passes():
     angles = np.array([0.3, 0.9, 1.8, 2.2, 3.9, 5.0])
-    points = positions(CRANK_ROCKER, angles, OPEN).p
+    points = positions(CRANK_ROCKER, angles, OPEN_ASSEMBLY).p
     design = verify_path(statement(points), mechanism(CRANK_ROCKER, angles[0]))
     assert design.verification.passed
     assert np.allclose([math.radians(t.input_angle) for t in design.targets], angles, atol=1e-7)
@@ -49,17 +49,17 @@ def test_a_linkage_that_draws_the_points_passes():
 def test_a_point_in_line_with_the_crank_is_reached_to_rounding():
     """There the triangle of O2, A and P is flat, and its angle known to half of the digits only."""
     angles = np.array([0.3, 0.9, 1.8, 2.2, 3.9, 5.0])
-    at = positions(CRANK_ROCKER, angles[2], OPEN)
+    at = positions(CRANK_ROCKER, angles[2], OPEN_ASSEMBLY)
     beyond = 3.0 * (at.a - CRANK_ROCKER.input_pivot) / abs(at.a - CRANK_ROCKER.input_pivot)
     aligned = Fourbar(1.0 - 2.0j, 7.0 + 1.0j, 2.0, 6.0, 5.0, complex(beyond * abs(at.b - at.a) / (at.b - at.a)))
-    points = positions(aligned, angles, OPEN).p
+    points = positions(aligned, angles, OPEN_ASSEMBLY).p
     design = verify_path(statement(points), mechanism(aligned, angles[0]))
     assert max(t.residual for t in design.targets) < 1e-13
     assert design.verification.passed
 
 
 def test_points_out_of_order_are_seen():
-    points = positions(CRANK_ROCKER, np.array([0.3, 1.8, 0.9, 2.2, 3.9]), OPEN).p
+    points = positions(CRANK_ROCKER, np.array([0.3, 1.8, 0.9, 2.2, 3.9]), OPEN_ASSEMBLY).p
     design = verify_path(statement(points), mechanism(CRANK_ROCKER, 0.3))
     assert not checks(design)["visits_in_order"]
     assert checks(design)["same_circuit"]
@@ -69,8 +69,8 @@ def test_points_out_of_order_are_seen():
 
 
 def test_points_of_the_other_circuit_are_seen():
-    points = positions(CRANK_ROCKER, np.array([0.3, 0.9, 1.8]), OPEN).p
-    points[1] = positions(CRANK_ROCKER, 0.9, -OPEN).p
+    points = positions(CRANK_ROCKER, np.array([0.3, 0.9, 1.8]), OPEN_ASSEMBLY).p
+    points[1] = positions(CRANK_ROCKER, 0.9, -OPEN_ASSEMBLY).p
     design = verify_path(statement(points), mechanism(CRANK_ROCKER, 0.3))
     assert checks(design)["reaches_targets"]
     assert not checks(design)["same_circuit"]
@@ -79,7 +79,7 @@ def test_points_of_the_other_circuit_are_seen():
 @pytest.mark.parametrize("off", [1e-6, 1e-3, 1.0])
 @pytest.mark.parametrize("moved", [0, 2])
 def test_a_point_off_the_curve_is_not_reached(off, moved):
-    points = positions(CRANK_ROCKER, np.array([0.3, 0.9, 1.8, 2.5]), OPEN).p
+    points = positions(CRANK_ROCKER, np.array([0.3, 0.9, 1.8, 2.5]), OPEN_ASSEMBLY).p
     first = mechanism(CRANK_ROCKER, 0.3)
     points[moved] += off * (1.0 + 1.0j)
     design = verify_path(statement(points), first)
@@ -123,7 +123,7 @@ def passes_in_order(design, points):
 
 @pytest.mark.campaign
 def test_fewer_points_are_met_by_members_of_their_family():
-    problem = parse_problem(example("path"))
+    problem = parse_problem(get_first_example("path"))
     result = solve(problem, silent)
     assert not result.search.complete
     assert result.search.method == "family_search"
@@ -190,7 +190,7 @@ def turned(*angles, **changes):
     ],
 )
 def test_contradictions_name_the_field(problem, where):
-    assert where in [fault.path for fault in problem.contradictions()]
+    assert where in [fault.path for fault in problem.find_contradictions()]
 
 
 @pytest.mark.parametrize(

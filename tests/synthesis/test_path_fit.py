@@ -5,12 +5,21 @@ import math
 import numpy as np
 import pytest
 
-from kinematics.linkage.fourbar import OPEN, Fourbar, positions
+from kinematics.linkage.fourbar import OPEN_ASSEMBLY, Fourbar, positions
 from synthesis.dispatch import solve
-from synthesis.fit.chart import natural
-from synthesis.fit.demands import CHANGE_POINT, FAMILY, GIVEN, LIMITS, LINKS, MOVING, SIGN, margins
-from synthesis.kinds.path.limits import SETTING
-from synthesis.model.linkages import FourbarConfiguration, fourbar_mechanism, to_point
+from synthesis.fit.chart import compute_lengths
+from synthesis.fit.constraints import (
+    CHANGE_POINT,
+    FAMILY_INDEX,
+    GIVEN_PIVOTS,
+    LIMIT_COUNT,
+    LINKS,
+    MOVING,
+    SIGN_INDEX,
+    compute_margins,
+)
+from synthesis.kinds.path.residuals.constraint_vector import PATH_SETTING_SIZE
+from synthesis.model.linkage.conversion import FourbarConfiguration, build_fourbar, to_point
 from synthesis.registry import parse_problem
 from tests.campaign import sampled
 from tests.oracles.fourbar_sweep import coupler_points, least_sum_in_order
@@ -28,7 +37,7 @@ def fit(points, angles=None, **changes):
 
 def test_a_planted_timed_linkage_is_recovered():
     angles = np.linspace(0.0, 330.0, 12)
-    points = positions(CRANK_ROCKER, np.radians(angles) + 0.4, OPEN).p
+    points = positions(CRANK_ROCKER, np.radians(angles) + 0.4, OPEN_ASSEMBLY).p
     best = fit(points, angles).designs[0]
     assert best.metrics.max_distance < 1e-9
     assert measured_at_angles(best, points, angles) < 1e-16
@@ -40,7 +49,7 @@ def test_crank_phase_and_direction_are_kept(phase, way):
     angles = np.linspace(20.0, 320.0, 11)
     ground = math.degrees(float(CRANK_ROCKER.ground_angle))
     absolute = angles + (ground if phase == "ground_line" else 0.0)
-    points = positions(CRANK_ROCKER, np.radians(absolute), OPEN).p
+    points = positions(CRANK_ROCKER, np.radians(absolute), OPEN_ASSEMBLY).p
     result = fit(points, way * angles, crank_phase=phase, crank_direction="either")
     best = result.designs[0]
     assert best.metrics.max_distance < 1e-9
@@ -54,13 +63,13 @@ def test_crank_phase_and_direction_are_kept(phase, way):
 
 def test_a_fixed_direction_is_not_turned_round():
     angles = np.linspace(0.0, 330.0, 12)
-    points = positions(CRANK_ROCKER, np.radians(-angles) + 0.4, OPEN).p
+    points = positions(CRANK_ROCKER, np.radians(-angles) + 0.4, OPEN_ASSEMBLY).p
     assert fit(points, angles, crank_direction="either").designs[0].metrics.max_distance < 1e-9
     assert fit(points, angles).designs[0].metrics.max_distance > 1e-2
 
 
 def test_a_planted_path_without_timing_is_recovered():
-    points = positions(CRANK_ROCKER, np.array([0.1, 0.5, 0.9, 1.6, 2.0, 2.8, 3.3, 3.9, 4.4, 5.0, 5.5]), OPEN).p
+    points = positions(CRANK_ROCKER, np.array([0.1, 0.5, 0.9, 1.6, 2.0, 2.8, 3.3, 3.9, 4.4, 5.0, 5.5]), OPEN_ASSEMBLY).p
     best = fit(points, closed=True).designs[0]
     assert best.metrics.max_distance < 1e-8
     assert least_sum_in_order(best.mechanism, points) < 1e-2
@@ -71,7 +80,10 @@ def test_a_planted_path_without_timing_is_recovered():
 @pytest.mark.parametrize(("seed", "least"), [(3, 2), (6, 4)])
 def test_verified_sums_agree_with_brute_force(seed, least):
     rng = np.random.default_rng(seed)
-    points = positions(CRANK_ROCKER, np.linspace(0.0, 5.5, 14), OPEN).p + 0.3 * rng.normal(size=(14, 2)) @ [1.0, 1.0j]
+    points = positions(CRANK_ROCKER, np.linspace(0.0, 5.5, 14), OPEN_ASSEMBLY).p + 0.3 * rng.normal(size=(14, 2)) @ [
+        1.0,
+        1.0j,
+    ]
     # Away from change points, beside which P goes far between two samples of the brute force.
     result = fit(points, constraints={"full_rotation": True, "min_transmission_angle": 15.0})
     # Of the first points other fits are near the points alone, and go astray between them.
@@ -96,7 +108,7 @@ def test_verified_sums_agree_with_brute_force(seed, least):
 def test_limits_are_hard():
     rng = np.random.default_rng(5)
     angles = np.linspace(0.0, 340.0, 18)
-    points = positions(CRANK_ROCKER, np.radians(angles), OPEN).p + 0.1 * rng.normal(size=(18, 2)) @ [1.0, 1.0j]
+    points = positions(CRANK_ROCKER, np.radians(angles), OPEN_ASSEMBLY).p + 0.1 * rng.normal(size=(18, 2)) @ [1.0, 1.0j]
     free = fit(points, angles).designs[0]
     limits = {
         "link_length": {"min": 2.5, "max": 6.0},
@@ -135,7 +147,7 @@ def test_moving_pivots_are_brought_into_their_region(phase):
     rng = np.random.default_rng(5)
     angles = np.linspace(20.0, 340.0, 12)
     ground = {"absolute": 0.0, "ground_line": math.atan2(3.0, 6.0)}.get(phase, 0.3)
-    points = positions(CRANK_ROCKER, np.radians(angles) + ground, OPEN).p
+    points = positions(CRANK_ROCKER, np.radians(angles) + ground, OPEN_ASSEMBLY).p
     points = points + 0.02 * rng.normal(size=(12, 2)) @ [1.0, 1.0j]
     timing = {"angles": angles, "crank_phase": phase} if phase else {}
     free = fit(points, constraints={"grashof": "crank_rocker"}, **timing).designs[0]
@@ -154,16 +166,16 @@ def test_moving_pivots_are_brought_into_their_region(phase):
 
 def test_margins_of_moving_pivots_have_the_derivatives_of_their_places():
     rng = np.random.default_rng(2)
-    setting = np.full(SETTING, np.inf)
-    setting[FAMILY], setting[SIGN], setting[MOVING : MOVING + 4] = 1.0, -1.0, (-1.0, 2.0, -3.0, 1.5)
+    setting = np.full(PATH_SETTING_SIZE, np.inf)
+    setting[FAMILY_INDEX], setting[SIGN_INDEX], setting[MOVING : MOVING + 4] = 1.0, -1.0, (-1.0, 2.0, -3.0, 1.5)
     setting[LINKS] = setting[CHANGE_POINT] = 0.0
-    setting[GIVEN : GIVEN + 4] = np.nan
+    setting[GIVEN_PIVOTS : GIVEN_PIVOTS + 4] = np.nan
 
     def at(x, angle, turn):
-        lengths, slopes, values = np.empty(4), np.empty((4, 4)), np.empty(LIMITS)
-        gradients = np.zeros((LIMITS, len(x)))
-        natural(1, x, lengths, slopes)
-        margins(x, lengths, slopes, np.array([angle, angle + 3.0]), turn, setting, values, gradients)
+        lengths, slopes, values = np.empty(4), np.empty((4, 4)), np.empty(LIMIT_COUNT)
+        gradients = np.zeros((LIMIT_COUNT, len(x)))
+        compute_lengths(1, x, lengths, slopes)
+        compute_margins(x, lengths, slopes, np.array([angle, angle + 3.0]), turn, setting, values, gradients)
         return values, gradients
 
     for _ in range(20):
@@ -180,7 +192,7 @@ def test_margins_of_moving_pivots_have_the_derivatives_of_their_places():
 
 def test_given_pivots_are_kept():
     angles = np.linspace(0.0, 330.0, 12)
-    points = positions(CRANK_ROCKER, np.radians(angles) + 0.4, OPEN).p
+    points = positions(CRANK_ROCKER, np.radians(angles) + 0.4, OPEN_ASSEMBLY).p
     both = fit(points, angles, fixed_pivots={"input": [1.0, -2.0], "output": [7.0, 1.0]}).designs[0]
     assert both.metrics.max_distance < 1e-7
     one = fit(points, angles, fixed_pivots={"output": [None, 3.0]}).designs[0]
@@ -191,7 +203,7 @@ def test_given_pivots_are_kept():
 def test_fits_move_with_the_points(scale):
     rng = np.random.default_rng(1)
     angles = np.linspace(0.0, 330.0, 12)
-    points = positions(CRANK_ROCKER, np.radians(angles), OPEN).p + 0.1 * rng.normal(size=(12, 2)) @ [1.0, 1.0j]
+    points = positions(CRANK_ROCKER, np.radians(angles), OPEN_ASSEMBLY).p + 0.1 * rng.normal(size=(12, 2)) @ [1.0, 1.0j]
     turn, shift = np.exp(0.7j), 30.0 - 20.0j
     # The nearest of all: whether a usable one stands before it hangs on the few starts that lead there.
     one, other = (
@@ -226,7 +238,7 @@ def test_degenerate_points_are_fitted(points):
 @pytest.mark.campaign
 def test_a_thousand_points_take_seconds():
     along = np.linspace(0.0, 6.2, 1000)
-    points = positions(CRANK_ROCKER, along, OPEN).p
+    points = positions(CRANK_ROCKER, along, OPEN_ASSEMBLY).p
     assert fit(points, closed=True).designs[0].metrics.rms_distance < 1e-6
     best = fit(points, np.degrees(along)).designs[0]
     assert best.metrics.max_distance < 1e-8
@@ -234,7 +246,7 @@ def test_a_thousand_points_take_seconds():
 
 @pytest.mark.campaign
 def test_the_same_statement_has_the_same_answer_and_progress_rises():
-    points = positions(CRANK_ROCKER, np.linspace(0.0, 5.0, 12), OPEN).p + 0.05
+    points = positions(CRANK_ROCKER, np.linspace(0.0, 5.0, 12), OPEN_ASSEMBLY).p + 0.05
     problem = parse_problem({"kind": "path", "points": listed(points), "max_designs": 3})
     assert problem.fitted
     told = []
@@ -275,7 +287,7 @@ def test_planted_timed_fits_are_recovered_every_time():
     for _ in range(sampled(100)):
         linkage = drawn(rng)
         angles = np.sort(rng.uniform(0.0, 360.0, int(rng.integers(6, 30))))
-        points = positions(linkage, np.radians(angles) + rng.uniform(0.0, 6.0), OPEN).p
+        points = positions(linkage, np.radians(angles) + rng.uniform(0.0, 6.0), OPEN_ASSEMBLY).p
         best = min(fit(points, angles).designs, key=lambda design: design.metrics.max_distance)
         size = np.abs(points[:, None] - points).max()
         assert best.metrics.max_distance < 1e-9 * size
@@ -284,7 +296,7 @@ def test_planted_timed_fits_are_recovered_every_time():
 def test_cognates_of_an_answer_pass_the_same_points():
     rng = np.random.default_rng(8)
     angles = np.linspace(0.0, 330.0, 12)
-    points = positions(CRANK_ROCKER, np.radians(angles), OPEN).p + 0.1 * rng.normal(size=(12, 2)) @ [1.0, 1.0j]
+    points = positions(CRANK_ROCKER, np.radians(angles), OPEN_ASSEMBLY).p + 0.1 * rng.normal(size=(12, 2)) @ [1.0, 1.0j]
     best = fit(points, angles).designs[0]
     assert {one.side for one in best.cognates} == {"left", "right"}
     own = coupler_points(best.mechanism, [target.input_angle for target in best.targets])
@@ -304,21 +316,21 @@ def standing(linkage, turn, scale):
     """The joints of a linkage in one position, all links but the ground larger by a scale."""
     a, b, c = (scale * length for length in (linkage.input, linkage.coupler, linkage.output))
     larger = Fourbar(linkage.input_pivot, linkage.output_pivot, a, b, c, scale * linkage.coupler_point)
-    now = positions(larger, np.array([turn]), OPEN)
+    now = positions(larger, np.array([turn]), OPEN_ASSEMBLY)
     pivots = complex(linkage.input_pivot), complex(linkage.output_pivot)
     return FourbarConfiguration(pivots[0], complex(now.a[0]), complex(now.b[0]), pivots[1], complex(now.p[0]))
 
 
 @pytest.mark.parametrize("demands", [{}, {"full_rotation": True}, {"min_transmission_angle": 30.0}])
 def test_a_fit_that_begins_at_a_linkage_ends_at_the_minimum_beside_it(demands):
-    points = positions(CRANK_ROCKER, np.linspace(0.3, 4.0, 12), OPEN).p
+    points = positions(CRANK_ROCKER, np.linspace(0.3, 4.0, 12), OPEN_ASSEMBLY).p
     begun = standing(CRANK_ROCKER, 1.0, 1.05)
     start = dict(zip(("O2", "A", "B", "O4", "P"), map(to_point, begun), strict=True))
     result = fit(points, start=start, constraints=demands)
     best = result.designs[0]
     assert "from the given start" in result.summary
     assert not result.search.complete
-    before = least_sum_in_order(fourbar_mechanism(begun), points)
+    before = least_sum_in_order(build_fourbar(begun), points)
     after = least_sum_in_order(best.mechanism, points)
     assert best.metrics.sum_of_squares <= after
     assert after < 1e-2 * before
@@ -330,4 +342,4 @@ def test_what_a_start_cannot_be_stated_beside_is_refused():
     points = listed(np.exp(1j * np.arange(12.0)))
     for path, changes in (("/method", {}), ("/start", {"method": "least_squares"})):
         problem = parse_problem({"kind": "path", "points": points, "start": start, **changes})
-        assert [fault.path for fault in problem.contradictions()] == [path]
+        assert [fault.path for fault in problem.find_contradictions()] == [path]

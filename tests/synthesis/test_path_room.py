@@ -7,21 +7,24 @@ from typing import Any
 
 import numpy as np
 import pytest
-from numpy.typing import NDArray
 
+from kinematics.arrays import Real
 from synthesis.dispatch import solve
-from synthesis.fit.chart import FOURBAR, natural
-from synthesis.fit.fourbar_room import NO_BODY, fourbar_margins, room_rows, way_of
-from synthesis.fit.room import packed
-from synthesis.fit.room_margins import ROW, margins_of
-from synthesis.model.space import Space
+from synthesis.fit.chart import FOURBAR, compute_lengths
+from synthesis.fit.fourbar_workspace import (
+    NO_BODY,
+    append_workspace_rows,
+    compute_workspace_margins,
+    find_crank_interval,
+)
+from synthesis.fit.workspace import pack_workspace
+from synthesis.fit.workspace_margins import ROW_SIZE, count_margins
+from synthesis.model.linkage.workspace import Space
 from synthesis.registry import parse_problem
 from tests.campaign import further
 from tests.support.fit.path import GROUPS, statement
 from tests.support.fit.task import generator
 from tests.support.fit.verdict import violations
-
-Real = NDArray[np.float64]
 
 SPACE: dict[str, Any] = {
     "fixed_pivots": {"input": {"circle": {"center": [0, 0], "radius": 0.2}}},
@@ -35,12 +38,12 @@ SPACE: dict[str, Any] = {
 
 def rows_of(x: Real, ends: Real, turns: Real, room: Real) -> tuple[Real, Real, Real]:
     """Margins of a fourbar, and the rows of those that bear a load, with their residuals."""
-    lengths, slopes, count = np.empty(4), np.empty((4, 4)), margins_of(room)
-    natural(FOURBAR, x, lengths, slopes)
+    lengths, slopes, count = np.empty(4), np.empty((4, 4)), count_margins(room)
+    compute_lengths(FOURBAR, x, lengths, slopes)
     multipliers, values = np.zeros(count + 1), np.empty(count)
     multipliers[count] = 1.0
     residuals, jacobian = np.zeros(count), np.zeros((count, len(x)))
-    m = room_rows(
+    m = append_workspace_rows(
         x, lengths, slopes, 1.0, ends, turns, False, NO_BODY, room, multipliers, values, residuals, jacobian, 0
     )  # fmt: skip
     assert m >= 0
@@ -49,7 +52,7 @@ def rows_of(x: Real, ends: Real, turns: Real, room: Real) -> tuple[Real, Real, R
 
 @pytest.mark.parametrize("over", ["used", "cycle"])
 def test_rows_of_a_room_have_the_slopes_of_differences(over: str) -> None:
-    room = packed(Space.model_validate({**SPACE, "over": over}), 0j, 1.0)
+    room = pack_workspace(Space.model_validate({**SPACE, "over": over}), 0j, 1.0)
     rng = np.random.default_rng(2)
     agreed = looked_at = 0
     for _ in range(4):
@@ -85,14 +88,14 @@ def test_rows_of_a_room_have_the_slopes_of_differences(over: str) -> None:
     [(1.0, 0.4, 1.0, 1.0), (0.4, 1.0, 1.0, 0.9), (1.0, 1.0, 0.4, 0.9), (1.0, 0.9, 0.5, 0.4), (0.6, 0.5, 1.2, 0.3)],
 )
 def test_a_cycle_is_held_as_far_as_the_crank_turns(lengths: tuple[float, ...]) -> None:
-    room = packed(Space.model_validate({**SPACE, "over": "cycle"}), 0j, 1.0)
+    room = pack_workspace(Space.model_validate({**SPACE, "over": "cycle"}), 0j, 1.0)
     every = np.array(lengths)
     d, a, b, c = lengths
     turns = np.linspace(-math.pi, math.pi, 3601)
     reach = np.abs(d - a * np.exp(1j * turns))
     closes = (reach <= b + c) & (reach >= abs(b - c))
     for first in turns[closes][::400]:
-        begin, end, ring, _ = way_of(every, np.array([first, first + 0.1]), False, room)
+        begin, end, ring, _ = find_crank_interval(every, np.array([first, first + 0.1]), False, room)
         swept = np.linspace(begin, end, 1001)
         inside = np.abs(d - a * np.exp(1j * swept))
         assert np.all((inside <= b + c) & (inside >= abs(b - c)))
@@ -104,11 +107,11 @@ def test_a_cycle_is_held_as_far_as_the_crank_turns(lengths: tuple[float, ...]) -
 
 
 def test_zones_are_of_the_first_point() -> None:
-    room = packed(Space.model_validate({"fixed_pivots": SPACE["fixed_pivots"]}), 0j, 1.0)
+    room = pack_workspace(Space.model_validate({"fixed_pivots": SPACE["fixed_pivots"]}), 0j, 1.0)
     lengths = np.array([1.0, 0.4, 1.0, 1.0])
     x = np.array([0.1, 0.0, 0.3, *np.log(lengths), 0.5, 0.4])
-    values, rows = np.empty(1), np.empty((1, ROW))
-    assert fourbar_margins(x, lengths, 1.0, np.array([0.4, 1.0]), False, NO_BODY, room, values, rows)
+    values, rows = np.empty(1), np.empty((1, ROW_SIZE))
+    assert compute_workspace_margins(x, lengths, 1.0, np.array([0.4, 1.0]), False, NO_BODY, room, values, rows)
     assert values[0] == pytest.approx(0.1, abs=1e-3)
 
 

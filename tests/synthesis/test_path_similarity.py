@@ -9,7 +9,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from kinematics.linkage.fourbar import OPEN, Fourbar, positions
+from kinematics.linkage.fourbar import OPEN_ASSEMBLY, Fourbar, positions
 from synthesis.dispatch import solve
 from synthesis.kinds.path.design import PathResult
 from synthesis.registry import parse_problem
@@ -53,7 +53,7 @@ def compare(one: PathResult, other: PathResult, factor: complex, shift: complex)
 
 
 def points_at(angles: np.ndarray) -> np.ndarray:
-    return positions(ROCKER, np.radians(angles), OPEN).p
+    return positions(ROCKER, np.radians(angles), OPEN_ASSEMBLY).p
 
 
 def timed(points: np.ndarray) -> PathResult:

@@ -7,13 +7,13 @@ from fractions import Fraction
 import numpy as np
 import pytest
 
-from kinematics.linkage.fourbar import OPEN, cognates, positions
+from kinematics.linkage.fourbar import OPEN_ASSEMBLY, build_cognates, positions
 from synthesis.dispatch import solve
-from synthesis.kinds.motion.dyads import DyadConditions
-from synthesis.kinds.motion.sections import section
-from synthesis.kinds.motion.task import MotionTask
-from synthesis.kinds.path.verification import verify_path
-from synthesis.model.linkages import FourbarConfiguration, fourbar_mechanism
+from synthesis.kinds.motion.dyads.equations import DyadConditions
+from synthesis.kinds.motion.dyads.finite_sets import find_section
+from synthesis.kinds.motion.task.positions import MotionTask
+from synthesis.kinds.path.verification.fourbar import verify_path
+from synthesis.model.linkage.conversion import FourbarConfiguration, build_fourbar
 from synthesis.registry import parse_problem
 from tests.campaign import sampled
 from tests.cases import cases
@@ -32,7 +32,7 @@ def timed(points, angles, **changes):
 
 
 def planted(linkage, angles, phase=0.0):
-    return positions(linkage, np.radians(angles) + phase, OPEN).p
+    return positions(linkage, np.radians(angles) + phase, OPEN_ASSEMBLY).p
 
 
 def pivots(result):
@@ -59,7 +59,7 @@ def test_all_fourbars_through_five_timed_points():
     size = np.abs(points[:, None] - points).max()
     assert is_among(result, CRANK_ROCKER, size)
     # The cognate whose input turns with the source's guides the point at the same crank angles.
-    assert is_among(result, cognates(CRANK_ROCKER).right.linkage, size)
+    assert is_among(result, build_cognates(CRANK_ROCKER).right.linkage, size)
     for design in result.designs:
         assert measured_at_angles(design, points, ANGLES) < 1e-16 * size**2
 
@@ -74,7 +74,7 @@ def test_three_timed_points_with_chosen_coupler_rotations_as_printed():
     )
     # The crank and the coupler change places: the body of this problem of motion turns as the crank does.
     exchanged = MotionTask(points, np.exp(1j * beta), 0j, 1.0)
-    dyads = section(exchanged, DyadConditions(rotations=(alpha[1], alpha[2]))).dyads
+    dyads = find_section(exchanged, DyadConditions(rotations=(alpha[1], alpha[2]))).dyads
     ((o2, moving),) = zip(dyads.fixed, dyads.moving, strict=True)
     w, z = -moving, moving - o2
     case.check(W_x=w.real, W_y=w.imag, Z_x=z.real, Z_y=z.imag)
@@ -84,7 +84,7 @@ def test_three_timed_points_with_chosen_coupler_rotations_as_printed():
     problem = parse_problem(
         {"kind": "path", "timing": "prescribed", "points": listed(points, np.degrees(beta)), **EVERYTHING}
     )
-    design = verify_path(problem, fourbar_mechanism(joints))
+    design = verify_path(problem, build_fourbar(joints))
     assert max(target.residual for target in design.targets) < 1e-12
 
 

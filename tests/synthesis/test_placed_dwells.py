@@ -10,18 +10,24 @@ import numpy as np
 import pytest
 
 from synthesis.dispatch import solve
-from synthesis.kinds.dwell.candidates import Asked
 from synthesis.kinds.dwell.design import DwellResult
-from synthesis.kinds.dwell.outputs import CYCLE, Task, judged, output, points
-from synthesis.kinds.dwell.placed_starts import placed_starts
+from synthesis.kinds.dwell.motion.outputs import (
+    CYCLE_SAMPLE_COUNT,
+    Task,
+    compute_output,
+    evaluate_shapes,
+    locate_points,
+)
+from synthesis.kinds.dwell.motion.program_score import score_program
+from synthesis.kinds.dwell.motion.score import ROCKER_CODE, SLIDER_CODE, SLOT_CODE
 from synthesis.kinds.dwell.problem import DwellProblem
-from synthesis.kinds.dwell.programs import judge_program
-from synthesis.kinds.dwell.scoring import ROCKER, SLIDER, SLOT
 from synthesis.kinds.dwell.solver import solve_dwell
+from synthesis.kinds.dwell.starts.coupler_curve_starts import Requirements
+from synthesis.kinds.dwell.starts.placed_starts import find_placed_starts
 from synthesis.kinds.dwell.verification import verify_dwell
-from synthesis.model.statement import ContradictionError
-from synthesis.outcome.front import front_of
+from synthesis.model.problem import ContradictionError
 from synthesis.registry import parse_problem
+from synthesis.results.pareto import pareto_front
 from tests.campaign import further
 from tests.support.synthesis.dwell import assert_measured, rocker, slider
 
@@ -71,21 +77,21 @@ def test_dwells_are_where_and_as_long_as_they_are_told(name: str) -> None:
     assert result.designs
     for design in result.designs[:3]:
         assert_measured(problem, design)
-        assert len(design.targets) == len(problem.wanted)
+        assert len(design.targets) == len(problem.dwell_requests)
         if problem.dwells is None:
             assert design.dwells is None
             continue
         assert design.dwells is not None
-        for dwell, rest, wanted in zip(design.dwells, design.targets, problem.wanted, strict=True):
+        for dwell, rest, wanted in zip(design.dwells, design.targets, problem.dwell_requests, strict=True):
             assert dwell.angle == wanted.angle
-            assert dwell.error == rest.jitter <= problem.allowed
+            assert dwell.error == rest.jitter <= problem.max_movement
     assert result.search.candidates == result.search.accepted + sum(result.search.rejected.values())
 
 
 @pytest.mark.slow
 def test_what_larger_transmission_angles_cost_is_in_the_front() -> None:
     _, result = answered("unequal")
-    front = front_of(result.designs)
+    front = pareto_front(result.designs)
     assert front is not None
     angles = [design.metrics.min_transmission_angle for design in result.designs]
     assert max(angles) > 34.0
@@ -118,31 +124,31 @@ def test_no_rest_counts_for_two_places() -> None:
     assert "dwells_apart" in {check.name for check in design.verification.checks if not check.passed}
 
 
-@pytest.mark.parametrize(("kind", "number"), [("rocker", ROCKER), ("slider", SLIDER), ("slot", SLOT)])
+@pytest.mark.parametrize(("kind", "number"), [("rocker", ROCKER_CODE), ("slider", SLIDER_CODE), ("slot", SLOT_CODE)])
 def test_the_kernel_finds_the_stretches_that_plain_numpy_finds(kind: Any, number: int) -> None:
     rng = np.random.default_rng(5)
     turning = "double_crank" if kind == "slider" else "crank_rocker"
     carrier = "rocker" if kind == "rocker" else "coupler"
     way = math.nan if kind == "slider" else 0.9
     dwells, places = (1.1, 0.7), (0.0, 0.6)
-    found = placed_starts(kind, carrier, turning, Asked(dwells, places, way, 0.35, 8.0), rng, 5)
+    found = find_placed_starts(kind, carrier, turning, Requirements(dwells, places, way, 0.35, 8.0), rng, 5)
     assert found
     lengths = np.array([14, 9])
     for start in found:
-        turn = np.linspace(0.0, 2.0 * np.pi, CYCLE, endpoint=False)
-        curve = np.ascontiguousarray(points(start.shape[None], turn, carrier))
-        out = output(kind, start.sign, start.shape[None], curve)[0][0]
+        turn = np.linspace(0.0, 2.0 * np.pi, CYCLE_SAMPLE_COUNT, endpoint=False)
+        curve = np.ascontiguousarray(locate_points(start.shape[None], turn, carrier))
+        out = compute_output(kind, start.sign, start.shape[None], curve)[0][0]
         numbers = np.zeros((1, 4))
         last = {"rocker": 9, "slider": 8, "slot": 7}[kind]
         numbers[0, : last - 5] = start.shape[5:last]
         scores, signs = np.empty(1), np.empty(1, np.int64)
         begins, ends = np.zeros((1, 2), np.int64), np.zeros((1, 2))
         rows = np.zeros(1, np.int64)
-        judge_program(number, curve, rows, numbers, lengths, np.array(places), way, 0.35, scores, signs, begins, ends)
+        score_program(number, curve, rows, numbers, lengths, np.array(places), way, 0.35, scores, signs, begins, ends)
         assert signs[0] == start.sign
         around = np.concatenate([out, out])
         for k, (length, place) in enumerate(zip(lengths, places, strict=True)):
-            stretches = np.stack([around[m : m + length] for m in range(CYCLE)])
+            stretches = np.stack([around[m : m + length] for m in range(CYCLE_SAMPLE_COUNT)])
             share = (stretches.mean(axis=1) - out.min()) / np.ptp(out)
             worth = np.ptp(stretches, axis=1) / np.ptp(out) + 0.5 * np.abs(share - place)
             assert np.isclose(worth[begins[0, k]], worth.min(), rtol=1e-9)
@@ -152,9 +158,9 @@ def test_the_kernel_finds_the_stretches_that_plain_numpy_finds(kind: Any, number
 def test_points_of_a_rocker_are_rigid_on_it() -> None:
     shape = np.array([[3.0, 2.5, 3.2, 1.0, 0.7, *np.zeros(5)]])
     turn = np.linspace(0.0, 2.0 * np.pi, 50)
-    p = points(shape, turn, "rocker")[0]
-    b = points(np.array([[3.0, 2.5, 3.2, 2.5, 0.0]]), turn, "rocker")[0]
-    on_coupler = points(np.array([[3.0, 2.5, 3.2, 3.0, 0.0]]), turn, "coupler")[0]
+    p = locate_points(shape, turn, "rocker")[0]
+    b = locate_points(np.array([[3.0, 2.5, 3.2, 2.5, 0.0]]), turn, "rocker")[0]
+    on_coupler = locate_points(np.array([[3.0, 2.5, 3.2, 3.0, 0.0]]), turn, "coupler")[0]
     assert np.allclose(b, on_coupler)
     assert np.allclose((p - 3.2) / (b - 3.2), complex(1.0, 0.7) / 2.5)
 
@@ -166,7 +172,7 @@ def test_what_is_kept_of_a_fourbar_tells_its_class(turning: Any) -> None:
     own = {"crank_rocker": (3.0, 2.5, 3.2), "double_crank": (1.2, 1.3, 0.5)}
     for name, lengths in own.items():
         shape = np.array([[*lengths, 0.5, 0.5, 2.0, 0.3, 0.2, 0.0]])
-        kept = judged(task, np.linspace(0.0, 1.0, 5), shape).positive[0]
+        kept = evaluate_shapes(task, np.linspace(0.0, 1.0, 5), shape).positive[0]
         # Six lengths are neither longer nor shorter than the link ratio allows.
         grashof = kept[-12 - 3 : -12]
         assert (grashof > 0.0).all() == (name == turning)

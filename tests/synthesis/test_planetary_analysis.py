@@ -7,9 +7,9 @@ from typing import Any
 import pytest
 
 from synthesis.analyses import parse_request
-from synthesis.analyses.planetary_train import PlanetaryAnalysis, PlanetaryAnalysisRequest
+from synthesis.analyses.gears.planetary_train import PlanetaryAnalysis, PlanetaryAnalysisRequest
 from synthesis.dispatch import solve
-from synthesis.registry import example, parse_problem
+from synthesis.registry import get_first_example, parse_problem
 
 SIMPLE: dict[str, Any] = {
     "type": "planetary_train",
@@ -21,12 +21,12 @@ SIMPLE: dict[str, Any] = {
 def analysis(**stated: Any) -> PlanetaryAnalysis:
     request = parse_request(stated)
     assert isinstance(request, PlanetaryAnalysisRequest)
-    assert request.faults() == []
-    return PlanetaryAnalysis.model_validate(request.answer())
+    assert request.find_errors() == []
+    return PlanetaryAnalysis.model_validate(request.build_answer())
 
 
 def faults(**stated: Any) -> list[str]:
-    return [path for path, _ in parse_request(stated).faults()]
+    return [path for path, _ in parse_request(stated).find_errors()]
 
 
 def test_norton_example_9_5() -> None:
@@ -79,9 +79,9 @@ def test_what_does_not_follow_is_told() -> None:
 
 
 def test_designs_are_analysed_as_they_are() -> None:
-    result = solve(parse_problem(example("planetary_train")), lambda fraction, message: None)
+    result = solve(parse_problem(get_first_example("planetary_train")), lambda fraction, message: None)
     design = result.designs[0]
-    found = PlanetaryAnalysis.model_validate(PlanetaryAnalysisRequest.over_the_cycle(design.mechanism.model_dump(), 8))
+    found = PlanetaryAnalysis.model_validate(PlanetaryAnalysisRequest.analyze_cycle(design.mechanism.model_dump(), 8))
     assert found.ratio == design.mechanism.ratio.value
     assert found.efficiency == pytest.approx(design.metrics.efficiency)
     assert len(found.input_angle) == 9

@@ -15,18 +15,18 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 from kinematics.gear.arrangements import ARRANGEMENTS, Arrangement
-from kinematics.gear.assembly import fits_at, gaps, is_coaxial
-from kinematics.gear.cut_space import tip_depth
-from kinematics.gear.planetary import speed_ratio
+from kinematics.gear.assembly import has_fit_at, is_coaxial, measure_gaps
+from kinematics.gear.cut_space import measure_tip_depth
+from kinematics.gear.planetary import compute_speed_ratio
 from kinematics.gear.teeth import Gear, Mesh
 from synthesis.dispatch import solve
 from synthesis.kinds.planetary_train.design import PlanetaryMechanism, PlanetaryResult, PlanetPlaces
 from synthesis.kinds.planetary_train.problem import PlanetaryProblem
-from synthesis.kinds.planetary_train.ratio_form import arrangement_form, exact
-from synthesis.kinds.planetary_train.tooth_numbers import addendum_of_ring
-from synthesis.kinds.planetary_train.verification import exact_ratio_of, size_of, verify
-from synthesis.model import mesh_limits
-from synthesis.model.gear_answer import Ratio, reaches_fillet, shaped_ring
+from synthesis.kinds.planetary_train.ratio_form import derive_arrangement_form, evaluate_exactly
+from synthesis.kinds.planetary_train.tooth_numbers import compute_ring_addendum
+from synthesis.kinds.planetary_train.verification import compute_exact_ratio, compute_size, verify
+from synthesis.model.gears import mesh_limits
+from synthesis.model.gears.answer import Ratio, is_fillet_reached, shape_ring
 from synthesis.registry import parse_problem
 from tests.cases import Case, cases
 
@@ -91,11 +91,11 @@ def test_ratio_forms_agree_with_the_speed_equations(name: str) -> None:
     """Two routes to a ratio: expanded determinants, and elimination with numbers."""
     arrangement = ARRANGEMENTS[name]
     for k, roles in enumerate(itertools.permutations(arrangement.members, 3)):
-        form = arrangement_form(name, *roles)
+        form = derive_arrangement_form(name, *roles)
         for seed in range(3):
             teeth = {gear: 11 + (7 * j * j + 5 * k + 13 * seed) % 47 for j, gear in enumerate(arrangement.gear_names)}
-            over, under = exact(form.over, teeth), exact(form.under, teeth)
-            found = speed_ratio(arrangement.train(teeth), roles[0], roles[1], [roles[2]])
+            over, under = evaluate_exactly(form.over, teeth), evaluate_exactly(form.under, teeth)
+            found = compute_speed_ratio(arrangement.build_train(teeth), roles[0], roles[1], [roles[2]])
             assert found == (Fraction(over, under) if over and under else None)
 
 
@@ -105,10 +105,10 @@ def sound(arrangement: Arrangement, teeth: dict[str, int], planets: int) -> bool
         return False
     turns = [Fraction(k, planets) for k in range(planets)]
     every = dict.fromkeys(arrangement.carriers, turns)
-    if min((gap.room for gap in gaps(arrangement, teeth, every)), default=1.0) < 1e-9:
+    if min((gap.room for gap in measure_gaps(arrangement, teeth, every)), default=1.0) < 1e-9:
         return False
     for members in arrangement.planet_sets:
-        if not all(fits_at(arrangement, teeth, members, turn) for turn in turns):
+        if not all(has_fit_at(arrangement, teeth, members, turn) for turn in turns):
             return False
     return all(sound_mesh(arrangement, teeth, one, other) for one, other in arrangement.meshes)
 
@@ -215,9 +215,9 @@ def test_against_plain_loops_over_all_teeth(
     assert sound_count(result) == len(fitting)
     scored = []
     for teeth in fitting:
-        found = speed_ratio(arrangement.train(teeth), roles[0], roles[1], [roles[2]])
+        found = compute_speed_ratio(arrangement.build_train(teeth), roles[0], roles[1], [roles[2]])
         if found is not None and found * target > 0:
-            size = size_of(mechanism_of(name, teeth, planets, roles))
+            size = compute_size(mechanism_of(name, teeth, planets, roles))
             scored.append((abs(found / target - 1), size, sum(teeth.values())))
     scored.sort()
     expected = [(float(error), size, total) for error, size, total in scored[:20]]
@@ -245,7 +245,7 @@ def loops(arrangement: Arrangement, ranges: dict[str, tuple[int, int]]) -> list[
 
 def mechanism_of(name: str, teeth: dict[str, int], planets: int, roles: tuple[str, str, str]) -> PlanetaryMechanism:
     arrangement = ARRANGEMENTS[name]
-    found = speed_ratio(arrangement.train(teeth), roles[0], roles[1], [roles[2]]) or Fraction(1)
+    found = compute_speed_ratio(arrangement.build_train(teeth), roles[0], roles[1], [roles[2]]) or Fraction(1)
     return PlanetaryMechanism(
         arrangement=name,
         teeth={gear: teeth[gear] for gear in arrangement.gear_names},
@@ -288,8 +288,8 @@ def test_coupled_sets_against_plain_loops(name: str, roles: tuple[str, str, str]
     scored = []
     for one, other in itertools.product(simple, simple):
         teeth = dict(zip(arrangement.gear_names, (*one, *other), strict=True))
-        form = arrangement_form(name, *roles)
-        over, under = exact(form.over, teeth), exact(form.under, teeth)
+        form = derive_arrangement_form(name, *roles)
+        over, under = evaluate_exactly(form.over, teeth), evaluate_exactly(form.under, teeth)
         if over and under and Fraction(over, under) * problem_of(ratio=ratio).target > 0:
             error = abs(Fraction(over, under) / problem_of(ratio=ratio).target - 1)
             scored.append((error, max(one[2], other[2]), sum(one) + sum(other)))
@@ -313,7 +313,7 @@ def test_planted_trains_are_found_again(name: str, data: st.DataObject) -> None:
     roles = data.draw(st.permutations(arrangement.members))[:3]
     teeth = {gear: data.draw(st.integers(18, 34)) for gear in arrangement.gear_names}
     for planet in arrangement.carriers:
-        (own, first), *others = arrangement.central_meshes(planet)
+        (own, first), *others = arrangement.list_central_meshes(planet)
         if arrangement.places[first].internal:
             teeth[first] = teeth[own] + 60
             apart = 60
@@ -323,7 +323,7 @@ def test_planted_trains_are_found_again(name: str, data: st.DataObject) -> None:
             teeth[mate] = apart + teeth[gear] if arrangement.places[mate].internal else apart - teeth[gear]
     if any(count < 12 for count in teeth.values()) or not sound(arrangement, teeth, 1):
         return
-    ratio = speed_ratio(arrangement.train(teeth), roles[0], roles[1], [roles[2]])
+    ratio = compute_speed_ratio(arrangement.build_train(teeth), roles[0], roles[1], [roles[2]])
     if ratio is None:
         return
     limits = {gear: {"min": max(4, count - 2), "max": count + 2} for gear, count in teeth.items()}
@@ -407,7 +407,7 @@ def test_impossible_demands_are_proven(stated: dict[str, Any], words: str) -> No
     ],
 )
 def test_contradictions_name_their_field(stated: dict[str, Any], path: str) -> None:
-    assert [found.path for found in problem_of(ratio=3, **stated).contradictions()] == [path]
+    assert [found.path for found in problem_of(ratio=3, **stated).find_contradictions()] == [path]
 
 
 def test_broken_trains_do_not_pass() -> None:
@@ -443,7 +443,7 @@ def test_broken_trains_do_not_pass() -> None:
     assert "interference" in failing(teeth={"sun": 8, "planet": 40, "ring": 88}, addendum=dict.fromkeys(thin, 1.0))
     full = {"sun": 1.0, "planet": 1.0, "ring": 1.0}
     assert failing(problem_of(**stated, fillets="refuse"), addendum=full) == {"fillet_interference"}
-    assert exact_ratio_of(good) == Fraction(good.ratio.numerator, good.ratio.denominator)
+    assert compute_exact_ratio(good) == Fraction(good.ratio.numerator, good.ratio.denominator)
 
 
 def test_pairs_that_the_search_takes_are_those_whose_tips_run_free() -> None:
@@ -455,16 +455,18 @@ def test_pairs_that_the_search_takes_are_those_whose_tips_run_free() -> None:
         planet = drawn.randint(8, 90)
         ring = planet + drawn.randint(5, 90)
         one, two = np.array([float(planet)]), np.array([float(ring)])
-        addendum = addendum_of_ring(one, two, angle, True)
-        free = mesh_limits.tips_clear(one, two, addendum, angle) & mesh_limits.ring_fillet_clear(one, two, angle)
-        free &= mesh_limits.ring_untrimmed(two, addendum, angle)
+        addendum = compute_ring_addendum(one, two, angle, True)
+        free = mesh_limits.has_clear_tips(one, two, addendum, angle) & mesh_limits.has_clear_ring_fillet(
+            one, two, angle
+        )
+        free &= mesh_limits.is_ring_untrimmed(two, addendum, angle)
         rim = Gear(ring, 1.0, angle, round(float(addendum[0]), 6), internal=True)
         mesh = Mesh(Gear(planet, 1.0, angle), rim)
-        shaped = shaped_ring(mesh)
-        sound = not (mesh.interferes or reaches_fillet(mesh) or shaped.is_trimmed)
+        shaped = shape_ring(mesh)
+        sound = not (mesh.interferes or is_fillet_reached(mesh) or shaped.is_trimmed)
         assert sound == bool(free[0])
         if sound:
-            assert tip_depth(mesh, shaped.cutter_teeth) < 1e-6
+            assert measure_tip_depth(mesh, shaped.cutter_teeth) < 1e-6
         taken += sound
     assert 20 < taken < 110
 

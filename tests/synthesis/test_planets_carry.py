@@ -11,17 +11,17 @@ from typing import Any
 import pytest
 
 from kinematics.gear.arrangements import ARRANGEMENTS
-from kinematics.gear.planetary import speeds
-from kinematics.gear.power import power_flow
+from kinematics.gear.planetary import solve_speeds
+from kinematics.gear.power import solve_power_flow
 from synthesis.analyses import parse_request
 from synthesis.dispatch import solve
-from synthesis.kinds.planetary_train import carrying
-from synthesis.kinds.planetary_train.carrying import mesh_loads
+from synthesis.kinds.planetary_train import power_capacity
 from synthesis.kinds.planetary_train.design import PlanetaryResult
 from synthesis.kinds.planetary_train.nearest import Candidate
+from synthesis.kinds.planetary_train.power_capacity import compute_mesh_loads
 from synthesis.kinds.planetary_train.problem import PlanetaryProblem
 from synthesis.kinds.planetary_train.verification import verify
-from synthesis.model.planet_strength import both_ways
+from synthesis.model.gears.planet_strength import mark_bent_both_ways
 from synthesis.registry import parse_problem
 from tests.campaign import further
 
@@ -42,7 +42,7 @@ SIMPLE: dict[str, Any] = {
 def problem_of(**stated: Any) -> PlanetaryProblem:
     problem = parse_problem({"kind": "planetary_train", **stated})
     assert isinstance(problem, PlanetaryProblem)
-    assert problem.contradictions() == []
+    assert problem.find_contradictions() == []
     return problem
 
 
@@ -61,8 +61,8 @@ def meshes(mechanism: dict[str, Any], strength: dict[str, Any], power: float = 4
         "torques": {mechanism["input"]: 1000.0 * power / OMEGA}, "mesh_efficiency": 1.0, "strength": strength,
     }  # fmt: skip
     request = parse_request(asked)
-    assert request.faults() == []
-    found: list[dict[str, Any]] = request.answer()["meshes"]
+    assert request.find_errors() == []
+    found: list[dict[str, Any]] = request.build_answer()["meshes"]
     return found
 
 
@@ -112,7 +112,7 @@ def test_the_planets_in_a_pair_by_itself() -> None:
     share = 108 / 132
     pair = {"type": "gear_pair", "teeth": [24, 42], "module": 2.0, "face_width": 15.0}
     lone = {"power_kw": 4.0 * share / 3.0, **stated}
-    alone = parse_request({"mechanism": pair, "speed_rpm": 1450.0 * share, "strength": lone}).answer()["strength"]
+    alone = parse_request({"mechanism": pair, "speed_rpm": 1450.0 * share, "strength": lone}).build_answer()["strength"]
     for one, other in zip(told["gears"], alone["gears"], strict=True):
         assert one["bending_stress"] == pytest.approx(other["bending_stress"])
         assert one["contact_stress"] == pytest.approx(other["contact_stress"])
@@ -127,7 +127,7 @@ def test_losses_raise_what_the_mesh_near_the_input_carries() -> None:
     lossy, ideal = (
         [
             mesh["strength"]["tangential_force"]
-            for mesh in parse_request(asked | {"mesh_efficiency": e}).answer()["meshes"]
+            for mesh in parse_request(asked | {"mesh_efficiency": e}).build_answer()["meshes"]
         ]
         for e in (0.9, 1.0)
     )
@@ -240,7 +240,7 @@ def test_what_is_not_judged_is_told(monkeypatch: pytest.MonkeyPatch, rank_by: st
     full = {n: solved(**stated, max_designs=n).designs for n in (1, 3)}
     complete = []
     for most, n in itertools.product((3, 33), full):
-        monkeypatch.setattr(carrying, "MOST_JUDGED", most)
+        monkeypatch.setattr(power_capacity, "MAX_JUDGED", most)
         result = solved(**stated, max_designs=n)
         assert result.search.every_judged is False
         assert result.search.judged is not None
@@ -267,7 +267,7 @@ def test_more_trains_of_the_smallest_size_than_are_judged(monkeypatch: pytest.Mo
     full = solved(**stated)
     assert full.search.judged is not None
     assert full.search.judged > 2
-    monkeypatch.setattr(carrying, "MOST_JUDGED", 2)
+    monkeypatch.setattr(power_capacity, "MAX_JUDGED", 2)
     few = solved(**stated)
     assert few.search.judged == 2
     assert few.designs[0].mechanism == full.designs[0].mechanism
@@ -299,17 +299,17 @@ def test_loads_by_the_other_route(name: str) -> None:
     """Those that the search solves for in floats are those of the exact flow of power, for every choice of members."""
     arrangement = ARRANGEMENTS[name]
     teeth = dict(zip(arrangement.gear_names, TEETH[name], strict=True))
-    train = arrangement.train(teeth)
+    train = arrangement.build_train(teeth)
     tried = 0
     for roles in itertools.permutations(arrangement.members, 3):
-        found = speeds(train, {roles[2]: 0, roles[0]: 1})
+        found = solve_speeds(train, {roles[2]: 0, roles[0]: 1})
         rates = {body: rate for body, rate in found.values.items() if rate is not None}
         if found.open or found.contradiction or not rates[roles[1]]:
             continue
-        flow = power_flow(train, rates, roles, {roles[0]: 1})
+        flow = solve_power_flow(train, rates, roles, {roles[0]: 1})
         assert flow is not None
         candidate = Candidate(Fraction(0), 0, 0, name, roles, tuple(teeth.items()), Fraction(1))
-        loads = mesh_loads(arrangement, candidate, 3.0, 7.0)
+        loads = compute_mesh_loads(arrangement, candidate, 3.0, 7.0)
         for load, mesh, equation in zip(loads, flow.meshes, train.meshes, strict=True):
             assert load.torques == pytest.approx((3.0 * mesh.first_torque, 3.0 * mesh.second_torque), abs=1e-9)
             past = rates[equation.first] - rates[equation.carrier]
@@ -337,7 +337,7 @@ def test_who_is_bent_both_ways(name: str, roles: tuple[str, str, str], bent: set
     arrangement = ARRANGEMENTS[name]
     teeth = dict(zip(arrangement.gear_names, TEETH[name], strict=True))
     candidate = Candidate(Fraction(0), 0, 0, name, roles, tuple(teeth.items()), Fraction(1))
-    ways = both_ways(arrangement, mesh_loads(arrangement, candidate, 3.0, 7.0))
+    ways = mark_bent_both_ways(arrangement, compute_mesh_loads(arrangement, candidate, 3.0, 7.0))
     found = {
         gear
         for pair, both in zip(arrangement.meshes, ways, strict=True)

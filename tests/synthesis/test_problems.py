@@ -8,8 +8,8 @@ import pytest
 from pydantic import ValidationError
 
 from synthesis.dispatch import solve
-from synthesis.model.statement import ContradictionError
-from synthesis.registry import KINDS, example, parse_problem
+from synthesis.model.problem import ContradictionError
+from synthesis.registry import KINDS, get_first_example, parse_problem
 
 POSITIONS = [
     {"x": 0.0, "y": 0.0, "angle": 0.0},
@@ -121,7 +121,7 @@ def test_an_unknown_kind_is_said(changes: dict[str, Any]) -> None:
 )
 def test_contradictions_name_the_field(changes: dict[str, Any], path: str) -> None:
     problem = parse_problem(statement(**changes))
-    assert [found.path for found in problem.contradictions()] == [path]
+    assert [found.path for found in problem.find_contradictions()] == [path]
     with pytest.raises(ContradictionError, match=path):
         solve(problem, lambda fraction, message: None)
 
@@ -129,8 +129,8 @@ def test_contradictions_name_the_field(changes: dict[str, Any], path: str) -> No
 @pytest.mark.slow
 @pytest.mark.parametrize("kind", KINDS)
 def test_examples_are_solved(kind: str) -> None:
-    problem = parse_problem(example(kind))
-    assert problem.contradictions() == []
+    problem = parse_problem(get_first_example(kind))
+    assert problem.find_contradictions() == []
     progress: list[float] = []
     result = solve(problem, lambda fraction, message: progress.append(fraction))
     assert result.designs

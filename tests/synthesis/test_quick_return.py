@@ -11,10 +11,10 @@ import numpy as np
 import pytest
 from pydantic import ValidationError
 
-from kinematics.linkage.fourbar import Fourbar, barker_type, transmission_extremes
-from synthesis.kinds.quick_return.crank_rocker import families
+from kinematics.linkage.fourbar import Fourbar, barker_type, find_transmission_extremes
+from synthesis.kinds.quick_return.crank_rocker import list_families
 from synthesis.kinds.quick_return.design import QuickReturnDesign
-from synthesis.model.linkage_answer import FourbarMechanism
+from synthesis.model.linkage.answer import FourbarMechanism
 from synthesis.registry import parse_problem
 from tests.cases import HERE
 from tests.support.synthesis.quick_return import crank_rocker
@@ -89,7 +89,7 @@ def best_by_brute_force(time_ratio: float, swing: float) -> float:
     turning = (barker_type(linkage) == 2) & on_one_circuit & (np.abs(seen - delta) < 1e-6)
     if not turning.any():
         return 0.0
-    least = transmission_extremes(linkage, 0.0, 2.0 * math.pi)[0]
+    least = find_transmission_extremes(linkage, 0.0, 2.0 * math.pi)[0]
     return math.degrees(float(least[turning].max()))
 
 
@@ -165,9 +165,9 @@ def test_a_limit_of_the_link_ratio_is_met_by_the_best_within_it() -> None:
     limit = 0.8 * free.metrics.link_ratio
     best = crank_rocker(time_ratio=1.1, swing=60.0, constraints={"max_link_ratio": limit}).designs[0]
     assert best.metrics.link_ratio == pytest.approx(limit, rel=1e-6)
-    members = families(1.1, math.radians(60.0))
+    members = list_families(1.1, math.radians(60.0))
     rho = np.linspace(1.001, 20.0, 20001)
-    allowed = [f.transmission(r) for f in members for r in rho if f.link_ratio(r) <= limit]
+    allowed = [f.compute_transmission(r) for f in members for r in rho if f.link_ratio(r) <= limit]
     assert best.metrics.min_transmission_angle >= math.degrees(max(allowed)) - 1e-6
 
 
@@ -251,7 +251,7 @@ def test_what_is_refused(stated: dict[str, Any], path: str) -> None:
 )
 def test_contradictions_name_their_field(stated: dict[str, Any], path: str) -> None:
     problem = parse_problem({"kind": "quick_return", "time_ratio": 1.2, **stated})
-    assert [found.path for found in problem.contradictions()] == [path]
+    assert [found.path for found in problem.find_contradictions()] == [path]
 
 
 def random_pairs(count: int) -> list[tuple[float, float]]:

@@ -8,10 +8,10 @@ from typing import Any
 import numpy as np
 import pytest
 
-from kinematics.linkage.fourbar import Fourbar, barker_type, positions, transmission_extremes
+from kinematics.linkage.fourbar import Fourbar, barker_type, find_transmission_extremes, positions
 from synthesis.kinds.quick_return.design import DragLinkMechanism, QuickReturnMechanism
-from synthesis.kinds.quick_return.drag_link import drag_link
-from synthesis.model.linkage_answer import SliderCrankMechanism
+from synthesis.kinds.quick_return.drag_link import find_drag_link
+from synthesis.model.linkage.answer import SliderCrankMechanism
 from tests.cases import cases
 from tests.support.synthesis.quick_return import answer
 
@@ -107,7 +107,7 @@ def drag_links(link_ratio: float, count: int) -> Any:
     linkage = Fourbar.from_lengths(a, b, c, np.ones_like(a))
     theta = np.linspace(0.0, 2.0 * math.pi, 361)
     output = np.unwrap(positions(linkage, theta).output_angle, axis=-1)
-    least = transmission_extremes(linkage, 0.0, 2.0 * math.pi)[0]
+    least = find_transmission_extremes(linkage, 0.0, 2.0 * math.pi)[0]
     greatest = np.empty(len(a))
     for n, row in enumerate(output):
         twice = np.concatenate([row, row[1:] + 2.0 * math.pi])
@@ -125,7 +125,7 @@ def sampled() -> Any:
 def test_no_sampled_drag_link_transmits_better(sampled: Any, ratio: float) -> None:
     least, greatest = sampled
     assert len(least) > 3000
-    best = drag_link(ratio, 6.0)
+    best = find_drag_link(ratio, 6.0)
     assert best is not None
     searched = least[greatest >= ratio].max()
     found = math.degrees(best.transmission)

@@ -5,10 +5,10 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from synthesis.kinds.motion.dyads import DyadConditions
-from synthesis.kinds.motion.relative_dyads import dyads, relative
-from synthesis.kinds.motion.sections import section
-from synthesis.kinds.motion.task import MotionTask
+from synthesis.kinds.motion.dyads.equations import DyadConditions
+from synthesis.kinds.motion.dyads.finite_sets import find_section
+from synthesis.kinds.motion.sixbar.relative_dyads import compute_relative_poses, solve_relative_dyads
+from synthesis.kinds.motion.task.positions import MotionTask
 
 NONE = complex(np.nan, np.nan)
 
@@ -20,13 +20,13 @@ def poses(rng: np.random.Generator) -> tuple[np.ndarray, np.ndarray]:
 
 def seen(one, other) -> tuple[np.ndarray, np.ndarray]:
     shift, turn = np.empty(5, np.complex128), np.empty(5, np.complex128)
-    relative(*one, *other, shift, turn)
+    compute_relative_poses(*one, *other, shift, turn)
     return shift, turn
 
 
 def found(shift, turn, fixed=NONE, moving=NONE) -> list[tuple[complex, complex]]:
     pins = np.empty((2, 4), np.complex128)
-    count = dyads(shift, turn, fixed, moving, pins[0], pins[1])
+    count = solve_relative_dyads(shift, turn, fixed, moving, pins[0], pins[1])
     return list(zip(pins[0, :count].tolist(), pins[1, :count].tolist(), strict=True))
 
 
@@ -36,7 +36,7 @@ def test_they_are_the_dyads_that_are_proved_to_be_all(seed):
     still = np.zeros(5, np.complex128), np.ones(5, np.complex128)
     places, turns = poses(rng)
     places = places - places[0]
-    proved = section(MotionTask(places, turns, 0j, 1.0), DyadConditions(rotations=(None,) * 4))
+    proved = find_section(MotionTask(places, turns, 0j, 1.0), DyadConditions(rotations=(None,) * 4))
     assert proved.proved
     near = [(o, a) for o, a in zip(proved.dyads.fixed, proved.dyads.moving, strict=True) if max(abs(o), abs(a)) < 50.0]
     own = found(*seen(still, (places, turns)))

@@ -11,7 +11,7 @@ import pytest
 
 from kinematics.linkage.fourbar import Fourbar, positions
 from synthesis.kinds.quick_return.design import QuickReturnDesign
-from synthesis.model.linkage_answer import FourbarMechanism
+from synthesis.model.linkage.answer import FourbarMechanism
 from synthesis.registry import parse_problem
 from tests.support.synthesis.quick_return import answer, crank_rocker
 
@@ -117,4 +117,4 @@ def test_half_a_turn_of_a_body_is_out_of_reach() -> None:
 )
 def test_contradictions_name_their_field(stated: dict[str, Any], paths: list[str]) -> None:
     problem = parse_problem({"kind": "quick_return", "time_ratio": 1.0, **stated})
-    assert [found.path for found in problem.contradictions()] == paths
+    assert [found.path for found in problem.find_contradictions()] == paths

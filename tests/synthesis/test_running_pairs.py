@@ -16,8 +16,8 @@ from tests.support.problems.gears import Compared, compare_pair, compare_pairs
 
 def analysed(**fields: Any) -> dict[str, Any]:
     request = parse_request({"mechanism": {"type": "gear_pair", **fields}, "speed_rpm": 60.0})
-    assert request.faults() == []
-    return request.answer()
+    assert request.find_errors() == []
+    return request.build_answer()
 
 
 PAIRS: list[dict[str, Any]] = [
@@ -122,7 +122,7 @@ def test_helical_gears_in_the_plane_of_rotation() -> None:
     """With no shift it is what `helical_pair` says of the same gears."""
     found = analysed(teeth=[20, 50], module=3.0, helix_angle=18.0, face_width=40.0)
     pair = {"type": "helical_pair", "teeth": [20, 50], "normal_module": 3.0, "helix_angle": 18.0, "face_width": 40.0}
-    other = parse_request({"mechanism": pair}).answer()
+    other = parse_request({"mechanism": pair}).build_answer()
     assert found["centre_distance"] == pytest.approx(other["centre_distance"])
     assert found["contact_ratio"] == pytest.approx(other["transverse_contact_ratio"])
     assert found["overlap_ratio"] == pytest.approx(other["face_contact_ratio"])
@@ -147,10 +147,10 @@ def test_shifted_pair_of_iso_21771_practice() -> None:
 )
 def test_faults(fields: dict[str, Any], path: str) -> None:
     request = parse_request({"mechanism": {"type": "gear_pair", **fields}})
-    assert [fault[0] for fault in request.faults()] == [path]
+    assert [fault[0] for fault in request.find_errors()] == [path]
 
 
 def test_shafts_too_near_one_another() -> None:
     request = parse_request({"mechanism": {"type": "gear_pair", "teeth": [20, 50], "centre_distance": 30.0}})
     with pytest.raises(MechanismError, match="base circles"):
-        request.answer()
+        request.build_answer()

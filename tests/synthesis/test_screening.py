@@ -7,14 +7,14 @@ from typing import Any
 import numpy as np
 import pytest
 
-from synthesis.kinds.motion.choices import side_dyads
-from synthesis.kinds.motion.screening import REASONS, demands, screen
-from synthesis.kinds.motion.task import motion_task
-from synthesis.kinds.motion.verification import verify
-from synthesis.model.linkages import FourbarConfiguration, fourbar_mechanism
-from synthesis.outcome.ranking import distinct
-from synthesis.proof.measures import quality
+from synthesis.kinds.motion.dyads.candidates import find_side_dyads
+from synthesis.kinds.motion.exact.screening import REASONS, make_screening_constraints, screen
+from synthesis.kinds.motion.task.positions import make_motion_task
+from synthesis.kinds.motion.verification.verify import verify
+from synthesis.model.linkage.conversion import FourbarConfiguration, build_fourbar
 from synthesis.registry import parse_problem
+from synthesis.results.ranking import select_distinct
+from synthesis.verification.measures import compute_quality
 from tests.support.synthesis.screening import excess_of
 from tests.synthesis.planted import plant
 
@@ -58,10 +58,15 @@ def test_verdicts_agree_with_the_analysis_core(n: int, constraints: dict[str, An
     for trial in range(2):
         planted = plant(rng, n, 5.0)
         problem = parse_problem({"kind": "motion", "positions": planted.positions, "constraints": constraints})
-        task = motion_task(problem)
-        one, other = (side_dyads(task, problem, 0, np.random.default_rng(10 * trial + k), 16).dyads for k in (0, 1))
+        task = make_motion_task(problem)
+        one, other = (
+            find_side_dyads(task, problem, 0, np.random.default_rng(10 * trial + k), 16).dyads for k in (0, 1)
+        )
         screening = screen(
-            task, one, other, demands(problem.constraints, task, constraints.get("min_transmission_angle", 0))
+            task,
+            one,
+            other,
+            make_screening_constraints(problem.constraints, task, constraints.get("min_transmission_angle", 0)),
         )
         for i in range(len(one.fixed)):
             for j in range(len(other.fixed)):
@@ -69,7 +74,7 @@ def test_verdicts_agree_with_the_analysis_core(n: int, constraints: dict[str, An
                 if np.abs(np.diff([*joints, joints[0]])).min() < 1e-3:
                     continue
                 problem_joints = (task.to_problem(z) for z in joints)
-                design = verify(problem, fourbar_mechanism(FourbarConfiguration(*problem_joints, task.origin)))
+                design = verify(problem, build_fourbar(FourbarConfiguration(*problem_joints, task.origin)))
                 assert design is not None
                 failed = [c.name for c in design.verification.checks if not c.passed]
                 first = next((name for name in IN_KERNEL_ORDER if name in failed), None)
@@ -91,15 +96,15 @@ def test_verdicts_agree_with_the_analysis_core(n: int, constraints: dict[str, An
 
 
 def test_quality_rises_with_transmission_and_falls_with_size_and_ratio() -> None:
-    assert quality(1.0, 0.0, 1.0) == pytest.approx(64.0 / 65.0)
-    assert quality(0.5, 1.0, 2.0) == pytest.approx(quality(1.0, 1.0, 2.0) / 2.0)
-    assert quality(1.0, 3.0, 1.0) == pytest.approx(quality(1.0, 0.0, 1.0) / 2.0)
-    assert quality(1.0, 1.0, 8.0) < quality(1.0, 1.0, 4.0)
+    assert compute_quality(1.0, 0.0, 1.0) == pytest.approx(64.0 / 65.0)
+    assert compute_quality(0.5, 1.0, 2.0) == pytest.approx(compute_quality(1.0, 1.0, 2.0) / 2.0)
+    assert compute_quality(1.0, 3.0, 1.0) == pytest.approx(compute_quality(1.0, 0.0, 1.0) / 2.0)
+    assert compute_quality(1.0, 1.0, 8.0) < compute_quality(1.0, 1.0, 4.0)
 
 
 def test_distinct_choice_keeps_the_best_of_each_neighbourhood() -> None:
     joints = np.array([[0.0], [0.1], [1.0], [1.05], [5.0]], np.complex128)
-    assert distinct(joints, 10, 0.5) == [0, 2, 4]
-    assert distinct(joints, 2, 0.5) == [0, 2]
-    assert distinct(joints, 10, 0.01) == [0, 1, 2, 3, 4]
-    assert distinct(joints[:0], 3, 1.0) == []
+    assert select_distinct(joints, 10, 0.5) == [0, 2, 4]
+    assert select_distinct(joints, 2, 0.5) == [0, 2]
+    assert select_distinct(joints, 10, 0.01) == [0, 1, 2, 3, 4]
+    assert select_distinct(joints[:0], 3, 1.0) == []

@@ -8,9 +8,9 @@ from fractions import Fraction
 import numpy as np
 import pytest
 
-from synthesis.kinds.motion.dyads import DyadConditions
-from synthesis.kinds.motion.sections import section
-from synthesis.kinds.motion.task import MotionTask, motion_task
+from synthesis.kinds.motion.dyads.equations import DyadConditions
+from synthesis.kinds.motion.dyads.finite_sets import find_section
+from synthesis.kinds.motion.task.positions import MotionTask, make_motion_task
 from synthesis.registry import parse_problem
 from tests.campaign import sampled
 from tests.oracles.five_positions import real_dyads
@@ -50,7 +50,7 @@ def compared_with_the_oracle(seed: int, count: int) -> None:
     met = set()
     for _ in range(count):
         task, expected = rational_task(rng)
-        found = section(task, open_choices(task))
+        found = find_section(task, open_choices(task))
         assert found.proved
         assert not found.double.any()
         assert len(found.dyads.fixed) + len(found.sliders) == expected
@@ -71,7 +71,7 @@ def test_what_is_lost_in_digits_is_never_proved(moved: int, turned: int) -> None
     proofs = 0
     for _ in range(5):
         task, expected = rational_task(rng, Fraction(1, 10**moved), Fraction(1, 10**turned))
-        found = section(task, open_choices(task))
+        found = find_section(task, open_choices(task))
         if found.finite and found.proved:
             assert len(found.dyads.fixed) + len(found.sliders) == expected
             assert found.far == 0
@@ -90,8 +90,8 @@ def test_planted_dyads_of_five_positions_are_among_the_answers() -> None:
     rng = np.random.default_rng(1)
     for _ in range(20):
         planted = plant(rng, 5, 10.0 ** rng.uniform(-3.0, 3.0), complex(*rng.uniform(-5.0, 5.0, 2)))
-        task = motion_task(parse_problem({"kind": "motion", "positions": planted.positions}))
-        found = section(task, open_choices(task))
+        task = make_motion_task(parse_problem({"kind": "motion", "positions": planted.positions}))
+        found = find_section(task, open_choices(task))
         for side in (planted.input_side, planted.output_side):
             gaps = np.abs(found.dyads.fixed - task.to_task(side.fixed_pivot))
             gaps += np.abs(found.dyads.moving - task.to_task(side.moving_pivot))
@@ -114,7 +114,7 @@ def test_sliders_are_dyads_at_infinity(kind: str) -> None:
         else:  # the body's line through ``pin`` along ``direction`` keeps passing through ``pin``
             points = pin + turns * (place - pin + (along - along[0]) * direction)
         task = MotionTask(points - points[0], turns, 0j, 1.0)
-        found = section(task, open_choices(task))
+        found = find_section(task, open_choices(task))
         assert found.proved
         sliders = [slider for slider in found.sliders if slider.kind == kind]
         assert len(sliders) == 1
@@ -142,12 +142,12 @@ def test_a_double_dyad_is_said_and_counted_once() -> None:
         low, high = 0.0, 1.0
         while high - low > 1e-16 and low < (low + high) / 2.0 < high:
             middle = (low + high) / 2.0
-            found = section(between(middle), open_choices(few))
+            found = find_section(between(middle), open_choices(few))
             if len(found.dyads.fixed) + len(found.sliders) < 3:
                 low = middle
             else:
                 high = middle
-        found = section(between(high), open_choices(few))
+        found = find_section(between(high), open_choices(few))
         if np.abs(found.dyads.fixed).max() > 1e3:  # the two meet at infinity
             continue
         assert found.double.any()
@@ -164,7 +164,7 @@ def test_a_family_of_dyads_is_said() -> None:
     pins = np.array([0.0, 0.0, 0.0, 1.0 + 0.5j, 1.0 + 0.5j])
     points = pins + arm * (0.6 - 0.8j)
     task = MotionTask(points - points[0], arm / arm[0], 0j, 1.0)
-    found = section(task, open_choices(task))
+    found = find_section(task, open_choices(task))
     assert not found.finite
     assert not found.proved
 
@@ -177,7 +177,7 @@ def test_symmetric_positions_have_a_double_dyad_or_simple_ones_but_never_a_false
         points = np.array([-x[0] + 1j * y[0], -x[1] + 1j * y[1], 0.0, x[1] + 1j * y[1], x[0] + 1j * y[0]])
         turns = np.exp(1j * np.array([-a[0], -a[1], 0.0, a[1], a[0]]))
         task = MotionTask(points - points[0], turns / turns[0], 0j, 1.0)
-        found = section(task, open_choices(task))
+        found = find_section(task, open_choices(task))
         assert found.finite
         assert lengths_vary(task, *found.dyads) < 1e-9
         count = len(found.dyads.fixed) + len(found.sliders)

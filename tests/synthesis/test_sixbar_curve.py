@@ -9,16 +9,24 @@ import numpy as np
 import pytest
 
 from kinematics.linkage.planar.drive import drive
-from synthesis.fit.chart import natural
-from synthesis.fit.sixbar_curve import GROUND, INPUT, UNKNOWNS, joints, pins_with_slopes, point_with_slopes, velocity
-from synthesis.kinds.path.sixbar_mechanism import fitted_sixbar
-from synthesis.kinds.path.sixbar_rows import (
-    margins_of,
-    rows_of,
-    sixbar_rows,
+from synthesis.fit.chart import compute_lengths
+from synthesis.fit.sixbar_curve import (
+    GROUND,
+    INPUT,
+    UNKNOWNS,
+    compute_velocity,
+    differentiate_pins,
+    differentiate_point,
+    locate_joints,
 )
-from synthesis.kinds.path.sixbar_shapes import FORMS
-from synthesis.proof.rebuilt import rebuilt
+from synthesis.kinds.path.residuals.sixbar import (
+    compute_sixbar_rows,
+    count_sixbar_margins,
+    count_sixbar_rows,
+)
+from synthesis.kinds.path.sixbar.mechanism import build_fitted_sixbar
+from synthesis.kinds.path.sixbar.shape_matching import FORMS
+from synthesis.verification.reconstruction import rebuild_mechanism
 from tests.support.synthesis.sixbar_curve import drawn, stated
 
 ALL = [(kind, form) for kind, forms in FORMS.items() for form in forms if form.holder != INPUT]
@@ -26,17 +34,17 @@ ALL = [(kind, form) for kind, forms in FORMS.items() for form in forms if form.h
 
 def p_at(form, x, signs, theta):
     lengths, places = np.empty(4), np.empty(6, np.complex128)
-    natural(form.family, x, lengths, np.empty((4, 4)))
-    assert joints(x, lengths, signs[0], form.carrier, form.holder, signs[1], theta, places)
+    compute_lengths(form.family, x, lengths, np.empty((4, 4)))
+    assert locate_joints(x, lengths, signs[0], form.carrier, form.holder, signs[1], theta, places)
     return complex(places[5])
 
 
 @pytest.mark.parametrize(("kind", "form"), ALL)
 def test_the_core_drives_the_same_curve(kind, form):
     x, signs, theta = drawn(form)
-    made = fitted_sixbar(kind, form, x, signs, theta[0], 3.0 - 2.0j, 7.0)
+    made = build_fitted_sixbar(kind, form, x, signs, theta[0], 3.0 - 2.0j, 7.0)
     turned = np.linspace(0.0, 2.0 * math.pi, 25)
-    motion = drive(rebuilt(made), theta[0] + turned, order=0)
+    motion = drive(rebuild_mechanism(made), theta[0] + turned, order=0)
     expected = [3.0 - 2.0j + 7.0 * p_at(form, x, signs, theta[0] + turn) for turn in turned]
     assert motion.valid.all()
     np.testing.assert_allclose(motion.joints["P"][0], expected, atol=1e-10)
@@ -51,11 +59,11 @@ def test_the_core_drives_the_same_curve(kind, form):
 def test_slopes_are_those_of_differences(kind, form):
     x, signs, theta = drawn(form)
     lengths, chart = np.empty(4), np.empty((4, 4))
-    natural(form.family, x, lengths, chart)
+    compute_lengths(form.family, x, lengths, chart)
     by_c, by_d, slopes = (np.empty(UNKNOWNS + 1, np.complex128) for _ in range(3))
     pinned = x, lengths, chart, signs[0], form.carrier, form.holder, theta[5], np.empty((2, UNKNOWNS + 1)), by_c, by_d
-    _, c, d = pins_with_slopes(*pinned)
-    _, p = point_with_slopes(x, signs[1], c, d, by_c, by_d, slopes)
+    _, c, d = differentiate_pins(*pinned)
+    _, p = differentiate_point(x, signs[1], c, d, by_c, by_d, slopes)
     step = 1e-6
     for k in range(UNKNOWNS):
         change = step * (np.arange(UNKNOWNS) == k)
@@ -63,7 +71,7 @@ def test_slopes_are_those_of_differences(kind, form):
         assert slopes[k] == pytest.approx(difference / (2.0 * step), abs=1e-6 * (1.0 + abs(slopes[k])))
     difference = p_at(form, x, signs, theta[5] + step) - p_at(form, x, signs, theta[5] - step)
     assert slopes[-1] == pytest.approx(difference / (2.0 * step), abs=1e-6)
-    _, there, moved = velocity(x, lengths, signs[0], form.carrier, form.holder, signs[1], theta[5])
+    _, there, moved = compute_velocity(x, lengths, signs[0], form.carrier, form.holder, signs[1], theta[5])
     assert there == pytest.approx(p)
     assert moved == pytest.approx(slopes[-1])
 
@@ -76,13 +84,16 @@ def test_rows_descend_as_the_cost_does(kind, form):
     places = np.array([p_at(form, x, signs, angle) for angle in theta[::2]])
     places = places + 1e-3 * (np.cos(5.0 * theta[::2]) + 1j * np.sin(3.0 * theta[::2]))
     points = np.stack([places.real, places.imag, np.zeros(24), np.linspace(0.5, 1.5, 24)], axis=1)
-    limits = margins_of(setting)
+    limits = count_sixbar_margins(setting)
     multipliers = np.full(limits + 1, 1.0)
 
     def evaluated(at, state, settled=8):
-        residuals, jacobian = np.zeros(rows_of(24, setting)), np.zeros((rows_of(24, setting), UNKNOWNS))
+        residuals, jacobian = (
+            np.zeros(count_sixbar_rows(24, setting)),
+            np.zeros((count_sixbar_rows(24, setting), UNKNOWNS)),
+        )
         for _ in range(settled):
-            count = sixbar_rows(at, points, setting, multipliers, state, residuals, jacobian)
+            count = compute_sixbar_rows(at, points, setting, multipliers, state, residuals, jacobian)
             assert count > 0
         return residuals[:count], jacobian[:count]
 

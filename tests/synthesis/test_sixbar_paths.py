@@ -10,11 +10,11 @@ import numpy as np
 import pytest
 
 from synthesis.kinds.path.design import PathResult
-from synthesis.kinds.path.fallback import exact_or_fitted
-from synthesis.kinds.path.nearness import order_of
+from synthesis.kinds.path.fallback import solve_exactly_or_fit
 from synthesis.kinds.path.problem import PathProblem
-from synthesis.kinds.path.sixbar_fit import ROOM_MARGIN, sixbar_setting
-from synthesis.kinds.path.sixbar_rows import ROOM
+from synthesis.kinds.path.residuals.sixbar import ROOM
+from synthesis.kinds.path.sixbar.fit import WORKSPACE_MARGIN, pack_sixbar_setting
+from synthesis.kinds.path.task.ranking import build_ordering
 from synthesis.model.answer import Search
 from synthesis.registry import parse_problem
 
@@ -43,11 +43,11 @@ def test_the_box_of_joints_is_half_a_link_within_that_of_parts_whatever_obstacle
     room = {"box": [[-120.0, -110.0], [140.0, 150.0]], "link_width": 4.0, "obstacles": [FAR_AWAY]}
     problem = parse_problem(TASK | {"space": room | {"clearance": clearance}})
     centre, size = 10.0 + 5.0j, 80.0
-    held = sixbar_setting(problem, centre, size, 20.0, 10.0)[ROOM : ROOM + 4] * size
-    sides = held + np.array([10.0, 10.0, 5.0, 5.0]) - ROOM_MARGIN * size * np.array([1.0, -1.0, 1.0, -1.0])
+    held = pack_sixbar_setting(problem, centre, size, 20.0, 10.0)[ROOM : ROOM + 4] * size
+    sides = held + np.array([10.0, 10.0, 5.0, 5.0]) - WORKSPACE_MARGIN * size * np.array([1.0, -1.0, 1.0, -1.0])
     assert sides == pytest.approx([-118.0, 138.0, -108.0, 148.0])
-    assert problem.space.box_of_joints() == (-118.0, 138.0, -108.0, 148.0)
-    assert problem.space.box_of_joints(1.0) == (-117.0, 137.0, -107.0, 147.0)
+    assert problem.space.shrink_box_for_joints() == (-118.0, 138.0, -108.0, 148.0)
+    assert problem.space.shrink_box_for_joints(1.0) == (-117.0, 137.0, -107.0, 147.0)
 
 
 def test_rounds_say_of_which_types_they_are():
@@ -73,7 +73,7 @@ def test_what_meets_the_points_stands_before_what_is_fitted_to_them_in_every_ord
     far, near, broken = as_of(8.0, 0.9), as_of(1.0, 0.1), as_of(None, 0.95, passed=False)
     exact = as_of(None, 0.2), as_of(None, 0.5)
     for designs in itertools.permutations([far, near, broken, *exact]):
-        order_found = order_of(problem)(list(designs))
+        order_found = build_ordering(problem)(list(designs))
         assert {id(one) for one in order_found[:2]} == {id(one) for one in exact}
         assert order_found[2] is near
         assert order_found[3] is far
@@ -96,5 +96,5 @@ def test_of_which_type_none_meets_the_points_is_told_before_it_is_fitted(more, c
         search = Search(method="a", complete=complete, candidates=1, accepted=count, rejected={}, seed=0)
         return PathResult.model_construct(designs=[design] * count, search=search, summary="")
 
-    found = exact_or_fitted(problem, lambda *_: None, lambda *_: answer(0), lambda *_: answer(1))
+    found = solve_exactly_or_fit(problem, lambda *_: None, lambda *_: answer(0), lambda *_: answer(1))
     assert found.summary.startswith(f"{told} and satisfies all constraints; the points are fitted instead.")

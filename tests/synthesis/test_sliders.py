@@ -14,12 +14,12 @@ from hypothesis import strategies as st
 from synthesis.analyses import parse_request
 from synthesis.dispatch import solve
 from synthesis.kinds.motion.design import MotionResult
+from synthesis.kinds.motion.dyads.slider_dyads import Sliders, find_sliders
 from synthesis.kinds.motion.problem import MotionProblem
-from synthesis.kinds.motion.sliders import Sliders, sliders
-from synthesis.kinds.motion.stated_dyads import DyadChoices
-from synthesis.kinds.motion.task import motion_task
-from synthesis.kinds.motion.verification import verify
-from synthesis.model.linkage_answer import InvertedSliderCrankMechanism, LinkageDesign, SliderCrankMechanism
+from synthesis.kinds.motion.statement.dyad_choices import DyadChoices
+from synthesis.kinds.motion.task.positions import make_motion_task
+from synthesis.kinds.motion.verification.verify import verify
+from synthesis.model.linkage.answer import InvertedSliderCrankMechanism, LinkageDesign, SliderCrankMechanism
 from synthesis.registry import parse_problem
 from tests.synthesis.driving import assert_drives_through, turns_through
 from tests.synthesis.planted import inverted_images
@@ -36,7 +36,7 @@ def random_positions(rng: np.random.Generator, n: int) -> list[dict[str, float]]
 def problem_of(positions: list[dict[str, float]], **more: Any) -> MotionProblem:
     problem = parse_problem({"kind": "motion", "positions": positions, **more})
     assert isinstance(problem, MotionProblem)
-    assert problem.contradictions() == []
+    assert problem.find_contradictions() == []
     return problem
 
 
@@ -49,7 +49,7 @@ def solved(problem: MotionProblem) -> MotionResult:
 def found(positions: list[dict[str, float]], *, inverted: bool, count: int = 50, **choices: Any) -> Sliders:
     problem = problem_of(positions)
     rng = np.random.default_rng(0)
-    return sliders(motion_task(problem), DyadChoices(**choices), inverted=inverted, rng=rng, count=count)
+    return find_sliders(make_motion_task(problem), DyadChoices(**choices), inverted=inverted, rng=rng, count=count)
 
 
 @pytest.mark.parametrize("inverted", [False, True])
@@ -58,7 +58,7 @@ def test_images_lie_on_the_line(n: int, inverted: bool) -> None:
     rng = np.random.default_rng(n)
     for _ in range(30):
         positions = random_positions(rng, n)
-        task = motion_task(problem_of(positions))
+        task = make_motion_task(problem_of(positions))
         slides = found(positions, inverted=inverted)
         assert len(slides.points) == 1 if n == 4 else len(slides.points) > 20
         assert slides.sampled == (n < 4)
@@ -71,7 +71,7 @@ def test_four_positions_leave_the_point_that_brute_force_finds() -> None:
     """The three triangles of images of a point of the body vanish together in one point only, and in no pole."""
     rng = np.random.default_rng(5)
     positions = random_positions(rng, 4)
-    task = motion_task(problem_of(positions))
+    task = make_motion_task(problem_of(positions))
     slides = found(positions, inverted=False)
     (point,) = slides.points
     grid = point + np.exp(1j * np.linspace(0.0, 2.0 * np.pi, 24)) * np.logspace(-3, 0.5, 30)[:, None]
@@ -161,11 +161,11 @@ def test_damaged_dimensions_are_found(kind: str) -> None:
 @pytest.mark.parametrize("kind", ["PR", "RP"])
 def test_designs_are_taken_as_they_are_by_an_analysis(kind: str) -> None:
     design = design_with(kind)
-    inputs = [target.at for target in design.targets]
+    inputs = [target.position for target in design.targets]
     skeleton = design.mechanism.skeleton.model_dump()
     for mechanism in (design.mechanism.model_dump(), {"type": design.mechanism.type, "skeleton": skeleton}):
         for at, position in zip(inputs, ORDINARY, strict=True):
-            answer = parse_request({"mechanism": mechanism, "motion": {"at": at}}).answer()
+            answer = parse_request({"mechanism": mechanism, "motion": {"at": at}}).build_answer()
             assert answer["valid"] == [True]
             assert answer["joints"]["P"]["x"][0] == pytest.approx(position["x"], abs=1e-6)
             assert answer["joints"]["P"]["y"][0] == pytest.approx(position["y"], abs=1e-6)
@@ -177,10 +177,10 @@ def test_an_input_stands_at_an_angle_or_at_a_place(side: str, slides: bool) -> N
     design = solved(problem).designs[0]
     stated, absent = ("input_place", "input_angle") if slides else ("input_angle", "input_place")
     for target in design.targets:
-        assert target.at == getattr(target, stated)
+        assert target.position == getattr(target, stated)
         assert absent not in target.model_dump(mode="json")
     gone = design.metrics.input_stroke if slides else design.metrics.input_rotation
-    assert gone == pytest.approx(design.targets[-1].at - design.targets[0].at)
+    assert gone == pytest.approx(design.targets[-1].position - design.targets[0].position)
     assert (design.metrics.input_rotation if slides else design.metrics.input_stroke) is None
     assert_drives_through(design, problem)
 
@@ -211,7 +211,7 @@ def test_similar_tasks_have_similar_slider_points(turn: float, power: float, x: 
     for p in four:
         z = factor * complex(p["x"], p["y"]) + shift
         moved.append({"x": z.real, "y": z.imag, "angle": p["angle"] + math.degrees(turn)})
-    tasks = [motion_task(problem_of(p)) for p in (four, moved)]
+    tasks = [make_motion_task(problem_of(p)) for p in (four, moved)]
     one, other = (t.to_problem(complex(found(p, inverted=False).points[0]))
                   for t, p in zip(tasks, (four, moved), strict=True))  # fmt: skip
     assert other == pytest.approx(factor * one + shift, rel=1e-8, abs=1e-8 * abs(factor))

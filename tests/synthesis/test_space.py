@@ -5,14 +5,14 @@ import pytest
 import shapely
 
 from synthesis.dispatch import solve
-from synthesis.kinds.motion.demanded import demanded
-from synthesis.kinds.motion.pairs import pairs_of_dyads
-from synthesis.kinds.motion.room import fits
-from synthesis.model.space import Space
-from synthesis.model.zones import AnyOf, Zone
-from synthesis.proof.rebuilt import rebuilt
-from synthesis.proof.space import FirstPosition, moving_parts, space_checks
+from synthesis.kinds.motion.exact.clearance_filter import check_fourbar_clearance
+from synthesis.kinds.motion.exact.dyad_pairs import make_pairs
+from synthesis.kinds.motion.task.target_poses import make_target_poses
+from synthesis.model.linkage.workspace import Space
+from synthesis.model.linkage.zones import AnyZone, Zone
 from synthesis.registry import parse_problem
+from synthesis.verification.reconstruction import rebuild_mechanism
+from synthesis.verification.workspace import FirstPosition, check_space, list_moving_parts
 from tests.campaign import further
 from tests.support.synthesis.space import LID
 
@@ -22,7 +22,7 @@ SHAPES = {
     "polygon": (HOOK, shapely.Polygon(HOOK.polygon)),
     "circle": (DISC, shapely.Point(-20.0, 5.0).buffer(8.0, quad_segs=4096)),
     "any of both": (
-        AnyOf([HOOK, DISC]),
+        AnyZone([HOOK, DISC]),
         shapely.Polygon(HOOK.polygon) | shapely.Point(-20.0, 5.0).buffer(8.0, quad_segs=4096),
     ),
 }
@@ -59,8 +59,8 @@ def test_a_zone_is_its_shape(name):
 
 
 def test_a_point_on_the_edge_is_in_the_zone():
-    assert (HOOK.distance_each(np.array([20.0 + 10.0j, 30.0 + 20.0j, 20.0 + (10.0 + 1e-9) * 1j])) == 0.0).all()
-    assert HOOK.distance_each(np.array([20.0 + 15.0j]))[0] == pytest.approx(5.0)
+    assert (HOOK.compute_distances(np.array([20.0 + 10.0j, 30.0 + 20.0j, 20.0 + (10.0 + 1e-9) * 1j])) == 0.0).all()
+    assert HOOK.compute_distances(np.array([20.0 + 15.0j]))[0] == pytest.approx(5.0)
 
 
 @pytest.mark.parametrize("name", further(ROOMS, ["body"]))
@@ -68,20 +68,20 @@ def test_what_the_screen_drops_would_fail_the_sweep(name):
     """A sample of pairs, each driven and swept: none that the screen drops keeps its room, and few that it passes
     break it."""
     problem = parse_problem({**LID, "space": ROOMS[name]})
-    pairs = pairs_of_dyads(problem)
-    score = pairs.screened(problem.constraints, 10.0).score
+    pairs = make_pairs(problem)
+    score = pairs.screen_pairs(problem.constraints, 10.0).score
     sound = np.flatnonzero(score.ravel() > 0.0)
     chosen = np.random.default_rng(2).choice(sound, 60, replace=False)
     i, j = np.unravel_index(chosen, score.shape)
     joints = [pairs.inputs.fixed[i], pairs.inputs.moving[i], pairs.outputs.moving[j], pairs.outputs.fixed[j]]
-    kept = fits(problem, pairs.task, np.stack(joints, axis=1))
-    target = demanded(problem)
+    kept = check_fourbar_clearance(problem, pairs.task, np.stack(joints, axis=1))
+    target = make_target_poses(problem)
     swept = []
     for pair in zip(i.tolist(), j.tolist(), strict=True):
-        design = pairs.verified(target, pair)
-        mechanism = rebuilt(design.mechanism, from_skeleton=True)
+        design = pairs.verify_pair(target, pair)
+        mechanism = rebuild_mechanism(design.mechanism, from_skeleton=True)
         first = FirstPosition(0j, complex(mechanism.joints["P"]), 0.0)
-        swept.append(all(check.passed for check in space_checks(problem.space, mechanism, design.metrics, first)))
+        swept.append(all(check.passed for check in check_space(problem.space, mechanism, design.metrics, first)))
     assert not (np.array(swept) & ~kept).any()
     assert (kept & ~np.array(swept)).sum() <= 8
     assert 0 < kept.sum() < len(kept)
@@ -91,9 +91,9 @@ def test_a_body_is_where_the_linkage_has_it():
     """A first position that is missed moves the body with the linkage, and its zones with the body."""
     first = FirstPosition(1.0 + 2.0j, 3.0 - 1.0j, 0.5)
     places = np.array([4.0 + 5.0j, -1.0 + 0.5j])
-    assert first.on_body(first.off_body(places)) == pytest.approx(places)
-    assert first.off_body(np.array([1.0 + 2.0j]))[0] == pytest.approx(3.0 - 1.0j)
-    assert np.angle(np.diff(first.off_body(places)) / np.diff(places))[0] == pytest.approx(0.5)
+    assert first.map_to_body(first.map_to_reference(places)) == pytest.approx(places)
+    assert first.map_to_reference(np.array([1.0 + 2.0j]))[0] == pytest.approx(3.0 - 1.0j)
+    assert np.angle(np.diff(first.map_to_reference(places)) / np.diff(places))[0] == pytest.approx(0.5)
 
 
 def test_what_is_drawn_on_the_body_goes_with_it():
@@ -110,7 +110,7 @@ def test_what_is_drawn_on_the_body_goes_with_it():
             },
         }
     )
-    gone = space.carried(0j, 10.0 + 0j, 1j)  # a quarter of a turn
+    gone = space.move_with_body(0j, 10.0 + 0j, 1j)  # a quarter of a turn
     assert np.array(gone.body.outline) == pytest.approx(np.array([[10, 0], [10, 2], [9, 2]]))
     assert gone.moving_pivots.input[0].circle.center == pytest.approx((10.0, 1.0))
     plane, body = gone.moving_pivots.output
@@ -122,11 +122,11 @@ def test_what_is_drawn_on_the_body_goes_with_it():
 def test_parts_are_hulls_of_joints_and_the_body():
     problem = parse_problem({**LID, "space": ROOMS["body"]})
     design = solve(problem).designs[0]
-    mechanism = rebuilt(design.mechanism, from_skeleton=True)
-    parts = moving_parts(problem.space, mechanism, FirstPosition(0j, complex(mechanism.joints["P"]), 0.0))
+    mechanism = rebuild_mechanism(design.mechanism, from_skeleton=True)
+    parts = list_moving_parts(problem.space, mechanism, FirstPosition(0j, complex(mechanism.joints["P"]), 0.0))
     assert [part.link for part in parts] == ["input", "coupler", "output", "coupler"]
     assert [len(part.points) for part in parts] == [2, 2, 2, 4]
-    bare = moving_parts(Space(link_width=8.0), mechanism, None)
+    bare = list_moving_parts(Space(link_width=8.0), mechanism, None)
     assert [(part.link, len(part.points), part.radius) for part in bare] == [
         ("input", 2, 4.0),
         ("coupler", 3, 4.0),

@@ -14,24 +14,29 @@ import numpy as np
 import pytest
 from scipy.optimize import linprog
 
-from kinematics.dynamics.reactions import reactions
-from synthesis.analyses.driven import placed
+from kinematics.dynamics.reactions import compute_reactions
+from synthesis.analyses.linkages.requested_motion import place_machine
 from synthesis.dispatch import solve
 from synthesis.kinds.spring_balancing import branching, program
-from synthesis.kinds.spring_balancing.branching import branched
-from synthesis.kinds.spring_balancing.effects import Setting, effects_of, hull
-from synthesis.kinds.spring_balancing.found import Spring, drive_of, value_of
+from synthesis.kinds.spring_balancing.branching import branch_and_bound
+from synthesis.kinds.spring_balancing.effects import Setting, compute_effects, find_hull
 from synthesis.kinds.spring_balancing.problem import SpringBalancingProblem
-from synthesis.kinds.spring_balancing.program import NOTHING, Best
-from synthesis.kinds.spring_balancing.verification import answer_of, machine_of_answer, outside, verify_springs
-from synthesis.numerics.conic import minimized
-from synthesis.registry import examples
+from synthesis.kinds.spring_balancing.program import NO_SOLUTION, BestParameters
+from synthesis.kinds.spring_balancing.spring_parameters import Spring, compute_spring_drive, evaluate_springs
+from synthesis.kinds.spring_balancing.verification import (
+    build_answer,
+    build_answer_machine,
+    measure_outside,
+    verify_springs,
+)
+from synthesis.numerics.conic import solve_conic_program
+from synthesis.registry import list_examples
 from tests.synthesis.balanced_linkages import pair
 from tests.synthesis.sprung_linkages import GRAVITY, both_open, fourbar, lever, missed, slider_crank
 
 Statement = dict[str, Any]
 
-LEVER, REAL, BOTH, SOUGHT = examples("spring_balancing")
+LEVER, REAL, BOTH, SOUGHT = list_examples("spring_balancing")
 
 
 def problem_of(statement: Statement) -> SpringBalancingProblem:
@@ -80,7 +85,9 @@ def test_where_the_solver_gives_no_bound_the_springs_are_answered_without_proof(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     proved = solve(problem_of(REAL))
-    monkeypatch.setattr(program, "minimized", lambda *stated: minimized(*stated)._replace(dual=-np.inf))
+    monkeypatch.setattr(
+        program, "solve_conic_program", lambda *stated: solve_conic_program(*stated)._replace(dual=-np.inf)
+    )
     result = solve(problem_of(REAL))
     assert result.designs, result.summary
     assert proved.search.complete
@@ -117,7 +124,7 @@ def random_springs(rng: np.random.Generator, setting: Setting) -> list[Spring]:
         if spring.links is not None:
             found.append(Spring(n, (), rate, float(rng.uniform(-2.0, 2.0)), 0.0))
             continue
-        ends = tuple(complex(rng.dirichlet(np.ones(len(end))) @ end) for end in setting.places(spring))
+        ends = tuple(complex(rng.dirichlet(np.ones(len(end))) @ end) for end in setting.list_corners(spring))
         shortest, longest = spring.free_lengths
         free = scale * float(rng.uniform(shortest, longest or 0.0))
         found.append(Spring(n, ends, rate, free, float(rng.uniform(*spring.preloads))))
@@ -131,27 +138,27 @@ def test_what_springs_do_is_what_the_reactions_say(statement: Statement) -> None
     for _ in range(3):
         springs = [
             spring._replace(
-                free=min(spring.free, float(setting.lengths(setting.problem.springs[n], spring.ends).min()))
+                free=min(spring.free, float(setting.compute_lengths(setting.problem.springs[n], spring.ends).min()))
             )
             if spring.ends
             else spring
             for n, spring in enumerate(random_springs(rng, setting))
         ]
-        machine = machine_of_answer(setting.problem, *answer_of(setting, springs))
-        found = reactions(machine, placed(machine, setting.at, 0.0)).drive
-        mine = setting.fixed + sum(drive_of(setting, spring) for spring in springs)
+        machine = build_answer_machine(setting.problem, *build_answer(setting, springs))
+        found = compute_reactions(machine, place_machine(machine, setting.at, 0.0)).drive
+        mine = setting.fixed + sum(compute_spring_drive(setting, spring) for spring in springs)
         assert np.abs(found - mine).max() < 1e-12 * np.abs(mine).max()
 
 
 def test_a_spring_within_an_area_is_springs_at_its_corners() -> None:
     setting = Setting(problem_of(BOTH))
     (spring,) = setting.problem.springs
-    corners = setting.places(spring)
+    corners = setting.list_corners(spring)
     rng = np.random.default_rng(4)
     one, other = (rng.dirichlet(np.ones(len(end))) for end in corners)
     point = [np.array([one @ corners[0]]), np.array([other @ corners[1]])]
-    alone = effects_of(setting, spring, point).drive[0]
-    together = np.outer(one, other).ravel() @ effects_of(setting, spring, corners).drive
+    alone = compute_effects(setting, spring, point).drive[0]
+    together = np.outer(one, other).ravel() @ compute_effects(setting, spring, corners).drive
     assert np.abs(alone - together).max() < 1e-12 * np.abs(alone).max()
 
 
@@ -161,9 +168,9 @@ def test_the_program_is_the_linear_program_of_another_solver() -> None:
     statement["springs"][0].pop("max_deflection")
     design, setting = best(statement), Setting(problem_of(statement))
     (spring,) = setting.problem.springs
-    ends = [complex(end[0]) for end in setting.places(spring)]
-    length = setting.lengths(spring, ends)
-    along, shorter, _ = effects_of(setting, spring, setting.places(spring)).drive
+    ends = [complex(end[0]) for end in setting.list_corners(spring)]
+    length = setting.compute_lengths(spring, ends)
+    along, shorter, _ = compute_effects(setting, spring, setting.list_corners(spring)).drive
     ones = np.ones(len(length))
     drive = np.stack([along, shorter, -shorter], axis=1)
     cost = [0.0, 0.0, 0.0, 1.0]
@@ -197,11 +204,11 @@ def test_no_springs_of_the_set_go_below_the_bound(make: Any, norm: str) -> None:
     for _ in range(100):
         springs = random_springs(rng, setting)
         allowed = all(
-            stated.form is None or spring.free <= setting.lengths(stated, spring.ends).min()
+            stated.form is None or spring.free <= setting.compute_lengths(stated, spring.ends).min()
             for stated, spring in zip(problem.springs, springs, strict=True)
         )
         if allowed:
-            assert value_of(setting, springs) >= design.metrics.bound
+            assert evaluate_springs(setting, springs) >= design.metrics.bound
 
 
 def test_branching_proves_what_no_end_of_a_grid_betters() -> None:
@@ -209,14 +216,14 @@ def test_branching_proves_what_no_end_of_a_grid_betters() -> None:
     problem = problem_of({**BOTH, "norm": "rms"})
     setting = Setting(problem)
     (spring,) = problem.springs
-    corners = setting.places(spring)
-    found = branched(setting, corners and [corners], lambda share: None)
+    corners = setting.list_corners(spring)
+    found = branch_and_bound(setting, corners and [corners], lambda share: None)
     assert found.proved
     shares = [(i / 12.0, j / 12.0, 1.0 - (i + j) / 12.0) for i in range(13) for j in range(13 - i)]
     least = np.inf
     for first in shares:
         ends = [np.array([np.array(first) @ corners[0]]), corners[1]]
-        low, high = effects_of(setting, spring, ends).drive
+        low, high = compute_effects(setting, spring, ends).drive
         for part in np.linspace(0.0, 1.0, 13):
             effect = part * low + (1.0 - part) * high
             rate = float(np.clip(-(effect @ setting.fixed) / (effect @ effect), 0.0, 2000.0))
@@ -229,28 +236,31 @@ def test_branching_proves_what_no_end_of_a_grid_betters() -> None:
 def test_a_part_whose_program_failed_keeps_the_bound_of_what_it_is_a_part_of(monkeypatch: pytest.MonkeyPatch) -> None:
     """The whole promises half of what it could, and one of its halves fails: no more is known than that promise."""
     setting = Setting(problem_of(BOTH))
-    places = [setting.places(setting.problem.springs[0])]
-    solved_at, promised = branching.solved_at, 0.5 * branching.solved_at(setting, places).bound
+    places = [setting.list_corners(setting.problem.springs[0])]
+    solved_at, promised = branching.solve_at, 0.5 * branching.solve_at(setting, places).bound
     parts = []
 
-    def failing(setting: Setting, places: branching.Places, *, bounded: bool = True) -> Best:
+    def failing(setting: Setting, places: branching.Places, *, bounded: bool = True) -> BestParameters:
         found = solved_at(setting, places, bounded=bounded)
         if not bounded:
             parts.append(found)
-            return NOTHING if len(parts) == 1 else found
+            return NO_SOLUTION if len(parts) == 1 else found
         return found._replace(bound=promised)
 
-    monkeypatch.setattr(branching, "solved_at", failing)
-    found = branched(setting, places, lambda share: None)
+    monkeypatch.setattr(branching, "solve_at", failing)
+    found = branch_and_bound(setting, places, lambda share: None)
     assert len(parts) >= 2
     assert found.bound == promised < 0.9 * found.value
     assert not found.proved
 
 
 def test_where_the_search_ends_before_anything_is_found_nothing_is_proved(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(branching, "NODES", 0)
+    monkeypatch.setattr(branching, "MAX_NODES", 0)
     setting = Setting(problem_of(BOTH))
-    assert branched(setting, [setting.places(setting.problem.springs[0])], lambda share: None).status == "failed"
+    assert (
+        branch_and_bound(setting, [setting.list_corners(setting.problem.springs[0])], lambda share: None).status
+        == "failed"
+    )
 
 
 def test_a_search_is_no_worse_than_springs_that_are_known() -> None:
@@ -261,11 +271,11 @@ def test_a_search_is_no_worse_than_springs_that_are_known() -> None:
     assert design.metrics.bound is None
     (spring,) = problem.springs
     rng, least = np.random.default_rng(9), np.inf
-    few = setting.thinned(100)
+    few = setting.thin_positions(100)
     for _ in range(400):
-        ends = [np.array([complex(rng.dirichlet(np.ones(len(end))) @ end)]) for end in setting.places(spring)]
-        along, shorter, _ = effects_of(few, spring, ends).drive
-        length = setting.lengths(spring, [complex(end[0]) for end in ends])
+        ends = [np.array([complex(rng.dirichlet(np.ones(len(end))) @ end)]) for end in setting.list_corners(spring)]
+        along, shorter, _ = compute_effects(few, spring, ends).drive
+        length = setting.compute_lengths(spring, [complex(end[0]) for end in ends])
         free = float(rng.uniform(0.05, min(0.15, max(float(length.min()), 0.05))))
         if free > length.min():
             continue
@@ -587,8 +597,8 @@ def test_a_slider_that_drives_is_held_by_springs() -> None:
 
 
 def test_places_between_corners() -> None:
-    square = hull(np.array([0.0, 1.0, 1.0 + 1.0j, 1.0j, 0.5 + 0.5j, 0.5]))
+    square = find_hull(np.array([0.0, 1.0, 1.0 + 1.0j, 1.0j, 0.5 + 0.5j, 0.5]))
     assert len(square) == 4
-    assert outside(square, 0.3 + 0.9j) == 0.0
-    assert outside(square, 1.5 + 0.5j) == pytest.approx(0.5)
-    assert outside(np.array([0.0, 2.0]), 1.0 + 0.25j) == pytest.approx(0.25)
+    assert measure_outside(square, 0.3 + 0.9j) == 0.0
+    assert measure_outside(square, 1.5 + 0.5j) == pytest.approx(0.5)
+    assert measure_outside(np.array([0.0, 2.0]), 1.0 + 0.25j) == pytest.approx(0.25)

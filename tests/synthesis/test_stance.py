@@ -12,35 +12,35 @@ import pytest
 
 from kinematics.linkage.fourbar import Fourbar, positions
 from synthesis.dispatch import solve
-from synthesis.fit.chart import CRANK_ROCKER, GEARED_FIVEBAR, SLIDER_CRANK, natural
-from synthesis.fit.coupler_curve import place
-from synthesis.fit.demands import FAMILY, SIGN
-from synthesis.fit.sixbar_curve import velocity
-from synthesis.kinds.path.curve_limits import curve_setting
-from synthesis.kinds.path.limits import limits_of
+from synthesis.fit.chart import CRANK_ROCKER, GEARED_FIVEBAR, SLIDER_CRANK, compute_lengths
+from synthesis.fit.constraints import FAMILY_INDEX, SIGN_INDEX
+from synthesis.fit.coupler_curve import place_linkage
+from synthesis.fit.sixbar_curve import compute_velocity
 from synthesis.kinds.path.problem import PathProblem
-from synthesis.kinds.path.sixbar_fit import sixbar_setting
-from synthesis.kinds.path.sixbar_rows import CARRIER, HOLDER, SIDE, STEPS, margins_of, rows_of
-from synthesis.kinds.path.sixbar_shapes import FORMS, alike_sixbars
-from synthesis.kinds.path.stance import stance_of
-from synthesis.kinds.path.stance_rows import (
+from synthesis.kinds.path.residuals.constraint_vector import count_setting_margins
+from synthesis.kinds.path.residuals.curve_constraints import pack_curve_setting
+from synthesis.kinds.path.residuals.sixbar import CARRIER, HOLDER, SIDE, STEPS, count_sixbar_margins, count_sixbar_rows
+from synthesis.kinds.path.residuals.stance import (
     JAM_CYCLE,
-    LENGTHS,
+    LENGTH_MARGIN_COUNT,
     LONGEST,
-    MARGINS,
-    PIVOTS,
+    MARGIN_COUNT,
+    PIVOT_LIMITS,
+    PIVOT_MARGIN_COUNT,
     RATIO,
-    SIMPLE,
     SIMPLE_FAMILY,
     SIMPLE_SIGN,
-    STANCE,
-    WITHIN,
-    fourbar_stance_rows,
-    simple_stance_rows,
-    sixbar_stance_rows,
+    SIMPLE_SIZE,
+    STANCE_SIZE,
+    compute_fourbar_stance_rows,
+    compute_simple_stance_rows,
+    compute_sixbar_stance_rows,
 )
-from synthesis.kinds.path.verification import verify_path
-from synthesis.model.linkages import FourbarConfiguration, fourbar_mechanism
+from synthesis.kinds.path.sixbar.fit import pack_sixbar_setting
+from synthesis.kinds.path.sixbar.shape_matching import FORMS, find_similar_sixbars
+from synthesis.kinds.path.verification.fourbar import verify_path
+from synthesis.kinds.path.verification.stance import measure_stance
+from synthesis.model.linkage.conversion import FourbarConfiguration, build_fourbar
 from synthesis.registry import parse_problem
 from tests.campaign import further
 
@@ -67,7 +67,7 @@ def test_a_made_motion_is_measured(first: int, last: int, way: float) -> None:
     points = foot(inputs) + 0.0
     points[last] = points[first] + unit  # the line of the stance, wherever P is between its points
     problem = PathProblem.model_validate(leg(points, {"points": [first, last], "flatness": 1.0}))
-    found = stance_of(problem, foot, (0.0, math.tau), inputs)
+    found = measure_stance(problem, foot, (0.0, math.tau), inputs)
     at = np.linspace(begin, end, 200001)
     heights, ways = 0.01 * np.sin(3.0 * at), at + 0.05 * np.sin(4.0 * at)
     speeds = (1.0 + 0.2 * np.cos(4.0 * at)) * (end - begin) / (ways[-1] - ways[0])
@@ -84,7 +84,7 @@ def test_a_leg_that_is_moved_turned_and_sized_has_the_same_stance() -> None:
     for size, turn, shift in ((1.0, 0.0, 0j), (25.4, 2.1, 300.0 - 70.0j), (1e-3, -0.9, 5.0j)):
         unit = size * cmath.exp(1j * turn)
         joints = FourbarConfiguration(*(unit * joint + shift for joint in PLANTED))
-        mechanism = fourbar_mechanism(joints)
+        mechanism = build_fourbar(joints)
         known = Fourbar(0j, 60.0 + 0j, 20.0, abs(30.0 + 45.0j), abs(10.0 - 45.0j), _in_frame())
         points = unit * positions(known, TURNS).p + shift
         stance = {"points": [3, 10], "flatness": 9.0 * size, "speed": "constant"}
@@ -129,7 +129,7 @@ def assert_derivatives(rows: Rows, x: np.ndarray, points: np.ndarray, setting: n
         ],
         axis=1,
     )  # fmt: skip
-    assert len(found) > 2 * MARGINS // 5
+    assert len(found) > 2 * MARGIN_COUNT // 5
     stances = slice(len(found) - 30, None)
     assert np.abs(by - found)[stances].max() < 1e-5 * np.abs(found[stances]).max()
     assert np.abs(found[stances]).max() > 1e-2
@@ -147,17 +147,17 @@ LINE = [math.cos(0.3), math.sin(0.3), 0.01, 0.02]
     ],
 )  # fmt: skip
 def test_derivatives_of_linkages_with_one_closure(family: int, ratio: float, x: list[float]) -> None:
-    setting = np.empty(SIMPLE)
-    setting[:STANCE] = 2, 8, 0.0, *LINE
+    setting = np.empty(SIMPLE_SIZE)
+    setting[:STANCE_SIZE] = 2, 8, 0.0, *LINE
     setting[SIMPLE_FAMILY], setting[SIMPLE_SIGN], setting[RATIO] = family, 1.0, ratio
     setting[LONGEST], setting[JAM_CYCLE] = math.inf, math.tau
-    setting[WITHIN:] = np.tile([-math.inf, math.inf], 4)
-    at, theta, limits = np.array(x), np.linspace(0.0, 3.0, 12), MARGINS + LENGTHS + PIVOTS
+    setting[PIVOT_LIMITS:] = np.tile([-math.inf, math.inf], 4)
+    at, theta, limits = np.array(x), np.linspace(0.0, 3.0, 12), MARGIN_COUNT + LENGTH_MARGIN_COUNT + PIVOT_MARGIN_COUNT
     lengths = np.zeros(4)
-    natural(family, at, lengths, np.zeros((4, 4)))
-    points = np.array([place(family, at, lengths, 1.0, ratio, one)[1] for one in theta])
+    compute_lengths(family, at, lengths, np.zeros((4, 4)))
+    points = np.array([place_linkage(family, at, lengths, 1.0, ratio, one)[1] for one in theta])
     state = np.concatenate([theta, np.zeros(limits)])
-    assert_derivatives(simple_stance_rows, at, points, setting, 24 + limits, state, limits)
+    assert_derivatives(compute_simple_stance_rows, at, points, setting, 24 + limits, state, limits)
 
 
 CIRCLE = PathProblem.model_validate(
@@ -168,30 +168,32 @@ CIRCLE = PathProblem.model_validate(
 
 def test_derivatives_of_a_fourbar_whose_stance_goes_on_past_the_last_point() -> None:
     x = np.array([0.1, 0.2, 0.3, math.log(0.4), math.log(0.5), math.log(0.6), math.log(0.7), 0.8, 0.5])
-    own = curve_setting(CIRCLE, 0j, 1.0)
-    own[FAMILY], own[SIGN] = CRANK_ROCKER, 1.0
-    turned, limits, lengths = np.linspace(0.0, 6.0, 12), limits_of(own) + MARGINS, np.zeros(4)
-    natural(CRANK_ROCKER, x, lengths, np.zeros((4, 4)))
-    points = np.array([place(CRANK_ROCKER, x, lengths, 1.0, 0.0, x[2] + one)[1] for one in turned])
+    own = pack_curve_setting(CIRCLE, 0j, 1.0)
+    own[FAMILY_INDEX], own[SIGN_INDEX] = CRANK_ROCKER, 1.0
+    turned, limits, lengths = np.linspace(0.0, 6.0, 12), count_setting_margins(own) + MARGIN_COUNT, np.zeros(4)
+    compute_lengths(CRANK_ROCKER, x, lengths, np.zeros((4, 4)))
+    points = np.array([place_linkage(CRANK_ROCKER, x, lengths, 1.0, 0.0, x[2] + one)[1] for one in turned])
     state = np.concatenate([turned, np.zeros(24 + limits)])
     setting = np.concatenate([[10, 3, math.tau], LINE, own])
-    assert_derivatives(fourbar_stance_rows, x, points, setting, 24 + limits, state, limits)
+    assert_derivatives(compute_fourbar_stance_rows, x, points, setting, 24 + limits, state, limits)
 
 
 def test_derivatives_of_a_sixbar_whose_stance_goes_on_past_the_last_point() -> None:
     form = FORMS["stephenson_3"][0]
     around = np.exp(1j * np.arange(48) * math.tau / 48) * (1.0 + 0.1 * np.cos(np.arange(48)))
-    drawn = alike_sixbars(form, around, True, 4096, 2, np.random.default_rng(0))
+    drawn = find_similar_sixbars(form, around, True, 4096, 2, np.random.default_rng(0))
     x, (sign, side), theta = drawn.x[0].copy(), drawn.signs[0], drawn.theta[0]
-    own = sixbar_setting(CIRCLE, 0j, 1.0, 20.0, 10.0)
-    own[FAMILY], own[CARRIER], own[HOLDER] = form
-    own[SIGN], own[SIDE], own[STEPS] = sign, side, 36
-    lengths, limits = np.zeros(4), margins_of(own) + MARGINS
-    natural(int(form[0]), x, lengths, np.zeros((4, 4)))
-    points = np.array([velocity(x, lengths, sign, int(form[1]), int(form[2]), side, one)[1] for one in theta])
+    own = pack_sixbar_setting(CIRCLE, 0j, 1.0, 20.0, 10.0)
+    own[FAMILY_INDEX], own[CARRIER], own[HOLDER] = form
+    own[SIGN_INDEX], own[SIDE], own[STEPS] = sign, side, 36
+    lengths, limits = np.zeros(4), count_sixbar_margins(own) + MARGIN_COUNT
+    compute_lengths(int(form[0]), x, lengths, np.zeros((4, 4)))
+    points = np.array([compute_velocity(x, lengths, sign, int(form[1]), int(form[2]), side, one)[1] for one in theta])
     setting = np.concatenate([[40, 10, math.tau], LINE, own])
     state = np.concatenate([theta, np.zeros(limits)])
-    assert_derivatives(sixbar_stance_rows, x, points, setting, rows_of(48, own) + MARGINS, state, limits)
+    assert_derivatives(
+        compute_sixbar_stance_rows, x, points, setting, count_sixbar_rows(48, own) + MARGIN_COUNT, state, limits
+    )
 
 
 def by_two_circles(one: np.ndarray, other: np.ndarray, near: float, far: float) -> np.ndarray:

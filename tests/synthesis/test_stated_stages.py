@@ -11,9 +11,9 @@ import numpy as np
 import pytest
 
 from synthesis.analyses import parse_request
-from synthesis.kinds.gear_train.rings import run_in_rings
+from synthesis.kinds.gear_train.statement.ring_pairs import find_running_pairs
 from synthesis.kinds.gear_train.verification import verify
-from synthesis.model.gear_stages import ring_addenda
+from synthesis.model.gears.stages import compute_ring_addenda
 from tests.support.independent import typed_trains
 from tests.support.synthesis.typed_trains import BEVEL, HELICAL, INTERNAL, Statement, faults, solved, stated
 
@@ -66,12 +66,12 @@ def test_rings_that_run_are_those_of_a_sound_pair(angle: float, least: int) -> N
     for pinion, ring in itertools.product((14, 18, 19, 24, 33), range(24, 62)):
         if ring <= pinion + 4:
             continue
-        short = ring_addenda(pinion, ring, phi)[1]
+        short = compute_ring_addenda(pinion, ring, phi)[1]
         if short < 0.3:
             continue
         pair: Statement = {"type": "gear_pair", "teeth": [pinion, ring], "internal": True, "pressure_angle": angle}
-        told = parse_request({"mechanism": pair | {"addendum": [1.0, short]}}).answer()
-        runs = bool(run_in_rings(np.array([float(pinion)]), np.array([float(ring)]), phi)[0])
+        told = parse_request({"mechanism": pair | {"addendum": [1.0, short]}}).build_answer()
+        runs = bool(find_running_pairs(np.array([float(pinion)]), np.array([float(ring)]), phi)[0])
         thin_or_cut = any(
             gear["undercut"] or gear["tip_thickness"] is None or gear["tip_thickness"] <= 0.0 for gear in told["gears"]
         )
@@ -92,11 +92,11 @@ def test_a_ring_that_its_cutter_trims_does_not_pass() -> None:
     assert (18, 37) in meshes
     assert all(mesh.ring_trimmed is False for design in found.designs for mesh in design.metrics.meshes)
     made = found.designs[0].mechanism
-    one, short = ring_addenda(18, 35, math.radians(20.0))
+    one, short = compute_ring_addenda(18, 35, math.radians(20.0))
     assert made.stages[0].addendum is not None
     addendum = made.stages[0].addendum.model_copy(update={"driver": one, "driven": short})
     stage = made.stages[0].model_copy(update={"driver": 18, "driven": 35, "addendum": addendum})
-    ratio = made.ratio.of(Fraction(35, 18))
+    ratio = made.ratio.from_fraction(Fraction(35, 18))
     design = verify(stated(INTERNAL, ratio="35/18", teeth={"min": 18, "max": 40}),
                     made.model_copy(update={"stages": [stage], "ratio": ratio}))  # fmt: skip
     assert design is not None
@@ -189,7 +189,9 @@ def test_gears_of_which_some_can_be_are_not_refused(stage: Statement) -> None:
 def test_an_analysis_names_the_angle_at_which_there_are_no_cones() -> None:
     def told(**stage: Any) -> list[str]:
         stages = [{"driver": 20, "driven": 60, **stage}]
-        return [path for path, _ in parse_request({"mechanism": {"type": "gear_train", "stages": stages}}).faults()]
+        return [
+            path for path, _ in parse_request({"mechanism": {"type": "gear_train", "stages": stages}}).find_errors()
+        ]
 
     assert told(type="bevel", shaft_angle=120.0) == ["/mechanism/stages/0/shaft_angle"]
     assert told(type="bevel", shaft_angle=100.0) == []

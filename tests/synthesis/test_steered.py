@@ -9,26 +9,26 @@ import numpy as np
 import pytest
 
 from kinematics.linkage.fourbar import Fourbar, positions
-from synthesis.kinds.motion.design import MotionResult
-from synthesis.kinds.motion.steered_rows import (
+from synthesis.kinds.motion.constrained.residuals import (
     ASSEMBLY,
     BOXES,
     COSINE,
     DIRECTION,
-    GIVEN,
-    HOME,
+    FIXED_RESIDUAL_COUNT,
+    GIVEN_COORDINATES,
+    HOME_PIVOTS,
+    HOME_WEIGHT_INDEX,
     LINE,
     LINKS,
-    OTHERS,
     RATIO,
     SHORTEST,
     STEPS,
-    WEIGHT_OF_HOME,
-    equations,
-    limits,
-    steered_rows,
+    count_equations,
+    count_pose_margins,
+    evaluate_rows,
 )
-from synthesis.model.linkage_answer import LinkageDesign
+from synthesis.kinds.motion.design import MotionResult
+from synthesis.model.linkage.answer import LinkageDesign
 from synthesis.registry import parse_problem
 from tests.campaign import further
 from tests.support.synthesis.motion_search import run
@@ -159,10 +159,10 @@ def test_positions_off_a_planted_linkage_are_answered(n: int, seed: int) -> None
 
 
 def test_least_squares_may_be_asked_for_and_exact_positions_too() -> None:
-    assert parse_problem({"kind": "motion", **HATCH, "method": "least_squares"}).contradictions() == []
+    assert parse_problem({"kind": "motion", **HATCH, "method": "least_squares"}).find_contradictions() == []
     assert run(**HATCH, method="exact").designs == []
     bare = [{name: value for name, value in pose.items() if name != "tolerance"} for pose in HATCH["positions"]]
-    (fault,) = parse_problem({"kind": "motion", "positions": bare, "method": "least_squares"}).contradictions()
+    (fault,) = parse_problem({"kind": "motion", "positions": bare, "method": "least_squares"}).find_contradictions()
     assert fault.path == "/method"
 
 
@@ -225,15 +225,15 @@ def test_margins_are_those_of_the_driven_linkage() -> None:
     setting[LINKS], setting[LINKS + 1], setting[RATIO] = 0.5, 3.0, 4.0
     fixed, moving = [0.0, 3.0, -1.0, 1.0], [-np.inf, np.inf, -np.inf, np.inf]
     setting[BOXES : BOXES + 16] = [*fixed, *fixed, *moving, *moving]
-    setting[GIVEN : GIVEN + 8] = setting[LINE : LINE + 3] = np.nan
-    setting[HOME : HOME + 8], setting[WEIGHT_OF_HOME] = x[:8], 0.3
-    count = limits(3)
-    margins, residuals = np.empty(count), np.empty(len(x) + OTHERS + count)
+    setting[GIVEN_COORDINATES : GIVEN_COORDINATES + 8] = setting[LINE : LINE + 3] = np.nan
+    setting[HOME_PIVOTS : HOME_PIVOTS + 8], setting[HOME_WEIGHT_INDEX] = x[:8], 0.3
+    count = count_pose_margins(3)
+    margins, residuals = np.empty(count), np.empty(len(x) + FIXED_RESIDUAL_COUNT + count)
     jacobian, multipliers = np.zeros((len(residuals), len(x))), np.zeros(count + 1)
     multipliers[-1] = 1.0
     rows = np.ascontiguousarray(np.concatenate([poses, widths], axis=1))
-    assert steered_rows(x, rows, setting, multipliers, margins, residuals, jacobian) > 0
-    closures = margins[count - equations(3) : count - equations(3) + 4]
+    assert evaluate_rows(x, rows, setting, multipliers, margins, residuals, jacobian) > 0
+    closures = margins[count - count_equations(3) : count - count_equations(3) + 4]
     assert np.abs(closures).max() < 1e-12
     used = margins[:18].reshape(3, 3, 2)
     assert np.all(np.isinf(used[0]))

@@ -8,25 +8,25 @@ import numpy as np
 import pytest
 
 from kinematics.linkage.planar.mechanism import Mechanism, Slide
-from synthesis.analyses.dynamics import peaks_of
-from synthesis.fit.chart import FOURBAR, natural
+from synthesis.analyses.linkages.dynamics import find_force_peaks
+from synthesis.fit.chart import FOURBAR, compute_lengths
 from synthesis.fit.fourbar_forces import (
-    AIM,
-    PLENTY,
-    WINDOWS,
-    force_margins,
-    force_slopes,
-    margins_of_forces,
-    packed_forces,
+    AIM_SHARE,
+    MAX_MARGIN,
+    WINDOW_COUNT,
+    compute_force_margins,
+    compute_force_slopes,
+    count_force_margins,
+    pack_forces,
 )
-from synthesis.fit.fourbar_loads import LINKS, carried
-from synthesis.mechanisms.fourbar_weights import JOINTS, weights
+from synthesis.fit.fourbar_loads import LINKS, pack_loads
+from synthesis.mechanisms.fourbar_weights import JOINTS, build_weights
 from synthesis.mechanisms.link_bodies import LinkBodies
-from synthesis.model.dynamics import DesignDynamics
-from synthesis.model.linkages import FOURBAR_LINKS
-from synthesis.outcome.forces import shaped
-from synthesis.outcome.weighed import bearable
+from synthesis.model.dynamics.request import DesignDynamics
+from synthesis.model.linkage.conversion import FOURBAR_LINKS
 from synthesis.registry import parse_problem
+from synthesis.results.force_filter import select_bearable
+from synthesis.results.forces import apply_link_shape
 from tests.support.problems.limited_forces import LADEN, SPEED_RPM, fourbar, slider_crank
 
 SPEED = SPEED_RPM * math.tau / 60.0
@@ -77,11 +77,11 @@ def test_compiled_weights_are_those_of_the_shapes(of_input, of_coupler, of_outpu
     joints = 100.0 * (rng.normal(size=(6, 5)) + 1j * rng.normal(size=(6, 5)))
     # P on a pin, on the line of the pins and beyond them.
     joints[:4, 4] = joints[:4, 1] + (joints[:4, 2] - joints[:4, 1]) * [0.0, 1.0, 0.5, -1.0]
-    found, general = weights(stated, joints, "mm"), shaped(stated, FOURBAR_LINKS)
+    found, general = build_weights(stated, joints, "mm"), apply_link_shape(stated, FOURBAR_LINKS)
     for n, row in enumerate(joints):
         reader = LinkBodies(dict(zip(JOINTS, row, strict=True)), LINKS, 1e-3)
         for k, (link, (first, second, *_)) in enumerate(LINKS.items()):
-            body = reader.body(link, general.bodies[link])
+            body = reader.build_body(link, general.bodies[link])
             start, end = (1e-3 * row[JOINTS.index(joint)] for joint in (first, second))
             told = (complex(body.cg) - start) / ((end - start) / abs(end - start))
             assert found.mass[n, k] == pytest.approx(float(body.mass), rel=1e-11)
@@ -103,8 +103,8 @@ def test_compiled_weights_are_those_of_the_shapes(of_input, of_coupler, of_outpu
 )
 def test_what_the_closed_form_does_not_know_steers_nothing(changed):
     stated = DesignDynamics.model_validate(LADEN | changed)
-    assert carried(stated, "mm", 0j) is None
-    assert not len(packed_forces(stated, {"drive_torque": 1.0}, "mm", 0j, 100.0))
+    assert pack_loads(stated, "mm", 0j) is None
+    assert not len(pack_forces(stated, {"drive_torque": 1.0}, "mm", 0j, 100.0))
 
 
 def _in_chart(mechanism: Mechanism, origin: complex, size: float):
@@ -120,7 +120,7 @@ def _in_chart(mechanism: Mechanism, origin: complex, size: float):
 
 def _lengths(x):
     lengths, slopes = np.empty(4), np.empty((4, 4))
-    natural(FOURBAR, x, lengths, slopes)
+    compute_lengths(FOURBAR, x, lengths, slopes)
     return lengths, slopes
 
 
@@ -130,30 +130,30 @@ def test_margins_are_what_is_measured_and_their_derivatives_are_differences(seed
     mechanism = fourbar(rng)
     stated = DesignDynamics.model_validate(LADEN | {"loads": LOADS, "moment_about": [5.0, 7.0]})
     at = math.degrees(float(mechanism.reference_input)) + np.linspace(0.0, 360.0, 73)
-    _, measured = peaks_of(mechanism, shaped(stated, mechanism.links), "mm", at, SPEED)
+    _, measured = find_force_peaks(mechanism, apply_link_shape(stated, mechanism.links), "mm", at, SPEED)
     pins = max(peak.value for name, peak in measured.items() if name.startswith("joint "))
     values = [measured["drive"].value, pins, *(measured[n].value for n in ("shaking force", "shaking moment", "index"))]
     origin, size = 20.0 + 10.0j, 130.0
-    forces = packed_forces(stated, dict(zip(EVERY, values, strict=True)), "mm", origin, size)
-    count = margins_of_forces(forces)
-    assert count == len(EVERY) * WINDOWS
+    forces = pack_forces(stated, dict(zip(EVERY, values, strict=True)), "mm", origin, size)
+    count = count_force_margins(forces)
+    assert count == len(EVERY) * WINDOW_COUNT
     x, sign, ends = _in_chart(mechanism, origin, size)
     lengths, slopes = _lengths(x)
     margins, rows, turns = np.empty(count), np.empty((count, 9)), rng.normal(size=(2, 9))
-    assert force_margins(x, lengths, sign, ends, forces, margins)
+    assert compute_force_margins(x, lengths, sign, ends, forces, margins)
     # Each limit is just what the linkage has, but for what is aimed at and what lies between the positions.
-    assert margins.reshape(-1, WINDOWS).min(axis=1) == pytest.approx(math.log(1.0 - AIM), abs=1.5e-2)
-    force_slopes(x, lengths, slopes, sign, ends, turns, forces, rows)
+    assert margins.reshape(-1, WINDOW_COUNT).min(axis=1) == pytest.approx(math.log(1.0 - AIM_SHARE), abs=1.5e-2)
+    compute_force_slopes(x, lengths, slopes, sign, ends, turns, forces, rows)
     step = 1e-5
     for i in range(9):
         both = []
         for side in (step, -step):
             moved = x + side * np.eye(9)[i]
             there = np.empty(count)
-            assert force_margins(moved, _lengths(moved)[0], sign, ends + side * turns[:, i], forces, there)
+            assert compute_force_margins(moved, _lengths(moved)[0], sign, ends + side * turns[:, i], forces, there)
             both.append(there)
         near = (both[0] - both[1]) / (2.0 * step)
-        told = margins < PLENTY
+        told = margins < MAX_MARGIN
         assert rows[told, i] == pytest.approx(near[told], rel=2e-3, abs=2e-3)
 
 
@@ -171,7 +171,7 @@ def test_many_slider_cranks_are_weighed_as_each_is_measured():
     measured: dict[str, list[float]] = {name: [] for name in (*names, "joint_force")}
     for one in each:
         at = math.degrees(float(one.reference_input)) + np.linspace(0.0, 360.0, 73)
-        _, found = peaks_of(one, shaped(stated, one.links), "mm", at, SPEED)
+        _, found = find_force_peaks(one, apply_link_shape(stated, one.links), "mm", at, SPEED)
         for name, told in names.items():
             measured[name].append(found[told].value)
         measured["joint_force"].append(max(peak.value for name, peak in found.items() if name.startswith("joint ")))
@@ -181,6 +181,6 @@ def test_many_slider_cranks_are_weighed_as_each_is_measured():
         problem = parse_problem(
             {"kind": "motion", "positions": positions, "dynamics": block, "constraints": {f"max_{name}": limit}}
         )
-        kept = bearable(problem, many, np.ones(6))
+        kept = select_bearable(problem, many, np.ones(6))
         assert kept.tolist() == [value <= limit for value in values]
         assert 0 < kept.sum() < 6

@@ -11,13 +11,13 @@ import pytest
 from pydantic import ValidationError
 
 from kinematics.linkage.fourbar import Fourbar, positions
-from kinematics.linkage.steering import davis_arm_angle, outer_angle
+from kinematics.linkage.steering import compute_davis_arm_angle, compute_outer_angle
 from synthesis.dispatch import solve
 from synthesis.kinds.steering.design import SteeringDesign, SteeringResult
 from synthesis.kinds.steering.problem import SteeringProblem
 from synthesis.kinds.steering.verification import verify_steering
-from synthesis.model.linkage_answer import FourbarMechanism
-from synthesis.model.linkages import FourbarConfiguration, fourbar_mechanism
+from synthesis.model.linkage.answer import FourbarMechanism
+from synthesis.model.linkage.conversion import FourbarConfiguration, build_fourbar
 from synthesis.registry import parse_problem
 from tests.campaign import further
 from tests.cases import cases
@@ -42,7 +42,7 @@ def measured(case: Any) -> tuple[float, SteeringDesign]:
     pivot, arm, rod = given["pivot"], given["arm"], given["rod"]
     lean = math.asin((rod - pivot) / (2.0 * arm))
     a, b = trapezium(pivot, arm, lean, "ahead")
-    mechanism = fourbar_mechanism(FourbarConfiguration(complex(-0.5 * pivot), a, b, complex(0.5 * pivot), a))
+    mechanism = build_fourbar(FourbarConfiguration(complex(-0.5 * pivot), a, b, complex(0.5 * pivot), a))
     problem = parse_problem(
         {
             "kind": "steering",
@@ -87,7 +87,7 @@ def test_where_the_book_s_linkage_steers_correctly(case: Any) -> None:
     _, design = measured(case)
     (theta,) = design.metrics.correct_at
     given, inner = case.inputs, math.radians(theta)
-    phi = float(outer_angle(inner, given["pivot"] / given["wheelbase"]))
+    phi = float(compute_outer_angle(inner, given["pivot"] / given["wheelbase"]))
     near, _ = turning_radii(given["pivot"], given["wheelbase"], given["track"], inner)
     found = {"theta": theta, "phi": math.degrees(phi), "R_inner": near}
     for name, value in found.items():
@@ -125,7 +125,7 @@ def test_the_property_of_davis_s_gear(case: Any) -> None:
 @pytest.mark.parametrize("case", cases("davis", "steering_hooke"))
 def test_the_arms_of_davis_s_gear(case: Any) -> None:
     pivot, wheelbase = case.inputs["pivot"], case.inputs["wheelbase"]
-    case.check(alpha=math.degrees(float(davis_arm_angle(pivot / wheelbase))))
+    case.check(alpha=math.degrees(float(compute_davis_arm_angle(pivot / wheelbase))))
     (design, *_) = answer(wheelbase=wheelbase, pivot_distance=pivot, lock=35.0, mechanism="davis").designs
     case.check(alpha=abs(design.metrics.arm_angle))
 
@@ -140,7 +140,7 @@ def greatest_error(pivot: float, wheelbase: float, arm: float, lean: float, side
     if not np.all(at.valid):
         return math.inf
     outer = np.angle(np.exp(1j * (at.output_angle - cmath.phase(b - o4))))
-    return float(np.degrees(np.abs(outer - outer_angle(theta, pivot / wheelbase)).max()))
+    return float(np.degrees(np.abs(outer - compute_outer_angle(theta, pivot / wheelbase)).max()))
 
 
 @pytest.mark.parametrize("side", ["behind", "ahead"])
@@ -253,4 +253,4 @@ def test_what_is_refused(stated: dict[str, Any], path: str) -> None:
 )
 def test_contradictions_name_their_field(stated: dict[str, Any], path: str) -> None:
     problem = parse_problem({"kind": "steering", "wheelbase": 2.5, "pivot_distance": 1.0, "lock": 40.0, **stated})
-    assert [found.path for found in problem.contradictions()] == [path]
+    assert [found.path for found in problem.find_contradictions()] == [path]

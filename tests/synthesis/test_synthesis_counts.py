@@ -10,7 +10,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from kinematics.linkage.fourbar import OPEN, Fourbar, positions
+from kinematics.linkage.fourbar import OPEN_ASSEMBLY, Fourbar, positions
 from synthesis.dispatch import solve
 from synthesis.registry import parse_problem
 from tests.cases import Case, cases
@@ -32,7 +32,7 @@ def dyad_choices(n: int) -> int:
     A fixed pivot m and a moving one k of the coupler are four numbers; the distance between them stays the same.
     """
     linkage = Fourbar.from_lengths(2.0, 4.0, 3.0, 3.5, 1.3 + 0.7j)
-    at = positions(linkage, np.radians(np.linspace(40.0, 130.0, n)), OPEN)
+    at = positions(linkage, np.radians(np.linspace(40.0, 130.0, n)), OPEN_ASSEMBLY)
     assert np.all(at.valid)
     place, turn = at.a, np.exp(1j * at.coupler_angle)
 
@@ -55,7 +55,7 @@ def function_choices(n: int) -> int:
         crank, ground = complex(*numbers[:2]), complex(*numbers[2:4])
         linkage = Fourbar(0.0, ground, abs(crank), numbers[4], numbers[5])
         theta = np.angle(crank) + np.radians(np.linspace(0.0, 90.0, n))
-        at = positions(linkage, theta, OPEN)
+        at = positions(linkage, theta, OPEN_ASSEMBLY)
         assert np.all(at.valid)
         return np.angle(np.exp(1j * (at.output_angle[1:] - at.output_angle[0])))
 
@@ -74,7 +74,7 @@ def test_five_pairs_leave_size_and_direction_alone() -> None:
     """Of the table's two choices for five pairs: all linkages are found, so that nothing but a similarity is free."""
     linkage = Fourbar.from_lengths(1.5, 4.0, 3.0, 3.4)
     inputs = np.linspace(40.0, 130.0, 5)
-    outputs = np.degrees(positions(linkage, np.radians(inputs), OPEN).output_angle)
+    outputs = np.degrees(positions(linkage, np.radians(inputs), OPEN_ASSEMBLY).output_angle)
     stated = [{"input": float(x), "output": float(y)} for x, y in zip(inputs, outputs, strict=True)]
     problem = parse_problem({"kind": "function", "pairs": stated, "constraints": {"max_link_ratio": None}})
     result = solve(problem, lambda fraction, message: None)

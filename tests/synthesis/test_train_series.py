@@ -8,12 +8,12 @@ from typing import Any
 
 import pytest
 
-from kinematics.gear.planetary import speeds
+from kinematics.gear.planetary import solve_speeds
 from synthesis.dispatch import solve
 from synthesis.kinds.train_series import solver
 from synthesis.kinds.train_series.design import TrainSeriesMechanism
-from synthesis.kinds.train_series.verification import joined, verify
-from synthesis.registry import examples, parse_problem
+from synthesis.kinds.train_series.verification import join_units, verify
+from synthesis.registry import list_examples, parse_problem
 from tests.campaign import further, sampled
 from tests.support.independent.train_series import best_series, statements
 from tests.support.problems.train_series import same
@@ -31,7 +31,7 @@ GEARS: dict[str, Any] = {"type": "gear_train", "teeth": {"min": 17, "max": 60}}
 
 def solved(ratio: float | str, *units: dict[str, Any], **stated: Any) -> Any:
     problem = parse_problem({"kind": "train_series", "ratio": ratio, "units": list(units), **stated})
-    assert problem.contradictions() == []
+    assert problem.find_contradictions() == []
     return solve(problem)
 
 
@@ -57,7 +57,7 @@ def test_further_series_against_the_brute_force() -> None:
 
 def test_a_winch_that_one_set_does_not_reach() -> None:
     """333 : 1 is beyond one set; three of them have it, within a tenth of a thousandth and proven nearest."""
-    statement = examples("train_series")[1]
+    statement = list_examples("train_series")[1]
     result = solve(parse_problem(statement))
     assert result.search.complete
     assert abs(result.designs[0].metrics.error) < 1e-4
@@ -65,7 +65,7 @@ def test_a_winch_that_one_set_does_not_reach() -> None:
     single = solve(parse_problem({**alone, "kind": "planetary_train", "ratio": 333}))
     assert abs(single.designs[0].metrics.error) > 0.9
     mechanism = result.designs[0].mechanism
-    turning = speeds(joined(mechanism), {"shaft_0": 1})
+    turning = solve_speeds(join_units(mechanism), {"shaft_0": 1})
     assert 1 / turning.values["shaft_3"] == mechanism.ratio.exact
     assert mechanism.ratio.exact == Fraction(*_product(mechanism))
 
@@ -161,8 +161,10 @@ def test_demands_on_ordinary_units_are_kept(unit: dict[str, Any], check: str) ->
 def test_series_that_cannot_be_made_leave_room_for_those_behind_them(monkeypatch: pytest.MonkeyPatch) -> None:
     """As many designs as asked for come back, the best of those that can be made, and the answer is no proof."""
     everyone = solved(25, SET, SET, max_designs=12).designs
-    made, first = solver._mechanism, iter(range(7))
-    monkeypatch.setattr(solver, "_mechanism", lambda *series: made(*series) if next(first, None) is None else None)
+    made, first = solver._build_mechanism, iter(range(7))
+    monkeypatch.setattr(
+        solver, "_build_mechanism", lambda *series: made(*series) if next(first, None) is None else None
+    )
     result = solved(25, SET, SET, max_designs=5)
     assert result.search.rejected == {"idler": 7}
     assert not result.search.complete

@@ -11,7 +11,7 @@ import pytest
 from kinematics.errors import DimensionError
 from kinematics.gear.worm import WormDrive
 from synthesis.analyses import parse_request
-from synthesis.analyses.gear_train import GearTrainAnalysis, GearTrainAnalysisRequest
+from synthesis.analyses.gears.gear_train import GearTrainAnalysis, GearTrainAnalysisRequest
 from tests.support.synthesis.gear_train_analysis import analysed
 
 Statement = dict[str, Any]
@@ -25,7 +25,7 @@ SPUR: Statement = {"driver": 20, "driven": 40, "module": 2.0}
 
 def faults(*stages: Statement, **fields: Any) -> list[str]:
     request = parse_request({"mechanism": {"type": "gear_train", "stages": list(stages)}, **fields})
-    return [path for path, _ in request.faults()]
+    return [path for path, _ in request.find_errors()]
 
 
 @pytest.mark.parametrize("torque", [10.0, -10.0])
@@ -67,7 +67,7 @@ def test_a_torque_on_a_worm_that_friction_holds_is_refused() -> None:
     mesh = analysed([SPUR, HELD], input_torque=0.0).meshes[1]
     assert (mesh.efficiency, mesh.tangential_force, mesh.radial_force) == (0.0, 0.0, 0.0)
     mechanism = {"type": "gear_train", "stages": [HELD]}
-    cycle = GearTrainAnalysis.model_validate(GearTrainAnalysisRequest.over_the_cycle(mechanism, 4))
+    cycle = GearTrainAnalysis.model_validate(GearTrainAnalysisRequest.analyze_cycle(mechanism, 4))
     assert cycle.gears[1].angle[-1] == pytest.approx(360.0 * 6 / 40)
     assert cycle.meshes[0].tangential_force == 0.0
     for worm, friction in ((WormDrive(6, 40, 2.0, 4.0), 1.0), (WormDrive(1, 40, 2.0, 10.0), -0.3)):
@@ -81,11 +81,11 @@ def test_a_series_refuses_a_worm_that_friction_holds(unit: Statement, torque: fl
     units = [{"type": "gear_train", "stages": [stage]} for stage in (SPUR, unit)]
     series = {"mechanism": {"type": "train_series", "units": units}, "motion": {"at": 0.0}}
     request = parse_request({**series, "input_torque": torque})
-    assert [path for path, _ in request.faults()] == ["/mechanism/units/1/stages/0/friction"]
+    assert [path for path, _ in request.find_errors()] == ["/mechanism/units/1/stages/0/friction"]
     free = parse_request({**series, "input_torque": 1.0})
     if unit is LOCKING:
-        assert free.faults() == []
-        assert free.answer()["efficiency"] == pytest.approx(0.99 * WormDrive(1, 40, 2.0, 10.0).efficiency(0.3))
+        assert free.find_errors() == []
+        assert free.build_answer()["efficiency"] == pytest.approx(0.99 * WormDrive(1, 40, 2.0, 10.0).efficiency(0.3))
 
 
 @pytest.mark.parametrize("shaft_angle", [60.0, 90.0, 110.0])

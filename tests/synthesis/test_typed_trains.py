@@ -87,12 +87,12 @@ def test_rings_are_as_a_pair_tells_them(ring: str, ratio: str) -> None:
             "internal": True,
             "addendum": addenda,
         }
-        told = parse_request({"mechanism": pair}).answer()
+        told = parse_request({"mechanism": pair}).build_answer()
         assert told["sound"]
         assert told["contact_ratio"] == pytest.approx(design.metrics.meshes[0].contact_ratio, rel=1e-12)
         if addenda[1] < 1.0:
             longer = {**pair, "addendum": [addenda[0], addenda[1] + 2e-6]}
-            assert not parse_request({"mechanism": longer}).answer()["sound"]
+            assert not parse_request({"mechanism": longer}).build_answer()["sound"]
 
 
 def test_rings_hardly_larger_than_their_pinions_are_left_out() -> None:
@@ -104,7 +104,7 @@ def test_rings_hardly_larger_than_their_pinions_are_left_out() -> None:
     least = min(design.mechanism.stages[0].driven - design.mechanism.stages[0].driver for design in result.designs)
     assert 5 <= least <= 9
     fouling = {"type": "gear_pair", "teeth": [40, 42], "internal": True, "addendum": [1.0, 0.9]}
-    assert parse_request({"mechanism": fouling}).answer()["tips_foul"]
+    assert parse_request({"mechanism": fouling}).build_answer()["tips_foul"]
 
 
 def test_a_helical_stage_is_a_spur_stage_of_its_plane_of_rotation() -> None:
@@ -119,7 +119,7 @@ def test_a_helical_stage_is_a_spur_stage_of_its_plane_of_rotation() -> None:
     assert mesh.overlap_ratio == pytest.approx(25.0 * math.sin(math.radians(20.0)) / (2.0 * math.pi))
     assert mesh.total_contact_ratio == pytest.approx(mesh.contact_ratio + mesh.overlap_ratio)
     pair = {"type": "gear_pair", "teeth": [made.driver, made.driven], "module": 2.0, "helix_angle": 20.0}
-    told = parse_request({"mechanism": pair}).answer()
+    told = parse_request({"mechanism": pair}).build_answer()
     assert told["contact_ratio"] == pytest.approx(mesh.contact_ratio, rel=1e-12)
     assert told["centre_distance"] == pytest.approx(mesh.centre_distance, rel=1e-12)
 
@@ -331,7 +331,7 @@ def best_pair(teeth: tuple[int, int], demands: Statement, distance: float) -> bo
 
     def told(first: float, total: float) -> Any:
         shift = {"shift": [first, total - first], "centre_distance": distance}
-        return parse_request({"mechanism": plain | shift}).answer()
+        return parse_request({"mechanism": plain | shift}).build_answer()
 
     for _ in range(60):
         middle = 0.5 * (low + high)
@@ -387,7 +387,7 @@ def test_helical_stages_are_fitted_to_a_distance() -> None:
         "helix_angle": 22.0,
         "shift": [made.shift.driver, made.shift.driven],
     }
-    told = parse_request({"mechanism": pair}).answer()
+    told = parse_request({"mechanism": pair}).build_answer()
     assert told["centre_distance"] == pytest.approx(distance, rel=1e-9)
     assert mesh.tip_thickness is not None
     assert told["contact_ratio"] == pytest.approx(mesh.contact_ratio, rel=1e-9)

@@ -10,8 +10,8 @@ import numpy as np
 import pytest
 
 from synthesis import parse_problem, solve
-from synthesis.outcome.front import error_of
-from synthesis.outcome.usable import BAND, usable, usable_first
+from synthesis.results.pareto import measure_error
+from synthesis.results.practicality import ERROR_BAND, is_usable, sort_usable_first
 from tests.campaign import sampled
 from tests.support.demands import ordinary
 
@@ -29,9 +29,13 @@ CLOSED = {
 @pytest.mark.campaign
 def test_a_usable_fit_stands_before_a_nearer_one_that_nobody_would_build() -> None:
     result = solve(parse_problem(CLOSED))
-    near = [design for design in result.designs if error_of(design) <= BAND * min(map(error_of, result.designs))]
-    if any(map(usable, near)):
-        assert usable(result.designs[0])
+    near = [
+        design
+        for design in result.designs
+        if measure_error(design) <= ERROR_BAND * min(map(measure_error, result.designs))
+    ]
+    if any(map(is_usable, near)):
+        assert is_usable(result.designs[0])
     else:
         assert "30°" in result.summary
         assert "link ratio" in result.summary
@@ -42,7 +46,7 @@ def test_a_usable_fit_stands_before_a_nearer_one_that_nobody_would_build() -> No
 def test_with_a_limit_the_order_is_the_kinds_own(limit: dict[str, float]) -> None:
     result = solve(parse_problem({**CLOSED, "constraints": limit}))
     assert "are listed first" not in result.summary
-    errors = [error_of(design) for design in result.designs]
+    errors = [measure_error(design) for design in result.designs]
     assert errors[0] <= 1.0001 * min(errors)
 
 
@@ -59,27 +63,28 @@ def made(transmission: float, ratio: float, reach: float | None, error: float = 
 def test_a_link_far_longer_than_the_task_gives_way_or_is_told() -> None:
     problem = parse_problem(CLOSED)
     long, short, flat = made(40.0, 3.0, 8.0), made(35.0, 4.0, 3.0), made(20.0, 4.0, 2.0)
-    found = usable_first(problem, [long, flat, short])
+    found = sort_usable_first(problem, [long, flat, short])
     assert found.designs == [short, long, flat]
     assert "no link longer than 5 times the task's size" in found.remark
     # Where every one is too long, or weak, angle and ratio count before reach, and the summary says what is relaxed.
-    found = usable_first(problem, [flat, long])
+    found = sort_usable_first(problem, [flat, long])
     assert found.designs == [long, flat]
     assert "No design found" in found.remark
     assert "no link longer than 5 times" in found.remark
     # Where the first is only too long the order stays.
-    found = usable_first(problem, [long, flat, made(40.0, 3.0, 6.0)])
+    found = sort_usable_first(problem, [long, flat, made(40.0, 3.0, 6.0)])
     assert found.designs[1] is flat
     assert "no link longer than 5 times" in found.remark
-    assert usable_first(problem, [made(40.0, 3.0, None), long]).remark == ""
+    assert sort_usable_first(problem, [made(40.0, 3.0, None), long]).remark == ""
 
 
 def test_what_the_first_design_lacks_is_told_where_it_is_not_among_the_nearest() -> None:
     first, nearest = made(40.0, 4.5, 5.9, error=5.0), made(29.0, 6.5, 7.6)
-    found = usable_first(parse_problem(CLOSED), [first, nearest])
+    found = sort_usable_first(parse_problem(CLOSED), [first, nearest])
     assert found.designs == [first, nearest]
     assert found.remark == (
-        " No design within 2 times the smallest error has a transmission angle of 30° or more and a link ratio of 10 or less"
+        " No design within 2 times the smallest error has a transmission angle of 30° or more and a link ratio of 10 "
+        "or less"
         " and no link longer than 5 times the task's size."
     )
 

@@ -7,9 +7,9 @@ import pytest
 
 from kinematics.linkage.planar.drive import drive
 from synthesis.dispatch import solve
-from synthesis.model.linkage_answer import LinkageResult
-from synthesis.proof.rebuilt import rebuilt
-from synthesis.registry import KINDS, examples, parse_problem
+from synthesis.model.linkage.answer import LinkageResult
+from synthesis.registry import KINDS, list_examples, parse_problem
+from synthesis.verification.reconstruction import rebuild_mechanism
 from tests.campaign import further
 
 LINKAGES = [
@@ -26,11 +26,11 @@ ROUNDING = 1e-6
 @pytest.mark.slow
 @pytest.mark.parametrize(("kind", "n"), further(LINKAGES, [case for case in LINKAGES if case[1] == 0]))
 def test_the_linkage_moves_through_its_range_and_meets_its_targets_there(kind, n):
-    problem = parse_problem(examples(kind)[n])
+    problem = parse_problem(list_examples(kind)[n])
     designs = [design for design in solve(problem).designs if design.verification.passed]
     for design in designs[:3]:
-        mechanism = rebuilt(design.mechanism, from_skeleton=True)
-        slides = mechanism.driven_by_slide
+        mechanism = rebuild_mechanism(design.mechanism, from_skeleton=True)
+        slides = mechanism.has_slide_input
         used = design.metrics.used_stroke if slides else design.metrics.used_range
         assert (design.metrics.used_range is None) == slides
         start, end = used if slides else np.radians(used)

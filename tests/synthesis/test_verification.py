@@ -10,9 +10,9 @@ import pytest
 
 from synthesis.dispatch import solve
 from synthesis.kinds.motion.problem import MotionProblem
-from synthesis.kinds.motion.verification import verify
-from synthesis.model.linkage_answer import FourbarMechanism, LinkageDesign
-from synthesis.model.linkages import FourbarConfiguration, fourbar_mechanism
+from synthesis.kinds.motion.verification.verify import verify
+from synthesis.model.linkage.answer import FourbarMechanism, LinkageDesign
+from synthesis.model.linkage.conversion import FourbarConfiguration, build_fourbar
 from synthesis.registry import parse_problem
 from tests.oracles.continuation import drive
 from tests.synthesis.planted import Planted, plant
@@ -25,7 +25,7 @@ def problem_of(planted: Planted, **more: Any) -> MotionProblem:
 def mechanism_of(planted: Planted) -> FourbarMechanism:
     one, other = planted.input_side, planted.output_side
     point = complex(planted.positions[0]["x"], planted.positions[0]["y"])
-    return fourbar_mechanism(
+    return build_fourbar(
         FourbarConfiguration(one.fixed_pivot, one.moving_pivot, other.moving_pivot, other.fixed_pivot, point)
     )
 
@@ -114,16 +114,16 @@ def test_moved_pivot_is_found() -> None:
 @pytest.mark.campaign
 def test_every_defect_by_independent_continuation() -> None:
     """Random pairs of dyads: circuit, branch, order and transmission are as the continuation finds them."""
-    from synthesis.kinds.motion.choices import side_dyads
-    from synthesis.kinds.motion.task import motion_task
+    from synthesis.kinds.motion.dyads.candidates import find_side_dyads
+    from synthesis.kinds.motion.task.positions import make_motion_task
 
     rng = np.random.default_rng(6)
     seen: dict[tuple[bool, bool, bool], int] = {}
     for trial in range(12):
         planted = plant(rng, 3, 10.0)
         problem = problem_of(planted)
-        task = motion_task(problem)
-        sides = [side_dyads(task, problem, k, np.random.default_rng(trial + 100 * k), 40).dyads for k in (0, 1)]
+        task = make_motion_task(problem)
+        sides = [find_side_dyads(task, problem, k, np.random.default_rng(trial + 100 * k), 40).dyads for k in (0, 1)]
         designs = []
         for i in range(min(len(sides[0].fixed), len(sides[1].fixed))):
             joints = [
@@ -132,7 +132,7 @@ def test_every_defect_by_independent_continuation() -> None:
             ]
             lengths = [abs(joints[k] - joints[k - 1]) for k in range(4)]
             if min(lengths) > 0.02 * max(lengths):
-                design = verify(problem, fourbar_mechanism(FourbarConfiguration(*joints, task.origin)))
+                design = verify(problem, build_fourbar(FourbarConfiguration(*joints, task.origin)))
                 if design is not None and abs(excess(lengths)) > 1e-4 * sum(lengths):
                     designs.append(design)
         found = drive([design.mechanism.model_dump() for design in designs], planted.positions)
@@ -198,19 +198,19 @@ def test_choices_that_are_not_kept_are_found() -> None:
 
 def test_demands_of_the_motion_can_be_dropped() -> None:
     """A linkage with a branch defect fails by default and is reported as a metric when the client drops the demand."""
-    from synthesis.kinds.motion.choices import side_dyads
-    from synthesis.kinds.motion.task import motion_task
+    from synthesis.kinds.motion.dyads.candidates import find_side_dyads
+    from synthesis.kinds.motion.task.positions import make_motion_task
 
     rng = np.random.default_rng(10)
     planted = plant(rng, 3)
     problem = problem_of(planted)
     relaxed = problem_of(planted, constraints={"same_branch": False, "in_order": False})
-    task = motion_task(problem)
-    one, other = (side_dyads(task, problem, 0, np.random.default_rng(k), 60) for k in (0, 1))
+    task = make_motion_task(problem)
+    one, other = (find_side_dyads(task, problem, 0, np.random.default_rng(k), 60) for k in (0, 1))
     found = 0
     for i in range(50):
         joints = [complex(z[i]) for z in (one.dyads.fixed, one.dyads.moving, other.dyads.moving, other.dyads.fixed)]
-        mechanism = fourbar_mechanism(FourbarConfiguration(*(task.to_problem(z) for z in joints), task.origin))
+        mechanism = build_fourbar(FourbarConfiguration(*(task.to_problem(z) for z in joints), task.origin))
         strict, loose = verify(problem, mechanism), verify(relaxed, mechanism)
         if strict is None or loose is None or "same_circuit" in failed(strict) or not failed(strict):
             continue

@@ -7,8 +7,8 @@ import math
 import numpy as np
 import pytest
 
-from kinematics.linkage.planar.limits import branches, holding_reference
-from synthesis.proof.rebuilt import rebuilt
+from kinematics.linkage.planar.limits import find_branches, find_reference_branch
+from synthesis.verification.reconstruction import rebuild_mechanism
 from tests.support.problems.walking_legs import LEGS, foot, jansen, klann
 from tests.support.sixbars.path import both_ways, solved
 
@@ -38,7 +38,7 @@ def test_jansens_leg_has_its_eleven_numbers():
 @pytest.mark.parametrize(("name", "step", "height"), [("Klann's foot", 1.01, 0.527), ("Jansen's foot", 67.9, 22.4)])
 def test_the_crank_turns_through_and_the_foot_makes_a_step(name, step, height):
     leg = LEGS[name]()
-    assert holding_reference(leg, branches(leg)).full
+    assert find_reference_branch(leg, find_branches(leg)).full
     places = foot(name)
     assert np.ptp(places.real) == pytest.approx(step, rel=5e-3)
     assert np.ptp(places.imag) == pytest.approx(height, rel=5e-3)
@@ -53,5 +53,9 @@ def test_the_crank_turns_through_and_the_foot_makes_a_step(name, step, height):
 def test_some_sixbar_draws_the_foot_to_a_two_hundredth_of_its_step(name):
     places = foot(name)
     result, _, _ = solved(places, mechanisms=["watt_1", "stephenson_1", "stephenson_3"], max_designs=3)
-    errors = [both_ways(rebuilt(design.mechanism), places) for design in result.designs if design.verification.passed]
+    errors = [
+        both_ways(rebuild_mechanism(design.mechanism), places)
+        for design in result.designs
+        if design.verification.passed
+    ]
     assert min(errors) <= 0.005 * np.ptp(places.real)

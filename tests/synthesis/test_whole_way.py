@@ -5,11 +5,11 @@ import math
 import numpy as np
 import pytest
 
-from kinematics.linkage.fourbar import OPEN, Fourbar, positions, transmission_extremes
+from kinematics.linkage.fourbar import OPEN_ASSEMBLY, Fourbar, find_transmission_extremes, positions
 from synthesis.dispatch import solve
-from synthesis.kinds.path.nearness import error_of
-from synthesis.kinds.path.verification import verify_path
-from synthesis.model.linkages import FourbarConfiguration, driven_fourbar, fourbar_mechanism
+from synthesis.kinds.path.task.ranking import compute_error
+from synthesis.kinds.path.verification.fourbar import verify_path
+from synthesis.model.linkage.conversion import FourbarConfiguration, build_driven_fourbar, build_fourbar
 from synthesis.registry import parse_problem
 from tests.support.problems.curve_match import noisy
 from tests.support.synthesis.curve_verification import distance_from
@@ -30,13 +30,13 @@ def stated(places, tolerance=None, **changes):
 
 
 def mechanism(linkage, at):
-    stands = positions(linkage, at, OPEN)
+    stands = positions(linkage, at, OPEN_ASSEMBLY)
     joints = (linkage.input_pivot, stands.a, stands.b, linkage.output_pivot, stands.p)
-    return fourbar_mechanism(FourbarConfiguration(*map(complex, joints)))
+    return build_fourbar(FourbarConfiguration(*map(complex, joints)))
 
 
 def curve(linkage, inputs):
-    return np.asarray(positions(linkage, inputs, OPEN).p)
+    return np.asarray(positions(linkage, inputs, OPEN_ASSEMBLY).p)
 
 
 def checks_of(design):
@@ -56,7 +56,7 @@ def test_no_design_that_is_wild_between_the_points_is_offered(fitted):
     assert result.designs
     for design in result.designs:
         assert design.metrics.excursion <= design.metrics.rms_distance
-    errors = [error_of(design, problem) for design in result.designs]
+    errors = [compute_error(design, problem) for design in result.designs]
     assert errors == sorted(errors)
 
 
@@ -64,11 +64,11 @@ def test_what_is_stated_of_the_whole_way_is_what_dense_sampling_finds(fitted):
     problem, result = fitted
     points = np.array([point.point for point in problem.points])
     for design in result.designs[:3]:
-        driven = driven_fourbar(design.mechanism)
+        driven = build_driven_fourbar(design.mechanism)
         dense = positions(driven.linkage, np.linspace(0.0, math.tau, 20_001), driven.assembly).p
         farthest = max(distance_from(points, z) for z in dense[::4])
         assert farthest - 1e-9 <= design.metrics.curve_distance <= farthest * 1.005
-        least = math.degrees(float(transmission_extremes(driven.linkage, 0.0, math.tau)[0]))
+        least = math.degrees(float(find_transmission_extremes(driven.linkage, 0.0, math.tau)[0]))
         assert design.metrics.min_transmission_angle == pytest.approx(least, abs=1e-9)
 
 
@@ -76,10 +76,12 @@ def test_the_transmission_angle_of_a_closed_curve_is_that_of_the_whole_turn():
     """The points lie on half of the curve; the least angle is on the other half, which is drawn too."""
     low, high = min(
         ((start, start + math.pi) for start in np.linspace(0.0, math.tau, 73)),
-        key=lambda ends: -float(transmission_extremes(EGG, *ends)[0]),
+        key=lambda ends: -float(find_transmission_extremes(EGG, *ends)[0]),
     )
     design = verify_path(stated(curve(EGG, np.linspace(low, high, 12))), mechanism(EGG, low))
-    whole, half = (math.degrees(float(transmission_extremes(EGG, *ends)[0])) for ends in ((0.0, math.tau), (low, high)))
+    whole, half = (
+        math.degrees(float(find_transmission_extremes(EGG, *ends)[0])) for ends in ((0.0, math.tau), (low, high))
+    )
     assert half > whole + 1.0
     assert design.metrics.min_transmission_angle == pytest.approx(whole, abs=1e-9)
 
@@ -126,7 +128,7 @@ def test_tolerances_are_for_all_points_of_a_fit():
     points = listed(curve(EGG, np.linspace(0.0, 5.0, 6)), 0.1)
     assert stated([], points=points, closed=False, method="auto").fitted
     exact = stated([], points=points, closed=False, method="exact")
-    assert [fault.path for fault in exact.contradictions()] == ["/points/0/tolerance"]
+    assert [fault.path for fault in exact.find_contradictions()] == ["/points/0/tolerance"]
     del points[4]["tolerance"]
     some = stated([], points=points, closed=False)
-    assert [fault.path for fault in some.contradictions()] == ["/points/4/tolerance"]
+    assert [fault.path for fault in some.find_contradictions()] == ["/points/4/tolerance"]

@@ -10,7 +10,7 @@ from typing import Any
 
 import httpx
 
-from synthesis.registry import KINDS, example
+from synthesis.registry import KINDS, get_first_example
 
 KIND = next(iter(KINDS))
 STEPS = 180
@@ -35,7 +35,7 @@ def opening(client: httpx.Client) -> dict[str, Any]:
     httpx.HTTPStatusError
         Where the service refuses.
     """
-    problem = example(KIND)
+    problem = get_first_example(KIND)
     job = _json(
         client.post("/v1/jobs", json={"problem": problem}, headers={"Prefer": f"wait={WAIT_S}"}, timeout=2 * WAIT_S)
     )

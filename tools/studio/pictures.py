@@ -16,7 +16,7 @@ from PIL import Image, ImageDraw
 from playwright.sync_api import Page, sync_playwright
 from scipy.interpolate import CubicSpline
 
-from synthesis.registry import KINDS, examples
+from synthesis.registry import KINDS, list_examples
 
 CHROMIUM = "/usr/bin/chromium"
 DOCS = Path(__file__).parents[2] / "docs"
@@ -94,7 +94,7 @@ LOADED: Mapping[str, object] = {
 }
 """A shaper; its ram works while it goes slowly, to the left."""
 
-OUTLINE = examples("path")[3]["points"]
+OUTLINE = list_examples("path")[3]["points"]
 """The closed curve of an example: a picture shows it, and its first points are traced."""
 
 TRACED = 11

@@ -18,7 +18,7 @@ from typing import Any
 import httpx
 from playwright.sync_api import Page, sync_playwright
 
-from synthesis.registry import KINDS, examples
+from synthesis.registry import KINDS, list_examples
 
 STEPS = 120
 """Samples of the path of a linkage."""
@@ -56,7 +56,7 @@ def renewed(
     RuntimeError
         Where an example has no design.
     """
-    wanted = {f"{kind}-{n}": problem for kind in KINDS for n, problem in enumerate(examples(kind))}
+    wanted = {f"{kind}-{n}": problem for kind in KINDS for n, problem in enumerate(list_examples(kind))}
     symbols = {name: symbol for name, symbol in kept(file).items() if sum_in(symbol) == sum_of(wanted.get(name))}
     slow = []
     with sync_playwright() as playwright:

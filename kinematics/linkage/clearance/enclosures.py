@@ -28,17 +28,17 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numpy.typing import NDArray
 
+from kinematics.arrays import Complex, Integers, Mask, Real
 from kinematics.compiling import njit
-from kinematics.linkage.clearance.outlines import OPTIONS, Complex, Indices, Real
+from kinematics.linkage.clearance.outlines import OPTIONS
 from kinematics.linkage.planar.drive_kernels import (
-    CARRIED,
+    CARRIED_LINK,
     GEAR,
     JOINT,
     KIND,
     LINK,
-    OTHER,
+    OTHER_LINK,
     OTHER_PIN,
     PIN,
     RPR,
@@ -48,26 +48,24 @@ from kinematics.linkage.planar.drive_kernels import (
 )
 from kinematics.linkage.planar.triads import Loops, evaluate, invert
 
-Mask = NDArray[np.bool_]
-
-SHARES = 0.25 ** np.arange(0.0, 11.0)
+NORM_WEIGHTS = 0.25 ** np.arange(0.0, 11.0)
 """Weights of the slowest link relative to the fastest in the norm of the theorem: near a toggle only the fastest
 counts."""
 
-CONDITION = 1e12
+MAX_CONDITION = 1e12
 """Condition number of the loop equations above which too few digits remain to invert them."""
 
 
 @njit(**OPTIONS)
-def by_closures(
-    rows: Indices,
+def bound_by_closures(
+    rows: Integers,
     ratios: Real,
-    gives: Indices,
+    gives: Integers,
     on: Mask,
     place: Complex,
     line: Complex,
     line_angles: Real,
-    driver: Indices,
+    driver: Integers,
     places: Complex,
     turn: Complex,
     half: Real,
@@ -105,22 +103,22 @@ def by_closures(
         else:
             # A rotation of π bounds every rotation, since chords are largest there.
             turned[driver[0], n] = min(half[n], math.pi)
-            _carry(driver[0], driver[1], n, gives, place, turned, moved)
+            _bound_joints(driver[0], driver[1], n, gives, place, turned, moved)
         for row in range(len(rows)):
             step = rows[row]
-            kind, link, pin, joint, other = step[KIND], step[LINK], step[PIN], step[JOINT], step[OTHER]
+            kind, link, pin, joint, other = step[KIND], step[LINK], step[PIN], step[JOINT], step[OTHER_LINK]
             if kind == GEAR:
                 turned[link, n] = min(abs(ratios[row]) * turned[other, n], math.pi)
-            elif kind == CARRIED:
-                turned[link, n] = _swing(moved[pin, n] + moved[joint, n], abs(place[joint] - place[pin]))
+            elif kind == CARRIED_LINK:
+                turned[link, n] = _bound_swing(moved[pin, n] + moved[joint, n], abs(place[joint] - place[pin]))
             elif kind == RRR:
                 other_pin = step[OTHER_PIN]
                 apart, d = moved[pin, n] + moved[other_pin, n], abs(x[other_pin] - x[pin])
                 b, c = abs(place[joint] - place[pin]), abs(place[joint] - place[other_pin])
-                about = _swing(apart, d)
-                turned[link, n] = min(about + _opening(b, c, d, apart), math.pi)
-                turned[other, n] = min(about + _opening(c, b, d, apart), math.pi)
-                _carry(other, other_pin, n, gives, place, turned, moved)
+                about = _bound_swing(apart, d)
+                turned[link, n] = min(about + _bound_opening(b, c, d, apart), math.pi)
+                turned[other, n] = min(about + _bound_opening(c, b, d, apart), math.pi)
+                _bound_joints(other, other_pin, n, gives, place, turned, moved)
                 # The shared joint is bounded by both links; keep the smaller bound.
                 chord = 2.0 * c * math.sin(0.5 * turned[other, n])
                 moved[joint, n] = min(moved[joint, n], moved[other_pin, n] + chord)
@@ -134,8 +132,8 @@ def by_closures(
                 spread = 0.0
                 # With r = 0 the angle does not depend on the distance.
                 if r != 0.0:
-                    spread = _spread(r / max(d, abs(r)), r / (d + apart), r / least)
-                turned[link, n] = min(_swing(apart, d) + spread, math.pi)
+                    spread = _bound_spread(r / max(d, abs(r)), r / (d + apart), r / least)
+                turned[link, n] = min(_bound_swing(apart, d) + spread, math.pi)
             elif kind == RRP:
                 # The point of the line's link at the pin moves at most like a joint of that link plus the rotation
                 # about it.
@@ -151,13 +149,13 @@ def by_closures(
                 normal = turn[other, n] * complex(-math.sin(angle), math.cos(angle))
                 length = abs(place[joint] - place[pin])
                 ratio = (normal.conjugate() * (x[joint] - x[pin])).real / length
-                spread = _spread(ratio, ratio - e / length, ratio + e / length)
+                spread = _bound_spread(ratio, ratio - e / length, ratio + e / length)
                 turned[link, n] = min(turned[other, n] + spread, math.pi)
-            _carry(link, pin, n, gives, place, turned, moved)
+            _bound_joints(link, pin, n, gives, place, turned, moved)
 
 
 @njit(**OPTIONS)
-def _carry(link: int, pin: int, n: int, gives: Indices, place: Complex, turned: Real, moved: Real) -> None:
+def _bound_joints(link: int, pin: int, n: int, gives: Integers, place: Complex, turned: Real, moved: Real) -> None:
     """Bound the displacements of the joints that a link determines."""
     for j in range(1, gives[link, 0] + 1):
         joint = gives[link, j]
@@ -166,36 +164,36 @@ def _carry(link: int, pin: int, n: int, gives: Indices, place: Complex, turned: 
 
 
 @njit(**OPTIONS)
-def _swing(change: float, length: float) -> float:
+def _bound_swing(change: float, length: float) -> float:
     """Return the maximum rotation of a vector of given length when it changes by a vector of size ``change``."""
     # A change larger than the vector can turn it anywhere.
     return math.asin(change / length) if change < length else math.pi
 
 
 @njit(**OPTIONS)
-def _opening(b: float, c: float, d: float, apart: float) -> float:
+def _bound_opening(b: float, c: float, d: float, apart: float) -> float:
     """Bound the change of a triangle's angle between the sides b and d when d changes by at most ``apart``.
 
     Only values of d for which the triangle exists count.
     """
     low, high = max(d - apart, abs(b - c)), min(d + apart, b + c)
-    spread = _spread(_cosine(b, c, d), _cosine(b, c, low), _cosine(b, c, high))
+    spread = _bound_spread(_compute_cosine(b, c, d), _compute_cosine(b, c, low), _compute_cosine(b, c, high))
     # For b > c the angle is not monotonic in d: it has a maximum where c is normal to d.
     if b > c:
         turning = math.sqrt((b - c) * (b + c))
         if low < turning < high:
-            spread = max(spread, abs(math.acos(min(max(_cosine(b, c, d), -1.0), 1.0)) - math.acos(turning / b)))
+            spread = max(spread, abs(math.acos(min(max(_compute_cosine(b, c, d), -1.0), 1.0)) - math.acos(turning / b)))
     return float(spread)
 
 
 @njit(**OPTIONS)
-def _cosine(b: float, c: float, d: float) -> float:
+def _compute_cosine(b: float, c: float, d: float) -> float:
     """Return the cosine of a triangle's angle between its sides b and d; 0 in the limit d → 0."""
     return ((b - c) * (b + c) + d * d) / (2.0 * b * d) if d > 0.0 else 0.0
 
 
 @njit(**OPTIONS)
-def _spread(cosine: float, low: float, high: float) -> float:
+def _bound_spread(cosine: float, low: float, high: float) -> float:
     """Return the maximum difference of the angle of a cosine from the angles of two others, clipped to ±1."""
     angle = math.acos(min(max(cosine, -1.0), 1.0))
     first = abs(math.acos(min(max(low, -1.0), 1.0)) - angle)
@@ -203,7 +201,9 @@ def _spread(cosine: float, low: float, high: float) -> float:
 
 
 @njit(**OPTIONS)
-def approaches(on: Mask, carries: Mask, reach: Real, pairs: Indices, items: Indices, turned: Real, moved: Real) -> Real:
+def bound_approaches(
+    on: Mask, carries: Mask, reach: Real, pairs: Integers, items: Integers, turned: Real, moved: Real
+) -> Real:
     """Bound the decrease of the distances of pairs around known positions.
 
     Parameters
@@ -219,7 +219,7 @@ def approaches(on: Mask, carries: Mask, reach: Real, pairs: Indices, items: Indi
     items : int, shape (m, 2)
         Pair and position of each item.
     turned, moved : float, shapes (links, n) and (joints, n)
-        Bounds of :func:`by_closures`.
+        Bounds of :func:`bound_by_closures`.
 
     Returns
     -------
@@ -230,7 +230,9 @@ def approaches(on: Mask, carries: Mask, reach: Real, pairs: Indices, items: Indi
     for m in range(len(items)):
         pair, n = items[m]
         p, q = pairs[pair]
-        least = _alone(on, carries, reach, p, n, turned, moved) + _alone(on, carries, reach, q, n, turned, moved)
+        least = _bound_motion(on, carries, reach, p, n, turned, moved) + _bound_motion(
+            on, carries, reach, q, n, turned, moved
+        )
         for link in range(len(on)):
             if not carries[p, link]:
                 continue
@@ -249,7 +251,7 @@ def approaches(on: Mask, carries: Mask, reach: Real, pairs: Indices, items: Indi
 
 
 @njit(**OPTIONS)
-def _alone(on: Mask, carries: Mask, reach: Real, part: int, n: int, turned: Real, moved: Real) -> float:
+def _bound_motion(on: Mask, carries: Mask, reach: Real, part: int, n: int, turned: Real, moved: Real) -> float:
     """Bound the motion of the points of a part."""
     least = np.inf
     for link in range(len(on)):
@@ -263,7 +265,7 @@ def _alone(on: Mask, carries: Mask, reach: Real, part: int, n: int, turned: Real
     return least
 
 
-def by_theorem(loops: Loops, rotations: Real, half: Real) -> Real:
+def bound_by_theorem(loops: Loops, rotations: Real, half: Real) -> Real:
     """Bound the rotations of a class III group; π where the theorem does not apply.
 
     Parameters
@@ -280,12 +282,12 @@ def by_theorem(loops: Loops, rotations: Real, half: Real) -> Real:
     float, shape (links, n)
     """
     bounds = np.full(rotations.shape, np.pi)
-    _within_balls(loops.coefficients, loops.by_input, rotations, half, bounds)
+    _bound_by_balls(loops.coefficients, loops.by_input, rotations, half, bounds)
     return bounds
 
 
 @njit(**OPTIONS)
-def _within_balls(c: Complex, k: Complex, rotations: Real, half: Real, bounds: Real) -> None:
+def _bound_by_balls(c: Complex, k: Complex, rotations: Real, half: Real, bounds: Real) -> None:
     """Reduce the bounds to the radii of the balls; c and k are those of the loops."""
     loops, links = c.shape
     value, inverse = np.empty(links), np.empty((links, links))
@@ -300,7 +302,7 @@ def _within_balls(c: Complex, k: Complex, rotations: Real, half: Real, bounds: R
         for row in range(links):
             largest = max(largest, np.abs(inverse[row]).sum())
         # Ill-conditioned, hence near a toggle: keep the trivial bound π.
-        if not invert(inverse) * largest < CONDITION:
+        if not invert(inverse) * largest < MAX_CONDITION:
             continue
         change = 2.0 * math.sin(0.5 * min(half[n], math.pi))
         for row in range(links):
@@ -315,7 +317,7 @@ def _within_balls(c: Complex, k: Complex, rotations: Real, half: Real, bounds: R
                 strength[row, col] = abs(by_link)
         fastest = rate.max()
         # Any norm gives a valid bound, so try several and keep the smallest radius per link.
-        for share in SHARES:
+        for share in NORM_WEIGHTS:
             eta = omega = 0.0
             for row in range(links):
                 weight[row] = rate[row] + share * fastest

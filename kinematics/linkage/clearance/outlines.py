@@ -10,13 +10,9 @@ import math
 from typing import Any, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
+from kinematics.arrays import Complex, Integers, Real
 from kinematics.compiling import njit
-
-Complex = NDArray[np.complex128]
-Real = NDArray[np.float64]
-Indices = NDArray[np.int64]
 
 OPTIONS: dict[str, Any] = {"cache": True, "nogil": True, "error_model": "numpy"}
 
@@ -40,39 +36,39 @@ class Part(NamedTuple):
     radius: float
 
 
-MEETING = 1e-6
+OVERLAP_DEPTH = 1e-6
 """Overlap, as a share of the size and in addition to the radii, assigned to intersecting cores: the true depth is not
 measured."""
 
 
 @njit(**OPTIONS)
-def distance(first: Complex, second: Complex) -> float:
+def measure_distance(first: Complex, second: Complex) -> float:
     """Measure the distance of two cores, shapes (k,) and (m,): points, segments or polygons with their interior.
 
     The result is the minimum over all pairs of edges; 0 if they only touch, −∞ if they intersect: edges cross, or a
     corner or the middle of an edge lies inside the other.
     """
-    least = _of_edges(first, second, 0, _edges(len(first)), 0, _edges(len(second)))
+    least = _measure_edges(first, second, 0, _count_edges(len(first)), 0, _count_edges(len(second)))
     # Without crossing edges the cores still intersect if one contains the other.
-    if least < 0.0 or _reaches_into(first, second) or _reaches_into(second, first):
+    if least < 0.0 or _is_reaching_into(first, second) or _is_reaching_into(second, first):
         return -math.inf
     return float(least)
 
 
-PLAIN = 64
+MAX_PLAIN_PAIRS = 64
 """Number of pairs of edges up to which all are compared: bars would not be faster."""
 
-FEW = 4
+MIN_STRETCH_EDGES = 4
 """Maximum number of edges of a stretch that is not divided."""
 
-CLOSE = 1e-9
+SEPARATION_TOLERANCE = 1e-9
 """Share of the largest coordinate: outlines separated by more than this do not cross, regardless of rounding, so a
 single point decides whether one lies inside the other."""
 
-FAINT = 1e-14
+ROUNDING_ERROR = 1e-14
 """Share of the largest coordinate by which rounding may overestimate the distance of bars."""
 
-DEEPEST = 160
+MAX_STACK_DEPTH = 160
 """Maximum size of the stack of pairs of stretches: one per halving, enough for outlines of 2⁶⁴ edges."""
 
 
@@ -90,14 +86,14 @@ class Stretches(NamedTuple):
     roots : int, shape (parts,)
     """
 
-    rows: Indices
+    rows: Integers
     ends: Complex
     radii: Real
-    roots: Indices
+    roots: Integers
 
 
 @njit(**OPTIONS)
-def stretches_of(vertices: Complex, starts: Indices) -> Stretches:
+def build_stretches(vertices: Complex, starts: Integers) -> Stretches:
     """Build the stretches of parts whose vertices are concatenated, each part from one start to the next."""
     rows = np.full((2 * len(vertices) + len(starts), 4), -1, np.int64)
     ends, radii = np.empty((len(rows), 2), np.complex128), np.empty(len(rows))
@@ -106,12 +102,12 @@ def stretches_of(vertices: Complex, starts: Indices) -> Stretches:
     for part in range(len(roots)):
         points = vertices[starts[part] : starts[part + 1]]
         roots[part] = at = count
-        rows[count, 0], rows[count, 1] = 0, _edges(len(points))
+        rows[count, 0], rows[count, 1] = 0, _count_edges(len(points))
         count += 1
         while at < count:
             first, end = rows[at, 0], rows[at, 1]
-            radii[at] = _barred(points, first, end, ends[at])
-            if end - first > FEW:
+            radii[at] = _build_bar(points, first, end, ends[at])
+            if end - first > MIN_STRETCH_EDGES:
                 half = (first + end) // 2
                 rows[at, 2], rows[at, 3] = count, count + 1
                 rows[count, 0], rows[count, 1] = first, half
@@ -122,7 +118,7 @@ def stretches_of(vertices: Complex, starts: Indices) -> Stretches:
 
 
 @njit(**OPTIONS)
-def _barred(points: Complex, first: int, end: int, axis: Complex) -> float:
+def _build_bar(points: Complex, first: int, end: int, axis: Complex) -> float:
     """Build the bar around the edges from ``first`` to ``end`` along their longest extent; return its radius."""
     far, other = points[first], points[first]
     # Two sweeps find a nearly largest diameter; any axis gives a valid bar.
@@ -142,16 +138,18 @@ def _barred(points: Complex, first: int, end: int, axis: Complex) -> float:
     axis[0], axis[1] = other + complex(low.real, middle) * along, other + complex(high.real, middle) * along
     radius = 0.0
     for n in range(first, end + 1):
-        radius = max(radius, _to_segment(points[n % len(points)], axis[0], axis[1]))
+        radius = max(radius, _measure_to_segment(points[n % len(points)], axis[0], axis[1]))
     return radius
 
 
 @njit(**OPTIONS)
-def _by_stretches(first: Complex, second: Complex, one: int, other: int, tree: Stretches, moved: Complex) -> float:
-    """Measure :func:`distance` of two placed parts; ``moved`` has rotation and shift of each, as rows."""
+def _measure_by_stretches(
+    first: Complex, second: Complex, one: int, other: int, tree: Stretches, moved: Complex
+) -> float:
+    """Measure :func:`measure_distance` of two placed parts; ``moved`` has rotation and shift of each, as rows."""
     rows, ends, radii, _ = tree
     # An explicit stack, since compiled code should not recurse.
-    waiting, apart = np.empty((DEEPEST, 2), np.int64), np.empty(DEEPEST)
+    waiting, apart = np.empty((MAX_STACK_DEPTH, 2), np.int64), np.empty(MAX_STACK_DEPTH)
     waiting[0, 0], waiting[0, 1], apart[0] = one, other, -math.inf
     count, least, far = 1, math.inf, 0.0
     for side, root in ((0, one), (1, other)):
@@ -160,11 +158,11 @@ def _by_stretches(first: Complex, second: Complex, one: int, other: int, tree: S
         count -= 1
         a, b = waiting[count, 0], waiting[count, 1]
         # Skip pairs that cannot improve the minimum.
-        if apart[count] > least + FAINT * far:
+        if apart[count] > least + ROUNDING_ERROR * far:
             continue
         halved_a, halved_b = rows[a, 2] >= 0, rows[b, 2] >= 0
         if not halved_a and not halved_b:
-            least = min(least, _of_edges(first, second, rows[a, 0], rows[a, 1], rows[b, 0], rows[b, 1]))
+            least = min(least, _measure_edges(first, second, rows[a, 0], rows[a, 1], rows[b, 0], rows[b, 1]))
             if least < 0.0:
                 return float(least)
             continue
@@ -174,48 +172,50 @@ def _by_stretches(first: Complex, second: Complex, one: int, other: int, tree: S
             waiting[count + half, 0] = rows[a, 2 + half] if of_a else a
             waiting[count + half, 1] = b if of_a else rows[b, 2 + half]
             pair = waiting[count + half]
-            apart[count + half] = _between(first, second, pair[0], pair[1], tree, moved)
+            apart[count + half] = _bound_distance(first, second, pair[0], pair[1], tree, moved)
         # Process the nearer half first (last in the stack), since the other may then be skipped.
         if apart[count + 1] > apart[count]:
             apart[count], apart[count + 1] = apart[count + 1], apart[count]
             side = 0 if of_a else 1
             waiting[count, side], waiting[count + 1, side] = waiting[count + 1, side], waiting[count, side]
         count += 2
-    if least <= CLOSE * far:
-        meet = _reaches_into(first, second) or _reaches_into(second, first)
+    if least <= SEPARATION_TOLERANCE * far:
+        meet = _is_reaching_into(first, second) or _is_reaching_into(second, first)
     else:
         # The outlines do not cross: one lies inside the other with all of its points or with none.
-        meet = _holds(second, first[0], other, tree, moved[1]) or _holds(first, second[0], one, tree, moved[0])
+        meet = _is_point_inside(second, first[0], other, tree, moved[1]) or _is_point_inside(
+            first, second[0], one, tree, moved[0]
+        )
     return -math.inf if meet else least
 
 
 @njit(**OPTIONS)
-def _between(first: Complex, second: Complex, a: int, b: int, tree: Stretches, moved: Complex) -> float:
+def _bound_distance(first: Complex, second: Complex, a: int, b: int, tree: Stretches, moved: Complex) -> float:
     """Bound the distance of two stretches from below, by their bars, or one bar and the edges of a short one."""
     rows, ends, radii, _ = tree
     one = moved[0, 0] * ends[a, 0] + moved[0, 1], moved[0, 0] * ends[a, 1] + moved[0, 1]
     other = moved[1, 0] * ends[b, 0] + moved[1, 1], moved[1, 0] * ends[b, 1] + moved[1, 1]
     short_a, short_b = rows[a, 2] < 0, rows[b, 2] < 0
     if short_a and (not short_b or radii[a] >= radii[b]):
-        return float(_to_edges(other[0], other[1], first, rows[a, 0], rows[a, 1]) - radii[b])
+        return float(_measure_to_edges(other[0], other[1], first, rows[a, 0], rows[a, 1]) - radii[b])
     if short_b:
-        return float(_to_edges(one[0], one[1], second, rows[b, 0], rows[b, 1]) - radii[a])
-    return float(_apart(one[0], one[1], other[0], other[1]) - radii[a] - radii[b])
+        return float(_measure_to_edges(one[0], one[1], second, rows[b, 0], rows[b, 1]) - radii[a])
+    return float(_measure_segments(one[0], one[1], other[0], other[1]) - radii[a] - radii[b])
 
 
 @njit(**OPTIONS)
-def _to_edges(a: complex, b: complex, points: Complex, begin: int, end: int) -> float:
+def _measure_to_edges(a: complex, b: complex, points: Complex, begin: int, end: int) -> float:
     """Measure the distance of a segment from the nearest of some edges."""
     least = math.inf
     for n in range(begin, end):
-        least = min(least, _apart(a, b, points[n], points[(n + 1) % len(points)]))
+        least = min(least, _measure_segments(a, b, points[n], points[(n + 1) % len(points)]))
     return least
 
 
 @njit(**OPTIONS)
-def _apart(a: complex, b: complex, c: complex, d: complex) -> float:
+def _measure_segments(a: complex, b: complex, c: complex, d: complex) -> float:
     """Measure the distance of two segments, 0 if they cross."""
-    return 0.0 if _cross_over(a, b, c, d) else _of_segments(a, b, c, d)
+    return 0.0 if _cross_over(a, b, c, d) else _measure_uncrossed(a, b, c, d)
 
 
 @njit(**OPTIONS)
@@ -226,7 +226,7 @@ def _cross_over(a: complex, b: complex, c: complex, d: complex) -> bool:
 
 
 @njit(**OPTIONS)
-def _of_edges(first: Complex, second: Complex, begin: int, end: int, start: int, stop: int) -> float:
+def _measure_edges(first: Complex, second: Complex, begin: int, end: int, start: int, stop: int) -> float:
     """Measure the minimum distance between two runs of edges; −∞ if any edges cross."""
     least = math.inf
     for n in range(begin, end):
@@ -235,44 +235,47 @@ def _of_edges(first: Complex, second: Complex, begin: int, end: int, start: int,
             c, d = second[m], second[(m + 1) % len(second)]
             if _cross_over(a, b, c, d):
                 return -math.inf
-            least = min(least, _of_segments(a, b, c, d))
+            least = min(least, _measure_uncrossed(a, b, c, d))
     return least
 
 
 @njit(**OPTIONS)
-def _holds(polygon: Complex, z: complex, root: int, tree: Stretches, moved: Complex) -> bool:
+def _is_point_inside(polygon: Complex, z: complex, root: int, tree: Stretches, moved: Complex) -> bool:
     """Return whether a point that is not on the outline lies inside it."""
     a, b = moved[0] * tree.ends[root] + moved[1]
     # A point outside the bar of the whole outline cannot lie inside it.
-    near = _to_segment(z, a, b) <= tree.radii[root] * (1.0 + CLOSE)
-    return near and len(polygon) > 2 and _inside(z, polygon)
+    near = _measure_to_segment(z, a, b) <= tree.radii[root] * (1.0 + SEPARATION_TOLERANCE)
+    return near and len(polygon) > 2 and _is_inside(z, polygon)
 
 
 @njit(**OPTIONS)
-def _reaches_into(core: Complex, polygon: Complex) -> bool:
+def _is_reaching_into(core: Complex, polygon: Complex) -> bool:
     """Return whether a corner or the middle of an edge of a core lies inside a polygon."""
     if len(polygon) < 3:
         return False
     inside = False
     for n in range(len(core)):
-        inside = inside or _inside(core[n], polygon) or _inside(0.5 * (core[n] + core[n - 1]), polygon)
+        inside = inside or _is_inside(core[n], polygon) or _is_inside(0.5 * (core[n] + core[n - 1]), polygon)
     return inside
 
 
 @njit(**OPTIONS)
-def _edges(points: int) -> int:
+def _count_edges(points: int) -> int:
     return points if points > 2 else 1
 
 
 @njit(**OPTIONS)
-def _of_segments(a: complex, b: complex, c: complex, d: complex) -> float:
+def _measure_uncrossed(a: complex, b: complex, c: complex, d: complex) -> float:
     """Measure the distance of the segments a–b and c–d, which do not cross; either may be a point."""
-    first, second = min(_to_segment(a, c, d), _to_segment(b, c, d)), min(_to_segment(c, a, b), _to_segment(d, a, b))
+    first, second = (
+        min(_measure_to_segment(a, c, d), _measure_to_segment(b, c, d)),
+        min(_measure_to_segment(c, a, b), _measure_to_segment(d, a, b)),
+    )
     return float(min(first, second))
 
 
 @njit(**OPTIONS)
-def _to_segment(z: complex, a: complex, b: complex) -> float:
+def _measure_to_segment(z: complex, a: complex, b: complex) -> float:
     along, offset = b - a, z - a
     square = along.real * along.real + along.imag * along.imag
     share = 0.0
@@ -289,7 +292,7 @@ def _cross(a: complex, b: complex) -> float:
 
 
 @njit(**OPTIONS)
-def _inside(z: complex, polygon: Complex) -> bool:
+def _is_inside(z: complex, polygon: Complex) -> bool:
     """Return whether a ray from z crosses the polygon's edges an odd number of times; False if z lies on an edge."""
     inside = False
     for n in range(len(polygon)):
@@ -304,12 +307,12 @@ def _inside(z: complex, polygon: Complex) -> bool:
 
 
 @njit(**OPTIONS)
-def distances(
+def measure_distances(
     vertices: Complex,
-    starts: Indices,
-    links: Indices,
-    pairs: Indices,
-    items: Indices,
+    starts: Integers,
+    links: Integers,
+    pairs: Integers,
+    items: Integers,
     turn: Complex,
     shift: Complex,
     tree: Stretches,
@@ -335,7 +338,7 @@ def distances(
     Returns
     -------
     float, shape (m,)
-        −:data:`MEETING` if they intersect; NaN without a position.
+        −:data:`OVERLAP_DEPTH` if they intersect; NaN without a position.
     """
     out = np.empty(len(items))
     most = 0
@@ -350,18 +353,18 @@ def distances(
         if not np.isfinite(moved).all():
             out[m] = np.nan
             continue
-        first = _placed(vertices[starts[one] : starts[one + 1]], moved[0], scratch[0])
-        second = _placed(vertices[starts[other] : starts[other + 1]], moved[1], scratch[1])
-        if len(first) * len(second) <= PLAIN:
-            apart = distance(first, second)
+        first = _place_points(vertices[starts[one] : starts[one + 1]], moved[0], scratch[0])
+        second = _place_points(vertices[starts[other] : starts[other + 1]], moved[1], scratch[1])
+        if len(first) * len(second) <= MAX_PLAIN_PAIRS:
+            apart = measure_distance(first, second)
         else:
-            apart = _by_stretches(first, second, tree.roots[one], tree.roots[other], tree, moved)
-        out[m] = max(apart, -MEETING)
+            apart = _measure_by_stretches(first, second, tree.roots[one], tree.roots[other], tree, moved)
+        out[m] = max(apart, -OVERLAP_DEPTH)
     return out
 
 
 @njit(**OPTIONS)
-def _placed(points: Complex, moved: Complex, scratch: Complex) -> Complex:
+def _place_points(points: Complex, moved: Complex, scratch: Complex) -> Complex:
     """Rotate and shift points; fixed points are returned as they are."""
     # Parts on the ground need no copy.
     if moved[0] == 1.0 and moved[1] == 0.0:

@@ -8,23 +8,24 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from kinematics.arrays import Complex, Integers, Real
 from kinematics.errors import DimensionError
-from kinematics.linkage.clearance.enclosures import approaches, by_closures, by_theorem
-from kinematics.linkage.clearance.outlines import MEETING, Complex, Indices, Part, Real, distances, stretches_of
+from kinematics.linkage.clearance.enclosures import bound_approaches, bound_by_closures, bound_by_theorem
+from kinematics.linkage.clearance.outlines import OVERLAP_DEPTH, Part, build_stretches, measure_distances
 from kinematics.linkage.planar.drive import drive
 from kinematics.linkage.planar.mechanism import Mechanism
-from kinematics.linkage.planar.program import program_of, unit_frame
-from kinematics.linkage.planar.triads import Loops, loop_equations
+from kinematics.linkage.planar.program import build_program, compute_unit_frame
+from kinematics.linkage.planar.triads import Loops, build_loop_equations
 
 Pairs = Sequence[tuple[int, int]]
 
-AT_JOINT = 1e-12
+JOINT_TOLERANCE = 1e-12
 """Share of the size within which a single point counts as lying at a joint: rounding."""
 
 MAX_CELLS = 400_000
 """Maximum number of initial parts of a range over all pairs: a sweep holds arrays of this length in memory."""
 
-FIRST = 0.05
+INITIAL_HALF_WIDTH = 0.05
 """Maximum half-width of the initial parts of a range: radians, or a share of the mechanism's size along an input
 slide."""
 
@@ -71,9 +72,9 @@ class Scene:
             if not 0.0 <= part.radius < np.inf:
                 raise DimensionError("radius of a part", "zero or more", part.radius)
         self._mechanism = mechanism
-        self._program, frame = program_of(mechanism), unit_frame(mechanism)
+        self._program, frame = build_program(mechanism), compute_unit_frame(mechanism)
         self.size, self._origin = float(frame.size), complex(frame.origin)
-        self.unit = self.size if mechanism.driven_by_slide else 1.0
+        self.unit = self.size if mechanism.has_slide_input else 1.0
         self.pairs = np.asarray(pairs, np.int64)
         links, joints = self._program.links, list(mechanism.joints)
         place = self._program.code.joints[0]
@@ -83,22 +84,22 @@ class Scene:
         points = [(np.asarray(part.points, np.complex128) - self._origin) / self.size for part in parts]
         self._vertices = np.concatenate(points)
         self._starts = np.concatenate([[0], np.cumsum([len(own) for own in points])])
-        self._stretches = stretches_of(self._vertices, self._starts)
+        self._stretches = build_stretches(self._vertices, self._starts)
         # Distance of a part's vertices from each joint: the lever of a rotation about that joint.
         self._reach = np.array([[np.abs(own - joint).max() for joint in place] for own in points])
         # A disc about a joint of its link belongs to every link of that joint.
         discs = np.array([len(own) == 1 for own in points])
-        about = discs[:, None] & self._on[self._links] & (self._reach <= AT_JOINT)
+        about = discs[:, None] & self._on[self._links] & (self._reach <= JOINT_TOLERANCE)
         self._reach[about] = 0.0
         self._carries = about @ self._on.T
         self._carries[np.arange(len(parts)), self._links] = True
         self._radii = np.array([part.radius for part in parts])[self.pairs].sum(axis=1)
-        self.overlaps = -self._radii - MEETING * self.size
+        self.overlaps = -self._radii - OVERLAP_DEPTH * self.size
         self._loops: Loops | None = None
         if self._program.class_iii:
-            self._loops = loop_equations(mechanism, dict(zip(joints, place.tolist(), strict=True)))
+            self._loops = build_loop_equations(mechanism, dict(zip(joints, place.tolist(), strict=True)))
 
-    def divided(self, low: float, high: float) -> tuple[Real, Real]:
+    def divide_range(self, low: float, high: float) -> tuple[Real, Real]:
         """Divide a range into equal parts of at most the initial width; return their middles and half-widths.
 
         Raises
@@ -108,14 +109,14 @@ class Scene:
         """
         if not (np.isfinite(low) and np.isfinite(high) and low <= high):
             raise DimensionError("range of the input", "finite, from the lower end to the higher", (low, high))
-        most = 2.0 * FIRST * self.unit * (MAX_CELLS // max(len(self.pairs), 1))
+        most = 2.0 * INITIAL_HALF_WIDTH * self.unit * (MAX_CELLS // max(len(self.pairs), 1))
         if high - low > most:
             raise RangeError(high - low, most)
-        count = max(int(np.ceil((high - low) / (2.0 * FIRST * self.unit))), 1)
+        count = max(int(np.ceil((high - low) / (2.0 * INITIAL_HALF_WIDTH * self.unit))), 1)
         half = 0.5 * (high - low) / count
         return np.asarray(low + half * (2.0 * np.arange(count) + 1.0), np.float64), np.full(count, half)
 
-    def distances(self, pair: Indices, centre: Real, half: Real) -> tuple[Real, Real]:
+    def distances(self, pair: Integers, centre: Real, half: Real) -> tuple[Real, Real]:
         """Measure distances of pairs at inputs (NaN without a position), and bound their decrease nearby.
 
         Parameters
@@ -133,23 +134,25 @@ class Scene:
         # Pairs share positions: each distinct (input, half-width) is driven once, packed into a complex number.
         around, item = np.unique(centre + 1j * half, return_inverse=True)
         inputs, halves = around.real.copy(), around.imag.copy()
-        pose = self._pose(inputs)
+        pose = self._evaluate_pose(inputs)
         shift = pose.places[self._pins] - pose.turn * self._program.code.joints[0][self._pins, None]
         # The ground does not move, whatever rounding the formula leaves.
         shift[0] = 0.0
         items = np.stack([pair, item], axis=1)
         cores = self._vertices, self._starts, self._links, self.pairs
-        apart = distances(*cores, items, pose.turn, shift, self._stretches)
+        apart = measure_distances(*cores, items, pose.turn, shift, self._stretches)
         # No position, no distance.
         apart[~pose.valid[item]] = np.nan
-        nearer = approaches(self._on, self._carries, self._reach, self.pairs, items, *self._moves(pose, halves))
+        nearer = bound_approaches(
+            self._on, self._carries, self._reach, self.pairs, items, *self._bound_moves(pose, halves)
+        )
         return self.size * apart - self._radii[pair], self.size * nearer
 
-    def reached(self, inputs: Real) -> NDArray[np.bool_]:
+    def has_position(self, inputs: Real) -> NDArray[np.bool_]:
         """Return whether the mechanism has a position at each input."""
-        return self._pose(inputs).valid
+        return self._evaluate_pose(inputs).valid
 
-    def _pose(self, inputs: Real) -> _Pose:
+    def _evaluate_pose(self, inputs: Real) -> _Pose:
         code, links = self._program.code, self._program.links
         motion = drive(self._mechanism, inputs, order=0)
         places = np.stack([motion.joints[name][0] for name in self._mechanism.joints]) - self._origin
@@ -157,15 +160,15 @@ class Scene:
         rotations = angles - code.link_angles[0][:, None]
         return _Pose(places / self.size, rotations, np.exp(1j * rotations), motion.valid)
 
-    def _moves(self, pose: _Pose, half: Real) -> tuple[Real, Real]:
+    def _bound_moves(self, pose: _Pose, half: Real) -> tuple[Real, Real]:
         """Bound the rotations of links and the displacements of joints, (links, n) and (joints, n)."""
         code, links = self._program.code, self._program.links
         turned = np.full(pose.rotations.shape, np.pi)
         if self._loops is not None:
             unknown = [links.index(link) for link in self._loops.links]
-            turned[unknown] = by_theorem(self._loops, pose.rotations[unknown], half)
+            turned[unknown] = bound_by_theorem(self._loops, pose.rotations[unknown], half)
         moved = np.empty(pose.places.shape)
-        by_closures(
+        bound_by_closures(
             code.rows, code.ratios, code.gives, self._on, code.joints[0], code.lines[0], code.line_angles[0],
             code.driver, pose.places, pose.turn, half / self.unit, turned, moved,
         )  # fmt: skip

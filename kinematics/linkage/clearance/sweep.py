@@ -12,27 +12,28 @@ from typing import Literal, NamedTuple
 
 import numpy as np
 
-from kinematics.linkage.clearance.outlines import Indices, Part, Real
+from kinematics.arrays import Integers, Real
+from kinematics.linkage.clearance.outlines import Part
 from kinematics.linkage.clearance.scene import Pairs, Scene
 from kinematics.linkage.planar.mechanism import Mechanism
 
-FINEST = 1e-10
-"""Minimum half-width of a part, in the units of :data:`scene.FIRST`: within it parts move by less than :data:`SURE`, so
-that a pair that only just reaches the required distance is decided."""
+MIN_HALF_WIDTH = 1e-10
+"""Minimum half-width of a part, in the units of :data:`scene.FIRST`: within it parts move by less than
+:data:`DISTANCE_TOLERANCE`, so that a pair that only just reaches the required distance is decided."""
 
-ENDS = 1e-7
+END_OFFSET = 1e-7
 """Offset from the ends of a range at which it must have positions, in the same units: an end may be a toggle."""
 
-MOST = 400_000
+MAX_DISTANCES = 400_000
 """Maximum number of distances computed in a sweep; pairs undecided by then stay undecided."""
 
-SURE = 1e-9
+DISTANCE_TOLERANCE = 1e-9
 """Share of the mechanism's size by which a distance may fall short of the required one: rounding."""
 
-COARSE = 2e-3
+SEARCH_MARGIN = 2e-3
 """Share of the size by which a sample may exceed the smallest one and still start a search for the minimum."""
 
-SECTIONS, NARROWINGS = 9, 14
+SECTION_COUNT, NARROWING_STEPS = 9, 14
 """Number of sections of a bracket, of which the two next to the minimum are kept, and number of repetitions: to 1e-9 of
 the bracket, where a minimum is known to rounding. One batch costs hardly more than a single evaluation."""
 
@@ -42,7 +43,7 @@ Interval = tuple[float, float]
 Nearest = Literal["each", "all", "none"]
 
 
-class Swept(NamedTuple):
+class SweepResult(NamedTuple):
     """Result for a pair of parts over a range.
 
     Attributes
@@ -65,7 +66,7 @@ class Swept(NamedTuple):
     decided: bool
 
 
-def swept(
+def sweep_pairs(
     mechanism: Mechanism,
     parts: Sequence[Part],
     pairs: Pairs,
@@ -74,7 +75,7 @@ def swept(
     wanted: float,
     *,
     nearest: Nearest = "each",
-) -> list[Swept]:
+) -> list[SweepResult]:
     """Sweep pairs of parts over a range of the input: minimum distance, and whether a distance is kept throughout.
 
     Parameters
@@ -107,14 +108,14 @@ def swept(
     if not pairs:
         return []
     scene = Scene(mechanism, parts, pairs)
-    count, slack = len(pairs), SURE * scene.size
-    centre, half = scene.divided(low, high)
+    count, slack = len(pairs), DISTANCE_TOLERANCE * scene.size
+    centre, half = scene.divide_range(low, high)
     pair = np.repeat(np.arange(count), len(centre))
     centre, half = np.tile(centre, count), np.tile(half, count)
     best, at = np.full(count, np.inf), np.full(count, np.nan)
-    inside = min(ENDS * scene.unit, 0.5 * (high - low))
-    decided = np.full(count, scene.reached(np.array([low + inside, high - inside])).all())
-    near: list[tuple[Indices, Real, Real]] = []
+    inside = min(END_OFFSET * scene.unit, 0.5 * (high - low))
+    decided = np.full(count, scene.has_position(np.array([low + inside, high - inside])).all())
+    near: list[tuple[Integers, Real, Real]] = []
     looked = 0
     while len(pair):
         here, bound = scene.distances(pair, centre, half)
@@ -126,7 +127,7 @@ def swept(
         best[pair[order]], at[pair[order]] = here[order], centre[order]
         # Lower bound of the distance in each part; intersecting cores have a fixed lowest value.
         least = np.where(known, np.maximum(here - bound, scene.overlaps[pair]), -np.inf)
-        open_to_nearest = least < _nearer_than(nearest, best)[pair] - COARSE * scene.size
+        open_to_nearest = least < _get_search_limit(nearest, best)[pair] - SEARCH_MARGIN * scene.size
         open_to_wanted = (least < wanted - slack) & (best[pair] >= wanted - slack)
         # One violation decides the question for all pairs.
         if nearest == "all" and best.min() < wanted - slack:
@@ -134,51 +135,51 @@ def swept(
             open_to_wanted[:] = False
         near.append((pair[known], centre[known], here[known]))
         more = open_to_nearest | open_to_wanted | ~known
-        if looked + 2 * np.count_nonzero(more) > MOST:
+        if looked + 2 * np.count_nonzero(more) > MAX_DISTANCES:
             decided[pair[open_to_wanted | ~known]] = False
             break
         # Parts at the limit of refinement are given up as undecided.
-        lost = more & (half <= FINEST * scene.unit)
+        lost = more & (half <= MIN_HALF_WIDTH * scene.unit)
         decided[pair[lost & (open_to_wanted | ~known)]] = False
-        pair, centre, half = _halved(pair[more & ~lost], centre[more & ~lost], half[more & ~lost])
+        pair, centre, half = _split_halves(pair[more & ~lost], centre[more & ~lost], half[more & ~lost])
     if nearest != "none":
-        values, places = _nearest(scene, near, low, high, _nearer_than(nearest, best))
+        values, places = _find_nearest(scene, near, low, high, _get_search_limit(nearest, best))
         nearer = values < best
         best[nearer], at[nearer] = values[nearer], places[nearer]
     keeps = decided & (best >= wanted - slack)
     return [
-        Swept(float(best[n]), float(at[n]), bool(keeps[n]), bool(decided[n] or best[n] < wanted - slack))
+        SweepResult(float(best[n]), float(at[n]), bool(keeps[n]), bool(decided[n] or best[n] < wanted - slack))
         for n in range(count)
     ]
 
 
-def free_inputs(
+def find_free_inputs(
     mechanism: Mechanism, parts: Sequence[Part], pairs: Pairs, low: float, high: float, wanted: float, fine: float
 ) -> list[Interval]:
     """Find the inputs of a range at which all pairs keep a distance, as ascending intervals.
 
     Each interval is proved to be free, and ends within ``fine`` (radians, or length along the slide) of an input at
-    which a pair is closer or undecided. Other parameters and errors as for :func:`swept`.
+    which a pair is closer or undecided. Other parameters and errors as for :func:`sweep_pairs`.
     """
     free: list[Interval] = [(low, high)]
-    for own in free_ranges(mechanism, parts, pairs, low, high, wanted, fine):
+    for own in find_free_ranges(mechanism, parts, pairs, low, high, wanted, fine):
         both = [(max(one[0], other[0]), min(one[1], other[1])) for one in free for other in own]
         free = sorted((start, end) for start, end in both if start < end)
     return free
 
 
-def free_ranges(
+def find_free_ranges(
     mechanism: Mechanism, parts: Sequence[Part], pairs: Pairs, low: float, high: float, wanted: float, fine: float
 ) -> list[list[Interval]]:
-    """Find the free intervals of each pair separately, in the order of ``pairs``; see :func:`free_inputs`."""
+    """Find the free intervals of each pair separately, in the order of ``pairs``; see :func:`find_free_inputs`."""
     if not pairs:
         return []
     scene = Scene(mechanism, parts, pairs)
-    slack = SURE * scene.size
-    centre, half = scene.divided(low, high)
+    slack = DISTANCE_TOLERANCE * scene.size
+    centre, half = scene.divide_range(low, high)
     pair = np.repeat(np.arange(len(pairs)), len(centre))
     centre, half = np.tile(centre, len(pairs)), np.tile(half, len(pairs))
-    free: list[tuple[Indices, Real, Real]] = []
+    free: list[tuple[Integers, Real, Real]] = []
     while len(pair):
         here, bound = scene.distances(pair, centre, half)
         kept = np.maximum(here - bound, scene.overlaps[pair]) >= wanted - slack
@@ -187,18 +188,18 @@ def free_ranges(
         start, end = np.clip([centre - half, centre + half], low, high)[:, kept]
         free.append((pair[kept], start, end))
         # Near a toggle the bound is coarse: keep refining where the distance itself is clearly sufficient.
-        coarse = (here > wanted + COARSE * scene.size) & (half > FINEST * scene.unit)
+        coarse = (here > wanted + SEARCH_MARGIN * scene.size) & (half > MIN_HALF_WIDTH * scene.unit)
         more = ~kept & ~met & ((half > 0.5 * fine) | coarse)
         # Divide into quarters, since few large batches are faster than many small ones; the last may be halves.
         times = 1 if half[0] <= fine else 2
         pair, centre, half = pair[more], centre[more], half[more]
         for _ in range(times):
-            pair, centre, half = _halved(pair, centre, half)
+            pair, centre, half = _split_halves(pair, centre, half)
     of, starts, ends = (np.concatenate(columns) for columns in zip(*free, strict=True))
-    return [_merged(starts[of == n], ends[of == n], 1e-9 * scene.unit) for n in range(len(pairs))]
+    return [_merge_intervals(starts[of == n], ends[of == n], 1e-9 * scene.unit) for n in range(len(pairs))]
 
 
-def _merged(starts: Real, ends: Real, near: float) -> list[Interval]:
+def _merge_intervals(starts: Real, ends: Real, near: float) -> list[Interval]:
     """Merge adjacent intervals into one; the given ones do not overlap."""
     if not len(starts):
         return []
@@ -208,20 +209,20 @@ def _merged(starts: Real, ends: Real, near: float) -> list[Interval]:
     return list(zip(starts[first].tolist(), ends[last].tolist(), strict=True))
 
 
-def _halved(pair: Indices, centre: Real, half: Real) -> tuple[Indices, Real, Real]:
+def _split_halves(pair: Integers, centre: Real, half: Real) -> tuple[Integers, Real, Real]:
     quarter = 0.5 * half
     return np.tile(pair, 2), np.concatenate([centre - quarter, centre + quarter]), np.tile(quarter, 2)
 
 
-def _nearer_than(nearest: Nearest, best: Real) -> Real:
+def _get_search_limit(nearest: Nearest, best: Real) -> Real:
     """Return the distance of each pair below which its minimum is searched."""
     if nearest == "each":
         return best
     return np.full(len(best), best.min() if nearest == "all" else -np.inf)
 
 
-def _nearest(
-    scene: Scene, near: list[tuple[Indices, Real, Real]], low: float, high: float, than: Real
+def _find_nearest(
+    scene: Scene, near: list[tuple[Integers, Real, Real]], low: float, high: float, than: Real
 ) -> tuple[Real, Real]:
     """Refine the minimum distance of each pair from its smallest samples; return distances and inputs.
 
@@ -236,7 +237,7 @@ def _nearest(
         values = np.concatenate([[np.inf], here[own], [np.inf]])
         # Of equal samples take the first: the distance of a fixed corner is constant.
         valley = (values[1:-1] < values[:-2]) & (values[1:-1] <= values[2:])
-        close = here[own] <= than[n] + COARSE * scene.size
+        close = here[own] <= than[n] + SEARCH_MARGIN * scene.size
         # Intersecting cores already have the lowest possible value.
         lowest = valley & close & (here[own] > scene.overlaps[n]) & (than[n] > scene.overlaps[n])
         # The neighbouring samples, or the ends of the range, bracket the minimum.
@@ -247,19 +248,19 @@ def _nearest(
     of = np.array([n for n, _, _ in begins])
     left, right = (np.array([row[side] for row in begins]) for side in (1, 2))
 
-    def value(inputs: Real) -> Real:
+    def measure_value(inputs: Real) -> Real:
         flat = inputs.ravel()
         distances = scene.distances(np.tile(of, len(inputs)), flat, np.zeros(len(flat)))[0]
         return np.where(np.isfinite(distances), distances, np.inf).reshape(inputs.shape)
 
-    shares = np.arange(1, SECTIONS)[:, None] / SECTIONS
-    for _ in range(NARROWINGS):
+    shares = np.arange(1, SECTION_COUNT)[:, None] / SECTION_COUNT
+    for _ in range(NARROWING_STEPS):
         inside = left + shares * (right - left)
-        lowest = np.argmin(value(inside), axis=0)
-        step = (right - left) / SECTIONS
+        lowest = np.argmin(measure_value(inside), axis=0)
+        step = (right - left) / SECTION_COUNT
         left, right = left + lowest * step, left + (lowest + 2) * step
     ends = np.stack([0.5 * (left + right), np.full(len(of), low), np.full(len(of), high)])
-    for inputs, distances in zip(ends, value(ends), strict=True):
+    for inputs, distances in zip(ends, measure_value(ends), strict=True):
         for n, place, d in zip(of, inputs, distances, strict=True):
             if d < best[n]:
                 best[n], at[n] = d, place

@@ -24,11 +24,12 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike
 
-from kinematics.linkage.batch import over_designs
+from kinematics.arrays import Mask, Real
+from kinematics.linkage.batch import broadcast_over_designs
 from kinematics.linkage.fourbar import circuit_kernels as kernels
 from kinematics.linkage.fourbar.circuit_kernels import FULL_TURN
 from kinematics.linkage.fourbar.classification import can_assemble
-from kinematics.linkage.fourbar.closed_form import Fourbar, Mask, Real, one_shape
+from kinematics.linkage.fourbar.closed_form import Fourbar, broadcast_shape
 
 
 class InputLimits(NamedTuple):
@@ -40,21 +41,21 @@ class InputLimits(NamedTuple):
     extended_toggle: Mask
 
 
-def input_limits(linkage: Fourbar) -> InputLimits:
+def find_input_limits(linkage: Fourbar) -> InputLimits:
     """Find the limits of the input link from the closed-form toggle angles (Norton 4.37, in half angles).
 
     NaN for a linkage that cannot be assembled. A change point counts as a toggle at |δ| = 0 or π.
     """
     pivots, lengths = linkage.blocks[0].reshape(3, -1), linkage.blocks[1].reshape(3, -1)
     ends, toggles = np.empty(lengths[:2].shape), np.empty(lengths[:2].shape, np.bool_)
-    kernels.limits(pivots, lengths, ends, toggles)
+    kernels.find_limits(pivots, lengths, ends, toggles)
     ends, toggles = ends.reshape(2, *linkage.input.shape), toggles.reshape(2, *linkage.input.shape)
     return InputLimits(ends[0, ...], ends[1, ...], toggles[0, ...], toggles[1, ...])
 
 
-def toggle_angles(linkage: Fourbar) -> Real:
+def find_toggle_angles(linkage: Fourbar) -> Real:
     """Find the absolute input angles of all toggles of one design, radians in (−π, π], ascending; none for a crank."""
-    limits = input_limits(linkage)
+    limits = find_input_limits(linkage)
     inclinations = [limits.lower] * bool(limits.folded_toggle) + [limits.upper] * bool(limits.extended_toggle)
     # Toggles occur at ±δ, which coincide on the ground line.
     twofold = [(1.0, -1.0) if 0.0 < t < np.pi else (1.0,) for t in inclinations]
@@ -64,9 +65,9 @@ def toggle_angles(linkage: Fourbar) -> Real:
     return np.unique(np.where(wrapped <= -np.pi, np.pi, wrapped))
 
 
-def full_rotation(linkage: Fourbar) -> Mask:
+def has_full_rotation(linkage: Fourbar) -> Mask:
     """Return whether the input link is a crank: it rotates fully without a toggle or change point."""
-    limits = input_limits(linkage)
+    limits = find_input_limits(linkage)
     return can_assemble(linkage) & ~limits.folded_toggle & ~limits.extended_toggle
 
 
@@ -88,13 +89,13 @@ def stays_on_branch(linkage: Fourbar, start: ArrayLike, end: ArrayLike) -> Mask:
     shape = linkage.input.shape
     start, end = np.asarray(start, np.float64), np.asarray(end, np.float64)
     if not (start.ndim == end.ndim == 0):
-        shape = one_shape(designs=shape, start=start.shape, end=end.shape)
+        shape = broadcast_shape(designs=shape, start=start.shape, end=end.shape)
     free = np.empty(shape, np.bool_)
-    kernels.stays(*over_designs(linkage.blocks, shape, start, end), free.reshape(-1))
+    kernels.check_branch(*broadcast_over_designs(linkage.blocks, shape, start, end), free.reshape(-1))
     return free
 
 
-def same_circuit(
+def is_same_circuit(
     linkage: Fourbar, angle: ArrayLike, assembly: ArrayLike, other_angle: ArrayLike, other_assembly: ArrayLike
 ) -> Mask:
     """Return whether two valid configurations (input angle, assembly sign) lie on one circuit; shape S.
@@ -103,10 +104,10 @@ def same_circuit(
     """
     angles = {"angle": np.shape(angle), "other_angle": np.shape(other_angle)}
     signs = {"assembly": np.shape(assembly), "other_assembly": np.shape(other_assembly)}
-    shape = one_shape(designs=linkage.input.shape, **angles, **signs)
+    shape = broadcast_shape(designs=linkage.input.shape, **angles, **signs)
     same = np.empty(shape, np.bool_)
     configurations = angle, assembly, other_angle, other_assembly
-    kernels.circuits(*over_designs(linkage.blocks, shape, *configurations), same.reshape(-1))
+    kernels.compare_circuits(*broadcast_over_designs(linkage.blocks, shape, *configurations), same.reshape(-1))
     return same
 
 

@@ -11,11 +11,12 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from kinematics.arrays import Mask, Real
 from kinematics.errors import DimensionError
-from kinematics.linkage.batch import over_designs
+from kinematics.linkage.batch import broadcast_over_designs
 from kinematics.linkage.fourbar import circuit_kernels as kernels
-from kinematics.linkage.fourbar.circuit_kernels import CHANGE_POINT
-from kinematics.linkage.fourbar.closed_form import Fourbar, Mask, Real, require
+from kinematics.linkage.fourbar.circuit_kernels import CHANGE_POINT_TOLERANCE
+from kinematics.linkage.fourbar.closed_form import Fourbar, require
 
 
 class BarkerClass(NamedTuple):
@@ -76,7 +77,7 @@ def grashof_class(lengths: ArrayLike) -> NDArray[np.int64]:
     lengths = np.asarray(lengths, np.float64)
     excess = grashof_excess(lengths)
     # Relative to the perimeter, so that the class does not depend on the unit.
-    special = np.abs(excess) <= CHANGE_POINT * lengths.sum(axis=-1)
+    special = np.abs(excess) <= CHANGE_POINT_TOLERANCE * lengths.sum(axis=-1)
     return np.where(special, 3, np.where(excess < 0.0, 1, 2))
 
 
@@ -86,7 +87,7 @@ def barker_type(linkage: Fourbar) -> NDArray[np.int64]:
     A linkage that cannot be assembled (one link longer than the other three together) has no class: type 0.
     """
     types = np.empty(linkage.input.shape, np.int64)
-    kernels.barker_types(*over_designs(linkage.blocks, types.shape), types.reshape(-1))
+    kernels.classify_barker(*broadcast_over_designs(linkage.blocks, types.shape), types.reshape(-1))
     return types
 
 
@@ -100,11 +101,13 @@ def barker_class(linkage: Fourbar) -> BarkerClass:
     """
     number = int(barker_type(linkage))
     if number == 0:
-        raise DimensionError("lengths", "such that the longest is at most the sum of the others", _listed(linkage))
+        raise DimensionError(
+            "lengths", "such that the longest is at most the sum of the others", _list_lengths(linkage)
+        )
     return BARKER[number - 1]
 
 
-def _listed(linkage: Fourbar) -> list[float]:
+def _list_lengths(linkage: Fourbar) -> list[float]:
     return [float(length) for length in linkage.lengths]
 
 

@@ -27,29 +27,27 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike
 
+from kinematics.arrays import Complex, Mask, Real
 from kinematics.linkage.batch import (
-    CROSSED,
-    OPEN,
-    Complex,
+    CROSSED_ASSEMBLY,
+    OPEN_ASSEMBLY,
     CouplerPoints,
     DesignBatch,
-    Mask,
-    Real,
-    one_shape,
-    rated_sweep,
+    broadcast_shape,
+    build_rated_sweep,
     require,
-    swept_coupler_points,
-    swept_motion,
-    swept_positions,
+    sweep_coupler_points,
+    sweep_motion,
+    sweep_positions,
 )
 from kinematics.linkage.fourbar import kernels
-from kinematics.linkage.kernels import ON_TOGGLE, TOGGLE_SINE
+from kinematics.linkage.kernels import TOGGLE_SINE, TOGGLE_SLACK
 
 __all__ = [
-    "CROSSED",
-    "ON_TOGGLE",
-    "OPEN",
+    "CROSSED_ASSEMBLY",
+    "OPEN_ASSEMBLY",
     "TOGGLE_SINE",
+    "TOGGLE_SLACK",
     "AngleAxis",
     "Complex",
     "CouplerMotion",
@@ -60,11 +58,11 @@ __all__ = [
     "Motion",
     "Positions",
     "Real",
-    "closes",
+    "broadcast_shape",
     "coupler_motion",
     "coupler_points",
+    "is_closed",
     "motion",
-    "one_shape",
     "positions",
     "require",
     "with_angle_axis",
@@ -116,7 +114,9 @@ class Fourbar(DesignBatch):
         coupler_point: ArrayLike = 0.0,
     ) -> None:
         # One compiled check for all fields; the slow diagnosis only runs on failure.
-        if not kernels.sound_dimensions(*self._keep(input_pivot, output_pivot, coupler_point, input, coupler, output)):
+        if not kernels.has_sound_dimensions(
+            *self._store_fields(input_pivot, output_pivot, coupler_point, input, coupler, output)
+        ):
             self._refuse()
 
     def _refuse(self) -> None:
@@ -208,7 +208,7 @@ class Motion(NamedTuple):
     jerk: Derivatives
 
 
-def positions(linkage: Fourbar, input_angle: ArrayLike, assembly: ArrayLike = OPEN) -> Positions:
+def positions(linkage: Fourbar, input_angle: ArrayLike, assembly: ArrayLike = OPEN_ASSEMBLY) -> Positions:
     """Compute closed-form positions for every design at every input angle (Norton 4.10, 4.13).
 
     Parameters
@@ -241,18 +241,18 @@ def positions(linkage: Fourbar, input_angle: ArrayLike, assembly: ArrayLike = OP
     >>> [round(float(np.degrees(angle)), 1) for angle in (at.coupler_angle, at.output_angle)]
     [88.8, 117.3]
     """
-    return Positions(*swept_positions(kernels, linkage.blocks, input_angle, assembly))
+    return Positions(*sweep_positions(kernels, linkage.blocks, input_angle, assembly))
 
 
-def coupler_points(linkage: Fourbar, input_angle: ArrayLike, assembly: ArrayLike = OPEN) -> CouplerPoints:
+def coupler_points(linkage: Fourbar, input_angle: ArrayLike, assembly: ArrayLike = OPEN_ASSEMBLY) -> CouplerPoints:
     """Compute only coupler points, for large sweeps; parameters, shapes and errors as for :func:`positions`."""
-    return swept_coupler_points(kernels, linkage.blocks, input_angle, assembly)
+    return sweep_coupler_points(kernels, linkage.blocks, input_angle, assembly)
 
 
 def coupler_motion(
     linkage: Fourbar,
     input_angle: ArrayLike,
-    assembly: ArrayLike = OPEN,
+    assembly: ArrayLike = OPEN_ASSEMBLY,
     *,
     speed: ArrayLike = 1.0,
     acceleration: ArrayLike = 0.0,
@@ -262,7 +262,7 @@ def coupler_motion(
     Parameters, shapes and errors are those of :func:`motion`.
     """
     # The jerk is not needed, but the rates have three rows.
-    _, at, rates = rated_sweep(linkage.blocks, input_angle, assembly, speed, acceleration, 0.0)
+    _, at, rates = build_rated_sweep(linkage.blocks, input_angle, assembly, speed, acceleration, 0.0)
     points, valid = np.empty((3, *at.flat), np.complex128), np.empty((2, *at.flat), np.bool_)
     kernels.coupler_motion(*at[:4], rates, points, valid)
     points, valid = points.reshape(3, *at.shape), valid.reshape(2, *at.shape)
@@ -272,7 +272,7 @@ def coupler_motion(
 def motion(
     linkage: Fourbar,
     input_angle: ArrayLike,
-    assembly: ArrayLike = OPEN,
+    assembly: ArrayLike = OPEN_ASSEMBLY,
     *,
     speed: ArrayLike = 1.0,
     acceleration: ArrayLike = 0.0,
@@ -298,7 +298,7 @@ def motion(
     DimensionError, ShapeError
         As for :func:`positions`; ShapeError also for rates that do not broadcast with the positions.
     """
-    position, *rates = swept_motion(kernels, linkage.blocks, input_angle, assembly, speed, acceleration, jerk)
+    position, *rates = sweep_motion(kernels, linkage.blocks, input_angle, assembly, speed, acceleration, jerk)
     return Motion(Positions(*position), *(Derivatives(*rate) for rate in rates))
 
 
@@ -308,13 +308,13 @@ def with_angle_axis(linkage: Fourbar, input_angle: ArrayLike, assembly: tuple[in
     designs = linkage.input.shape
     if theta.ndim == 0 and designs == assembly == ():
         return theta, (...,)
-    one_shape(designs=(*designs, 1), assembly=(*assembly, 1), input_angle=theta.shape)
+    broadcast_shape(designs=(*designs, 1), assembly=(*assembly, 1), input_angle=theta.shape)
     return theta, (..., None)
 
 
-def closes(product: Real, b: Real, c: Real, f: Real) -> Mask:
+def is_closed(product: Real, b: Real, c: Real, f: Real) -> Mask:
     """Return whether sides b and c meet over the base f, including a triangle folded flat (to rounding).
 
     ``product`` is 4 f² h² = (b + c + f)(b + c − f)(f + b − c)(f − b + c).
     """
-    return np.asarray(product >= -4.0 * ON_TOGGLE * f * f * b * c)
+    return np.asarray(product >= -4.0 * TOGGLE_SLACK * f * f * b * c)

@@ -32,13 +32,11 @@ from typing import Literal, NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from kinematics.arrays import Complex, Mask, Real
 from kinematics.linkage.fourbar.closed_form import (
-    CROSSED,
-    OPEN,
-    Complex,
+    CROSSED_ASSEMBLY,
+    OPEN_ASSEMBLY,
     Fourbar,
-    Mask,
-    Real,
     positions,
     require,
     with_angle_axis,
@@ -46,7 +44,7 @@ from kinematics.linkage.fourbar.closed_form import (
 
 Link = Literal["input", "coupler", "output"]
 
-AT_PIVOT = 1e-9
+PIVOT_TOLERANCE = 1e-9
 """Share of the coupler within which P counts as at A or B: the cognate would shrink to this share of the source while
 its coupler point keeps its distance, and nine digits would be lost."""
 
@@ -84,7 +82,7 @@ class Cognate:
     turns_with: tuple[Link, Link, Link]
     offset: Real
 
-    def configuration(self, input_angle: ArrayLike, assembly: ArrayLike = OPEN) -> Configuration:
+    def configuration(self, input_angle: ArrayLike, assembly: ArrayLike = OPEN_ASSEMBLY) -> Configuration:
         """Return the cognate's configuration while the source is at ``input_angle`` in ``assembly``.
 
         The parameters and errors are those of :func:`kinematics.linkage.positions`, for the source. The cognate's
@@ -104,7 +102,7 @@ class Cognate:
         # The side of the output relative to the coupler decides the assembly.
         side = own_coupler.real * own_output.imag - own_coupler.imag * own_output.real
         angle = np.where(at.valid, np.angle(own_input), np.nan)
-        return Configuration(at.valid, angle, np.where(side < 0.0, CROSSED, OPEN))
+        return Configuration(at.valid, angle, np.where(side < 0.0, CROSSED_ASSEMBLY, OPEN_ASSEMBLY))
 
 
 class Cognates(NamedTuple):
@@ -155,7 +153,7 @@ class ParallelMotion:
     translation: Complex
 
 
-def cognates(linkage: Fourbar) -> Cognates:
+def build_cognates(linkage: Fourbar) -> Cognates:
     """Build both Roberts–Chebyshev cognates (Norton, Sec. 3.7, Figs. 3-24 to 3-26).
 
     Raises
@@ -171,7 +169,7 @@ def cognates(linkage: Fourbar) -> Cognates:
     >>> pair.left.linkage.lengths
     array([1.  , 0.5 , 1.25, 1.25])
     """
-    zeta, rest = _ratios(linkage)
+    zeta, rest = _compute_ratios(linkage)
     pivot = linkage.input_pivot + zeta * (linkage.output_pivot - linkage.input_pivot)
     a, b, c = linkage.input, linkage.coupler, linkage.output
     # Lengths scale by the moduli, angles by the arguments.
@@ -180,17 +178,17 @@ def cognates(linkage: Fourbar) -> Cognates:
     right = Fourbar(pivot, linkage.output_pivot, shrink * a, shrink * c, shrink * b, -c * zeta * shrink / rest)
     turn, other = np.angle(zeta), np.angle(rest)
     return Cognates(
-        Cognate(left, linkage, ("coupler", "input", "output"), _wrapped(np.stack((turn, turn, turn), axis=-1))),
+        Cognate(left, linkage, ("coupler", "input", "output"), _wrap_angle(np.stack((turn, turn, turn), axis=-1))),
         Cognate(
             right,
             linkage,
             ("input", "output", "coupler"),
-            _wrapped(np.stack((other, other + np.pi, other + np.pi), axis=-1)),
+            _wrap_angle(np.stack((other, other + np.pi, other + np.pi), axis=-1)),
         ),
     )
 
 
-def geared_fivebar_cognate(linkage: Fourbar) -> GearedFivebarCognate:
+def build_geared_fivebar_cognate(linkage: Fourbar) -> GearedFivebarCognate:
     """Build the geared fivebar on O2 and O4 that traces the same curve (Norton, Sec. 3.7 and Fig. 3-28).
 
     Its links are AP, a, c and BP, its gear ratio is +1. The geared fivebars on the other two pairs of pivots are those
@@ -201,7 +199,7 @@ def geared_fivebar_cognate(linkage: Fourbar) -> GearedFivebarCognate:
     DimensionError
         For a coupler point at A or B.
     """
-    zeta, rest = _ratios(linkage)
+    zeta, rest = _compute_ratios(linkage)
     return GearedFivebarCognate(
         linkage.input_pivot,
         linkage.output_pivot,
@@ -211,12 +209,12 @@ def geared_fivebar_cognate(linkage: Fourbar) -> GearedFivebarCognate:
         np.abs(rest) * linkage.coupler,
         linkage.input.astype(np.complex128),
         np.ones_like(linkage.input),
-        _wrapped(np.angle(-rest / zeta)),
-        _wrapped(np.angle(zeta)),
+        _wrap_angle(np.angle(-rest / zeta)),
+        _wrap_angle(np.angle(zeta)),
     )
 
 
-def parallel_motion(linkage: Fourbar) -> ParallelMotion:
+def build_parallel_motion(linkage: Fourbar) -> ParallelMotion:
     """Build the Watt I sixbar that moves a link along the coupler curve without rotation (Norton, Example 3-11).
 
     Raises
@@ -224,7 +222,7 @@ def parallel_motion(linkage: Fourbar) -> ParallelMotion:
     DimensionError
         For a coupler point at A or B.
     """
-    zeta, rest = _ratios(linkage)
+    zeta, rest = _compute_ratios(linkage)
     return ParallelMotion(
         linkage,
         rest * linkage.input,
@@ -233,16 +231,16 @@ def parallel_motion(linkage: Fourbar) -> ParallelMotion:
     )
 
 
-def _ratios(linkage: Fourbar) -> tuple[Complex, Complex]:
+def _compute_ratios(linkage: Fourbar) -> tuple[Complex, Complex]:
     """Compute ζ and 1 − ζ; neither may be zero."""
     zeta = linkage.coupler_point / linkage.coupler
     # Not 1 − ζ, which would cancel for P near B.
     rest = (linkage.coupler - linkage.coupler_point) / linkage.coupler
-    apart = np.minimum(np.abs(zeta), np.abs(rest)) > AT_PIVOT
+    apart = np.minimum(np.abs(zeta), np.abs(rest)) > PIVOT_TOLERANCE
     require("coupler_point", "away from the moving pivots A and B", linkage.coupler_point, apart)
     return zeta, rest
 
 
-def _wrapped(angle: Real) -> Real:
+def _wrap_angle(angle: Real) -> Real:
     """Wrap an angle to (−π, π]."""
     return np.asarray(np.pi - np.mod(np.pi - angle, 2.0 * np.pi))

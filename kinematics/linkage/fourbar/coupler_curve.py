@@ -36,26 +36,19 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from kinematics.arrays import Complex, Mask, Real
 from kinematics.errors import DimensionError
-from kinematics.linkage.fourbar.closed_form import (
-    CROSSED,
-    OPEN,
-    Complex,
-    Fourbar,
-    Mask,
-    Real,
-    require,
-)
-from kinematics.linkage.fourbar.cognates import AT_PIVOT
+from kinematics.linkage.fourbar.closed_form import CROSSED_ASSEMBLY, OPEN_ASSEMBLY, Fourbar, require
+from kinematics.linkage.fourbar.cognates import PIVOT_TOLERANCE
 
 CRUNODE, CUSP, ACNODE = 1, 0, -1
 """Kinds of double points: the curve crosses itself, has a cusp, or is an isolated real point."""
 
-AT_CUSP = 1e-9
+CUSP_TOLERANCE = 1e-9
 """Bound of |1 − K²/|M|²| for a cusp: the loop of the curve then spans less than about 1e-4 rad of the coupler's
 rotation, and its size, which goes with the cube of that, is below 1e-12 of the linkage."""
 
-REAL_ROOT = 1e-7
+REAL_ROOT_TOLERANCE = 1e-7
 """Imaginary part, relative to 1 + |root|, up to which a root counts as real: rounding splits a double root by √ε, and
 the real part of such a pair satisfies the equation to the square of this."""
 
@@ -99,35 +92,35 @@ def curve_unit(linkage: Fourbar) -> Real:
     return np.asarray(linkage.lengths.sum(axis=-1) + np.abs(linkage.coupler_point))
 
 
-def sextic_coefficients(linkage: Fourbar) -> Complex:
+def compute_sextic_coefficients(linkage: Fourbar) -> Complex:
     """Compute the coefficients of the monic sextic Σ C[j, k] ξ^j ξ̄^k with j, k = 0 … 3 and ξ = (p − O2) / unit.
 
     Shape designs + (4, 4). C is Hermitian and C[3, 3] = 1, which leaves fifteen real numbers. They are equal for a
     linkage and its cognates in a common origin and unit.
     """
-    _, a, b, c, z, rest, ground = _scaled(linkage)
+    _, a, b, c, z, rest, ground = _scale_dimensions(linkage)
     zero, half = np.zeros_like(z), np.full_like(z, 0.5)
 
-    def grid(*rows: tuple[Complex, ...]) -> Complex:
+    def build_grid(*rows: tuple[Complex, ...]) -> Complex:
         """Build a grid with rows by powers of ξ and columns by powers of ξ̄."""
         return np.stack([np.stack(row, axis=-1) for row in rows], axis=-2)
 
-    k1 = grid((0.5 * (_square(z) - a * a) + zero, zero), (zero, half))
-    k2 = grid(
-        (0.5 * (_square(ground) + _square(rest) - c * c) + zero, -0.5 * ground),
+    k1 = build_grid((0.5 * (_square_magnitude(z) - a * a) + zero, zero), (zero, half))
+    k2 = build_grid(
+        (0.5 * (_square_magnitude(ground) + _square_magnitude(rest) - c * c) + zero, -0.5 * ground),
         (-0.5 * ground.conj(), half),
     )
-    m1, m2 = grid((zero, z)), grid((-ground.conj() * rest, rest))
-    cubic = _product(k1, m2) - _product(k2, m1)
-    turned = _product(_adjoint(m1), m2)
-    circle = -0.5j * (turned - _adjoint(turned))
-    found = _product(cubic, _adjoint(cubic))
+    m1, m2 = build_grid((zero, z)), build_grid((-ground.conj() * rest, rest))
+    cubic = _multiply_polynomials(k1, m2) - _multiply_polynomials(k2, m1)
+    turned = _multiply_polynomials(_conjugate_polynomial(m1), m2)
+    circle = -0.5j * (turned - _conjugate_polynomial(turned))
+    found = _multiply_polynomials(cubic, _conjugate_polynomial(cubic))
     # D is real and of lower degree, so D² only affects the leading 3 × 3 block.
-    found[..., :3, :3] -= _product(circle, circle)
+    found[..., :3, :3] -= _multiply_polynomials(circle, circle)
     return np.asarray(found * (4.0 / (b * b))[..., None, None])
 
 
-def double_points(linkage: Fourbar) -> DoublePoints:
+def find_double_points(linkage: Fourbar) -> DoublePoints:
     """Find the real double points of the coupler curve and the configurations that pass them.
 
     Raises
@@ -136,8 +129,8 @@ def double_points(linkage: Fourbar) -> DoublePoints:
         For a coupler point at A or B, whose curve is a circle.
     """
     _require_sextic(linkage)
-    unit, a, _, c, z, rest, ground = _scaled(linkage)
-    near, far, d2 = np.abs(z), np.abs(rest), _square(ground)
+    unit, a, _, c, z, rest, ground = _scale_dimensions(linkage)
+    near, far, d2 = np.abs(z), np.abs(rest), _square_magnitude(ground)
     u, v = z / near, rest / far
     cosine = (u * v.conj()).real
     one, other = near * near - a * a, far * far - c * c
@@ -150,18 +143,18 @@ def double_points(linkage: Fourbar) -> DoublePoints:
         ],
         axis=-1,
     )
-    first, second, real = _form_roots(form)
+    first, second, real = _find_form_roots(form)
     unit, a, c, near, far = (x[..., None] for x in (unit, a, c, near, far))
     z, rest, u, v, ground = (x[..., None] for x in (z, rest, u, v, ground))
     with np.errstate(divide="ignore", invalid="ignore"):
         delta = first * u.conj() - second * v.conj()
         q2, q4 = -second * v.conj() * ground / delta, -first * u.conj() * ground / delta
-        k1, k2 = 0.5 * (_square(q2) + near**2 - a * a), 0.5 * (_square(q4) + far**2 - c * c)
+        k1, k2 = 0.5 * (_square_magnitude(q2) + near**2 - a * a), 0.5 * (_square_magnitude(q4) + far**2 - c * c)
         both = (k1 * second * near + k2 * first * far) / ((second * near) ** 2 + (first * far) ** 2)
         turn = -u * v * ground.conj() / delta.conj()
         # Positive: two coupler directions, hence a crunode.
-        gap = 1.0 - both**2 / _square(turn)
-        kind = np.where(np.abs(gap) <= AT_CUSP, CUSP, np.where(gap > 0.0, CRUNODE, ACNODE))
+        gap = 1.0 - both**2 / _square_magnitude(turn)
+        kind = np.where(np.abs(gap) <= CUSP_TOLERANCE, CUSP, np.where(gap > 0.0, CRUNODE, ACNODE))
         spread = np.sqrt(np.where(kind == CRUNODE, gap, 0.0)) * np.abs(turn)
         e = (both[..., None] + 1j * spread[..., None] * np.array([1.0, -1.0])) / turn[..., None]
         # Remove rounding from the unit vectors.
@@ -174,7 +167,7 @@ def double_points(linkage: Fourbar) -> DoublePoints:
         np.where(real, linkage.input_pivot[..., None] + q2 * unit, np.nan),
         np.where(real, kind, ACNODE),
         np.where(reached, np.angle(arm), np.nan),
-        np.where(reached & (side < 0.0), CROSSED, OPEN),
+        np.where(reached & (side < 0.0), CROSSED_ASSEMBLY, OPEN_ASSEMBLY),
     )
 
 
@@ -190,7 +183,7 @@ class _Scaled(NamedTuple):
     ground: Complex
 
 
-def _scaled(linkage: Fourbar) -> _Scaled:
+def _scale_dimensions(linkage: Fourbar) -> _Scaled:
     unit, z, b = curve_unit(linkage), linkage.coupler_point, linkage.coupler
     ground = linkage.output_pivot - linkage.input_pivot
     return _Scaled(unit, linkage.input / unit, b / unit, linkage.output / unit, z / unit, (z - b) / unit, ground / unit)
@@ -198,11 +191,11 @@ def _scaled(linkage: Fourbar) -> _Scaled:
 
 def _require_sextic(linkage: Fourbar) -> None:
     z, b = linkage.coupler_point, linkage.coupler
-    apart = np.minimum(np.abs(z), np.abs(z - b)) > AT_PIVOT * b
+    apart = np.minimum(np.abs(z), np.abs(z - b)) > PIVOT_TOLERANCE * b
     require("coupler_point", "away from the moving pivots A and B", z, apart)
 
 
-def _form_roots(form: Real) -> tuple[Real, Real, Mask]:
+def _find_form_roots(form: Real) -> tuple[Real, Real, Mask]:
     """Find the zeros (σ0, σ1) of the binary cubics Σ form[k] σ0^(3−k) σ1^k on the unit circle, real ones first.
 
     The form is rotated so that its largest value over six directions becomes the leading coefficient; then no root is
@@ -211,33 +204,39 @@ def _form_roots(form: Real) -> tuple[Real, Real, Mask]:
     angle = np.arange(6) * (np.pi / 6.0)
     directions = np.stack([np.cos(angle), np.sin(angle)])
     # A cubic form cannot be small in all six directions.
-    best = angle[np.abs(_form(form[..., None, :], *directions)).argmax(axis=-1)]
+    best = angle[np.abs(_evaluate_form(form[..., None, :], *directions)).argmax(axis=-1)]
     x, y = np.cos(best), np.sin(best)
-    along = _form_slope(form, x, y)
-    across = _form_slope(form, -y, x)
+    along = _differentiate_form(form, x, y)
+    across = _differentiate_form(form, -y, x)
     turned = np.stack(
-        [_form(form, -y, x), x * across[0] + y * across[1], x * along[1] - y * along[0], _form(form, x, y)], axis=-1
+        [
+            _evaluate_form(form, -y, x),
+            x * across[0] + y * across[1],
+            x * along[1] - y * along[0],
+            _evaluate_form(form, x, y),
+        ],
+        axis=-1,
     )
-    roots = _roots(turned)
-    real = np.abs(roots.imag) <= REAL_ROOT * (1.0 + np.abs(roots))
+    roots = _find_roots(turned)
+    real = np.abs(roots.imag) <= REAL_ROOT_TOLERANCE * (1.0 + np.abs(roots))
     order = np.argsort(np.where(real, roots.real, np.inf), axis=-1)
     real, t = np.take_along_axis(real, order, axis=-1), np.take_along_axis(roots.real, order, axis=-1)
     long, x, y = np.hypot(1.0, t), x[..., None], y[..., None]
     return (t * x - y) / long, (t * y + x) / long, real
 
 
-def _form(form: Real, x: Real, y: Real) -> Real:
+def _evaluate_form(form: Real, x: Real, y: Real) -> Real:
     return np.asarray(((form[..., 0] * x + form[..., 1] * y) * x + form[..., 2] * y * y) * x + form[..., 3] * y * y * y)
 
 
-def _form_slope(form: Real, x: Real, y: Real) -> tuple[Real, Real]:
+def _differentiate_form(form: Real, x: Real, y: Real) -> tuple[Real, Real]:
     """Compute the partial derivatives of the form."""
     by_x = (3.0 * form[..., 0] * x + 2.0 * form[..., 1] * y) * x + form[..., 2] * y * y
     by_y = (form[..., 1] * x + 2.0 * form[..., 2] * y) * x + 3.0 * form[..., 3] * y * y
     return by_x, by_y
 
 
-def _roots(polynomial: Real) -> Complex:
+def _find_roots(polynomial: Real) -> Complex:
     """Find roots of polynomials, lowest power first on the last axis, as eigenvalues of companion matrices."""
     degree = polynomial.shape[-1] - 1
     companion = np.zeros((*polynomial.shape[:-1], degree, degree))
@@ -246,7 +245,7 @@ def _roots(polynomial: Real) -> Complex:
     return np.asarray(np.linalg.eigvals(companion), np.complex128)
 
 
-def _product(first: Complex, second: Complex) -> Complex:
+def _multiply_polynomials(first: Complex, second: Complex) -> Complex:
     """Multiply polynomials in two variables, powers on the last two axes."""
     (j, k), (m, n) = first.shape[-2:], second.shape[-2:]
     batch = np.broadcast_shapes(first.shape[:-2], second.shape[:-2])
@@ -257,11 +256,11 @@ def _product(first: Complex, second: Complex) -> Complex:
     return product
 
 
-def _adjoint(grid: Complex) -> Complex:
+def _conjugate_polynomial(grid: Complex) -> Complex:
     """Return the conjugate polynomial: powers of ξ and ξ̄ exchanged."""
     return np.asarray(np.swapaxes(grid, -1, -2).conj())
 
 
-def _square(x: Complex | Real) -> Real:
+def _square_magnitude(x: Complex | Real) -> Real:
     """Return |x|²."""
     return np.asarray(x.real**2 + x.imag**2, np.float64)

@@ -33,27 +33,25 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike
 
+from kinematics.arrays import Complex, Mask, Real
 from kinematics.linkage.fourbar.closed_form import (
-    OPEN,
+    OPEN_ASSEMBLY,
     TOGGLE_SINE,
     AngleAxis,
-    Complex,
     Fourbar,
-    Mask,
     Positions,
-    Real,
     positions,
     with_angle_axis,
 )
 
-PARALLEL = 1e-12
+PARALLEL_SINE = 1e-12
 """Sine below which two lines are parallel: their intersection, 1e12 lengths away, has no correct digit."""
 
-STRAIGHT = 1e-12
+MIN_CURVATURE = 1e-12
 """Curvature, per size of the linkage, below which the path is straight: the centre of curvature has no correct
 digit."""
 
-STATIONARY = 1e-9
+STATIONARY_SPEED = 1e-9
 """Speed of the coupler point, as a share of the speeds of its components, below which it is at rest: a cusp of its
 path, where rounding of the position determines the direction."""
 
@@ -105,14 +103,14 @@ class _Vectors(NamedTuple):
     scale: Real
 
 
-def pole(linkage: Fourbar, input_angle: ArrayLike, assembly: ArrayLike = OPEN) -> Pole:
+def find_pole(linkage: Fourbar, input_angle: ArrayLike, assembly: ArrayLike = OPEN_ASSEMBLY) -> Pole:
     """The coupler's pole with its velocity and the inflection circle.
 
     Over a range of input angles ``point`` is the fixed centrode and ``moving`` the moving centrode (Norton, Sec. 6.5).
     """
-    x = _vectors(linkage, input_angle, assembly)
+    x = _build_vectors(linkage, input_angle, assembly)
     u, v, w = x.u, x.v, x.w
-    finite = x.valid & _crossing(u, w)
+    finite = x.valid & _is_crossing(u, w)
     with np.errstate(divide="ignore", invalid="ignore"):
         over = np.where(finite, 1.0 / _cross(u, w), np.nan)
         h, k = _cross(v, w) * over, _cross(u, v) * over
@@ -123,34 +121,36 @@ def pole(linkage: Fourbar, input_angle: ArrayLike, assembly: ArrayLike = OPEN) -
     return Pole(x.valid, finite, point, moving, rate, point - 1j * rate, np.abs(rate))
 
 
-def path_curvature(linkage: Fourbar, input_angle: ArrayLike, assembly: ArrayLike = OPEN) -> PathCurvature:
+def compute_path_curvature(
+    linkage: Fourbar, input_angle: ArrayLike, assembly: ArrayLike = OPEN_ASSEMBLY
+) -> PathCurvature:
     """Compute the curvature of the path of the coupler point, and its centre."""
-    x = _vectors(linkage, input_angle, assembly)
+    x = _build_vectors(linkage, input_angle, assembly)
     place = (linkage.coupler_point / linkage.coupler)[x.axis]
     two, three, _ = x.rates
-    first, second, _ = _accelerations(x)
+    first, second, _ = _compute_accelerations(x)
     velocity = 1j * (two * x.u + three * place * x.v)
     acceleration = (1j * first - two**2) * x.u + (1j * second - three**2) * place * x.v
     speed = np.abs(velocity)
     pace = np.maximum(np.abs(two * x.u), np.abs(three * place * x.v))
-    valid = x.valid & (speed > STATIONARY * pace)
+    valid = x.valid & (speed > STATIONARY_SPEED * pace)
     with np.errstate(divide="ignore", invalid="ignore"):
         bend = np.where(valid, _cross(velocity, acceleration) / speed**3, np.nan)
-        curved = valid & (np.abs(bend) > STRAIGHT)
+        curved = valid & (np.abs(bend) > MIN_CURVATURE)
         center = np.where(curved, x.at.p + x.unit * 1j * velocity / speed / bend, np.nan)
         # The smooth motion turns the input backwards in the crossed assembly, which reverses the curvature's sign.
         sign = np.asarray(assembly)[x.axis]
         return PathCurvature(valid, bend * sign / x.unit, curved, center)
 
 
-def _vectors(linkage: Fourbar, input_angle: ArrayLike, assembly: ArrayLike) -> _Vectors:
+def _build_vectors(linkage: Fourbar, input_angle: ArrayLike, assembly: ArrayLike) -> _Vectors:
     at = positions(linkage, input_angle, assembly)
     theta, axis = with_angle_axis(linkage, input_angle, np.shape(assembly))
     # Dimensionless vectors keep the tolerances independent of the unit.
     unit = linkage.lengths.sum(axis=-1)[axis]
     u = np.broadcast_to(linkage.input[axis] * np.exp(1j * theta) / unit, at.b.shape)
     v, w = (at.b - at.a) / unit, (at.b - linkage.output_pivot[axis]) / unit
-    moves = _crossing(v, w, TOGGLE_SINE) | _crossing(w, u, TOGGLE_SINE) | _crossing(v, u, TOGGLE_SINE)
+    moves = _is_crossing(v, w, TOGGLE_SINE) | _is_crossing(w, u, TOGGLE_SINE) | _is_crossing(v, u, TOGGLE_SINE)
     rates = np.stack((_cross(v, w), _cross(w, u), _cross(v, u)))
     valid = at.valid & moves
     with np.errstate(divide="ignore", invalid="ignore"):
@@ -160,7 +160,7 @@ def _vectors(linkage: Fourbar, input_angle: ArrayLike, assembly: ArrayLike) -> _
     return _Vectors(at, axis, valid, np.broadcast_to(unit, at.b.shape), u, v, w, (two, three, four), scale)
 
 
-def _accelerations(x: _Vectors) -> tuple[Real, Real, Real]:
+def _compute_accelerations(x: _Vectors) -> tuple[Real, Real, Real]:
     """Compute the derivatives of the three angular rates along the smooth motion."""
     two, three, four = x.rates
     return (
@@ -170,7 +170,7 @@ def _accelerations(x: _Vectors) -> tuple[Real, Real, Real]:
     )
 
 
-def _crossing(one: Complex, other: Complex, least_sine: float = PARALLEL) -> Mask:
+def _is_crossing(one: Complex, other: Complex, least_sine: float = PARALLEL_SINE) -> Mask:
     """Return whether two directions differ; False for NaN."""
     return np.asarray(np.abs(_cross(one, other)) > least_sine * np.abs(one) * np.abs(other))
 

@@ -15,27 +15,25 @@ import math
 
 import numpy as np
 
+from kinematics.arrays import Complex, Mask, Real
 from kinematics.compiling import njit
 from kinematics.linkage.kernels import (
-    ON_TOGGLE,
     OPTIONS,
-    TILE,
+    TILE_SIZE,
     TOGGLE_SINE,
-    Complex,
-    Mask,
-    Real,
-    accelerations,
-    carried,
-    cosines,
-    direction,
-    divided,
-    jerks,
-    velocities,
+    TOGGLE_SLACK,
+    compute_direction,
+    divide_by_length,
+    fill_accelerations,
+    fill_cosines,
+    fill_jerks,
+    fill_points,
+    fill_velocities,
 )
 
 
 @njit(**OPTIONS)
-def sound_dimensions(pivots: Complex, lengths: Real) -> bool:
+def has_sound_dimensions(pivots: Complex, lengths: Real) -> bool:
     """Return whether all lengths including the ground's are positive and finite, and all points finite."""
     for i in range(pivots.shape[1]):
         ground = abs(pivots[1, i] - pivots[0, i])
@@ -49,14 +47,16 @@ def sound_dimensions(pivots: Complex, lengths: Real) -> bool:
 
 
 @njit(**OPTIONS)
-def _coupler(gx: float, gy: float, kx: float, ky: float, b: float, c: float, sign: float) -> tuple[bool, float, float]:
+def _close_loop(
+    gx: float, gy: float, kx: float, ky: float, b: float, c: float, sign: float
+) -> tuple[bool, float, float]:
     """Close the loop: return whether it closes, and the vector u = B − A (else NaN), from ground and crank vectors."""
     dx, dy = gx - kx, gy - ky
     square = dx * dx + dy * dy
     f = math.sqrt(square)
     product = (b + c + f) * (b + c - f) * (f + (b - c)) * (f - (b - c))
     # Non-short-circuit & keeps the loop free of branches.
-    valid = (product >= -4.0 * ON_TOGGLE * b * c * square) & (f > 0.0)
+    valid = (product >= -4.0 * TOGGLE_SLACK * b * c * square) & (f > 0.0)
     root = math.sqrt(product if product > 0.0 else 0.0)
     half = 0.5 / square
     along = (square + (b - c) * (b + c)) * half
@@ -66,7 +66,7 @@ def _coupler(gx: float, gy: float, kx: float, ky: float, b: float, c: float, sig
 
 
 @njit(**OPTIONS)
-def _rates(
+def _compute_rates(
     gx: float, gy: float, kx: float, ky: float, ux: float, uy: float, least: float, w2: float, a2: float
 ) -> tuple[bool, float, float, float, float, float]:
     """Compute whether Δ is large enough, 1/Δ (else NaN), and ω3, ω4, α3, α4."""
@@ -84,7 +84,7 @@ def _rates(
 
 
 @njit(**OPTIONS)
-def _third(
+def _compute_jerks(
     gx: float,
     gy: float,
     kx: float,
@@ -116,14 +116,14 @@ def coupler_points(pivots: Complex, lengths: Real, sign: Real, theta: Real, poin
     for i in range(designs):
         j = i if pivots.shape[1] > 1 else 0
         if i == 0 or len(theta) > 1:
-            cosines(theta[i], cosine, sine)
+            fill_cosines(theta[i], cosine, sine)
         o2, ground = pivots[0, j], pivots[1, j] - pivots[0, j]
         a, b, c = lengths[0, j], lengths[1, j], lengths[2, j]
-        p, s = divided(pivots[2, j], b), sign[i if len(sign) > 1 else 0]
+        p, s = divide_by_length(pivots[2, j], b), sign[i if len(sign) > 1 else 0]
         point_i, valid_i = point[i], valid[i]
         for k in range(n):
             kx, ky = a * cosine[k], a * sine[k]
-            good, ux, uy = _coupler(ground.real, ground.imag, kx, ky, b, c, s)
+            good, ux, uy = _close_loop(ground.real, ground.imag, kx, ky, b, c, s)
             x = o2.real + kx + (p.real * ux - p.imag * uy)
             y = o2.imag + ky + (p.real * uy + p.imag * ux)
             point_i[k] = complex(x, y)
@@ -136,31 +136,31 @@ def whole_positions(
 ) -> None:
     """Fill A, B, P into ``points`` (3, D, N), coupler and output angles into ``angles`` (2, D, N), ``valid`` (D, N)."""
     designs, n = valid.shape
-    cosine, sine, work = np.empty(n), np.empty(n), np.empty((4, TILE))
+    cosine, sine, work = np.empty(n), np.empty(n), np.empty((4, TILE_SIZE))
     ax, ay, ux, uy = work[0], work[1], work[2], work[3]
     for i in range(designs):
         j = i if pivots.shape[1] > 1 else 0
         if i == 0 or len(theta) > 1:
-            cosines(theta[i], cosine, sine)
+            fill_cosines(theta[i], cosine, sine)
         o2, ground = pivots[0, j], pivots[1, j] - pivots[0, j]
         a, b, c = lengths[0, j], lengths[1, j], lengths[2, j]
         s = sign[i if len(sign) > 1 else 0]
-        for start in range(0, n, TILE):
-            end = min(start + TILE, n)
+        for start in range(0, n, TILE_SIZE):
+            end = min(start + TILE_SIZE, n)
             cos, sin = cosine[start:end], sine[start:end]
             coupler, output, valid_i = angles[0, i, start:end], angles[1, i, start:end], valid[i, start:end]
             for k in range(end - start):
                 kx, ky = a * cos[k], a * sin[k]
-                good, x, y = _coupler(ground.real, ground.imag, kx, ky, b, c, s)
-                coupler[k] = direction(x, y)
-                output[k] = direction((kx - ground.real) + x, (ky - ground.imag) + y)
+                good, x, y = _close_loop(ground.real, ground.imag, kx, ky, b, c, s)
+                coupler[k] = compute_direction(x, y)
+                output[k] = compute_direction((kx - ground.real) + x, (ky - ground.imag) + y)
                 ax[k] = o2.real + (kx if good else math.nan)
                 ay[k] = o2.imag + (ky if good else math.nan)
                 ux[k], uy[k] = x, y
                 valid_i[k] = good
-            carried(ax, ay, ux, uy, 0j, points[0, i, start:end])
-            carried(ax, ay, ux, uy, 1 + 0j, points[1, i, start:end])
-            carried(ax, ay, ux, uy, divided(pivots[2, j], b), points[2, i, start:end])
+            fill_points(ax, ay, ux, uy, 0j, points[0, i, start:end])
+            fill_points(ax, ay, ux, uy, 1 + 0j, points[1, i, start:end])
+            fill_points(ax, ay, ux, uy, divide_by_length(pivots[2, j], b), points[2, i, start:end])
 
 
 @njit(**OPTIONS)
@@ -172,7 +172,7 @@ def coupler_motion(
     ``valid`` (2, D, N) marks where the position exists, and where its derivatives exist.
     """
     _, designs, n = valid.shape
-    cosine, sine, work = np.empty(n), np.empty(n), np.empty((9, TILE))
+    cosine, sine, work = np.empty(n), np.empty(n), np.empty((9, TILE_SIZE))
     ax, ay, kx, ky, ux, uy, w2, w3, a3 = (
         work[0],
         work[1],
@@ -187,31 +187,31 @@ def coupler_motion(
     for i in range(designs):
         j = i if pivots.shape[1] > 1 else 0
         if i == 0 or len(theta) > 1:
-            cosines(theta[i], cosine, sine)
+            fill_cosines(theta[i], cosine, sine)
         r = i if rates.shape[1] > 1 else 0
         o2, ground = pivots[0, j], pivots[1, j] - pivots[0, j]
         a, b, c = lengths[0, j], lengths[1, j], lengths[2, j]
-        p, s = divided(pivots[2, j], b), sign[i if len(sign) > 1 else 0]
+        p, s = divide_by_length(pivots[2, j], b), sign[i if len(sign) > 1 else 0]
         least = TOGGLE_SINE * b * c
-        for start in range(0, n, TILE):
-            end = min(start + TILE, n)
+        for start in range(0, n, TILE_SIZE):
+            end = min(start + TILE_SIZE, n)
             cos, sin = cosine[start:end], sine[start:end]
             speed, acceleration = rates[0, r, start:end], rates[1, r, start:end]
             valid_i, sound_i = valid[0, i, start:end], valid[1, i, start:end]
             for k in range(end - start):
                 x, y = a * cos[k], a * sin[k]
-                valid_i[k], ux[k], uy[k] = _coupler(ground.real, ground.imag, x, y, b, c, s)
+                valid_i[k], ux[k], uy[k] = _close_loop(ground.real, ground.imag, x, y, b, c, s)
                 kx[k], ky[k] = x, y
                 ax[k], ay[k] = o2.real + x, o2.imag + y
             for k in range(end - start):
-                sound, _, w3[k], _, a3[k], _ = _rates(
+                sound, _, w3[k], _, a3[k], _ = _compute_rates(
                     ground.real, ground.imag, kx[k], ky[k], ux[k], uy[k], least, speed[k], acceleration[k]
                 )
                 w2[k] = speed[k] if sound else math.nan
                 sound_i[k] = sound
-            carried(ax, ay, ux, uy, p, points[0, i, start:end])
-            velocities(kx, ky, ux, uy, w2, w3, p, points[1, i, start:end])
-            accelerations(kx, ky, ux, uy, w2, acceleration, w3, a3, p, points[2, i, start:end])
+            fill_points(ax, ay, ux, uy, p, points[0, i, start:end])
+            fill_velocities(kx, ky, ux, uy, w2, w3, p, points[1, i, start:end])
+            fill_accelerations(kx, ky, ux, uy, w2, acceleration, w3, a3, p, points[2, i, start:end])
 
 
 @njit(**OPTIONS)
@@ -223,26 +223,26 @@ def whole_motion(
     ``valid`` (2, D, N) marks where the position exists, and where its derivatives exist.
     """
     _, designs, n = valid.shape
-    cosine, sine, work = np.empty(n), np.empty(n), np.empty((8, TILE))
+    cosine, sine, work = np.empty(n), np.empty(n), np.empty((8, TILE_SIZE))
     ax, ay, kx, ky, ux, uy, w2, inverse = (work[0], work[1], work[2], work[3], work[4], work[5], work[6], work[7])
     for i in range(designs):
         j = i if pivots.shape[1] > 1 else 0
         if i == 0 or len(theta) > 1:
-            cosines(theta[i], cosine, sine)
+            fill_cosines(theta[i], cosine, sine)
         r = i if rates.shape[1] > 1 else 0
         o2, ground = pivots[0, j], pivots[1, j] - pivots[0, j]
         a, b, c = lengths[0, j], lengths[1, j], lengths[2, j]
         s = sign[i if len(sign) > 1 else 0]
         least = TOGGLE_SINE * b * c
-        for start in range(0, n, TILE):
-            end = min(start + TILE, n)
+        for start in range(0, n, TILE_SIZE):
+            end = min(start + TILE_SIZE, n)
             cos, sin = cosine[start:end], sine[start:end]
             coupler, output, valid_i = angles[0, 0, i, start:end], angles[0, 1, i, start:end], valid[0, i, start:end]
             for k in range(end - start):
                 fx, fy = a * cos[k], a * sin[k]
-                good, x, y = _coupler(ground.real, ground.imag, fx, fy, b, c, s)
-                coupler[k] = direction(x, y)
-                output[k] = direction((fx - ground.real) + x, (fy - ground.imag) + y)
+                good, x, y = _close_loop(ground.real, ground.imag, fx, fy, b, c, s)
+                coupler[k] = compute_direction(x, y)
+                output[k] = compute_direction((fx - ground.real) + x, (fy - ground.imag) + y)
                 kx[k], ky[k] = (fx if good else math.nan), (fy if good else math.nan)
                 ux[k], uy[k] = x, y
                 valid_i[k] = good
@@ -252,13 +252,13 @@ def whole_motion(
             j3, j4 = angles[3, 0, i, start:end], angles[3, 1, i, start:end]
             sound_i = valid[1, i, start:end]
             for k in range(end - start):
-                sound, inverse[k], w3[k], w4[k], a3[k], a4[k] = _rates(
+                sound, inverse[k], w3[k], w4[k], a3[k], a4[k] = _compute_rates(
                     ground.real, ground.imag, kx[k], ky[k], ux[k], uy[k], least, speed[k], a2[k]
                 )
                 w2[k] = speed[k] if sound else math.nan
                 sound_i[k] = sound
             for k in range(end - start):
-                j3[k], j4[k] = _third(
+                j3[k], j4[k] = _compute_jerks(
                     ground.real,
                     ground.imag,
                     kx[k],
@@ -277,8 +277,8 @@ def whole_motion(
             for k in range(end - start):
                 ax[k], ay[k] = o2.real + kx[k], o2.imag + ky[k]
             for row in range(3):
-                arm = 0j if row == 0 else (1 + 0j if row == 1 else divided(pivots[2, j], b))
-                carried(ax, ay, ux, uy, arm, points[0, row, i, start:end])
-                velocities(kx, ky, ux, uy, w2, w3, arm, points[1, row, i, start:end])
-                accelerations(kx, ky, ux, uy, w2, a2, w3, a3, arm, points[2, row, i, start:end])
-                jerks(kx, ky, ux, uy, w2, a2, j2, w3, a3, j3, arm, points[3, row, i, start:end])
+                arm = 0j if row == 0 else (1 + 0j if row == 1 else divide_by_length(pivots[2, j], b))
+                fill_points(ax, ay, ux, uy, arm, points[0, row, i, start:end])
+                fill_velocities(kx, ky, ux, uy, w2, w3, arm, points[1, row, i, start:end])
+                fill_accelerations(kx, ky, ux, uy, w2, a2, w3, a3, arm, points[2, row, i, start:end])
+                fill_jerks(kx, ky, ux, uy, w2, a2, j2, w3, a3, j3, arm, points[3, row, i, start:end])

@@ -13,9 +13,10 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import ArrayLike
 
-from kinematics.linkage.batch import over_designs
+from kinematics.arrays import Real
+from kinematics.linkage.batch import broadcast_over_designs
 from kinematics.linkage.fourbar import circuit_kernels as kernels
-from kinematics.linkage.fourbar.closed_form import Fourbar, Real, closes, one_shape, with_angle_axis
+from kinematics.linkage.fourbar.closed_form import Fourbar, broadcast_shape, is_closed, with_angle_axis
 
 
 def transmission_angle(linkage: Fourbar, input_angle: ArrayLike) -> Real:
@@ -33,10 +34,10 @@ def transmission_angle(linkage: Fourbar, input_angle: ArrayLike) -> Real:
     f = np.abs((linkage.output_pivot - linkage.input_pivot)[axis] - linkage.input[axis] * np.exp(1j * theta))
     # Heron's product in factored form, accurate near a toggle.
     product = (b + c + f) * (b + c - f) * (f + (b - c)) * (f - (b - c))
-    return np.where(closes(product, b, c, f) & (f > 0.0), _acute(_included(b, c, f)), np.nan)
+    return np.where(is_closed(product, b, c, f) & (f > 0.0), _reduce_to_acute(_compute_included_angle(b, c, f)), np.nan)
 
 
-def transmission_extremes(linkage: Fourbar, start: ArrayLike, end: ArrayLike) -> tuple[Real, Real]:
+def find_transmission_extremes(linkage: Fourbar, start: ArrayLike, end: ArrayLike) -> tuple[Real, Real]:
     """Find the exact minimum and maximum transmission angle while the input turns from ``start`` to ``end``.
 
     Parameters
@@ -60,18 +61,20 @@ def transmission_extremes(linkage: Fourbar, start: ArrayLike, end: ArrayLike) ->
     shape = linkage.input.shape
     start, end = np.asarray(start, np.float64), np.asarray(end, np.float64)
     if not (start.ndim == end.ndim == 0):
-        shape = one_shape(designs=shape, start=start.shape, end=end.shape)
+        shape = broadcast_shape(designs=shape, start=start.shape, end=end.shape)
     least, greatest = np.empty(shape), np.empty(shape)
-    kernels.extremes(*over_designs(linkage.blocks, shape, start, end), least.reshape(-1), greatest.reshape(-1))
+    kernels.find_extremes(
+        *broadcast_over_designs(linkage.blocks, shape, start, end), least.reshape(-1), greatest.reshape(-1)
+    )
     return least, greatest
 
 
-def _included(b: Real, c: Real, f: Real) -> Real:
+def _compute_included_angle(b: Real, c: Real, f: Real) -> Real:
     """Compute the angle at B of the triangle with sides b, c and base f; 0 or π for a base too short or too long."""
     numerator = (f + (b - c)) * (f - (b - c))
     denominator = (b + c + f) * (b + c - f)
     return np.asarray(2.0 * np.arctan2(np.sqrt(np.maximum(numerator, 0.0)), np.sqrt(np.maximum(denominator, 0.0))))
 
 
-def _acute(gamma: Real) -> Real:
+def _reduce_to_acute(gamma: Real) -> Real:
     return np.minimum(gamma, np.pi - gamma)

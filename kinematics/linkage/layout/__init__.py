@@ -4,12 +4,12 @@ A linkage is drawn in one plane but built in several: links joined by a pin lie 
 that would collide during the motion need different planes as well. :mod:`~kinematics.linkage.layout.parts` lists the
 parts, :mod:`~kinematics.linkage.layout.planes` minimizes the number of planes, and
 :mod:`~kinematics.linkage.layout.plan` sweeps the motion and combines both. If no arrangement between two bases works,
-:mod:`~kinematics.linkage.layout.divided` places parts on both sides of a base.
+:mod:`~kinematics.linkage.layout.split_links` places parts on both sides of a base.
 """
 
-from kinematics.linkage.layout.divided import DividedLayout, divisions, laid_out_divided
-from kinematics.linkage.layout.parts import Division, GearDisc, Piece, gear_discs, pieces
-from kinematics.linkage.layout.plan import Clash, Layout, laid_out
+from kinematics.linkage.layout.parts import Division, GearDisc, Piece, list_gear_discs, list_pieces
+from kinematics.linkage.layout.plan import Clash, Layout, arrange_planes
+from kinematics.linkage.layout.split_links import DividedLayout, arrange_divided, list_divisions
 
 __all__ = [
     "Clash",
@@ -18,9 +18,9 @@ __all__ = [
     "GearDisc",
     "Layout",
     "Piece",
-    "divisions",
-    "gear_discs",
-    "laid_out",
-    "laid_out_divided",
-    "pieces",
+    "arrange_divided",
+    "arrange_planes",
+    "list_divisions",
+    "list_gear_discs",
+    "list_pieces",
 ]

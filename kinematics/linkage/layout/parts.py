@@ -18,19 +18,16 @@ from itertools import combinations
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
+from kinematics.arrays import Complex, Real
 from kinematics.linkage.clearance import Part
 from kinematics.linkage.planar.drive import drive
 from kinematics.linkage.planar.mechanism import GROUND, GearPair, Mechanism, TopologyError
 
-Complex = NDArray[np.complex128]
-Real = NDArray[np.float64]
-
-GRID = 1441
+GRID_SIZE = 1441
 """Number of inputs at which the ends of slots are searched: spaced by a quarter of a degree over a full turn."""
 
-ONE_PLACE = 1e-9
+COINCIDENCE_TOLERANCE = 1e-9
 """Distance, as a share of the mechanism's size, below which joints coincide and share a pin."""
 
 
@@ -116,7 +113,7 @@ class Parts(NamedTuple):
     meshes: tuple[tuple[int, ...], ...]
 
 
-def parts_of(
+def build_parts(
     mechanism: Mechanism,
     link_width: float,
     pin_diameter: float,
@@ -149,11 +146,11 @@ def parts_of(
     TopologyError
         For gears on a link that is not pinned to the ground, of the ratio 0, or on one shaft.
     """
-    travel = _travel(mechanism, low, high)
+    travel = _find_travel(mechanism, low, high)
     # Scale of the tolerance for coincident joints.
     size = max(abs(complex(z) - complex(w)) for z, w in combinations(mechanism.joints.values(), 2))
     moving = [link for link in mechanism.links if link != GROUND]
-    own = pieces(mechanism, division)
+    own = list_pieces(mechanism, division)
     plates = []
     for name, link, joints in own:
         points = [complex(mechanism.joints[joint]) for joint in mechanism.links[link] if joint in joints]
@@ -161,14 +158,14 @@ def parts_of(
             if slide.link == link and slide.joint in joints:
                 reach = ends[0] - slot_ends, ends[1] + slot_ends
                 points += [complex(slide.point) + end * complex(np.exp(1j * slide.angle)) for end in reach]
-        plates.append(Plate(name, link, Part(link, _hull(points, ONE_PLACE * size), 0.5 * link_width)))
+        plates.append(Plate(name, link, Part(link, _find_hull(points, COINCIDENCE_TOLERANCE * size), 0.5 * link_width)))
     pins = []
     shafts: dict[str, set[int]] = {}
     meshes = []
     for n, gear in enumerate(mechanism.gears):
         number = f" {n + 1}" if len(mechanism.gears) > 1 else ""
         mesh = []
-        for joint, name, link, centre, radius in gear_discs(mechanism, gear):
+        for joint, name, link, centre, radius in list_gear_discs(mechanism, gear):
             disc = Part(GROUND, np.array([centre]), radius + addendum)
             mesh.append(len(plates))
             if joint is None:
@@ -179,8 +176,8 @@ def parts_of(
                 shafts.setdefault(joint, set()).add(len(plates))
             plates.append(Plate(f"{name}{number}", link, disc))
         meshes.append(tuple(mesh))
-    ground = joints_of(mechanism, GROUND)
-    for place in places(mechanism):
+    ground = list_joints(mechanism, GROUND)
+    for place in group_joints(mechanism):
         joined = {n for n, piece in enumerate(own) if piece.joints & place}
         joined |= {plate for joint in place for plate in shafts.get(joint, ())}
         grounded = bool(ground & place)
@@ -193,15 +190,18 @@ def parts_of(
     return Parts(tuple(plates), tuple(pins), tuple(meshes))
 
 
-def _travel(mechanism: Mechanism, low: float, high: float) -> list[tuple[float, float]]:
+def _find_travel(mechanism: Mechanism, low: float, high: float) -> list[tuple[float, float]]:
     """Find the minimum and maximum travel of each slide on a grid, refined by a parabola through three neighbours."""
     if not mechanism.slides:
         return []
-    motion = drive(mechanism, np.linspace(low, high, GRID), order=0)
-    return [(_least(motion.slides[name][0]), -_least(-motion.slides[name][0])) for name in mechanism.slide_names]
+    motion = drive(mechanism, np.linspace(low, high, GRID_SIZE), order=0)
+    return [
+        (_find_minimum(motion.slides[name][0]), -_find_minimum(-motion.slides[name][0]))
+        for name in mechanism.slide_names
+    ]
 
 
-def _least(values: Real) -> float:
+def _find_minimum(values: Real) -> float:
     k = int(np.nanargmin(values))
     if not 0 < k < len(values) - 1:
         return float(values[k])
@@ -211,32 +211,35 @@ def _least(values: Real) -> float:
     return float(at - 0.125 * (after - before) ** 2 / bend) if bend > 0.0 else float(at)
 
 
-def joints_of(mechanism: Mechanism, link: str) -> frozenset[str]:
+def list_joints(mechanism: Mechanism, link: str) -> frozenset[str]:
     """List the joints of a link, and of the blocks in its slots."""
     return frozenset(mechanism.links[link]) | {slide.joint for slide in mechanism.slides if slide.link == link}
 
 
-def pieces(mechanism: Mechanism, division: Division | None = None) -> list[Piece]:
+def list_pieces(mechanism: Mechanism, division: Division | None = None) -> list[Piece]:
     """List the plates of the moving links: one each, two for a divided link."""
     found = []
     for link in mechanism.links:
         if division is not None and link == division.link:
             found += [
-                Piece(name, link, own) for name, own in zip(halves(link), (division.lower, division.upper), strict=True)
+                Piece(name, link, own)
+                for name, own in zip(name_halves(link), (division.lower, division.upper), strict=True)
             ]
         elif link != GROUND:
-            found.append(Piece(link, link, joints_of(mechanism, link)))
+            found.append(Piece(link, link, list_joints(mechanism, link)))
     return found
 
 
-def halves(link: str) -> tuple[str, str]:
+def name_halves(link: str) -> tuple[str, str]:
     """Return the names of the two plates of a divided link."""
     return f"lower {link}", f"upper {link}"
 
 
-def places(mechanism: Mechanism) -> list[set[str]]:
+def group_joints(mechanism: Mechanism) -> list[set[str]]:
     """Group the joints into possible places of pins: coincident joints of one link belong together."""
-    near = ONE_PLACE * max(abs(complex(z) - complex(w)) for z, w in combinations(mechanism.joints.values(), 2))
+    near = COINCIDENCE_TOLERANCE * max(
+        abs(complex(z) - complex(w)) for z, w in combinations(mechanism.joints.values(), 2)
+    )
     found = [{joint} for joint in mechanism.joints]
     for listed in mechanism.links.values():
         for one, other in combinations(listed, 2):
@@ -248,7 +251,7 @@ def places(mechanism: Mechanism) -> list[set[str]]:
     return found
 
 
-def gear_discs(mechanism: Mechanism, gear: GearPair) -> list[GearDisc]:
+def list_gear_discs(mechanism: Mechanism, gear: GearPair) -> list[GearDisc]:
     """List the gears that couple two links by a ratio: first, second, and an idler if both turn the same way.
 
     With radii in the ratio |λ| to 1 the discs touch on the line of the pivots: r + |λ| r = d, or with an idler as large
@@ -282,7 +285,7 @@ def gear_discs(mechanism: Mechanism, gear: GearPair) -> list[GearDisc]:
     return found
 
 
-def _hull(points: Sequence[complex], near: float) -> Complex:
+def _find_hull(points: Sequence[complex], near: float) -> Complex:
     """Find the corners of the convex hull, counter-clockwise (Andrew's chain); one or two if all are collinear."""
     listed: list[complex] = []
     for point in sorted(points, key=lambda z: (z.real, z.imag)):

@@ -21,22 +21,22 @@ from typing import NamedTuple
 import numpy as np
 
 from kinematics.errors import DimensionError
-from kinematics.linkage.clearance import Part, free_ranges, swept
+from kinematics.linkage.clearance import Part, find_free_ranges, sweep_pairs
 from kinematics.linkage.clearance.scene import Scene
-from kinematics.linkage.layout.parts import Parts, parts_of
-from kinematics.linkage.layout.planes import Spindle, in_the_way, reach, stacked
+from kinematics.linkage.layout.parts import Parts, build_parts
+from kinematics.linkage.layout.planes import Spindle, find_reach, is_in_the_way, stack_plates
 from kinematics.linkage.planar.mechanism import Mechanism
 
 Interval = tuple[float, float]
 
-FINE = 1e-4
+END_TOLERANCE = 1e-4
 """Accuracy of the ends of free ranges: radians, or share of the mechanism's size along an input slide."""
 
-MOST_STEPS = 3**12
+MAX_STEPS = 3**12
 """Maximum number of steps of an arrangement over all choices of sides for stub shafts; a free range needs some dozens
 of arrangements."""
 
-NEAR, CLOSER, LOOKS = 0.1, 33, 4
+SEARCH_HALF_WIDTH, SEARCH_INPUTS, SEARCH_ROUNDS = 0.1, 33, 4
 """Search for the minimum distance near a known close position: half-width in the same units, number of inputs, and
 number of rounds, each an eighth as wide as the one before."""
 
@@ -97,7 +97,7 @@ class _Pair(NamedTuple):
     pins: tuple[int, ...]
 
 
-def laid_out(
+def arrange_planes(
     mechanism: Mechanism,
     low: float,
     high: float,
@@ -141,30 +141,30 @@ def laid_out(
     DimensionError
         For more plates, or stub shafts among them, than can be arranged.
     """
-    parts = parts_of(mechanism, link_width, pin_diameter, low, high, slot_ends, addendum)
+    parts = build_parts(mechanism, link_width, pin_diameter, low, high, slot_ends, addendum)
     scene = _Scene(mechanism, parts, low, high, gap)
-    found = scene.met()
+    found = scene.find_meetings()
     shafts = {n for n, pin in enumerate(parts.pins) if through and pin.grounded}
     # A through shaft that meets a plate anywhere must become a stub.
     stubs = {n for pair in found if pair.plates for n in pair.pins} & shafts
     builder = _Builder(parts, shafts, stubs)
-    built = builder.best(found)
-    unparted = built.unparted(found)
+    built = builder.find_best(found)
+    unparted = built.find_unparted(found)
     free: Interval | None = None if unparted else (low, high)
     if unparted and not whole:
 
         @cache
-        def buildable(meeting: tuple[int, ...]) -> bool:
-            return builder.parts([found[n] for n in meeting])
+        def is_buildable(meeting: tuple[int, ...]) -> bool:
+            return builder.is_buildable([found[n] for n in meeting])
 
-        longest = _longest_free(scene.free(found, closed=closed), low, high, buildable, closed=closed)
+        longest = _find_longest_free(scene.free(found, closed=closed), low, high, is_buildable, closed=closed)
         if longest is not None:
             free, meeting = longest
-            built = builder.best([found[n] for n in meeting])
-            unparted = built.unparted(found)
+            built = builder.find_best([found[n] for n in meeting])
+            unparted = built.find_unparted(found)
     return Layout(
         {plate.name: plane for plate, plane in zip(parts.plates, built.planes, strict=True)},
-        {pin.joint: reach(built.planes, held) for pin, held in zip(parts.pins, built.pins, strict=True)},
+        {pin.joint: find_reach(built.planes, held) for pin, held in zip(parts.pins, built.pins, strict=True)},
         [pair.parts for pair in found if pair.plates],
         scene.clashes(unparted),
         [parts.pins[n].joint for n in sorted(stubs)],
@@ -172,23 +172,23 @@ def laid_out(
     )
 
 
-class _Built(NamedTuple):
+class _Arrangement(NamedTuple):
     """Planes of the plates, and the pins with their bases."""
 
     planes: tuple[int, ...]
     pins: tuple[Spindle, ...]
 
-    def unparted(self, pairs: Sequence[_Pair]) -> list[_Pair]:
+    def find_unparted(self, pairs: Sequence[_Pair]) -> list[_Pair]:
         """Find the pairs that meet and are not separated."""
-        return [pair for pair in pairs if not self._parts(pair)]
+        return [pair for pair in pairs if not self._is_parted(pair)]
 
-    def _parts(self, pair: _Pair) -> bool:
+    def _is_parted(self, pair: _Pair) -> bool:
         # Two pins through one plate always share its plane.
         if len(pair.pins) == 2:
             return False
         if not pair.pins:
             return self.planes[pair.plates[0]] != self.planes[pair.plates[1]]
-        return not in_the_way(self.planes, self.pins[pair.pins[0]], pair.plates[0])
+        return not is_in_the_way(self.planes, self.pins[pair.pins[0]], pair.plates[0])
 
 
 class _Builder:
@@ -196,27 +196,27 @@ class _Builder:
 
     def __init__(self, parts: Parts, shafts: set[int], stubs: set[int]) -> None:
         self._parts = parts
-        self._apart = _joined(parts)
+        self._apart = _list_joined(parts)
         self._shafts, self._stubs = shafts, sorted(stubs)
         steps = 3 ** len(parts.plates) << len(stubs)
         # Every choice of sides doubles the effort.
-        if len(stubs) > 1 and steps > MOST_STEPS:
+        if len(stubs) > 1 and steps > MAX_STEPS:
             raise DimensionError("stub shafts", f"fewer among {len(parts.plates)} plates", len(stubs))
 
-    def best(self, pairs: Sequence[_Pair]) -> _Built:
+    def find_best(self, pairs: Sequence[_Pair]) -> _Arrangement:
         """Find the planes with the fewest collisions among these pairs, then the fewest planes."""
 
-        def merit(way: _Built) -> tuple[int, int, int]:
-            reaches = [reach(way.planes, pin) for pin in way.pins]
-            return len(way.unparted(pairs)), max(way.planes), sum(high - low for low, high in reaches)
+        def rank_merit(way: _Arrangement) -> tuple[int, int, int]:
+            reaches = [find_reach(way.planes, pin) for pin in way.pins]
+            return len(way.find_unparted(pairs)), max(way.planes), sum(high - low for low, high in reaches)
 
-        return min(self._ways(pairs), key=merit)
+        return min(self._list_arrangements(pairs), key=rank_merit)
 
-    def parts(self, pairs: Sequence[_Pair]) -> bool:
+    def is_buildable(self, pairs: Sequence[_Pair]) -> bool:
         """Return whether there are planes without a collision among these pairs."""
-        return any(not way.unparted(pairs) for way in self._ways(pairs))
+        return any(not way.find_unparted(pairs) for way in self._list_arrangements(pairs))
 
-    def _ways(self, pairs: Sequence[_Pair]) -> Iterator[_Built]:
+    def _list_arrangements(self, pairs: Sequence[_Pair]) -> Iterator[_Arrangement]:
         """List the best planes for each choice of sides for the stub shafts."""
         apart = self._apart + [(pair.plates[0], pair.plates[1]) for pair in pairs if not pair.pins]
         meets: dict[int, set[int]] = {}
@@ -225,13 +225,13 @@ class _Builder:
                 meets.setdefault(pair.pins[0], set()).update(pair.plates)
         for hung in product((False, True), repeat=len(self._stubs)):
             pins = tuple(
-                self._held(n, frozenset(meets.get(n, ())), dict(zip(self._stubs, hung, strict=True)))
+                self._build_spindle(n, frozenset(meets.get(n, ())), dict(zip(self._stubs, hung, strict=True)))
                 for n in range(len(self._parts.pins))
             )
-            planes = stacked(len(self._parts.plates), apart, pins, self._parts.meshes)
-            yield _Built(planes, pins)
+            planes = stack_plates(len(self._parts.plates), apart, pins, self._parts.meshes)
+            yield _Arrangement(planes, pins)
 
-    def _held(self, number: int, meets: frozenset[int], hung: dict[int, bool]) -> Spindle:
+    def _build_spindle(self, number: int, meets: frozenset[int], hung: dict[int, bool]) -> Spindle:
         """Return a pin with the bases that hold it."""
         pin = self._parts.pins[number]
         if number in hung:
@@ -239,7 +239,7 @@ class _Builder:
         return Spindle(pin.plates, meets, below=pin.grounded, above=number in self._shafts)
 
 
-def _joined(parts: Parts) -> list[tuple[int, int]]:
+def _list_joined(parts: Parts) -> list[tuple[int, int]]:
     """List the pairs of plates that a pin joins."""
     return sorted({pair for pin in parts.pins for pair in combinations(sorted(pin.plates), 2)})
 
@@ -252,10 +252,10 @@ class _Scene:
         self._outlines: list[Part] = [plate.outline for plate in parts.plates] + [pin.outline for pin in parts.pins]
         self._low, self._high, self._gap = low, high, gap
 
-    def met(self) -> list[_Pair]:
+    def find_meetings(self) -> list[_Pair]:
         """Find all pairs that come too close somewhere, except those that belong together."""
         plates, pins = self._parts.plates, self._parts.pins
-        joined = {*_joined(self._parts), *(pair for mesh in self._parts.meshes for pair in combinations(mesh, 2))}
+        joined = {*_list_joined(self._parts), *(pair for mesh in self._parts.meshes for pair in combinations(mesh, 2))}
         pairs: list[tuple[tuple[int, ...], tuple[int, ...]]] = []
         pairs += [(pair, ()) for pair in combinations(range(len(plates)), 2) if pair not in joined]
         pairs += [((k,), (n,)) for n, pin in enumerate(pins) for k in range(len(plates)) if k not in pin.plates]
@@ -266,15 +266,17 @@ class _Scene:
             if pins[n].plates & pins[m].plates or (pins[n].grounded and pins[m].grounded)
         ]
         names = [plate.name for plate in plates] + [pin.name for pin in pins]
-        numbers = [self._numbers(*pair) for pair in pairs]
-        results = swept(self._mechanism, self._outlines, numbers, self._low, self._high, self._gap, nearest="none")
+        numbers = [self._get_numbers(*pair) for pair in pairs]
+        results = sweep_pairs(
+            self._mechanism, self._outlines, numbers, self._low, self._high, self._gap, nearest="none"
+        )
         return [
             _Pair((names[one], names[other]), result.at, *pair)
             for pair, (one, other), result in zip(pairs, numbers, results, strict=True)
             if not result.keeps
         ]
 
-    def _numbers(self, plates: tuple[int, ...], pins: tuple[int, ...]) -> tuple[int, int]:
+    def _get_numbers(self, plates: tuple[int, ...], pins: tuple[int, ...]) -> tuple[int, int]:
         one, other = (*plates, *(len(self._parts.plates) + n for n in pins))
         return one, other
 
@@ -282,17 +284,17 @@ class _Scene:
         """Measure the minimum distance of pairs by an ever finer search around their known close positions."""
         if not pairs:
             return []
-        scene = Scene(self._mechanism, self._outlines, [self._numbers(pair.plates, pair.pins) for pair in pairs])
-        rows, none = np.repeat(np.arange(len(pairs)), CLOSER), np.zeros(len(pairs) * CLOSER)
-        at, width = np.array([pair.near for pair in pairs]), NEAR * scene.unit
-        for _ in range(LOOKS):
-            around = at[:, None] + width * np.linspace(-1.0, 1.0, CLOSER)
+        scene = Scene(self._mechanism, self._outlines, [self._get_numbers(pair.plates, pair.pins) for pair in pairs])
+        rows, none = np.repeat(np.arange(len(pairs)), SEARCH_INPUTS), np.zeros(len(pairs) * SEARCH_INPUTS)
+        at, width = np.array([pair.near for pair in pairs]), SEARCH_HALF_WIDTH * scene.unit
+        for _ in range(SEARCH_ROUNDS):
+            around = at[:, None] + width * np.linspace(-1.0, 1.0, SEARCH_INPUTS)
             inputs = np.clip(around, self._low, self._high)
             apart = scene.distances(rows, inputs.ravel(), none)[0].reshape(inputs.shape)
             # NaN marks inputs without a position.
             nearest = np.nanargmin(apart, axis=1)[:, None]
             at = np.take_along_axis(inputs, nearest, axis=1)[:, 0]
-            width *= 4.0 / (CLOSER - 1)
+            width *= 4.0 / (SEARCH_INPUTS - 1)
         least = np.take_along_axis(apart, nearest, axis=1)[:, 0]
         return [
             Clash(pair.parts, *found) for pair, found in zip(pairs, np.stack([least, at], axis=1).tolist(), strict=True)
@@ -300,27 +302,27 @@ class _Scene:
 
     def free(self, pairs: Sequence[_Pair], *, closed: bool) -> list[list[Interval]]:
         """Find the ranges in which each pair keeps the gap; for a cycle over two consecutive cycles."""
-        numbers = [self._numbers(pair.plates, pair.pins) for pair in pairs]
-        fine = FINE * (_size(self._mechanism) if self._mechanism.driven_by_slide else 1.0)
+        numbers = [self._get_numbers(pair.plates, pair.pins) for pair in pairs]
+        fine = END_TOLERANCE * (_measure_size(self._mechanism) if self._mechanism.has_slide_input else 1.0)
         low, high = self._low, self._high
-        ranges = free_ranges(self._mechanism, self._outlines, numbers, low, high, self._gap, fine)
-        return [_on_end(own, high - low) for own in ranges] if closed else ranges
+        ranges = find_free_ranges(self._mechanism, self._outlines, numbers, low, high, self._gap, fine)
+        return [_join_cycles(own, high - low) for own in ranges] if closed else ranges
 
 
-def _on_end(ranges: list[Interval], cycle: float) -> list[Interval]:
+def _join_cycles(ranges: list[Interval], cycle: float) -> list[Interval]:
     """Return the ranges of two consecutive cycles, joining those that meet at the boundary."""
     again = [(start + cycle, end + cycle) for start, end in ranges]
-    if ranges and again[0][0] - ranges[-1][1] <= FINE:
+    if ranges and again[0][0] - ranges[-1][1] <= END_TOLERANCE:
         return [*ranges[:-1], (ranges[-1][0], again[0][1]), *again[1:]]
     return [*ranges, *again]
 
 
-def _size(mechanism: Mechanism) -> float:
+def _measure_size(mechanism: Mechanism) -> float:
     """Measure the largest distance of two joints."""
     return max(abs(complex(z) - complex(w)) for z, w in combinations(mechanism.joints.values(), 2))
 
 
-def _longest_free(
+def _find_longest_free(
     ranges: Sequence[Sequence[Interval]],
     low: float,
     high: float,
@@ -351,16 +353,16 @@ def _longest_free(
         farthest = begin + high - low if closed else high
         reached = max(reached, first)
         while reached + 1 < len(ends) and ends[reached + 1] <= farthest:
-            if not buildable(_meeting(ranges, (begin, ends[reached + 1]))):
+            if not buildable(_list_meeting(ranges, (begin, ends[reached + 1]))):
                 break
             reached += 1
         span = begin, ends[reached]
         if span[1] > span[0] and (best is None or span[1] - span[0] > best[0][1] - best[0][0]):
-            best = span, _meeting(ranges, span)
+            best = span, _list_meeting(ranges, span)
     return best
 
 
-def _meeting(ranges: Sequence[Sequence[Interval]], span: Interval) -> tuple[int, ...]:
+def _list_meeting(ranges: Sequence[Sequence[Interval]], span: Interval) -> tuple[int, ...]:
     """List the pairs that do not keep the gap throughout a range."""
     return tuple(
         n for n, own in enumerate(ranges) if not any(start <= span[0] and span[1] <= end for start, end in own)

@@ -21,20 +21,19 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from kinematics.arrays import Integers
 from kinematics.compiling import njit
 from kinematics.errors import DimensionError
 
-Masks = NDArray[np.int64]
-
-MOST_PLATES = 12
+MAX_PLATES = 12
 """Maximum number of plates, a mesh counted as one: 3¹² steps take a few milliseconds, and no linkage in textbooks has
 more than seven moving links."""
 
-_BROKEN, _PLANE = 1 << 24, 1 << 12
+_CONFLICT_WEIGHT, _PLANE_WEIGHT = 1 << 24, 1 << 12
 """Weights of a blocked pin and of a plane relative to one plane of pin length. The total pin length is below 4096: at
 most 12 planes times 200 pins, so the order of the criteria is lexicographic."""
 
-_UNKNOWN = np.iinfo(np.int64).max
+_UNKNOWN_COST = np.iinfo(np.int64).max
 
 
 class Spindle(NamedTuple):
@@ -47,7 +46,7 @@ class Spindle(NamedTuple):
     above: bool = False
 
 
-def stacked(
+def stack_plates(
     count: int,
     apart: Sequence[tuple[int, int]],
     pins: Sequence[Spindle],
@@ -58,7 +57,7 @@ def stacked(
     Parameters
     ----------
     count : int
-        Number of plates, at most :data:`MOST_PLATES` with each mesh as one.
+        Number of plates, at most :data:`MAX_PLATES` with each mesh as one.
     apart : sequence of pairs of int
         Plates that lie in different planes. Pairs within a mesh are ignored: its plates share a plane by design.
     pins : sequence of Spindle
@@ -95,21 +94,21 @@ def stacked(
         own = [first if plate in merged else plate for plate in own]
     kept = sorted(set(own))
     place = [kept.index(plate) for plate in own]
-    if len(kept) > MOST_PLATES:
-        raise DimensionError("plates", f"at most {MOST_PLATES}", len(kept))
+    if len(kept) > MAX_PLATES:
+        raise DimensionError("plates", f"at most {MAX_PLATES}", len(kept))
     parted = np.zeros(len(kept), np.int64)
     for one, other in apart:
         if place[one] != place[other]:
             parted[place[one]] |= 1 << place[other]
             parted[place[other]] |= 1 << place[one]
-    joined = np.array([_mask(place, pin.plates) for pin in pins], np.int64)
+    joined = np.array([_build_mask(place, pin.plates) for pin in pins], np.int64)
     # Several plates of a mesh may meet a pin: each counts.
     met = np.zeros((len(pins), len(kept)), np.int64)
     for n, pin in enumerate(pins):
         for plate in pin.meets:
             met[n, place[plate]] += 1
     held = np.array([[pin.below, pin.above] for pin in pins], np.bool_).reshape(-1, 2)
-    last = _fewest(len(kept), parted, joined, held, met)
+    last = _minimize_planes(len(kept), parted, joined, held, met)
     layers: list[int] = []
     lying = (1 << len(kept)) - 1
     while lying:
@@ -119,19 +118,19 @@ def stacked(
     return tuple(plane_of[k] for k in place)
 
 
-def reach(planes: Sequence[int], pin: Spindle) -> tuple[int, int]:
+def find_reach(planes: Sequence[int], pin: Spindle) -> tuple[int, int]:
     """Return the lowest and highest plane of a pin; 0 is the base, number of planes + 1 the upper base."""
     own = [planes[plate] for plate in pin.plates]
     return 0 if pin.below else min(own), max(planes) + 1 if pin.above else max(own)
 
 
-def in_the_way(planes: Sequence[int], pin: Spindle, plate: int) -> bool:
+def is_in_the_way(planes: Sequence[int], pin: Spindle, plate: int) -> bool:
     """Return whether a plate lies in a plane that a pin reaches."""
-    low, high = reach(planes, pin)
+    low, high = find_reach(planes, pin)
     return low <= planes[plate] <= high
 
 
-def _mask(place: Sequence[int], plates: frozenset[int]) -> int:
+def _build_mask(place: Sequence[int], plates: frozenset[int]) -> int:
     mask = 0
     for plate in plates:
         mask |= 1 << place[plate]
@@ -139,7 +138,9 @@ def _mask(place: Sequence[int], plates: frozenset[int]) -> int:
 
 
 @njit(cache=True, nogil=True)
-def _fewest(count: int, parted: Masks, joined: Masks, held: NDArray[np.bool_], met: Masks) -> Masks:
+def _minimize_planes(
+    count: int, parted: Integers, joined: Integers, held: NDArray[np.bool_], met: Integers
+) -> Integers:
     """Compute for each set of plates the top plane of its best arrangement, as a set."""
     sets = 1 << count
     in_one_plane = np.ones(sets, np.bool_)
@@ -148,18 +149,18 @@ def _fewest(count: int, parted: Masks, joined: Masks, held: NDArray[np.bool_], m
             if layer >> plate & 1 and layer & parted[plate]:
                 in_one_plane[layer] = False
                 break
-    least = np.full(sets, _UNKNOWN, np.int64)
+    least = np.full(sets, _UNKNOWN_COST, np.int64)
     last = np.zeros(sets, np.int64)
     least[0] = 0
     # Sets in increasing order: all subsets of a set come before it.
     for below in range(sets - 1):
-        if least[below] == _UNKNOWN:
+        if least[below] == _UNKNOWN_COST:
             continue
         rest = (sets - 1) & ~below
         layer = rest
         while layer > 0:
             if in_one_plane[layer]:
-                cost = least[below] + _PLANE
+                cost = least[below] + _PLANE_WEIGHT
                 for pin in range(len(joined)):
                     # The pin passes this plane if it has begun and not yet ended.
                     begun = held[pin, 0] or (joined[pin] & (below | layer)) != 0
@@ -167,7 +168,7 @@ def _fewest(count: int, parted: Masks, joined: Masks, held: NDArray[np.bool_], m
                         cost += 1
                         for plate in range(count):
                             if layer >> plate & 1:
-                                cost += _BROKEN * met[pin, plate]
+                                cost += _CONFLICT_WEIGHT * met[pin, plate]
                 if cost < least[below | layer]:
                     least[below | layer] = cost
                     last[below | layer] = layer

@@ -14,33 +14,30 @@ from itertools import pairwise
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from kinematics.linkage.planar.closures import decompose
 from kinematics.linkage.planar.configuration_curves import (
     Closures,
     Curve,
-    circuits,
-    configuration_curves,
-    gear_rotations,
+    compute_gear_rotations,
+    find_configuration_curves,
+    number_circuits,
 )
-from kinematics.linkage.planar.drive import assembly_signs
+from kinematics.linkage.planar.drive import find_assembly_signs
 from kinematics.linkage.planar.mechanism import Mechanism, TopologyError
-
-Real = NDArray[np.float64]
 
 FULL_TURN = 2.0 * np.pi
 
-SAME_END = 1e-7
+END_TOLERANCE = 1e-7
 """Distance beyond the ends of a branch, radians, within which the reference still belongs to it."""
 
-TURNS_AT_MOST = 200
+MAX_TURNS = 200
 """Maximum number of turns of the input until a geared mechanism repeats."""
 
-MOST_TURNS = 1000.0
+MAX_FASTEST_TURNS = 1000.0
 """Maximum number of turns of the fastest geared link until the mechanism repeats: the effort is proportional to it."""
 
-REPEATS = 1e-9
+REPEAT_TOLERANCE = 1e-9
 """Angle, radians, by which a geared link may miss its initial position after a cycle."""
 
 
@@ -61,35 +58,39 @@ class Branch(NamedTuple):
     high_closure: str
 
 
-def turns_until_repeated(*ratios: float) -> int:
-    """Count the turns of the input until gears of these ratios repeat; at most :data:`TURNS_AT_MOST`."""
+def count_turns_until_repeat(*ratios: float) -> int:
+    """Count the turns of the input until gears of these ratios repeat; at most :data:`MAX_TURNS`."""
     turns = 1
     for ratio in ratios:
         # The output repeats when ratio × turns is an integer.
-        turns = int(np.lcm(turns, Fraction(ratio).limit_denominator(TURNS_AT_MOST).denominator))
-    return min(turns, TURNS_AT_MOST)
+        turns = int(np.lcm(turns, Fraction(ratio).limit_denominator(MAX_TURNS).denominator))
+    return min(turns, MAX_TURNS)
 
 
-def cycle(mechanism: Mechanism) -> float:
+def compute_cycle(mechanism: Mechanism) -> float:
     """Compute the input rotation after which the mechanism repeats, radians: one turn, or several with gears."""
-    return FULL_TURN * turns_until_repeated(*(gear.ratio for gear in mechanism.gears))
+    return FULL_TURN * count_turns_until_repeat(*(gear.ratio for gear in mechanism.gears))
 
 
-def cycle_on(mechanism: Mechanism, branch: Branch) -> float:
-    """Compute the input rotation after which a mechanism repeats on a full branch: :func:`cycle` or a multiple.
+def compute_cycle_on_branch(mechanism: Mechanism, branch: Branch) -> float:
+    """Compute the input rotation after which a mechanism repeats on a full branch: :func:`compute_cycle` or a multiple.
 
     A triad may be in another position after one turn of its input, and back after two.
     """
-    period = cycle(mechanism)
+    period = compute_cycle(mechanism)
     return period * max(1, round((branch.high - branch.low) / period))
 
 
-def most_turns(mechanism: Mechanism) -> float:
+def count_fastest_turns(mechanism: Mechanism) -> float:
     """Count the turns of the fastest link geared to the input, or of the input, until the mechanism repeats."""
-    return max(map(abs, gear_rotations(mechanism, decompose(mechanism).steps).values())) * cycle(mechanism) / FULL_TURN
+    return (
+        max(map(abs, compute_gear_rotations(mechanism, decompose(mechanism).steps).values()))
+        * compute_cycle(mechanism)
+        / FULL_TURN
+    )
 
 
-def dyadic_branches(mechanism: Mechanism) -> list[Branch]:
+def find_dyadic_branches(mechanism: Mechanism) -> list[Branch]:
     """Find all branches of one design that closes by dyads from its input link; the reference's circuit first.
 
     Raises
@@ -100,31 +101,34 @@ def dyadic_branches(mechanism: Mechanism) -> list[Branch]:
         depend on it.
     """
     decomposition = decompose(mechanism)
-    if decomposition.left or mechanism.driven_by_slide:
+    if decomposition.left or mechanism.has_slide_input:
         raise TopologyError("expected a mechanism that closes by dyads and is driven by a link")
-    period = cycle(mechanism)
+    period = compute_cycle(mechanism)
     for gear in mechanism.gears:
         turned = gear.ratio * period
         # An irrational ratio never repeats; its best fraction may miss the start.
-        if abs(turned - 2.0 * np.pi * np.round(turned / (2.0 * np.pi))) > REPEATS:
-            raise TopologyError(f"a gear ratio of {gear.ratio!r} does not repeat within {TURNS_AT_MOST} turns")
-    if most_turns(mechanism) > MOST_TURNS:
+        if abs(turned - 2.0 * np.pi * np.round(turned / (2.0 * np.pi))) > REPEAT_TOLERANCE:
+            raise TopologyError(f"a gear ratio of {gear.ratio!r} does not repeat within {MAX_TURNS} turns")
+    if count_fastest_turns(mechanism) > MAX_FASTEST_TURNS:
         raise TopologyError(
-            f"gears turn a link more than {MOST_TURNS:g} times before the mechanism repeats; circuits are not known"
+            f"gears turn a link more than {MAX_FASTEST_TURNS:g} times before the mechanism repeats; circuits are not "
+            "known"
         )
     closures = Closures(mechanism, decomposition)
-    curves = configuration_curves(mechanism, closures, period)
+    curves = find_configuration_curves(mechanism, closures, period)
     pieces = [
         branch
-        for curve, circuit in zip(curves, circuits(curves), strict=True)
-        for branch in _branches_of(curve, circuit, closures.links, period)
+        for curve, circuit in zip(curves, number_circuits(curves), strict=True)
+        for branch in _cut_branches(curve, circuit, closures.links, period)
     ]
-    signs = assembly_signs(mechanism, decomposition.steps)
+    signs = find_assembly_signs(mechanism, decomposition.steps)
     choice = tuple(int(signs[n]) for n in closures.position)
-    return reference_first(pieces, _holding(pieces, choice, float(mechanism.reference_input), period))
+    return sort_reference_first(
+        pieces, _find_reference_branch(pieces, choice, float(mechanism.reference_input), period)
+    )
 
 
-def _branches_of(curve: Curve, circuit: int, links: list[str], period: float) -> list[Branch]:
+def _cut_branches(curve: Curve, circuit: int, links: list[str], period: float) -> list[Branch]:
     """Cut a curve at its turns into branches."""
     cuts = [(turn.at, turn.theta, links[turn.level]) for turn in curve.turns]
     if curve.closed:
@@ -151,17 +155,17 @@ def _branches_of(curve: Curve, circuit: int, links: list[str], period: float) ->
     return branches
 
 
-def _holding(branches: list[Branch], choice: tuple[int, ...], at: float, period: float) -> int:
+def _find_reference_branch(branches: list[Branch], choice: tuple[int, ...], at: float, period: float) -> int:
     """Find the index of the branch that contains the reference configuration."""
     for n, branch in enumerate(branches):
         # Signs and input together identify a configuration.
-        within = branch.high - branch.low + 2.0 * SAME_END
-        if branch.signs == choice and np.mod(at - branch.low + SAME_END, period) <= within:
+        within = branch.high - branch.low + 2.0 * END_TOLERANCE
+        if branch.signs == choice and np.mod(at - branch.low + END_TOLERANCE, period) <= within:
             return n
     return 0
 
 
-def reference_first(branches: list[Branch], first: int) -> list[Branch]:
+def sort_reference_first(branches: list[Branch], first: int) -> list[Branch]:
     """Sort the branches by circuit, numbering the circuits from that of branch ``first``."""
     if not branches:
         return []

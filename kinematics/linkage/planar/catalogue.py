@@ -10,15 +10,13 @@ from __future__ import annotations
 from collections.abc import Mapping
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from kinematics.errors import DimensionError
-from kinematics.linkage.fourbar.closed_form import CROSSED, OPEN, Fourbar, positions, require
+from kinematics.linkage.fourbar.closed_form import CROSSED_ASSEMBLY, OPEN_ASSEMBLY, Fourbar, positions, require
 from kinematics.linkage.planar.mechanism import GearPair, Mechanism, Slide
 
-Complex = NDArray[np.complex128]
-
-ON_PIVOT = 1e-14
+PIVOT_TOLERANCE = 1e-14
 """Distance, as a share of the ground, within which a crank pin coincides with a pivot: its direction is rounding."""
 
 
@@ -26,7 +24,7 @@ def _require_sign(name: str, sign: int) -> None:
     require(name, "+1 or −1", np.asarray(sign), np.abs(sign) == 1)
 
 
-def fourbar(linkage: Fourbar, input_angle: ArrayLike, assembly: ArrayLike = OPEN) -> Mechanism:
+def make_fourbar(linkage: Fourbar, input_angle: ArrayLike, assembly: ArrayLike = OPEN_ASSEMBLY) -> Mechanism:
     """Build the pin-jointed fourbar at an input angle, as a mechanism with the designs' shape.
 
     Raises
@@ -51,14 +49,14 @@ def fourbar(linkage: Fourbar, input_angle: ArrayLike, assembly: ArrayLike = OPEN
     )
 
 
-def slider_crank(
+def make_slider_crank(
     pivot: complex,
     slide_point: complex,
     slide_angle: float,
     crank: float,
     coupler: float,
     crank_angle: float,
-    assembly: int = OPEN,
+    assembly: int = OPEN_ASSEMBLY,
     coupler_point: complex = 0.0,
     driven_by: str = "crank",
 ) -> Mechanism:
@@ -83,8 +81,14 @@ def slider_crank(
     )
 
 
-def inverted_slider_crank(
-    o2: complex, o4: complex, crank: float, output: float, line_angle: float, crank_angle: float, assembly: int = OPEN
+def make_inverted_slider_crank(
+    o2: complex,
+    o4: complex,
+    crank: float,
+    output: float,
+    line_angle: float,
+    crank_angle: float,
+    assembly: int = OPEN_ASSEMBLY,
 ) -> Mechanism:
     """Build the inverted slider-crank (Norton, Sec. 4.7): crank pin A slides on a line fixed in the output link.
 
@@ -101,7 +105,7 @@ def inverted_slider_crank(
     _require_sign("assembly", assembly)
     pin_a = o2 + crank * np.exp(1j * crank_angle)
     reach = pin_a - o4
-    if abs(reach) <= ON_PIVOT * abs(o4 - o2):
+    if abs(reach) <= PIVOT_TOLERANCE * abs(o4 - o2):
         raise DimensionError("crank_angle", "one at which the crank pin is not on O4", crank_angle)
     # The line's distance from O4 is c sin γ: a line at that distance has to pass through A.
     if abs(output * np.sin(line_angle)) > abs(reach):
@@ -119,7 +123,7 @@ def inverted_slider_crank(
     )
 
 
-def quick_return(
+def make_quick_return(
     o2: complex,
     o4: complex,
     crank: float,
@@ -128,8 +132,8 @@ def quick_return(
     slide_point: complex,
     slide_angle: float,
     crank_angle: float,
-    ram: int = OPEN,
-    rocker_side: int = OPEN,
+    ram: int = OPEN_ASSEMBLY,
+    rocker_side: int = OPEN_ASSEMBLY,
 ) -> Mechanism:
     """Build a crank-shaper (crank shorter than the ground) or Whitworth (longer) quick return.
 
@@ -140,7 +144,7 @@ def quick_return(
     _require_sign("rocker_side", rocker_side)
     pin_a = o2 + crank * np.exp(1j * crank_angle)
     reach = pin_a - o4
-    if abs(reach) <= ON_PIVOT * abs(o4 - o2):
+    if abs(reach) <= PIVOT_TOLERANCE * abs(o4 - o2):
         raise DimensionError("crank_angle", "one at which the crank pin is not on O4", crank_angle)
     pin_c = o4 + rocker_side * rocker * reach / abs(reach)
     direction = np.exp(1j * slide_angle)
@@ -160,7 +164,7 @@ def quick_return(
     )
 
 
-def geared_fivebar(
+def make_geared_fivebar(
     o2: complex,
     o5: complex,
     input: float,
@@ -170,7 +174,7 @@ def geared_fivebar(
     gear_ratio: float,
     phase: float,
     input_angle: float,
-    assembly: int = OPEN,
+    assembly: int = OPEN_ASSEMBLY,
     coupler_point: complex = 0.0,
 ) -> Mechanism:
     """Build the geared fivebar (Norton, Sec. 4.8): θ5 = λ θ2 + φ, both from the ground line O2 → O5.
@@ -214,7 +218,7 @@ def geared_fivebar(
     )
 
 
-def peaucellier(o2: complex, o4: complex, crank: float, arm: float, side: float, input_angle: float) -> Mechanism:
+def make_peaucellier(o2: complex, o4: complex, crank: float, arm: float, side: float, input_angle: float) -> Mechanism:
     """Build Peaucellier's eightbar: P moves on a straight line exactly if the crank equals the distance O2 O4.
 
     ``arm`` is the length of the two links from O4 to the rhombus A B P C of the given ``side``; arm > side.
@@ -244,7 +248,7 @@ def peaucellier(o2: complex, o4: complex, crank: float, arm: float, side: float,
     )
 
 
-def hart(
+def make_hart(
     o2: complex,
     o4: complex,
     crank: float,
@@ -252,7 +256,7 @@ def hart(
     short: float,
     share: float,
     input_angle: float,
-    side: int = OPEN,
+    side: int = OPEN_ASSEMBLY,
 ) -> Mechanism:
     """Build Hart's inversor, a sixbar: P moves on a straight line exactly if the crank equals the distance O2 O4.
 
@@ -304,8 +308,15 @@ def hart(
     )
 
 
-def pantograph(
-    o2: complex, o4: complex, crank: float, near: float, far: float, arm: float, input_angle: float, side: int = OPEN
+def make_pantograph(
+    o2: complex,
+    o4: complex,
+    crank: float,
+    near: float,
+    far: float,
+    arm: float,
+    input_angle: float,
+    side: int = OPEN_ASSEMBLY,
 ) -> Mechanism:
     """Build the pantograph with its tracing pin P on a crank: Q draws the path of P enlarged by far / near about O4.
 
@@ -389,7 +400,7 @@ SIXBAR_LINKS: dict[str, dict[str, tuple[str, ...]]] = {
 """Links of the sixbars of Watt's and Stephenson's chains, with the names of their joints."""
 
 
-def sixbar(kind: str, joints: Mapping[str, ArrayLike], input: str = "input") -> Mechanism:
+def make_sixbar(kind: str, joints: Mapping[str, ArrayLike], input: str = "input") -> Mechanism:
     """Build a sixbar from the positions of its joints; ``kind`` is a key of :data:`SIXBAR_LINKS`, P is optional.
 
     ``input`` is any link that is pinned to the ground.
@@ -398,5 +409,5 @@ def sixbar(kind: str, joints: Mapping[str, ArrayLike], input: str = "input") -> 
     return Mechanism(dict(joints), links, input)
 
 
-ASSEMBLY = {"open": OPEN, "crossed": CROSSED}
+ASSEMBLY_SIGNS = {"open": OPEN_ASSEMBLY, "crossed": CROSSED_ASSEMBLY}
 """Assembly signs by their names."""

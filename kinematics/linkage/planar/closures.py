@@ -26,7 +26,7 @@ from typing import Literal, NamedTuple
 
 from kinematics.linkage.planar.mechanism import GROUND, GearPair, Mechanism, Slide
 
-RECENT = 8
+CACHE_SIZE = 8
 """Number of mechanisms whose closures are cached: root finding needs them dozens of times."""
 
 
@@ -61,13 +61,13 @@ class Decomposition(NamedTuple):
     left: tuple[str, ...]
 
 
-@lru_cache(maxsize=RECENT)
+@lru_cache(maxsize=CACHE_SIZE)
 def decompose(mechanism: Mechanism) -> Decomposition:
     """Order the closures of a mechanism from its input."""
-    return order_of_closures(mechanism.links, mechanism.input, mechanism.slides, mechanism.gears)
+    return order_closures(mechanism.links, mechanism.input, mechanism.slides, mechanism.gears)
 
 
-def order_of_closures(
+def order_closures(
     links: dict[str, tuple[str, ...]], input: str, slides: tuple[Slide, ...], gears: tuple[GearPair, ...]
 ) -> Decomposition:
     """Order the closures from the links, slides and gears alone; see :func:`decompose`."""
@@ -77,7 +77,7 @@ def order_of_closures(
         joints.add(input)
     steps: list[Step] = []
     while True:
-        step = _next(links, slides, gears, known, joints)
+        step = _find_next_step(links, slides, gears, known, joints)
         if step is None:
             break
         steps.append(step)
@@ -88,7 +88,7 @@ def order_of_closures(
     return Decomposition(tuple(steps), tuple(link for link in links if link not in known))
 
 
-def _next(
+def _find_next_step(
     links: dict[str, tuple[str, ...]],
     slides: tuple[Slide, ...],
     gears: tuple[GearPair, ...],

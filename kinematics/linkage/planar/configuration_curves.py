@@ -28,24 +28,21 @@ from functools import cached_property
 from typing import Literal, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
+from kinematics.arrays import Integers, Real
 from kinematics.compiling import njit
 from kinematics.linkage.planar.closures import Decomposition, Step
-from kinematics.linkage.planar.drive import drive_one, margins_of_one
+from kinematics.linkage.planar.drive import compute_margins, drive_one
 from kinematics.linkage.planar.mechanism import Mechanism, TopologyError
-from kinematics.linkage.planar.positive_arcs import TOUCHES, Arc, Domain, positive_arcs
+from kinematics.linkage.planar.positive_arcs import TOUCH_TOLERANCE, Arc, Domain, find_positive_arcs
 
-Real = NDArray[np.float64]
-Rows = NDArray[np.int64]
-
-CELLS = 64
+CELL_COUNT = 64
 """Initial number of cells of a curve, per turn of its fastest link."""
 
-INSIDE = 1e-7
+END_TOLERANCE = 1e-7
 """Share of an arc within which a turn coincides with the arc's folded end: the input differs only by rounding."""
 
-SWING = 0.1
+MIN_SWING = 0.1
 """Difference, radians, of a link's directions in the two assemblies at a change point above which it swings freely."""
 
 
@@ -84,7 +81,7 @@ class Place(NamedTuple):
     theta: Real
     rate: Real
     second: Real
-    signs: Rows
+    signs: Integers
 
 
 @dataclass(frozen=True, eq=False)
@@ -116,9 +113,9 @@ class Curve:
 
     def place(self, v: Real) -> Place:
         """Return input and signs along the curve."""
-        return places(self.chain[None], np.zeros(len(v), np.int64), v)
+        return evaluate_places(self.chain[None], np.zeros(len(v), np.int64), v)
 
-    def input_at(self, v: float) -> float:
+    def evaluate_input(self, v: float) -> float:
         """Return the input at one place."""
         return float(self.place(np.array([v])).theta[0])
 
@@ -131,7 +128,7 @@ class Closures:
         self.position = [n for n, step in enumerate(self.steps) if step.has_two_solutions]
         self.links = [self.steps[n].link for n in self.position]
 
-    def signs(self, chosen: Rows) -> Rows:
+    def signs(self, chosen: Integers) -> Integers:
         """Return signs for every step from those of the first closures with two assemblies, shape (closures, n)."""
         every = np.ones((len(self.steps), chosen.shape[1]), np.int64)
         every[self.position[: len(chosen)]] = chosen
@@ -139,14 +136,14 @@ class Closures:
 
     def margin(self, level: int, place: Place) -> tuple[Real, Real]:
         """Return the margin of a closure and its rate by the curve's parameter."""
-        margin = margins_of_one(self.mechanism, place.theta, self.signs(place.signs))[level]
+        margin = compute_margins(self.mechanism, place.theta, self.signs(place.signs))[level]
         return margin[0], margin[1] * place.rate
 
-    def always_folded(self, level: int, curve: Curve) -> bool:
+    def is_always_folded(self, level: int, curve: Curve) -> bool:
         """Return whether a closure exists but is folded flat all along a curve; False if its pins coincide."""
         # Four irregular places: a margin that vanishes at all of them vanishes everywhere.
         place = curve.place(curve.low + (curve.high - curve.low) * np.array([0.13, 0.31, 0.57, 0.77]))
-        if not np.all(np.abs(self.margin(level, place)[0]) <= TOUCHES):
+        if not np.all(np.abs(self.margin(level, place)[0]) <= TOUCH_TOLERANCE):
             return False
         signs = self.signs(np.vstack([place.signs, np.ones(len(place.theta), np.int64)]))
         motion = drive_one(self.mechanism, place.theta[:, None], signs, 0)
@@ -161,10 +158,10 @@ class Closures:
         motion = drive_one(self.mechanism, place.theta[:, None], self.signs(signs), 0)
         angle = motion.angles[self.links[level]][0, :, 0]
         apart = np.abs(np.angle(np.exp(1j * (angle[::2] - angle[1::2]))))
-        return bool(np.nanmax(apart, initial=0.0) > SWING)
+        return bool(np.nanmax(apart, initial=0.0) > MIN_SWING)
 
 
-def configuration_curves(mechanism: Mechanism, closures: Closures, period: float) -> list[Curve]:
+def find_configuration_curves(mechanism: Mechanism, closures: Closures, period: float) -> list[Curve]:
     """Find all curves of configurations of one design, in the parameters of its last closure.
 
     Raises
@@ -173,24 +170,28 @@ def configuration_curves(mechanism: Mechanism, closures: Closures, period: float
         If a link swings freely at a change point while others depend on it, or a dyad is always folded flat.
     """
     # Faster geared links need proportionally more cells.
-    waves = max(map(abs, gear_rotations(mechanism, closures.steps).values()))
+    waves = max(map(abs, compute_gear_rotations(mechanism, closures.steps).values()))
     curves = [Curve(None, "straight", 0.0, 0.0, 1, 0.0, period, True, (), ())]
     for level in range(len(closures.links)):
-        below = chains(curves) if curves else np.empty((0, 0, 4))
+        below = stack_chains(curves) if curves else np.empty((0, 0, 4))
 
-        def margin(row: Rows, at: Real, level: int = level, below: Real = below) -> tuple[Real, Real]:
-            return closures.margin(level, places(below, row, at))
+        def evaluate_margin(row: Integers, at: Real, level: int = level, below: Real = below) -> tuple[Real, Real]:
+            return closures.margin(level, evaluate_places(below, row, at))
 
-        turns = [waves * _way(curve, period) / (2.0 * np.pi) for curve in curves]
+        turns = [waves * _measure_input_travel(curve, period) / (2.0 * np.pi) for curve in curves]
         domains = [
-            Domain(c.low, c.high, c.closed, int(CELLS * max(n, 1.0))) for c, n in zip(curves, turns, strict=True)
+            Domain(c.low, c.high, c.closed, int(CELL_COUNT * max(n, 1.0))) for c, n in zip(curves, turns, strict=True)
         ]
-        arcs = positive_arcs(margin, domains)
-        curves = [new for curve, own in zip(curves, arcs, strict=True) for new in _next(closures, level, curve, own)]
+        arcs = find_positive_arcs(evaluate_margin, domains)
+        curves = [
+            new
+            for curve, own in zip(curves, arcs, strict=True)
+            for new in _build_next_curves(closures, level, curve, own)
+        ]
     return curves
 
 
-def gear_rotations(mechanism: Mechanism, steps: Sequence[Step]) -> dict[str, float]:
+def compute_gear_rotations(mechanism: Mechanism, steps: Sequence[Step]) -> dict[str, float]:
     """Compute rotations of the input and of all links geared directly to it, per rotation of the input."""
     turned = {mechanism.input: 1.0}
     for step in steps:
@@ -199,21 +200,21 @@ def gear_rotations(mechanism: Mechanism, steps: Sequence[Step]) -> dict[str, flo
     return turned
 
 
-def chains(curves: Sequence[Curve]) -> Real:
-    """Stack the chains of curves of one closure, for :func:`places`; shape (curves, closures, 4)."""
+def stack_chains(curves: Sequence[Curve]) -> Real:
+    """Stack the chains of curves of one closure, for :func:`evaluate_places`; shape (curves, closures, 4)."""
     return np.stack([curve.chain for curve in curves])
 
 
-def places(chains: Real, row: Rows, at: Real) -> Place:
+def evaluate_places(chains: Real, row: Integers, at: Real) -> Place:
     """Evaluate places on many curves."""
     place = np.empty((3, len(at)))
     signs = np.empty((chains.shape[1], len(at)), np.int64)
-    _places(chains, row, at, place, signs)
+    _fill_places(chains, row, at, place, signs)
     return Place(place[0], place[1], place[2], signs)
 
 
 @njit(cache=True, nogil=True)
-def _places(chains: Real, row: Rows, at: Real, place: Real, signs: Rows) -> None:
+def _fill_places(chains: Real, row: Integers, at: Real, place: Real, signs: Integers) -> None:
     closures = chains.shape[1]
     for n in range(len(at)):
         u, rate, second = at[n], 1.0, 0.0
@@ -236,7 +237,7 @@ def _places(chains: Real, row: Rows, at: Real, place: Real, signs: Rows) -> None
         place[0, n], place[1, n], place[2, n] = u, rate, second
 
 
-def _way(curve: Curve, period: float) -> float:
+def _measure_input_travel(curve: Curve, period: float) -> float:
     """Measure the input's total travel along a curve, back and forth."""
     if curve.closed and not curve.turns:
         return period
@@ -245,15 +246,15 @@ def _way(curve: Curve, period: float) -> float:
     return float(np.abs(np.diff(cuts)).sum())
 
 
-def _next(closures: Closures, level: int, curve: Curve, arcs: list[Arc]) -> list[Curve]:
+def _build_next_curves(closures: Closures, level: int, curve: Curve, arcs: list[Arc]) -> list[Curve]:
     """Build the curves of the next closure over a curve's arcs."""
-    if not arcs and closures.always_folded(level, curve):
+    if not arcs and closures.is_always_folded(level, curve):
         raise TopologyError(f"{closures.links[level]!r} is folded flat at every input; circuits are not known")
     curves: list[Curve] = []
     points: dict[float, ChangePoint] = {}
     length = curve.high - curve.low
 
-    def end(at: float, kind: str, side: int) -> End:
+    def build_end(at: float, kind: str, side: int) -> End:
         if kind == "end":
             own = curve.ends[side]
             margin = closures.margin(level, curve.place(np.array([at + (1e-6 - 2e-6 * side) * length])))[0][0]
@@ -267,7 +268,7 @@ def _next(closures: Closures, level: int, curve: Curve, arcs: list[Arc]) -> list
                     f"{closures.links[level]!r} swings freely at a change point, where its pins coincide, and other "
                     "links depend on it; circuits are not known"
                 )
-        return End(curve.input_at(at), points[around], frozenset({level}))
+        return End(curve.evaluate_input(at), points[around], frozenset({level}))
 
     for arc in arcs:
         shift = length * np.floor((arc.low - curve.low) / length) if curve.closed and arc.at_low != "whole" else 0.0
@@ -282,43 +283,43 @@ def _next(closures: Closures, level: int, curve: Curve, arcs: list[Arc]) -> list
             # The margin is positive all around: one closed curve per assembly.
             curves += [replace(curve, below=curve, shape="straight", sign=sign, turns=curve.turns) for sign in (1, -1)]
         elif arc.at_low == arc.at_high == "zero":
-            curves.append(_round(curve, level, low, high, turns))
+            curves.append(_build_round_curve(curve, level, low, high, turns))
         elif "zero" not in (arc.at_low, arc.at_high):
-            ends = end(low, arc.at_low, 0), end(high, arc.at_high, 1)
-            inner = tuple(t for t in turns if INSIDE < (t.at - low) / (high - low) < 1.0 - INSIDE)
+            ends = build_end(low, arc.at_low, 0), build_end(high, arc.at_high, 1)
+            inner = tuple(t for t in turns if END_TOLERANCE < (t.at - low) / (high - low) < 1.0 - END_TOLERANCE)
             curves += [Curve(curve, "straight", low, high, sign, low, high, False, inner, ends) for sign in (1, -1)]
         elif arc.at_low == "zero":
-            curves.append(_bend(curve, level, low, high, turns, end(high, arc.at_high, 1)))
+            curves.append(_build_bend_curve(curve, level, low, high, turns, build_end(high, arc.at_high, 1)))
         else:
-            curves.append(_bend(curve, level, high, low, turns, end(low, arc.at_low, 0)))
+            curves.append(_build_bend_curve(curve, level, high, low, turns, build_end(low, arc.at_low, 0)))
     return curves
 
 
-def _round(curve: Curve, level: int, a: float, b: float, turns: list[Turn]) -> Curve:
+def _build_round_curve(curve: Curve, level: int, a: float, b: float, turns: list[Turn]) -> Curve:
     # Both folds, plus two images of each turn of the curve below.
-    own = [Turn(0.0, curve.input_at(a), level), Turn(np.pi, curve.input_at(b), level)]
+    own = [Turn(0.0, curve.evaluate_input(a), level), Turn(np.pi, curve.evaluate_input(b), level)]
     for turn in turns:
         part = (turn.at - a) / (b - a)
-        if INSIDE < part < 1.0 - INSIDE:
+        if END_TOLERANCE < part < 1.0 - END_TOLERANCE:
             v = float(np.arccos(1.0 - 2.0 * part))
             own += [turn._replace(at=v), turn._replace(at=2.0 * np.pi - v)]
     return Curve(curve, "round", a, b, 1, 0.0, 2.0 * np.pi, True, tuple(sorted(own)), ())
 
 
-def _bend(curve: Curve, level: int, fold: float, opening: float, turns: list[Turn], end: End) -> Curve:
-    own = [Turn(0.0, curve.input_at(fold), level)]
+def _build_bend_curve(curve: Curve, level: int, fold: float, opening: float, turns: list[Turn], end: End) -> Curve:
+    own = [Turn(0.0, curve.evaluate_input(fold), level)]
     for turn in turns:
         part = (turn.at - fold) / (opening - fold)
-        if INSIDE < part < 1.0 - INSIDE:
+        if END_TOLERANCE < part < 1.0 - END_TOLERANCE:
             own += [turn._replace(at=float(np.sqrt(part))), turn._replace(at=-float(np.sqrt(part)))]
     return Curve(curve, "bend", fold, opening, 1, -1.0, 1.0, False, tuple(sorted(own)), (end, end))
 
 
-def circuits(curves: Sequence[Curve]) -> list[int]:
+def number_circuits(curves: Sequence[Curve]) -> list[int]:
     """Number the circuit of each curve: curves that meet at a change point belong together."""
     parent = list(range(len(curves)))
 
-    def root(n: int) -> int:
+    def find_root(n: int) -> int:
         while parent[n] != n:
             n = parent[n]
         return n
@@ -327,17 +328,17 @@ def circuits(curves: Sequence[Curve]) -> list[int]:
         (n, end, curve.place(np.array([at])).signs[:, 0])
         for n, curve in enumerate(curves)
         if not curve.closed
-        for end, at in zip(curve.ends, _near_ends(curve), strict=True)
+        for end, at in zip(curve.ends, _offset_ends(curve), strict=True)
     ]
     for (n, one, mine), (m, other, theirs) in itertools.combinations(ends, 2):
         # Identity, not equality: both ends must stem from the same crossing.
         if one.point is other.point:
             later = set(range(one.point.level + 1, len(mine)))
             if all(mine[k] == theirs[k] for k in later - one.folded - other.folded):
-                parent[root(n)] = root(m)
-    return [root(n) for n in range(len(curves))]
+                parent[find_root(n)] = find_root(m)
+    return [find_root(n) for n in range(len(curves))]
 
 
-def _near_ends(curve: Curve) -> tuple[float, float]:
+def _offset_ends(curve: Curve) -> tuple[float, float]:
     hair = 1e-6 * (curve.high - curve.low)
     return curve.low + hair, curve.high - hair

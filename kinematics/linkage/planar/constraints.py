@@ -24,43 +24,42 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-Complex = NDArray[np.complex128]
-Real = NDArray[np.float64]
+from kinematics.arrays import Complex, Real
 
-CONSISTENT = 3e-6
+MAX_MISFIT = 3e-6
 """Maximum misfit, as a share of the size, at which constraints count as satisfied: dimensions may be rounded."""
 
-DEPENDENT = 1e-5
+RANK_TOLERANCE = 1e-5
 """Singular value, as a share of the largest, below which constraints of rounded dimensions are dependent."""
 
-FAR_ENOUGH = 0.2
+MIN_INPUT_MOVE = 0.2
 """Move of the input from the reference, radians or shares of the size, that proves that a mechanism moves."""
 
-LEAST_STEP = 1e-9
+MIN_STEP = 1e-9
 """Step of the input below which the motion from the reference ends."""
 
-TRIALS = 100
+MAX_TRIALS = 100
 """Maximum number of steps, including rejected ones."""
 
-AT_A_LIMIT = 0.1
+LIMIT_RATIO = 0.1
 """Smallest singular value, as a share of its maximum along the motion, that marks an end as a limit of the motion:
 there it goes with the root of the distance. At an end where constraints disagree it hardly changes."""
 
-MOST_TURN = 0.5
+MAX_STEP_ROTATION = 0.5
 """Rotation of a link in one step, radians, above which the step may have reached another assembly."""
 
-SINGULAR = 1e-6
+MIN_SINGULAR_VALUE = 1e-6
 """Smallest singular value, as a share of the largest, below which rates are undefined: the error of accelerations goes
 with rounding over its square, about 1e-5 at this limit."""
 
-PASSES = 60
+MAX_ITERATIONS = 60
 """Maximum number of Gauss-Newton steps. Starting from a dyad's position two usually suffice; near a change point every
 step only halves the error, and the misfit is its square."""
 
-SETTLED = 1e-10
+STEP_TOLERANCE = 1e-10
 """Step, as a share of the size or in radians, at which the iteration has converged."""
 
-ROUNDING = 1e-14
+SINGULAR_STEP_TOLERANCE = 1e-14
 """The same near a singular position, times the smallest singular value: rounding moves poses by this amount there."""
 
 
@@ -79,12 +78,12 @@ class Poses(NamedTuple):
         """Select the poses at some positions."""
         return Poses(self.places[:, :, which], self.rotations[:, :, which])
 
-    def apart(self, which: NDArray[Any], others: Poses) -> Real:
+    def measure_distance(self, which: NDArray[Any], others: Poses) -> Real:
         """Measure the distance of other poses from those at some positions, shape (M,); NaN where these are unknown."""
         places = np.abs(self.places[0, :, which].T - others.places[0]).max(axis=0)
         return np.asarray(np.maximum(places, np.abs(self.rotations[0, :, which].T - others.rotations[0]).max(axis=0)))
 
-    def put(self, which: NDArray[Any], others: Poses) -> None:
+    def store(self, which: NDArray[Any], others: Poses) -> None:
         """Store poses at some positions."""
         self.places[:, :, which], self.rotations[:, :, which] = others
 
@@ -147,11 +146,11 @@ class Constraints:
         places = self._base[None, :-1].copy()
         return Poses(places, np.zeros(places.shape))
 
-    def given(self, poses: Poses) -> Real:
+    def get_input(self, poses: Poses) -> Real:
         """Return the input, shape (n, M)."""
-        return self._driven(self._jets(poses))
+        return self._evaluate_input(self._evaluate_jets(poses))
 
-    def settled(self, start: Poses, input: Real) -> tuple[Poses, Real, Real]:
+    def settle(self, start: Poses, input: Real) -> tuple[Poses, Real, Real]:
         """Solve for poses that satisfy all constraints, and their derivatives, from nearby poses.
 
         Parameters
@@ -171,85 +170,90 @@ class Constraints:
             the motion of the links.
         """
         poses = start
-        for _ in range(PASSES):
-            jets = self._jets(poses)
-            inverse, least = self._inverse(jets)
-            change = self._step(inverse, self._residuals(jets, input[:1])[0])
+        for _ in range(MAX_ITERATIONS):
+            jets = self._evaluate_jets(poses)
+            inverse, least = self._invert_jacobian(jets)
+            change = self._compute_step(inverse, self._compute_residuals(jets, input[:1])[0])
             poses = Poses(poses.places - change[0], poses.rotations - change[1])
             moved = np.maximum(np.abs(change[0]).max(axis=0), np.abs(change[1]).max(axis=0))
             # Both sides times the smallest singular value: near a singular position rounding limits the step.
-            still = moved * least <= np.maximum(SETTLED * least, ROUNDING)
+            still = moved * least <= np.maximum(STEP_TOLERANCE * least, SINGULAR_STEP_TOLERANCE)
             if np.all(still | ~np.isfinite(moved)):
                 break
-        jets = self._jets(poses)
-        misfit = np.where(still, np.abs(self._residuals(jets, input[:1])[0]).max(axis=0), np.inf)
-        inverse, least = self._inverse(jets)
+        jets = self._evaluate_jets(poses)
+        misfit = np.where(still, np.abs(self._compute_residuals(jets, input[:1])[0]).max(axis=0), np.inf)
+        inverse, least = self._invert_jacobian(jets)
         for n in range(1, len(input)):
             further = np.zeros_like(poses.places[:1]), np.zeros_like(poses.rotations[:1])
             poses = Poses(*(np.concatenate([jet, none]) for jet, none in zip(poses, further, strict=True)))
-            change = self._step(inverse, self._residuals(self._jets(poses), input[: n + 1])[n])
+            change = self._compute_step(inverse, self._compute_residuals(self._evaluate_jets(poses), input[: n + 1])[n])
             # With the unknown derivative set to zero the residual is what it must cancel.
             poses.places[n], poses.rotations[n] = -change[0], -change[1]
         return poses, misfit, least
 
     def mobility(self, poses: Poses) -> NDArray[np.int64]:
         """Return the mobility: unknowns minus the rank of all constraints but the input's, shape (M,)."""
-        jacobian = self._jacobian(self._jets(poses))[:, :-1]
+        jacobian = self._build_jacobian(self._evaluate_jets(poses))[:, :-1]
         unknowns = jacobian.shape[2]
         if not jacobian.shape[1]:
             return np.full(len(jacobian), unknowns)
         values = np.linalg.svd(jacobian, compute_uv=False)
-        return np.asarray(unknowns - (values > DEPENDENT * values[:, :1]).sum(axis=1))
+        return np.asarray(unknowns - (values > RANK_TOLERANCE * values[:, :1]).sum(axis=1))
 
     def moves(self) -> bool:
         """Return whether the input can move all designs from the reference, in at least one direction.
 
-        The motion is followed in steps along the tangent until it has moved :data:`FAR_ENOUGH`, or to a limit.
+        The motion is followed in steps along the tangent until it has moved :data:`MIN_INPUT_MOVE`, or to a limit.
         """
-        at = self.given(self.reference)
+        at = self.get_input(self.reference)
         moved = np.zeros(at.shape[1], np.bool_)
         # A mechanism at a limit of its motion can move in one direction only.
         for way in (-1.0, 1.0):
-            moved |= self._moves(at, way)
+            moved |= self._is_moving(at, way)
         return bool(moved.all())
 
-    def _moves(self, at: Real, way: float) -> NDArray[np.bool_]:
+    def _is_moving(self, at: Real, way: float) -> NDArray[np.bool_]:
         count = at.shape[1]
         rates = np.concatenate([at, np.full((1, count), way)])
-        poses, _, least = self.settled(self.reference, rates)
+        poses, _, least = self.settle(self.reference, rates)
         most, done = least.copy(), np.zeros(count)
         # Steps grow after success and shrink after failure.
-        step = np.full(count, 0.25 * FAR_ENOUGH)
-        for _ in range(TRIALS):
-            shown = (done >= FAR_ENOUGH) | ((done > 0.0) & (least < AT_A_LIMIT * most))
-            if not (~shown & (step > LEAST_STEP)).any():
+        step = np.full(count, 0.25 * MIN_INPUT_MOVE)
+        for _ in range(MAX_TRIALS):
+            shown = (done >= MIN_INPUT_MOVE) | ((done > 0.0) & (least < LIMIT_RATIO * most))
+            if not (~shown & (step > MIN_STEP)).any():
                 break
             guess = Poses(poses.places[:1] + step * poses.places[1:], poses.rotations[:1] + step * poses.rotations[1:])
-            tried, misfit, smallest = self.settled(guess, rates + np.array([[way], [0.0]]) * (done + step))
+            tried, misfit, smallest = self.settle(guess, rates + np.array([[way], [0.0]]) * (done + step))
             turned = np.abs(tried.rotations[0] - poses.rotations[0]).max(axis=0)
-            met = (misfit <= CONSISTENT) & (turned <= MOST_TURN) & (smallest > SINGULAR * most) & (done < FAR_ENOUGH)
-            poses.put(met, tried.take(met))
+            met = (
+                (misfit <= MAX_MISFIT)
+                & (turned <= MAX_STEP_ROTATION)
+                & (smallest > MIN_SINGULAR_VALUE * most)
+                & (done < MIN_INPUT_MOVE)
+            )
+            poses.store(met, tried.take(met))
             least = np.where(met, smallest, least)
             most = np.maximum(most, least)
             done = np.where(met, done + step, done)
             step = np.where(met, 1.5 * step, 0.5 * step)
-        return (done >= FAR_ENOUGH) | ((done > 0.0) & (least < AT_A_LIMIT * most))
+        return (done >= MIN_INPUT_MOVE) | ((done > 0.0) & (least < LIMIT_RATIO * most))
 
     def misfit(self, poses: Poses, input: Real) -> Real:
         """Return the largest residual of poses of shape (1, links, M) at inputs (1, M), shape (M,); NaN for NaN."""
-        return np.asarray(np.abs(self._residuals(self._jets(poses), input)[0]).max(axis=0))
+        return np.asarray(np.abs(self._compute_residuals(self._evaluate_jets(poses), input)[0]).max(axis=0))
 
     def points(self, poses: Poses) -> dict[str, Complex]:
         """Return the jets of all joints, shape (n, M) each."""
-        jets = self._jets(poses)
-        return {joint: self._point(jets, hub, at) for joint, (hub, at) in self._joints.items()}
+        jets = self._evaluate_jets(poses)
+        return {joint: self._evaluate_point(jets, hub, at) for joint, (hub, at) in self._joints.items()}
 
     def travels(self, poses: Poses) -> list[Real]:
         """Return the jets of the slides' positions along their lines, from the lines' points; shape (n, M) each."""
-        jets = self._jets(poses)
-        return [self._along_line(jets, *line[:4], -1j * line[4]) for line in self._slides]
+        jets = self._evaluate_jets(poses)
+        return [self._measure_along_line(jets, *line[:4], -1j * line[4]) for line in self._slides]
 
-    def _jets(self, poses: Poses) -> tuple[Complex, Complex, Real]:
+    def _evaluate_jets(self, poses: Poses) -> tuple[Complex, Complex, Real]:
         """Evaluate positions, e^{iφ} and φ of all links, the ground last; shape (n, links + 1, M)."""
         places, rotations = poses
         n, _, count = places.shape
@@ -271,22 +275,22 @@ class Constraints:
             np.concatenate([rotations, still], axis=1),
         )
 
-    def _point(self, jets: tuple[Complex, Complex, Real], link: int, at: Complex) -> Complex:
+    def _evaluate_point(self, jets: tuple[Complex, Complex, Real], link: int, at: Complex) -> Complex:
         places, unit, _ = jets
         return np.asarray(places[:, link] + unit[:, link] * (at - self._base[link]))
 
-    def _driven(self, jets: tuple[Complex, Complex, Real]) -> Real:
+    def _evaluate_input(self, jets: tuple[Complex, Complex, Real]) -> Real:
         if self._input is not None:
             return jets[2][:, self._input]
         hub, at, on, point, along = self._along
-        offset = self._point(jets, hub, at) - self._point(jets, on, point)
+        offset = self._evaluate_point(jets, hub, at) - self._evaluate_point(jets, on, point)
         return np.asarray((np.conj(along) * offset).real)
 
-    def _along_line(
+    def _measure_along_line(
         self, jets: tuple[Complex, Complex, Real], hub: int, at: Complex, on: int, point: Complex, direction: Complex
     ) -> Real:
         """Measure the jet of a joint's distance from a line's point, along a direction of the line's link; (n, M)."""
-        offset = self._point(jets, hub, at) - self._point(jets, on, point)
+        offset = self._evaluate_point(jets, hub, at) - self._evaluate_point(jets, on, point)
         along = np.conj(jets[1][:, on] * direction)
         return np.stack(
             [
@@ -295,32 +299,32 @@ class Constraints:
             ]
         )
 
-    def _residuals(self, jets: tuple[Complex, Complex, Real], input: Real) -> Real:
+    def _compute_residuals(self, jets: tuple[Complex, Complex, Real], input: Real) -> Real:
         """Compute all equations and their derivatives, shape (n, equations, M)."""
         rows: list[Real] = []
         for link, hub, at in self._pins:
-            apart = self._point(jets, link, at) - self._point(jets, hub, at)
+            apart = self._evaluate_point(jets, link, at) - self._evaluate_point(jets, hub, at)
             rows += [apart.real, apart.imag]
-        rows += [self._along_line(jets, *line) for line in self._slides]
+        rows += [self._measure_along_line(jets, *line) for line in self._slides]
         for first, second, ratio in self._gears:
             turned = jets[2][:, second] - ratio * jets[2][:, first]
             # Gears couple rotations modulo full turns.
             turned[0] = np.remainder(turned[0] + np.pi, 2.0 * np.pi) - np.pi
             rows.append(turned)
-        rows.append(self._driven(jets) - input)
+        rows.append(self._evaluate_input(jets) - input)
         return np.stack(rows, axis=1)
 
-    def _jacobian(self, jets: tuple[Complex, Complex, Real]) -> Real:
+    def _build_jacobian(self, jets: tuple[Complex, Complex, Real]) -> Real:
         """Build the Jacobian of the equations by x, y, φ of each link, shape (M, equations, 3 × links)."""
         count = jets[0].shape[2]
         moving = len(self.links)
         rows: list[NDArray[np.float64]] = []
 
-        def row() -> Real:
+        def add_row() -> Real:
             rows.append(np.zeros((3 * moving + 3, count)))
             return rows[-1]
 
-        def add(into: Real, direction: Complex, link: int, at: Complex, sign: float) -> None:
+        def add_derivative(into: Real, direction: Complex, link: int, at: Complex, sign: float) -> None:
             """Add the derivative of Re(conj(direction) · point of the link)."""
             arm = 1j * jets[1][0, link] * (at - self._base[link])
             into[3 * link] += sign * direction.real
@@ -330,30 +334,30 @@ class Constraints:
         right = np.ones(count, np.complex128)
         for link, hub, at in self._pins:
             for direction in (right, 1j * right):
-                one = row()
-                add(one, direction, link, at, 1.0)
-                add(one, direction, hub, at, -1.0)
+                one = add_row()
+                add_derivative(one, direction, link, at, 1.0)
+                add_derivative(one, direction, hub, at, -1.0)
         for hub, at, on, point, normal in self._slides:
-            across, one = jets[1][0, on] * normal, row()
-            add(one, across, hub, at, 1.0)
-            add(one, across, on, point, -1.0)
-            offset = (self._point(jets, hub, at) - self._point(jets, on, point))[0]
+            across, one = jets[1][0, on] * normal, add_row()
+            add_derivative(one, across, hub, at, 1.0)
+            add_derivative(one, across, on, point, -1.0)
+            offset = (self._evaluate_point(jets, hub, at) - self._evaluate_point(jets, on, point))[0]
             one[3 * on + 2] += (np.conj(1j * across) * offset).real
         for first, second, ratio in self._gears:
-            one = row()
+            one = add_row()
             one[3 * second + 2] += 1.0
             one[3 * first + 2] -= ratio
-        one = row()
+        one = add_row()
         if self._input is not None:
             one[3 * self._input + 2] += 1.0
         else:
             hub, at, _, _, along = self._along
-            add(one, along + 0j * right, hub, at, 1.0)
+            add_derivative(one, along + 0j * right, hub, at, 1.0)
         return np.moveaxis(np.stack(rows), 2, 0)[:, :, : 3 * moving]
 
-    def _inverse(self, jets: tuple[Complex, Complex, Real]) -> tuple[Real, Real]:
+    def _invert_jacobian(self, jets: tuple[Complex, Complex, Real]) -> tuple[Real, Real]:
         """Compute the pseudoinverse of the Jacobian, and its smallest singular value over the largest."""
-        jacobian = self._jacobian(jets)
+        jacobian = self._build_jacobian(jets)
         known: NDArray[np.bool_] = np.asarray(np.isfinite(jacobian).all(axis=(1, 2)))
         left, values, right = np.linalg.svd(np.where(known[:, None, None], jacobian, 0.0), full_matrices=False)
         largest = values[:, :1]
@@ -363,10 +367,10 @@ class Constraints:
         least = np.where(known, values[:, -1] / np.where(largest[:, 0] > 0.0, largest[:, 0], 1.0), np.nan)
         return np.swapaxes(right, 1, 2) * inverse[:, None, :] @ np.swapaxes(left, 1, 2), least
 
-    def _step(self, inverse: Real, residuals: Real) -> tuple[Complex, Real]:
+    def _compute_step(self, inverse: Real, residuals: Real) -> tuple[Complex, Real]:
         """Compute changes of positions and rotations, shape (links, M), for residuals of shape (equations, M)."""
         change = np.einsum("mij,jm->im", inverse, residuals).reshape(-1, 3, residuals.shape[1])
         return change[:, 0] + 1j * change[:, 1], change[:, 2]
 
 
-__all__ = ["CONSISTENT", "DEPENDENT", "Constraints", "Poses"]
+__all__ = ["MAX_MISFIT", "RANK_TOLERANCE", "Constraints", "Poses"]

@@ -10,26 +10,19 @@ from functools import lru_cache
 from itertools import product
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
-from kinematics.linkage.fourbar.closed_form import one_shape, require
+from kinematics.arrays import Complex, Integers, Mask, Real
+from kinematics.linkage.fourbar.closed_form import broadcast_shape, require
 from kinematics.linkage.planar import drive_kernels as kernels
-from kinematics.linkage.planar.closures import RECENT, decompose
-from kinematics.linkage.planar.mechanism import Mechanism, Real, TopologyError
-from kinematics.linkage.planar.program import Frame, Program, Signs, assembly_signs, program_of, unit_frame
+from kinematics.linkage.planar.closures import CACHE_SIZE, decompose
+from kinematics.linkage.planar.mechanism import Mechanism, TopologyError
+from kinematics.linkage.planar.program import Frame, Program, build_program, compute_unit_frame, find_assembly_signs
 from kinematics.linkage.planar.settling import settle
-from kinematics.linkage.planar.triad_transmission import triad_of, triad_sines
-from kinematics.linkage.planar.triads import STALLED, Loops, Track, loop_equations, rates
+from kinematics.linkage.planar.triad_transmission import compute_triad_sines, find_triad
+from kinematics.linkage.planar.triads import MIN_CERTIFIED_STEP, Loops, Track, build_loop_equations, compute_rates
 
-Jet = NDArray[np.complex128]
-"""Complex jet, shape (n, ...) with n from 1 to 4: value, velocity, acceleration and jerk, or the first few of them."""
-
-RealJet = NDArray[np.float64]
-"""Real jet, shape (n, ...) with n from 1 to 4."""
-
-Mask = NDArray[np.bool_]
-
-MOST_CLOSURES = 6
+MAX_CLOSURES = 6
 """Number of closures of a mechanism with redundant constraints up to which all assemblies are tried."""
 
 
@@ -67,10 +60,10 @@ class MechanismMotion:
 
     valid: Mask
     smooth: Mask
-    input: RealJet
-    angles: dict[str, RealJet]
-    joints: dict[str, Jet]
-    slides: dict[str, RealJet]
+    input: Real
+    angles: dict[str, Real]
+    joints: dict[str, Complex]
+    slides: dict[str, Real]
     sines: dict[str, Real]
     margins: dict[str, Real]
 
@@ -82,7 +75,7 @@ def drive(
     speed: ArrayLike = 1.0,
     acceleration: ArrayLike = 0.0,
     jerk: ArrayLike = 0.0,
-    signs: tuple[Signs, ...] | None = None,
+    signs: tuple[Integers, ...] | None = None,
     order: int = 3,
 ) -> MechanismMotion:
     """Drive a mechanism to inputs: by its dyadic closures, or by continuation from the reference if it has none.
@@ -127,7 +120,7 @@ def drive(
     117.3
     """
     require("order", "0, 1, 2 or 3", np.asarray(order), np.bool_(order in (0, 1, 2, 3)))
-    program = program_of(mechanism)
+    program = build_program(mechanism)
     chosen = program.signs
     if signs is not None:
         chosen, count = signs, len(program.steps)
@@ -137,9 +130,9 @@ def drive(
     q = np.asarray(input, np.float64)
     require("input", "finite", q, ~np.isinf(q))
     given = (q, *(np.asarray(rate, np.float64) for rate in (speed, acceleration, jerk)[:order]))
-    shape = one_shape(
+    shape = broadcast_shape(
         designs=(*mechanism.shape, 1),
-        signs=(*one_shape(**{f"sign {n}": np.shape(sign) for n, sign in enumerate(chosen)}), 1),
+        signs=(*broadcast_shape(**{f"sign {n}": np.shape(sign) for n, sign in enumerate(chosen)}), 1),
         **{f"input rate {n}" if n else "input": rate.shape for n, rate in enumerate(given)},
     )
     inputs = np.empty((order + 1, *shape))
@@ -152,21 +145,21 @@ def drive(
     # Index of the mechanism behind each broadcast design.
     own = np.broadcast_to(np.arange(len(program.code.frame)).reshape(mechanism.shape), designs).ravel()
     if mechanism.redundant:
-        return _settled(mechanism, program, inputs, own, rows.reshape(len(rows), len(own)))
-    return _named(mechanism, program, inputs, own, rows.reshape(len(rows), len(own)))
+        return _drive_redundant(mechanism, program, inputs, own, rows.reshape(len(rows), len(own)))
+    return _run_sweep(mechanism, program, inputs, own, rows.reshape(len(rows), len(own)))
 
 
-def drive_one(mechanism: Mechanism, input: Real, signs: Signs, order: int) -> MechanismMotion:
+def drive_one(mechanism: Mechanism, input: Real, signs: Integers, order: int) -> MechanismMotion:
     """Drive one design at inputs (D, N) on assemblies (steps, D), without checks; used by root finding."""
-    program = program_of(mechanism)
+    program = build_program(mechanism)
     inputs = np.zeros((order + 1, *input.shape))
     inputs[0], inputs[1:2] = input, 1.0
-    return _named(mechanism, program, inputs, np.zeros(len(input), np.int64), signs)
+    return _run_sweep(mechanism, program, inputs, np.zeros(len(input), np.int64), signs)
 
 
-def margins_of_one(mechanism: Mechanism, input: Real, signs: Signs) -> Real:
+def compute_margins(mechanism: Mechanism, input: Real, signs: Integers) -> Real:
     """Compute margins of one design's closures and rates at inputs (N,), assemblies (steps, N); (closures, 2, N)."""
-    program, count = program_of(mechanism), len(input)
+    program, count = build_program(mechanism), len(input)
     moved = np.ones((count, 2, 1))
     moved[:, 0, 0] = input - program.reference_input[0]
     sines, margins = np.empty((len(program.closing), count, 1)), np.empty((len(program.closing), 2, count, 1))
@@ -178,14 +171,14 @@ def margins_of_one(mechanism: Mechanism, input: Real, signs: Signs) -> Real:
     return margins[..., 0]
 
 
-def _named(mechanism: Mechanism, program: Program, inputs: Real, own: Signs, signs: Signs) -> MechanismMotion:
+def _run_sweep(mechanism: Mechanism, program: Program, inputs: Real, own: Integers, signs: Integers) -> MechanismMotion:
     """Run the compiled sweep, and name its results."""
     length, *shape = inputs.shape
     flat = len(own), shape[-1]
     moved = inputs.reshape(length, *flat).swapaxes(0, 1).copy()
     # The kernel works with rotations from the reference.
     moved[:, 0] -= program.reference_input[own, None]
-    given = _class_iii(mechanism, program, own, moved) if program.class_iii else np.empty((0, 0, 0, 0))
+    given = _follow_class_iii(mechanism, program, own, moved) if program.class_iii else np.empty((0, 0, 0, 0))
     points = np.empty((len(mechanism.joints), length, *flat), np.complex128)
     angles = np.empty((len(program.links), length, *flat))
     travels = np.empty((len(mechanism.slides), length, *flat))
@@ -197,9 +190,9 @@ def _named(mechanism: Mechanism, program: Program, inputs: Real, own: Signs, sig
     valid, smooth = masks.reshape(2, *shape)
     joints = dict(zip(mechanism.joints, points.reshape(-1, length, *shape), strict=True))
     closing = dict(zip(program.closing, sines.reshape(-1, *shape), strict=True))
-    triad = triad_of(mechanism) if program.class_iii else None
+    triad = find_triad(mechanism) if program.class_iii else None
     if triad is not None:
-        closing.update(triad_sines(triad, {name: jet[0] for name, jet in joints.items()}))
+        closing.update(compute_triad_sines(triad, {name: jet[0] for name, jet in joints.items()}))
     return MechanismMotion(
         valid,
         smooth,
@@ -212,77 +205,87 @@ def _named(mechanism: Mechanism, program: Program, inputs: Real, own: Signs, sig
     )
 
 
-def _settled(mechanism: Mechanism, program: Program, inputs: Real, own: Signs, signs: Signs) -> MechanismMotion:
+def _drive_redundant(
+    mechanism: Mechanism, program: Program, inputs: Real, own: Integers, signs: Integers
+) -> MechanismMotion:
     """Drive a mechanism with redundant constraints: dyads give approximate positions, all constraints exact ones."""
     if program.class_iii:
         raise TopologyError("a mechanism with redundant constraints must close by dyads; this one does not")
 
-    def nearly(chosen: Signs) -> tuple[dict[str, Jet], dict[str, RealJet]]:
-        motion = _named(mechanism, program, inputs[:1], own, chosen)
+    def drive_assembly(chosen: Integers) -> tuple[dict[str, Complex], dict[str, Real]]:
+        motion = _run_sweep(mechanism, program, inputs[:1], own, chosen)
         return motion.joints, motion.angles
 
     assemblies = [signs]
     closing = [row for row, step in enumerate(program.steps) if step.has_two_solutions]
-    if len(closing) <= MOST_CLOSURES:
+    if len(closing) <= MAX_CLOSURES:
         for turned in list(product((1, -1), repeat=len(closing)))[1:]:
             other = signs.copy()
             # Flip the chosen closures, for all designs at once.
             other[closing] *= np.array(turned).reshape(-1, 1)
             assemblies.append(other)
-    found = settle(mechanism, own, inputs, map(nearly, assemblies), program.reference_input)
+    found = settle(mechanism, own, inputs, map(drive_assembly, assemblies), program.reference_input)
     return MechanismMotion(found.valid, found.smooth, inputs, found.angles, found.joints, found.slides, {}, {})
 
 
-def _class_iii(mechanism: Mechanism, program: Program, own: Signs, moved: Real) -> Real:
+def _follow_class_iii(mechanism: Mechanism, program: Program, own: Integers, moved: Real) -> Real:
     """Follow the rotations of all links of a class III mechanism, design by design; shape (links, D, n, N)."""
     designs, length, count = moved.shape
     given = np.full((len(program.links), designs, length, count), np.nan)
     for design in range(designs):
-        loops, track = _track(mechanism, int(own[design]))
+        loops, track = _build_track(mechanism, int(own[design]))
         numbers = [program.links.index(link) for link in loops.links]
         rotation = moved[design, 0]
-        angles = track.at(rotation)
+        angles = track.find_rotations(rotation)
         given[numbers, design, 0] = angles
         if length > 1:
-            given[numbers, design, 1:] = np.moveaxis(rates(loops, rotation, angles, moved[design, 1:]), 0, 1)
+            given[numbers, design, 1:] = np.moveaxis(compute_rates(loops, rotation, angles, moved[design, 1:]), 0, 1)
     return given
 
 
-def followed_to(mechanism: Mechanism, inputs: Real) -> Mask:
+def is_reachable(mechanism: Mechanism, inputs: Real) -> Mask:
     """Return whether a class III design reaches inputs, shape (N,), from the reference without a toggle.
 
     A branch of more than a turn contains some inputs twice, and :func:`drive` may return either position. Here each
     input counts with its own number of full turns.
     """
     at = float(mechanism.reference_input)
-    there: Mask = np.isfinite(_track(mechanism, 0)[1].followed(inputs - at)[0])
+    there: Mask = np.isfinite(_build_track(mechanism, 0)[1].follow(inputs - at)[0])
     return there
 
 
-def given_up(mechanism: Mechanism) -> bool:
+def has_given_up(mechanism: Mechanism) -> bool:
     """Return whether continuation of this class III design was abandoned before its end in any drive up to now.
 
     Links of very different lengths can need too many certified steps. Positions beyond are reported as not valid
     although they may exist.
     """
-    return bool(decompose(mechanism).left) and _track(mechanism, 0)[1].given_up
+    return bool(decompose(mechanism).left) and _build_track(mechanism, 0)[1].has_given_up
 
 
-@lru_cache(maxsize=RECENT)
-def _track(mechanism: Mechanism, design: int) -> tuple[Loops, Track]:
+@lru_cache(maxsize=CACHE_SIZE)
+def _build_track(mechanism: Mechanism, design: int) -> tuple[Loops, Track]:
     """Build the loops of one design of a class III mechanism, and the cached track of their solutions."""
-    joints = program_of(mechanism).code.joints[design]
-    loops = loop_equations(mechanism, dict(zip(mechanism.joints, joints.tolist(), strict=True)))
+    joints = build_program(mechanism).code.joints[design]
+    loops = build_loop_equations(mechanism, dict(zip(mechanism.joints, joints.tolist(), strict=True)))
     track = Track(loops)
     # A zero step means a toggle or more than one freedom; the rank distinguishes both.
-    if track.first_step < STALLED:
+    if track.first_step < MIN_CERTIFIED_STEP:
         constraints = mechanism.constraints(np.array([design]))
         free = int(constraints.mobility(constraints.reference)[0])
         if free != 1:
             raise TopologyError(f"expected a mobility of 1, got {free} by the rank of the constraints")
-    at = program_of(mechanism).reference_input[design : design + 1]
-    require("input of the reference", "away from a toggle", at, np.bool_(track.first_step >= STALLED))
+    at = build_program(mechanism).reference_input[design : design + 1]
+    require("input of the reference", "away from a toggle", at, np.bool_(track.first_step >= MIN_CERTIFIED_STEP))
     return loops, track
 
 
-__all__ = ["Frame", "MechanismMotion", "assembly_signs", "decompose", "drive", "given_up", "unit_frame"]
+__all__ = [
+    "Frame",
+    "MechanismMotion",
+    "compute_unit_frame",
+    "decompose",
+    "drive",
+    "find_assembly_signs",
+    "has_given_up",
+]

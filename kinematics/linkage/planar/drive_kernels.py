@@ -22,26 +22,21 @@ import math
 from typing import Any, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
+from kinematics.arrays import Complex, Integers, Mask, Real
 from kinematics.compiling import njit
-from kinematics.linkage.kernels import ON_TOGGLE, TOGGLE_SINE
+from kinematics.linkage.kernels import TOGGLE_SINE, TOGGLE_SLACK
 
-Real = NDArray[np.float64]
-Complex = NDArray[np.complex128]
-Mask = NDArray[np.bool_]
-Rows = NDArray[np.int64]
-
-GEAR, CARRIED, RRP, RPR, RRR, GIVEN = range(6)
+GEAR, CARRIED_LINK, RRP, RPR, RRR, GIVEN_ROTATION = range(6)
 """Codes of closures; GIVEN is a link whose rotation is an argument (class III, solved by :mod:`triads`)."""
 
-KIND, LINK, PIN, JOINT, OTHER, OTHER_PIN, SLIDE, CLOSING = range(8)
+KIND, LINK, PIN, JOINT, OTHER_LINK, OTHER_PIN, SLIDE, CLOSING = range(8)
 """Columns of a program. CLOSING numbers the closures with two solutions; −1 elsewhere."""
 
-COINCIDENT = 1e-13
+COINCIDENCE_TOLERANCE = 1e-13
 """Length of the vector k, as a share of its reach, below which its direction is only rounding."""
 
-AT_LIMIT = 16.0 * ON_TOGGLE
+LIMIT_TOLERANCE = 16.0 * TOGGLE_SLACK
 """Negative margin that still counts as zero, so that a mechanism exists at its own limits: a limit is known to the
 rounding of an angle, times the margin's rate, which is up to about ten in unit coordinates."""
 
@@ -49,7 +44,7 @@ rounding of an angle, times the margin's rate, which is up to about ten in unit 
 OPTIONS: dict[str, Any] = {"cache": True, "nogil": True, "error_model": "numpy"}
 """Options of the kernels."""
 
-STEP: dict[str, Any] = OPTIONS | {"forceinline": True}
+INLINE_OPTIONS: dict[str, Any] = OPTIONS | {"forceinline": True}
 """Options of a step that is called in one place: LLVM inlines it, since a call would pass its arrays at each position.
 Numba's own ``inline`` would make the sweep up to 20 % slower."""
 
@@ -63,16 +58,16 @@ class Code(NamedTuple):
     and link. ``driver``: the input link (or −1), its pin (or the input slide's joint), and the input slide.
     """
 
-    rows: Rows
+    rows: Integers
     ratios: Real
-    gives: Rows
+    gives: Integers
     joints: Complex
     lines: Complex
     line_angles: Real
     link_angles: Real
     frame: Complex
-    slides: Rows
-    driver: Rows
+    slides: Integers
+    driver: Integers
 
 
 class Sweep(NamedTuple):
@@ -92,18 +87,18 @@ class Sweep(NamedTuple):
 
 @njit(**OPTIONS)
 def drive(
-    rows: Rows,
+    rows: Integers,
     ratios: Real,
-    gives: Rows,
+    gives: Integers,
     joints: Complex,
     lines: Complex,
     line_angles: Real,
     link_angles: Real,
     frame: Complex,
-    slides: Rows,
-    driver: Rows,
-    own: Rows,
-    signs: Rows,
+    slides: Integers,
+    driver: Integers,
+    own: Integers,
+    signs: Integers,
     moved: Real,
     given: Real,
     points: Complex,
@@ -138,7 +133,7 @@ def drive(
         if design == 0 or m != own[design - 1]:
             for n in range(1, gives[0, 0] + 1):
                 x[gives[0, n], 0] = place[gives[0, n]]
-            _reference(rows, place, line, along, arms, directions, lengths, reaches, norms)
+            _compute_reference(rows, place, line, along, arms, directions, lengths, reaches, norms)
         for at in range(moved.shape[2]):
             if driver[0] < 0:
                 joint, angle = driver[1], along[driver[2]]
@@ -149,11 +144,11 @@ def drive(
                 for n in range(length):
                     rotation[driver[0], n] = moved[design, n, at]
                 turned[driver[0]] = True
-                _pose(driver[0], driver[1], place, gives, rotation, turned, unit, shift, x, length)
+                _place_link(driver[0], driver[1], place, gives, rotation, turned, unit, shift, x, length)
             for row in range(len(rows)):
                 step = rows[row]
                 kind, link, pin, joint = step[KIND], step[LINK], step[PIN], step[JOINT]
-                other, other_pin, closing = step[OTHER], step[OTHER_PIN], step[CLOSING]
+                other, other_pin, closing = step[OTHER_LINK], step[OTHER_PIN], step[CLOSING]
                 if kind == GEAR:
                     # Gears need the angle itself, which dyads do not compute.
                     if not turned[other]:
@@ -161,9 +156,9 @@ def drive(
                     for n in range(length):
                         rotation[link, n] = ratios[row] * rotation[other, n]
                     turned[link] = True
-                elif kind == CARRIED:
-                    _towards(link, pin, joint, arms[row, 0], rotation, unit, x, length)
-                elif kind == GIVEN:
+                elif kind == CARRIED_LINK:
+                    _orient_link(link, pin, joint, arms[row, 0], rotation, unit, x, length)
+                elif kind == GIVEN_ROTATION:
                     for n in range(length):
                         rotation[link, n] = given[link, design, n, at]
                     turned[link] = True
@@ -175,7 +170,7 @@ def drive(
                     reach, far = lengths[row, first], lengths[row, 1 - first]
                     _equate_links(pin, other_pin, arms[row, first], first, reach, far, x, k, r, base, length)
                     square = base[0].real * base[0].real + base[0].imag * base[0].imag
-                    sine = _close(
+                    sine = _close_loop(
                         k,
                         r,
                         reach,
@@ -203,23 +198,23 @@ def drive(
                     else:
                         _equate_line_on_joint(pin, joint, arms[row, 0], directions[row], x, k, r, length)
                     reach, norm, sign = reaches[row], norms[row], signs[row, design]
-                    sines[closing, design, at] = _close(
+                    sines[closing, design, at] = _close_loop(
                         k, r, reach, norm, 0.0, sign, rotation, unit, link, margins, closing, design, at, length
                     )
                 if kind == RRR and first:
-                    _pose(other, other_pin, place, gives, rotation, turned, unit, shift, x, length)
-                    _carry(other, joint, place, unit, shift, x, length)
-                    _towards(link, pin, joint, arms[row, 0], rotation, unit, x, length)
-                _pose(link, pin, place, gives, rotation, turned, unit, shift, x, length)
+                    _place_link(other, other_pin, place, gives, rotation, turned, unit, shift, x, length)
+                    _place_joint(other, joint, place, unit, shift, x, length)
+                    _orient_link(link, pin, joint, arms[row, 0], rotation, unit, x, length)
+                _place_link(link, pin, place, gives, rotation, turned, unit, shift, x, length)
                 if kind == RRR and first:
                     # Restore the joint: the longer link's pose has overwritten it with a larger rounding error.
-                    _carry(other, joint, place, unit, shift, x, length)
+                    _place_joint(other, joint, place, unit, shift, x, length)
                 elif kind == RRR:
-                    _towards(other, other_pin, joint, arms[row, 1], rotation, unit, x, length)
-                    _pose(other, other_pin, place, gives, rotation, turned, unit, shift, x, length)
+                    _orient_link(other, other_pin, joint, arms[row, 1], rotation, unit, x, length)
+                    _place_link(other, other_pin, place, gives, rotation, turned, unit, shift, x, length)
             if not len(points):
                 continue
-            valid, smooth = _exists(x, length)
+            valid, smooth = _has_positions(x, length)
             masks[0, design, at], masks[1, design, at] = valid, smooth
             # At a toggle only the position is returned.
             known = length if smooth else (1 if valid else 0)
@@ -232,8 +227,8 @@ def drive(
 
 
 @njit(**OPTIONS)
-def _reference(
-    rows: Rows,
+def _compute_reference(
+    rows: Integers,
     place: Complex,
     line: Complex,
     along: Real,
@@ -246,7 +241,7 @@ def _reference(
     """Compute the constants over all inputs: by row, the vectors from the pins to the joint, and the slide's normal."""
     for row in range(len(rows)):
         kind, pin, joint, slide = rows[row, KIND], rows[row, PIN], rows[row, JOINT], rows[row, SLIDE]
-        if kind in (GEAR, GIVEN):
+        if kind in (GEAR, GIVEN_ROTATION):
             continue
         arms[row, 0] = (line[slide] if kind == RPR else place[joint]) - place[pin]
         if kind == RRR:
@@ -261,7 +256,7 @@ def _reference(
             directions[row] = complex(-math.sin(along[slide]), math.cos(along[slide]))
 
 
-@njit(**STEP)
+@njit(**INLINE_OPTIONS)
 def _equate_links(
     pin: int,
     other_pin: int,
@@ -285,12 +280,12 @@ def _equate_links(
     for n in range(length):
         r[n] = 0.0
         for j in range(n + 1):
-            r[n] += 0.5 * _binomial(n, j) * (base[j] * base[n - j].conjugate()).real
+            r[n] += 0.5 * _compute_binomial(n, j) * (base[j] * base[n - j].conjugate()).real
     # Factored difference of squares, against cancellation of nearly equal lengths.
     r[0] += (reach - far) * (reach + far) / 2.0
 
 
-@njit(**STEP)
+@njit(**INLINE_OPTIONS)
 def _equate_joint_on_line(
     other: int,
     pin: int,
@@ -312,10 +307,10 @@ def _equate_joint_on_line(
     for n in range(length):
         r[n] = 0.0
         for j in range(n + 1):
-            r[n] += _binomial(n, j) * ((unit[other, j] * normal).conjugate() * base[n - j]).real
+            r[n] += _compute_binomial(n, j) * ((unit[other, j] * normal).conjugate() * base[n - j]).real
 
 
-@njit(**STEP)
+@njit(**INLINE_OPTIONS)
 def _equate_line_on_joint(
     pin: int, joint: int, arm: complex, normal: complex, x: Complex, k: Complex, r: Real, length: int
 ) -> None:
@@ -326,8 +321,8 @@ def _equate_line_on_joint(
     r[0] = (normal.conjugate() * arm).real
 
 
-@njit(**STEP)
-def _exists(x: Complex, length: int) -> tuple[bool, bool]:
+@njit(**INLINE_OPTIONS)
+def _has_positions(x: Complex, length: int) -> tuple[bool, bool]:
     """Return whether all joints have positions, and all their derivatives."""
     valid, smooth = True, True
     for joint in range(len(x)):
@@ -337,7 +332,7 @@ def _exists(x: Complex, length: int) -> tuple[bool, bool]:
     return valid, smooth and valid
 
 
-@njit(**STEP)
+@njit(**INLINE_OPTIONS)
 def _write_joints(
     x: Complex, origin: complex, size: float, points: Complex, known: int, length: int, design: int, at: int
 ) -> None:
@@ -348,7 +343,7 @@ def _write_joints(
             points[joint, n, design, at] = x[joint, n] * size if n < known else complex(np.nan, np.nan)
 
 
-@njit(**STEP)
+@njit(**INLINE_OPTIONS)
 def _write_rotations(
     rotation: Real,
     unit: Complex,
@@ -369,12 +364,12 @@ def _write_rotations(
             angles[link, n, design, at] = rotation[link, n] if n < known else np.nan
 
 
-@njit(**STEP)
+@njit(**INLINE_OPTIONS)
 def _write_travels(
     x: Complex,
     unit: Complex,
     shift: Complex,
-    slides: Rows,
+    slides: Integers,
     line: Complex,
     along: Real,
     size: float,
@@ -390,18 +385,18 @@ def _write_travels(
         for n in range(length):
             travels[slide, n, design, at] = np.nan
             if n < known:
-                travel = _travel(x, unit, shift, joint, link, line[slide], along[slide], n)
+                travel = _compute_travel(x, unit, shift, joint, link, line[slide], along[slide], n)
                 travels[slide, n, design, at] = size * travel
 
 
 @njit(**OPTIONS)
-def _abs(z: complex) -> float:
+def _magnitude(z: complex) -> float:
     """Return |z| for numbers near one, without protection from overflow."""
     return math.sqrt(z.real * z.real + z.imag * z.imag)
 
 
 @njit(**OPTIONS)
-def _binomial(n: int, k: int) -> float:
+def _compute_binomial(n: int, k: int) -> float:
     """Return the binomial coefficient n over k for n up to 3."""
     if k == 0 or k == n:
         return 1.0
@@ -409,7 +404,7 @@ def _binomial(n: int, k: int) -> float:
 
 
 @njit(**OPTIONS)
-def _travel(
+def _compute_travel(
     x: Complex, unit: Complex, shift: Complex, joint: int, link: int, line: complex, angle: float, n: int
 ) -> float:
     """Return derivative n of a joint's position along a line fixed in a link."""
@@ -417,16 +412,16 @@ def _travel(
     total = 0.0
     for j in range(n + 1):
         offset = x[joint, n - j] - (unit[link, n - j] * line + shift[link, n - j])
-        total += _binomial(n, j) * ((unit[link, j] * direction).conjugate() * offset).real
+        total += _compute_binomial(n, j) * ((unit[link, j] * direction).conjugate() * offset).real
     return total
 
 
 @njit(**OPTIONS)
-def _pose(
+def _place_link(
     link: int,
     pin: int,
     place: Complex,
-    gives: Rows,
+    gives: Integers,
     rotation: Real,
     turned: Mask,
     unit: Complex,
@@ -450,24 +445,24 @@ def _pose(
     for n in range(length):
         shift[link, n] = x[pin, n] - unit[link, n] * place[pin]
     for j in range(1, gives[link, 0] + 1):
-        _carry(link, gives[link, j], place, unit, shift, x, length)
+        _place_joint(link, gives[link, j], place, unit, shift, x, length)
 
 
 @njit(**OPTIONS)
-def _carry(link: int, joint: int, place: Complex, unit: Complex, shift: Complex, x: Complex, length: int) -> None:
+def _place_joint(link: int, joint: int, place: Complex, unit: Complex, shift: Complex, x: Complex, length: int) -> None:
     """Place a joint on a link."""
     for n in range(length):
         x[joint, n] = unit[link, n] * place[joint] + shift[link, n]
 
 
 @njit(**OPTIONS)
-def _towards(
+def _orient_link(
     link: int, pin: int, joint: int, arm: complex, rotation: Real, unit: Complex, x: Complex, length: int
 ) -> None:
     """Compute e^{iφ} of a link on two known joints, and the rates of φ, from the line between the joints."""
     line = x[joint, 0] - x[pin, 0]
     turned = line * arm.conjugate()
-    unit[link, 0] = turned / _abs(turned)
+    unit[link, 0] = turned / _magnitude(turned)
     if length > 1:
         inverse = line.conjugate() / (line.real * line.real + line.imag * line.imag)
         first = (x[joint, 1] - x[pin, 1]) * inverse
@@ -481,7 +476,7 @@ def _towards(
 
 
 @njit(**OPTIONS)
-def _close(
+def _close_loop(
     k: Complex,
     r: Real,
     reach: float,
@@ -505,7 +500,7 @@ def _close(
     size = math.sqrt(square)
     # |k|² − r², factored against cancellation near a limit.
     excess = (size - r[0]) * (size + r[0])
-    exists = size > COINCIDENT * reach and excess >= -AT_LIMIT * size * max(size, slack)
+    exists = size > COINCIDENCE_TOLERANCE * reach and excess >= -LIMIT_TOLERANCE * size * max(size, slack)
     margins[closing, 0, design, at] = excess / norm
     if length > 1:
         margins[closing, 1, design, at] = 2.0 * ((k[0].conjugate() * k[1]).real - r[0] * r[1]) / norm

@@ -17,10 +17,11 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from kinematics.arrays import Complex, Real
 from kinematics.linkage.planar.drive import MechanismMotion
-from kinematics.linkage.planar.mechanism import GROUND, Complex, Mechanism, Real
+from kinematics.linkage.planar.mechanism import GROUND, Mechanism
 
-PARALLEL = 1e-9
+PARALLEL_TOLERANCE = 1e-9
 """Difference of angular velocities, as a share of the fastest link's, below which two links only translate."""
 
 
@@ -31,7 +32,7 @@ class InstantCenter(NamedTuple):
     finite: NDArray[np.bool_]
 
 
-def instant_centers(mechanism: Mechanism, motion: MechanismMotion) -> dict[tuple[str, str], InstantCenter]:
+def find_instant_centers(mechanism: Mechanism, motion: MechanismMotion) -> dict[tuple[str, str], InstantCenter]:
     """Find all n(n − 1)/2 instant centres of a mechanism in motion, by pairs of links in the mechanism's order.
 
     Parameters
@@ -57,7 +58,7 @@ def instant_centers(mechanism: Mechanism, motion: MechanismMotion) -> dict[tuple
         carried = base_velocity + 1j * spins[second] * (z - base)
         gap = spins[first] - spins[second]
         with np.errstate(divide="ignore", invalid="ignore"):
-            finite = np.abs(gap) > PARALLEL * fastest
+            finite = np.abs(gap) > PARALLEL_TOLERANCE * fastest
             point = np.where(finite, z + 1j * (velocity - carried) / gap, np.complex128(complex(np.nan, np.nan)))
         centers[(first, second)] = InstantCenter(point, finite & motion.smooth)
     return centers

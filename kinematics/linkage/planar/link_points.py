@@ -11,12 +11,13 @@ from __future__ import annotations
 
 import numpy as np
 
+from kinematics.arrays import Complex
 from kinematics.errors import DimensionError
-from kinematics.linkage.planar.drive import Jet, MechanismMotion
+from kinematics.linkage.planar.drive import MechanismMotion
 from kinematics.linkage.planar.mechanism import GROUND, Mechanism
 
 
-def link_point(mechanism: Mechanism, motion: MechanismMotion, link: str, place: complex) -> Jet:
+def link_point(mechanism: Mechanism, motion: MechanismMotion, link: str, place: complex) -> Complex:
     """Compute the motion of a point of a link, with its rates.
 
     Parameters

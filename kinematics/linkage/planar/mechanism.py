@@ -14,22 +14,20 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from kinematics.arrays import Complex, Real
 from kinematics.errors import MechanismError
-from kinematics.linkage.fourbar.closed_form import one_shape, require
+from kinematics.linkage.fourbar.closed_form import broadcast_shape, require
 from kinematics.linkage.planar.constraints import Constraints
-
-Complex = NDArray[np.complex128]
-Real = NDArray[np.float64]
 
 GROUND = "ground"
 """Name of the link that does not move; every mechanism has it."""
 
 
-OFF_SLIDE = 1e-6
+SLIDE_TOLERANCE = 1e-6
 """Maximum distance of a joint from its slide in the reference, as a share of the size: input data may be rounded."""
 
 
-TOO_SHORT = 1e-13
+MIN_LENGTH = 1e-13
 """Length, as a share of the mechanism's size, below which two joints coincide: rounding is of that order."""
 
 
@@ -124,7 +122,7 @@ class Mechanism:
         shapes = {name: point.shape for name, point in points.items()}
         for n, line in enumerate(lines):
             shapes |= {f"slide {n}": line.point.shape, f"slide angle {n}": line.angle.shape}
-        shape = one_shape(**shapes)
+        shape = broadcast_shape(**shapes)
         own = {name: np.broadcast_to(point, shape) for name, point in points.items()}
         for name, value in (
             ("joints", own),
@@ -143,11 +141,11 @@ class Mechanism:
 
     @property
     def mobility(self) -> int:
-        """Degrees of freedom: always one, that of the input; see :attr:`counted_mobility` for the count."""
+        """Degrees of freedom: always one, that of the input; see :attr:`gruebler_mobility` for the count."""
         return 1
 
     @cached_property
-    def counted_mobility(self) -> int:
+    def gruebler_mobility(self) -> int:
         """Degrees of freedom by counting: 3 per moving link, minus 2 per pin, 1 per slide and gear pair (Norton 2.1).
 
         A joint on k links counts as k − 1 pins. Parallel cranks, closed trains of gears and other overconstrained
@@ -168,24 +166,24 @@ class Mechanism:
         """All constraints of the designs, by their numbers (all, one after the other), in unit coordinates."""
         origin, size = self.frame
 
-        def taken(values: NDArray[Any]) -> NDArray[Any]:
+        def take_designs(values: NDArray[Any]) -> NDArray[Any]:
             each = np.broadcast_to(values, self.shape).ravel()
             return each if designs is None else each[designs]
 
-        def unit(z: Complex) -> Complex:
-            return taken((z - origin) / size)
+        def scale_to_unit(z: Complex) -> Complex:
+            return take_designs((z - origin) / size)
 
         return Constraints(
-            {name: unit(z) for name, z in self.joints.items()},
+            {name: scale_to_unit(z) for name, z in self.joints.items()},
             self.links,
-            [(s.joint, s.link, unit(s.point), taken(s.angle)) for s in self.slides],
+            [(s.joint, s.link, scale_to_unit(s.point), take_designs(s.angle)) for s in self.slides],
             self.gears,
             self.input,
             GROUND,
         )
 
     def _check_mobility(self) -> None:
-        counted = self.counted_mobility
+        counted = self.gruebler_mobility
         object.__setattr__(self, "redundant", 1 - counted)
         if counted > 1:
             raise TopologyError(f"expected a mobility of 1, got {counted}; look for a link or joint too many")
@@ -209,7 +207,7 @@ class Mechanism:
                 "that the input could reach"
             )
 
-    def _links_at(self, joint: str) -> int:
+    def _list_links_at(self, joint: str) -> int:
         return sum(joint in listed for listed in self.links.values())
 
     def _check_names(self) -> None:
@@ -223,7 +221,7 @@ class Mechanism:
                 raise TopologyError(f"link {name!r} lists a joint twice")
             if name != GROUND and len(listed) < 2:
                 raise TopologyError(f"link {name!r} needs at least two joints")
-        loose = [joint for joint in self.joints if not self._links_at(joint)]
+        loose = [joint for joint in self.joints if not self._list_links_at(joint)]
         if loose:
             raise TopologyError(f"the joint {loose[0]!r} is on no link")
         for slide in self.slides:
@@ -247,7 +245,7 @@ class Mechanism:
             across = np.abs((offset * np.exp(-1j * slide.angle)).imag)
             spread = np.max([np.abs(z - self.joints[slide.joint]) for z in self.joints.values()], axis=0)
             reach = np.maximum(spread, np.abs(offset))
-            require(f"distance of {slide.joint} from its slide", "zero", across, across <= OFF_SLIDE * reach)
+            require(f"distance of {slide.joint} from its slide", "zero", across, across <= SLIDE_TOLERANCE * reach)
 
     def _check_lengths(self) -> None:
         anywhere = next(iter(self.joints.values()))
@@ -257,7 +255,7 @@ class Mechanism:
                 first, second = listed[:2]
                 length = np.abs(self.joints[second] - self.joints[first])
                 name = f"length of {link} from {first} to {second}"
-                require(name, "positive", length, length > TOO_SHORT * size)
+                require(name, "positive", length, length > MIN_LENGTH * size)
 
     @property
     def slide_names(self) -> tuple[str, ...]:
@@ -266,7 +264,7 @@ class Mechanism:
         return tuple(f"{name}_{k}" if joints.count(name) > 1 else name for k, name in enumerate(joints))
 
     @property
-    def driven_by_slide(self) -> bool:
+    def has_slide_input(self) -> bool:
         """Whether the input is the displacement of a slide."""
         return self.input not in self.links
 
@@ -278,7 +276,7 @@ class Mechanism:
     @property
     def reference_input(self) -> Real:
         """Input in the reference: angle of the input link, radians, or position along the slide; shape S."""
-        if self.driven_by_slide:
+        if self.has_slide_input:
             slide = next(s for s in self.slides if s.joint == self.input and s.link == GROUND)
             offset = self.joints[self.input] - slide.point
             return np.asarray((offset * np.exp(-1j * slide.angle)).real)

@@ -11,38 +11,36 @@ from __future__ import annotations
 from itertools import pairwise
 
 import numpy as np
-from numpy.typing import NDArray
 
+from kinematics.arrays import Integers, Real
 from kinematics.errors import DimensionError
-from kinematics.linkage.planar.branches import Branch, reference_first
-from kinematics.linkage.planar.closures import decompose, order_of_closures
+from kinematics.linkage.planar.branches import Branch, sort_reference_first
+from kinematics.linkage.planar.closures import decompose, order_closures
 from kinematics.linkage.planar.configuration_curves import (
-    CELLS,
+    CELL_COUNT,
     Closures,
     Curve,
     Place,
-    chains,
-    circuits,
-    configuration_curves,
-    places,
+    evaluate_places,
+    find_configuration_curves,
+    number_circuits,
+    stack_chains,
 )
-from kinematics.linkage.planar.drive import MechanismMotion, assembly_signs, drive_one
+from kinematics.linkage.planar.drive import MechanismMotion, drive_one, find_assembly_signs
 from kinematics.linkage.planar.mechanism import GROUND, Mechanism, TopologyError
-from kinematics.linkage.planar.positive_arcs import HAIR, Domain, positive_arcs
-from kinematics.linkage.planar.program import program_of
+from kinematics.linkage.planar.positive_arcs import END_OFFSET, Domain, find_positive_arcs
+from kinematics.linkage.planar.program import build_program
 
-Real = NDArray[np.float64]
-Rows = NDArray[np.int64]
 FULL_TURN = 2.0 * np.pi
 
-DEAD = 1e-9
+MIN_TRAVEL = 1e-9
 """Travel of the true input along a curve, in units of the mechanism, below which it does not move."""
 
-LEAP = 0.5
+MAX_LEAP = 0.5
 """Change of an angle between neighbouring samples, radians, above which they are too distant to be unwrapped."""
 
 
-def other_driver(mechanism: Mechanism) -> Mechanism:
+def find_other_driver(mechanism: Mechanism) -> Mechanism:
     """Find another ground and input that close the mechanism by dyads; the names of the two grounds are exchanged.
 
     Raises
@@ -60,18 +58,18 @@ def other_driver(mechanism: Mechanism) -> Mechanism:
             # Only links pinned to the new ground can drive.
             if driver == GROUND or not set(listed) & set(links[GROUND]):
                 continue
-            if order_of_closures(links, driver, slides, ()).left:
+            if order_closures(links, driver, slides, ()).left:
                 continue
             try:
                 redriven = Mechanism(dict(mechanism.joints), links, driver, slides)
-                program_of(redriven)
+                build_program(redriven)
                 return redriven
             except DimensionError:  # a link with coincident pivots cannot drive or be driven
                 continue
     raise TopologyError("no pair of links closes this mechanism by dyads")
 
 
-def branches_by_other_driver(mechanism: Mechanism) -> list[Branch]:
+def find_branches_by_other_driver(mechanism: Mechanism) -> list[Branch]:
     """Find all branches of one design, circuit by circuit, the reference's first; ``signs`` and closures stay empty.
 
     Raises
@@ -80,29 +78,29 @@ def branches_by_other_driver(mechanism: Mechanism) -> list[Branch]:
         If no pair of links closes the mechanism by dyads, or a link swings freely while the other driver stands still:
         such a motion lies on none of its curves.
     """
-    other = other_driver(mechanism)
+    other = find_other_driver(mechanism)
     decomposition = decompose(other)
     closures = Closures(other, decomposition)
-    curves = configuration_curves(other, closures, FULL_TURN)
+    curves = find_configuration_curves(other, closures, FULL_TURN)
     if any(end.point.swings for curve in curves for end in curve.ends):
         raise TopologyError("a link swings freely while the substitute input link stands still")
     true_input = _TrueInput(mechanism, other, closures, curves)
-    numbers = circuits(curves)
-    signs = assembly_signs(other, decomposition.steps)
+    numbers = number_circuits(curves)
+    signs = find_assembly_signs(other, decomposition.steps)
     choice = np.array([int(signs[n]) for n in closures.position])
     at = float(other.reference_input)
-    held = {n for n, curve in enumerate(curves) if _passes(curve, at, choice)}
+    held = {n for n, curve in enumerate(curves) if _is_passing(curve, at, choice)}
     branches = [(branch, n in held) for n in range(len(curves)) for branch in true_input.branches(n, numbers[n])]
     first = next((k for k, (_, holds) in enumerate(branches) if holds), 0)
-    return reference_first([branch for branch, _ in branches], first)
+    return sort_reference_first([branch for branch, _ in branches], first)
 
 
-def _passes(curve: Curve, theta: float, choice: Rows) -> bool:
+def _is_passing(curve: Curve, theta: float, choice: Integers) -> bool:
     """Return whether a curve of the other driver passes one of its inputs in given assemblies."""
     cuts = [turn.at for turn in curve.turns]
     cuts = [*cuts, cuts[0] + curve.high - curve.low] if curve.closed and cuts else [curve.low, *cuts, curve.high]
     for low, high in pairwise(cuts):
-        ends = sorted((curve.input_at(low), curve.input_at(high)))
+        ends = sorted((curve.evaluate_input(low), curve.evaluate_input(high)))
         middle = curve.place(np.array([0.5 * (low + high)])).signs[:, 0]
         hair = 1e-7
         if np.mod(theta - ends[0] + hair, FULL_TURN) <= ends[1] - ends[0] + 2.0 * hair and np.all(middle == choice):
@@ -115,13 +113,15 @@ class _TrueInput:
 
     def __init__(self, mechanism: Mechanism, other: Mechanism, closures: Closures, curves: list[Curve]) -> None:
         self.mechanism, self.other, self.closures, self.curves = mechanism, other, closures, curves
-        self.chains = chains(curves) if curves else np.empty((0, 0, 4))
-        self.slide = mechanism.driven_by_slide
+        self.chains = stack_chains(curves) if curves else np.empty((0, 0, 4))
+        self.slide = mechanism.has_slide_input
         pushed = [s.link == GROUND and s.joint == mechanism.input for s in mechanism.slides]
         self.pushed = mechanism.slide_names[pushed.index(True)] if self.slide else ""
         self.base = next(name for name, listed in other.links.items() if listed == mechanism.links[GROUND])
         self.link = {GROUND: self.base, self.base: GROUND}.get(mechanism.input, mechanism.input)
-        arcs = positive_arcs(self._rates, [Domain(c.low, c.high, c.closed, 2 * CELLS) for c in curves])
+        arcs = find_positive_arcs(
+            self._evaluate_rates, [Domain(c.low, c.high, c.closed, 2 * CELL_COUNT) for c in curves]
+        )
         self.turns = [
             sorted(
                 {at for arc in own for at, kind in ((arc.low, arc.at_low), (arc.high, arc.at_high)) if kind == "zero"}
@@ -129,20 +129,20 @@ class _TrueInput:
             for own in arcs
         ]
 
-    def _jet(self, place: Place, order: int) -> Real:
+    def _evaluate_jet(self, place: Place, order: int) -> Real:
         """Evaluate the jet of the true input by the other one; shape (order + 1, n)."""
         signs = self.closures.signs(place.signs)
         motion = drive_one(self.other, place.theta[:, None], signs, order)
         if self.slide:
             return np.asarray(motion.slides[self.pushed][..., 0])
-        turned = _rotation(self.other, motion, self.link) - _rotation(self.other, motion, self.base)
+        turned = _evaluate_rotation(self.other, motion, self.link) - _evaluate_rotation(self.other, motion, self.base)
         turned[0] += self.mechanism.reference_input
         return turned
 
-    def _rates(self, row: Rows, at: Real) -> tuple[Real, Real]:
+    def _evaluate_rates(self, row: Integers, at: Real) -> tuple[Real, Real]:
         """Evaluate the first two derivatives of the true input by the parameters of curves."""
-        place = places(self.chains, row, at)
-        jet = self._jet(place, 2)
+        place = evaluate_places(self.chains, row, at)
+        jet = self._evaluate_jet(place, 2)
         return jet[1] * place.rate, jet[2] * place.rate**2 + jet[1] * place.second
 
     def branches(self, n: int, circuit: int) -> list[Branch]:
@@ -157,34 +157,37 @@ class _TrueInput:
             cuts.append(cuts[0] + length)
         else:
             cuts = [curve.low, *turns, curve.high]
-        values = self._along(curve, cuts)
+        values = self._unwrap_along(curve, cuts)
         found = []
         for one, another in pairwise(values):
             low, high = min(one, another), max(one, another)
             # The true input is at rest while the other driver moves.
-            if high - low <= DEAD:
+            if high - low <= MIN_TRAVEL:
                 continue
             start = low if self.slide else float(np.mod(low, FULL_TURN))
             found.append(Branch(circuit, start, start + high - low, curve.closed and not turns, (), "", ""))
         return found
 
-    def _along(self, curve: Curve, cuts: list[float]) -> list[float]:
+    def _unwrap_along(self, curve: Curve, cuts: list[float]) -> list[float]:
         """Evaluate the true input at places on a curve, unwrapped."""
         length = curve.high - curve.low
         # Shifted slightly, so that samples avoid folds at regular places.
-        inner = np.linspace(cuts[0], cuts[-1], CELLS + 1)[1:-1] + 0.003 / CELLS * length
+        inner = np.linspace(cuts[0], cuts[-1], CELL_COUNT + 1)[1:-1] + 0.003 / CELL_COUNT * length
         known = np.unique(np.concatenate([cuts, inner]))
         if not curve.closed:
-            known = np.clip(known, curve.low + HAIR * length, curve.high - HAIR * length)
-        value = self._value(curve, known)
+            known = np.clip(known, curve.low + END_OFFSET * length, curve.high - END_OFFSET * length)
+        value = self._evaluate_value(curve, known)
         while not self.slide:
-            leap = np.abs(np.mod(np.diff(value) + np.pi, FULL_TURN) - np.pi) > LEAP
+            leap = np.abs(np.mod(np.diff(value) + np.pi, FULL_TURN) - np.pi) > MAX_LEAP
             leap &= np.diff(known) > 1e-12 * length
             if not leap.any():
                 break
             between = 0.5 * (known[:-1] + known[1:])[leap]
             place = np.flatnonzero(leap) + 1
-            known, value = np.insert(known, place, between), np.insert(value, place, self._value(curve, between))
+            known, value = (
+                np.insert(known, place, between),
+                np.insert(value, place, self._evaluate_value(curve, between)),
+            )
         smooth = value if self.slide else np.unwrap(value)
         ends = np.clip(cuts, known[0], known[-1])
         inputs = smooth[np.searchsorted(known, ends)]
@@ -192,20 +195,20 @@ class _TrueInput:
             # At a crossing rounding may lose the assembly: extrapolate from a nearby point by the Taylor series.
             at = np.array([known[0], known[-1]])
             hair = np.array([cuts[0], cuts[-1]]) - at
-            rate, second = self._rates(np.full(2, self.curves.index(curve)), at)
+            rate, second = self._evaluate_rates(np.full(2, self.curves.index(curve)), at)
             inputs[[0, -1]] += hair * rate + 0.5 * hair**2 * second
         return [float(x) for x in inputs]
 
-    def _value(self, curve: Curve, at: Real) -> Real:
+    def _evaluate_value(self, curve: Curve, at: Real) -> Real:
         """Evaluate the true input; where rounding loses the assembly at a fold, take a point next to it."""
-        value: Real = self._jet(curve.place(at), 0)[0]
+        value: Real = self._evaluate_jet(curve.place(at), 0)[0]
         lost = np.isnan(value)
         if lost.any():
-            value[lost] = self._jet(curve.place(at[lost] + HAIR), 0)[0]
+            value[lost] = self._evaluate_jet(curve.place(at[lost] + END_OFFSET), 0)[0]
         return value
 
 
-def _rotation(mechanism: Mechanism, motion: MechanismMotion, link: str) -> Real:
+def _evaluate_rotation(mechanism: Mechanism, motion: MechanismMotion, link: str) -> Real:
     """Evaluate the jet of a link's rotation from the reference; shape (n, inputs)."""
     if link == GROUND:
         return np.zeros(motion.input.shape[:2])

@@ -15,38 +15,36 @@ from typing import Literal, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from kinematics.arrays import Integers, Real
 from kinematics.linkage.planar.roots import find_roots
-
-Real = NDArray[np.float64]
-Rows = NDArray[np.int64]
 
 CELL_ERROR = 0.01
 """Maximum deviation from the cubic, as a share of the function's change in a cell or of its distance from zero."""
 
-NARROW = 1e-7
+MIN_CELL_WIDTH = 1e-7
 """Minimum width of a cell, as a share of the domain: next to a fold the input changes only by the square of it."""
 
-FIRST = 0.37
+FIRST_SAMPLE = 0.37
 """Position of the first sample in its cell: functions are often even about the ends, where rates may be infinite."""
 
-HAIR = 1e-6
+END_OFFSET = 1e-6
 """Distance of the outermost samples from the ends of a segment, as a share of it: the function may not exist there."""
 
-TOUCHES = 1e-12
+TOUCH_TOLERANCE = 1e-12
 """Share of the function's maximum below which an extreme touches zero: a change point, to rounding."""
 
-VANISHES = 1e-13
+ZERO_TOLERANCE = 1e-13
 """Value below which a function that stays so at its first samples is zero everywhere; close to the ends, where roots of
 small differences are taken, rounding may be larger."""
 
-NOISE = 1e-12
+NOISE_LEVEL = 1e-12
 """Share of a function's maximum below which a cell is not divided: its shape is rounding."""
 
-CROWD = 4
+MAX_CROWDING = 4
 """Multiple of the initial number of cells that, when pending at once, marks a function as rounding noise and stops its
 refinement: a function that is smooth except in a few places has only a few such cells at a time."""
 
-Function = Callable[[Rows, Real], tuple[Real, Real]]
+Function = Callable[[Integers, Real], tuple[Real, Real]]
 """Value and rate of the functions ``rows`` at the places given, shape (n,) each; a rate may be NaN."""
 
 
@@ -75,12 +73,12 @@ class Arc(NamedTuple):
 class Samples(NamedTuple):
     """Rows, places, values and rates, sorted by row and place; on a circle the first sample is repeated at the end."""
 
-    row: Rows
+    row: Integers
     at: Real
     value: Real
     rate: Real
 
-    def merged(self, *others: Samples) -> Samples:
+    def merge(self, *others: Samples) -> Samples:
         """Merge these samples with others, sorted."""
         every = [self, *others]
         row, at = np.concatenate([s.row for s in every]), np.concatenate([s.at for s in every])
@@ -88,7 +86,7 @@ class Samples(NamedTuple):
         order = np.lexsort((at, row))
         return Samples(row[order], at[order], value[order], rate[order])
 
-    def part(self, index: NDArray[np.bool_] | Rows) -> Samples:
+    def part(self, index: NDArray[np.bool_] | Integers) -> Samples:
         """Select some samples."""
         return Samples(self.row[index], self.at[index], self.value[index], self.rate[index])
 
@@ -98,12 +96,12 @@ class Samples(NamedTuple):
         return self.part(left), self.part(left + 1)
 
 
-def positive_arcs(function: Function, domains: Sequence[Domain]) -> list[list[Arc]]:
+def find_positive_arcs(function: Function, domains: Sequence[Domain]) -> list[list[Arc]]:
     """Find the arcs on which each of the functions is positive, by rows, ascending."""
     if not domains:
         return []
-    samples, vanishes = _resolved(function, domains)
-    samples = samples.merged(_extremes(function, samples))
+    samples, vanishes = _resolve_samples(function, domains)
+    samples = samples.merge(_find_extremes(function, samples))
     scale = np.full(len(domains), 0.0)
     np.maximum.at(scale, samples.row, samples.value)
     starts = np.searchsorted(samples.row, np.arange(len(domains) + 1))
@@ -111,7 +109,7 @@ def positive_arcs(function: Function, domains: Sequence[Domain]) -> list[list[Ar
     changes: list[tuple[int, float, float, float, float]] = []
     for row, domain in enumerate(domains):
         at, value = (column[starts[row] : starts[row + 1]] for column in (samples.at, samples.value))
-        sure = np.flatnonzero(np.abs(value) > TOUCHES * scale[row])
+        sure = np.flatnonzero(np.abs(value) > TOUCH_TOLERANCE * scale[row])
         if vanishes[row] or not len(sure):
             pending.append((row, [], False))
             continue
@@ -119,7 +117,7 @@ def positive_arcs(function: Function, domains: Sequence[Domain]) -> list[list[Ar
             turn = int(sure[0])
             at = np.concatenate([at[turn:], at[1 : turn + 1] + (domain.high - domain.low)])
             value = np.concatenate([value[turn:], value[1 : turn + 1]])
-            sure = np.flatnonzero(np.abs(value) > TOUCHES * scale[row])
+            sure = np.flatnonzero(np.abs(value) > TOUCH_TOLERANCE * scale[row])
         boundaries: list[_Boundary] = []
         positive = value[sure] > 0.0
         for n in np.flatnonzero((positive[:-1] != positive[1:]) | (positive[:-1] & (np.diff(sure) > 1))):
@@ -132,9 +130,9 @@ def positive_arcs(function: Function, domains: Sequence[Domain]) -> list[list[Ar
                 boundaries.append(_Boundary(np.nan, len(changes), bool(positive[n + 1])))
                 changes.append((row, float(at[one]), float(at[other]), float(value[one]), float(value[other])))
         pending.append((row, boundaries, bool(positive[0])))
-    zeros = _zeros(function, changes)
+    zeros = _find_zeros(function, changes)
     return [
-        _arcs(
+        _collect_arcs(
             domains[row],
             [b if b.change is None else b._replace(at=zeros[b.change]) for b in boundaries],
             positive_first,
@@ -151,20 +149,20 @@ class _Boundary(NamedTuple):
     rises: bool | None
 
 
-def _resolved(function: Function, domains: Sequence[Domain]) -> tuple[Samples, NDArray[np.bool_]]:
+def _resolve_samples(function: Function, domains: Sequence[Domain]) -> tuple[Samples, NDArray[np.bool_]]:
     """Resolve functions into samples between which they agree with cubics; also mark functions that vanish."""
     places = []
     for domain in domains:
         cell = (domain.high - domain.low) / domain.cells
         if domain.closed:
-            places.append(domain.low + cell * (np.arange(domain.cells) + FIRST))
+            places.append(domain.low + cell * (np.arange(domain.cells) + FIRST_SAMPLE))
         else:
-            inner = domain.low + cell * (np.arange(domain.cells - 1) + 1.0 + FIRST / 2.0)
-            hair = HAIR * (domain.high - domain.low)
+            inner = domain.low + cell * (np.arange(domain.cells - 1) + 1.0 + FIRST_SAMPLE / 2.0)
+            hair = END_OFFSET * (domain.high - domain.low)
             places.append(np.concatenate([[domain.low + hair], inner, [domain.high - hair]]))
     row = np.repeat(np.arange(len(domains)), [len(p) for p in places])
     at = np.concatenate(places)
-    samples = Samples(row, at, *_known(function, row, at))
+    samples = Samples(row, at, *_evaluate_known(function, row, at))
     changes = np.diff(row) != 0
     inner = ~(np.append(True, changes) | np.append(changes, True)) | np.array([d.closed for d in domains])[row]
     largest = np.zeros(len(domains))
@@ -173,18 +171,18 @@ def _resolved(function: Function, domains: Sequence[Domain]) -> tuple[Samples, N
     begins = np.searchsorted(row, closing)
     length = np.array([domain.high - domain.low for domain in domains])
     again = Samples(closing, at[begins] + length[closing], samples.value[begins], samples.rate[begins])
-    samples = samples.merged(again)
+    samples = samples.merge(again)
     first = np.array([domain.cells for domain in domains])
-    narrow = NARROW * length
-    noise = np.full(len(domains), VANISHES)
-    np.maximum.at(noise, samples.row, NOISE * np.abs(samples.value))
-    noise[largest <= VANISHES] = np.inf
+    narrow = MIN_CELL_WIDTH * length
+    noise = np.full(len(domains), ZERO_TOLERANCE)
+    np.maximum.at(noise, samples.row, NOISE_LEVEL * np.abs(samples.value))
+    noise[largest <= ZERO_TOLERANCE] = np.inf
     left, right = samples.cells()
     rounds = [samples]
     while len(left.row):
         width = right.at - left.at
         at = left.at + 0.5 * width
-        middle = Samples(left.row, at, *_known(function, left.row, at))
+        middle = Samples(left.row, at, *_evaluate_known(function, left.row, at))
         rounds.append(middle)
         # Deviation of the midpoint's value and rate from those of the Hermite cubic.
         off = np.abs(middle.value - 0.5 * (left.value + right.value) - width * (left.rate - right.rate) / 8.0)
@@ -197,20 +195,20 @@ def _resolved(function: Function, domains: Sequence[Domain]) -> tuple[Samples, N
         # Far from zero a larger deviation is harmless, since no zero can hide there.
         allowed = np.maximum(change, np.where(same, values.min(axis=0), 0.0))
         rough = ~(off <= CELL_ERROR * allowed) & (width > narrow[left.row]) & (values.max(axis=0) > noise[left.row])
-        crowded = np.bincount(left.row[rough], minlength=len(domains)) > CROWD * first
+        crowded = np.bincount(left.row[rough], minlength=len(domains)) > MAX_CROWDING * first
         rough &= ~crowded[left.row]
         half = [samples.part(rough) for samples in (left, middle, right)]
-        left, right = half[0].merged(half[1]), half[1].merged(half[2])
-    return rounds[0].merged(*rounds[1:]), largest <= VANISHES
+        left, right = half[0].merge(half[1]), half[1].merge(half[2])
+    return rounds[0].merge(*rounds[1:]), largest <= ZERO_TOLERANCE
 
 
-def _known(function: Function, row: Rows, at: Real) -> tuple[Real, Real]:
+def _evaluate_known(function: Function, row: Integers, at: Real) -> tuple[Real, Real]:
     """Evaluate value and rate; an unknown value becomes zero."""
     value, rate = function(row, at)
     return np.nan_to_num(value, nan=0.0), rate
 
 
-def _extremes(function: Function, samples: Samples) -> Samples:
+def _find_extremes(function: Function, samples: Samples) -> Samples:
     """Find minima above zero and maxima below it, between samples, that may come close to zero."""
     left, right = samples.cells()
     width, side = right.at - left.at, np.sign(left.value)
@@ -225,22 +223,22 @@ def _extremes(function: Function, samples: Samples) -> Samples:
     if not len(row):
         return Samples(row, np.empty(0), np.empty(0), np.empty(0))
 
-    def rate(at: Real) -> Real:
+    def evaluate_rate(at: Real) -> Real:
         return np.nan_to_num(function(row, at)[1], nan=0.0)
 
-    at = find_roots(rate, left.at[turns], right.at[turns], left.rate[turns], right.rate[turns])[0]
-    return Samples(row, at, _known(function, row, at)[0], np.zeros(len(row)))
+    at = find_roots(evaluate_rate, left.at[turns], right.at[turns], left.rate[turns], right.rate[turns])[0]
+    return Samples(row, at, _evaluate_known(function, row, at)[0], np.zeros(len(row)))
 
 
-def _zeros(function: Function, changes: list[tuple[int, float, float, float, float]]) -> Real:
+def _find_zeros(function: Function, changes: list[tuple[int, float, float, float, float]]) -> Real:
     """Find sign changes of functions, each between two places, at the last point that is not negative."""
     if not changes:
         return np.empty(0)
     row, low, high, at_low, at_high = (np.array(column) for column in zip(*changes, strict=True))
-    return find_roots(lambda at: _known(function, row, at)[0], low, high, at_low, at_high)[0]
+    return find_roots(lambda at: _evaluate_known(function, row, at)[0], low, high, at_low, at_high)[0]
 
 
-def _arcs(domain: Domain, boundaries: list[_Boundary], positive_first: bool) -> list[Arc]:
+def _collect_arcs(domain: Domain, boundaries: list[_Boundary], positive_first: bool) -> list[Arc]:
     """Collect the positive arcs between boundaries in their order."""
     if not boundaries:
         kind: Literal["whole", "end"] = "whole" if domain.closed else "end"
@@ -250,17 +248,17 @@ def _arcs(domain: Domain, boundaries: list[_Boundary], positive_first: bool) -> 
         length = domain.high - domain.low
         boundaries = [*boundaries, boundaries[0]._replace(at=boundaries[0].at + length)]
     elif positive_first:
-        arcs.append(Arc(domain.low, float(boundaries[0].at), "end", _kind(boundaries[0])))
+        arcs.append(Arc(domain.low, float(boundaries[0].at), "end", _name_kind(boundaries[0])))
     for n, boundary in enumerate(boundaries):
         if boundary.rises is False or (n + 1 == len(boundaries) and domain.closed):
             continue
         if n + 1 == len(boundaries):
-            arcs.append(Arc(float(boundary.at), domain.high, _kind(boundary), "end"))
+            arcs.append(Arc(float(boundary.at), domain.high, _name_kind(boundary), "end"))
         else:
             after = boundaries[n + 1]
-            arcs.append(Arc(float(boundary.at), float(after.at), _kind(boundary), _kind(after)))
+            arcs.append(Arc(float(boundary.at), float(after.at), _name_kind(boundary), _name_kind(after)))
     return arcs
 
 
-def _kind(boundary: _Boundary) -> Literal["zero", "touches"]:
+def _name_kind(boundary: _Boundary) -> Literal["zero", "touches"]:
     return "touches" if boundary.change is None else "zero"

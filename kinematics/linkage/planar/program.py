@@ -13,16 +13,15 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from kinematics.arrays import Complex, Integers, Real
 from kinematics.linkage.fourbar.closed_form import require
 from kinematics.linkage.planar import drive_kernels as kernels
-from kinematics.linkage.planar.closures import RECENT, Step, decompose
-from kinematics.linkage.planar.mechanism import GROUND, TOO_SHORT, Complex, Mechanism, Real, TopologyError
+from kinematics.linkage.planar.closures import CACHE_SIZE, Step, decompose
+from kinematics.linkage.planar.mechanism import GROUND, MIN_LENGTH, Mechanism, TopologyError
 
-Signs = NDArray[np.int64]
-
-KINDS = {
+KIND_CODES = {
     "gear": kernels.GEAR,
-    "carried": kernels.CARRIED,
+    "carried": kernels.CARRIED_LINK,
     "RRP": kernels.RRP,
     "RPR": kernels.RPR,
     "RRR": kernels.RRR,
@@ -50,13 +49,13 @@ class Program(NamedTuple):
     class_iii: bool
     links: tuple[str, ...]
     closing: tuple[str, ...]
-    signs: tuple[Signs, ...]
+    signs: tuple[Integers, ...]
     reference_input: Real
     code: kernels.Code
 
 
-@lru_cache(maxsize=RECENT)
-def unit_frame(mechanism: Mechanism) -> Frame:
+@lru_cache(maxsize=CACHE_SIZE)
+def compute_unit_frame(mechanism: Mechanism) -> Frame:
     """Compute the mechanism's unit coordinates."""
     origin, size = mechanism.frame
     joints = {name: np.asarray((z - origin) / size) for name, z in mechanism.joints.items()}
@@ -64,21 +63,21 @@ def unit_frame(mechanism: Mechanism) -> Frame:
     return Frame(origin, size, joints, lines)
 
 
-def assembly_signs(mechanism: Mechanism, steps: tuple[Step, ...]) -> tuple[Signs, ...]:
+def find_assembly_signs(mechanism: Mechanism, steps: tuple[Step, ...]) -> tuple[Integers, ...]:
     """Find the reference's assembly at every closure, shape S each: +1 or −1; +1 if the reference is at a limit."""
-    frame = unit_frame(mechanism)
+    frame = compute_unit_frame(mechanism)
     signs = []
     for step in steps:
         if not step.has_two_solutions:
             signs.append(np.ones(mechanism.shape, np.int64))
             continue
-        k = _reference_k(frame, mechanism, step)
+        k = _compute_reference_k(frame, mechanism, step)
         # Im k = 0 at a limit, where both assemblies agree.
         signs.append(np.where(k.imag < 0.0, -1, 1))
     return tuple(signs)
 
 
-def _reference_k(frame: Frame, mechanism: Mechanism, step: Step) -> Complex:
+def _compute_reference_k(frame: Frame, mechanism: Mechanism, step: Step) -> Complex:
     pin = frame.joints[step.pin]
     if step.kind == "RRR":
         return np.asarray(np.conj(frame.joints[step.joint] - pin) * (frame.joints[step.other_pin] - pin))
@@ -88,8 +87,8 @@ def _reference_k(frame: Frame, mechanism: Mechanism, step: Step) -> Complex:
     return np.asarray(normal * np.conj(arm) if step.kind == "RRP" else np.conj(normal) * arm)
 
 
-@lru_cache(maxsize=RECENT)
-def program_of(mechanism: Mechanism) -> Program:
+@lru_cache(maxsize=CACHE_SIZE)
+def build_program(mechanism: Mechanism) -> Program:
     """Build the program of a mechanism.
 
     Raises
@@ -97,7 +96,7 @@ def program_of(mechanism: Mechanism) -> Program:
     DimensionError
         For a link without length between the joints by which it closes.
     """
-    decomposition, frame = decompose(mechanism), unit_frame(mechanism)
+    decomposition, frame = decompose(mechanism), compute_unit_frame(mechanism)
     # A class III group is solved as a whole, so single closures are not used.
     steps = () if decomposition.left else decomposition.steps
     for step in steps:
@@ -114,7 +113,7 @@ def program_of(mechanism: Mechanism) -> Program:
         rows = numbers.tree()
     designs = int(np.prod(mechanism.shape, dtype=np.int64))
 
-    def in_rows(values: list[Any], dtype: type) -> NDArray[Any]:
+    def stack_rows(values: list[Any], dtype: type) -> NDArray[Any]:
         out: NDArray[Any] = np.empty((designs, len(values)), dtype)
         for n, value in enumerate(values):
             out[:, n] = np.broadcast_to(value, mechanism.shape).ravel()
@@ -124,15 +123,15 @@ def program_of(mechanism: Mechanism) -> Program:
         np.array(rows, np.int64).reshape(len(rows), 8),
         np.array([step.ratio for step in steps] or [0.0] * len(rows)),
         numbers.gives,
-        in_rows(list(frame.joints.values()), np.complex128),
-        in_rows(list(frame.lines.values()), np.complex128),
-        in_rows([s.angle for s in mechanism.slides], np.float64),
-        in_rows([0.0, *(mechanism.link_angle(link) for link in links[1:])], np.float64),
-        in_rows([frame.origin, frame.size], np.complex128),
+        stack_rows(list(frame.joints.values()), np.complex128),
+        stack_rows(list(frame.lines.values()), np.complex128),
+        stack_rows([s.angle for s in mechanism.slides], np.float64),
+        stack_rows([0.0, *(mechanism.link_angle(link) for link in links[1:])], np.float64),
+        stack_rows([frame.origin, frame.size], np.complex128),
         np.array([(numbers.joint[s.joint], numbers.link[s.link]) for s in mechanism.slides], np.int64).reshape(-1, 2),
         np.array(driver, np.int64),
     )
-    signs, reference_input = assembly_signs(mechanism, steps), mechanism.reference_input.ravel()
+    signs, reference_input = find_assembly_signs(mechanism, steps), mechanism.reference_input.ravel()
     return Program(steps, bool(decomposition.left), links, tuple(closing), signs, reference_input, code)
 
 
@@ -146,17 +145,17 @@ class _Numbers:
         self.joint = {name: n for n, name in enumerate(mechanism.joints)}
         self.gives = np.zeros((len(links), len(self.joint) + 1), np.int64)
         self.known: set[str] = set()
-        self._know(GROUND)
+        self._mark_known(GROUND)
 
-    def _know(self, link: str) -> None:
+    def _mark_known(self, link: str) -> None:
         joints = [joint for joint in self.mechanism.links[link] if joint not in self.known]
         self.known.update(joints)
         self.gives[self.link[link], : len(joints) + 1] = len(joints), *(self.joint[joint] for joint in joints)
 
     def drive(self) -> list[int]:
         mechanism = self.mechanism
-        if not mechanism.driven_by_slide:
-            self._know(mechanism.input)
+        if not mechanism.has_slide_input:
+            self._mark_known(mechanism.input)
             return [self.link[mechanism.input], self.joint[mechanism.input_pivot], -1]
         slide = next(n for n, s in enumerate(mechanism.slides) if s.joint == mechanism.input and s.link == GROUND)
         self.known.add(mechanism.input)
@@ -167,12 +166,21 @@ class _Numbers:
         if step.slide is not None:
             slide = next(n for n, s in enumerate(self.mechanism.slides) if s is step.slide)
             other = step.slide.link
-        self._know(step.link)
+        self._mark_known(step.link)
         if step.kind == "RRR":
-            self._know(step.other)
+            self._mark_known(step.other)
         joint, pin = self.joint.get(step.joint, -1), self.joint[step.pin]
         other_pin = self.joint.get(step.other_pin, -1)
-        return KINDS[step.kind], self.link[step.link], pin, joint, self.link.get(other, -1), other_pin, slide, closing
+        return (
+            KIND_CODES[step.kind],
+            self.link[step.link],
+            pin,
+            joint,
+            self.link.get(other, -1),
+            other_pin,
+            slide,
+            closing,
+        )
 
     def tree(self) -> list[tuple[int, ...]]:
         """Return rows of links with given rotations, each on a joint that is known by then.
@@ -189,8 +197,8 @@ class _Numbers:
             if link is None:
                 raise TopologyError(f"no pins lead from the input to {', '.join(waiting)}; slides alone hold it")
             pin = next(joint for joint in self.mechanism.links[link] if joint in self.known)
-            rows.append((kernels.GIVEN, self.link[link], self.joint[pin], -1, -1, -1, -1, -1))
-            self._know(link)
+            rows.append((kernels.GIVEN_ROTATION, self.link[link], self.joint[pin], -1, -1, -1, -1, -1))
+            self._mark_known(link)
             waiting.remove(link)
         return rows
 
@@ -201,4 +209,4 @@ def _check_arms(frame: Frame, step: Step) -> None:
     arms["carried"] = arms["RRP"]
     for link, pin in arms.get(step.kind, []):
         length = np.abs(frame.joints[step.joint] - frame.joints[pin])
-        require(f"length of {link} from {pin} to {step.joint}", "positive", length, length > TOO_SHORT)
+        require(f"length of {link} from {pin} to {step.joint}", "positive", length, length > MIN_LENGTH)

@@ -13,14 +13,13 @@ from collections.abc import Callable
 import numpy as np
 from numpy.typing import NDArray
 
+from kinematics.arrays import Real
 from kinematics.compiling import njit
 
-Real = NDArray[np.float64]
-
-STEPS = 100
+MAX_STEPS = 100
 """Maximum number of evaluations; a dozen is usual."""
 
-EPSILON, LEAST = float(np.finfo(float).eps), float(np.finfo(float).tiny)
+EPSILON, SMALLEST_NUMBER = float(np.finfo(float).eps), float(np.finfo(float).tiny)
 
 
 def find_roots(
@@ -47,7 +46,7 @@ def find_roots(
     f2 = function(x2) if at_high is None else at_high.astype(np.float64)
     state = np.stack([x1, f1, x2, f2, x2, f2])
     x = x1 + 0.5 * (x2 - x1)
-    for _ in range(STEPS):
+    for _ in range(MAX_STEPS):
         if _advance(state, function(x), x):
             break
     x1, f1, x2, f2, _, _ = state
@@ -73,7 +72,7 @@ def _advance(state: Real, values: Real, x: Real) -> bool:
         x1, f1 = x[n], f
         state[0, n], state[1, n], state[2, n], state[3, n], state[4, n], state[5, n] = x1, f1, x2, f2, x3, f3
         near = x1 if abs(f1) < abs(f2) else x2
-        share = (2.0 * EPSILON * abs(near) + LEAST) / abs(x2 - x1)
+        share = (2.0 * EPSILON * abs(near) + SMALLEST_NUMBER) / abs(x2 - x1)
         if share > 0.5 or f1 == 0.0:
             x[n] = x1
             continue
@@ -88,7 +87,7 @@ def _advance(state: Real, values: Real, x: Real) -> bool:
     return done
 
 
-def sign_changes(values: Real) -> NDArray[np.int64]:
+def find_sign_changes(values: Real) -> NDArray[np.int64]:
     """Find indices n along a grid with a change of sign between n and n + 1, not across unknown (NaN) values."""
     known = np.isfinite(values[:-1]) & np.isfinite(values[1:])
     with np.errstate(invalid="ignore"):

@@ -12,20 +12,21 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from kinematics.linkage.planar.constraints import CONSISTENT, SINGULAR, Poses
-from kinematics.linkage.planar.mechanism import Complex, Mechanism, Real
+from kinematics.arrays import Complex, Real
+from kinematics.linkage.planar.constraints import MAX_MISFIT, MIN_SINGULAR_VALUE, Poses
+from kinematics.linkage.planar.mechanism import Mechanism
 
-NEAR = 1e-2
+NEAR_MISFIT = 1e-2
 """Misfit of the constraints, as a share of the size, up to which a position is a valid start: at a change point a dyad
 of rounded dimensions has an error of the root of the rounding."""
 
-EXACT = 1e-12
+EXACT_MISFIT = 1e-12
 """Misfit of dimensions that agree to rounding: such a position needs no comparison with others."""
 
-OTHER = 1e-6
+DISTINCT_TOLERANCE = 1e-6
 """Difference of two poses, as a share of the size or in radians, above which they are distinct."""
 
-CLEARLY = 1e-3
+CLEAR_RATIO = 1e-3
 """Ratio of misfits below which the better of two poses is accepted as the true one, if both satisfy the constraints of
 rounded dimensions, as near a change point. Otherwise the position is undetermined."""
 
@@ -33,7 +34,7 @@ Start = tuple[dict[str, Complex], dict[str, Real]]
 """Joints and angles by name, each of shape (1,) + S + (N,)."""
 
 
-class Settled(NamedTuple):
+class SettledMotion(NamedTuple):
     """Motion over designs × inputs as in :class:`~kinematics.linkage.planar.drive.MechanismMotion`."""
 
     valid: NDArray[np.bool_]
@@ -45,7 +46,7 @@ class Settled(NamedTuple):
 
 def settle(
     mechanism: Mechanism, own: NDArray[np.int64], inputs: Real, starts: Iterable[Start], reference: Real
-) -> Settled:
+) -> SettledMotion:
     """Solve for positions and rates that satisfy all constraints.
 
     Parameters
@@ -62,17 +63,17 @@ def settle(
     length, *shape = inputs.shape
     each = np.repeat(own, shape[-1])
 
-    def of_each(values: NDArray[Any]) -> NDArray[Any]:
+    def expand_designs(values: NDArray[Any]) -> NDArray[Any]:
         return np.asarray(np.broadcast_to(values, mechanism.shape).ravel()[each])
 
-    origin, size = (of_each(values) for values in mechanism.frame)
+    origin, size = (expand_designs(values) for values in mechanism.frame)
     constraints = mechanism.constraints(each)
-    turned = {link: of_each(mechanism.link_angle(link)) for link in constraints.links}
+    turned = {link: expand_designs(mechanism.link_angle(link)) for link in constraints.links}
     moved = inputs.reshape(length, -1).copy()
     moved[0] -= reference[each]
-    if mechanism.driven_by_slide:
+    if mechanism.has_slide_input:
         moved /= size
-        moved[0] += constraints.given(constraints.reference)[0]
+        moved[0] += constraints.get_input(constraints.reference)[0]
     poses = Poses.unknown(length, len(constraints.links), len(each))
     closed = None
     best, rival, least = np.full(len(each), np.inf), np.full(len(each), np.inf), np.full(len(each), np.nan)
@@ -84,41 +85,41 @@ def settle(
         misfit = constraints.misfit(near, moved[:1])
         # The reference's assembly decides whether a position exists at all.
         closed = np.isfinite(misfit) if closed is None else closed
-        left = np.flatnonzero((best > EXACT) & closed & (misfit <= NEAR))
+        left = np.flatnonzero((best > EXACT_MISFIT) & closed & (misfit <= NEAR_MISFIT))
         if not len(left):
             continue
-        found, misfit, smallest = mechanism.constraints(each[left]).settled(near.take(left), moved[:, left])
-        met = misfit <= CONSISTENT
+        found, misfit, smallest = mechanism.constraints(each[left]).settle(near.take(left), moved[:, left])
+        met = misfit <= MAX_MISFIT
         at, found, misfit, smallest = left[met], found.take(met), misfit[met], smallest[met]
         nearer = misfit < best[at]
         # A distinct pose is a rival; the same pose again is not.
-        other = poses.apart(at, found) > OTHER
+        other = poses.measure_distance(at, found) > DISTINCT_TOLERANCE
         rival[at[other]] = np.minimum(rival[at], np.maximum(misfit, best[at]))[other]
-        poses.put(at[nearer], found.take(nearer))
+        poses.store(at[nearer], found.take(nearer))
         best[at], least[at[nearer]] = np.minimum(misfit, best[at]), smallest[nearer]
-        if (best <= EXACT).all():
+        if (best <= EXACT_MISFIT).all():
             break
-    valid = (best <= CONSISTENT) & ((rival > CONSISTENT) | (best <= np.maximum(CLEARLY * rival, EXACT)))
+    valid = (best <= MAX_MISFIT) & ((rival > MAX_MISFIT) | (best <= np.maximum(CLEAR_RATIO * rival, EXACT_MISFIT)))
     for jet in poses:
         jet[:, :, ~valid] = np.nan
     # Rates are undefined where the input does not determine them.
-    smooth = valid & (least > SINGULAR)
+    smooth = valid & (least > MIN_SINGULAR_VALUE)
     for jet in poses:
         jet[1:, :, ~smooth] = np.nan
 
-    def shaped(jet: NDArray[Any], unit: Real, zero: NDArray[Any]) -> NDArray[Any]:
+    def reshape_jet(jet: NDArray[Any], unit: Real, zero: NDArray[Any]) -> NDArray[Any]:
         jet = jet * unit
         jet[0] += zero
         return jet.reshape(length, *shape)
 
     one, none = np.ones(()), np.zeros(())
-    return Settled(
+    return SettledMotion(
         valid.reshape(shape),
         smooth.reshape(shape),
-        {link: shaped(poses.rotations[:, n], one, turned[link]) for n, link in enumerate(constraints.links)},
-        {name: shaped(jet, size, origin) for name, jet in constraints.points(poses).items()},
+        {link: reshape_jet(poses.rotations[:, n], one, turned[link]) for n, link in enumerate(constraints.links)},
+        {name: reshape_jet(jet, size, origin) for name, jet in constraints.points(poses).items()},
         {
-            name: shaped(jet, size, none)
+            name: reshape_jet(jet, size, none)
             for name, jet in zip(mechanism.slide_names, constraints.travels(poses), strict=True)
         },
     )

@@ -10,21 +10,19 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
+from kinematics.arrays import Real
 from kinematics.errors import DimensionError
 from kinematics.linkage.planar.drive import drive_one
 from kinematics.linkage.planar.mechanism import Mechanism
-from kinematics.linkage.planar.program import program_of
-from kinematics.linkage.planar.roots import find_roots, sign_changes
+from kinematics.linkage.planar.program import build_program
+from kinematics.linkage.planar.roots import find_roots, find_sign_changes
 
-Real = NDArray[np.float64]
-
-GRID = 1440
+GRID_SIZE = 1440
 """Number of inputs at which reversals are searched, spaced by a quarter of a degree."""
 
 
-EQUAL = 1e-10
+EQUAL_TOLERANCE = 1e-10
 """Radians by which the rotations of equal strokes may differ: rounding."""
 
 
@@ -72,7 +70,7 @@ class Strokes(NamedTuple):
         return max(self.slow, self.fast) / min(self.slow, self.fast)
 
 
-def reversals(mechanism: Mechanism, output: str) -> Reversals:
+def find_reversals(mechanism: Mechanism, output: str) -> Reversals:
     """Find the reversals of an output while the input link turns once, in the reference's assemblies.
 
     Parameters
@@ -87,47 +85,49 @@ def reversals(mechanism: Mechanism, output: str) -> Reversals:
     DimensionError
         For a mechanism driven by a slide.
     """
-    if mechanism.driven_by_slide:
+    if mechanism.has_slide_input:
         raise DimensionError("input", "a link that turns", mechanism.input)
-    program = program_of(mechanism)
+    program = build_program(mechanism)
     own = program.signs or [1] * len(program.code.rows)
     signs = np.array(own, np.int64).reshape(-1, 1)
 
-    def jets(inputs: Real, order: int) -> Real:
+    def evaluate_jets(inputs: Real, order: int) -> Real:
         motion = drive_one(mechanism, inputs[None], signs, order)
         jet = motion.angles[output] if output in motion.angles else motion.slides[output]
         return np.asarray(jet[:, 0])
 
     start = float(mechanism.reference_input)
-    grid = start + np.linspace(0.0, 2.0 * np.pi, GRID + 1)
-    outputs, rate = jets(grid, 1)
+    grid = start + np.linspace(0.0, 2.0 * np.pi, GRID_SIZE + 1)
+    outputs, rate = evaluate_jets(grid, 1)
     # The turn is closed: rounding at its end must not add or hide a reversal at the reference.
     rate[-1] = rate[0]
     full = bool(np.all(np.isfinite(rate)))
-    left = sign_changes(rate)
+    left = find_sign_changes(rate)
     inputs = np.empty(0)
     if len(left):
-        inputs = find_roots(lambda at: jets(at, 1)[1], grid[left], grid[left + 1], rate[left], rate[left + 1])[0]
-    turned = jets(inputs, 0)[0] if len(left) else inputs
+        inputs = find_roots(lambda at: evaluate_jets(at, 1)[1], grid[left], grid[left + 1], rate[left], rate[left + 1])[
+            0
+        ]
+    turned = evaluate_jets(inputs, 0)[0] if len(left) else inputs
     if output in mechanism.links:
         # Angles are known modulo full turns; the unwrapped grid selects the turn.
         turned = turned + 2.0 * np.pi * np.round((np.unwrap(outputs)[left] - turned) / (2.0 * np.pi))
     return Reversals(inputs, turned, full)
 
 
-def strokes(mechanism: Mechanism, output: str) -> Strokes | None:
+def find_strokes(mechanism: Mechanism, output: str) -> Strokes | None:
     """Find the strokes of an output; None if it does not reverse exactly twice, or the input cannot rotate fully.
 
-    Parameters and errors are those of :func:`reversals`.
+    Parameters and errors are those of :func:`find_reversals`.
     """
-    inputs, outputs, full = reversals(mechanism, output)
+    inputs, outputs, full = find_reversals(mechanism, output)
     if not full or len(inputs) != 2:
         return None
     between = float(inputs[1] - inputs[0])
     travel = float(abs(outputs[1] - outputs[0]))
     # The slow stroke comes first.
     order = between >= np.pi
-    if abs(between - np.pi) <= EQUAL:
+    if abs(between - np.pi) <= EQUAL_TOLERANCE:
         # Equal strokes: start with the one that begins nearer to the reference, so that rounding does not decide.
         near = np.abs(np.exp(1j * (inputs - float(mechanism.reference_input))) - 1.0)
         order = bool(near[0] <= near[1])

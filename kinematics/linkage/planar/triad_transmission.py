@@ -19,12 +19,9 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
+from kinematics.arrays import Complex, Real
 from kinematics.linkage.planar.mechanism import GROUND, Mechanism
-
-Real = NDArray[np.float64]
-Complex = NDArray[np.complex128]
 
 
 class Leg(NamedTuple):
@@ -39,7 +36,7 @@ Triad = tuple[Leg, Leg, Leg]
 """Two legs on one link (input or ground), and the third."""
 
 
-def triad_of(mechanism: Mechanism) -> Triad | None:
+def find_triad(mechanism: Mechanism) -> Triad | None:
     """Find the triad of a class III mechanism of four links besides input and ground; None for another structure."""
     moving = [name for name in mechanism.links if name not in (GROUND, mechanism.input)]
     if len(moving) != 4 or mechanism.slides or mechanism.gears:
@@ -62,28 +59,28 @@ def triad_of(mechanism: Mechanism) -> Triad | None:
     return None
 
 
-def triad_sines(triad: Triad, joints: dict[str, Complex]) -> dict[str, Real]:
+def compute_triad_sines(triad: Triad, joints: dict[str, Complex]) -> dict[str, Real]:
     """Compute the sines of the transmission angles by the legs' links, all of one sign, each of the joints' shape.
 
     The sine is 0 where a pin cannot move.
     """
-    return {leg.link: _sine(joints, leg, triad[n - 2], triad[n - 1]) for n, leg in enumerate(triad)}
+    return {leg.link: _compute_sine(joints, leg, triad[n - 2], triad[n - 1]) for n, leg in enumerate(triad)}
 
 
-def _sine(joints: dict[str, Complex], leg: Leg, *others: Leg) -> Real:
+def _compute_sine(joints: dict[str, Complex], leg: Leg, *others: Leg) -> Real:
     pin = joints[leg.inner]
     with np.errstate(divide="ignore", invalid="ignore"):  # NaN where the mechanism cannot be assembled
-        e1, e2 = (_direction(joints, other) for other in others)
+        e1, e2 = (_compute_direction(joints, other) for other in others)
         q1, q2 = (joints[other.inner] - pin for other in others)
         m1, m2 = np.imag(np.conj(q1) * e1), np.imag(np.conj(q2) * e2)
         moved = (e1.imag * m2 - m1 * e2.imag) + 1j * (m1 * e2.real - e1.real * m2)
-        sine = np.real(np.conj(_direction(joints, leg)) * moved) / np.abs(moved)
+        sine = np.real(np.conj(_compute_direction(joints, leg)) * moved) / np.abs(moved)
     return np.asarray(np.where(moved == 0.0, 0.0, sine))
 
 
-def _direction(joints: dict[str, Complex], leg: Leg) -> Complex:
+def _compute_direction(joints: dict[str, Complex], leg: Leg) -> Complex:
     vector = joints[leg.inner] - joints[leg.outer]
     return np.asarray(vector / np.abs(vector))
 
 
-__all__ = ["Leg", "Triad", "triad_of", "triad_sines"]
+__all__ = ["Leg", "Triad", "compute_triad_sines", "find_triad"]

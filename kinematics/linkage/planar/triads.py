@@ -25,48 +25,44 @@ import math
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
+from kinematics.arrays import Complex, Integers, Real
 from kinematics.compiling import njit
 from kinematics.linkage.planar.mechanism import GROUND, Mechanism, TopologyError
 
-Real = NDArray[np.float64]
-Complex = NDArray[np.complex128]
-Indices = NDArray[np.int64]
-
-STALLED = 1e-12
+MIN_CERTIFIED_STEP = 1e-12
 """Certified step, radians, below which the position is a toggle: its distance is up to 100 times as large, 1e-10."""
 
-CONVERGED = 1e-14
+CONVERGENCE_TOLERANCE = 1e-14
 """Newton correction, radians, at which a position counts as solved."""
 
 
-MOST_NODES = 100_000
+MAX_NODES = 100_000
 """Maximum number of certified steps: links of very different lengths would need too many, and positions beyond are then
 reported as not reached."""
 
-NODES_AT_ONCE = 256
+NODE_BATCH = 256
 """Initial number of steps per batch; later batches double the number of nodes."""
 
-CERTAIN = 0.9
+SAFE_SHARE = 0.9
 """Share of the certified step that is taken: at its end Newton's method would no longer converge quadratically."""
 
-LEAST_SHARE = 1e-9
+MIN_NORM_SHARE = 1e-9
 """Minimum ε in the norm of the certificate; at a distance of 1e-10 from a toggle the optimum is about 1e-5."""
 
-LOST = 1e-12
+MIN_RECIPROCAL_CONDITION = 1e-12
 """Reciprocal condition of the equations below which derivatives are undefined: no correct digits would remain."""
 
 FULL_TURN = 2.0 * np.pi
 
-NEWTON_STEPS = 20
+MAX_NEWTON_STEPS = 20
 """Maximum number of Newton steps; from inside the ball three or four suffice."""
 
-FEW_STEPS = 3
+MIN_NEWTON_STEPS = 3
 """Number of steps after which a correction that is not halved is rounding: in the ball each is at most half the
 last."""
 
-CLOSED = 1e-13
+CLOSURE_TOLERANCE = 1e-13
 """Maximum misfit of the loops, as a share of the size: where the equations are almost singular, rounding may keep
 Newton's method from the solution that the theorem guarantees, and no position is returned."""
 
@@ -80,7 +76,7 @@ class Loops(NamedTuple):
     links: tuple[str, ...]
 
 
-def loop_equations(mechanism: Mechanism, joints: dict[str, complex]) -> Loops:
+def build_loop_equations(mechanism: Mechanism, joints: dict[str, complex]) -> Loops:
     """Build the loops of a pin-jointed mechanism from a tree of its links; ``joints``: one design, unit coordinates.
 
     Raises
@@ -94,7 +90,7 @@ def loop_equations(mechanism: Mechanism, joints: dict[str, complex]) -> Loops:
     column = {link: n for n, link in enumerate(unknown)}
     width = len(unknown) + 2  # unknown links, input, ground
 
-    def along(link: str, start: str, end: str) -> Complex:
+    def build_vector_row(link: str, start: str, end: str) -> Complex:
         row = np.zeros(width, np.complex128)
         index = column.get(link, width - 2 if link == mechanism.input else width - 1)
         row[index] = joints[end] - joints[start]
@@ -116,7 +112,7 @@ def loop_equations(mechanism: Mechanism, joints: dict[str, complex]) -> Loops:
         reached.append(link)
         pin = next(j for j in mechanism.links[link] if j in place)
         for joint in mechanism.links[link]:
-            here = place[pin] + along(link, pin, joint)
+            here = place[pin] + build_vector_row(link, pin, joint)
             if joint in place and joint != pin:
                 rows.append(here - place[joint])
             elif joint not in place:
@@ -146,7 +142,7 @@ class Track:
         """Certified step at the reference, radians; below ``STALLED`` the reference is a toggle."""
         return self._sides[1.0].first_step
 
-    def at(self, rotation: Real) -> Real:
+    def find_rotations(self, rotation: Real) -> Real:
         """Find rotations of the unknown links for input rotations from the reference; NaN if unreachable.
 
         An input is reached by its own rotation or, if a toggle lies before it, by the smallest rotation that differs by
@@ -161,30 +157,30 @@ class Track:
         -------
         float, shape (links, N)
         """
-        found = self.followed(rotation)
+        found = self.follow(rotation)
         # Try the same input with other numbers of full turns.
         lost = np.flatnonzero(np.isnan(found[0]) & np.isfinite(rotation))
         least = np.mod(rotation + np.pi, FULL_TURN) - np.pi
         turns = 0
-        while len(lost) and not all(side.ended_before(FULL_TURN * (turns - 0.5)) for side in self._sides.values()):
+        while len(lost) and not all(side.is_ended_before(FULL_TURN * (turns - 0.5)) for side in self._sides.values()):
             for away in (-1.0, 1.0) if turns else (0.0,):
-                found[:, lost] = self.followed(least[lost] + away * np.copysign(FULL_TURN * turns, least[lost]))
+                found[:, lost] = self.follow(least[lost] + away * np.copysign(FULL_TURN * turns, least[lost]))
                 lost = lost[np.isnan(found[0, lost])]
             turns += 1
         return found
 
     @property
-    def given_up(self) -> bool:
+    def has_given_up(self) -> bool:
         """Whether a continuation was abandoned before its end: unreached positions may then exist."""
         return any(side.given_up for side in self._sides.values())
 
-    def followed(self, rotation: Real) -> Real:
-        """Follow each input by its own rotation only; NaN if a toggle lies before it. See :meth:`at`."""
+    def follow(self, rotation: Real) -> Real:
+        """Follow each input by its own rotation only; NaN if a toggle lies before it. See :meth:`find_rotations`."""
         found = np.full((len(self._loops.links), len(rotation)), np.nan)
         for sign, side in self._sides.items():
             chosen = np.flatnonzero(sign * rotation >= 0.0)
             if len(chosen):
-                found[:, chosen] = side.at(rotation[chosen])
+                found[:, chosen] = side.find_rotations(rotation[chosen])
         return found
 
 
@@ -197,61 +193,61 @@ class _Side:
         self._nodes, self._reach = np.zeros(1), np.zeros(1)
         self._angles = np.zeros((1, len(loops.links)))
         self._ended = self.given_up = False
-        self._reach[0] = _reach(*self._equations, 0.0, self._angles[0])
+        self._reach[0] = _compute_reach(*self._equations, 0.0, self._angles[0])
 
     @property
     def first_step(self) -> float:
         return float(self._reach[0])
 
-    def ended_before(self, rotation: float) -> bool:
+    def is_ended_before(self, rotation: float) -> bool:
         """Return whether a toggle lies within this rotation."""
         self._extend(rotation)
         return self._ended and float(self._nodes[-1] + self._reach[-1]) < rotation
 
-    def at(self, rotation: Real) -> Real:
+    def find_rotations(self, rotation: Real) -> Real:
         ahead = self._sign * rotation
         self._extend(float(ahead.max()))
         node = np.searchsorted(self._nodes, ahead, side="right") - 1
         found = np.full((len(rotation), self._angles.shape[1]), np.nan)
-        _near(*self._equations, self._sign * self._nodes, self._reach, self._angles, node, rotation, found)
+        _solve_near(*self._equations, self._sign * self._nodes, self._reach, self._angles, node, rotation, found)
         return found.T
 
     def _extend(self, target: float) -> None:
         while not self._ended and self._nodes[-1] + self._reach[-1] < target:
-            if len(self._nodes) > MOST_NODES:
+            if len(self._nodes) > MAX_NODES:
                 self._ended = self.given_up = True
                 return
-            room = max(NODES_AT_ONCE, min(len(self._nodes), MOST_NODES - len(self._nodes) + 2))
+            room = max(NODE_BATCH, min(len(self._nodes), MAX_NODES - len(self._nodes) + 2))
             nodes, reach, angles = np.empty(room), np.empty(room), np.empty((room, self._angles.shape[1]))
             nodes[0], reach[0], angles[0] = self._nodes[-1], self._reach[-1], self._angles[-1]
-            count, self._ended, lost = _march(*self._equations, self._sign, target, nodes, reach, angles)
+            count, self._ended, lost = _follow_nodes(*self._equations, self._sign, target, nodes, reach, angles)
             self.given_up = self.given_up or lost
             self._nodes = np.concatenate([self._nodes, nodes[1:count]])
             self._reach = np.concatenate([self._reach, reach[1:count]])
             self._angles = np.concatenate([self._angles, angles[1:count]])
 
 
-def rates(loops: Loops, rotation: Real, angles: Real, input_rates: Real) -> Real:
+def compute_rates(loops: Loops, rotation: Real, angles: Real, input_rates: Real) -> Real:
     """Compute time derivatives of the unknown rotations, shape (n, links, N); NaN at toggles.
 
     ``input_rates`` holds the input's speed, acceleration and jerk, or the first n of them, shape (n, N).
     """
     out = np.empty((len(input_rates), *angles.shape))
-    _rates(loops.coefficients, loops.by_input, rotation, angles, input_rates, out)
+    _fill_rates(loops.coefficients, loops.by_input, rotation, angles, input_rates, out)
     return out
 
 
 @njit(cache=True, nogil=True)
-def _reach(c: Complex, k: Complex, fixed: Complex, at: float, phi: Real) -> float:
+def _compute_reach(c: Complex, k: Complex, fixed: Complex, at: float, phi: Real) -> float:
     """Compute the certified step at a solution; 0 where the equations are singular."""
     links = len(phi)
     value, inverse = np.empty(links), np.empty((links, links))
     evaluate(c, k, fixed, phi, at, value, inverse)
-    return _certified(c, k, phi, at, inverse) if np.isfinite(invert(inverse)) else 0.0
+    return _certify_step(c, k, phi, at, inverse) if np.isfinite(invert(inverse)) else 0.0
 
 
 @njit(cache=True, nogil=True)
-def _march(
+def _follow_nodes(
     c: Complex, k: Complex, fixed: Complex, sign: float, target: float, nodes: Real, reach: Real, angles: Real
 ) -> tuple[int, bool, bool]:
     """Add nodes after the known first one until the target is passed.
@@ -265,29 +261,29 @@ def _march(
     invert(inverse)
     for n in range(1, len(nodes)):
         step = reach[n - 1]
-        if step < STALLED:
+        if step < MIN_CERTIFIED_STEP:
             return n, True, False
         if nodes[n - 1] + step >= target:
             return n, False, False
         at, to = sign * nodes[n - 1], sign * (nodes[n - 1] + step)
         # The theorem guarantees a solution, but rounding may prevent convergence.
-        if not _newton(c, k, fixed, phi, at, to, value, inverse, slope):
+        if not _solve_newton(c, k, fixed, phi, at, to, value, inverse, slope):
             return n, True, True
         nodes[n], angles[n] = nodes[n - 1] + step, phi
         # Newton's last inverse belongs to the solution, up to a correction of rounding size.
-        reach[n] = _certified(c, k, phi, to, inverse) if np.isfinite(inverse).all() else 0.0
+        reach[n] = _certify_step(c, k, phi, to, inverse) if np.isfinite(inverse).all() else 0.0
     return len(nodes), False, False
 
 
 @njit(cache=True, nogil=True)
-def _near(
+def _solve_near(
     c: Complex,
     k: Complex,
     fixed: Complex,
     nodes: Real,
     reach: Real,
     angles: Real,
-    node: Indices,
+    node: Integers,
     rotation: Real,
     found: Real,
 ) -> None:
@@ -303,12 +299,12 @@ def _near(
         if rotation[n] != at:
             evaluate(c, k, fixed, phi, at, value, inverse)
             invert(inverse)
-            if not _newton(c, k, fixed, phi, at, rotation[n], value, inverse, slope):
+            if not _solve_newton(c, k, fixed, phi, at, rotation[n], value, inverse, slope):
                 phi[:] = np.nan
 
 
 @njit(cache=True, nogil=True)
-def _newton(
+def _solve_newton(
     c: Complex, k: Complex, fixed: Complex, phi: Real, at: float, to: float, value: Real, inverse: Real, slope: Real
 ) -> bool:
     """Move a solution from one input to another within its certified step; ``inverse`` is J⁻¹ before and after.
@@ -323,23 +319,23 @@ def _newton(
         slope[row + loops] = (k[row] * turned).imag
     _subtract(phi, inverse, slope)
     last = np.inf
-    for n in range(NEWTON_STEPS):
+    for n in range(MAX_NEWTON_STEPS):
         evaluate(c, k, fixed, phi, to, value, inverse)
         invert(inverse)
         change = _subtract(phi, inverse, value)
-        if change < CONVERGED:
+        if change < CONVERGENCE_TOLERANCE:
             return True
-        if n > FEW_STEPS and change > 0.5 * last:
+        if n > MIN_NEWTON_STEPS and change > 0.5 * last:
             break
         last = change
     evaluate(c, k, fixed, phi, to, value, inverse)
     misfit = np.abs(value).max()
     invert(inverse)
-    return bool(misfit < CLOSED)
+    return bool(misfit < CLOSURE_TOLERANCE)
 
 
 @njit(cache=True, nogil=True)
-def _rates(c: Complex, k: Complex, rotation: Real, angles: Real, given: Real, out: Real) -> None:
+def _fill_rates(c: Complex, k: Complex, rotation: Real, angles: Real, given: Real, out: Real) -> None:
     """Solve the differentiated loops, order by order: J φ⁽ⁿ⁾ = −(terms of lower orders)."""
     loops, links = c.shape
     value, inverse, right = np.empty(links), np.empty((links, links)), np.empty(links)
@@ -355,7 +351,7 @@ def _rates(c: Complex, k: Complex, rotation: Real, angles: Real, given: Real, ou
             for col in range(links):
                 total += abs(inverse[row, col])
             largest = max(largest, total)
-        sound = invert(inverse) * largest < 1.0 / LOST
+        sound = invert(inverse) * largest < 1.0 / MIN_RECIPROCAL_CONDITION
         w1 = given[0, n]
         w2 = given[1, n] if len(given) > 1 else 0.0
         w3 = given[2, n] if len(given) > 2 else 0.0
@@ -389,7 +385,7 @@ def _rates(c: Complex, k: Complex, rotation: Real, angles: Real, given: Real, ou
 
 
 @njit(cache=True, nogil=True)
-def _certified(c: Complex, k: Complex, phi: Real, at: float, inverse: Real) -> float:
+def _certify_step(c: Complex, k: Complex, phi: Real, at: float, inverse: Real) -> float:
     """Certify a step: 90 % of the range within which the continuation is the only solution."""
     loops, links = c.shape
     z = complex(math.cos(at), math.sin(at))
@@ -427,7 +423,7 @@ def _certified(c: Complex, k: Complex, phi: Real, at: float, inverse: Real) -> f
                 beside[row] += abs(a[row, col].real)
     best, share = 0.0, 1.0
     # Halve ε while the certified step grows.
-    while share > LEAST_SHARE:
+    while share > MIN_NORM_SHARE:
         ball = np.inf
         for row in range(links):
             second = abs(along[row]) + share * (across[row] + share * beside[row])
@@ -445,7 +441,7 @@ def _certified(c: Complex, k: Complex, phi: Real, at: float, inverse: Real) -> f
         if step <= best:
             break
         best, share = step, share * 0.5
-    return CERTAIN * best
+    return SAFE_SHARE * best
 
 
 @njit(cache=True, nogil=True)

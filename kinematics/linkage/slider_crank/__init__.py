@@ -7,11 +7,11 @@ from kinematics.linkage.slider_crank.closed_form import (
     SliderMotion,
     SliderPositions,
     coupler_points,
-    crank_limits,
-    full_rotation,
+    find_crank_limits,
+    find_toggle_angles,
+    has_full_rotation,
     motion,
     positions,
-    toggle_angles,
 )
 
 __all__ = [
@@ -21,9 +21,9 @@ __all__ = [
     "SliderMotion",
     "SliderPositions",
     "coupler_points",
-    "crank_limits",
-    "full_rotation",
+    "find_crank_limits",
+    "find_toggle_angles",
+    "has_full_rotation",
     "motion",
     "positions",
-    "toggle_angles",
 ]

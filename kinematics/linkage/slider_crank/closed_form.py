@@ -23,17 +23,15 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike
 
+from kinematics.arrays import Complex, Mask, Real
 from kinematics.linkage.batch import (
-    OPEN,
-    Complex,
+    OPEN_ASSEMBLY,
     CouplerPoints,
     DesignBatch,
-    Mask,
-    Real,
     require,
-    swept_coupler_points,
-    swept_motion,
-    swept_positions,
+    sweep_coupler_points,
+    sweep_motion,
+    sweep_positions,
 )
 from kinematics.linkage.slider_crank import kernels
 
@@ -83,8 +81,8 @@ class SliderCrank(DesignBatch):
         coupler: ArrayLike,
         coupler_point: ArrayLike = 0.0,
     ) -> None:
-        blocks = self._keep(pivot, slide_point, coupler_point, crank, coupler, slide_angle)
-        if not kernels.sound_dimensions(*blocks):
+        blocks = self._store_fields(pivot, slide_point, coupler_point, crank, coupler, slide_angle)
+        if not kernels.has_sound_dimensions(*blocks):
             for name, length in (("crank", self.crank), ("coupler", self.coupler)):
                 require(name, "positive and finite", length, np.isfinite(length) & (length > 0.0))
             for name in ("pivot", "slide_point", "coupler_point", "slide_angle"):
@@ -138,7 +136,7 @@ class SliderMotion(NamedTuple):
     jerk: SliderDerivatives
 
 
-def positions(linkage: SliderCrank, crank_angle: ArrayLike, assembly: ArrayLike = OPEN) -> SliderPositions:
+def positions(linkage: SliderCrank, crank_angle: ArrayLike, assembly: ArrayLike = OPEN_ASSEMBLY) -> SliderPositions:
     """Compute closed-form positions for every design at every crank angle (Norton 4.16, 4.17).
 
     Parameters
@@ -170,18 +168,18 @@ def positions(linkage: SliderCrank, crank_angle: ArrayLike, assembly: ArrayLike 
     >>> round(float(at.travel), 4)
     4.9899
     """
-    return SliderPositions(*swept_positions(kernels, linkage.blocks, crank_angle, assembly))
+    return SliderPositions(*sweep_positions(kernels, linkage.blocks, crank_angle, assembly))
 
 
-def coupler_points(linkage: SliderCrank, crank_angle: ArrayLike, assembly: ArrayLike = OPEN) -> CouplerPoints:
+def coupler_points(linkage: SliderCrank, crank_angle: ArrayLike, assembly: ArrayLike = OPEN_ASSEMBLY) -> CouplerPoints:
     """Compute only coupler points, for large sweeps; parameters, shapes and errors as for :func:`positions`."""
-    return swept_coupler_points(kernels, linkage.blocks, crank_angle, assembly)
+    return sweep_coupler_points(kernels, linkage.blocks, crank_angle, assembly)
 
 
 def motion(
     linkage: SliderCrank,
     crank_angle: ArrayLike,
-    assembly: ArrayLike = OPEN,
+    assembly: ArrayLike = OPEN_ASSEMBLY,
     *,
     speed: ArrayLike = 1.0,
     acceleration: ArrayLike = 0.0,
@@ -207,7 +205,7 @@ def motion(
     DimensionError, ShapeError
         As for :func:`positions`; ShapeError also for rates that do not broadcast with them.
     """
-    position, *rates = swept_motion(kernels, linkage.blocks, crank_angle, assembly, speed, acceleration, jerk)
+    position, *rates = sweep_motion(kernels, linkage.blocks, crank_angle, assembly, speed, acceleration, jerk)
     return SliderMotion(SliderPositions(*position), *(SliderDerivatives(*rate) for rate in rates))
 
 
@@ -224,7 +222,7 @@ class CrankLimits(NamedTuple):
     upper_toggle: Mask
 
 
-def crank_limits(linkage: SliderCrank) -> CrankLimits:
+def find_crank_limits(linkage: SliderCrank) -> CrankLimits:
     """Find the range of heights of A: those of the crank circle from which the coupler reaches the slide."""
     a, b, c = linkage.crank, linkage.coupler, linkage.offset
     sound = np.abs(c) <= a + b
@@ -234,18 +232,18 @@ def crank_limits(linkage: SliderCrank) -> CrankLimits:
     )
 
 
-def full_rotation(linkage: SliderCrank) -> Mask:
+def has_full_rotation(linkage: SliderCrank) -> Mask:
     """Return whether the crank rotates fully without a toggle: a + |c| < b."""
     return np.asarray(linkage.crank + np.abs(linkage.offset) < linkage.coupler)
 
 
-def toggle_angles(linkage: SliderCrank) -> Real:
+def find_toggle_angles(linkage: SliderCrank) -> Real:
     """Find the absolute crank angles of all toggles of one design, radians in (−π, π], ascending; none for a full
     crank.
 
     The coupler is normal to the slide there: a sin(θ2 − φ) = c ∓ b.
     """
-    limits, a = crank_limits(linkage), float(linkage.crank)
+    limits, a = find_crank_limits(linkage), float(linkage.crank)
     heights = [float(limits.lower)] * bool(limits.lower_toggle) + [float(limits.upper)] * bool(limits.upper_toggle)
     # arcsin(y/a) without loss of digits near ±a.
     first = np.array([np.arctan2(y, np.sqrt((a - y) * (a + y))) for y in heights])

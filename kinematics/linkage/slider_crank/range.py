@@ -12,10 +12,10 @@ import math
 
 import numpy as np
 
-from kinematics.linkage.slider_crank.closed_form import SliderCrank, crank_limits, full_rotation
+from kinematics.linkage.slider_crank.closed_form import SliderCrank, find_crank_limits, has_full_rotation
 
 
-def height_range(linkage: SliderCrank, start: float, end: float) -> tuple[float, float]:
+def find_height_range(linkage: SliderCrank, start: float, end: float) -> tuple[float, float]:
     """Find the minimum and maximum height of A while the crank turns from ``start`` to ``end``, absolute radians."""
     low, high = sorted((start - float(linkage.slide_angle), end - float(linkage.slide_angle)))
     ends = [math.sin(low), math.sin(high)]
@@ -27,29 +27,29 @@ def height_range(linkage: SliderCrank, start: float, end: float) -> tuple[float,
 
 def stays_on_branch(linkage: SliderCrank, start: float, end: float) -> bool:
     """Return whether the crank turns from ``start`` to ``end`` without meeting a toggle."""
-    low, high = height_range(linkage, start, end)
+    low, high = find_height_range(linkage, start, end)
     b, c = float(linkage.coupler), float(linkage.offset)
     return c - b < low and high < c + b
 
 
-def least_transmission_angle(linkage: SliderCrank, start: float, end: float) -> float:
+def find_min_transmission_angle(linkage: SliderCrank, start: float, end: float) -> float:
     """Find the minimum transmission angle while the crank turns from ``start`` to ``end``, radians; 0 if it cannot."""
-    low, high = height_range(linkage, start, end)
+    low, high = find_height_range(linkage, start, end)
     b, c = float(linkage.coupler), float(linkage.offset)
     across = max(abs(c - low), abs(c - high))
     # arccos(across/b) without loss of digits near a toggle.
     return math.atan2(math.sqrt(max((b - across) * (b + across), 0.0)), across)
 
 
-def same_circuit(linkage: SliderCrank, angle: float, assembly: int, other_angle: float, other_assembly: int) -> bool:
+def is_same_circuit(linkage: SliderCrank, angle: float, assembly: int, other_angle: float, other_assembly: int) -> bool:
     """Return whether two valid configurations (crank angle, assembly sign) lie on one circuit.
 
     A crank that rotates fully has a circuit for each assembly. One toggle height gives a single circuit; two give two
     circuits, with the pin A ahead of the pivot along the slide, or behind it.
     """
-    if bool(full_rotation(linkage)):
+    if bool(has_full_rotation(linkage)):
         return assembly == other_assembly
-    limits = crank_limits(linkage)
+    limits = find_crank_limits(linkage)
     if not (limits.lower_toggle and limits.upper_toggle):
         return True
     ahead = np.cos(np.array([angle, other_angle]) - float(linkage.slide_angle)) > 0.0

@@ -16,8 +16,9 @@ from __future__ import annotations
 import math
 from typing import NamedTuple
 
+from kinematics.arrays import Real
 from kinematics.compiling import njit
-from kinematics.linkage.kernels import ON_TOGGLE, OPTIONS, Real, direction
+from kinematics.linkage.kernels import OPTIONS, TOGGLE_SLACK, compute_direction
 
 POSES, POINTS, OUTPUTS = 0, 1, 2
 """Sorts of targets: poses of the coupler's body, positions of P, or positions of the output."""
@@ -55,7 +56,7 @@ class Drive(NamedTuple):
 
 
 @njit(**OPTIONS)
-def closed(
+def close_loop(
     drive: Drive, row: Real, sign: float, cosine: float, sine: float
 ) -> tuple[bool, float, float, float, float, float, float, float, float]:
     """Close the loop: return whether it closes; k, u = B − A and the guide's normal n at B; and the length b."""
@@ -66,7 +67,7 @@ def closed(
         # Along and across the slide: A is k_y above the pivot's parallel to it, the slide ``offset`` below.
         across = -row[2] - (kx * -ey + ky * ex)
         square = (b - across) * (b + across)
-        valid = square >= -2.0 * ON_TOGGLE * b * max(a, b, abs(row[2]))
+        valid = square >= -2.0 * TOGGLE_SLACK * b * max(a, b, abs(row[2]))
         along = sign * math.sqrt(max(square, 0.0))
         return valid, kx, ky, ex * along - ey * across, ey * along + ex * across, -ey, ex, b, along
     a, b, c = row[4], row[5], row[6]
@@ -75,7 +76,7 @@ def closed(
     square = dx * dx + dy * dy
     f = math.sqrt(square)
     product = (b + c + f) * (b + c - f) * (f + (b - c)) * (f - (b - c))
-    valid = (product >= -4.0 * ON_TOGGLE * b * c * square) & (f > 0.0)
+    valid = (product >= -4.0 * TOGGLE_SLACK * b * c * square) & (f > 0.0)
     half = 0.5 / square
     along = (square + (b - c) * (b + c)) * half
     height = sign * math.sqrt(max(product, 0.0)) * half
@@ -84,17 +85,17 @@ def closed(
 
 
 @njit(**OPTIONS)
-def misses(
+def measure_misses(
     drive: Drive, row: Real, target: Real, cosine: float, sine: float
 ) -> tuple[bool, float, float, float, float, float, float]:
     """Return whether the loop closes; deviations x, y and angle from a target; and their rates by the input."""
-    valid, kx, ky, ux, uy, nx, ny, b, _ = closed(drive, row, target[6], cosine, sine)
+    valid, kx, ky, ux, uy, nx, ny, b, _ = close_loop(drive, row, target[6], cosine, sine)
     turn = -(ny * kx - nx * ky) / (ny * ux - nx * uy)
     if drive.sort == OUTPUTS:
         if drive.slides:
             travel = (row[0] + kx + ux) * drive.ex + (row[1] + ky + uy) * drive.ey - target[2]
             return valid, travel, 0.0, 0.0, (-ky - turn * uy) * drive.ex + (kx + turn * ux) * drive.ey, 0.0, 0.0
-        off = direction(nx * target[4] + ny * target[5], ny * target[4] - nx * target[5])
+        off = compute_direction(nx * target[4] + ny * target[5], ny * target[4] - nx * target[5])
         square = nx * nx + ny * ny
         return valid, 0.0, 0.0, off, 0.0, 0.0, (nx * (kx + turn * ux) + ny * (ky + turn * uy)) / square
     at = 5 if drive.slides else 7
@@ -103,25 +104,25 @@ def misses(
     x, y = row[0] + kx + px - target[2], row[1] + ky + py - target[3]
     off = 0.0
     if drive.sort == POSES:
-        off = direction(ux * target[4] + uy * target[5], uy * target[4] - ux * target[5])
+        off = compute_direction(ux * target[4] + uy * target[5], uy * target[4] - ux * target[5])
     return valid, x, y, off, -ky - turn * py, kx + turn * px, turn if drive.sort == POSES else 0.0
 
 
 @njit(**OPTIONS)
-def sound(drive: Drive, row: Real) -> bool:
+def is_sound(drive: Drive, row: Real) -> bool:
     """Return whether all links have a positive length."""
     least = min(row[3], row[4]) if drive.slides else min(row[4], row[5], row[6])
     return bool(least > 0.0)
 
 
 @njit(**OPTIONS)
-def _between(low: float, high: float, place: float) -> bool:
+def _is_between(low: float, high: float, place: float) -> bool:
     """Return whether a range of angles contains an angle modulo full turns."""
     return place + math.tau * math.ceil((low - place) / math.tau) <= high
 
 
 @njit(**OPTIONS)
-def on_branch(drive: Drive, row: Real, low: float, high: float) -> bool:
+def is_on_branch(drive: Drive, row: Real, low: float, high: float) -> bool:
     """Return whether a variant turns over all its targets, and the margins beyond them, without a toggle.
 
     The distance of A from O4, or from the slide, is extreme with the crank along the ground or normal to the slide.
@@ -138,7 +139,7 @@ def on_branch(drive: Drive, row: Real, low: float, high: float) -> bool:
         zero = math.atan2(drive.ey, drive.ex) + 0.5 * math.pi
         if not (far_up or far_down):
             return True
-        if (far_up and _between(low, high, zero)) or (far_down and _between(low, high, zero + math.pi)):
+        if (far_up and _is_between(low, high, zero)) or (far_down and _is_between(low, high, zero + math.pi)):
             return False
         return not ends or max(abs(row[2] + a * math.cos(low - zero)), abs(row[2] + a * math.cos(high - zero))) < b
     a, b, c = row[4], row[5], row[6]
@@ -148,8 +149,8 @@ def on_branch(drive: Drive, row: Real, low: float, high: float) -> bool:
     near, far = abs(d - a) <= abs(b - c), d + a >= b + c
     if not (near or far):
         return True
-    zero = direction(gx, gy)
-    if (near and _between(low, high, zero)) or (far and _between(low, high, zero + math.pi)):
+    zero = compute_direction(gx, gy)
+    if (near and _is_between(low, high, zero)) or (far and _is_between(low, high, zero + math.pi)):
         return False
     if not ends:
         return True

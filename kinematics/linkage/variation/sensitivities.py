@@ -25,9 +25,10 @@ from typing import NamedTuple
 
 import numpy as np
 
-from kinematics.linkage.variation.driven import Complex, Real, Task, Whole, deviations
+from kinematics.arrays import Complex, Integers, Real
+from kinematics.linkage.variation.variants import Task, measure_deviations
 
-POLISHED = 2
+POLISH_STEPS = 2
 """Newton steps that polish the closest inputs; the kernels leave an error of 1e-6 rad."""
 
 
@@ -39,7 +40,7 @@ class Sensitivities(NamedTuple):
     inputs : float, shape (t,)
         Closest inputs of the nominal linkage, radians.
     offsets : float, shape (t, 3)
-        Its deviations x, y, angle there (see :func:`deviations`).
+        Its deviations x, y, angle there (see :func:`measure_deviations`).
     fixed : float, shape (t, 3, n)
         Their derivatives at these inputs.
     motion : float, shape (t, 3)
@@ -85,7 +86,7 @@ def _dot(a: Complex, b: Complex | np.complex128) -> Real:
     return np.asarray((a * np.conj(b)).real)
 
 
-def _loop(task: Task, row: Real, inputs: Real, assemblies: Whole) -> _Loop:
+def _differentiate_loop(task: Task, row: Real, inputs: Real, assemblies: Integers) -> _Loop:
     """Differentiate the loop of the linkage with the dimensions ``row``, shape (n,)."""
     n = len(row)
     lengths = 3 if task.slides else 4
@@ -97,9 +98,9 @@ def _loop(task: Task, row: Real, inputs: Real, assemblies: Whole) -> _Loop:
     o2[:, 0], o2[:, 1] = 1.0, 1j
     dk[:, lengths], dk[:, n] = np.exp(1j * inputs), 1j * crank
     if task.slides:
-        normal = np.full(len(inputs), 1j * task.along)
+        normal = np.full(len(inputs), 1j * task.slide_direction)
         across = -row[2] - _dot(crank, normal)
-        u = task.along * (assemblies * np.sqrt((b - across) * (b + across))) + normal * across
+        u = task.slide_direction * (assemblies * np.sqrt((b - across) * (b + across))) + normal * across
         guide = _dot(normal[:, None], o2)
         guide[:, 2] -= 1.0
         held = np.zeros(shape, np.complex128)
@@ -134,7 +135,7 @@ def _loop(task: Task, row: Real, inputs: Real, assemblies: Whole) -> _Loop:
     return _Loop(u, normal, arm, turn, du, dn, db, o2 + dk + darm, dturn, dv)
 
 
-def sensitivities(task: Task, nominal: Real) -> Sensitivities:
+def compute_sensitivities(task: Task, nominal: Real) -> Sensitivities:
     """Compute derivatives of a linkage's deviations, and of its minimum transmission angle, by its dimensions.
 
     Parameters
@@ -142,7 +143,7 @@ def sensitivities(task: Task, nominal: Real) -> Sensitivities:
     task : Task
         The targets, with the units in which misses are compared.
     nominal : float, shape (n,)
-        Dimensions, as for :func:`deviations`. The linkage must have a position at every target.
+        Dimensions, as for :func:`measure_deviations`. The linkage must have a position at every target.
 
     Returns
     -------
@@ -150,15 +151,15 @@ def sensitivities(task: Task, nominal: Real) -> Sensitivities:
         Not finite if the linkage is at a toggle.
     """
     square = dataclasses.replace(task, greatest=False)
-    driven = deviations(square, nominal[None])
+    driven = measure_deviations(square, nominal[None])
     inputs, offsets = driven.inputs[0], driven.offsets[0]
     n = len(nominal)
     follows = task.adjusted and task.guides
     following = np.zeros((len(inputs), n))
     weights = np.array([1.0 / task.units[0]] * 2 + [1.0 / task.units[1]]) ** 2
     with np.errstate(divide="ignore", invalid="ignore"):
-        for last in [False] * (POLISHED * follows) + [True]:
-            every, speeds = _measured(task, _loop(task, nominal, inputs, task.assemblies))
+        for last in [False] * (POLISH_STEPS * follows) + [True]:
+            every, speeds = _differentiate_targets(task, _differentiate_loop(task, nominal, inputs, task.assemblies))
             if not follows:
                 break
             # Derivative of half the sum of squares by the input, and its derivatives.
@@ -169,33 +170,33 @@ def sensitivities(task: Task, nominal: Real) -> Sensitivities:
             if not last:
                 inputs = inputs - slope / slopes[:, n]
                 there = dataclasses.replace(square, adjusted=False, inputs=inputs, used=None)
-                offsets = deviations(there, nominal[None]).offsets[0]
+                offsets = measure_deviations(there, nominal[None]).offsets[0]
     fixed, motion = every[:, :, :n], every[:, :, n]
     rates = fixed + motion[:, :, None] * following[:, None, :]
-    least, least_rates = _transmission(task, nominal, inputs, following)
+    least, least_rates = _find_transmission(task, nominal, inputs, following)
     return Sensitivities(inputs, offsets, fixed, motion, rates, least, least_rates)
 
 
-def _measured(task: Task, at: _Loop) -> tuple[Real, Real]:
+def _differentiate_targets(task: Task, at: _Loop) -> tuple[Real, Real]:
     """Differentiate x, y and the angle, shape (t, 3, n + 1), and their rates by the input."""
     zeros = np.zeros_like(at.turn)
     if task.sort == "outputs":
         if task.slides:
-            first = np.stack([_dot(at.db, np.complex128(task.along)), zeros, zeros], axis=1)
+            first = np.stack([_dot(at.db, np.complex128(task.slide_direction)), zeros, zeros], axis=1)
         else:
-            first = np.stack([zeros, zeros, _turning(at.normal, at.dn)], axis=1)
+            first = np.stack([zeros, zeros, _differentiate_angle(at.normal, at.dn)], axis=1)
         return first, np.zeros_like(first)
     turned, turning = (at.turn, at.dturn) if task.sort == "poses" else (zeros, zeros)
     first = np.stack([at.dp.real, at.dp.imag, turned], axis=1)
     return first, np.stack([at.dv.real, at.dv.imag, turning], axis=1)
 
 
-def _turning(vector: Complex, change: Complex) -> Real:
+def _differentiate_angle(vector: Complex, change: Complex) -> Real:
     """Compute the derivatives of a vector's angle, shape (t, n + 1)."""
     return np.asarray((np.conj(vector[:, None]) * change).imag / (np.abs(vector) ** 2)[:, None])
 
 
-def _transmission(task: Task, nominal: Real, inputs: Real, following: Real) -> tuple[float | None, Real]:
+def _find_transmission(task: Task, nominal: Real, inputs: Real, following: Real) -> tuple[float | None, Real]:
     """Find the minimum transmission angle over the used range, and its derivatives: at an adjusted end, or inside.
 
     An inner minimum occurs with the crank along the ground or normal to the slide, where the angle is stationary in the
@@ -217,9 +218,9 @@ def _transmission(task: Task, nominal: Real, inputs: Real, following: Real) -> t
     ends[0], ends[1] = following[first], following[last]
     signs = np.full(len(places), task.assemblies[0])
     with np.errstate(divide="ignore", invalid="ignore"):
-        at = _loop(task, nominal, places, signs)
+        at = _differentiate_loop(task, nominal, places, signs)
         between = np.angle(at.normal / at.u)
-        change = _turning(at.normal, at.dn) - _turning(at.u, at.du)
+        change = _differentiate_angle(at.normal, at.dn) - _differentiate_angle(at.u, at.du)
     # The acute angle between two lines.
     # Lines have no direction, so angles count modulo π.
     folded = np.remainder(between, math.pi)

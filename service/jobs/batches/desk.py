@@ -8,17 +8,17 @@ from typing import Literal
 import structlog
 from starlette.concurrency import run_in_threadpool
 
-from service.jobs.admission import Repeatable
 from service.jobs.batches.plan import Plan
 from service.jobs.batches.rows import BatchRow, BatchSummary
 from service.jobs.batches.store import BatchStore
 from service.jobs.batches.table import Table, table_of
+from service.jobs.events.notifier import ChangeNotifier
 from service.jobs.executor import Executor
-from service.jobs.finished import FinishedJobs
-from service.jobs.notifier import ChangeNotifier
-from service.jobs.states import Cost
-from service.metrics import Metrics
-from service.telemetry import span
+from service.jobs.store.admission import Repeatable
+from service.jobs.store.finished_cache import FinishedJobs
+from service.jobs.store.states import Cost
+from service.observability.metrics import Metrics
+from service.observability.telemetry import span
 
 log = structlog.get_logger(__name__)
 

@@ -12,7 +12,7 @@ from importlib.resources.abc import Traversable
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from synthesis.model.statement import StatedProblem
+    from synthesis.model.problem import ProblemBase
 
 LIBRARIES = ("numpy", "scipy", "numba", "cvxpy-base", "clarabel", "highspy", "pydantic")
 """What the solvers compute with: another version of it may end at other last digits."""
@@ -20,7 +20,7 @@ LIBRARIES = ("numpy", "scipy", "numba", "cvxpy-base", "clarabel", "highspy", "py
 SOURCES = (".py", ".npz")
 
 
-def digest(problem: StatedProblem) -> str:
+def digest(problem: ProblemBase) -> str:
     """Equal for problems that have the same answer of the same solvers.
 
     It goes by what a statement means: the order of its fields, the spelling of its numbers and defaults that are

@@ -13,9 +13,9 @@ from ulid import ULID
 
 from service.jobs.batches.plan import Plan
 from service.jobs.batches.removal import THERE
-from service.jobs.schema import JobSummary, SampleRow, batches, samples
-from service.jobs.statements import MAX_IDS
-from service.jobs.states import Status
+from service.jobs.store.schema import JobSummary, SampleRow, batches, samples
+from service.jobs.store.statements import MAX_IDS
+from service.jobs.store.states import Status
 
 _RANDOM_BITS, _NUMBER_BITS = 80, 14
 """Bits of a ULID below its time; and those for the number of a sample, of which there are 10 000 at most."""

@@ -10,9 +10,9 @@ import time
 
 from sqlalchemy import Engine, delete, exists, select, update
 
-from service.jobs.schema import batches, jobs, samples
-from service.jobs.statements import NO_KEY
-from service.jobs.states import FINISHED
+from service.jobs.store.schema import batches, jobs, samples
+from service.jobs.store.statements import NO_KEY
+from service.jobs.store.states import FINISHED
 
 PORTION = 100
 """Samples that are removed in one transaction; there are answers of half a megabyte."""

@@ -6,8 +6,8 @@ import json
 from dataclasses import asdict, dataclass
 from typing import Any, Literal
 
-from service.jobs.schema import Entry
-from service.jobs.states import Status
+from service.jobs.store.schema import Entry
+from service.jobs.store.states import Status
 
 
 @dataclass(frozen=True, slots=True)

@@ -25,10 +25,10 @@ from service.jobs.batches.plan import Plan
 from service.jobs.batches.reading import sample_id
 from service.jobs.batches.rows import BatchRow, BatchSummary, Ended, OwnAnswer, Share
 from service.jobs.batches.store import BatchStore
-from service.jobs.database import patiently
-from service.jobs.schema import Claim, now
-from service.jobs.solving import Solving, Stopped
-from service.jobs.states import Status
+from service.jobs.processes.stop_flag import Solving, Stopped
+from service.jobs.store.database import patiently
+from service.jobs.store.schema import Claim, now
+from service.jobs.store.states import Status
 
 SLICE_S = 0.1
 """Seconds after which no further sample of a slice is begun."""
@@ -225,10 +225,10 @@ class Slices:
 
     def _solved(self, stated: _Stated) -> str | faults.Fault:
         """The answer in JSON, or why there is none."""
-        from service.explained import sentence
-        from service.stated import consistent
+        from service.error_messages import sentence
+        from service.requests import consistent
         from synthesis import dispatch
-        from synthesis.model.statement import ContradictionError
+        from synthesis.model.problem import ContradictionError
 
         if stated.fault is not None:
             return stated.fault
@@ -241,7 +241,7 @@ class Slices:
             return faults.invalid_problem(consistent(stated.problem) or [(path, sentence(detail))])
 
     def _stated(self, batch: BatchRow, plan: Plan, number: int) -> _Stated:
-        from service.stated import well_formed
+        from service.requests import well_formed
 
         try:
             with self._solving.at_work(number):

@@ -30,14 +30,14 @@ from sqlalchemy import (
 )
 from ulid import ULID
 
-from service.jobs.admission import Repeatable, made_by, once, one_after_the_other, surely
 from service.jobs.batches import removal
 from service.jobs.batches.plan import Plan
 from service.jobs.batches.reading import sample_id
 from service.jobs.batches.rows import BatchRow, BatchSummary, Ended, OwnAnswer, Share, TableRow
 from service.jobs.faults import WORKER_DIED
-from service.jobs.schema import as_stored, as_values, batches, jobs, now, samples
-from service.jobs.statements import (
+from service.jobs.store.admission import Repeatable, made_by, once, one_after_the_other, surely
+from service.jobs.store.schema import as_stored, as_values, batches, jobs, now, samples
+from service.jobs.store.statements import (
     BACK_IN_QUEUE,
     COUNT_QUEUED,
     MAX_CRASHES,
@@ -48,7 +48,7 @@ from service.jobs.statements import (
     new_row,
     turn_of,
 )
-from service.jobs.states import FINISHED, UNFINISHED, Cost, Status
+from service.jobs.store.states import FINISHED, UNFINISHED, Cost, Status
 
 SHARES = 16
 """Shares of a batch at most: more workers than this do not make it faster."""

@@ -16,7 +16,7 @@ from service.jobs.batches.plan import Plan
 from service.jobs.batches.reading import sample_id
 from service.jobs.batches.rows import BatchSummary, TableRow
 from service.jobs.faults import WORKER_DIED
-from service.jobs.states import Status
+from service.jobs.store.states import Status
 
 Rows = np.ndarray[Any, np.dtype[np.float64]]
 

@@ -1,8 +1,8 @@
-"""Runs the migrations on the connection that :func:`service.jobs.database.upgrade` hands over."""
+"""Runs the migrations on the connection that :func:`service.jobs.store.database.upgrade` hands over."""
 
 from alembic import context
 
-from service.jobs.schema import metadata
+from service.jobs.store.schema import metadata
 
 context.configure(
     connection=context.config.attributes["connection"],

@@ -1,7 +1,7 @@
 """Parts of two straight bevel gears: a single-stage train whose shafts intersect.
 
 Each gear is overhung: from the apex outwards follow its teeth, its hub and two bearing plates. Its teeth run in
-straight lines to the apex, with the profile on the back cone (:func:`~service.parts.gears.teeth.bevel_toothed`), and
+straight lines to the apex, with the profile on the back cone (:func:`~service.parts.gears.teeth.make_bevel_teeth`), and
 end on the back cones of the large and the small end. Distances d are measured along a shaft from the apex.
 """
 
@@ -16,37 +16,37 @@ import numpy as np
 from kinematics.errors import DimensionError
 from kinematics.gear.teeth import Gear
 from kinematics.gear.train import OrdinaryTrain, TrainStage
-from service.parts.bodies import Body, Prism, Tapered
-from service.parts.colours import LINK_COLOURS
-from service.parts.fasteners import MATERIALS
+from service.parts.assembly.colours import LINK_COLOURS
+from service.parts.assembly.fasteners import MATERIALS
+from service.parts.assembly.keys import find_key, make_bore
+from service.parts.assembly.model import Assembly, Part
+from service.parts.assembly.sizes import NotMade, Sizes, round_down
 from service.parts.gears.housing import Level
-from service.parts.gears.keys import key_for, keyed_bore
 from service.parts.gears.motion import TrainMotion
-from service.parts.gears.sizing import FACE, GearSizing
-from service.parts.gears.teeth import bevel_toothed
-from service.parts.gears.upright import FIRST, FREE, Axle, Upright, frame_along
-from service.parts.gears.wheels import looked_at
-from service.parts.model import Assembly, Part
-from service.parts.shapes import Disc, Region
-from service.parts.sizes import NotMade, Sizes, rounded_down
+from service.parts.gears.sizing import DEFAULT_FACE_WIDTH, GearSizing
+from service.parts.gears.teeth import make_bevel_teeth
+from service.parts.gears.upright import FIRST_SHAFT_PLANE, FLOOR_CLEARANCE, Axle, UprightHousing, make_frame
+from service.parts.gears.wheels import check_assembly
+from service.parts.geometry.regions import Disc, Region
+from service.parts.geometry.solids import Body, Prism, TaperedBody
 
-NARROW, WIDEST = 1.0 / 3.0, 0.5
+DEFAULT_FACE_SHARE, MAX_FACE_SHARE = 1.0 / 3.0, 0.5
 """Maximum face width as a share of the cone distance: by default, and in any case."""
 
 ADDENDUM, DEDENDUM = 1.0, 1.25
 """Addendum and dedendum at the large end, modules."""
 
-BELOW_LARGE, BELOW_SMALL = 0.5, 0.25
+LARGE_END_EXTENSION, SMALL_END_EXTENSION = 0.5, 0.25
 """Extension of the back cones of large and small end below the roots, modules of that end."""
 
-BORED, HUB, SPAN = 1.2, 0.5, 2.5
+MIN_BORE_LENGTH, MIN_HUB_LENGTH, BEARING_SPAN = 1.2, 0.5, 2.5
 """Minimum length of a bore, minimum length of a hub, and distance of two bearing plates, in shaft diameters."""
 
-WALL_OF_HUB = 0.4
+HUB_WALL = 0.4
 """Wall of a hub around its shaft, in shaft diameters."""
 
 
-def bevel_parts(train: OrdinaryTrain, backlash: float, face_width: float | None, sizing: GearSizing) -> Assembly:
+def make_bevel_parts(train: OrdinaryTrain, backlash: float, face_width: float | None, sizing: GearSizing) -> Assembly:
     """Make the parts of two bevel gears.
 
     Parameters
@@ -66,13 +66,13 @@ def bevel_parts(train: OrdinaryTrain, backlash: float, face_width: float | None,
     """
     (stage,) = train.stages
     cones = stage.cones(train.pressure_angle)
-    sizing.judge_size(2.0 * cones.cone_distance)
-    wide = sizing.face_width(stage.module, face_width)
+    sizing.check_size(2.0 * cones.cone_distance)
+    wide = sizing.choose_face_width(stage.module, face_width)
     if sizing.query.face_width is None and face_width is None:
         # Long bevel teeth would become too thin at the small end.
-        wide = min(FACE * stage.module, NARROW * cones.cone_distance)
-    if wide > WIDEST * cones.cone_distance:
-        most = rounded_down(WIDEST * cones.cone_distance / sizing.unit)
+        wide = min(DEFAULT_FACE_WIDTH * stage.module, DEFAULT_FACE_SHARE * cones.cone_distance)
+    if wide > MAX_FACE_SHARE * cones.cone_distance:
+        most = round_down(MAX_FACE_SHARE * cones.cone_distance / sizing.unit)
         raise NotMade(
             f"The face width of bevel gears is limited to half the cone distance, {most:g} {sizing.words}.",
             "/query/face_width",
@@ -86,10 +86,10 @@ def bevel_parts(train: OrdinaryTrain, backlash: float, face_width: float | None,
     # A spur gear with the same root radius stands for the core.
     smallest = Gear(2.0 * (core / stage.module + DEDENDUM), stage.module, train.pressure_angle)
     refused = None
-    for sizes in sizing.offered(smallest):
+    for sizes in sizing.list_sizes(smallest):
         play = 0.5 * max(sizes.clearance - sizing.factor * backlash, 0.0)
         try:
-            return _Pair(stage, train.pressure_angle, (blanks[0], blanks[1]), play, sizes, sizing).made()
+            return _Pair(stage, train.pressure_angle, (blanks[0], blanks[1]), play, sizes, sizing).build_assembly()
         except DimensionError as error:
             raise NotMade(f"The gears cannot be cut: {error}.") from None
         except NotMade as error:
@@ -120,7 +120,7 @@ class Blank:
     distance: float
     face_width: float
 
-    def on_back_cone(self, height: float) -> complex:
+    def find_back_cone_point(self, height: float) -> complex:
         """Return a point of the back cone of the large end, ``height`` modules above the pitch cone."""
         pitch = self.distance * complex(math.sin(self.cone), math.cos(self.cone))
         return pitch + height * self.module * complex(math.cos(self.cone), -math.sin(self.cone))
@@ -134,10 +134,10 @@ class Blank:
     def corners(self) -> tuple[complex, complex, complex, complex]:
         """Inner and outer corner of the small end, outer and inner corner of the large end."""
         return (
-            self.share * self.on_back_cone(-DEDENDUM - BELOW_SMALL),
-            self.share * self.on_back_cone(ADDENDUM),
-            self.on_back_cone(ADDENDUM),
-            self.on_back_cone(-DEDENDUM - BELOW_LARGE),
+            self.share * self.find_back_cone_point(-DEDENDUM - SMALL_END_EXTENSION),
+            self.share * self.find_back_cone_point(ADDENDUM),
+            self.find_back_cone_point(ADDENDUM),
+            self.find_back_cone_point(-DEDENDUM - LARGE_END_EXTENSION),
         )
 
     @property
@@ -151,7 +151,7 @@ class Blank:
         tip, root = (math.atan(height * self.module / self.distance) for height in (ADDENDUM, DEDENDUM))
         return self.cone + tip, self.cone - root
 
-    def virtual(self, pressure_angle: float) -> Gear:
+    def make_virtual_gear(self, pressure_angle: float) -> Gear:
         """Return the spur gear of the back cone."""
         return Gear(self.teeth / math.cos(self.cone), self.module, pressure_angle, ADDENDUM, DEDENDUM)
 
@@ -167,25 +167,35 @@ class _Pair:
     sizes: Sizes
     sizing: GearSizing
 
-    def made(self) -> Assembly:
+    def build_assembly(self) -> Assembly:
         """Build the assembly and check it for interference."""
         sizes = self.sizes
         tips = [blank.corners[2] for blank in self.blanks]
-        below = max(*(tip.real for tip in tips), 0.5 * sizes.width, 0.5 * sizes.collar) + sizes.apart + FREE * sizes.pin
-        parts = [self._gear(number) for number in range(2)]
-        parts += Upright(sizes, self.axles, -below).parts()
+        below = (
+            max(*(tip.real for tip in tips), 0.5 * sizes.width, 0.5 * sizes.collar)
+            + sizes.min_gap
+            + FLOOR_CLEARANCE * sizes.pin
+        )
+        parts = [self._make_gear(number) for number in range(2)]
+        parts += UprightHousing(sizes, self.axles, -below).make_parts()
         size = 2.0 * max(abs(axle.levels[end].low) for axle in self.axles for end in (0, -1))
         motion = TrainMotion(self.axles[0].bodies | self.axles[1].bodies, size, math.ceil(1.0 / self.stage.driver))
         assembly = Assembly(
-            tuple(parts), motion, FIRST + 1, 1, self.sizing.factor, self.sizing.query.scale, self._notes()
+            tuple(parts),
+            motion,
+            FIRST_SHAFT_PLANE + 1,
+            1,
+            self.sizing.factor,
+            self.sizing.query.scale,
+            self._list_notes(),
         )
-        return looked_at(assembly, sizes, self.sizing)
+        return check_assembly(assembly, sizes, self.sizing)
 
-    def _hub(self, number: int) -> tuple[float, float, float]:
+    def _measure_hub(self, number: int) -> tuple[float, float, float]:
         """Return the distances of a gear's start, of its hub's start, and of its hub's end."""
         front, *_, back = (corner.imag for corner in self.blanks[number].corners)
         # The bore through teeth and hub needs a minimum length.
-        length = max(HUB * self.sizes.pin, BORED * self.sizes.pin - (back - front))
+        length = max(MIN_HUB_LENGTH * self.sizes.pin, MIN_BORE_LENGTH * self.sizes.pin - (back - front))
         return front, back, back + length
 
     @cached_property
@@ -194,9 +204,9 @@ class _Pair:
         sizes, angle = self.sizes, self.stage.shaft_angle
         found = []
         for number, name in enumerate(("input shaft", "output shaft")):
-            front, _, end = self._hub(number)
+            front, _, end = self._measure_hub(number)
             near = end + sizes.gap
-            far = near + sizes.thickness + max(SPAN * sizes.pin, sizes.gap)
+            far = near + sizes.thickness + max(BEARING_SPAN * sizes.pin, sizes.gap)
             outwards = [(front, end), (near, near + sizes.thickness), (far, far + sizes.thickness)]
             along = np.array([-math.cos(angle), math.sin(angle), 0.0])
             levels = tuple(Level(*pair) for pair in outwards)
@@ -205,29 +215,31 @@ class _Pair:
                 # The driver points towards the apex: its heights are negative.
                 levels = tuple(Level(-high, -low) for low, high in reversed(outwards))
             speed = 1.0 if number == 0 else self.stage.driver / self.stage.driven
-            frame = frame_along(along, np.zeros(3))
+            frame = make_frame(along, np.zeros(3))
             found.append(Axle(name, number, frame, levels, 0 if number else 2, speed, stub_below=number == 0))
         return found[0], found[1]
 
-    def _gear(self, number: int) -> Part:
+    def _make_gear(self, number: int) -> Part:
         blank, sizes, axle = self.blanks[number], self.sizes, self.axles[number]
-        _, back, end = self._hub(number)
+        _, back, end = self._measure_hub(number)
         # Heights are signed distances; those of the driver are negative.
         way = 1.0 if number else -1.0
         at = way * blank.corners[2].imag
         # A space of the driven gear faces a tooth of the driver.
         tooth_at = math.pi / blank.teeth if number else 0.0
-        teeth = bevel_toothed(blank.virtual(self.pressure_angle), blank.teeth, blank.cone, abs(at), tooth_at, self.play)
-        bore = keyed_bore(0j, sizes.pin, key_for(sizes.pin), sizes.clearance)
+        teeth = make_bevel_teeth(
+            blank.make_virtual_gear(self.pressure_angle), blank.teeth, blank.cone, abs(at), tooth_at, self.play
+        )
+        bore = make_bore(0j, sizes.pin, find_key(sizes.pin), sizes.clearance)
         inner, tip, large, rim = blank.corners
         outline = [complex(0.0, inner.imag), inner, tip, large, rim, complex(0.0, rim.imag)]
         if number == 0:
             # Mirroring reverses the orientation: reverse the order as well.
             outline = [z.conjugate() for z in reversed(outline)]
-        hub = Region(Disc(0j, min(rim.real, (0.5 + WALL_OF_HUB) * sizes.pin + key_for(sizes.pin).in_hub)), (bore,))
+        hub = Region(Disc(0j, min(rim.real, (0.5 + HUB_WALL) * sizes.pin + find_key(sizes.pin).in_hub)), (bore,))
         low, high = sorted((way * back, way * end))
         bodies: tuple[Body, ...] = (
-            Tapered(Region(teeth, (bore,)), tuple(outline), 0.0, at, blank.teeth),
+            TaperedBody(Region(teeth, (bore,)), tuple(outline), 0.0, at, blank.teeth),
             Prism(hub, low, high),
         )
         role = "driven" if number else "driver"
@@ -236,7 +248,7 @@ class _Pair:
             (axle.plane, axle.plane), MATERIALS[sizes.process][1], LINK_COLOURS[number],
         )  # fmt: skip
 
-    def _notes(self) -> tuple[str, ...]:
+    def _list_notes(self) -> tuple[str, ...]:
         told = [
             f"Shaft angle {math.degrees(self.stage.shaft_angle):.6g}°; cone distance {self.blanks[0].distance:.6g} mm, "
             f"face width {self.blanks[0].face_width:.6g} mm; module {self.stage.module:.6g} mm at the large end."
@@ -246,7 +258,7 @@ class _Pair:
             told.append(
                 f"{role}: {blank.teeth} teeth, pitch cone {math.degrees(blank.cone):.4f}°, tip cone {tip:.4f}°, root "
                 f"cone {root:.4f}°, outside diameter {2.0 * blank.corners[2].real:.6g} mm; mounting distance from the "
-                f"apex to the end of the hub {self._hub(number)[2]:.6g} mm."
+                f"apex to the end of the hub {self._measure_hub(number)[2]:.6g} mm."
             )
         told.append("Glue or wedge the tabs of the bearing plates into the slots of the base.")
         return tuple(told)

@@ -18,7 +18,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import NamedTuple
 
-PLACES = {1: 2, 2: 4}
+LEVELS_BY_GEARS = {1: 2, 2: 4}
 """Number of levels of a cluster's range, by its number of gears."""
 
 
@@ -45,13 +45,13 @@ class Cluster(NamedTuple):
     @property
     def top(self) -> int:
         """Highest level of its range."""
-        return self.low + (PLACES[len(self.pairs)] - 1 if self.slides else 0)
+        return self.low + (LEVELS_BY_GEARS[len(self.pairs)] - 1 if self.slides else 0)
 
-    def fixed(self, place: int) -> int:
+    def get_fixed_level(self, place: int) -> int:
         """Return the level of the gear that meshes with its gear number ``place``, from 0."""
         return self.top if place else self.low
 
-    def shift(self, engaged: int) -> int:
+    def get_shift(self, engaged: int) -> int:
         """Return the number of levels above its lowest place while a pair of its stage is engaged."""
         if not self.slides:
             return 0
@@ -61,17 +61,17 @@ class Cluster(NamedTuple):
         # Lower gear in mesh at 0, upper gear in mesh at 2.
         return 2 * self.pairs.index(engaged)
 
-    def at(self, place: int, engaged: int) -> int:
+    def get_level(self, place: int, engaged: int) -> int:
         """Return the level of its gear number ``place`` while a pair of its stage is engaged."""
-        return self.low + place + self.shift(engaged)
+        return self.low + place + self.get_shift(engaged)
 
-    def visited(self, place: int) -> tuple[int, ...]:
+    def list_levels(self, place: int) -> tuple[int, ...]:
         """Return all levels that its gear number ``place`` can occupy."""
         most = self.top - len(self.pairs) + 1 - self.low
         return tuple(self.low + place + shift for shift in range(most + 1))
 
 
-def clusters(counts: Sequence[int]) -> tuple[Cluster, ...]:
+def make_clusters(counts: Sequence[int]) -> tuple[Cluster, ...]:
     """Return the clusters of all stages on top of one another, from level 1.
 
     Parameters

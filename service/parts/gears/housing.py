@@ -11,15 +11,15 @@ from dataclasses import dataclass
 from itertools import pairwise
 
 from kinematics.linkage.planar.mechanism import GROUND
-from service.parts.bodies import Prism
-from service.parts.colours import BASE_COLOUR
-from service.parts.fasteners import FASTENER_COLOUR, MATERIALS, fillers, held_pin
-from service.parts.gears.keys import key_for, key_section, keyed_bore, keyed_shaft
-from service.parts.model import Carrier, Part, plain
-from service.parts.shapes import Disc, Outline, Region, widened
-from service.parts.sizes import Sizes
+from service.parts.assembly.colours import BASE_COLOUR
+from service.parts.assembly.fasteners import FASTENER_COLOUR, MATERIALS, make_fillers, make_pin
+from service.parts.assembly.keys import find_key, make_bore, make_key_section, make_shaft_section
+from service.parts.assembly.model import Carrier, Part, simplify_name
+from service.parts.assembly.sizes import Sizes
+from service.parts.geometry.regions import Disc, Outline, Region, widen_hull
+from service.parts.geometry.solids import Prism
 
-STUB = 1.5
+STUB_LENGTH = 1.5
 """Length of input and output shafts beyond their plates, in diameters."""
 
 
@@ -101,38 +101,40 @@ class Housing:
         """Level of the upper plate."""
         return len(self.levels) - 1
 
-    def parts(self) -> list[Part]:
+    def make_parts(self) -> list[Part]:
         """Make plates, shafts with keys and distance pieces, and posts."""
-        places = self.posts or self.corners()
+        places = self.posts or self.find_corners()
         found = [
-            self._plate("base", 0, places),
-            self._plate("second_base", self.top, places),
+            self._make_plate("base", 0, places),
+            self._make_plate("second_base", self.top, places),
         ]
         for shaft in self.shafts:
-            found += self._on(shaft)
+            found += self._make_shaft(shaft)
         for number, place in enumerate(places, 1):
             name, carrier = f"post_{number}", Carrier(GROUND, None)
-            found += self._stack(name, f"post {number}", carrier, place, (0, self.top), (0, *self.standing, self.top))
+            found += self._stack_parts(
+                name, f"post {number}", carrier, place, (0, self.top), (0, *self.standing, self.top)
+            )
         return found
 
-    def corners(self) -> tuple[complex, ...]:
+    def find_corners(self) -> tuple[complex, ...]:
         """Return the corners of the rectangle around all rotating parts, with the margin that posts need."""
-        room = 0.5 * self.sizes.collar + self.sizes.apart
+        room = 0.5 * self.sizes.collar + self.sizes.min_gap
         low = min(z.real - r for z, r in self.around) - room, min(z.imag - r for z, r in self.around) - room
         high = max(z.real + r for z, r in self.around) + room, max(z.imag + r for z, r in self.around) + room
         return complex(*low), complex(high[0], low[1]), complex(*high), complex(low[0], high[1])
 
-    def _plate(self, name: str, level: int, posts: Iterable[complex]) -> Part:
+    def _make_plate(self, name: str, level: int, posts: Iterable[complex]) -> Part:
         radius = 0.5 * self.sizes.hole
         held = [shaft.axis for shaft in self.shafts if level in shaft.reach and level not in shaft.keyed]
         cuts: list[Outline] = [Disc(place, radius) for place in (*held, *posts)]
         # A shaft that is keyed to a plate is fixed to the housing.
         cuts += [
-            keyed_bore(shaft.axis, self.sizes.pin, key_for(self.sizes.pin), self.sizes.clearance)
+            make_bore(shaft.axis, self.sizes.pin, find_key(self.sizes.pin), self.sizes.clearance)
             for shaft in self.shafts
             if level in shaft.keyed
         ]
-        outer = widened([*self.corners(), *posts], 0.5 * self.sizes.width)
+        outer = widen_hull([*self.find_corners(), *posts], 0.5 * self.sizes.width)
         return Part(
             name=name,
             described=name.replace("_", " "),
@@ -145,15 +147,17 @@ class Housing:
             colour=BASE_COLOUR,
         )
 
-    def _on(self, shaft: Shaft) -> list[Part]:
+    def _make_shaft(self, shaft: Shaft) -> list[Part]:
         """Make a shaft with its keys and distance pieces."""
-        sizes, name = self.sizes, plain(shaft.name)
+        sizes, name = self.sizes, simplify_name(shaft.name)
         seated = [
-            seat(shaft.name, str(level), shaft.carrier, shaft.axis, self.levels[level], level, sizes, shaft.towards)
+            make_seat(
+                shaft.name, str(level), shaft.carrier, shaft.axis, self.levels[level], level, sizes, shaft.towards
+            )
             for level in sorted(shaft.keyed)
         ]
         seated += [
-            seat(
+            make_seat(
                 shaft.name, f"{low}_{high}", shaft.carrier, shaft.axis,
                 Level(self.levels[low].low, self.levels[high].high), low, sizes, shaft.towards, top=high,
             )
@@ -167,15 +171,17 @@ class Housing:
         slid = {level for low, high in shaft.sliding for level in range(low, high + 1)}
         levels = sorted({*shaft.keyed, *shaft.free, *slid, *inside})
         spanned = (*shaft.spanned, *(level for low, high in shaft.sliding for level in range(low, high)))
-        stub = STUB * sizes.pin if shaft.ends else 0.0
+        stub = STUB_LENGTH * sizes.pin if shaft.ends else 0.0
         # The stub protrudes from the plate that the shaft reaches.
         down = shaft.reach[1] < self.top or shaft.below
         return [
-            *self._stack(name, shaft.name, shaft.carrier, shaft.axis, shaft.reach, levels, seats, stub, down, spanned),
+            *self._stack_parts(
+                name, shaft.name, shaft.carrier, shaft.axis, shaft.reach, levels, seats, stub, down, spanned
+            ),
             *keys,
         ]
 
-    def _stack(
+    def _stack_parts(
         self,
         name: str,
         described: str,
@@ -189,7 +195,7 @@ class Housing:
         spanned: Sequence[int] = (),
     ) -> list[Part]:
         ends = self.levels[reach[0]].low, self.levels[reach[1]].high
-        parts = held_pin(
+        parts = make_pin(
             name, described, carrier, place, ends, reach, self.sizes,
             seats=seats, stub=stub, upside_down=upside_down,
         )  # fmt: skip
@@ -197,11 +203,11 @@ class Housing:
             if lower in spanned:
                 continue
             gap = self.levels[lower].high, self.levels[upper].low
-            parts += fillers(name, carrier, place, gap, (lower, upper), self.sizes)
+            parts += make_fillers(name, carrier, place, gap, (lower, upper), self.sizes)
         return parts
 
 
-def seat(
+def make_seat(
     shaft: str, number: str, carrier: Carrier, axis: complex, level: Level, plane: int, sizes: Sizes,
     towards: complex = 1.0 + 0.0j, *, top: int | None = None,
 ) -> tuple[Prism, Part]:  # fmt: skip
@@ -213,23 +219,23 @@ def seat(
         Highest plane of a feather key, along which wheels slide from ``plane``.
     """
     # Keys are shorter than their wheel, so that they do not rub on neighbours.
-    key, low, high = key_for(sizes.pin), level.low + sizes.play, level.high - sizes.play
+    key, low, high = find_key(sizes.pin), level.low + sizes.play, level.high - sizes.play
     part = Part(
-        name=f"key_{plain(shaft)}_{number}",
+        name=f"key_{simplify_name(shaft)}_{number}",
         described=f"{'key' if top is None else 'feather key'} of the {shaft}",
         sort="key",
         carrier=carrier,
-        bodies=(Prism(Region(key_section(axis, sizes.pin, key, towards)), low, high),),
+        bodies=(Prism(Region(make_key_section(axis, sizes.pin, key, towards)), low, high),),
         along=towards,
         planes=(plane, plane if top is None else top),
         material=MATERIALS[sizes.process][1],
         colour=FASTENER_COLOUR,
         standard=f"{key.standard} x {high - low:g}" if key.standard else "",
     )
-    return Prism(Region(keyed_shaft(axis, sizes.pin, key, towards)), low, high), part
+    return Prism(Region(make_shaft_section(axis, sizes.pin, key, towards)), low, high), part
 
 
-def stacked(heights: Sequence[float], sizes: Sizes) -> tuple[Level, ...]:
+def stack_levels(heights: Sequence[float], sizes: Sizes) -> tuple[Level, ...]:
     """Stack levels with a gap between each two; the upper face of the first is at height 0."""
     low = -heights[0]
     levels = []

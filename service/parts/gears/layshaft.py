@@ -12,23 +12,23 @@ from functools import cached_property
 from typing import Any
 
 from kinematics.errors import DimensionError
-from service.parts.gears.housing import Housing, Level, Shaft, stacked
-from service.parts.gears.motion import TrainMotion, Turning
-from service.parts.gears.ordinary import MOST_TURNS
+from service.parts.assembly.model import Assembly, Carrier, Part
+from service.parts.assembly.sizes import NotMade, PartsQuery, Sizes
+from service.parts.gears.housing import Housing, Level, Shaft, stack_levels
+from service.parts.gears.motion import BodyRotation, TrainMotion
+from service.parts.gears.ordinary import MAX_TURNS
 from service.parts.gears.sizing import GearSizing
-from service.parts.gears.stand import Reach, Room, Wheel, axes_of, reached
-from service.parts.gears.wheels import looked_at, wheel_parts
-from service.parts.model import Assembly, Carrier, Part
-from service.parts.sizes import NotMade, PartsQuery, Sizes
-from service.render.gears.gearbox_layout import BoxGear, layshaft_layout
+from service.parts.gears.stand import Clearances, Reach, Wheel, find_axes, find_reaches
+from service.parts.gears.wheels import check_assembly, make_wheel_parts
+from service.render.gears.gearbox_layout import BoxGear, arrange_layshaft
 
-INPUT, LAYSHAFT, MAIN = 0, 1, 2
-SHAFTS = ("input shaft", "layshaft", "main shaft", "axle of the idler")
-ENGAGED = "GEAR_1"
+INPUT_SHAFT, LAYSHAFT_SHAFT, MAIN_SHAFT = 0, 1, 2
+SHAFT_NAMES = ("input shaft", "layshaft", "main shaft", "axle of the idler")
+KEYED_PAIR = "GEAR_1"
 """The pair whose gear is keyed to the main shaft."""
 
 
-def layshaft_parts(design: Any, problem: Any, query: PartsQuery) -> Assembly:
+def make_layshaft_parts(design: Any, problem: Any, query: PartsQuery) -> Assembly:
     """Make the parts of a layshaft gearbox.
 
     Parameters
@@ -52,15 +52,15 @@ def layshaft_parts(design: Any, problem: Any, query: PartsQuery) -> Assembly:
     )
     if mechanism.gears[0].layshaft is None:
         raise NotMade("Parts are made with the first gear engaged, but the first gear of this gearbox is direct drive.")
-    gears = layshaft_layout(mechanism).gears
-    sizing.judge_size(4.0 * mechanism.centre_distance)
+    gears = arrange_layshaft(mechanism).gears
+    sizing.check_size(4.0 * mechanism.centre_distance)
     smallest = min((gear.gear for gear in gears), key=lambda gear: gear.root_radius)
-    for sizes in sizing.offered(smallest):
-        task = _Task(gears, sizes, sizing)
-        reaches = task.reaches()
+    for sizes in sizing.list_sizes(smallest):
+        task = _LayshaftTask(gears, sizes, sizing)
+        reaches = task.find_reaches()
         if reaches is not None:
             try:
-                return task.made(reaches)
+                return task.build_assembly(reaches)
             except DimensionError as error:
                 raise NotMade(f"The gears cannot be cut: {error}.") from None
     raise NotMade(
@@ -70,7 +70,7 @@ def layshaft_parts(design: Any, problem: Any, query: PartsQuery) -> Assembly:
 
 
 @dataclass(frozen=True)
-class _Task:
+class _LayshaftTask:
     gears: list[BoxGear]
     sizes: Sizes
     sizing: GearSizing
@@ -81,7 +81,7 @@ class _Task:
         found: list[float] = []
         layshaft = 1.0
         for gear, before in zip(self.gears, [None, *self.gears[:-1]], strict=True):
-            if gear.shaft == INPUT:
+            if gear.shaft == INPUT_SHAFT:
                 speed = 1.0
             elif before is None or before.pair != gear.pair:
                 speed = layshaft
@@ -89,7 +89,7 @@ class _Task:
                 # Consecutive gears of a pair mesh externally.
                 speed = -found[-1] * before.gear.teeth / gear.gear.teeth
             # All further pairs start at the layshaft's speed.
-            if gear.pair == "HEAD" and gear.shaft == LAYSHAFT:
+            if gear.pair == "HEAD" and gear.shaft == LAYSHAFT_SHAFT:
                 layshaft = speed
             found.append(speed)
         return found
@@ -116,50 +116,51 @@ class _Task:
         """Level of the uppermost pair."""
         return max(wheel.level for wheel in self.wheels)
 
-    def reaches(self) -> tuple[Reach, ...] | None:
+    def find_reaches(self) -> tuple[Reach, ...] | None:
         """Return the reach of the shafts, or None if one is obstructed."""
-        room = Room(0.5 * self.sizes.pin, 0.5 * self.sizes.collar, self.sizes.apart)
-        return reached(self.wheels, self.highest, room)
+        room = Clearances(0.5 * self.sizes.pin, 0.5 * self.sizes.collar, self.sizes.min_gap)
+        return find_reaches(self.wheels, self.highest, room)
 
-    def _free(self, gear: BoxGear) -> bool:
+    def _is_free(self, gear: BoxGear) -> bool:
         """Return whether a gear rotates freely on the main shaft."""
-        return gear.shaft == MAIN and gear.pair != ENGAGED
+        return gear.shaft == MAIN_SHAFT and gear.pair != KEYED_PAIR
 
-    def _carrier(self, gear: BoxGear) -> str:
-        return f"main_{gear.pair.lower()}" if self._free(gear) else f"shaft_{gear.shaft + 1}"
+    def _name_carrier(self, gear: BoxGear) -> str:
+        return f"main_{gear.pair.lower()}" if self._is_free(gear) else f"shaft_{gear.shaft + 1}"
 
-    def made(self, reaches: tuple[Reach, ...]) -> Assembly:
+    def build_assembly(self, reaches: tuple[Reach, ...]) -> Assembly:
         """Build the assembly and check it for interference."""
-        levels = self._levels()
+        levels = self._make_levels()
         shafts = []
-        for number, axis in enumerate(axes_of(self.wheels)):
+        for number, axis in enumerate(find_axes(self.wheels)):
             own = [gear for gear in self.gears if gear.shaft == number]
             shafts.append(
                 Shaft(
-                    SHAFTS[number], Carrier(f"shaft_{number + 1}", None), axis, reaches[number],
-                    tuple(gear.slot + 1 for gear in own if not self._free(gear)),
-                    tuple(gear.slot + 1 for gear in own if self._free(gear)), ends=number in (INPUT, MAIN),
+                    SHAFT_NAMES[number], Carrier(f"shaft_{number + 1}", None), axis, reaches[number],
+                    tuple(gear.slot + 1 for gear in own if not self._is_free(gear)),
+                    tuple(gear.slot + 1 for gear in own if self._is_free(gear)),
+                    ends=number in (INPUT_SHAFT, MAIN_SHAFT),
                 )
             )  # fmt: skip
         around = tuple((wheel.centre, wheel.outer) for wheel in self.wheels)
         housing = Housing(self.sizes, levels, tuple(shafts), around)
         parts: list[Part] = []
-        bodies: dict[str, Turning] = {}
+        bodies: dict[str, BodyRotation] = {}
         for gear, wheel in zip(self.gears, self.wheels, strict=True):
-            carrier = self._carrier(gear)
-            bodies[carrier] = Turning(wheel.centre, wheel.speed)
-            parts += wheel_parts(wheel, Carrier(carrier, None), levels, self.sizes, free=self._free(gear))
+            carrier = self._name_carrier(gear)
+            bodies[carrier] = BodyRotation(wheel.centre, wheel.speed)
+            parts += make_wheel_parts(wheel, Carrier(carrier, None), levels, self.sizes, free=self._is_free(gear))
         # Turn the input until the slowest mesh has advanced by a tooth.
         slowest = min(abs(wheel.speed) * wheel.gear.teeth for wheel in self.wheels)
         size = max(abs(a.centre - b.centre) + a.outer + b.outer for a in self.wheels for b in self.wheels)
-        motion = TrainMotion(bodies, size, min(math.ceil(1.0 / slowest), MOST_TURNS))
+        motion = TrainMotion(bodies, size, min(math.ceil(1.0 / slowest), MAX_TURNS))
         assembly = Assembly(
-            (*parts, *housing.parts()), motion, self.highest, 2, self.sizing.factor, self.sizing.query.scale,
+            (*parts, *housing.make_parts()), motion, self.highest, 2, self.sizing.factor, self.sizing.query.scale,
             ("The first gear is engaged: it is keyed to the main shaft; the others turn freely on it.",
              "The mechanism that engages other gears, or couples input and main shaft, is not included."),
         )  # fmt: skip
-        return looked_at(assembly, self.sizes, self.sizing)
+        return check_assembly(assembly, self.sizes, self.sizing)
 
-    def _levels(self) -> tuple[Level, ...]:
-        face = self.sizing.face_width(self.gears[0].gear.module, None)
-        return stacked([self.sizes.thickness, *[face] * self.highest, self.sizes.thickness], self.sizes)
+    def _make_levels(self) -> tuple[Level, ...]:
+        face = self.sizing.choose_face_width(self.gears[0].gear.module, None)
+        return stack_levels([self.sizes.thickness, *[face] * self.highest, self.sizes.thickness], self.sizes)

@@ -9,14 +9,15 @@ from typing import NamedTuple
 
 import numpy as np
 
+from kinematics.arrays import Real
 from kinematics.linkage.planar.mechanism import GROUND
-from service.parts.model import Carrier, Frame, InputField, Placed, Real
+from service.parts.assembly.model import Carrier, Frame, InputField, Placement
 
-GOLDEN = 0.5 * (math.sqrt(5.0) - 1.0)
+GOLDEN_RATIO = 0.5 * (math.sqrt(5.0) - 1.0)
 """Golden ratio: its multiples sample every mesh in all its phases."""
 
 
-class Turning(NamedTuple):
+class BodyRotation(NamedTuple):
     """A body: its axis, its speed, and the speed of its axis about another one; relative to the input's, about z.
 
     ``frame`` is the plane in which it rotates, if that is not the assembly's.
@@ -43,7 +44,7 @@ class TrainMotion:
         Turns of the input in the interference check, enough to advance every mesh by a tooth.
     """
 
-    bodies: Mapping[str, Turning]
+    bodies: Mapping[str, BodyRotation]
     size: float
     turns: int = 1
     closed: bool = field(default=False, init=False)
@@ -56,24 +57,24 @@ class TrainMotion:
         """Input after all turns."""
         return 2.0 * math.pi * self.turns
 
-    def inputs(self, count: int) -> Real:
+    def sample_inputs(self, count: int) -> Real:
         """Return nearly evenly spaced inputs at different phases of every mesh; the first is the reference."""
-        return np.sort(np.arange(count) * GOLDEN % 1.0) * self.high
+        return np.sort(np.arange(count) * GOLDEN_RATIO % 1.0) * self.high
 
-    def stated(self, value: float, scale: float) -> float:
+    def convert_input(self, value: float, scale: float) -> float:
         """Convert an input in degrees. The motion has no limits, and one input turn is not its period."""
         return math.radians(value)
 
-    def at(self, inputs: Real) -> Real:
+    def compute_state(self, inputs: Real) -> Real:
         """Return the inputs themselves, which are the complete state."""
         return inputs
 
-    def placed(self, carrier: Carrier, state: Real) -> Placed:
+    def compute_placement(self, carrier: Carrier, state: Real) -> Placement:
         """Return the displacement of a body."""
         if carrier.link == GROUND:
-            return Placed(np.ones(len(state), np.complex128), np.zeros(len(state), np.complex128))
+            return Placement(np.ones(len(state), np.complex128), np.zeros(len(state), np.complex128))
         body = self.bodies[carrier.link]
         turn = np.exp(1j * body.speed * state)
         # Planets revolve about the carrier's axis.
         centre = body.about + (body.centre - body.about) * np.exp(1j * body.orbit * state)
-        return Placed(turn, centre - turn * body.centre, body.frame)
+        return Placement(turn, centre - turn * body.centre, body.frame)

@@ -10,24 +10,24 @@ from typing import Any
 
 from kinematics.errors import DimensionError
 from kinematics.gear.train import OrdinaryTrain, TrainStage
-from service.parts.gears.bevel_pair import bevel_parts
-from service.parts.gears.housing import Housing, Level, Shaft, stacked
-from service.parts.gears.motion import TrainMotion, Turning
+from service.parts.assembly.model import Assembly, Carrier, Part
+from service.parts.assembly.sizes import NotMade, PartsQuery, Sizes
+from service.parts.gears.bevel_pair import make_bevel_parts
+from service.parts.gears.housing import Housing, Level, Shaft, stack_levels
+from service.parts.gears.motion import BodyRotation, TrainMotion
 from service.parts.gears.sizing import GearSizing
-from service.parts.gears.stand import Room, Stand, Wheel, stood
-from service.parts.gears.wheels import looked_at, rim_radius, wheel_parts
-from service.parts.gears.worm_set import worm_parts
-from service.parts.model import Assembly, Carrier, Part
-from service.parts.sizes import NotMade, PartsQuery, Sizes
-from service.render.gears.train_layout import in_line
-from synthesis.kinds.gear_train.verification import driven_train
-from synthesis.model.gear_answer import MeshGeometry
+from service.parts.gears.stand import Arrangement, Clearances, Wheel, find_arrangement
+from service.parts.gears.wheels import check_assembly, compute_rim_radius, make_wheel_parts
+from service.parts.gears.worm_set import make_worm_parts
+from service.render.gears.train_layout import place_in_line
+from synthesis.kinds.gear_train.verification import build_train
+from synthesis.model.gears.answer import MeshGeometry
 
-MOST_TURNS = 400
+MAX_TURNS = 400
 """Maximum number of input turns in the interference check."""
 
 
-def train_parts(design: Any, problem: Any, query: PartsQuery) -> Assembly:
+def make_train_parts(design: Any, problem: Any, query: PartsQuery) -> Assembly:
     """Make the parts of an ordinary train.
 
     Parameters
@@ -42,16 +42,16 @@ def train_parts(design: Any, problem: Any, query: PartsQuery) -> Assembly:
     NotMade
         Such a train with non-parallel shafts is not available, or the shafts do not fit.
     """
-    stages = driven_train(design.mechanism).stages
-    plays = backlash_of(stages, design.metrics.meshes)
+    stages = build_train(design.mechanism).stages
+    plays = find_backlash(stages, design.metrics.meshes)
     widths = [stage.face_width for stage in design.mechanism.stages]
     made = OrdinaryParts(
         stages, math.radians(design.mechanism.pressure_angle), plays, widths, problem.reverted, problem.length_unit
     )
-    return made.assembly(query)
+    return made.build_assembly(query)
 
 
-def backlash_of(stages: Sequence[TrainStage], meshes: Sequence[MeshGeometry]) -> list[float]:
+def find_backlash(stages: Sequence[TrainStage], meshes: Sequence[MeshGeometry]) -> list[float]:
     """Return the minimum backlash of each stage's meshes; 0 if unknown."""
     left = [mesh.backlash or 0.0 for mesh in meshes]
     found: list[float] = []
@@ -88,36 +88,36 @@ class OrdinaryParts:
     reverted: bool
     length_unit: str
 
-    def assembly(self, query: PartsQuery) -> Assembly:
+    def build_assembly(self, query: PartsQuery) -> Assembly:
         """Return the parts, after an interference check."""
         sizing = GearSizing(query, self.length_unit)
-        train = self._scaled(sizing.factor)
+        train = self._scale_train(sizing.factor)
         if not train.is_parallel:
-            return self._crossing(train, sizing)
+            return self._build_crossing(train, sizing)
         smallest = min((gear for stage in train.stages for gear in stage.cut_gears(train.pressure_angle)
                         if not gear.internal), key=lambda gear: gear.root_radius)  # fmt: skip
-        sizing.judge_size(2.0 * sum(train.centre_distances))
-        for sizes in sizing.offered(smallest):
-            task = _Task(self, train, sizes, sizing)
-            stand = task.stand()
+        sizing.check_size(2.0 * sum(train.centre_distances))
+        for sizes in sizing.list_sizes(smallest):
+            task = _OrdinaryTask(self, train, sizes, sizing)
+            stand = task.find_stand()
             if stand is not None:
-                return task.made(stand)
+                return task.build_assembly(stand)
         raise NotMade(
             "The shafts do not fit: in every arrangement one of them, or a part on it, would pass through a gear. "
             "Try thinner shafts or another scale.", sizing.path,
         )  # fmt: skip
 
-    def _crossing(self, train: OrdinaryTrain, sizing: GearSizing) -> Assembly:
+    def _build_crossing(self, train: OrdinaryTrain, sizing: GearSizing) -> Assembly:
         """Return the parts of a train with non-parallel shafts."""
         if len(train.stages) > 1:
             raise NotMade(
                 "Parts of bevel gears and worms are only available for single-stage trains: further stages would need "
                 "housings at right angles to one another."
             )
-        make = worm_parts if train.stages[0].kind == "worm" else bevel_parts
+        make = make_worm_parts if train.stages[0].kind == "worm" else make_bevel_parts
         return make(train, self.backlash[0], self.face_widths[0], sizing)
 
-    def _scaled(self, factor: float) -> OrdinaryTrain:
+    def _scale_train(self, factor: float) -> OrdinaryTrain:
         try:
             return OrdinaryTrain(
                 tuple(replace(stage, module=factor * stage.module) for stage in self.stages), self.pressure_angle
@@ -127,7 +127,7 @@ class OrdinaryParts:
 
 
 @dataclass(frozen=True)
-class _Task:
+class _OrdinaryTask:
     """A train in millimetres, and the sizes of its shafts and plates."""
 
     asked: OrdinaryParts
@@ -160,12 +160,12 @@ class _Task:
         """Highest level of a wheel."""
         return max(max(level, web or 0) for level, web in self.levels_of)
 
-    def stand(self) -> Stand | None:
+    def find_stand(self) -> Arrangement | None:
         """Return the arrangement of all wheels and shafts, or None."""
-        room = Room(0.5 * self.sizes.pin, 0.5 * self.sizes.collar, self.sizes.apart)
-        return stood(self._stage, len(self.train.stages), self.highest, room, self.asked.reverted)
+        room = Clearances(0.5 * self.sizes.pin, 0.5 * self.sizes.collar, self.sizes.min_gap)
+        return find_arrangement(self._place_stage, len(self.train.stages), self.highest, room, self.asked.reverted)
 
-    def _stage(self, number: int, axis: complex, ahead: complex) -> list[Wheel]:
+    def _place_stage(self, number: int, axis: complex, ahead: complex) -> list[Wheel]:
         """Return the wheels of a stage; shafts of idlers are numbered after those of the train."""
         level, web = self.levels_of[number]
         before = sum(len(one.idlers) for one in self.train.stages[:number])
@@ -173,7 +173,7 @@ class _Task:
         idler = len(self.train.stages) + 1 + before
         # The answer's backlash is increased to the clearance if it is smaller.
         play = 0.5 * max(self.sizes.clearance - self.sizing.factor * self.asked.backlash[number], 0.0)
-        for gear in in_line(self.train, number, axis, ahead):
+        for gear in place_in_line(self.train, number, axis, ahead):
             shaft = number + (gear.role == "driven")
             role: str = gear.role
             if gear.role == "idler":
@@ -181,7 +181,7 @@ class _Task:
                 role = f"idler_{idler - len(self.train.stages) - before}"
                 idler += 1
             ring = gear.gear.internal
-            outer = rim_radius(gear.gear, self.sizes) if ring else gear.gear.tip_radius
+            outer = compute_rim_radius(gear.gear, self.sizes) if ring else gear.gear.tip_radius
             # Gears in external mesh have opposite hands.
             helix = gear.helix_angle * (1.0 if gear.role == "driver" else -1.0)
             what = "ring" if ring else "gear"
@@ -194,56 +194,58 @@ class _Task:
             )  # fmt: skip
         return wheels
 
-    def made(self, stand: Stand) -> Assembly:
+    def build_assembly(self, stand: Arrangement) -> Assembly:
         """Build the assembly of an arrangement and check it for interference."""
-        levels = self._heights()
-        shafts = [self._shaft(number, stand) for number in range(len(stand.axes))]
+        levels = self._make_levels()
+        shafts = [self._make_shaft(number, stand) for number in range(len(stand.axes))]
         housing = Housing(
             self.sizes, levels, tuple(shafts), tuple((wheel.centre, wheel.outer) for wheel in stand.wheels)
         )
         parts: list[Part] = []
         for wheel in stand.wheels:
-            parts += wheel_parts(wheel, Carrier(self._body(wheel.shaft), None), levels, self.sizes)
+            parts += make_wheel_parts(wheel, Carrier(self._name_body(wheel.shaft), None), levels, self.sizes)
         assembly = Assembly(
-            (*parts, *housing.parts()), self._motion(stand), self.highest, 2, self.sizing.factor,
-            self.sizing.query.scale, self._notes(stand),
+            (*parts, *housing.make_parts()), self._make_motion(stand), self.highest, 2, self.sizing.factor,
+            self.sizing.query.scale, self._list_notes(stand),
         )  # fmt: skip
-        return looked_at(assembly, self.sizes, self.sizing)
+        return check_assembly(assembly, self.sizes, self.sizing)
 
-    def _body(self, shaft: int) -> str:
+    def _name_body(self, shaft: int) -> str:
         count = len(self.train.stages) + 1
         return f"shaft_{shaft + 1}" if shaft < count else f"idler_{shaft - count + 1}"
 
-    def _shaft(self, number: int, stand: Stand) -> Shaft:
+    def _make_shaft(self, number: int, stand: Arrangement) -> Shaft:
         count = len(self.train.stages) + 1
-        name = self._body(number).replace("_", " ")
+        name = self._name_body(number).replace("_", " ")
         if number in (0, count - 1):
             name = "input shaft" if number == 0 else "output shaft"
         # A ring is keyed by its web.
         keyed = [wheel.level if wheel.web is None else wheel.web for wheel in stand.wheels if wheel.shaft == number]
         return Shaft(
-            name, Carrier(self._body(number), None), stand.axes[number], stand.reaches[number], tuple(keyed),
+            name, Carrier(self._name_body(number), None), stand.axes[number], stand.reaches[number], tuple(keyed),
             ends=number in (0, count - 1), below=number == 0,
         )  # fmt: skip
 
-    def _heights(self) -> tuple[Level, ...]:
+    def _make_levels(self) -> tuple[Level, ...]:
         heights = [self.sizes.thickness] * (self.highest + 2)
         for number, (level, _) in enumerate(self.levels_of):
-            heights[level] = self.sizing.face_width(self.train.stages[number].module, self.asked.face_widths[number])
-        return stacked(heights, self.sizes)
+            heights[level] = self.sizing.choose_face_width(
+                self.train.stages[number].module, self.asked.face_widths[number]
+            )
+        return stack_levels(heights, self.sizes)
 
-    def _motion(self, stand: Stand) -> TrainMotion:
-        bodies = {self._body(wheel.shaft): Turning(wheel.centre, wheel.speed) for wheel in stand.wheels}
+    def _make_motion(self, stand: Arrangement) -> TrainMotion:
+        bodies = {self._name_body(wheel.shaft): BodyRotation(wheel.centre, wheel.speed) for wheel in stand.wheels}
         passing = [abs(wheel.speed) * wheel.gear.teeth for wheel in stand.wheels]
         size = max(
             abs(one.centre - other.centre) + one.outer + other.outer for one in stand.wheels for other in stand.wheels
         )
-        return TrainMotion(bodies, size, min(math.ceil(1.0 / min(passing)), MOST_TURNS))
+        return TrainMotion(bodies, size, min(math.ceil(1.0 / min(passing)), MAX_TURNS))
 
-    def _notes(self, stand: Stand) -> tuple[str, ...]:
+    def _list_notes(self, stand: Arrangement) -> tuple[str, ...]:
         told = ["Wheels are keyed to their shafts; the ends that protrude from the plates are input and output."]
         for number, reach in enumerate(stand.reaches):
             if reach != (0, self.highest + 1):
                 plate = "lower" if reach[0] == 0 else "upper"
-                told.append(f"The {self._shaft(number, stand).name} is held only by the {plate} plate.")
+                told.append(f"The {self._make_shaft(number, stand).name} is held only by the {plate} plate.")
         return tuple(told)

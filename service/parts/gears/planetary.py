@@ -14,27 +14,27 @@ import numpy as np
 from kinematics.errors import DimensionError
 from kinematics.gear.arrangements import ARRANGEMENTS, Arrangement
 from kinematics.linkage.planar.mechanism import GROUND
-from service.parts.bodies import Prism
-from service.parts.colours import LINK_COLOURS
-from service.parts.fasteners import MATERIALS
-from service.parts.gears.housing import Housing, Level, Shaft, stacked
-from service.parts.gears.keys import key_for, keyed_bore
-from service.parts.gears.motion import TrainMotion, Turning
-from service.parts.gears.planetary_build import Build, build_of
+from service.parts.assembly.colours import LINK_COLOURS
+from service.parts.assembly.fasteners import MATERIALS
+from service.parts.assembly.keys import find_key, make_bore
+from service.parts.assembly.model import Assembly, Carrier, Part, simplify_name
+from service.parts.assembly.sizes import MIN_WALL_PER_PIN, NotMade, PartsQuery, Sizes
+from service.parts.gears.housing import Housing, Level, Shaft, stack_levels
+from service.parts.gears.motion import BodyRotation, TrainMotion
+from service.parts.gears.planetary_build import Build, choose_build
 from service.parts.gears.sizing import GearSizing
 from service.parts.gears.stand import Wheel
-from service.parts.gears.teeth import toothed
-from service.parts.gears.wheels import ROOM, looked_at, rim_radius, wheel_parts
-from service.parts.model import Assembly, Carrier, Part, plain
-from service.parts.shapes import Disc, Outline, Region, widened
-from service.parts.sizes import WALL, NotMade, PartsQuery, Sizes
-from service.render.gears.planetary_layout import PlanetaryGear, placed_planetary_gears
+from service.parts.gears.teeth import make_teeth
+from service.parts.gears.wheels import JOINT_WALL_RATIO, check_assembly, compute_rim_radius, make_wheel_parts
+from service.parts.geometry.regions import Disc, Outline, Region, widen_hull
+from service.parts.geometry.solids import Prism
+from service.render.gears.planetary_layout import PlanetaryGear, place_planetary_gears
 
-POSTS = 4
+POST_COUNT = 4
 """Number of posts of a train whose ring is held by them."""
 
 
-def planetary_parts(design: Any, problem: Any, query: PartsQuery) -> Assembly:
+def make_planetary_parts(design: Any, problem: Any, query: PartsQuery) -> Assembly:
     """Make the parts of a planetary train.
 
     Parameters
@@ -54,18 +54,20 @@ def planetary_parts(design: Any, problem: Any, query: PartsQuery) -> Assembly:
     # Only one carrier fits between the two central shafts.
     if arrangement.bevel or len(set(arrangement.carriers.values())) > 1:
         raise NotMade("Parts are only available for planetary trains of spur gears with one carrier.")
-    build = build_of(arrangement, (mechanism.input, mechanism.output, mechanism.fixed))
+    build = choose_build(arrangement, (mechanism.input, mechanism.output, mechanism.fixed))
     if build is None:
         raise NotMade("The input and the output of this train cannot both be reached from two plates.")
     sizing = GearSizing(query, problem.length_unit)
     module = mechanism.module * sizing.factor
-    sizing.judge_size(design.metrics.size * sizing.factor)
-    gears = placed_planetary_gears(mechanism.model_copy(update={"module": module}))
+    sizing.check_size(design.metrics.size * sizing.factor)
+    gears = place_planetary_gears(mechanism.model_copy(update={"module": module}))
     smallest = min((one.gear for one in gears if not one.gear.internal), key=lambda gear: gear.root_radius)
     refused = None
-    for sizes in sizing.offered(smallest, *_least_room(gears, arrangement, build)):
+    for sizes in sizing.list_sizes(smallest, *_find_min_clearance(gears, arrangement, build)):
         try:
-            return _Task(mechanism, arrangement, design.metrics.speeds, build, gears, sizes, sizing).made()
+            return _PlanetaryTask(
+                mechanism, arrangement, design.metrics.speeds, build, gears, sizes, sizing
+            ).build_assembly()
         except DimensionError as error:
             raise NotMade(f"The gears cannot be cut: {error}.") from None
         except NotMade as error:
@@ -76,7 +78,7 @@ def planetary_parts(design: Any, problem: Any, query: PartsQuery) -> Assembly:
     raise refused
 
 
-def _least_room(gears: Sequence[PlanetaryGear], arrangement: Arrangement, build: Build) -> tuple[float, str]:
+def _find_min_clearance(gears: Sequence[PlanetaryGear], arrangement: Arrangement, build: Build) -> tuple[float, str]:
     """Return the minimum distance from a planet's axis to a gear that its axle passes, and their names; infinity if
     none.
     """
@@ -101,7 +103,7 @@ def _least_room(gears: Sequence[PlanetaryGear], arrangement: Arrangement, build:
 
 
 @dataclass(frozen=True)
-class _Task:
+class _PlanetaryTask:
     """A train in millimetres, its build, and the sizes of its shafts and plates."""
 
     mechanism: Any
@@ -123,49 +125,51 @@ class _Task:
         heights = [self.sizes.thickness] * (self.build.highest + 2)
         widths = self.mechanism.face_widths or [None] * len(self.build.planes)
         for plane, level in self.build.planes.items():
-            heights[level] = self.sizing.face_width(self.mechanism.module * self.sizing.factor, widths[plane - 1])
-        return stacked(heights, self.sizes)
+            heights[level] = self.sizing.choose_face_width(
+                self.mechanism.module * self.sizing.factor, widths[plane - 1]
+            )
+        return stack_levels(heights, self.sizes)
 
-    def body(self, gear: PlanetaryGear) -> str:
+    def name_body(self, gear: PlanetaryGear) -> str:
         """Return the body of a gear, as the motion names it."""
         if gear.body == self.mechanism.fixed:
             return GROUND
         return f"{gear.body}_{gear.copy + 1}" if gear.body in self.arrangement.carriers else gear.body
 
-    def carried(self, member: str) -> Carrier:
+    def get_carrier(self, member: str) -> Carrier:
         """Return the carrier of a member that rotates about the axis."""
         return Carrier(GROUND if member == self.mechanism.fixed else member, None)
 
-    def made(self) -> Assembly:
+    def build_assembly(self) -> Assembly:
         """Build the assembly and check it for interference."""
-        wheels = [self._wheel(gear, number) for number, gear in enumerate(self.gears)]
-        posts = self._posts(wheels)
+        wheels = [self._make_wheel(gear, number) for number, gear in enumerate(self.gears)]
+        posts = self._place_posts(wheels)
         around = [(gear.centre, wheel.outer) for gear, wheel in zip(self.gears, wheels, strict=True)]
         # The carrier's plate sweeps a circle beyond its pins.
-        around += [(0j, abs(pin) + 0.5 * self.sizes.width) for pin in self._pins().values()]
+        around += [(0j, abs(pin) + 0.5 * self.sizes.width) for pin in self._find_pins().values()]
         # Rings without a web are fixed to the posts.
         standing = tuple(wheel.level for wheel in wheels if wheel.gear.internal and wheel.web is None)
-        housing = Housing(self.sizes, self.levels, tuple(self._shafts()), tuple(around), posts, standing)
+        housing = Housing(self.sizes, self.levels, tuple(self._make_shafts()), tuple(around), posts, standing)
         parts: list[Part] = []
         for gear, wheel in zip(self.gears, wheels, strict=True):
-            parts += self._cut(gear, wheel, posts)
+            parts += self._make_parts(gear, wheel, posts)
         if self.build.carrier is not None:
-            parts.append(self._carrier_plate(self.build.carrier))
-        parts += housing.parts()
-        parts = [self._alike(part) for part in parts]
+            parts.append(self._make_carrier_plate(self.build.carrier))
+        parts += housing.make_parts()
+        parts = [self._mark_identical(part) for part in parts]
         assembly = Assembly(
-            tuple(parts), self._motion(wheels), self.build.highest, 2, self.sizing.factor, self.sizing.query.scale,
-            self._notes(),
+            tuple(parts), self._make_motion(wheels), self.build.highest, 2, self.sizing.factor, self.sizing.query.scale,
+            self._list_notes(),
         )  # fmt: skip
-        return looked_at(assembly, self.sizes, self.sizing)
+        return check_assembly(assembly, self.sizes, self.sizing)
 
     # Wheels
 
-    def _wheel(self, gear: PlanetaryGear, tint: int) -> Wheel:
+    def _make_wheel(self, gear: PlanetaryGear, tint: int) -> Wheel:
         levels = sorted(self.build.planes[plane] for plane in gear.planes)
         planet = gear.body in self.arrangement.carriers
-        name = f"{plain(gear.name)}_{gear.copy + 1}" if planet else plain(gear.name)
-        outer = rim_radius(gear.gear, self.sizes) if gear.gear.internal else gear.gear.tip_radius
+        name = f"{simplify_name(gear.name)}_{gear.copy + 1}" if planet else simplify_name(gear.name)
+        outer = compute_rim_radius(gear.gear, self.sizes) if gear.gear.internal else gear.gear.tip_radius
         names = list(self.mechanism.teeth)
         return Wheel(
             f"gear_{name}", f"{name.replace('_', ' ')}, {gear.gear.teeth:g} teeth", gear.gear, tint, levels[0],
@@ -174,20 +178,20 @@ class _Task:
             top=levels[-1],
         )  # fmt: skip
 
-    def _cut(self, gear: PlanetaryGear, wheel: Wheel, posts: Sequence[complex]) -> list[Part]:
+    def _make_parts(self, gear: PlanetaryGear, wheel: Wheel, posts: Sequence[complex]) -> list[Part]:
         if gear.gear.internal and wheel.web is None:
-            return [self._held_ring(wheel, posts)]
+            return [self._make_fixed_ring(wheel, posts)]
         planet = gear.body in self.arrangement.carriers
-        free = not self._stepped(gear.body) if planet else self.build.access[gear.body] == "loose"
-        return wheel_parts(
-            wheel, Carrier(self.body(gear), None), self.levels, self.sizes, free=free,
-            towards=self._towards(gear) if planet else 1.0 + 0.0j, like=gear.name if planet else "",
+        free = not self._is_stepped(gear.body) if planet else self.build.access[gear.body] == "loose"
+        return make_wheel_parts(
+            wheel, Carrier(self.name_body(gear), None), self.levels, self.sizes, free=free,
+            towards=self._find_key_direction(gear) if planet else 1.0 + 0.0j, like=gear.name if planet else "",
         )  # fmt: skip
 
-    def _held_ring(self, wheel: Wheel, posts: Sequence[complex]) -> Part:
+    def _make_fixed_ring(self, wheel: Wheel, posts: Sequence[complex]) -> Part:
         """Make a ring that is held by the posts."""
-        outer = Disc(0j, abs(posts[0]) + 0.5 * self.sizes.hole + ROOM * WALL * self.sizes.pin)
-        teeth = toothed(wheel.gear, wheel.centre, wheel.tooth_at, 0.0, wheel.play)
+        outer = Disc(0j, abs(posts[0]) + 0.5 * self.sizes.hole + JOINT_WALL_RATIO * MIN_WALL_PER_PIN * self.sizes.pin)
+        teeth = make_teeth(wheel.gear, wheel.centre, wheel.tooth_at, 0.0, wheel.play)
         holes = [Disc(post, 0.5 * self.sizes.hole) for post in posts]
         level = self.levels[wheel.level]
         return Part(
@@ -196,35 +200,35 @@ class _Task:
             (wheel.level, wheel.level), MATERIALS[self.sizes.process][0], LINK_COLOURS[wheel.tint % len(LINK_COLOURS)],
         )  # fmt: skip
 
-    def _stepped(self, planet: str) -> bool:
+    def _is_stepped(self, planet: str) -> bool:
         """Return whether a planet has several gears, which are keyed to one pin."""
         return sum(gear.body == planet for gear in self.arrangement.gears) > 1
 
-    def _towards(self, gear: PlanetaryGear) -> complex:
+    def _find_key_direction(self, gear: PlanetaryGear) -> complex:
         """Return the direction of a planet's keyways: copies are rotated like their gears."""
         first = next(one for one in self.gears if one.name == gear.name and one.copy == 0)
         return cmath.exp(1j * (gear.tooth_at - first.tooth_at))
 
     # Carriers and shafts
 
-    def _pins(self) -> dict[str, complex]:
+    def _find_pins(self) -> dict[str, complex]:
         """Return the centres of planets and their copies by body name."""
-        return {self.body(gear): gear.centre for gear in self.gears if gear.body in self.arrangement.carriers}
+        return {self.name_body(gear): gear.centre for gear in self.gears if gear.body in self.arrangement.carriers}
 
-    def _posts(self, wheels: Sequence[Wheel]) -> tuple[complex, ...]:
+    def _place_posts(self, wheels: Sequence[Wheel]) -> tuple[complex, ...]:
         """Return the posts that hold a ring, outside all rotating parts."""
         held = [wheel for wheel in wheels if wheel.gear.internal and wheel.web is None]
         if not held:
             return ()
-        room = ROOM * WALL * self.sizes.pin + 0.5 * self.sizes.hole
+        room = JOINT_WALL_RATIO * MIN_WALL_PER_PIN * self.sizes.pin + 0.5 * self.sizes.hole
         away = max(wheel.gear.root_radius for wheel in held) + room
         moving = [abs(wheel.centre) + wheel.outer for wheel in wheels if wheel not in held]
-        moving += [abs(pin) + 0.5 * self.sizes.width for pin in self._pins().values()]
+        moving += [abs(pin) + 0.5 * self.sizes.width for pin in self._find_pins().values()]
         # Posts stay outside everything that rotates.
-        away = max(away, max(moving) + 0.5 * self.sizes.collar + self.sizes.apart)
-        return tuple(cmath.rect(away, math.pi * (k + 0.5) / (0.5 * POSTS)) for k in range(POSTS))
+        away = max(away, max(moving) + 0.5 * self.sizes.collar + self.sizes.min_gap)
+        return tuple(cmath.rect(away, math.pi * (k + 0.5) / (0.5 * POST_COUNT)) for k in range(POST_COUNT))
 
-    def _shafts(self) -> list[Shaft]:
+    def _make_shafts(self) -> list[Shaft]:
         build, top = self.build, self.build.highest + 1
         found = []
         hubs = {gear.body: build.webs.get(gear.body, build.planes[gear.planes[0]]) for gear in self.gears
@@ -244,70 +248,70 @@ class _Task:
             plate = 0 if side == "low" else top
             found.append(
                 Shaft(
-                    f"shaft of the {body.replace('_', ' ')}", self.carried(body), 0j, (low, high),
+                    f"shaft of the {body.replace('_', ' ')}", self.get_carrier(body), 0j, (low, high),
                     (hubs[body], plate) if held else (hubs[body],), tuple(loose),
                     ends=body in (self.mechanism.input, self.mechanism.output),
                 )
             )  # fmt: skip
-        for name, centre in self._pins().items():
-            found.append(self._pin(name, centre))
+        for name, centre in self._find_pins().items():
+            found.append(self._make_pin(name, centre))
         return found
 
-    def _pin(self, name: str, centre: complex) -> Shaft:
+    def _make_pin(self, name: str, centre: complex) -> Shaft:
         """Make the pin of a planet: it is held by the carrier, and rotates with a stepped planet."""
-        own = [gear for gear in self.gears if self.body(gear) == name]
+        own = [gear for gear in self.gears if self.name_body(gear) == name]
         plate = 0 if self.build.carrier is None else self.build.carrier
         levels = sorted({self.build.planes[plane] for gear in own for plane in gear.planes})
         reach = min(plate, *levels), max(plate, *levels)
         words = f"planet {name.replace('planet', '').strip('_').replace('_', ' ')}".strip()
-        if self._stepped(own[0].body):
+        if self._is_stepped(own[0].body):
             keyed = tuple(self.build.planes[gear.planes[0]] for gear in own)
             return Shaft(f"axle of {words}", Carrier(name, None), centre, reach, keyed, (plate,),
-                         towards=self._towards(own[0]))  # fmt: skip
-        carrier = Carrier(self.carried(self.carrier).link, None)
+                         towards=self._find_key_direction(own[0]))  # fmt: skip
+        carrier = Carrier(self.get_carrier(self.carrier).link, None)
         return Shaft(f"axle of {words}", carrier, centre, reach, (), (plate, *levels), spanned=tuple(levels[:-1]))
 
-    def _carrier_plate(self, level: int) -> Part:
+    def _make_carrier_plate(self, level: int) -> Part:
         sizes = self.sizes
-        pins = list(dict.fromkeys(self._pins().values()))
+        pins = list(dict.fromkeys(self._find_pins().values()))
         free = self.build.access[self.carrier] == "loose"
         hub: Outline = Disc(0j, 0.5 * sizes.hole)
         if not free:
-            hub = keyed_bore(0j, sizes.pin, key_for(sizes.pin), sizes.clearance)
-        outer = widened([0j, *pins], 0.5 * sizes.width)
+            hub = make_bore(0j, sizes.pin, find_key(sizes.pin), sizes.clearance)
+        outer = widen_hull([0j, *pins], 0.5 * sizes.width)
         if len(pins) > 1:
             around = Disc(0j, max(abs(pin) for pin in pins) + 0.5 * sizes.width)
             # Few or uneven pins: use a disc, so that the hub is inside.
-            outer = around if _hub_uncovered(pins, sizes) else outer
+            outer = around if _is_hub_uncovered(pins, sizes) else outer
         holes = (hub, *(Disc(pin, 0.5 * sizes.hole) for pin in pins))
         return Part(
-            plain(self.carrier), "carrier", "link", self.carried(self.carrier),
+            simplify_name(self.carrier), "carrier", "link", self.get_carrier(self.carrier),
             (Prism(Region(outer, holes), self.levels[level].low, self.levels[level].high),), 1.0 + 0.0j,
             (level, level), MATERIALS[sizes.process][0], LINK_COLOURS[-1],
         )  # fmt: skip
 
-    def _alike(self, part: Part) -> Part:
+    def _mark_identical(self, part: Part) -> Part:
         """Mark pins of a planet's copies as identical, including keyed ones."""
         if part.sort == "pin" and part.described.startswith("axle of planet") and not part.round:
             return replace(part, like="axle of a planet")
         return part
 
-    def _motion(self, wheels: Sequence[Wheel]) -> TrainMotion:
+    def _make_motion(self, wheels: Sequence[Wheel]) -> TrainMotion:
         carrier = self.speeds[self.carrier]
-        bodies: dict[str, Turning] = {}
+        bodies: dict[str, BodyRotation] = {}
         for member in self.arrangement.members:
             if member != self.mechanism.fixed:
-                bodies[member] = Turning(0j, self.speeds[member])
+                bodies[member] = BodyRotation(0j, self.speeds[member])
         for gear in self.gears:
             if gear.body in self.arrangement.carriers:
-                bodies[self.body(gear)] = Turning(gear.centre, self.speeds[gear.body], carrier)
+                bodies[self.name_body(gear)] = BodyRotation(gear.centre, self.speeds[gear.body], carrier)
         # Teeth pass at speeds relative to the carrier.
         passing = [abs(wheel.speed - carrier) * wheel.gear.teeth for wheel in wheels]
         size = 2.0 * max(abs(wheel.centre) + wheel.outer for wheel in wheels)
         slowest = min((one for one in passing if one > 0.0), default=1.0)
         return TrainMotion(bodies, size, min(math.ceil(1.0 / slowest), 400))
 
-    def _notes(self) -> tuple[str, ...]:
+    def _list_notes(self) -> tuple[str, ...]:
         told = ["Gears are keyed to their shafts; planets turn on their pins, stepped planets together with them."]
         fixed = f"The {self.mechanism.fixed.replace('_', ' ')} is fixed"
         if self.build.access[self.mechanism.fixed] == "held":
@@ -322,7 +326,7 @@ class _Task:
         return tuple(told)
 
 
-def _hub_uncovered(pins: Sequence[complex], sizes: Sizes) -> bool:
+def _is_hub_uncovered(pins: Sequence[complex], sizes: Sizes) -> bool:
     """Return whether the hull of the pins is too narrow about the axis for a keyway with its walls."""
     turned = np.sort(np.angle(pins))
     widest = float(np.diff(turned, append=turned[0] + 2.0 * math.pi).max())

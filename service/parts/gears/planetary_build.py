@@ -18,7 +18,7 @@ from kinematics.gear.arrangements import Arrangement
 Access = Literal["low", "high", "loose", "held"]
 """Connection of a member: to the lower or the upper shaft, free on one of them, or fixed by the housing itself."""
 
-CARRIER_FIRST: tuple[Literal["below", "above"], ...] = ("above", "below")
+PLATE_SIDES: tuple[Literal["below", "above"], ...] = ("above", "below")
 
 
 class Build(NamedTuple):
@@ -49,7 +49,7 @@ class Build(NamedTuple):
     highest: int
 
 
-def build_of(arrangement: Arrangement, roles: tuple[str, str, str]) -> Build | None:
+def choose_build(arrangement: Arrangement, roles: tuple[str, str, str]) -> Build | None:
     """Return the best build of an arrangement, or None.
 
     Parameters
@@ -57,11 +57,11 @@ def build_of(arrangement: Arrangement, roles: tuple[str, str, str]) -> Build | N
     roles : tuple of str
         The driving, the driven and the fixed member.
     """
-    ways = list(_ways(arrangement, roles))
+    ways = list(_enumerate_builds(arrangement, roles))
     return min(ways, key=lambda way: sum(way.access[body] == "loose" for body in roles[:2])) if ways else None
 
 
-def _ways(arrangement: Arrangement, roles: tuple[str, str, str]) -> Iterator[Build]:
+def _enumerate_builds(arrangement: Arrangement, roles: tuple[str, str, str]) -> Iterator[Build]:
     """Yield all builds, those in the order of the arrangement first."""
     held = roles[2]
     (carrier,) = set(arrangement.carriers.values())
@@ -71,7 +71,7 @@ def _ways(arrangement: Arrangement, roles: tuple[str, str, str]) -> Iterator[Bui
     planes = sorted({plane for gear in arrangement.gears for plane in gear.planes})
     # The stack of planes may be built upside down.
     for order in (planes, planes[::-1]):
-        for plate in (None,) if carrier == held else CARRIER_FIRST:
+        for plate in (None,) if carrier == held else PLATE_SIDES:
             for sides in product(("above", "below"), repeat=len(turning)):
                 below = [body for body, side in zip(turning, sides, strict=True) if side == "below"]
                 above = [body for body, side in zip(turning, sides, strict=True) if side == "above"]
@@ -95,10 +95,10 @@ def _ways(arrangement: Arrangement, roles: tuple[str, str, str]) -> Iterator[Bui
                     hubs[carrier] = at
                 if held in {ring.body for ring in rings}:
                     del hubs[held]
-                yield from _got_at(hubs, roles, levels, webs, at, highest, [*arrangement.members])
+                yield from _enumerate_connections(hubs, roles, levels, webs, at, highest, [*arrangement.members])
 
 
-def _got_at(
+def _enumerate_connections(
     hubs: Mapping[str, int],
     roles: tuple[str, str, str],
     levels: Mapping[int, int],

@@ -5,14 +5,14 @@ from __future__ import annotations
 import math
 from typing import Any
 
-from service.parts.gears.ordinary import OrdinaryParts, backlash_of
-from service.parts.model import Assembly
-from service.parts.sizes import NotMade, PartsQuery
+from service.parts.assembly.model import Assembly
+from service.parts.assembly.sizes import NotMade, PartsQuery
+from service.parts.gears.ordinary import OrdinaryParts, find_backlash
 from synthesis.kinds.gear_train.design import GearTrainMechanism
-from synthesis.kinds.gear_train.verification import driven_train
+from synthesis.kinds.gear_train.verification import build_train
 
 
-def series_parts(design: Any, problem: Any, query: PartsQuery) -> Assembly:
+def make_series_parts(design: Any, problem: Any, query: PartsQuery) -> Assembly:
     """Make the parts of a series of ordinary trains.
 
     Parameters
@@ -40,12 +40,12 @@ def series_parts(design: Any, problem: Any, query: PartsQuery) -> Assembly:
         )
     if len({unit.pressure_angle for unit in units}) > 1:
         raise NotMade("Parts are only available for trains with one pressure angle.")
-    stages = [stage for unit in units for stage in driven_train(unit).stages]
+    stages = [stage for unit in units for stage in build_train(unit).stages]
     plays = [
         play
         for unit, metrics in zip(units, design.metrics.units, strict=True)
-        for play in backlash_of(driven_train(unit).stages, metrics.meshes)
+        for play in find_backlash(build_train(unit).stages, metrics.meshes)
     ]
     widths = [stage.face_width for unit in units for stage in unit.stages]
     angle = math.radians(units[0].pressure_angle)
-    return OrdinaryParts(stages, angle, plays, widths, False, problem.length_unit).assembly(query)
+    return OrdinaryParts(stages, angle, plays, widths, False, problem.length_unit).build_assembly(query)

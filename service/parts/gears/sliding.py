@@ -16,27 +16,27 @@ from typing import Any
 
 from kinematics.errors import DimensionError
 from kinematics.gear.teeth import Gear
-from service.parts.bodies import Prism
-from service.parts.colours import LINK_COLOURS
-from service.parts.fasteners import MATERIALS
-from service.parts.gears.clusters import Cluster, clusters
-from service.parts.gears.housing import Housing, Level, Shaft, stacked
-from service.parts.gears.keys import key_for, keyed_bore
-from service.parts.gears.motion import TrainMotion, Turning
-from service.parts.gears.ordinary import MOST_TURNS
-from service.parts.gears.sizing import GearSizing, keyway_reach
-from service.parts.gears.stand import Room, Stand, Wheel, stood
-from service.parts.gears.wheels import looked_at, wheel_parts
-from service.parts.model import Assembly, Carrier, Part
-from service.parts.shapes import Disc, Region
-from service.parts.sizes import WALL, NotMade, PartsQuery, Sizes
-from service.render.gears.placed import facing
+from service.parts.assembly.colours import LINK_COLOURS
+from service.parts.assembly.fasteners import MATERIALS
+from service.parts.assembly.keys import find_key, make_bore
+from service.parts.assembly.model import Assembly, Carrier, Part
+from service.parts.assembly.sizes import MIN_WALL_PER_PIN, NotMade, PartsQuery, Sizes
+from service.parts.gears.clusters import Cluster, make_clusters
+from service.parts.gears.housing import Housing, Level, Shaft, stack_levels
+from service.parts.gears.motion import BodyRotation, TrainMotion
+from service.parts.gears.ordinary import MAX_TURNS
+from service.parts.gears.sizing import GearSizing, measure_keyway_reach
+from service.parts.gears.stand import Arrangement, Clearances, Wheel, find_arrangement
+from service.parts.gears.wheels import check_assembly, make_wheel_parts
+from service.parts.geometry.regions import Disc, Region
+from service.parts.geometry.solids import Prism
+from service.render.gears.placement import align_mate
 
 Teeth = tuple[tuple[tuple[int, int], ...], ...]
 """Driver and driven teeth by stage and pair."""
 
 
-def sliding_parts(design: Any, problem: Any, query: PartsQuery) -> Assembly:
+def make_sliding_parts(design: Any, problem: Any, query: PartsQuery) -> Assembly:
     """Make the parts of a gearbox in the requested speed.
 
     Parameters
@@ -59,15 +59,15 @@ def sliding_parts(design: Any, problem: Any, query: PartsQuery) -> Assembly:
     teeth = tuple(tuple((pair.driver, pair.driven) for pair in stage.pairs) for stage in design.mechanism.stages)
     module, angle = sizing.factor * design.mechanism.module, math.radians(design.mechanism.pressure_angle)
     gears = {count: Gear(count, module, angle) for pairs in teeth for pair in pairs for count in pair}
-    sizing.judge_size(module * sum(sum(pairs[0]) for pairs in teeth))
+    sizing.check_size(module * sum(sum(pairs[0]) for pairs in teeth))
     told = f"Speed {number} of {len(speeds)} is shown, {speeds[number - 1].speed:.6g} rev/min at the output"
     smallest = min(gears.values(), key=lambda gear: gear.root_radius)
-    for sizes in sizing.offered(smallest):
-        task = _Task(teeth, gears, tuple(speeds[number - 1].engaged), told, sizes, sizing)
-        stand = task.stand()
+    for sizes in sizing.list_sizes(smallest):
+        task = _SlidingTask(teeth, gears, tuple(speeds[number - 1].engaged), told, sizes, sizing)
+        stand = task.find_stand()
         if stand is not None:
             try:
-                return task.made(stand)
+                return task.build_assembly(stand)
             except DimensionError as error:
                 raise NotMade(f"The gears cannot be cut: {error}.") from None
     raise NotMade(
@@ -77,7 +77,7 @@ def sliding_parts(design: Any, problem: Any, query: PartsQuery) -> Assembly:
 
 
 @dataclass(frozen=True)
-class _Task:
+class _SlidingTask:
     """A gearbox in millimetres, the engaged pair of each stage, and the sizes of its shafts and plates."""
 
     teeth: Teeth
@@ -90,7 +90,7 @@ class _Task:
     @cached_property
     def clusters(self) -> tuple[Cluster, ...]:
         """All clusters, from below."""
-        return clusters([len(pairs) for pairs in self.teeth])
+        return make_clusters([len(pairs) for pairs in self.teeth])
 
     @property
     def highest(self) -> int:
@@ -106,12 +106,12 @@ class _Task:
             found.append(-found[-1] * Fraction(*pairs[engaged]))
         return tuple(found)
 
-    def stand(self) -> Stand | None:
+    def find_stand(self) -> Arrangement | None:
         """Return the arrangement of the shafts, with each sliding gear in every level that it can occupy, or None."""
-        room = Room(0.5 * self.sizes.pin, 0.5 * self.sizes.collar, self.sizes.apart)
-        return stood(self._stage, len(self.teeth), self.highest, room, polygon=False)
+        room = Clearances(0.5 * self.sizes.pin, 0.5 * self.sizes.collar, self.sizes.min_gap)
+        return find_arrangement(self._place_stage, len(self.teeth), self.highest, room, polygon=False)
 
-    def _stage(self, number: int, axis: complex, ahead: complex) -> list[Wheel]:
+    def _place_stage(self, number: int, axis: complex, ahead: complex) -> list[Wheel]:
         """Return all gears of a stage in all their levels; the last one is on the next shaft."""
         found: list[Wheel] = []
         one, other = self.teeth[number][0]
@@ -120,12 +120,12 @@ class _Task:
             for place, pair in enumerate(cluster.pairs):
                 driver, driven = self.teeth[number][pair]
                 # A sliding gear must be unobstructed in every level.
-                for level in cluster.visited(place):
-                    found.append(self._wheel(number, pair, "driver", driver, level, axis))
-                found.append(self._wheel(number, pair, "driven", driven, cluster.fixed(place), beyond))
+                for level in cluster.list_levels(place):
+                    found.append(self._make_wheel(number, pair, "driver", driver, level, axis))
+                found.append(self._make_wheel(number, pair, "driven", driven, cluster.get_fixed_level(place), beyond))
         return found
 
-    def _wheel(self, stage: int, pair: int, role: str, teeth: int, level: int, centre: complex) -> Wheel:
+    def _make_wheel(self, stage: int, pair: int, role: str, teeth: int, level: int, centre: complex) -> Wheel:
         shaft, gear = stage + (role == "driven"), self.gears[teeth]
         words = f"gear of stage {stage + 1}, pair {pair + 1}, {role}, {teeth} teeth"
         return Wheel(
@@ -133,22 +133,22 @@ class _Task:
             float(self.speeds[shaft]), 2 * stage + (role == "driven"), play=0.5 * self.sizes.clearance,
         )  # fmt: skip
 
-    def towards(self, axes: tuple[complex, ...]) -> list[complex]:
+    def find_key_directions(self, axes: tuple[complex, ...]) -> list[complex]:
         """Return the direction of each shaft's keys with which the engaged pairs mesh."""
         angles = [0.0]
         for stage, (pairs, engaged) in enumerate(zip(self.teeth, self.engaged, strict=True)):
             driver, driven = (self.gears[count] for count in pairs[engaged])
             ahead = cmath.phase(axes[stage + 1] - axes[stage])
             # Each shaft is rotated so that its engaged gear meshes with the previous shaft's.
-            angles.append(facing(driver, angles[-1], driven, ahead))
+            angles.append(align_mate(driver, angles[-1], driven, ahead))
         return [cmath.rect(1.0, angle) for angle in angles]
 
-    def made(self, stand: Stand) -> Assembly:
+    def build_assembly(self, stand: Arrangement) -> Assembly:
         """Build the assembly of an arrangement and check it for interference."""
-        face = self.sizing.face_width(next(iter(self.gears.values())).module, None)
-        levels = stacked([self.sizes.thickness, *[face] * self.highest, self.sizes.thickness], self.sizes)
-        towards = self.towards(stand.axes)
-        shafts = [self._shaft(number, stand, way) for number, way in enumerate(towards)]
+        face = self.sizing.choose_face_width(next(iter(self.gears.values())).module, None)
+        levels = stack_levels([self.sizes.thickness, *[face] * self.highest, self.sizes.thickness], self.sizes)
+        towards = self.find_key_directions(stand.axes)
+        shafts = [self._make_shaft(number, stand, way) for number, way in enumerate(towards)]
         around = tuple((wheel.centre, wheel.outer) for wheel in stand.wheels)
         housing = Housing(self.sizes, levels, tuple(shafts), around)
         wheels = {wheel.name: wheel for wheel in stand.wheels}
@@ -158,41 +158,42 @@ class _Task:
                 own = []
                 for place, pair in enumerate(cluster.pairs):
                     wheel = wheels[f"gear_{cluster.stage + 1}_{pair + 1}_{role}"]
-                    level = cluster.at(place, self.engaged[cluster.stage]) if role == "driver" else wheel.level
+                    level = cluster.get_level(place, self.engaged[cluster.stage]) if role == "driver" else wheel.level
                     own.append(wheel._replace(level=level, tooth_at=cmath.phase(towards[wheel.shaft])))
                 made = [
                     part
                     for wheel in own
-                    for part in wheel_parts(
-                        wheel, _carrier(wheel.shaft), levels, self.sizes, towards=towards[wheel.shaft]
+                    for part in make_wheel_parts(
+                        wheel, _make_carrier(wheel.shaft), levels, self.sizes, towards=towards[wheel.shaft]
                     )
                 ]
                 # Only the sliding gears of a cluster form one piece.
                 joined = role == "driver" and len(own) > 1
-                parts += self._joined(cluster, own, made, levels, towards[own[0].shaft]) if joined else made
+                parts += self._merge_cluster(cluster, own, made, levels, towards[own[0].shaft]) if joined else made
         size = max(abs(a.centre - b.centre) + a.outer + b.outer for a in wheels.values() for b in wheels.values())
         slowest = min(abs(wheel.speed) * wheel.gear.teeth for wheel in wheels.values())
         bodies = {
-            _carrier(shaft).link: Turning(axis, float(self.speeds[shaft])) for shaft, axis in enumerate(stand.axes)
+            _make_carrier(shaft).link: BodyRotation(axis, float(self.speeds[shaft]))
+            for shaft, axis in enumerate(stand.axes)
         }
-        motion = TrainMotion(bodies, size, min(math.ceil(1.0 / slowest), MOST_TURNS))
+        motion = TrainMotion(bodies, size, min(math.ceil(1.0 / slowest), MAX_TURNS))
         assembly = Assembly(
-            (*parts, *housing.parts()), motion, self.highest, 2, self.sizing.factor, self.sizing.query.scale,
-            self._notes(levels, shafts),
+            (*parts, *housing.make_parts()), motion, self.highest, 2, self.sizing.factor, self.sizing.query.scale,
+            self._list_notes(levels, shafts),
         )  # fmt: skip
-        return looked_at(assembly, self.sizes, self.sizing)
+        return check_assembly(assembly, self.sizes, self.sizing)
 
-    def _joined(
+    def _merge_cluster(
         self, cluster: Cluster, wheels: list[Wheel], made: list[Part], levels: tuple[Level, ...], towards: complex
     ) -> list[Part]:
         """Make two gears that slide together, with a hub between them: one piece, or three if cut from sheets."""
         sizes, (lower, upper) = self.sizes, wheels
         name = f"{cluster.stage + 1}_{cluster.pairs[0] + 1}"
         words = f"stage {cluster.stage + 1}, pairs {cluster.pairs[0] + 1} and {cluster.pairs[1] + 1}"
-        bore = keyed_bore(lower.centre, sizes.pin, key_for(sizes.pin), sizes.clearance, towards)
-        region = Region(Disc(lower.centre, keyway_reach(sizes) + WALL * sizes.pin), (bore,))
+        bore = make_bore(lower.centre, sizes.pin, find_key(sizes.pin), sizes.clearance, towards)
+        region = Region(Disc(lower.centre, measure_keyway_reach(sizes) + MIN_WALL_PER_PIN * sizes.pin), (bore,))
         hub = Prism(region, levels[lower.level].high, levels[upper.level].low)
-        colour, carrier = LINK_COLOURS[lower.tint % len(LINK_COLOURS)], _carrier(lower.shaft)
+        colour, carrier = LINK_COLOURS[lower.tint % len(LINK_COLOURS)], _make_carrier(lower.shaft)
         material, planes = MATERIALS[sizes.process][0], (lower.level, upper.level)
         # Sheets cannot form one piece: the hub is a separate part.
         if sizes.process == "laser":
@@ -205,10 +206,10 @@ class _Task:
         told = f"cluster of {words}, drivers, {lower.gear.teeth:g} and {upper.gear.teeth:g} teeth"
         return [Part(f"cluster_{name}", told, "gear", carrier, bodies, towards, planes, material, colour)]
 
-    def _shaft(self, number: int, stand: Stand, towards: complex) -> Shaft:
+    def _make_shaft(self, number: int, stand: Arrangement, towards: complex) -> Shaft:
         last = len(self.teeth)
         keyed = [
-            cluster.fixed(place)
+            cluster.get_fixed_level(place)
             for cluster in self.clusters
             for place in range(len(cluster.pairs))
             if cluster.stage + 1 == number or (cluster.stage == number and not cluster.slides)
@@ -218,11 +219,11 @@ class _Task:
         ]
         name = {0: "input shaft", last: "output shaft"}.get(number, f"shaft {number + 1}")
         return Shaft(
-            name, _carrier(number), stand.axes[number], stand.reaches[number], tuple(keyed), ends=number in (0, last),
-            below=number == 0, towards=towards, sliding=tuple(sliding),
+            name, _make_carrier(number), stand.axes[number], stand.reaches[number], tuple(keyed),
+            ends=number in (0, last), below=number == 0, towards=towards, sliding=tuple(sliding),
         )  # fmt: skip
 
-    def _notes(self, levels: tuple[Level, ...], shafts: list[Shaft]) -> tuple[str, ...]:
+    def _list_notes(self, levels: tuple[Level, ...], shafts: list[Shaft]) -> tuple[str, ...]:
         pairs = [
             f"pair {engaged + 1} of stage {stage + 1}, {teeth[engaged][0]}/{teeth[engaged][1]}"
             for stage, (teeth, engaged) in enumerate(zip(self.teeth, self.engaged, strict=True))
@@ -261,5 +262,5 @@ class _Task:
         return tuple(told)
 
 
-def _carrier(shaft: int) -> Carrier:
+def _make_carrier(shaft: int) -> Carrier:
     return Carrier(f"shaft_{shaft + 1}", None)

@@ -15,13 +15,13 @@ from typing import NamedTuple
 
 from kinematics.gear.teeth import Gear
 
-STEP = math.radians(15.0)
+ANGLE_STEP = math.radians(15.0)
 """Step of the rotation of a stage relative to the previous one, if a straight line is impossible."""
 
-MOST_TRIED = 4000
+MAX_TRIED = 4000
 """Maximum number of arrangements that are tried."""
 
-ONE_AXIS = 1e-9
+COAXIAL_TOLERANCE = 1e-9
 """Share of a bore below which two shafts are coaxial."""
 
 Reach = tuple[int, int]
@@ -76,7 +76,7 @@ class Wheel(NamedTuple):
         return (self.level,) if self.web is None else (self.level, self.web)
 
 
-class Room(NamedTuple):
+class Clearances(NamedTuple):
     """Required clearances: radii of shafts and of parts on them between wheels, and minimum distance of parts."""
 
     shaft: float
@@ -84,7 +84,7 @@ class Room(NamedTuple):
     apart: float
 
 
-class Stand(NamedTuple):
+class Arrangement(NamedTuple):
     """The placed wheels, and the axis and the reach of each shaft."""
 
     wheels: tuple[Wheel, ...]
@@ -96,7 +96,7 @@ Stage = Callable[[int, complex, complex], Sequence[Wheel]]
 """Returns the wheels of a stage by its index, from the axis of its first shaft in a direction."""
 
 
-def stood(stage: Stage, stages: int, highest: int, room: Room, polygon: bool) -> Stand | None:
+def find_arrangement(stage: Stage, stages: int, highest: int, room: Clearances, polygon: bool) -> Arrangement | None:
     """Find an arrangement without obstruction; return None if none was found.
 
     Parameters
@@ -111,26 +111,28 @@ def stood(stage: Stage, stages: int, highest: int, room: Room, polygon: bool) ->
     """
     if polygon:
         ways = [cmath.exp(2j * math.pi * k / stages) for k in range(stages)]
-        wheels = _along(stage, ways)
-        reaches = reached(wheels, highest, room)
-        return None if reaches is None else Stand(tuple(wheels), axes_of(wheels), reaches)
-    for ways in _ways(stages, lambda some: reached(_along(stage, some), highest, room) is not None):
-        wheels = _along(stage, ways)
-        reaches = reached(wheels, highest, room)
+        wheels = _place_stages(stage, ways)
+        reaches = find_reaches(wheels, highest, room)
+        return None if reaches is None else Arrangement(tuple(wheels), find_axes(wheels), reaches)
+    for ways in _iterate_directions(
+        stages, lambda some: find_reaches(_place_stages(stage, some), highest, room) is not None
+    ):
+        wheels = _place_stages(stage, ways)
+        reaches = find_reaches(wheels, highest, room)
         assert reaches is not None
-        return Stand(tuple(wheels), axes_of(wheels), reaches)
+        return Arrangement(tuple(wheels), find_axes(wheels), reaches)
     return None
 
 
-def _ways(stages: int, suits: Callable[[list[complex]], bool]) -> Iterator[list[complex]]:
+def _iterate_directions(stages: int, suits: Callable[[list[complex]], bool]) -> Iterator[list[complex]]:
     """Yield directions of all stages, straight ahead first; unsuitable beginnings are not continued."""
     turns = [0.0]
-    for k in range(1, round(math.pi / STEP) + 1):
+    for k in range(1, round(math.pi / ANGLE_STEP) + 1):
         # Try small deviations from the straight line first.
-        turns += [k * STEP, -k * STEP]
+        turns += [k * ANGLE_STEP, -k * ANGLE_STEP]
     tried = 0
 
-    def after(ways: list[complex]) -> Iterator[list[complex]]:
+    def extend_directions(ways: list[complex]) -> Iterator[list[complex]]:
         nonlocal tried
         if len(ways) == stages:
             yield ways
@@ -138,15 +140,15 @@ def _ways(stages: int, suits: Callable[[list[complex]], bool]) -> Iterator[list[
         for turn in turns:
             longer = [*ways, ways[-1] * cmath.exp(1j * turn)]
             tried += 1
-            if tried > MOST_TRIED:
+            if tried > MAX_TRIED:
                 return
             if suits(longer):
-                yield from after(longer)
+                yield from extend_directions(longer)
 
-    yield from after([1.0 + 0.0j])
+    yield from extend_directions([1.0 + 0.0j])
 
 
-def _along(stage: Stage, ways: Sequence[complex]) -> list[Wheel]:
+def _place_stages(stage: Stage, ways: Sequence[complex]) -> list[Wheel]:
     wheels: list[Wheel] = []
     axis = 0j
     for number, ahead in enumerate(ways):
@@ -155,24 +157,26 @@ def _along(stage: Stage, ways: Sequence[complex]) -> list[Wheel]:
     return wheels
 
 
-def axes_of(wheels: Sequence[Wheel]) -> tuple[complex, ...]:
+def find_axes(wheels: Sequence[Wheel]) -> tuple[complex, ...]:
     """Return the axis of each shaft."""
     found = {wheel.shaft: wheel.centre for wheel in wheels}
     return tuple(found[shaft] for shaft in sorted(found))
 
 
-def reached(wheels: Sequence[Wheel], highest: int, room: Room) -> tuple[Reach, ...] | None:
+def find_reaches(wheels: Sequence[Wheel], highest: int, room: Clearances) -> tuple[Reach, ...] | None:
     """Return the reach of each shaft, from plate to plate if unobstructed; None if a shaft cannot be held."""
     # Overlapping wheels cannot be fixed by shorter shafts.
-    if any(_in_the_way(one, other, room) for one, other in combinations(wheels, 2)):
+    if any(_is_obstructed(one, other, room) for one, other in combinations(wheels, 2)):
         return None
-    axes = axes_of(wheels)
+    axes = find_axes(wheels)
     choices: list[list[Reach]] = []
     for shaft, axis in enumerate(axes):
         own = [level for wheel in wheels if wheel.shaft == shaft for level in wheel.levels]
         # Both plates, only the lower, or only the upper.
         offered = [(0, highest + 1), (0, max(own)), (min(own), highest + 1)]
-        free = [reach for reach in offered if all(_passes(axis, shaft, own, reach, wheel, room) for wheel in wheels)]
+        free = [
+            reach for reach in offered if all(_is_passing(axis, shaft, own, reach, wheel, room) for wheel in wheels)
+        ]
         if not free:
             return None
         choices.append(free)
@@ -188,7 +192,7 @@ def reached(wheels: Sequence[Wheel], highest: int, room: Room) -> tuple[Reach, .
     return None
 
 
-def _passes(axis: complex, shaft: int, own: Sequence[int], reach: Reach, wheel: Wheel, room: Room) -> bool:
+def _is_passing(axis: complex, shaft: int, own: Sequence[int], reach: Reach, wheel: Wheel, room: Clearances) -> bool:
     """Return whether a shaft passes a wheel of another shaft freely."""
     if wheel.shaft == shaft:
         return True
@@ -205,7 +209,7 @@ def _passes(axis: complex, shaft: int, own: Sequence[int], reach: Reach, wheel: 
     return True
 
 
-def _in_the_way(one: Wheel, other: Wheel, room: Room) -> bool:
+def _is_obstructed(one: Wheel, other: Wheel, room: Clearances) -> bool:
     """Return whether two wheels of one level overlap, apart from the engagement of teeth in mesh."""
     if one.shaft == other.shaft or not set(one.levels) & set(other.levels):
         return False

@@ -1,8 +1,8 @@
 """Shafts with crossing axes, each in two bearing plates whose tabs fit in slots of one base.
 
-Each shaft has its own plane (:class:`~service.parts.model.Frame`): heights are along the shaft, the imaginary axis is
-upwards, normal to the base. It contains, by height, the shaft's bearing plates and its wheel, with spacers between;
-both ends have the same fasteners as pins (:mod:`service.parts.fasteners`).
+Each shaft has its own plane (:class:`~service.parts.assembly.model.Frame`): heights are along the shaft, the imaginary
+axis is upwards, normal to the base. It contains, by height, the shaft's bearing plates and its wheel, with spacers
+between; both ends have the same fasteners as pins (:mod:`service.parts.assembly.fasteners`).
 """
 
 from __future__ import annotations
@@ -12,34 +12,35 @@ from itertools import pairwise
 
 import numpy as np
 
+from kinematics.arrays import Real
 from kinematics.linkage.planar.mechanism import GROUND
-from service.parts.bodies import Prism
-from service.parts.colours import BASE_COLOUR
-from service.parts.fasteners import MATERIALS, fillers, held_pin
-from service.parts.gears.housing import STUB, Level, seat
-from service.parts.gears.motion import Turning
-from service.parts.model import Carrier, Frame, Part, Real, plain
-from service.parts.shapes import Disc, Loop, Outline, Region
-from service.parts.sizes import Sizes
+from service.parts.assembly.colours import BASE_COLOUR
+from service.parts.assembly.fasteners import MATERIALS, make_fillers, make_pin
+from service.parts.assembly.model import Carrier, Frame, Part, simplify_name
+from service.parts.assembly.sizes import Sizes
+from service.parts.gears.housing import STUB_LENGTH, Level, make_seat
+from service.parts.gears.motion import BodyRotation
+from service.parts.geometry.regions import Disc, Loop, Outline, Region
+from service.parts.geometry.solids import Prism
 
-FREE = 0.5
+FLOOR_CLEARANCE = 0.5
 """Space between the lowest part and the base, in shaft diameters."""
 
-TAB = 0.5
+TAB_SHARE = 0.5
 """Width of the tab of a bearing plate, as a share of the plate's."""
 
-SPREAD = 0.3
+FOOT_SHARE = 0.3
 """Half the width of a bearing plate at its foot, as a share of its height."""
 
-BASE, BEARINGS, FIRST = 0, 1, 2
+BASE_PLANE, BEARING_PLANE, FIRST_SHAFT_PLANE = 0, 1, 2
 """Plane numbers: the base, the bearing plates, and the first of one plane per shaft with its wheel."""
 
-UP = np.array([0.0, 0.0, 1.0])
+UP_DIRECTION = np.array([0.0, 0.0, 1.0])
 
 
-def frame_along(axis: Real, origin: Real) -> Frame:
+def make_frame(axis: Real, origin: Real) -> Frame:
     """Return the plane normal to a horizontal axis, its imaginary axis upwards."""
-    return Frame(origin, np.column_stack([np.cross(UP, axis), UP, axis]))
+    return Frame(origin, np.column_stack([np.cross(UP_DIRECTION, axis), UP_DIRECTION, axis]))
 
 
 @dataclass(frozen=True)
@@ -86,7 +87,7 @@ class Axle:
     @property
     def plane(self) -> int:
         """Plane number of the shaft."""
-        return FIRST + self.number
+        return FIRST_SHAFT_PLANE + self.number
 
     @property
     def plates(self) -> tuple[Level, ...]:
@@ -94,14 +95,14 @@ class Axle:
         return tuple(level for number, level in enumerate(self.levels) if number != self.wheel)
 
     @property
-    def bodies(self) -> dict[str, Turning]:
+    def bodies(self) -> dict[str, BodyRotation]:
         """Rotation of its parts; the plates are at rest."""
         return {
-            self.carrier.link: Turning(0j, self.speed, frame=self.frame),
-            self.stand.link: Turning(0j, 0.0, frame=self.frame),
+            self.carrier.link: BodyRotation(0j, self.speed, frame=self.frame),
+            self.stand.link: BodyRotation(0j, 0.0, frame=self.frame),
         }
 
-    def at(self, aside: float, height: float) -> complex:
+    def project_point(self, aside: float, height: float) -> complex:
         """Return a point of its plane seen from above: at a distance sideways, and at a height along the shaft."""
         along, beside = self.frame.axes[:, 2], self.frame.axes[:, 0]
         x, y, _ = self.frame.origin + aside * beside + height * along
@@ -109,7 +110,7 @@ class Axle:
 
 
 @dataclass(frozen=True)
-class Upright:
+class UprightHousing:
     """Shafts over one base.
 
     Attributes
@@ -124,21 +125,21 @@ class Upright:
     axles: tuple[Axle, ...]
     below: float
 
-    def parts(self) -> list[Part]:
+    def make_parts(self) -> list[Part]:
         """Make the base, the bearing plates, and all parts on the shafts except their wheels."""
-        found = [self._base()]
+        found = [self._make_base()]
         for axle in self.axles:
-            found += [self._bearing(axle, number, level) for number, level in enumerate(axle.plates, 1)]
-            found += self._on(axle)
+            found += [self._make_bearing(axle, number, level) for number, level in enumerate(axle.plates, 1)]
+            found += self._make_shaft(axle)
         return found
 
-    def _of(self, axle: Axle) -> Sizes:
+    def _get_sizes(self, axle: Axle) -> Sizes:
         return axle.sizes or self.sizes
 
-    def _bearing(self, axle: Axle, number: int, level: Level) -> Part:
-        sizes = self._of(axle)
-        half, wide = 0.5 * sizes.width, self._foot(axle)
-        tab = TAB * wide
+    def _make_bearing(self, axle: Axle, number: int, level: Level) -> Part:
+        sizes = self._get_sizes(axle)
+        half, wide = 0.5 * sizes.width, self._measure_foot(axle)
+        tab = TAB_SHARE * wide
         foot = 1j * (self.below - axle.frame.origin[2])
         tip = foot - 1j * sizes.thickness
         corners = (
@@ -160,26 +161,26 @@ class Upright:
             carrier=axle.stand,
             bodies=(Prism(Region(outer, (Disc(0j, 0.5 * sizes.hole),)), level.low, level.high),),
             along=1j,
-            planes=(BEARINGS, BEARINGS),
+            planes=(BEARING_PLANE, BEARING_PLANE),
             material=MATERIALS[sizes.process][0],
             colour=BASE_COLOUR,
             like=f"bearing_{axle.number + 1}",
         )
 
-    def _foot(self, axle: Axle) -> float:
+    def _measure_foot(self, axle: Axle) -> float:
         """Return half the foot width of a bearing plate: larger than at its shaft if that is high above the base."""
         # High bearings need a wider foot.
-        return max(0.5 * self._of(axle).width, SPREAD * (float(axle.frame.origin[2]) - self.below))
+        return max(0.5 * self._get_sizes(axle).width, FOOT_SHARE * (float(axle.frame.origin[2]) - self.below))
 
-    def _base(self) -> Part:
+    def _make_base(self) -> Part:
         sizes = self.sizes
         room = sizes.width
         feet = [
-            axle.at(aside, height)
+            axle.project_point(aside, height)
             for axle in self.axles
             for level in axle.plates
             for height in (level.low, level.high)
-            for aside in (-self._foot(axle), self._foot(axle))
+            for aside in (-self._measure_foot(axle), self._measure_foot(axle))
         ]
         left, right = min(z.real for z in feet) - room, max(z.real for z in feet) + room
         low, high = min(z.imag for z in feet) - room, max(z.imag for z in feet) + room
@@ -191,7 +192,7 @@ class Upright:
             Disc(corner + complex(sign.real * inset.real, sign.imag * inset.imag), 0.5 * sizes.hole)
             for corner, sign in zip(corners, signs, strict=True)
         ]
-        holes += [self._slot(axle, level) for axle in self.axles for level in axle.plates]
+        holes += [self._make_slot(axle, level) for axle in self.axles for level in axle.plates]
         return Part(
             name="base",
             described="base",
@@ -199,30 +200,35 @@ class Upright:
             carrier=Carrier(GROUND, None),
             bodies=(Prism(Region(Loop(corners, (0.0,) * 4), tuple(holes)), self.below - sizes.thickness, self.below),),
             along=1.0 + 0.0j,
-            planes=(BASE, BASE),
+            planes=(BASE_PLANE, BASE_PLANE),
             material=MATERIALS[sizes.process][0],
             colour=BASE_COLOUR,
         )
 
-    def _slot(self, axle: Axle, level: Level) -> Loop:
+    def _make_slot(self, axle: Axle, level: Level) -> Loop:
         """Return the slot of a tab, wider by the clearance on each side."""
         play = self.sizes.clearance
-        tab = TAB * self._foot(axle) + play
+        tab = TAB_SHARE * self._measure_foot(axle) + play
         low, high = level.low - play, level.high + play
-        around = (axle.at(-tab, low), axle.at(tab, low), axle.at(tab, high), axle.at(-tab, high))
+        around = (
+            axle.project_point(-tab, low),
+            axle.project_point(tab, low),
+            axle.project_point(tab, high),
+            axle.project_point(-tab, high),
+        )
         # Orientation depends on the direction of the axle.
         turns = ((around[1] - around[0]).conjugate() * (around[2] - around[1])).imag
         return Loop(around if turns > 0.0 else around[::-1], (0.0,) * 4)
 
-    def _on(self, axle: Axle) -> list[Part]:
-        name, sizes, planes = plain(axle.name), self._of(axle), (axle.plane, axle.plane)
-        keyed, key = seat(axle.name, "1", axle.carrier, 0j, axle.levels[axle.wheel], axle.plane, sizes)
-        parts = held_pin(
+    def _make_shaft(self, axle: Axle) -> list[Part]:
+        name, sizes, planes = simplify_name(axle.name), self._get_sizes(axle), (axle.plane, axle.plane)
+        keyed, key = make_seat(axle.name, "1", axle.carrier, 0j, axle.levels[axle.wheel], axle.plane, sizes)
+        parts = make_pin(
             name, axle.name, axle.carrier, 0j, (axle.levels[0].low, axle.levels[-1].high), planes, sizes,
-            seats=[keyed], stub=STUB * sizes.pin, upside_down=axle.stub_below,
+            seats=[keyed], stub=STUB_LENGTH * sizes.pin, upside_down=axle.stub_below,
         )  # fmt: skip
         parts.append(key)
         for number, (lower, upper) in enumerate(pairwise(axle.levels), 1):
             gap = lower.high, upper.low
-            parts += fillers(f"{name}_{number}", axle.carrier, 0j, gap, planes, sizes, washers=False)
+            parts += make_fillers(f"{name}_{number}", axle.carrier, 0j, gap, planes, sizes, washers=False)
         return parts

@@ -18,21 +18,21 @@ from kinematics.gear.helical import HelicalGear
 from kinematics.gear.teeth import Gear
 from kinematics.gear.train import OrdinaryTrain, TrainStage
 from kinematics.gear.worm import WormDrive
-from service.parts.fasteners import MATERIALS
+from service.parts.assembly.fasteners import MATERIALS
+from service.parts.assembly.model import Assembly, Part
+from service.parts.assembly.sizes import NotMade, Sizes
 from service.parts.gears.housing import Level
 from service.parts.gears.motion import TrainMotion
-from service.parts.gears.sizing import FACE, GearSizing
+from service.parts.gears.sizing import DEFAULT_FACE_WIDTH, GearSizing
 from service.parts.gears.stand import Wheel
-from service.parts.gears.upright import FIRST, FREE, Axle, Upright, frame_along
-from service.parts.gears.wheels import looked_at, wheel_parts
-from service.parts.model import Assembly, Part
-from service.parts.sizes import NotMade, Sizes
+from service.parts.gears.upright import FIRST_SHAFT_PLANE, FLOOR_CLEARANCE, Axle, UprightHousing, make_frame
+from service.parts.gears.wheels import check_assembly, make_wheel_parts
 
-NARROW = 0.67
+MAX_FACE_SHARE = 0.67
 """Maximum default face width of a worm gear, in pitch diameters of the worm."""
 
 
-def worm_parts(train: OrdinaryTrain, backlash: float, face_width: float | None, sizing: GearSizing) -> Assembly:
+def make_worm_parts(train: OrdinaryTrain, backlash: float, face_width: float | None, sizing: GearSizing) -> Assembly:
     """Make the parts of a worm and its gear.
 
     Parameters
@@ -52,19 +52,19 @@ def worm_parts(train: OrdinaryTrain, backlash: float, face_width: float | None, 
     """
     (stage,) = train.stages
     drive = stage.worm(train.pressure_angle)
-    sizing.judge_size(2.0 * drive.centre_distance)
+    sizing.check_size(2.0 * drive.centre_distance)
     core = Gear(stage.quotient, stage.module, train.pressure_angle)
     smallest = min((core, drive.gear), key=lambda gear: gear.root_radius)
     refused = None
-    for sizes in sizing.offered(smallest):
+    for sizes in sizing.list_sizes(smallest):
         play = 0.5 * max(sizes.clearance - sizing.factor * backlash, 0.0)
         stated = sizing.query.face_width is not None or face_width is not None
-        wide = sizing.face_width(stage.module, face_width)
+        wide = sizing.choose_face_width(stage.module, face_width)
         # Wide worm gears do not touch the worm at their ends.
         if not stated:
-            wide = min(FACE, NARROW * stage.quotient) * stage.module
+            wide = min(DEFAULT_FACE_WIDTH, MAX_FACE_SHARE * stage.quotient) * stage.module
         try:
-            return _WormSet(stage, drive, wide, play, sizes, sizing).made()
+            return _WormSet(stage, drive, wide, play, sizes, sizing).build_assembly()
         except DimensionError as error:
             raise NotMade(f"The gears cannot be cut: {error}.") from None
         except NotMade as error:
@@ -89,7 +89,7 @@ class _WormSet:
         """1 for a right-handed worm, −1 for a left-handed one."""
         return -1.0 if self.stage.left_handed else 1.0
 
-    def gears(self) -> tuple[Gear, Gear]:
+    def make_gears(self) -> tuple[Gear, Gear]:
         """Return worm and gear in their planes of rotation, with tips and roots of the axial module."""
         lead = self.drive.lead_angle
         normal = self.stage.module * math.cos(lead)
@@ -104,60 +104,67 @@ class _WormSet:
             replace(gear, addendum=deeper * gear.addendum, dedendum=deeper * gear.dedendum),
         )
 
-    def made(self) -> Assembly:
+    def build_assembly(self) -> Assembly:
         """Build the assembly and check it for interference."""
-        worm, gear = self.gears()
+        worm, gear = self.make_gears()
         sizes, module, distance = self.sizes, self.stage.module, self.drive.centre_distance
-        lead, apart, half = self.drive.lead_angle, self.sizes.apart, 0.5 * self.sizes.width
+        lead, apart, half = self.drive.lead_angle, self.sizes.min_gap, 0.5 * self.sizes.width
         # The thread is as long as the chord of the gear's tip circle at the worm's root.
         length = 2.0 * math.sqrt(gear.tip_radius**2 - (gear.pitch_radius - module) ** 2) + 2.0 * module
         # The worm's bearing plates clear the gear, and the gear's clear the worm.
         beside = max(gear.tip_radius**2 - max(distance - half - apart, 0.0) ** 2, 0.0)
         axles = (
-            self._axle(0, "worm shaft", length, max(0.5 * length + sizes.gap, math.sqrt(beside) + apart)),
-            self._axle(1, "output shaft", self.face_width,
+            self._make_axle(0, "worm shaft", length, max(0.5 * length + sizes.gap, math.sqrt(beside) + apart)),
+            self._make_axle(1, "output shaft", self.face_width,
                        max(0.5 * self.face_width + sizes.gap, worm.tip_radius + apart)),
         )  # fmt: skip
-        below = max(worm.tip_radius, half, 0.5 * sizes.collar) + apart + FREE * sizes.pin
+        below = max(worm.tip_radius, half, 0.5 * sizes.collar) + apart + FLOOR_CLEARANCE * sizes.pin
         ratio = abs(axles[1].speed)
         wheels = (
-            Wheel("worm_1_driver", f"worm, {self.drive.threads} threads", worm, 0, FIRST, 0j, 0.5 * math.pi,
+            Wheel("worm_1_driver", f"worm, {self.drive.threads} threads", worm, 0, FIRST_SHAFT_PLANE, 0j, 0.5 * math.pi,
                   worm.tip_radius, 1.0, 0, self.hand * (0.5 * math.pi - lead), play=self.play / math.tan(lead)),
-            Wheel("gear_1_driven", f"worm gear, {self.drive.gear_teeth} teeth", gear, 1, FIRST + 1, 0j,
+            Wheel("gear_1_driven", f"worm gear, {self.drive.gear_teeth} teeth", gear, 1, FIRST_SHAFT_PLANE + 1, 0j,
                   -0.5 * math.pi + math.pi / self.drive.gear_teeth, gear.tip_radius, ratio, 1, self.hand * lead,
                   play=self.play),
         )  # fmt: skip
         parts: list[Part] = []
         # Dummy levels for the planes of base and bearings.
-        levels = [Level(0.0, 0.0)] * FIRST + [axle.levels[axle.wheel] for axle in axles]
+        levels = [Level(0.0, 0.0)] * FIRST_SHAFT_PLANE + [axle.levels[axle.wheel] for axle in axles]
         for wheel, axle in zip(wheels, axles, strict=True):
             parts += [
-                replace(part, material=self._material(axle)) for part in wheel_parts(wheel, axle.carrier, levels, sizes)
+                replace(part, material=self._choose_material(axle))
+                for part in make_wheel_parts(wheel, axle.carrier, levels, sizes)
             ]
-        parts += Upright(sizes, axles, -below).parts()
+        parts += UprightHousing(sizes, axles, -below).make_parts()
         size = max(distance + worm.tip_radius + gear.tip_radius, axles[0].levels[-1].high - axles[0].levels[0].low)
         motion = TrainMotion(axles[0].bodies | axles[1].bodies, size)
         assembly = Assembly(
-            tuple(parts), motion, FIRST + 1, 1, self.sizing.factor, self.sizing.query.scale, self._notes(worm, gear)
+            tuple(parts),
+            motion,
+            FIRST_SHAFT_PLANE + 1,
+            1,
+            self.sizing.factor,
+            self.sizing.query.scale,
+            self._list_notes(worm, gear),
         )
-        return looked_at(assembly, sizes, self.sizing)
+        return check_assembly(assembly, sizes, self.sizing)
 
-    def _axle(self, number: int, name: str, wide: float, plate: float) -> Axle:
+    def _make_axle(self, number: int, name: str, wide: float, plate: float) -> Axle:
         """Return a shaft with its wheel midway between two plates whose inner faces are at the distance ``plate``."""
         thick = self.sizes.thickness
         levels = Level(-plate - thick, -plate), Level(-0.5 * wide, 0.5 * wide), Level(plate, plate + thick)
         along = np.array([1.0, 0.0, 0.0]) if number == 0 else np.array([0.0, 1.0, 0.0])
         origin = np.array([0.0, 0.0, number * self.drive.centre_distance])
         speed = 1.0 if number == 0 else self.hand * self.drive.threads / self.drive.gear_teeth
-        return Axle(name, number, frame_along(along, origin), levels, 1, speed, stub_below=number == 0)
+        return Axle(name, number, make_frame(along, origin), levels, 1, speed, stub_below=number == 0)
 
-    def _material(self, axle: Axle) -> str:
+    def _choose_material(self, axle: Axle) -> str:
         """Return the material: a steel worm and a bronze gear, unless they are printed."""
         if self.sizes.process == "print" or axle.number == 0:
             return MATERIALS[self.sizes.process][1]
         return "bronze"
 
-    def _notes(self, worm: Gear, gear: Gear) -> tuple[str, ...]:
+    def _list_notes(self, worm: Gear, gear: Gear) -> tuple[str, ...]:
         return (
             f"Centre distance of the crossing shafts {self.drive.centre_distance:.6g} mm; lead angle "
             f"{math.degrees(self.drive.lead_angle):.4g}°, {'left' if self.stage.left_handed else 'right'}-handed; "

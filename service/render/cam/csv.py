@@ -16,7 +16,7 @@ from synthesis.kinds.cam.design import BarrelCamDesign, CamDesign, ProgramTable
 from synthesis.kinds.cam.problem import CamProblem
 
 
-def cam_table(design: CamDesign, problem: CamProblem, title: str) -> str:
+def write_cam_table(design: CamDesign, problem: CamProblem, title: str) -> str:
     """Write the inspection table of a cam design; numbers to twelve digits, cells empty where the follower has no
     contact.
     """
@@ -24,13 +24,13 @@ def cam_table(design: CamDesign, problem: CamProblem, title: str) -> str:
     contact = scene.contact
     pitch, profile = scene.pitch_curve, contact.point
     lift, rate = ("deg", "rad") if scene.oscillating else (unit, unit)
-    columns = _program(design.mechanism.program, lift, rate) | {
+    columns = _list_program(design.mechanism.program, lift, rate) | {
         "pressure_angle [deg]": np.degrees(contact.pressure_angle),
         f"radius_of_curvature [{unit}]": contact.radius,
         f"profile_x [{unit}]": profile.real,
         f"profile_y [{unit}]": profile.imag,
         f"profile_radius [{unit}]": np.abs(profile),
-        "profile_polar_angle [deg]": _polar(profile),
+        "profile_polar_angle [deg]": _compute_polar_angles(profile),
     }
     # Curves with points of their own do not fit the table's rows.
     if scene.roller and len(pitch) == len(scene.angle):
@@ -38,7 +38,7 @@ def cam_table(design: CamDesign, problem: CamProblem, title: str) -> str:
             f"roller_centre_x [{unit}]": pitch.real,
             f"roller_centre_y [{unit}]": pitch.imag,
             f"roller_centre_radius [{unit}]": np.abs(pitch),
-            "roller_centre_polar_angle [deg]": _polar(pitch),
+            "roller_centre_polar_angle [deg]": _compute_polar_angles(pitch),
         }
     wall = scene.outer_wall
     if wall is not None and len(wall) == len(scene.angle):
@@ -53,17 +53,17 @@ def cam_table(design: CamDesign, problem: CamProblem, title: str) -> str:
         }
     follower = design.mechanism.follower
     given = {name: value for name, value in follower.model_dump().items() if value is not None and name != "type"}
-    remarks = [f"{follower.type}, {_radius(design)} {unit}, turns {design.mechanism.rotation}"]
+    remarks = [f"{follower.type}, {_describe_radius(design)} {unit}, turns {design.mechanism.rotation}"]
     remarks += [", ".join(f"{name} {value:.12g}" for name, value in given.items())] if given else []
     remarks.append("x and y in the cam's own frame, the follower on +x at cam angle 0")
-    return table.numbers([title or "Cam", *remarks], columns, table.short)
+    return table.write_number_table([title or "Cam", *remarks], columns, table.format_rounded)
 
 
-def barrel_table(design: BarrelCamDesign, problem: CamProblem, title: str) -> str:
+def write_barrel_table(design: BarrelCamDesign, problem: CamProblem, title: str) -> str:
     """Write the table of a barrel cam design; numbers to twelve digits."""
     mechanism, unit = design.mechanism, problem.length_unit
     program, radius = mechanism.program, mechanism.cylinder_radius
-    columns = _program(program, unit, unit) | {
+    columns = _list_program(program, unit, unit) | {
         "pressure_angle [deg]": np.degrees(np.arctan(np.abs(program.v) / radius)),
     }
     for name, curve in (
@@ -77,10 +77,10 @@ def barrel_table(design: BarrelCamDesign, problem: CamProblem, title: str) -> st
         f"turns {mechanism.rotation}",
         "x along the circumference of the cylinder on which the roller's middle runs, y along the axis",
     ]
-    return table.numbers([title or "Barrel cam", *remarks], columns, table.short)
+    return table.write_number_table([title or "Barrel cam", *remarks], columns, table.format_rounded)
 
 
-def _program(program: ProgramTable, lift: str, rate: str) -> dict[str, ArrayLike]:
+def _list_program(program: ProgramTable, lift: str, rate: str) -> dict[str, ArrayLike]:
     """Return the motion program, displacements in ``lift`` and derivatives in ``rate`` per radian."""
     return {
         "cam_angle [deg]": program.angle,
@@ -91,14 +91,14 @@ def _program(program: ProgramTable, lift: str, rate: str) -> dict[str, ArrayLike
     }
 
 
-def _radius(design: CamDesign) -> str:
+def _describe_radius(design: CamDesign) -> str:
     mechanism = design.mechanism
     if mechanism.prime_radius is not None:
         return f"prime radius {mechanism.prime_radius:.12g}"
     return f"base radius {mechanism.base_radius:.12g}"
 
 
-def _polar(points: NDArray[np.complex128]) -> NDArray[np.float64]:
+def _compute_polar_angles(points: NDArray[np.complex128]) -> NDArray[np.float64]:
     """Return polar angles from 0 to 360 degrees; rounding errors of 0 become 0."""
     # Round before the modulus: -1e-12 would become 360.
     return np.asarray(np.mod(np.round(np.degrees(np.angle(points)), 9), 360.0))

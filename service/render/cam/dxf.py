@@ -33,17 +33,15 @@ import math
 
 import numpy as np
 from ezdxf.layouts.layout import Modelspace
-from numpy.typing import NDArray
 
-from kinematics.cam.contact import Contour
-from kinematics.cam.unrolled import UnrolledWall
+from kinematics.arrays import Complex
+from kinematics.cam.finished.barrel_contact import UnrolledWall
+from kinematics.cam.finished.contact import Contour
 from service.render.cam.scene import CamScene, SecondScene
 from service.render.page import dxf
 from synthesis.kinds.cam.design import BarrelCamDesign, CamDesign
-from synthesis.kinds.cam.mechanism import points_of
 from synthesis.kinds.cam.problem import CamProblem
-
-Complex = NDArray[np.complex128]
+from synthesis.kinds.cam.profile import read_points
 
 LAYERS = {
     "PROFILE": (5, "CONTINUOUS"),
@@ -71,86 +69,86 @@ BARREL_LAYERS = {
 ARC_TOLERANCE = 1e-5
 """Maximum distance of the arcs from the points they replace, as a share of the base radius: 0.4 µm at 40 mm."""
 
-ARM, PIVOT = 0.08, 0.04
+CROSS_ARM, PIVOT_RADIUS = 0.08, 0.04
 """Arm of the cross at the cam's centre, and radius of a pivot, as shares of the base radius."""
 
-LONGEST_RUN = 64
+MAX_RUN = 64
 """Maximum number of points that one pair of arcs replaces."""
 
-STRAIGHT = 1e-12
+STRAIGHT_BULGE = 1e-12
 """Bulge below which a piece is a line."""
 
 
-def cam_drawing(design: CamDesign, problem: CamProblem, title: str) -> str:
+def write_cam_dxf(design: CamDesign, problem: CamProblem, title: str) -> str:
     """Write a cam design as a DXF document (R2010)."""
     scene = CamScene(design.mechanism)
     layers = LAYERS if scene.second is None else LAYERS | SECOND_LAYERS
-    document = dxf.new_drawing(title or "Cam", problem.length_unit, layers, frozen="PROFILE_ARCS")
+    document = dxf.create_drawing(title or "Cam", problem.length_unit, layers, frozen="PROFILE_ARCS")
     space = document.modelspace()
-    _closed(space, scene.contour, "PROFILE")
+    _add_closed(space, scene.contour, "PROFILE")
     space.add_lwpolyline(
-        _biarcs(scene.contour, ARC_TOLERANCE * scene.base_radius),
+        _fit_biarcs(scene.contour, ARC_TOLERANCE * scene.base_radius),
         format="xyb",
         close=True,
         dxfattribs={"layer": "PROFILE_ARCS"},
     )
     dxf.add_circle(space, 0j, scene.base_radius, "BASE_CIRCLE")
     if scene.outer_wall is not None:
-        _closed(space, Contour(scene.outer_wall), "OUTER_WALL")
+        _add_closed(space, Contour(scene.outer_wall), "OUTER_WALL")
     if scene.roller:
-        _closed(space, Contour(scene.pitch_curve), "PITCH_CURVE")
+        _add_closed(space, Contour(scene.pitch_curve), "PITCH_CURVE")
         dxf.add_circle(space, 0j, scene.roller.prime_radius, "PRIME_CIRCLE")
     if scene.second is not None:
-        _second(space, scene, scene.second)
-    _follower(space, scene)
-    arm = ARM * scene.base_radius
+        _add_second(space, scene, scene.second)
+    _add_follower(space, scene)
+    arm = CROSS_ARM * scene.base_radius
     dxf.add_cross(space, 0j, arm, "CENTRE")
     dxf.add_line(space, complex(arm), complex(3.0 * arm), "CENTRE")
-    return dxf.written(document)
+    return dxf.write_document(document)
 
 
-def _second(space: Modelspace, scene: CamScene, second: SecondScene) -> None:
+def _add_second(space: Modelspace, scene: CamScene, second: SecondScene) -> None:
     """Add the second of two conjugate cams, its roller at cam angle 0 and its carrier."""
-    _closed(space, Contour(second.profile), "SECOND_PROFILE")
-    _closed(space, Contour(second.pitch_curve), "SECOND_PITCH_CURVE")
+    _add_closed(space, Contour(second.profile), "SECOND_PROFILE")
+    _add_closed(space, Contour(second.pitch_curve), "SECOND_PITCH_CURVE")
     centre = complex(second.pitch_curve[0])
     dxf.add_circle(space, centre, second.follower.roller_radius, "FOLLOWER")
     dxf.add_line(space, centre, complex(scene.pitch_curve[0]) if scene.pivot is None else scene.pivot, "FOLLOWER")
 
 
-def barrel_drawing(design: BarrelCamDesign, problem: CamProblem, title: str) -> str:
+def write_barrel_dxf(design: BarrelCamDesign, problem: CamProblem, title: str) -> str:
     """Write a barrel cam design as a DXF document (R2010)."""
     mechanism = design.mechanism
-    document = dxf.new_drawing(title or "Barrel cam", problem.length_unit, BARREL_LAYERS)
+    document = dxf.create_drawing(title or "Barrel cam", problem.length_unit, BARREL_LAYERS)
     space, turn = document.modelspace(), math.tau * mechanism.cylinder_radius
     for curve, layer in (
         (mechanism.lower_wall, "WALLS"),
         (mechanism.upper_wall, "WALLS"),
         (mechanism.pitch_curve, "PITCH_CURVE"),
     ):
-        wall = UnrolledWall(points_of(curve), turn)
+        wall = UnrolledWall(read_points(curve), turn)
         # The unrolled wall closes after one circumference.
         over = np.append(wall.points, wall.points[0] + turn), np.append(wall.tangents, wall.tangents[0])
         dxf.add_spline(space, *over, layer)
-    dxf.add_circle(space, points_of(mechanism.pitch_curve)[0], mechanism.follower.roller_radius, "FOLLOWER")
+    dxf.add_circle(space, read_points(mechanism.pitch_curve)[0], mechanism.follower.roller_radius, "FOLLOWER")
     low, high = min(mechanism.lower_wall.y), max(mechanism.upper_wall.y)
     dxf.add_outline(space, [1j * low, turn + 1j * low, turn + 1j * high, 1j * high], "BLANK")
-    return dxf.written(document)
+    return dxf.write_document(document)
 
 
-def _biarcs(contour: Contour, tolerance: float) -> list[tuple[float, float, float]]:
+def _fit_biarcs(contour: Contour, tolerance: float) -> list[tuple[float, float, float]]:
     """Return vertices with bulges: pairs of tangent arcs over runs of points, as long as the tolerance permits."""
     points = np.append(contour.points, contour.points[0])
     tangents = np.append(contour.tangents, contour.tangents[0])
     vertices, k, last = [], 0, len(points) - 1
     while k < last:
-        run = min(LONGEST_RUN, last - k)
+        run = min(MAX_RUN, last - k)
         while True:
-            pair = _biarc(
+            pair = _compute_biarc(
                 complex(points[k]), complex(tangents[k]), complex(points[k + run]), complex(tangents[k + run])
             )
             # Accept the pair, or halve the run; a single step is always accepted.
-            if run == 1 or _distance(points[k + 1 : k + run], pair) <= tolerance:
+            if run == 1 or _measure_distance(points[k + 1 : k + run], pair) <= tolerance:
                 break
             run = max(1, run // 2)
         vertices += [(start.real, start.imag, bulge) for start, _, bulge in pair]
@@ -158,7 +156,7 @@ def _biarcs(contour: Contour, tolerance: float) -> list[tuple[float, float, floa
     return vertices
 
 
-def _biarc(a: complex, ta: complex, b: complex, tb: complex) -> list[tuple[complex, complex, float]]:
+def _compute_biarc(a: complex, ta: complex, b: complex, tb: complex) -> list[tuple[complex, complex, float]]:
     """Compute two arcs, (start, end, bulge), from given ends and unit tangents, with tangents of equal length.
 
     With d the length of the tangents, the arcs meet at the middle of a + d ta and b − d tb, where
@@ -169,25 +167,25 @@ def _biarc(a: complex, ta: complex, b: complex, tb: complex) -> list[tuple[compl
     square = 2.0 * (1.0 - (ta * tb.conjugate()).real)
     along = (v * t.conjugate()).real
     # Parallel tangents make the quadratic equation linear.
-    if square > STRAIGHT:
+    if square > STRAIGHT_BULGE:
         d = (-along + math.sqrt(along * along + square * abs(v) ** 2)) / square
     else:
         d = 0.5 * abs(v) ** 2 / along
     middle = 0.5 * (a + d * ta + b - d * tb)
-    return [(a, middle, _bulge(a, ta, middle)), (middle, b, -_bulge(b, -tb, middle))]
+    return [(a, middle, _compute_bulge(a, ta, middle)), (middle, b, -_compute_bulge(b, -tb, middle))]
 
 
-def _bulge(start: complex, tangent: complex, end: complex) -> float:
+def _compute_bulge(start: complex, tangent: complex, end: complex) -> float:
     """Return tan of a quarter of the arc's angle, which is twice that from tangent to chord; positive to the left."""
     chord = (end - start) * tangent.conjugate()
     return math.tan(0.5 * math.atan2(chord.imag, chord.real))
 
 
-def _distance(points: Complex, pair: list[tuple[complex, complex, float]]) -> float:
+def _measure_distance(points: Complex, pair: list[tuple[complex, complex, float]]) -> float:
     """Return the maximum distance of points from the nearer of two arcs."""
     off = []
     for start, end, bulge in pair:
-        if abs(bulge) < STRAIGHT:
+        if abs(bulge) < STRAIGHT_BULGE:
             along = (end - start) / abs(end - start)
             off.append(np.abs(((points - start) * along.conjugate()).imag))
             continue
@@ -201,15 +199,15 @@ def _distance(points: Complex, pair: list[tuple[complex, complex, float]]) -> fl
     return float(np.where(first, *off).max())
 
 
-def _closed(space: Modelspace, contour: Contour, layer: str) -> None:
+def _add_closed(space: Modelspace, contour: Contour, layer: str) -> None:
     """Add a closed curve with its own tangents at its points."""
     around = np.append(contour.points, contour.points[0])
     dxf.add_spline(space, around, np.append(contour.tangents, contour.tangents[0]), layer)
 
 
-def _follower(space: Modelspace, scene: CamScene) -> None:
+def _add_follower(space: Modelspace, scene: CamScene) -> None:
     """Add roller or face at cam angle 0, with the arm and its pivot."""
-    for start, end in scene.held:
+    for start, end in scene.carrier_lines:
         dxf.add_line(space, start, end, "FOLLOWER")
     if scene.roller is not None:
         centre = complex(scene.pitch_curve[0])
@@ -218,4 +216,4 @@ def _follower(space: Modelspace, scene: CamScene) -> None:
         if scene.pivot is None:
             dxf.add_line(space, centre, centre + scene.base_radius, "FOLLOWER")
     if scene.pivot is not None:
-        dxf.add_circle(space, scene.pivot, PIVOT * scene.base_radius, "FOLLOWER")
+        dxf.add_circle(space, scene.pivot, PIVOT_RADIUS * scene.base_radius, "FOLLOWER")

@@ -7,20 +7,17 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import NDArray
 
-from kinematics.cam.conjugate import turned
-from kinematics.cam.contact import ContactMotion, Contour
+from kinematics.arrays import Complex, Real
+from kinematics.cam.conjugate import transform_between_cams
+from kinematics.cam.finished.contact import ContactMotion, Contour
 from kinematics.cam.follower import Follower, OscillatingFlat, OscillatingRoller, TranslatingFlat, TranslatingRoller
 from kinematics.cam.profile import Rotation
 from synthesis.kinds.cam.design import CamMechanism, SecondCam
-from synthesis.kinds.cam.mechanism import core_follower, points_of
-from synthesis.mechanisms.cam import follower_by_dimensions
+from synthesis.kinds.cam.profile import build_core_follower, read_points
+from synthesis.mechanisms.cam import build_follower
 
-Real = NDArray[np.float64]
-Complex = NDArray[np.complex128]
-
-FACE_SHARE = 0.35
+HALF_FACE_SHARE = 0.35
 """Half the drawn length of a face, as a share of the base radius."""
 
 
@@ -34,25 +31,25 @@ class SecondScene:
     @cached_property
     def follower(self) -> TranslatingRoller | OscillatingRoller:
         """The follower in the analysis core."""
-        found = follower_by_dimensions(self.cam.follower.type, self.cam.prime_radius, self.cam.follower)
+        found = build_follower(self.cam.follower.type, self.cam.prime_radius, self.cam.follower)
         assert isinstance(found, TranslatingRoller | OscillatingRoller)
         return found
 
     @cached_property
     def profile(self) -> Complex:
         """Points of the profile."""
-        return points_of(self.cam.profile)
+        return read_points(self.cam.profile)
 
     @cached_property
     def pitch_curve(self) -> Complex:
         """Path of the roller's centre around the cam."""
-        return points_of(self.cam.pitch_curve)
+        return read_points(self.cam.pitch_curve)
 
-    def centres(self, angle: Real) -> Complex:
+    def find_centres(self, angle: Real) -> Complex:
         """Return centres of the roller in contact with the profile, at cam angles."""
-        own = turned(self.follower, self.profile)
+        own = transform_between_cams(self.follower, self.profile)
         found = Contour(own).follow(self.follower, angle, self.rotation)
-        return turned(self.follower, found.point + self.follower.roller_radius * found.normal)
+        return transform_between_cams(self.follower, found.point + self.follower.roller_radius * found.normal)
 
 
 @dataclass(frozen=True, eq=False)
@@ -64,7 +61,7 @@ class CamScene:
     @cached_property
     def follower(self) -> Follower:
         """The follower in the analysis core."""
-        return core_follower(self.mechanism)
+        return build_core_follower(self.mechanism)
 
     @property
     def sense(self) -> float:
@@ -88,18 +85,18 @@ class CamScene:
     @cached_property
     def profile(self) -> Complex:
         """Points of the profile."""
-        return points_of(self.mechanism.profile)
+        return read_points(self.mechanism.profile)
 
     @cached_property
     def pitch_curve(self) -> Complex:
         """Path of the roller's centre around the cam; the profile under a flat face."""
-        return points_of(self.mechanism.pitch_curve)
+        return read_points(self.mechanism.pitch_curve)
 
     @cached_property
     def outer_wall(self) -> Complex | None:
         """Points of the groove's outer wall; None without a groove."""
         wall = self.mechanism.outer_wall
-        return None if wall is None else points_of(wall)
+        return None if wall is None else read_points(wall)
 
     @cached_property
     def second(self) -> SecondScene | None:
@@ -127,7 +124,7 @@ class CamScene:
         """Whether displacements are angles of an arm."""
         return isinstance(self.follower, OscillatingRoller | OscillatingFlat)
 
-    def station(self, degrees: float) -> complex:
+    def find_station(self, degrees: float) -> complex:
         """Return the unit vector, in the cam's frame, of the ground's +x axis after a rotation of the cam."""
         # In the cam's frame the ground turns backwards.
         turn = -self.sense * math.radians(degrees)
@@ -146,36 +143,36 @@ class CamScene:
         return -self.sense * follower.offset if isinstance(follower, TranslatingFlat) else 0.0
 
     @cached_property
-    def held(self) -> list[tuple[complex, complex]]:
+    def carrier_lines(self) -> list[tuple[complex, complex]]:
         """Lines that carry the contact at cam angle 0: an arm, or a flat face and its arm; none for a stem."""
         if self.pivot is not None and self.roller is not None:
             return [(complex(self.pitch_curve[0]), self.pivot)]
         if self.roller is not None:
             return []
         if self.pivot is None:
-            return self.faces(len(self.angle))[:1]
-        return self.swung_face(complex(self.contact.point[0]))
+            return self.list_faces(len(self.angle))[:1]
+        return self.get_arm_face(complex(self.contact.point[0]))
 
-    def swung_face(self, point: complex) -> list[tuple[complex, complex]]:
+    def get_arm_face(self, point: complex) -> list[tuple[complex, complex]]:
         """Return a flat face from the foot of its pivot to beyond its contact, and its arm, as lines.
 
         The contact is a point of the ground's frame, in which the pivot is fixed.
         """
         assert self.pivot is not None
-        along = self.face_direction(point, 1.0 + 0j)
+        along = self.compute_face_direction(point, 1.0 + 0j)
         foot = point + along * ((self.pivot - point) * along.conjugate()).real
-        return [(foot, point + FACE_SHARE * self.base_radius * along), (foot, self.pivot)]
+        return [(foot, point + HALF_FACE_SHARE * self.base_radius * along), (foot, self.pivot)]
 
-    def faces(self, every: int) -> list[tuple[complex, complex]]:
+    def list_faces(self, every: int) -> list[tuple[complex, complex]]:
         """Return a flat face around its contact, at every ``every``-th position of the table."""
         faces = []
         for degrees, point in zip(self.angle[::every].tolist(), self.contact.point[::every].tolist(), strict=True):
             # Faces of equal length in all positions.
-            half = FACE_SHARE * self.base_radius * self.face_direction(point, self.station(degrees))
+            half = HALF_FACE_SHARE * self.base_radius * self.compute_face_direction(point, self.find_station(degrees))
             faces.append((point - half, point + half))
         return faces
 
-    def face_direction(self, point: complex, station: complex) -> complex:
+    def compute_face_direction(self, point: complex, station: complex) -> complex:
         """Return the unit vector along a flat face that touches the cam at a point; away from its pivot, if it has one.
 
         ``station`` is the ground's +x axis in the frame of the point.

@@ -5,10 +5,10 @@ from __future__ import annotations
 import math
 
 from kinematics.gear.teeth import Gear
-from service.render.gears.planetary_layout import placed_planetary_gears
-from service.render.gears.series_layout import series_layout
-from service.render.gears.train_layout import TrainGear, placed_gears
-from service.render.page.table import Cell, table
+from service.render.gears.planetary_layout import place_planetary_gears
+from service.render.gears.series_layout import arrange_series
+from service.render.gears.train_layout import TrainGear, place_gears
+from service.render.page.table import Cell, write_table
 from synthesis.kinds.gear_train.design import GearTrainDesign
 from synthesis.kinds.gear_train.problem import GearTrainProblem
 from synthesis.kinds.gearbox.design import GearboxDesign
@@ -21,12 +21,12 @@ from synthesis.kinds.train_series.design import TrainSeriesDesign
 from synthesis.kinds.train_series.problem import TrainSeriesProblem
 
 
-def gear_train_table(design: GearTrainDesign, problem: GearTrainProblem, title: str) -> str:
+def write_gear_train_table(design: GearTrainDesign, problem: GearTrainProblem, title: str) -> str:
     """Write stage, role, teeth, module, circles, centre and speed of every gear; profile shifts of fitted gears."""
     fitted = ["profile_shift"] if problem.is_fitted else []
     typed = ["type", "helix_angle_deg"] if problem.stages is not None else []
-    return table(
-        ["stage", "role", "teeth", *_lengths("outside", problem.length_unit), "speed_over_input", *fitted, *typed],
+    return write_table(
+        ["stage", "role", "teeth", *_list_heads("outside", problem.length_unit), "speed_over_input", *fitted, *typed],
         (
             [
                 placed.stage,
@@ -36,22 +36,23 @@ def gear_train_table(design: GearTrainDesign, problem: GearTrainProblem, title: 
                 # Exact speeds are written as fractions.
                 f"{placed.speed.numerator}/{placed.speed.denominator}",
                 *([placed.gear.shift / math.cos(placed.helix_angle)] if fitted else []),
-                *(_type_cells(placed, design) if typed else []),
+                *(_list_type_cells(placed, design) if typed else []),
             ]
-            for placed in placed_gears(design.mechanism, problem.reverted)
+            for placed in place_gears(design.mechanism, problem.reverted)
         ),
     )
 
 
 def _train_sizes(placed: TrainGear, design: GearTrainDesign) -> list[Cell]:
-    """Return :func:`_sizes` with the module as given, and without a base circle for gears drawn in axial section."""
-    module, *diameters, x, y = _sizes(placed.gear, placed.centre)
+    """Return :func:`_list_sizes` with the module as given, and without a base circle for gears drawn in axial
+    section."""
+    module, *diameters, x, y = _list_sizes(placed.gear, placed.centre)
     if placed.section is not None:
         return [module, *diameters[:-1], "", x, y]
     return [design.mechanism.stages[placed.stage - 1].module, *diameters, x, y]
 
 
-def _type_cells(placed: TrainGear, design: GearTrainDesign) -> list[Cell]:
+def _list_type_cells(placed: TrainGear, design: GearTrainDesign) -> list[Cell]:
     """Return the type of the stage, and the helix angle of the gear, positive for a right-handed one."""
     stage = design.mechanism.stages[placed.stage - 1]
     angle = 0.0 if stage.helix_angle is None else stage.helix_angle
@@ -59,55 +60,63 @@ def _type_cells(placed: TrainGear, design: GearTrainDesign) -> list[Cell]:
     return [stage.type or "", angle if placed.role == "driver" else 0.0 - angle]
 
 
-def planetary_table(design: PlanetaryDesign, problem: PlanetaryProblem, title: str) -> str:
+def write_planetary_table(design: PlanetaryDesign, problem: PlanetaryProblem, title: str) -> str:
     """Write name, copy, teeth, circles, centre and speed of every gear, one row per gear and copy."""
-    return table(
-        ["gear", "body", "copy", "teeth", *_lengths("tip", problem.length_unit), "speed_over_input"],
+    return write_table(
+        ["gear", "body", "copy", "teeth", *_list_heads("tip", problem.length_unit), "speed_over_input"],
         (
             [
                 placed.name,
                 placed.body,
                 placed.copy,
                 f"{placed.gear.teeth:g}",
-                *_sizes(placed.gear, placed.centre),
+                *_list_sizes(placed.gear, placed.centre),
                 design.metrics.speeds[placed.body],
             ]
-            for placed in placed_planetary_gears(design.mechanism)
+            for placed in place_planetary_gears(design.mechanism)
         ),
     )
 
 
-def series_table(design: TrainSeriesDesign, problem: TrainSeriesProblem, title: str) -> str:
+def write_series_table(design: TrainSeriesDesign, problem: TrainSeriesProblem, title: str) -> str:
     """Write unit, name, copy, teeth, circles, shift, centre and speed of every gear, one row per gear and copy."""
-    return table(
-        ["unit", "gear", "copy", "teeth", *_lengths("tip", problem.length_unit), "profile_shift", "speed_over_input"],
+    return write_table(
+        [
+            "unit",
+            "gear",
+            "copy",
+            "teeth",
+            *_list_heads("tip", problem.length_unit),
+            "profile_shift",
+            "speed_over_input",
+        ],
         (
             [
                 gear.unit,
                 gear.name,
                 gear.copy,
                 f"{gear.placed.gear.teeth:g}",
-                *_sizes(gear.placed.gear, gear.placed.centre),
+                *_list_sizes(gear.placed.gear, gear.placed.centre),
                 gear.placed.gear.shift,
                 gear.speed,
             ]
-            for gear in series_layout(design, problem)
+            for gear in arrange_series(design, problem)
         ),
     )
 
 
-def _lengths(outer: str, unit: str) -> list[str]:
-    """Return the column heads of :func:`_sizes`; ``outer`` is the kind's word for the tip circle."""
+def _list_heads(outer: str, unit: str) -> list[str]:
+    """Return the column heads of :func:`_list_sizes`; ``outer`` is the kind's word for the tip circle."""
     names = ("module", "pitch_diameter", f"{outer}_diameter", "root_diameter", "base_diameter", "centre_x", "centre_y")
     return [f"{name}_{unit}" for name in names]
 
 
-def _sizes(gear: Gear, centre: complex) -> list[float]:
+def _list_sizes(gear: Gear, centre: complex) -> list[float]:
     radii = gear.pitch_radius, gear.tip_radius, gear.root_radius, gear.base_radius
     return [gear.module, *(2.0 * radius for radius in radii), centre.real, centre.imag]
 
 
-def gearbox_table(design: GearboxDesign, problem: GearboxProblem, title: str) -> str:
+def write_gearbox_table(design: GearboxDesign, problem: GearboxProblem, title: str) -> str:
     """Write every spindle speed with its nominal value, deviation and engaged pairs."""
     stages = design.mechanism.stages
     rows: list[list[Cell]] = []
@@ -116,10 +125,10 @@ def gearbox_table(design: GearboxDesign, problem: GearboxProblem, title: str) ->
         engaged = [f"{pair.driver}/{pair.driven}" for pair in pairs]
         rows.append([row.speed, row.nominal, row.standard, row.error, *engaged])
     names = [f"stage_{k}_driver_driven" for k in range(1, len(stages) + 1)]
-    return table(["speed_rpm", "nominal_rpm", "standard_rpm", "error", *names], rows)
+    return write_table(["speed_rpm", "nominal_rpm", "standard_rpm", "error", *names], rows)
 
 
-def layshaft_table(design: LayshaftDesign, problem: LayshaftProblem, title: str) -> str:
+def write_layshaft_table(design: LayshaftDesign, problem: LayshaftProblem, title: str) -> str:
     """Write every gear with its teeth, its ratio and the ratio's error; the head pair comes first."""
     mechanism, errors = design.mechanism, design.metrics.errors
     rows: list[list[Cell]] = [["head", mechanism.head.driven, "", mechanism.head.driver, "", ""]]
@@ -130,4 +139,4 @@ def layshaft_table(design: LayshaftDesign, problem: LayshaftProblem, title: str)
     if mechanism.reverse is not None:
         back = mechanism.reverse
         rows.append(["reverse", back.layshaft, back.idler, back.mainshaft, back.ratio.value, errors[-1]])
-    return table(["gear", "layshaft", "idler", "mainshaft", "ratio", "error"], rows)
+    return write_table(["gear", "layshaft", "idler", "mainshaft", "ratio", "error"], rows)

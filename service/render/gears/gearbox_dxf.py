@@ -19,71 +19,71 @@ from __future__ import annotations
 
 from ezdxf.document import Drawing
 
-from service.render.gears.dxf import LINE_STEP, add_gear, gear_layers
-from service.render.gears.gearbox_layout import BoxLayout, gearbox_layout, layshaft_layout
-from service.render.gears.placed import box_around
+from service.render.gears.dxf import LINE_SPACING, add_gear, list_gear_layers
+from service.render.gears.gearbox_layout import BoxLayout, arrange_gearbox, arrange_layshaft
+from service.render.gears.placement import enclose_gears
 from service.render.page import dxf
 from synthesis.kinds.gearbox.design import GearboxDesign
 from synthesis.kinds.gearbox.problem import GearboxProblem
 from synthesis.kinds.layshaft_gearbox.design import LayshaftDesign
 from synthesis.kinds.layshaft_gearbox.problem import LayshaftProblem
 
-COLOURS = (5, 3, 30, 6, 4, 1, 2)
+PAIR_COLOURS = (5, 3, 30, 6, 4, 1, 2)
 """Colour indices, taken in turn."""
 
-FACE, ROOM, LETTERS = 8.0, 4.0, 2.0
+FACE_WIDTH, FACE_GAP, LETTER_HEIGHT = 8.0, 4.0, 2.0
 """Width of a face, space next to it and height of letters, in modules."""
 
-BEYOND = 0.4 * ROOM
+AXIS_OVERHANG = 0.4 * FACE_GAP
 """Extension of an axis beyond its last face, in modules."""
 
-NAMES, APART = 8.0, 6.0
+NAME_WIDTH, VIEW_GAP = 8.0, 6.0
 """Space at the left for the names of the shafts, and between the two views, in letter heights."""
 
 
-def gearbox_drawing(design: GearboxDesign, problem: GearboxProblem, title: str) -> str:
+def write_gearbox_dxf(design: GearboxDesign, problem: GearboxProblem, title: str) -> str:
     """Write a machine-tool gearbox as a DXF document (R2010)."""
-    layout = gearbox_layout(design.mechanism)
-    return _drawn(title or "Gearbox", problem.length_unit, layout, design.mechanism.module)
+    layout = arrange_gearbox(design.mechanism)
+    return _write_layout(title or "Gearbox", problem.length_unit, layout, design.mechanism.module)
 
 
-def layshaft_drawing(design: LayshaftDesign, problem: LayshaftProblem, title: str) -> str:
+def write_layshaft_dxf(design: LayshaftDesign, problem: LayshaftProblem, title: str) -> str:
     """Write a layshaft gearbox as a DXF document (R2010)."""
-    layout = layshaft_layout(design.mechanism)
-    return _drawn(title or "Layshaft gearbox", problem.length_unit, layout, design.mechanism.module)
+    layout = arrange_layshaft(design.mechanism)
+    return _write_layout(title or "Layshaft gearbox", problem.length_unit, layout, design.mechanism.module)
 
 
-def _drawn(title: str, unit: str, layout: BoxLayout, module: float) -> str:
+def _write_layout(title: str, unit: str, layout: BoxLayout, module: float) -> str:
     layers = {"SHAFTS": (7, "CENTER"), "TEXT": (7, "CONTINUOUS")}
     for pair, stage in {placed.pair: placed.stage for placed in layout.gears}.items():
-        colour = COLOURS[stage % len(COLOURS)]
-        layers |= gear_layers(pair, colour) | {f"{pair}_DEVELOPED": (colour, "CONTINUOUS")}
-    document = dxf.new_drawing(title, unit, layers)
-    _from_the_end(document, layout, module)
-    _developed(document, layout, module)
-    return dxf.written(document)
+        colour = PAIR_COLOURS[stage % len(PAIR_COLOURS)]
+        layers |= list_gear_layers(pair, colour) | {f"{pair}_DEVELOPED": (colour, "CONTINUOUS")}
+    document = dxf.create_drawing(title, unit, layers)
+    _add_end_view(document, layout, module)
+    _add_developed_view(document, layout, module)
+    return dxf.write_document(document)
 
 
-def _from_the_end(document: Drawing, layout: BoxLayout, module: float) -> None:
+def _add_end_view(document: Drawing, layout: BoxLayout, module: float) -> None:
     space = document.modelspace()
     for placed in layout.gears:
         add_gear(space, placed, [placed.pair])
-    top = box_around(layout.gears).high
+    top = enclose_gears(layout.gears).high
     for k, shaft in enumerate(layout.shafts):
-        dxf.add_cross(space, shaft.centre, LETTERS * module, "SHAFTS")
+        dxf.add_cross(space, shaft.centre, LETTER_HEIGHT * module, "SHAFTS")
         # Names of coaxial shafts are on separate lines.
-        above = complex(shaft.centre.real, top + (2.0 + LINE_STEP * k) * LETTERS * module)
-        dxf.add_words(space, above, shaft.name, LETTERS * module)
+        above = complex(shaft.centre.real, top + (2.0 + LINE_SPACING * k) * LETTER_HEIGHT * module)
+        dxf.add_words(space, above, shaft.name, LETTER_HEIGHT * module)
 
 
-def _developed(document: Drawing, layout: BoxLayout, module: float) -> None:
+def _add_developed_view(document: Drawing, layout: BoxLayout, module: float) -> None:
     space = document.modelspace()
-    seen = box_around(layout.gears)
+    seen = enclose_gears(layout.gears)
     # Upper end of the developed view above its first shaft.
     highest = max(placed.gear.tip_radius - layout.shafts[placed.shaft].below for placed in layout.gears)
-    left = seen.left + NAMES * LETTERS * module
-    axis = seen.low - highest - APART * LETTERS * module
-    face, step = FACE * module, (FACE + ROOM) * module
+    left = seen.left + NAME_WIDTH * LETTER_HEIGHT * module
+    axis = seen.low - highest - VIEW_GAP * LETTER_HEIGHT * module
+    face, step = FACE_WIDTH * module, (FACE_WIDTH + FACE_GAP) * module
 
     for placed in layout.gears:
         low = complex(left + placed.slot * step, axis - layout.shafts[placed.shaft].below)
@@ -94,13 +94,13 @@ def _developed(document: Drawing, layout: BoxLayout, module: float) -> None:
             pitch = low + side * placed.gear.pitch_radius
             dxf.add_line(space, pitch, pitch + face, f"{placed.pair}_PITCH")
         words = low + 0.5 * face + 1j * (0.5 * placed.gear.pitch_radius)
-        dxf.add_words(space, words, f"z={placed.gear.teeth:g}", LETTERS * module)
+        dxf.add_words(space, words, f"z={placed.gear.teeth:g}", LETTER_HEIGHT * module)
     for shaft in layout.shafts:
-        start = complex(left + shaft.slots[0] * step - BEYOND * module, axis - shaft.below)
-        end = complex(left + shaft.slots[1] * step + face + BEYOND * module, axis - shaft.below)
+        start = complex(left + shaft.slots[0] * step - AXIS_OVERHANG * module, axis - shaft.below)
+        end = complex(left + shaft.slots[1] * step + face + AXIS_OVERHANG * module, axis - shaft.below)
         dxf.add_line(space, start, end, "SHAFTS")
         # Names stand at the left end of shafts that start there, otherwise at the right end.
         if shaft.slots[0] == 0:
-            dxf.add_words(space, start - 4.0 * LETTERS * module, shaft.name, LETTERS * module)
+            dxf.add_words(space, start - 4.0 * LETTER_HEIGHT * module, shaft.name, LETTER_HEIGHT * module)
         else:
-            dxf.add_words(space, end + 5.0 * LETTERS * module, shaft.name, LETTERS * module)
+            dxf.add_words(space, end + 5.0 * LETTER_HEIGHT * module, shaft.name, LETTER_HEIGHT * module)

@@ -12,7 +12,7 @@ import math
 from dataclasses import dataclass
 
 from kinematics.gear.teeth import Gear
-from service.render.gears.placed import PlacedGear, facing
+from service.render.gears.placement import PlacedGear, align_mate
 from synthesis.kinds.gearbox.design import GearboxMechanism
 from synthesis.kinds.layshaft_gearbox.design import LayshaftMechanism
 
@@ -49,7 +49,7 @@ class BoxLayout:
     shafts: list[Shaft]
 
 
-def gearbox_layout(mechanism: GearboxMechanism) -> BoxLayout:
+def arrange_gearbox(mechanism: GearboxMechanism) -> BoxLayout:
     """Arrange a machine-tool gearbox; the stages follow one another along the shafts."""
     gears: list[BoxGear] = []
     at = [0.0]
@@ -62,7 +62,7 @@ def gearbox_layout(mechanism: GearboxMechanism) -> BoxLayout:
             name = f"STAGE_{number + 1}_PAIR_{k + 1}"
             driver = pair.driver, number, complex(at[number])
             driven = pair.driven, number + 1, complex(at[number + 1])
-            gears += _in_mesh(mechanism, name, number, first[number] + k, driver, driven)
+            gears += _place_in_mesh(mechanism, name, number, first[number] + k, driver, driven)
     count = len(mechanism.stages)
     names = ["input", *(f"shaft {k}" for k in range(2, count + 1)), "spindle"]
     shafts = [
@@ -72,20 +72,20 @@ def gearbox_layout(mechanism: GearboxMechanism) -> BoxLayout:
     return BoxLayout(gears, shafts)
 
 
-def layshaft_layout(mechanism: LayshaftMechanism) -> BoxLayout:
+def arrange_layshaft(mechanism: LayshaftMechanism) -> BoxLayout:
     """Arrange a layshaft gearbox: the head pair, then the forward gears from last to first, then reverse."""
     distance = mechanism.centre_distance
     input_shaft, layshaft, main = 0, 1, 2
     beside = complex(distance)
     head = mechanism.head
-    gears = _in_mesh(mechanism, "HEAD", 0, 0, (head.driver, input_shaft, 0j), (head.driven, layshaft, beside))
+    gears = _place_in_mesh(mechanism, "HEAD", 0, 0, (head.driver, input_shaft, 0j), (head.driven, layshaft, beside))
     slot = 1
     # Descending, so that the first gear is at the output end.
     for number in range(len(mechanism.gears), 0, -1):
         pair = mechanism.gears[number - 1]
         if pair.layshaft is not None and pair.mainshaft is not None:
             on_layshaft, on_main = (pair.layshaft, layshaft, beside), (pair.mainshaft, main, 0j)
-            gears += _in_mesh(mechanism, f"GEAR_{number}", slot, slot, on_layshaft, on_main)
+            gears += _place_in_mesh(mechanism, f"GEAR_{number}", slot, slot, on_layshaft, on_main)
             slot += 1
     shafts = [
         Shaft("input", 0j, 0.0, (0, 0)),
@@ -100,12 +100,12 @@ def layshaft_layout(mechanism: LayshaftMechanism) -> BoxLayout:
         centre = complex(x, math.sqrt(max(far**2 - x**2, 0.0)))
         idler = len(shafts)
         train = (back.layshaft, layshaft, beside), (back.idler, idler, centre), (back.mainshaft, main, 0j)
-        gears += _in_mesh(mechanism, "REVERSE", slot, slot, *train)
+        gears += _place_in_mesh(mechanism, "REVERSE", slot, slot, *train)
         shafts.append(Shaft("idler", centre, distance + near, (slot, slot)))
     return BoxLayout(gears, shafts)
 
 
-def _in_mesh(
+def _place_in_mesh(
     mechanism: GearboxMechanism | LayshaftMechanism,
     pair: str,
     stage: int,
@@ -119,6 +119,6 @@ def _in_mesh(
         if gears:
             mate = gears[-1]
             # Rotate the gear so that it meshes with its predecessor.
-            turned = facing(mate.gear, mate.tooth_at, gear, cmath.phase(centre - mate.centre))
+            turned = align_mate(mate.gear, mate.tooth_at, gear, cmath.phase(centre - mate.centre))
         gears.append(BoxGear(gear, centre, turned, pair, stage, shaft, slot))
     return gears

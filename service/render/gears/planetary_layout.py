@@ -7,9 +7,9 @@ import math
 from dataclasses import dataclass
 
 from kinematics.gear.arrangements import ARRANGEMENTS, Arrangement
-from kinematics.gear.assembly import pins
+from kinematics.gear.assembly import place_pins
 from kinematics.gear.teeth import Gear
-from service.render.gears.placed import PlacedGear, facing
+from service.render.gears.placement import PlacedGear, align_mate
 from synthesis.kinds.planetary_train.design import PlanetaryMechanism
 
 
@@ -23,13 +23,13 @@ class PlanetaryGear(PlacedGear):
     planes: tuple[int, ...]
 
 
-def placed_planetary_gears(mechanism: PlanetaryMechanism) -> list[PlanetaryGear]:
+def place_planetary_gears(mechanism: PlanetaryMechanism) -> list[PlanetaryGear]:
     """Return all gears with the axis at 0 and the first planet of each set on the positive real axis.
 
     Bevel gears are shown spread out in one plane, without meshing teeth.
     """
     arrangement = ARRANGEMENTS[mechanism.arrangement]
-    placed = pins(arrangement, mechanism.teeth)
+    placed = place_pins(arrangement, mechanism.teeth)
     if placed is None:
         return []
     gears = {
@@ -44,7 +44,7 @@ def placed_planetary_gears(mechanism: PlanetaryMechanism) -> list[PlanetaryGear]
     }
     # Pins are computed for module 1.
     centres = {planet: mechanism.module * pin for planet, pin in placed.items()}
-    first = _first_copies(arrangement, gears, centres)
+    first = _align_first_copies(arrangement, gears, centres)
     layout = []
     for place in arrangement.gears:
         carried = place.body in arrangement.carriers
@@ -53,7 +53,7 @@ def placed_planetary_gears(mechanism: PlanetaryMechanism) -> list[PlanetaryGear]
             places = mechanism.places[place.body]
             for step in places.steps:
                 turn = 2.0 * math.pi * step / places.divisions
-                turned = _turned(arrangement, gears, centres, first, place.body, turn)
+                turned = _find_copy_rotation(arrangement, gears, centres, first, place.body, turn)
                 copies.append((centres[place.body] * cmath.exp(1j * turn), turned))
         for copy, (centre, turned) in enumerate(copies):
             at = first[place.name] + turned
@@ -61,7 +61,9 @@ def placed_planetary_gears(mechanism: PlanetaryMechanism) -> list[PlanetaryGear]
     return layout
 
 
-def _first_copies(arrangement: Arrangement, gears: dict[str, Gear], centres: dict[str, complex]) -> dict[str, float]:
+def _align_first_copies(
+    arrangement: Arrangement, gears: dict[str, Gear], centres: dict[str, complex]
+) -> dict[str, float]:
     """Return the angle of a tooth of every gear with the first copies of the planets in mesh."""
     turned: dict[str, float] = {}
     for start in arrangement.gear_names:
@@ -72,15 +74,15 @@ def _first_copies(arrangement: Arrangement, gears: dict[str, Gear], centres: dic
         # Propagate the rotation from gear to gear; each gear is fixed when it is first reached.
         while waiting:
             known = waiting.pop()
-            for mate in arrangement.meshing(known):
+            for mate in arrangement.list_mates(known):
                 if mate not in turned:
-                    ahead = _direction(arrangement, centres, known, mate)
-                    turned[mate] = facing(gears[known], turned[known], gears[mate], ahead)
+                    ahead = _find_contact_direction(arrangement, centres, known, mate)
+                    turned[mate] = align_mate(gears[known], turned[known], gears[mate], ahead)
                     waiting.append(mate)
     return turned
 
 
-def _direction(arrangement: Arrangement, centres: dict[str, complex], own: str, mate: str) -> float:
+def _find_contact_direction(arrangement: Arrangement, centres: dict[str, complex], own: str, mate: str) -> float:
     """Return the angle from the centre of ``own`` to its contact with ``mate``."""
     here, there = (centres.get(arrangement.places[gear].body, 0j) for gear in (own, mate))
     # In internal mesh both centres lie on the same side of the contact.
@@ -89,7 +91,7 @@ def _direction(arrangement: Arrangement, centres: dict[str, complex], own: str, 
     return cmath.phase(there - here)
 
 
-def _turned(
+def _find_copy_rotation(
     arrangement: Arrangement,
     gears: dict[str, Gear],
     centres: dict[str, complex],
@@ -101,25 +103,26 @@ def _turned(
 
     Its first gear determines the rotation up to whole teeth; among these the best fit for the other gears is chosen.
     """
-    (own, central), *others = arrangement.central_meshes(planet)
+    (own, central), *others = arrangement.list_central_meshes(planet)
     ahead = cmath.phase(centres[planet]) + turn
-    base = _wanted(gears, first, central, own, ahead) - first[own]
+    base = _find_tooth_angle(gears, first, central, own, ahead) - first[own]
     # Rotations by whole teeth of the first gear leave its own mesh unchanged.
     pitch = 2.0 * math.pi / gears[own].teeth
 
-    def misfit(turned: float) -> float:
+    def measure_misfit(turned: float) -> float:
         return sum(
             abs(
                 math.remainder(
-                    first[gear] + turned - _wanted(gears, first, mate, gear, ahead), 2.0 * math.pi / gears[gear].teeth
+                    first[gear] + turned - _find_tooth_angle(gears, first, mate, gear, ahead),
+                    2.0 * math.pi / gears[gear].teeth,
                 )
             )
             for gear, mate in others
         )
 
-    return min((base + pitch * k for k in range(int(gears[own].teeth))), key=misfit)
+    return min((base + pitch * k for k in range(int(gears[own].teeth))), key=measure_misfit)
 
 
-def _wanted(gears: dict[str, Gear], first: dict[str, float], central: str, own: str, ahead: float) -> float:
+def _find_tooth_angle(gears: dict[str, Gear], first: dict[str, float], central: str, own: str, ahead: float) -> float:
     """Return the angle of a tooth of a planet gear that meshes with a sun or ring, its pin in direction ``ahead``."""
-    return facing(gears[central], first[central], gears[own], ahead)
+    return align_mate(gears[central], first[central], gears[own], ahead)

@@ -6,14 +6,14 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 from kinematics.gear.arrangements import ARRANGEMENTS
-from service.render.gears.placed import PlacedGear, box_around
-from service.render.gears.planetary_layout import placed_planetary_gears
-from service.render.gears.train_layout import placed_gears
+from service.render.gears.placement import PlacedGear, enclose_gears
+from service.render.gears.planetary_layout import place_planetary_gears
+from service.render.gears.train_layout import place_gears
 from synthesis.kinds.planetary_train.design import PlanetaryMechanism, PlanetaryMetrics
 from synthesis.kinds.train_series.design import TrainSeriesDesign
 from synthesis.kinds.train_series.problem import TrainSeriesProblem
 
-APART = 0.15
+UNIT_GAP = 0.15
 """Space between two units, as a share of the wider one."""
 
 
@@ -38,17 +38,17 @@ class SeriesGear:
     toothed: bool
 
 
-def series_layout(design: TrainSeriesDesign, problem: TrainSeriesProblem) -> list[SeriesGear]:
+def arrange_series(design: TrainSeriesDesign, problem: TrainSeriesProblem) -> list[SeriesGear]:
     """Arrange all gears from the input on, the first unit's axis at the origin."""
     layout: list[SeriesGear] = []
     right = 0.0
     for k in range(len(design.mechanism.units)):
-        gears = unit_layout(design, problem, k)
+        gears = arrange_unit(design, problem, k)
         if not gears:
             continue
-        box = box_around(gear.placed for gear in gears)
+        box = enclose_gears(gear.placed for gear in gears)
         # Place the unit to the right of the previous one.
-        aside = 0j if not layout else complex(right + APART * box.width - box.left)
+        aside = 0j if not layout else complex(right + UNIT_GAP * box.width - box.left)
         right = box.right + aside.real
         layout += [
             replace(gear, placed=replace(gear.placed, centre=gear.placed.centre + aside), axis=gear.axis + aside)
@@ -57,7 +57,7 @@ def series_layout(design: TrainSeriesDesign, problem: TrainSeriesProblem) -> lis
     return layout
 
 
-def unit_layout(design: TrainSeriesDesign, problem: TrainSeriesProblem, number: int) -> Sequence[SeriesGear]:
+def arrange_unit(design: TrainSeriesDesign, problem: TrainSeriesProblem, number: int) -> Sequence[SeriesGear]:
     """Arrange the gears of one unit, counted from 0, about its own origin."""
     unit, metrics = design.mechanism.units[number], design.metrics.units[number]
     share = design.metrics.speeds[number]
@@ -80,9 +80,9 @@ def unit_layout(design: TrainSeriesDesign, problem: TrainSeriesProblem, number: 
                 names.index(placed.name),
                 not arrangement.bevel,
             )
-            for placed in placed_planetary_gears(unit)
+            for placed in place_planetary_gears(unit)
         ]
-    gears = placed_gears(unit, problem.units[number].reverted)
+    gears = place_gears(unit, problem.units[number].reverted)
     return [
         SeriesGear(
             placed,

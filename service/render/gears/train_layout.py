@@ -19,21 +19,22 @@ from fractions import Fraction
 
 import numpy as np
 
+from kinematics.arrays import Complex
 from kinematics.gear.teeth import Gear
 from kinematics.gear.train import OrdinaryTrain, TrainStage
-from service.render.gears.crossing import Section, bevel_sections, worm_section
-from service.render.gears.placed import PlacedGear, box_around, facing
-from service.render.page.svg import Box, Points
+from service.render.gears.crossing import Section, make_bevel_sections, make_worm_section
+from service.render.gears.placement import PlacedGear, align_mate, enclose_gears
+from service.render.page.svg import Box
 from synthesis.kinds.gear_train.design import GearTrainMechanism
-from synthesis.kinds.gear_train.verification import driven_train
+from synthesis.kinds.gear_train.verification import build_train
 
-SAME_DISTANCE = 1e-9
+DISTANCE_TOLERANCE = 1e-9
 """Relative difference of centre distances due to rounding up to which a reverted train counts as coaxial."""
 
-APART = 0.15
+VIEW_GAP = 0.15
 """Space between two views, as a share of the wider one."""
 
-RIM = 1.0
+RIM_WIDTH = 1.0
 """Width of a ring outside its root circle, modules."""
 
 
@@ -54,25 +55,25 @@ class TrainGear(PlacedGear):
     @property
     def reach(self) -> float:
         """Radius of the drawn gear about its centre; does not apply to sections."""
-        return self.gear.root_radius + RIM * self.gear.module if self.gear.internal else self.gear.tip_radius
+        return self.gear.root_radius + RIM_WIDTH * self.gear.module if self.gear.internal else self.gear.tip_radius
 
-    def teeth(self) -> Points | None:
+    def get_teeth(self) -> Complex | None:
         """Return the outline about the centre: all teeth, or the outline of the section."""
-        return super().teeth() if self.section is None else self.section.outline
+        return super().get_teeth() if self.section is None else self.section.outline
 
-    def corners(self) -> Points:
+    def get_corners(self) -> Complex:
         """Return corners of a box around the gear."""
         if self.section is None:
-            return super().corners()
+            return super().get_corners()
         return self.centre + np.concatenate([self.section.outline, self.section.axis])
 
 
-def placed_gears(mechanism: GearTrainMechanism, reverted: bool) -> list[TrainGear]:
+def place_gears(mechanism: GearTrainMechanism, reverted: bool) -> list[TrainGear]:
     """Arrange all gears in the order of the power flow; the input shaft, or the apex of its gears, is at 0."""
-    train = driven_train(mechanism)
+    train = build_train(mechanism)
     distances = train.centre_distances
     # Unequal distances cannot return to the input's axis.
-    coaxial = reverted and max(distances) - min(distances) <= SAME_DISTANCE * max(distances)
+    coaxial = reverted and max(distances) - min(distances) <= DISTANCE_TOLERANCE * max(distances)
     placed: list[TrainGear] = []
     shaft, view, before = 0j, 0, True
     for number, stage in enumerate(train.stages):
@@ -81,15 +82,15 @@ def placed_gears(mechanism: GearTrainMechanism, reverted: bool) -> list[TrainGea
             shaft, view = 0j, view + 1
         before = stage.is_parallel
         if not stage.is_parallel:
-            placed += _crossing(train, number, view)
+            placed += _place_crossing(train, number, view)
             continue
-        ahead = _direction(number, len(train.stages), coaxial)
-        placed += (replace(gear, view=view) for gear in in_line(train, number, shaft, ahead))
+        ahead = _find_direction(number, len(train.stages), coaxial)
+        placed += (replace(gear, view=view) for gear in place_in_line(train, number, shaft, ahead))
         shaft = placed[-1].centre
-    return _side_by_side(placed)
+    return _arrange_views(placed)
 
 
-def in_line(train: OrdinaryTrain, number: int, shaft: complex, ahead: complex) -> Iterator[TrainGear]:
+def place_in_line(train: OrdinaryTrain, number: int, shaft: complex, ahead: complex) -> Iterator[TrainGear]:
     """Yield the gears of a stage of parallel shafts, from the driver's shaft in the direction ``ahead``."""
     stage, speeds, distance = train.stages[number], train.speeds[number], train.centre_distances[number]
     roles = ["driver", *("idler" for _ in stage.idlers), "driven"]
@@ -107,12 +108,12 @@ def in_line(train: OrdinaryTrain, number: int, shaft: complex, ahead: complex) -
             if stage.kind == "internal":
                 apart = abs(previous.pitch_radius - gear.pitch_radius)
             centre += ahead * apart * wide
-            tooth_at = facing(previous, tooth_at, gear, cmath.phase(contact))
+            tooth_at = align_mate(previous, tooth_at, gear, cmath.phase(contact))
         yield TrainGear(gear, centre, tooth_at, number + 1, role, speed, count, helix_angle=stage.helix_angle)
         previous = gear
 
 
-def _crossing(train: OrdinaryTrain, number: int, view: int) -> list[TrainGear]:
+def _place_crossing(train: OrdinaryTrain, number: int, view: int) -> list[TrainGear]:
     """Return a bevel or worm stage in a view of its own."""
     stage, (first, last) = train.stages[number], train.speeds[number]
     driver, driven = stage.driver, stage.driven
@@ -122,7 +123,7 @@ def _crossing(train: OrdinaryTrain, number: int, view: int) -> list[TrainGear]:
             Gear(teeth, stage.module, train.pressure_angle, math.cos(cone), 1.25 * math.cos(cone))
             for teeth, cone in zip((driver, driven), pair.cones, strict=True)
         )
-        sections = bevel_sections(pair)
+        sections = make_bevel_sections(pair)
         return [
             TrainGear(one, 0j, 0.0, number + 1, "driver", first, driver, view, sections[0]),
             TrainGear(two, 0j, 0.0, number + 1, "driven", last, driven, view, sections[1]),
@@ -133,26 +134,26 @@ def _crossing(train: OrdinaryTrain, number: int, view: int) -> list[TrainGear]:
     facing_worm = 0.5 * math.pi + math.pi / driven
     return [
         TrainGear(
-            threads, 1j * worm.centre_distance, 0.0, number + 1, "driver", first, driver, view, worm_section(worm)
+            threads, 1j * worm.centre_distance, 0.0, number + 1, "driver", first, driver, view, make_worm_section(worm)
         ),
         TrainGear(worm.gear, 0j, facing_worm, number + 1, "driven", last, driven, view),
     ]
 
 
-def _side_by_side(gears: list[TrainGear]) -> list[TrainGear]:
+def _arrange_views(gears: list[TrainGear]) -> list[TrainGear]:
     """Arrange the views of a train side by side, the first in place."""
     placed: list[TrainGear] = []
     right = 0.0
     for view in range(gears[-1].view + 1):
         own = [gear for gear in gears if gear.view == view]
-        box = box_around(own)
-        aside = 0j if not placed else complex(right + APART * max(box.width, box.height) - box.left)
+        box = enclose_gears(own)
+        aside = 0j if not placed else complex(right + VIEW_GAP * max(box.width, box.height) - box.left)
         right = box.right + aside.real
         placed += (replace(gear, centre=gear.centre + aside) for gear in own)
     return placed
 
 
-def view_words(gears: Sequence[TrainGear], stages: Sequence[TrainStage]) -> list[tuple[Box, str]]:
+def describe_views(gears: Sequence[TrainGear], stages: Sequence[TrainStage]) -> list[tuple[Box, str]]:
     """Return the caption of each view and the box around it; an empty list for a train in one plane."""
     words = []
     for view in range(gears[-1].view + 1):
@@ -161,11 +162,11 @@ def view_words(gears: Sequence[TrainGear], stages: Sequence[TrainStage]) -> list
         kind = stages[numbers[0] - 1].kind
         named = f"stage {numbers[0]}" if len(numbers) == 1 else f"stages {numbers[0]} to {numbers[-1]}"
         shown = {"bevel": "bevel, in the plane of its shafts", "worm": "worm, in its gear's middle plane"}
-        words.append((box_around(own), f"{named}: {shown.get(kind, 'along the shafts')}"))
+        words.append((enclose_gears(own), f"{named}: {shown.get(kind, 'along the shafts')}"))
     return words if any(not stage.is_parallel for stage in stages) else []
 
 
-def caption_rows(spans: Sequence[tuple[float, float]], apart: float) -> list[int]:
+def assign_caption_rows(spans: Sequence[tuple[float, float]], apart: float) -> list[int]:
     """Return for each caption its row, from 0, such that captions of a row keep the distance ``apart``."""
     ends: list[float] = []
     rows = []
@@ -177,7 +178,7 @@ def caption_rows(spans: Sequence[tuple[float, float]], apart: float) -> list[int
     return rows
 
 
-def moved_section(gear: TrainGear, stage: TrainStage, pressure_angle: float, turned: float) -> Points:
+def shift_section(gear: TrainGear, stage: TrainStage, pressure_angle: float, turned: float) -> Complex:
     """Return the outline of a section after a rotation of the input (radians): a worm's threads move along its axis."""
     assert gear.section is not None
     if stage.kind != "worm":
@@ -185,10 +186,10 @@ def moved_section(gear: TrainGear, stage: TrainStage, pressure_angle: float, tur
     worm = stage.worm(pressure_angle)
     # The gear below turns counter-clockwise if its speed is positive, and moves the threads to the left.
     along = -float(gear.speed) * turned * worm.dimensions.lead / math.tau * stage.sense
-    return np.asarray(worm_section(worm, along).outline)
+    return np.asarray(make_worm_section(worm, along).outline)
 
 
-def _direction(number: int, stages: int, coaxial: bool) -> complex:
+def _find_direction(number: int, stages: int, coaxial: bool) -> complex:
     """Return the unit vector from one shaft to the next."""
     if not coaxial:
         return 1.0 + 0j

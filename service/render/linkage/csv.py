@@ -15,18 +15,18 @@ from service.render.linkage.motion import DrivenLinkage
 from service.render.page import table
 from synthesis.kinds.function.design import FunctionDesign
 from synthesis.kinds.function.problem import FunctionProblem
-from synthesis.model.linkage_statement import LinkageProblem
+from synthesis.model.linkage.problem import LinkageProblem
 
-STEPS = 360
+STEP_COUNT = 360
 """Number of steps of the cycle."""
 
 
-def linkage_table(design: Any, problem: LinkageProblem, title: str) -> str:
+def write_linkage_table(design: Any, problem: LinkageProblem, title: str) -> str:
     """Write the motion of a linkage design; numbers in full precision, cells empty where it cannot be assembled."""
-    linkage, unit = DrivenLinkage.of(design), problem.length_unit
-    slide = linkage.mechanism.driven_by_slide
-    inputs = np.linspace(*linkage.cycle, STEPS + 1)
-    motion = linkage.driven(inputs, order=2)
+    linkage, unit = DrivenLinkage.from_design(design), problem.length_unit
+    slide = linkage.mechanism.has_slide_input
+    inputs = np.linspace(*linkage.cycle, STEP_COUNT + 1)
+    motion = linkage.drive_over(inputs, order=2)
     # Derivatives are by the input, whose unit depends on the drive.
     by = unit if slide else "rad"
     columns = {f"input [{unit}]" if slide else "input_angle [deg]": inputs if slide else np.degrees(inputs)}
@@ -42,12 +42,12 @@ def linkage_table(design: Any, problem: LinkageProblem, title: str) -> str:
         # Rounding may push the sine slightly beyond 1.
         columns[f"{name}_transmission_angle [deg]"] = np.degrees(np.arcsin(np.minimum(np.abs(sine), 1.0)))
     remark = f"{design.mechanism.type}; rates are derivatives by the input, in {by}"
-    return table.numbers([title or "Linkage", remark], columns)
+    return table.write_number_table([title or "Linkage", remark], columns)
 
 
-def function_table(design: FunctionDesign, problem: FunctionProblem, title: str) -> str:
+def write_function_table(design: FunctionDesign, problem: FunctionProblem, title: str) -> str:
     """Write the input value, input angle and structural error of a function generator."""
     curve = design.structural_error.curve
     unit = "deg" if design.structural_error.unit == "degrees" else problem.length_unit
     rows = zip(curve.input, curve.input_angle, curve.error, strict=True)
-    return table.table(["input", "input_angle_deg", f"structural_error_{unit}"], rows)
+    return table.write_table(["input", "input_angle_deg", f"structural_error_{unit}"], rows)

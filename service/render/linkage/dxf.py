@@ -27,16 +27,14 @@ from typing import Any
 import numpy as np
 from ezdxf.layouts.layout import Modelspace
 from ezdxf.math import Matrix44, global_bspline_interpolation
-from numpy.typing import NDArray
 
+from kinematics.arrays import Complex
 from kinematics.linkage.planar.mechanism import GROUND
-from service.render.linkage.drawing import Scene, around, block_corners
-from service.render.linkage.motion import Demand, demands_of
+from service.render.linkage.drawing import Scene, make_block_corners, sort_around_middle
+from service.render.linkage.motion import Demand, list_demands
 from service.render.page import dxf
 from service.render.page.svg import Box
-from synthesis.model.linkage_statement import LinkageProblem
-
-Complex = NDArray[np.complex128]
+from synthesis.model.linkage.problem import LinkageProblem
 
 LAYERS = {
     "GROUND": (8, "CONTINUOUS"),
@@ -54,93 +52,93 @@ LAYERS = {
 LINK_COLOURS = (5, 30, 3, 4, 2, 6)
 """Colour indices of the links, in order."""
 
-PIN, ARM, WORDS, BLOCK = 0.008, 0.02, 0.018, 0.03
+PIN_RADIUS, CROSS_ARM, LETTER_HEIGHT, BLOCK_LENGTH = 0.008, 0.02, 0.018, 0.03
 """Radius of a pin, arm of a cross, height of letters and length of a block, as shares of the drawing's diagonal."""
 
-BLOCK_HEIGHT, TARGET, DIRECTION = 0.6 * BLOCK, 1.5 * PIN, 3.0 * ARM
+BLOCK_HEIGHT, TARGET_RADIUS, DIRECTION_LENGTH = 0.6 * BLOCK_LENGTH, 1.5 * PIN_RADIUS, 3.0 * CROSS_ARM
 """Height of a block, radius of a target point and length of its direction, as shares of the diagonal."""
 
-ARROW, GAP = 0.6 * WORDS, 0.3 * WORDS
+ARROW_SIZE, EXTENSION_GAP = 0.6 * LETTER_HEIGHT, 0.3 * LETTER_HEIGHT
 """Size of a dimension's arrows; gap between joint and extension line, and its overshoot; as shares of the diagonal."""
 
-ASIDE = 1.6
+NAME_OFFSET = 1.6
 """Distance in x and y from a joint to the middle of its name, in letter heights."""
 
-DIMENSION_ASIDE = 0.045
+DIMENSION_OFFSET = 0.045
 """Distance of a dimension line from its link, as a share of the diagonal."""
 
-LONGEST_CURVE = 20.0
+MAX_CURVE_EXTENT = 20.0
 """Maximum extent of a path in diagonals of the linkage; larger paths would dwarf it and are left out."""
 
-CLOSED = 1e-9
+COINCIDENCE_TOLERANCE = 1e-9
 """Ends of a path closer together than this share of the diagonal coincide."""
 
 
-def linkage_drawing(design: Any, problem: LinkageProblem, title: str) -> str:
+def write_linkage_dxf(design: Any, problem: LinkageProblem, title: str) -> str:
     """Write a linkage design as a DXF document (R2010)."""
-    scene, demanded = Scene.of(design), demands_of(problem)
+    scene, demanded = Scene.from_design(design), list_demands(problem)
     moving = [name for name in scene.mechanism.links if name != GROUND]
-    colours = {_layer(name): (LINK_COLOURS[n % len(LINK_COLOURS)], "CONTINUOUS") for n, name in enumerate(moving)}
-    document = dxf.new_drawing(
+    colours = {_name_layer(name): (LINK_COLOURS[n % len(LINK_COLOURS)], "CONTINUOUS") for n, name in enumerate(moving)}
+    document = dxf.create_drawing(
         title or "Linkage", problem.length_unit, LAYERS | colours, frozen="OTHER_POSITIONS", dimensions=True
     )
     # All symbols scale with the drawing; guard against a single point.
-    size = max(_box(scene, demanded).diagonal, np.finfo(np.float64).tiny)
+    size = max(_find_box(scene, demanded).diagonal, np.finfo(np.float64).tiny)
     space = document.modelspace()
     # The first target is drawn last, on top.
     for k in range(len(scene.inputs) - 1, -1, -1):
-        _links(space, scene, k, size)
-    _ground(space, scene, size)
+        _add_links(space, scene, k, size)
+    _add_ground(space, scene, size)
     for points in scene.paths:
-        _curve(space, points, "COUPLER_CURVE", size)
-    _curve(space, scene.used, "USED_CURVE", size)
-    _targets(space, demanded, size)
-    _dimensions(space, scene, size)
-    return dxf.written(document)
+        _add_curve(space, points, "COUPLER_CURVE", size)
+    _add_curve(space, scene.used, "USED_CURVE", size)
+    _add_targets(space, demanded, size)
+    _add_dimensions(space, scene, size)
+    return dxf.write_document(document)
 
 
-def _box(scene: Scene, demanded: list[Demand]) -> Box:
+def _find_box(scene: Scene, demanded: list[Demand]) -> Box:
     """Return the box of the content, without the path of P."""
-    return Box.around(np.array([*scene.places(), *(demand.point for demand in demanded)]))
+    return Box.enclose(np.array([*scene.list_places(), *(demand.point for demand in demanded)]))
 
 
-def _layer(link: str) -> str:
+def _name_layer(link: str) -> str:
     return f"LINK_{link.upper()}"
 
 
-def _links(space: Modelspace, scene: Scene, k: int, size: float) -> None:
+def _add_links(space: Modelspace, scene: Scene, k: int, size: float) -> None:
     """Add the links at one target; at the first target they are on layers of their own."""
-    joints = scene.joints(k)
-    for name, corners in scene.links(joints):
-        layer = _layer(name) if k == 0 else "OTHER_POSITIONS"
+    joints = scene.get_joints(k)
+    for name, corners in scene.iterate_links(joints):
+        layer = _name_layer(name) if k == 0 else "OTHER_POSITIONS"
         if len(corners) == 2:
             dxf.add_line(space, corners[0], corners[1], layer)
         else:
-            dxf.add_outline(space, around(corners), layer)
+            dxf.add_outline(space, sort_around_middle(corners), layer)
     if k or not joints:
         return
     for name, place in joints.items():
-        dxf.add_circle(space, place, PIN * size, "JOINTS")
-        dxf.add_words(space, place + ASIDE * WORDS * size * (1.0 + 1.0j), name, WORDS * size)
-    for _, place, turned in scene.slides(0):
-        dxf.add_outline(space, block_corners(place, turned, BLOCK * size, BLOCK_HEIGHT * size), "SLIDES")
+        dxf.add_circle(space, place, PIN_RADIUS * size, "JOINTS")
+        dxf.add_words(space, place + NAME_OFFSET * LETTER_HEIGHT * size * (1.0 + 1.0j), name, LETTER_HEIGHT * size)
+    for _, place, turned in scene.list_slides(0):
+        dxf.add_outline(space, make_block_corners(place, turned, BLOCK_LENGTH * size, BLOCK_HEIGHT * size), "SLIDES")
 
 
-def _ground(space: Modelspace, scene: Scene, size: float) -> None:
+def _add_ground(space: Modelspace, scene: Scene, size: float) -> None:
     """Add crosses at the fixed pivots, and the lines of slides over all targets."""
     for joint in scene.mechanism.links[GROUND]:
-        dxf.add_cross(space, complex(scene.mechanism.joints[joint]), ARM * size, "GROUND")
-    for slide, low, high in scene.rails(2.0 * BLOCK * size):
+        dxf.add_cross(space, complex(scene.mechanism.joints[joint]), CROSS_ARM * size, "GROUND")
+    for slide, low, high in scene.iterate_rails(2.0 * BLOCK_LENGTH * size):
         dxf.add_line(space, low, high, "GROUND" if slide.link == GROUND else "SLIDES")
 
 
-def _curve(space: Modelspace, points: Complex, layer: str, size: float) -> None:
+def _add_curve(space: Modelspace, points: Complex, layer: str, size: float) -> None:
     """Add a path as a cubic spline through its points."""
     kept = points[np.isfinite(points)]
-    if len(kept) < 4 or float(np.ptp(kept.real) + np.ptp(kept.imag)) > LONGEST_CURVE * size:
+    if len(kept) < 4 or float(np.ptp(kept.real) + np.ptp(kept.imag)) > MAX_CURVE_EXTENT * size:
         return
     # Coincident points would break the interpolation.
-    apart = np.append(np.abs(np.diff(kept)) > CLOSED * CLOSED * size, True)
+    apart = np.append(np.abs(np.diff(kept)) > COINCIDENCE_TOLERANCE * COINCIDENCE_TOLERANCE * size, True)
     kept = kept[apart]
     if len(kept) < 4:
         return
@@ -152,32 +150,32 @@ def _curve(space: Modelspace, points: Complex, layer: str, size: float) -> None:
     space.add_spline(dxfattribs={"layer": layer}).apply_construction_tool(spline)
 
 
-def _targets(space: Modelspace, demanded: list[Demand], size: float) -> None:
+def _add_targets(space: Modelspace, demanded: list[Demand], size: float) -> None:
     """Add target points as circles, with the direction of the body."""
     for k, demand in enumerate(demanded):
         at = demand.point
-        dxf.add_circle(space, at, TARGET * size, "TARGETS")
+        dxf.add_circle(space, at, TARGET_RADIUS * size, "TARGETS")
         if demand.angle is not None:
-            dxf.add_line(space, at, at + DIRECTION * size * cmath.exp(1j * demand.angle), "TARGETS")
-        dxf.add_words(space, at - ASIDE * WORDS * size * (1.0 + 1.0j), str(k + 1), WORDS * size)
+            dxf.add_line(space, at, at + DIRECTION_LENGTH * size * cmath.exp(1j * demand.angle), "TARGETS")
+        dxf.add_words(space, at - NAME_OFFSET * LETTER_HEIGHT * size * (1.0 + 1.0j), str(k + 1), LETTER_HEIGHT * size)
 
 
-def _dimensions(space: Modelspace, scene: Scene, size: float) -> None:
+def _add_dimensions(space: Modelspace, scene: Scene, size: float) -> None:
     """Add dimensions from joint to joint of every link at the first target."""
-    joints = scene.joints(0)
+    joints = scene.get_joints(0)
     for listed in scene.mechanism.links.values():
         # A plate is dimensioned along its whole outline, a bar once.
         around = [*listed, listed[0]] if len(listed) > 2 else list(listed)
         for start, end in pairwise(around):
-            if joints and abs(joints[end] - joints[start]) > CLOSED * size:
+            if joints and abs(joints[end] - joints[start]) > COINCIDENCE_TOLERANCE * size:
                 p1, p2 = joints[start], joints[end]
                 dimension = space.add_aligned_dim(
                     p1=(p1.real, p1.imag),
                     p2=(p2.real, p2.imag),
-                    distance=DIMENSION_ASIDE * size,
+                    distance=DIMENSION_OFFSET * size,
                     dimstyle="EZDXF",
-                    override={"dimtxt": WORDS * size, "dimasz": ARROW * size, "dimexe": GAP * size,
-                              "dimexo": GAP * size, "dimdec": 4, "dimzin": 8},
+                    override={"dimtxt": LETTER_HEIGHT * size, "dimasz": ARROW_SIZE * size,
+                              "dimexe": EXTENSION_GAP * size, "dimexo": EXTENSION_GAP * size, "dimdec": 4, "dimzin": 8},
                     dxfattribs={"layer": "DIMENSIONS"},
                 )  # fmt: skip
                 dimension.render()

@@ -11,52 +11,50 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
-from kinematics.linkage.fourbar import Fourbar, positions, toggle_angles, traverse
-from service.render.linkage.motion import Demand, DrivenLinkage, demands_of, stance_curve, target_curve
-from service.render.page.svg import Box, Points
+from kinematics.arrays import Complex, Real
+from kinematics.linkage.fourbar import Fourbar, find_toggle_angles, positions, traverse
+from service.render.linkage.motion import Demand, DrivenLinkage, get_stance_curve, get_target_curve, list_demands
+from service.render.page.svg import Box
 from synthesis.kinds.motion.problem import MotionProblem
-from synthesis.kinds.path.curve_placement import placed
+from synthesis.kinds.path.curve.placement import place_problem
 from synthesis.kinds.path.design import PathDesign
 from synthesis.kinds.path.problem import PathProblem
-from synthesis.model.linkage_answer import FourbarMechanism, LinkageDesign
-from synthesis.model.linkages import DrivenFourbar, driven_fourbar
+from synthesis.model.linkage.answer import FourbarMechanism, LinkageDesign
+from synthesis.model.linkage.conversion import DrivenFourbar, build_driven_fourbar
 
-Real = NDArray[np.float64]
-
-MEETS = 1e-6
+MISS_TOLERANCE = 1e-6
 """A configuration meets a position if it misses by less than this share of the task's size, and this angle in radians:
 far below the visible, far above rounding.
 """
 
-AT_LIMIT, INSIDE = 1e-6, 1e-9
+LIMIT_TOLERANCE, LIMIT_SHIFT = 1e-6, 1e-9
 """Input angles (radians) beyond a limit by less than the first value count as at the limit and are moved inside by the
 second, so that a target at a toggle remains visible.
 """
 
-SWEPT_SAMPLES = 33
+CRANK_PATH_SAMPLES = 33
 """Number of points of the path of A, used only for its box."""
 
 CURVE_SAMPLES = 121
 """Initial number of sample points on a coupler curve; more are added where it is fast."""
 
-CURVE_STEP = 0.01
+MAX_CURVE_STEP = 0.01
 """Longest step between sample points, as a share of the curve's extent."""
 
-REFINEMENTS = 5
+MAX_REFINEMENTS = 5
 """Maximum number of times that long steps are halved."""
 
-OTHERS = 9
+MAX_GHOSTS = 9
 """Maximum number of pale linkages. With more targets, point tasks show none and position tasks a selection."""
 
-MARKED = 24
+MAX_TARGETS = 24
 """Maximum number of targets that are drawn and listed; more are thinned evenly, keeping first and last."""
 
-SMALL_MOTION, SMALL_PART = 0.15, 0.04
+SMALL_MOTION_SHARE, SMALL_PART_SHARE = 0.15, 0.04
 """A detail is drawn if all moving joints together, or one group of joints, lie within this share of the diagonal."""
 
-REST_SHARE = 0.25
+MAX_REST_SHARE = 0.25
 """Limit, as a share of the diagonal, by which the unused part of the curve enlarges the shown box on each side."""
 
 
@@ -75,7 +73,7 @@ class Configuration:
 
 
 @dataclass(frozen=True)
-class Scene:
+class FourbarScene:
     """Content of one fourbar's drawing, in mechanism coordinates; angles in radians.
 
     ``configurations`` are those that can be assembled, by target. ``used`` and ``rest`` are polylines of P, with NaN
@@ -90,15 +88,15 @@ class Scene:
     linkage: Fourbar
     configurations: list[Configuration]
     demands: list[Demand]
-    used: Points
-    rest: list[Points]
+    used: Complex
+    rest: list[Complex]
     limits: tuple[float, float] | None
     start: float
     end: float
     demanded: int
     met: int
-    target: Points | None = None
-    stance: Points | None = None
+    target: Complex | None = None
+    stance: Complex | None = None
 
     @property
     def guides_a_body(self) -> bool:
@@ -109,16 +107,18 @@ class Scene:
     def others(self) -> list[Configuration]:
         """Configurations that are drawn pale; none if they would hide the path of a point."""
         others = [c for c in self.configurations if c.index != 0]
-        if len(others) <= OTHERS:
+        if len(others) <= MAX_GHOSTS:
             return others
-        return [others[k] for k in spread(len(others), OTHERS)] if self.guides_a_body else []
+        return [others[k] for k in select_indices(len(others), MAX_GHOSTS)] if self.guides_a_body else []
 
     @property
     def misses(self) -> bool:
         """Whether a required point is missed."""
         places = {demand.index: demand.point for demand in self.demands if demand.angle is None}
         size = max((abs(z - w) for z in places.values() for w in places.values()), default=0.0)
-        return any(c.index in places and abs(c.p - places[c.index]) > MEETS * size for c in self.configurations)
+        return any(
+            c.index in places and abs(c.p - places[c.index]) > MISS_TOLERANCE * size for c in self.configurations
+        )
 
     @property
     def o2(self) -> complex:
@@ -130,45 +130,45 @@ class Scene:
         """Fixed pivot of the output."""
         return complex(self.linkage.output_pivot)
 
-    def moving(self) -> list[complex]:
+    def list_moving(self) -> list[complex]:
         """Return A, B and P at all targets, and the target points."""
         joints = [joint for c in self.configurations for joint in (c.a, c.b, c.p)]
         target = [] if self.target is None else list(self.target)
         return [*joints, *(demand.point for demand in self.demands), *target]
 
-    def swept(self) -> Points:
+    def sample_crank_path(self) -> Complex:
         """Return a coarse path of A over the input's range."""
         start, end = self.limits or (0.0, math.tau)
-        return np.asarray(positions(self.linkage, np.linspace(start, end, SWEPT_SAMPLES)).a)
+        return np.asarray(positions(self.linkage, np.linspace(start, end, CRANK_PATH_SAMPLES)).a)
 
-    def box(self) -> Box:
+    def find_box(self) -> Box:
         """Return the box of the content: all joints and the used curve in full, the rest of the curve in part."""
-        needed = Box.around(np.array([self.o2, self.o4, *self.moving(), *self.used]))
-        widest = needed.grown(REST_SHARE * needed.diagonal)
+        needed = Box.enclose(np.array([self.o2, self.o4, *self.list_moving(), *self.used]))
+        widest = needed.grow(MAX_REST_SHARE * needed.diagonal)
         # Unused parts of the curve may enlarge the box only by a limited share.
-        for curve in (*self.rest, self.swept()):
+        for curve in (*self.rest, self.sample_crank_path()):
             if not np.all(np.isnan(curve)):
-                needed = needed.united(Box.around(curve).united(needed).common(widest))
+                needed = needed.merge_with(Box.enclose(curve).merge_with(needed).intersect_with(widest))
         return needed
 
 
-def fourbar_of(design: LinkageDesign) -> FourbarMechanism:
+def get_fourbar(design: LinkageDesign) -> FourbarMechanism:
     """Return the fourbar of a design."""
     mechanism = design.mechanism
     assert isinstance(mechanism, FourbarMechanism)
     return mechanism
 
 
-def scene(design: LinkageDesign, problem: MotionProblem | PathProblem, motion: DrivenLinkage) -> Scene:
+def build_scene(design: LinkageDesign, problem: MotionProblem | PathProblem, motion: DrivenLinkage) -> FourbarScene:
     """Build the content of a fourbar design with its motion and its problem."""
-    driven = driven_fourbar(fourbar_of(design))
+    driven = build_driven_fourbar(get_fourbar(design))
     linkage = driven.linkage
     if isinstance(problem, PathProblem) and isinstance(design, PathDesign):
-        problem = placed(problem, design)
-    target = target_curve(problem)
+        problem = place_problem(problem, design)
+    target = get_target_curve(problem)
     # A curve that is matched as a whole has only its first point as a target.
-    demands = demands_of(problem)[: None if target is None else 1]
-    configurations = _configurations(design, driven, demands)
+    demands = list_demands(problem)[: None if target is None else 1]
+    configurations = _find_configurations(design, driven, demands)
     start = end = driven.reference
     used = (start, end)
     if configurations:
@@ -176,7 +176,7 @@ def scene(design: LinkageDesign, problem: MotionProblem | PathProblem, motion: D
         way = traverse(linkage, angles, np.array([c.assembly for c in configurations]))
         start, end, used = float(way.angles[0]), float(way.angles[-1]), (way.start, way.end)
     if target is not None and configurations:
-        inputs = [math.radians(met.at) for met in design.targets]
+        inputs = [math.radians(met.position) for met in design.targets]
         # A closed curve needs a full turn in the direction of the targets.
         turned = inputs[0] + math.copysign(math.tau, inputs[-1] - inputs[0])
         end = turned if isinstance(problem, PathProblem) and problem.closed else inputs[-1]
@@ -185,18 +185,18 @@ def scene(design: LinkageDesign, problem: MotionProblem | PathProblem, motion: D
     assemblies = sorted(
         {driven.assembly, *(c.assembly for c in configurations)}, key=lambda sign: sign != driven.assembly
     )
-    curve = _curve(linkage, *used, driven.assembly)
-    rest = [_curve(linkage, lower, upper, sign) for sign in assemblies]
-    kept = set(spread(len(demands), MARKED))
+    curve = _sample_curve(linkage, *used, driven.assembly)
+    rest = [_sample_curve(linkage, lower, upper, sign) for sign in assemblies]
+    kept = set(select_indices(len(demands), MAX_TARGETS))
     shown = [demand for demand in demands if demand.index in kept]
     standing = [c for c in configurations if c.index in kept]
-    return Scene(
+    return FourbarScene(
         linkage, standing, shown, curve, rest, motion.limits, start, end, len(demands), len(configurations), target,
-        stance_curve(problem),
+        get_stance_curve(problem),
     )  # fmt: skip
 
 
-def spread(count: int, most: int) -> list[int]:
+def select_indices(count: int, most: int) -> list[int]:
     """Return at most ``most`` of ``count`` indices, evenly spread, including both ends.
 
     >>> spread(3, 5), spread(200, 5)
@@ -207,10 +207,10 @@ def spread(count: int, most: int) -> list[int]:
     return sorted({round(k * (count - 1) / (most - 1)) for k in range(most)})
 
 
-def _configurations(design: LinkageDesign, driven: DrivenFourbar, demands: list[Demand]) -> list[Configuration]:
+def _find_configurations(design: LinkageDesign, driven: DrivenFourbar, demands: list[Demand]) -> list[Configuration]:
     """Return the linkage at each target, in the assembly that meets it; targets without an assembly are left out."""
-    toggles = toggle_angles(driven.linkage)
-    reference = _assembled(driven.linkage, toggles, driven.reference, driven.assembly)
+    toggles = find_toggle_angles(driven.linkage)
+    reference = _assemble(driven.linkage, toggles, driven.reference, driven.assembly)
     if reference is None:
         return []
     first = demands[0]
@@ -219,13 +219,13 @@ def _configurations(design: LinkageDesign, driven: DrivenFourbar, demands: list[
     size = spread if spread > 0.0 else float(driven.linkage.coupler)
     configurations = []
     for target in design.targets:
-        if not (0 <= target.index < len(demands) and math.isfinite(target.at)):
+        if not (0 <= target.index < len(demands) and math.isfinite(target.position)):
             continue
         # Try both assemblies; a hit beats a miss, then the mechanism's own assembly wins.
         demand = demands[target.index]
         choices = []
         for sign in (driven.assembly, -driven.assembly):
-            at = _assembled(driven.linkage, toggles, math.radians(target.at), sign)
+            at = _assemble(driven.linkage, toggles, math.radians(target.position), sign)
             if at is None:
                 continue
             a, b, p, coupler_angle = at
@@ -235,15 +235,15 @@ def _configurations(design: LinkageDesign, driven: DrivenFourbar, demands: list[
                 # Angles are compared modulo a full turn.
                 miss = max(miss, abs(math.remainder(body_angle - demand.angle, math.tau)))
             configuration = Configuration(
-                target.index, math.radians(target.at), sign, sign == driven.assembly, a, b, p, body_angle
+                target.index, math.radians(target.position), sign, sign == driven.assembly, a, b, p, body_angle
             )
-            choices.append((miss > MEETS, not configuration.own, configuration))
+            choices.append((miss > MISS_TOLERANCE, not configuration.own, configuration))
         if choices:
             configurations.append(min(choices, key=lambda choice: choice[:2])[2])
     return configurations
 
 
-def _assembled(
+def _assemble(
     linkage: Fourbar, toggles: Real, angle: float, assembly: int
 ) -> tuple[complex, complex, complex, float] | None:
     """Return A, B, P and the coupler angle; None if it cannot close. An angle at a limit (``AT_LIMIT``) is moved
@@ -252,7 +252,7 @@ def _assembled(
     off = np.remainder(toggles - angle + np.pi, 2.0 * np.pi) - np.pi
     # Distance to the nearest toggle; cranks have none.
     nearest = float(off[np.argmin(np.abs(off))]) if off.size else math.inf
-    shifts = (0.0, nearest + INSIDE, nearest - INSIDE) if abs(nearest) < AT_LIMIT else (0.0,)
+    shifts = (0.0, nearest + LIMIT_SHIFT, nearest - LIMIT_SHIFT) if abs(nearest) < LIMIT_TOLERANCE else (0.0,)
     for shift in shifts:
         at = positions(linkage, angle + shift, assembly)
         if at.valid:
@@ -260,16 +260,16 @@ def _assembled(
     return None
 
 
-def _curve(linkage: Fourbar, start: float, end: float, assembly: int) -> Points:
+def _sample_curve(linkage: Fourbar, start: float, end: float, assembly: int) -> Complex:
     """Sample P over a range of input angles, densely near the ends (which may be toggles) and where P is fast."""
     # Cosine spacing is dense at both ends, where P is fastest near toggles.
     share = 0.5 * (1.0 - np.cos(np.linspace(0.0, np.pi, CURVE_SAMPLES)))
     angles = start + (end - start) * share
     points = positions(linkage, angles, assembly).p
-    for _ in range(REFINEMENTS):
+    for _ in range(MAX_REFINEMENTS):
         if np.all(np.isnan(points)):
             break
-        long = np.flatnonzero(np.abs(np.diff(points)) > CURVE_STEP * Box.around(points).diagonal)
+        long = np.flatnonzero(np.abs(np.diff(points)) > MAX_CURVE_STEP * Box.enclose(points).diagonal)
         if long.size == 0:
             break
         # Halve every long step.
@@ -279,26 +279,29 @@ def _curve(linkage: Fourbar, start: float, end: float, assembly: int) -> Points:
     return points
 
 
-def details(scene: Scene, whole: Box) -> list[Box]:
+def find_details(scene: FourbarScene, whole: Box) -> list[Box]:
     """Return at most two parts of the mechanism that are too small to read in the whole, most informative first."""
     first = scene.configurations[0] if scene.configurations else None
     demanded = [demand.point for demand in scene.demands] if scene.target is None else list(scene.target)
-    groups = [(SMALL_MOTION, scene.moving()), (SMALL_PART, [*demanded, *(c.p for c in scene.configurations)])]
+    groups = [
+        (SMALL_MOTION_SHARE, scene.list_moving()),
+        (SMALL_PART_SHARE, [*demanded, *(c.p for c in scene.configurations)]),
+    ]
     if first is not None:
         cranks = [c.a for c in scene.configurations]
         groups += [
-            (SMALL_PART, [first.a, first.b]),
-            (SMALL_PART, [scene.o2, *cranks]),
-            (SMALL_PART, [scene.o4, *(c.b for c in scene.configurations)]),
+            (SMALL_PART_SHARE, [first.a, first.b]),
+            (SMALL_PART_SHARE, [scene.o2, *cranks]),
+            (SMALL_PART_SHARE, [scene.o4, *(c.b for c in scene.configurations)]),
         ]
-    groups.append((SMALL_PART, [scene.o2, scene.o4]))
+    groups.append((SMALL_PART_SHARE, [scene.o2, scene.o4]))
     parts: list[Box] = []
     for share, points in groups:
-        box = Box.around(np.array(points))
+        box = Box.enclose(np.array(points))
         # Coincident points are no detail.
         small = 0.0 < box.diagonal < share * whole.diagonal
         # A detail inside another detail is not drawn again.
-        seen = any(held.holds(box.centre) and box.diagonal > SMALL_PART * held.diagonal for held in parts)
+        seen = any(held.holds(box.centre) and box.diagonal > SMALL_PART_SHARE * held.diagonal for held in parts)
         if small and not seen and len(parts) < 2:
             parts.append(box)
     return parts

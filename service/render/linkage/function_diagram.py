@@ -10,42 +10,42 @@ import numpy as np
 from service.render.linkage.drawing import Scene
 from service.render.linkage.motion import DrivenLinkage
 from service.render.page.diagrams import Diagram
-from service.render.page.svg import Element, Viewport, path
-from service.render.page.symbols import CURVE, INK, arrow
+from service.render.page.svg import Element, Viewport, draw_path
+from service.render.page.symbols import CURVE, INK, draw_arrow
 from synthesis.kinds.function.design import FunctionDesign
 from synthesis.kinds.function.problem import FunctionProblem
 
-HEIGHT = 250.0
+DIAGRAM_HEIGHT = 250.0
 """Height of the diagram, pixels."""
 
-SAMPLES = 181
+SAMPLE_COUNT = 181
 """Number of points of the output's curve."""
 
-ARC = (24.0, 70.0)
+ARC_RADII = (24.0, 70.0)
 """Minimum and maximum radius of the arc that shows the input's range, pixels."""
 
 ARC_SHARE, ARC_SAMPLES = 0.4, 60
 """Radius of that arc as a share of the crank, and its number of points."""
 
 
-def range_arc(design: FunctionDesign, scene: Scene, view: Viewport) -> list[Element]:
+def draw_range_arc(design: FunctionDesign, scene: Scene, view: Viewport) -> list[Element]:
     """Draw an arc with an arrow from the input's first angle to its last."""
-    joints = scene.joints(0)
+    joints = scene.get_joints(0)
     if not joints:
         return []
     stated = design.structural_error.curve.input_angle or [target.input_angle for target in design.targets]
     start, end = math.radians(stated[0]), math.radians(stated[-1])
-    radius = max(min(ARC_SHARE * abs(joints["A"] - joints["O2"]) * view.scale, ARC[1]), ARC[0])
+    radius = max(min(ARC_SHARE * abs(joints["A"] - joints["O2"]) * view.scale, ARC_RADII[1]), ARC_RADII[0])
     arc = view.point(joints["O2"]) + radius * np.exp(-1j * np.linspace(start, end, ARC_SAMPLES))
-    drawn = path([arc], stroke=INK, stroke_width=1.4, data_range=repr(math.degrees(end - start)))
-    head = arrow(complex(arc[-4]), complex(arc[-1]), 3.6, INK)
+    drawn = draw_path([arc], stroke=INK, stroke_width=1.4, data_range=repr(math.degrees(end - start)))
+    head = draw_arrow(complex(arc[-4]), complex(arc[-1]), 3.6, INK)
     return [drawn, head] if drawn is not None else [head]
 
 
-def function_diagram(design: FunctionDesign, problem: FunctionProblem, linkage: DrivenLinkage) -> Diagram:
+def make_function_diagram(design: FunctionDesign, problem: FunctionProblem, linkage: DrivenLinkage) -> Diagram:
     """Return the diagram of the structural error; for exact pairs, without an error curve, that of the output."""
     if problem.function is None and problem.aim == "precision":
-        return _output(design, problem, linkage)
+        return _make_output_diagram(design, problem, linkage)
     # Pairs have errors only at themselves: draw stems instead of a curve.
     error, pairs = design.structural_error, problem.function is None
     x, e = np.array(error.curve.input), np.array(error.curve.error)
@@ -62,17 +62,17 @@ def function_diagram(design: FunctionDesign, problem: FunctionProblem, linkage: 
         stems=pairs,
         dots=extremes,
         rings=met,
-        height=HEIGHT,
+        height=DIAGRAM_HEIGHT,
     )
 
 
-def _output(design: FunctionDesign, problem: FunctionProblem, linkage: DrivenLinkage) -> Diagram:
+def _make_output_diagram(design: FunctionDesign, problem: FunctionProblem, linkage: DrivenLinkage) -> Diagram:
     """Return the diagram of the output value over the input value from the driven linkage, with the required pairs."""
     dials = design.dials
     inputs = np.array([target.input for target in design.targets])
     pairs = np.array([target.output for target in design.targets])
-    x = np.linspace(inputs.min(), inputs.max(), SAMPLES)
-    motion = linkage.driven(np.radians(dials.input.place + dials.input.scale * (x - dials.input.at)))
+    x = np.linspace(inputs.min(), inputs.max(), SAMPLE_COUNT)
+    motion = linkage.drive_over(np.radians(dials.input.place + dials.input.scale * (x - dials.input.at)))
     # A slider's output is a place along its line, a rocker's an angle.
     if design.mechanism.type == "slider_crank":
         along = cmath.exp(-1j * math.radians(design.mechanism.slide.angle))
@@ -94,5 +94,5 @@ def _output(design: FunctionDesign, problem: FunctionProblem, linkage: DrivenLin
         turned=False,
         from_zero=False,
         rings=inputs + 1j * pairs,
-        height=HEIGHT,
+        height=DIAGRAM_HEIGHT,
     )

@@ -8,18 +8,15 @@ from functools import cached_property
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from kinematics.arrays import Complex, Real
 from kinematics.linkage.planar.branches import Branch
 from kinematics.linkage.planar.drive import MechanismMotion, drive
 from kinematics.linkage.planar.mechanism import GROUND, Mechanism
 from service.render import NotBuilt
-from service.render.page.svg import Points
-from synthesis.analyses.cycle import branch_of, cycle_along
-from synthesis.model.linkage_answer import DrivenTo
-from synthesis.proof.rebuilt import rebuilt
-
-Real = NDArray[np.float64]
+from synthesis.analyses.linkages.cycle import find_branch, find_cycle_along
+from synthesis.model.linkage.answer import TargetInput
+from synthesis.verification.reconstruction import rebuild_mechanism
 
 
 class DrivenLinkage:
@@ -32,7 +29,7 @@ class DrivenLinkage:
         self.mechanism = mechanism
 
     @classmethod
-    def of(cls, design: Any) -> DrivenLinkage:
+    def from_design(cls, design: Any) -> DrivenLinkage:
         """Rebuild the linkage of a design from its dimensions and its skeleton alone.
 
         Raises
@@ -40,7 +37,7 @@ class DrivenLinkage:
         NotBuilt
             The analysis core accepts no such mechanism.
         """
-        mechanism = rebuilt(design.mechanism, from_skeleton=True)
+        mechanism = rebuild_mechanism(design.mechanism, from_skeleton=True)
         if mechanism is None:
             raise NotBuilt(design.mechanism.type)
         return cls(mechanism)
@@ -48,12 +45,12 @@ class DrivenLinkage:
     @cached_property
     def branch(self) -> Branch | None:
         """Branch of the reference configuration; None if it is unknown."""
-        return branch_of(self.mechanism)
+        return find_branch(self.mechanism)
 
     @cached_property
     def cycle(self) -> tuple[float, float]:
         """First and last input of the cycle."""
-        return cycle_along(self.mechanism, self.branch)
+        return find_cycle_along(self.mechanism, self.branch)
 
     @property
     def limits(self) -> tuple[float, float] | None:
@@ -65,25 +62,25 @@ class DrivenLinkage:
         """Joints that are not fixed."""
         return [joint for joint in self.mechanism.joints if joint not in self.mechanism.links[GROUND]]
 
-    def driven(self, inputs: Real, order: int = 0) -> MechanismMotion:
+    def drive_over(self, inputs: Real, order: int = 0) -> MechanismMotion:
         """Return the linkage at inputs, with derivatives by the input up to an order."""
         return drive(self.mechanism, inputs, order=order)
 
-    def path(self, joint: str, first: float, last: float, count: int) -> Points:
+    def trace_path(self, joint: str, first: float, last: float, count: int) -> Complex:
         """Return the path of a joint between two inputs; NaN where the linkage cannot be assembled."""
-        return np.asarray(self.driven(np.linspace(first, last, count)).joints[joint][0])
+        return np.asarray(self.drive_over(np.linspace(first, last, count)).joints[joint][0])
 
-    def inputs(self, degrees: Any) -> Real:
+    def convert_inputs(self, degrees: Any) -> Real:
         """Convert inputs from the units of the answer (degrees, or lengths of an input slide)."""
         stated = np.asarray(degrees, dtype=np.float64)
-        return stated if self.mechanism.driven_by_slide else np.radians(stated)
+        return stated if self.mechanism.has_slide_input else np.radians(stated)
 
-    def targets(self, design: Any) -> Real:
+    def find_target_inputs(self, design: Any) -> Real:
         """Return the inputs at the targets of a design; without targets, the input of the reference configuration."""
         targets = getattr(design, "targets", None) or []
         # Kinds name the input of a target differently.
-        stated = [target.at if isinstance(target, DrivenTo) else target.input_angle for target in targets]
-        return self.inputs(stated) if stated else np.atleast_1d(self.mechanism.reference_input)
+        stated = [target.position if isinstance(target, TargetInput) else target.input_angle for target in targets]
+        return self.convert_inputs(stated) if stated else np.atleast_1d(self.mechanism.reference_input)
 
 
 @dataclass(frozen=True)
@@ -95,7 +92,7 @@ class Demand:
     angle: float | None
 
 
-def demands_of(problem: Any) -> list[Demand]:
+def list_demands(problem: Any) -> list[Demand]:
     """Return the targets of point P in a problem, in order; an empty list if there are none."""
     places = getattr(problem, "positions", None) or getattr(problem, "points", None) or []
     angles = [getattr(place, "angle", None) for place in places]
@@ -105,7 +102,7 @@ def demands_of(problem: Any) -> list[Demand]:
     ]
 
 
-def target_curve(problem: Any) -> Points | None:
+def get_target_curve(problem: Any) -> Complex | None:
     """Return the curve that is required as a whole, closed if it is; None for separate target points."""
     if not getattr(problem, "matched", False):
         return None
@@ -113,7 +110,7 @@ def target_curve(problem: Any) -> Points | None:
     return np.append(points, points[0]) if problem.closed else points
 
 
-def stance_curve(problem: Any) -> Points | None:
+def get_stance_curve(problem: Any) -> Complex | None:
     """Return the required points of a stance, in order; None without a stance."""
     stance = getattr(problem, "stance", None)
     if stance is None:

@@ -5,22 +5,30 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from typing import NamedTuple
 
-from service.render.page.svg import Element, clean, element, line, shortened, text, text_width
+from service.render.page.svg import (
+    Element,
+    clean_text,
+    draw_line,
+    draw_text,
+    estimate_text_width,
+    make_element,
+    truncate_text,
+)
 from service.render.page.symbols import GREY, INK, OUTPUT, PALE
 
-ROW, HEADING, GAP = 18.0, 24.0, 16.0
+ROW_HEIGHT, HEADING_HEIGHT, BLOCK_GAP = 18.0, 24.0, 16.0
 """Heights of a row and of a block's heading, and the space after a block, pixels."""
 
-SIZE, SMALL = 11.5, 10.5
+FONT_SIZE, SMALL_FONT_SIZE = 11.5, 10.5
 """Font sizes of rows, and of tables with their many columns, pixels."""
 
-MARK, MARK_ROOM = 8.0, 22.0
+MARK_OFFSET, NAME_OFFSET = 8.0, 22.0
 """Offset of a check's mark from the left edge, and of its name, pixels."""
 
-BETWEEN, CLOSER = 5.0, 3.0
+MIN_COLUMN_GAP, NOTE_SHIFT = 5.0, 3.0
 """Minimum space between the columns of a table, and the reduction of line spacing before a note, pixels."""
 
-WORDED = 0.36
+TEXT_COLUMN_SHARE = 0.36
 """Width of a text column as a share of the table's width."""
 
 Block = Callable[[float, float, float], tuple[Element, float]]
@@ -29,7 +37,7 @@ Block = Callable[[float, float, float], tuple[Element, float]]
 Sample = Callable[[str, float, float], Element | None]
 """Draws a sample of a row's line style at the left on the row's base line; returns None for a row without a style."""
 
-SAMPLE = 34.0
+SAMPLE_WIDTH = 34.0
 """Width of the samples of line styles, pixels."""
 
 
@@ -42,30 +50,32 @@ class CheckRow(NamedTuple):
     limit: str
 
 
-def rows(heading: str, entries: Sequence[tuple[str, str]], sample: Sample | None = None) -> Block:
+def make_rows(heading: str, entries: Sequence[tuple[str, str]], sample: Sample | None = None) -> Block:
     """Return a block of names at the left and values at the right, optionally with samples of line styles."""
 
     def draw(left: float, top: float, width: float) -> tuple[Element, float]:
-        block, y = block_start(heading, left, top, width)
-        start = left if sample is None else left + SAMPLE
+        block, y = start_block(heading, left, top, width)
+        start = left if sample is None else left + SAMPLE_WIDTH
         for name, value in entries:
-            y += ROW
-            block.add(sample(name, left, y) if sample is not None else None, text(start, y, name, SIZE, fill=INK))
-            block.add(_value(left + width, y, value, start + text_width(name, SIZE)))
-        return block, y + GAP
+            y += ROW_HEIGHT
+            block.add(
+                sample(name, left, y) if sample is not None else None, draw_text(start, y, name, FONT_SIZE, fill=INK)
+            )
+            block.add(_draw_value(left + width, y, value, start + estimate_text_width(name, FONT_SIZE)))
+        return block, y + BLOCK_GAP
 
     return draw
 
 
-class Line(NamedTuple):
+class TableRow(NamedTuple):
     """Cells of a table row, and a note on a line of its own below; a line may consist of the note only."""
 
     cells: Sequence[str]
     note: str = ""
 
 
-def table(
-    heading: str, heads: Sequence[str], lines: Sequence[Line], ends: Sequence[float], worded: int | None = None
+def make_table(
+    heading: str, heads: Sequence[str], lines: Sequence[TableRow], ends: Sequence[float], worded: int | None = None
 ) -> Block:
     """Return a block with a table in small type.
 
@@ -75,69 +85,75 @@ def table(
     """
 
     def draw(left: float, top: float, width: float) -> tuple[Element, float]:
-        block, y = block_start(heading, left, top, width)
-        for cells, note in (Line(heads), *lines):
+        block, y = start_block(heading, left, top, width)
+        for cells, note in (TableRow(heads), *lines):
             fill = GREY if cells is heads else INK
-            y += ROW if cells else 0.0
+            y += ROW_HEIGHT if cells else 0.0
             for n, (cell, end) in enumerate(zip(cells, ends, strict=False)):
                 x = left + end * width
                 # Words start where the previous column ends and are not shrunk.
                 if n == worded:
-                    words = shortened(cell, SMALL, WORDED * width)
-                    block.add(text(x, y, words, SMALL, fill=fill))
+                    words = truncate_text(cell, SMALL_FONT_SIZE, TEXT_COLUMN_SHARE * width)
+                    block.add(draw_text(x, y, words, SMALL_FONT_SIZE, fill=fill))
                     continue
-                room = (end - (ends[n - 1] if n else 0.0)) * width - BETWEEN
+                room = (end - (ends[n - 1] if n else 0.0)) * width - MIN_COLUMN_GAP
                 # Shrink only cells that are too wide.
-                size = SMALL * min(1.0, room / max(text_width(cell, SMALL), 1.0))
-                block.add(text(x, y, cell, size, text_anchor="end", fill=fill))
+                size = SMALL_FONT_SIZE * min(1.0, room / max(estimate_text_width(cell, SMALL_FONT_SIZE), 1.0))
+                block.add(draw_text(x, y, cell, size, text_anchor="end", fill=fill))
             if note:
-                y += ROW - CLOSER if cells else ROW
-                block.add(text(left + width, y, note, SMALL, text_anchor="end", fill=INK, font_style="italic"))
-        return block, y + GAP
+                y += ROW_HEIGHT - NOTE_SHIFT if cells else ROW_HEIGHT
+                block.add(
+                    draw_text(left + width, y, note, SMALL_FONT_SIZE, text_anchor="end", fill=INK, font_style="italic")
+                )
+        return block, y + BLOCK_GAP
 
     return draw
 
 
-def checks(listed: Sequence[CheckRow]) -> Block:
+def make_checks(listed: Sequence[CheckRow]) -> Block:
     """Return a block of every check with a mark, its name, value and limit; long values get a line of their own."""
 
     def draw(left: float, top: float, width: float) -> tuple[Element, float]:
         verdict = "all passed" if all(check.passed for check in listed) else "not all passed"
-        block, y = block_start(f"Checks: {verdict}", left, top, width)
+        block, y = start_block(f"Checks: {verdict}", left, top, width)
         for check in listed:
-            y += ROW
+            y += ROW_HEIGHT
             measure = f"{check.value}  (limit {check.limit})" if check.limit else check.value
-            room = width - MARK_ROOM
-            words = shortened(clean(check.name.replace("_", " ")), SIZE, room)
-            row = element("g", _mark(check.passed, left + MARK, y - 4.0), data_check=clean(check.name))
-            row.add(text(left + MARK_ROOM, y, words, SIZE, fill=INK))
+            room = width - NAME_OFFSET
+            words = truncate_text(clean_text(check.name.replace("_", " ")), FONT_SIZE, room)
+            row = make_element(
+                "g", _draw_mark(check.passed, left + MARK_OFFSET, y - 4.0), data_check=clean_text(check.name)
+            )
+            row.add(draw_text(left + NAME_OFFSET, y, words, FONT_SIZE, fill=INK))
             # Name and measure do not fit on one line: put the measure below.
-            if text_width(words, SIZE) + MARK + text_width(measure, SIZE) > room:
-                y += ROW - CLOSER
-            row.add(text(left + width, y, measure, SIZE, text_anchor="end", fill=INK))
+            if estimate_text_width(words, FONT_SIZE) + MARK_OFFSET + estimate_text_width(measure, FONT_SIZE) > room:
+                y += ROW_HEIGHT - NOTE_SHIFT
+            row.add(draw_text(left + width, y, measure, FONT_SIZE, text_anchor="end", fill=INK))
             block.add(row)
-        return block, y + GAP
+        return block, y + BLOCK_GAP
 
     return draw
 
 
-def block_start(heading: str, left: float, top: float, width: float) -> tuple[Element, float]:
+def start_block(heading: str, left: float, top: float, width: float) -> tuple[Element, float]:
     """Start a block with its heading and rule; return it and the y from which rows are counted."""
-    base = top + HEADING - 9.0
-    rule = line(complex(left, base + 6.0), complex(left + width, base + 6.0), stroke=PALE, stroke_width=1.0)
-    title = text(left, base, heading, 12.5, font_weight="bold", fill=INK)
-    return element("g", title, rule, data_block=heading.split(" ")[0].rstrip(":").lower()), top + HEADING - 2.0
+    base = top + HEADING_HEIGHT - 9.0
+    rule = draw_line(complex(left, base + 6.0), complex(left + width, base + 6.0), stroke=PALE, stroke_width=1.0)
+    title = draw_text(left, base, heading, 12.5, font_weight="bold", fill=INK)
+    return make_element(
+        "g", title, rule, data_block=heading.split(" ")[0].rstrip(":").lower()
+    ), top + HEADING_HEIGHT - 2.0
 
 
-def _value(right: float, y: float, value: str, after: float) -> Element:
+def _draw_value(right: float, y: float, value: str, after: float) -> Element:
     """Draw a value at the right end of a row, in smaller type if it would touch the row's name."""
-    width = text_width(value, SIZE)
-    size = SIZE * min(1.0, (right - after - 6.0) / width) if width > 0.0 else SIZE
-    return text(right, y, value, size, text_anchor="end", fill=INK)
+    width = estimate_text_width(value, FONT_SIZE)
+    size = FONT_SIZE * min(1.0, (right - after - 6.0) / width) if width > 0.0 else FONT_SIZE
+    return draw_text(right, y, value, size, text_anchor="end", fill=INK)
 
 
-def _mark(passed: bool, x: float, y: float) -> Element:
+def _draw_mark(passed: bool, x: float, y: float) -> Element:
     """Draw a tick or a cross as a path, so that it does not depend on a font."""
     colour = OUTPUT if passed else "#b3261e"
     shape = f"M{x - 5:.1f} {y:.1f}l3.5 4l6.5 -8.5" if passed else f"M{x - 4:.1f} {y - 4:.1f}l8 8m0 -8l-8 8"
-    return element("path", d=shape, fill="none", stroke=colour, stroke_width=2.2, data_passed=str(passed).lower())
+    return make_element("path", d=shape, fill="none", stroke=colour, stroke_width=2.2, data_passed=str(passed).lower())

@@ -17,10 +17,10 @@ from numpy.typing import NDArray
 # Omit timestamps and random identifiers, so that the same design gives the same file.
 ezdxf.options.write_fixed_meta_data_for_testing = True  # type: ignore[attr-defined]  # ezdxf documents it, and does not export it
 
-UNITS = {"mm": units.MM, "cm": units.CM, "m": units.M, "in": units.IN}
+DXF_UNITS = {"mm": units.MM, "cm": units.CM, "m": units.M, "in": units.IN}
 
 
-def new_drawing(
+def create_drawing(
     title: str, unit: str, layers: Mapping[str, tuple[int, str]], *, frozen: str = "", dimensions: bool = False
 ) -> Drawing:
     """Create an empty drawing.
@@ -39,7 +39,7 @@ def new_drawing(
         Whether the drawing will contain dimensions, which need a style.
     """
     document = new("R2010", setup=["linetypes", "dimstyles"] if dimensions else ["linetypes"])
-    document.units = UNITS[unit]
+    document.units = DXF_UNITS[unit]
     document.header.custom_vars.append("Title", title)
     for name, (colour, linetype) in layers.items():
         document.layers.add(name, color=colour, linetype=linetype)
@@ -48,7 +48,7 @@ def new_drawing(
     return document
 
 
-def written(document: Drawing) -> str:
+def write_document(document: Drawing) -> str:
     """Return the drawing as text, identical in every process."""
     # ezdxf lists classes in the order of a set, which varies between processes; classes listed before keep their order.
     for name in sorted(document.entitydb.dxf_types_in_use()):

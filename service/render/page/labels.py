@@ -13,26 +13,24 @@ from collections.abc import Mapping
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
+from kinematics.arrays import Complex, Real
 from service.render.page.svg import (
     FONT_ASCENT,
     FONT_DESCENT,
     SUBSCRIPT,
     Box,
     Element,
-    Points,
     clip_segments,
-    element,
-    line,
-    text,
-    text_width,
+    draw_line,
+    draw_text,
+    estimate_text_width,
+    make_element,
 )
 
-RINGS = (0.0, 4.0, 9.0, 16.0, 26.0, 40.0, 58.0, 80.0)
+TRIAL_GAPS = (0.0, 4.0, 9.0, 16.0, 26.0, 40.0, 58.0, 80.0)
 """Trial gaps between a point's clearance and the label's box, pixels."""
 
-Real = NDArray[np.float64]
 
 HALO = {"stroke": "#fff", "stroke_width": "3", "stroke_linejoin": "round", "paint_order": "stroke"}
 """White rim of a label, so that it is legible on lines."""
@@ -42,26 +40,26 @@ DIRECTIONS = np.exp(2j * np.pi * np.arange(24) / 24)
 GAP_COST, TURN_COST = 0.25, 3.0
 """Cost of a gap per pixel, and of a direction at right angles to the preferred one."""
 
-SUBSCRIPT_BELOW = 0.12
+SUBSCRIPT_DESCENT = 0.12
 """Descent of a subscript below the letters, in units of the font size."""
 
-PAD = 2.0
+LABEL_PADDING = 2.0
 """Space between a label and the lines that it avoids, pixels."""
 
-TAKEN = 1000.0
+OVERLAP_COST = 1000.0
 """Cost of covering another label or leaving the panel; exceeds all other costs together."""
 
 LEADER_GAP = 15.0
 """Minimum gap at which a leader line connects a label with its point, pixels."""
 
-NEAR = tuple(gap for gap in RINGS if gap < LEADER_GAP)
+NEAR_GAPS = tuple(gap for gap in TRIAL_GAPS if gap < LEADER_GAP)
 """Trial gaps for optional labels."""
 
 SAMPLE_STEP = 5.0
 """Distance of the sample points on lines that labels avoid, pixels; less than half the height of any label."""
 
 
-class Placed(NamedTuple):
+class LabelPlacement(NamedTuple):
     """A label's box, and a leader from its point if it is far away."""
 
     box: Box
@@ -74,11 +72,11 @@ class Labels:
     def __init__(self, panel: Box) -> None:
         self._panel = panel
         self._boxes: list[Box] = []
-        self._lines: list[tuple[Points, float]] = []
-        self._samples: tuple[Points, Real] | None = None
+        self._lines: list[tuple[Complex, float]] = []
+        self._samples: tuple[Complex, Real] | None = None
         self.drawn: list[Element] = []
 
-    def avoid(self, lines: list[Points], weight: float) -> None:
+    def add_obstacles(self, lines: list[Complex], weight: float) -> None:
         """Add polylines of the sheet as obstacles; ``weight`` is the cost per few pixels covered."""
         self._lines.extend((polyline, weight) for polyline in lines)
         self._samples = None
@@ -123,25 +121,25 @@ class Labels:
         """
         if not self._panel.holds(point):
             return
-        width = text_width(words, size) + text_width(subscript, SUBSCRIPT * size)
-        height = (FONT_ASCENT + FONT_DESCENT) * size + (SUBSCRIPT_BELOW * size if subscript else 0.0)
+        width = estimate_text_width(words, size) + estimate_text_width(subscript, SUBSCRIPT * size)
+        height = (FONT_ASCENT + FONT_DESCENT) * size + (SUBSCRIPT_DESCENT * size if subscript else 0.0)
         if ring:
             width = height = max(width, height) + 4.0
-        placed, cost = self._best(point, width, height, clearance, away, NEAR if optional else RINGS)
-        if optional and cost >= TAKEN:
+        placed, cost = self._find_best(point, width, height, clearance, away, NEAR_GAPS if optional else TRIAL_GAPS)
+        if optional and cost >= OVERLAP_COST:
             return
         self._boxes.append(placed.box)
         box = placed.box
         if placed.leader:
-            self.drawn.append(line(*placed.leader, stroke="#555", stroke_width=0.7))
+            self.drawn.append(draw_line(*placed.leader, stroke="#555", stroke_width=0.7))
         if ring:
             self.drawn.append(
-                element("circle", cx=box.centre.real, cy=box.centre.imag, r=0.5 * width, fill="#fff", stroke=ring)
+                make_element("circle", cx=box.centre.real, cy=box.centre.imag, r=0.5 * width, fill="#fff", stroke=ring)
             )
-        below = SUBSCRIPT_BELOW if subscript else 0.0
+        below = SUBSCRIPT_DESCENT if subscript else 0.0
         base = box.centre.imag + 0.5 * (FONT_ASCENT - FONT_DESCENT - below) * size
         self.drawn.append(
-            text(
+            draw_text(
                 box.centre.real,
                 base,
                 words,
@@ -154,9 +152,9 @@ class Labels:
             )
         )
 
-    def _best(
+    def _find_best(
         self, point: complex, width: float, height: float, clearance: float, away: complex, rings: tuple[float, ...]
-    ) -> tuple[Placed, float]:
+    ) -> tuple[LabelPlacement, float]:
         """Find the cheapest place and its cost; rings that cannot beat the best place so far are skipped."""
         # Upwards if no direction is preferred.
         preferred = away / abs(away) if abs(away) > 0.0 else 1j
@@ -164,14 +162,14 @@ class Labels:
         # The box touches the circle of radius clearance + gap about the point in the label's direction.
         half = 0.5 * (width * np.abs(DIRECTIONS.real) + height * np.abs(DIRECTIONS.imag))
         reach = clearance + rings[-1] + width + height
-        obstacles = self._near(point, reach)
+        obstacles = self._select_near(point, reach)
         best, best_place = math.inf, None
         for gap in rings:
             # Larger gaps only cost more.
             if GAP_COST * gap >= best:
                 break
             centres = point + DIRECTIONS * (clearance + gap + half)
-            cost = GAP_COST * gap + turned_away + self._covered(centres, width, height, *obstacles)
+            cost = GAP_COST * gap + turned_away + self._compute_cost(centres, width, height, *obstacles)
             k = int(np.argmin(cost))
             if cost[k] < best:
                 best, best_place = float(cost[k]), (gap, complex(DIRECTIONS[k]), complex(centres[k]), float(half[k]))
@@ -180,18 +178,18 @@ class Labels:
         leader = (point + clearance * direction, centre - direction * (radius - 1.0)) if gap >= LEADER_GAP else None
         corner = 0.5 * complex(width, height)
         low, high = centre - corner, centre + corner
-        return Placed(Box(low.real, low.imag, high.real, high.imag), leader), best
+        return LabelPlacement(Box(low.real, low.imag, high.real, high.imag), leader), best
 
-    def _near(self, point: complex, reach: float) -> tuple[Points, Real]:
+    def _select_near(self, point: complex, reach: float) -> tuple[Complex, Real]:
         """Return sample points of the obstacle lines within reach of a point, and their weights."""
         if self._samples is None:
-            self._samples = self._sampled()
+            self._samples = self._sample_lines()
         points, weights = self._samples
         # Only obstacles that some trial box could cover.
         near = (np.abs(points.real - point.real) < reach) & (np.abs(points.imag - point.imag) < reach)
         return points[near], weights[near]
 
-    def _sampled(self) -> tuple[Points, Real]:
+    def _sample_lines(self) -> tuple[Complex, Real]:
         lines = [(polyline, weight) for polyline, weight in self._lines if polyline.size > 1 and weight > 0.0]
         if not lines:
             return np.empty(0, np.complex128), np.empty(0)
@@ -210,23 +208,23 @@ class Labels:
         weight = weights[seen] * np.minimum(1.0, np.abs(step) / (SAMPLE_STEP * count) + 0.25)
         return np.repeat(start, count) + share * np.repeat(step, count), np.repeat(weight, count)
 
-    def _covered(self, centres: Points, width: float, height: float, points: Points, weights: Real) -> Real:
+    def _compute_cost(self, centres: Complex, width: float, height: float, points: Complex, weights: Real) -> Real:
         """Compute the cost of what boxes at the given centres cover."""
         x, y = centres.real, centres.imag
         left, right, low, high = x - 0.5 * width, x + 0.5 * width, y - 0.5 * height, y + 0.5 * height
         panel = self._panel
         # A label outside the panel is as bad as an overlap.
-        cost = TAKEN * ((left < panel.left) | (right > panel.right) | (low < panel.low) | (high > panel.high))
+        cost = OVERLAP_COST * ((left < panel.left) | (right > panel.right) | (low < panel.low) | (high > panel.high))
         for box in self._boxes:
-            cost = cost + TAKEN * ((left < box.right) & (box.left < right) & (low < box.high) & (box.low < high))
+            cost = cost + OVERLAP_COST * ((left < box.right) & (box.left < right) & (low < box.high) & (box.low < high))
         if points.size == 0:
             return np.asarray(cost, np.float64)
-        inside = np.abs(points.real - x[:, None]) < 0.5 * width + PAD
-        inside &= np.abs(points.imag - y[:, None]) < 0.5 * height + PAD
+        inside = np.abs(points.real - x[:, None]) < 0.5 * width + LABEL_PADDING
+        inside &= np.abs(points.imag - y[:, None]) < 0.5 * height + LABEL_PADDING
         return np.asarray(cost + inside @ weights)
 
 
-def direction_between(directions: list[complex]) -> complex:
+def find_free_direction(directions: list[complex]) -> complex:
     """Return the middle of the widest gap between directions from a point, where a label has most space."""
     angles = sorted(cmath.phase(d) for d in directions if abs(d) > 0.0)
     if not angles:

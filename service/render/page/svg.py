@@ -19,7 +19,7 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
-Points = NDArray[np.complex128]
+from kinematics.arrays import Complex
 
 DECIMALS = 2
 """Decimals of sheet coordinates: a hundredth of a pixel."""
@@ -33,7 +33,7 @@ GLYPH_WIDTHS = {
 }
 """Glyph widths in units of the font size, for the widest of the common sans-serif faces."""
 
-TURNING = frozenset((*range(0x202A, 0x202F), *range(0x2066, 0x206A)))
+DIRECTION_CONTROLS = frozenset((*range(0x202A, 0x202F), *range(0x2066, 0x206A)))
 """Control characters that would change the direction of all following text."""
 
 SUBSCRIPT, SUBSCRIPT_DROP = 0.75, 0.25
@@ -43,7 +43,7 @@ FONT_ASCENT, FONT_DESCENT = 0.78, 0.22
 """Extent of text above and below its base line, in units of the font size."""
 
 
-def number(value: float) -> str:
+def format_number(value: float) -> str:
     """Format a sheet coordinate; raise ``ValueError`` if it is not finite."""
     if not math.isfinite(value):
         raise ValueError(f"expected a finite coordinate, got {value}")
@@ -51,28 +51,28 @@ def number(value: float) -> str:
     return "0" if text == "-0" else text
 
 
-def clean(text: str) -> str:
+def clean_text(text: str) -> str:
     """Return text without characters that XML 1.0 forbids and without control of the writing direction.
 
     Every run of white space becomes one space.
     """
-    kept = "".join(c if _allowed(c) else " " if c.isspace() else "" for c in text)
+    kept = "".join(c if _is_allowed(c) else " " if c.isspace() else "" for c in text)
     return " ".join(kept.split())
 
 
-def _allowed(character: str) -> bool:
+def _is_allowed(character: str) -> bool:
     code = ord(character)
-    if code in TURNING:
+    if code in DIRECTION_CONTROLS:
         return False
     return 0x20 <= code < 0x7F or 0xA0 <= code <= 0xD7FF or 0xE000 <= code <= 0xFFFD or code >= 0x10000
 
 
-def text_width(text: str, size: float) -> float:
+def estimate_text_width(text: str, size: float) -> float:
     """Estimate the width of a line of text in pixels, rather too wide than too narrow."""
-    return size * sum(_glyph_width(c) for c in text)
+    return size * sum(_get_glyph_width(c) for c in text)
 
 
-def _glyph_width(character: str) -> float:
+def _get_glyph_width(character: str) -> float:
     known = GLYPH_WIDTHS.get(character)
     if known is not None:
         return known
@@ -85,15 +85,15 @@ def _glyph_width(character: str) -> float:
     return 0.72 if character.isupper() else 0.63
 
 
-def shortened(text: str, size: float, width: float) -> str:
+def truncate_text(text: str, size: float, width: float) -> str:
     """Truncate text with an ellipsis to fit in ``width`` pixels."""
-    if text_width(text, size) <= width:
+    if estimate_text_width(text, size) <= width:
         return text
-    room = width - text_width("…", size)
+    room = width - estimate_text_width("…", size)
     used = 0.0
     for count, character in enumerate(text):
         # Accumulate widths until the ellipsis would no longer fit.
-        used += _glyph_width(character) * size
+        used += _get_glyph_width(character) * size
         if used > room:
             return text[:count].rstrip() + "…"
     return text
@@ -121,7 +121,7 @@ class Element:
     def _write(self, parts: list[str]) -> None:
         parts.append(f"<{self.tag}")
         for name, value in self.attributes.items():
-            parts.append(f' {name}="{value.translate(ESCAPES) if isinstance(value, str) else number(value)}"')
+            parts.append(f' {name}="{value.translate(ESCAPES) if isinstance(value, str) else format_number(value)}"')
         if not self.children:
             parts.append("/>")
             return
@@ -134,39 +134,39 @@ class Element:
         parts.append(f"</{self.tag}>")
 
 
-def element(tag: str, *children: Element | str, **attributes: str | float | None) -> Element:
+def make_element(tag: str, *children: Element | str, **attributes: str | float | None) -> Element:
     """Make an element with attributes by keyword: underscores stand for hyphens, None omits an attribute."""
     given = {name.rstrip("_").replace("_", "-"): value for name, value in attributes.items() if value is not None}
     return Element(tag, given, list(children))
 
 
-def text(
+def draw_text(
     x: float, y: float, words: str, size: float, *, subscript: str = "", **attributes: str | float | None
 ) -> Element:
     """Draw a line of text with its base line at ``y``, optionally followed by a subscript."""
-    drawn = element("text", x=x, y=y, font_size=size, **attributes).add(words)
+    drawn = make_element("text", x=x, y=y, font_size=size, **attributes).add(words)
     if subscript:
-        drawn.add(element("tspan", subscript, dy=SUBSCRIPT_DROP * size, font_size=SUBSCRIPT * size))
+        drawn.add(make_element("tspan", subscript, dy=SUBSCRIPT_DROP * size, font_size=SUBSCRIPT * size))
     return drawn
 
 
-def line(start: complex, end: complex, **attributes: str | float | None) -> Element:
+def draw_line(start: complex, end: complex, **attributes: str | float | None) -> Element:
     """Draw a straight line between two points of the sheet."""
-    return element("line", x1=start.real, y1=start.imag, x2=end.real, y2=end.imag, **attributes)
+    return make_element("line", x1=start.real, y1=start.imag, x2=end.real, y2=end.imag, **attributes)
 
 
-def circle(centre: complex, radius: float, **attributes: str | float | None) -> Element:
+def draw_circle(centre: complex, radius: float, **attributes: str | float | None) -> Element:
     """Draw a circle on the sheet."""
-    return element("circle", cx=centre.real, cy=centre.imag, r=radius, **attributes)
+    return make_element("circle", cx=centre.real, cy=centre.imag, r=radius, **attributes)
 
 
-def polygon(corners: list[complex], **attributes: str | float | None) -> Element:
+def draw_polygon(corners: list[complex], **attributes: str | float | None) -> Element:
     """Draw a closed polygon on the sheet."""
-    listed = " ".join(f"{number(c.real)},{number(c.imag)}" for c in corners)
-    return element("polygon", points=listed, **attributes)
+    listed = " ".join(f"{format_number(c.real)},{format_number(c.imag)}" for c in corners)
+    return make_element("polygon", points=listed, **attributes)
 
 
-def path(pieces: list[Points], **attributes: str | float | None) -> Element | None:
+def draw_path(pieces: list[Complex], **attributes: str | float | None) -> Element | None:
     """Draw several open polylines as one path on the sheet; return None if there is nothing to draw."""
     drawn = []
     for piece in pieces:
@@ -175,7 +175,7 @@ def path(pieces: list[Points], **attributes: str | float | None) -> Element | No
         if piece.size > 1:
             listed = zip(piece.real.tolist(), piece.imag.tolist(), strict=True)
             drawn.append("M" + "L".join([f"{x:.{DECIMALS}f} {y:.{DECIMALS}f}" for x, y in listed]))
-    return element("path", d="".join(drawn), fill="none", **attributes) if drawn else None
+    return make_element("path", d="".join(drawn), fill="none", **attributes) if drawn else None
 
 
 @dataclass(frozen=True)
@@ -188,7 +188,7 @@ class Box:
     high: float
 
     @classmethod
-    def around(cls, points: Points) -> Box:
+    def enclose(cls, points: Complex) -> Box:
         """Return the smallest box around the points that are not NaN."""
         x, y = points.real, points.imag
         return cls(float(np.nanmin(x)), float(np.nanmin(y)), float(np.nanmax(x)), float(np.nanmax(y)))
@@ -213,11 +213,11 @@ class Box:
         """Middle of the box."""
         return complex(self.left + 0.5 * self.width, self.low + 0.5 * self.height)
 
-    def grown(self, margin: float) -> Box:
+    def grow(self, margin: float) -> Box:
         """Return the box enlarged by a margin on all sides."""
         return Box(self.left - margin, self.low - margin, self.right + margin, self.high + margin)
 
-    def united(self, other: Box) -> Box:
+    def merge_with(self, other: Box) -> Box:
         """Return the smallest box around both."""
         return Box(
             min(self.left, other.left),
@@ -226,7 +226,7 @@ class Box:
             max(self.high, other.high),
         )
 
-    def common(self, other: Box) -> Box:
+    def intersect_with(self, other: Box) -> Box:
         """Return the intersection; call it only for boxes that overlap."""
         return Box(
             max(self.left, other.left),
@@ -271,32 +271,32 @@ class Viewport:
         # Conjugation flips y from upwards to downwards.
         return self.middle + self.scale * (complex(point) - self.centre).conjugate()
 
-    def points(self, points: Points) -> Points:
+    def points(self, points: Complex) -> Complex:
         """Map an array of mechanism points to the sheet."""
         return np.asarray(self.middle + self.scale * (points - self.centre).conj())
 
-    def shown(self, points: Points) -> list[Points]:
+    def clip_to_panel(self, points: Complex) -> list[Complex]:
         """Map a mechanism polyline to sheet polylines within the panel; NaN interrupts the line."""
-        return [_thinned(piece) for piece in clipped(self.points(points), self.panel.grown(CLIP_MARGIN))]
+        return [_drop_close_points(piece) for piece in clip_polyline(self.points(points), self.panel.grow(CLIP_MARGIN))]
 
 
 CLIP_MARGIN = 20.0
 """Lines are cut this many pixels outside their panel, so that ends and joins of wide strokes remain hidden."""
 
 
-FINEST_STEP = 0.8
+MIN_STEP = 0.8
 """Points of a polyline closer together than about this many pixels are dropped."""
 
 
-def _thinned(line: Points) -> Points:
+def _drop_close_points(line: Complex) -> Complex:
     # Number the steps along the line; keep the first point of every step.
-    cells = np.floor(np.concatenate(([0.0], np.cumsum(np.abs(np.diff(line))))) / FINEST_STEP)
+    cells = np.floor(np.concatenate(([0.0], np.cumsum(np.abs(np.diff(line))))) / MIN_STEP)
     kept = np.concatenate(([True], np.diff(cells) > 0.0))
     kept[-1] = True
     return line[kept]
 
 
-def clip_segments(start: Points, end: Points, box: Box) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+def clip_segments(start: Complex, end: Complex, box: Box) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     """Return the shares of each segment at which it enters and leaves a box; it misses the box unless enter <= leave.
 
     Liang and Barsky 1984, doi:10.1145/357332.357333.
@@ -315,7 +315,7 @@ def clip_segments(start: Points, end: Points, box: Box) -> tuple[NDArray[np.floa
     return enter, leave
 
 
-def clipped(line: Points, box: Box) -> list[Points]:
+def clip_polyline(line: Complex, box: Box) -> list[Complex]:
     """Return the parts of a polyline inside a box; NaN interrupts the line."""
     if line.size == 0:
         return []
@@ -332,7 +332,7 @@ def clipped(line: Points, box: Box) -> list[Points]:
     return [np.concatenate((starts[run[:1]], ends[run])) for run in np.split(kept, breaks) if run.size]
 
 
-def clipped_polygon(corners: list[complex], box: Box) -> list[complex]:
+def clip_polygon(corners: list[complex], box: Box) -> list[complex]:
     """Clip a convex polygon to a box, one side after the other; return an empty list if nothing remains."""
     for turn, limit in ((1, box.left), (-1, -box.right), (1j, box.low), (-1j, -box.high)):
         kept: list[complex] = []
@@ -348,14 +348,14 @@ def clipped_polygon(corners: list[complex], box: Box) -> list[complex]:
     return corners
 
 
-def document(title: str, description: str, size: tuple[float, float], *parts: Element) -> str:
+def write_document(title: str, description: str, size: tuple[float, float], *parts: Element) -> str:
     """Return a complete white sheet of a given size as text, with its title and description."""
     width, height = size
-    sheet = element(
+    sheet = make_element(
         "svg",
-        element("title", title),
-        element("desc", description),
-        element("rect", x=0.0, y=0.0, width=width, height=height, fill="#fff"),
+        make_element("title", title),
+        make_element("desc", description),
+        make_element("rect", x=0.0, y=0.0, width=width, height=height, fill="#fff"),
         *parts,
         xmlns="http://www.w3.org/2000/svg",
         role="img",

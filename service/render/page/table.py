@@ -17,27 +17,29 @@ from numpy.typing import ArrayLike
 Cell = str | int | float | None
 
 
-def table(heads: Iterable[str], rows: Iterable[Sequence[Cell]]) -> str:
+def write_table(heads: Iterable[str], rows: Iterable[Sequence[Cell]]) -> str:
     """Write rows of words and numbers below the column names; line ends follow RFC 4180."""
     text = io.StringIO()
     writer = csv.writer(text, lineterminator="\r\n")
     writer.writerow(heads)
     for row in rows:
-        writer.writerow([written(cell) if isinstance(cell, float) else cell for cell in row])
+        writer.writerow([format_cell(cell) if isinstance(cell, float) else cell for cell in row])
     return text.getvalue()
 
 
-def written(value: float) -> str:
+def format_cell(value: float) -> str:
     """Format a number in full precision; return an empty cell if it is not finite."""
     return repr(value) if math.isfinite(value) else ""
 
 
-def short(value: float) -> str:
+def format_rounded(value: float) -> str:
     """Format a rounded value to twelve digits; return an empty cell if it is not finite."""
     return f"{value:.12g}" if math.isfinite(value) else ""
 
 
-def numbers(remarks: Iterable[str], columns: Mapping[str, ArrayLike], write: Callable[[float], str] = written) -> str:
+def write_number_table(
+    remarks: Iterable[str], columns: Mapping[str, ArrayLike], write: Callable[[float], str] = format_cell
+) -> str:
     """Write columns of numbers below their names, after the remarks."""
     text = io.StringIO()
     text.writelines(f"# {remark}\n" for remark in remarks)

@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from service.render.page.table import Cell, table
+from service.render.page.table import Cell, write_table
 from service.units import symbols
 from synthesis.kinds.balancing.design import RotorDesign
 from synthesis.kinds.balancing.problem import BalancingProblem
 from synthesis.model.dimension import Dimension
 
 
-def rotor_table(design: RotorDesign, problem: BalancingProblem, title: str) -> str:
+def write_rotor_table(design: RotorDesign, problem: BalancingProblem, title: str) -> str:
     """Write the unbalances of the rotor, and the masses added or removed, each with its place."""
     units = symbols(problem)
     mechanism = design.mechanism
@@ -22,4 +22,4 @@ def rotor_table(design: RotorDesign, problem: BalancingProblem, title: str) -> s
     heads = ("_".join(filter(None, (name, units[measure]))) for name, measure in names.items())
     unbalance, mass = (head.replace("·", "_") for head in heads)
     length = problem.length_unit
-    return table(["what", "plane", f"z_{length}", "angle_deg", unbalance, mass, f"radius_{length}"], rows)
+    return write_table(["what", "plane", f"z_{length}", "angle_deg", unbalance, mass, f"radius_{length}"], rows)

@@ -24,18 +24,18 @@ class Face(NamedTuple):
     radius: float
 
 
-def faces(mechanism: RotorMechanism) -> list[Face]:
+def make_faces(mechanism: RotorMechanism) -> list[Face]:
     """Return the faces of all planes, drawn to one radius."""
     # Without radii, marks are placed by their share of the largest unbalance.
     size = max((entry.unbalance for entry in mechanism.corrections), default=0.0) or 1.0
     reach = max((entry.radius or entry.unbalance / size for entry in mechanism.corrections), default=1.0)
     return [
-        Face(z, [mark for mark in _marks(mechanism, size) if mark.correction.plane == plane], reach)
+        Face(z, [mark for mark in _make_marks(mechanism, size) if mark.correction.plane == plane], reach)
         for plane, z in enumerate(mechanism.planes)
     ]
 
 
-def _marks(mechanism: RotorMechanism, size: float) -> list[Mark]:
+def _make_marks(mechanism: RotorMechanism, size: float) -> list[Mark]:
     return [
         Mark(cmath.rect(entry.radius or entry.unbalance / size, math.radians(entry.angle)), entry)
         for entry in mechanism.corrections

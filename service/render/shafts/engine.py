@@ -18,58 +18,71 @@ from itertools import pairwise
 
 import numpy as np
 
-from service.render.checks import checks, verdict
-from service.render.outline import entries
+from service.render.checks import describe_verdict, make_checks_block
+from service.render.outline import list_entries
 from service.render.page import blocks, dxf
 from service.render.page.diagrams import Diagram
-from service.render.page.numbers import angle, length
-from service.render.page.sheet import EDGE, TOP, beside, framed, sheet, stacked
-from service.render.page.svg import Box, Element, Viewport, circle, element, line, path, polygon, text
-from service.render.page.symbols import COUPLER, CURVE, GREY, GROUND, INK, INPUT, OUTPUT, scale_bar
-from service.render.page.table import table
+from service.render.page.numbers import format_angle, format_length
+from service.render.page.sheet import BORDER, TOP, draw_panel, get_drawing_width, stack_blocks, write_sheet
+from service.render.page.svg import (
+    Box,
+    Element,
+    Viewport,
+    draw_circle,
+    draw_line,
+    draw_path,
+    draw_polygon,
+    draw_text,
+    make_element,
+)
+from service.render.page.symbols import COUPLER, CURVE, GREY, GROUND, INK, INPUT, OUTPUT, draw_scale_bar
+from service.render.page.table import write_table
 from service.units import symbols
 from synthesis.kinds.engine.design import EngineDesign, EngineMechanism
 from synthesis.kinds.engine.problem import EngineProblem
 from synthesis.model.dimension import FORCE, TORQUE
 
-PANEL, DIAGRAM, MARGIN = 400.0, 175.0, 26.0
+PANEL_HEIGHT, DIAGRAM_HEIGHT, MARGIN = 400.0, 175.0, 26.0
 """Heights of the panel and of each diagram, and margin around the content, pixels."""
 
-LETTERS = 11.0
+LETTER_SIZE = 11.0
 """Font size of the numbers of cylinders, pixels."""
 
-SHOWN_ORDERS = 6
+MAX_ORDERS = 6
 """Maximum number of firing orders on the sheet."""
 
-CROWN, STANDING = 0.72, 0.25
+PISTON_HALF_WIDTH, MIN_UPRIGHT = 0.72, 0.25
 """Half a piston's width in crank radii; minimum vertical component of an axis that is shown in the side view."""
 
-ENDS = (0.1, 0.3, 0.5, 0.7, 0.85, 1.0)
+COLUMN_ENDS = (0.1, 0.3, 0.5, 0.7, 0.85, 1.0)
 """Right ends of the columns of the table of harmonics."""
 
 
-def engine_sheet(design: EngineDesign, problem: EngineProblem, title: str) -> str:
+def draw_engine_sheet(design: EngineDesign, problem: EngineProblem, title: str) -> str:
     """Draw the engine from the front, its shaft from the side, torque, shaking force and tables as an SVG document."""
     mechanism, units = design.mechanism, symbols(problem)
-    view = Viewport.fit(_box(mechanism), Box(EDGE, TOP, EDGE + beside(), TOP + PANEL), MARGIN, MARGIN)
-    parts = [_panel(mechanism, view, problem.length_unit)]
-    low = TOP + PANEL + 10.0
-    for diagram in _diagrams(design, units[TORQUE], units[FORCE]):
-        parts.append(diagram.draw(Box(EDGE, low, EDGE + beside(), low + DIAGRAM)))
-        low += DIAGRAM
-    tables, bottom = stacked(_tables(design, problem))
+    view = Viewport.fit(
+        _find_box(mechanism), Box(BORDER, TOP, BORDER + get_drawing_width(), TOP + PANEL_HEIGHT), MARGIN, MARGIN
+    )
+    parts = [_draw_panel(mechanism, view, problem.length_unit)]
+    low = TOP + PANEL_HEIGHT + 10.0
+    for diagram in _make_diagrams(design, units[TORQUE], units[FORCE]):
+        parts.append(diagram.draw(Box(BORDER, low, BORDER + get_drawing_width(), low + DIAGRAM_HEIGHT)))
+        low += DIAGRAM_HEIGHT
+    tables, bottom = stack_blocks(_make_tables(design, problem))
     order = "-".join(map(str, design.firing.orders[0].order))
     count = len(mechanism.cylinders)
     words = (
-        f"{mechanism.layout.capitalize()} engine of {count} cylinders, firing {order}; {verdict(design.verification)}"
+        f"{mechanism.layout.capitalize()} engine of {count} cylinders, firing {order}; "
+        f"{describe_verdict(design.verification)}"
     )
     described = (
         "A piston engine from the front, with its throws, rods and pistons by bank, and its crankshaft from the side."
     )
-    return sheet(title or "Piston engine", words, described, [*parts, *tables], max(low, bottom))
+    return write_sheet(title or "Piston engine", words, described, [*parts, *tables], max(low, bottom))
 
 
-def _diagrams(design: EngineDesign, torque: str, force: str) -> list[Diagram]:
+def _make_diagrams(design: EngineDesign, torque: str, force: str) -> list[Diagram]:
     course = design.course
     if course is None:
         return []
@@ -83,61 +96,59 @@ def _diagrams(design: EngineDesign, torque: str, force: str) -> list[Diagram]:
     ]
 
 
-def _tables(design: EngineDesign, problem: EngineProblem) -> list[blocks.Block]:
+def _make_tables(design: EngineDesign, problem: EngineProblem) -> list[blocks.Block]:
     mechanism, unit, firing = design.mechanism, problem.length_unit, design.firing
     built = [
-        ("radius of the crank", f"{length(mechanism.crank)} {unit}"),
-        ("rod", f"{length(mechanism.rod)} {unit}"),
-        ("throws", ", ".join(angle(phase) for phase in mechanism.throws)),
+        ("radius of the crank", f"{format_length(mechanism.crank)} {unit}"),
+        ("rod", f"{format_length(mechanism.rod)} {unit}"),
+        ("throws", ", ".join(format_angle(phase) for phase in mechanism.throws)),
         ("moments of harmonics, forces", f"about the {problem.moment_about.replace('_', ' ')}"),
         ("moments of metrics", "about the middle"),
     ]
-    orders = [
-        (f"order {k}", "-".join(map(str, order.order))) for k, order in enumerate(firing.orders[:SHOWN_ORDERS], 1)
-    ]
+    orders = [(f"order {k}", "-".join(map(str, order.order))) for k, order in enumerate(firing.orders[:MAX_ORDERS], 1)]
     lines = [
-        blocks.Line(
+        blocks.TableRow(
             [
                 str(harmonic.order),
-                length(harmonic.force.forward, digits=4),
-                length(harmonic.force.backward, digits=4),
-                length(harmonic.moment.forward, digits=4),
-                length(harmonic.moment.backward, digits=4),
-                length(harmonic.torque, digits=4),
+                format_length(harmonic.force.forward, digits=4),
+                format_length(harmonic.force.backward, digits=4),
+                format_length(harmonic.moment.forward, digits=4),
+                format_length(harmonic.moment.backward, digits=4),
+                format_length(harmonic.torque, digits=4),
             ]
         )
         for harmonic in design.harmonics
     ]
     heads = ["k", "force +", "force −", "moment +", "moment −", "torque"]
     tables = [
-        blocks.rows("Engine", built),
-        blocks.rows("Firing", [("unevenness", angle(firing.unevenness)), *orders]),
-        blocks.table("Harmonics, with the crank and against it", heads, lines, ENDS),
-        checks(design.verification, problem),
-        blocks.rows("Metrics", entries(design.metrics, problem, {"forces"})),
+        blocks.make_rows("Engine", built),
+        blocks.make_rows("Firing", [("unevenness", format_angle(firing.unevenness)), *orders]),
+        blocks.make_table("Harmonics, with the crank and against it", heads, lines, COLUMN_ENDS),
+        make_checks_block(design.verification, problem),
+        blocks.make_rows("Metrics", list_entries(design.metrics, problem, {"forces"})),
     ]
     if design.metrics.forces is not None:
-        tables.append(blocks.rows("Greatest forces", entries(design.metrics.forces, problem)))
+        tables.append(blocks.make_rows("Greatest forces", list_entries(design.metrics.forces, problem)))
     return tables
 
 
-def _reach(mechanism: EngineMechanism) -> float:
+def _measure_reach(mechanism: EngineMechanism) -> float:
     """Return the distance from the shaft to beyond a piston at top dead centre."""
     return mechanism.rod + 2.1 * mechanism.crank
 
 
-def _box(mechanism: EngineMechanism) -> Box:
+def _find_box(mechanism: EngineMechanism) -> Box:
     """Return the box around the end view, whose shaft is the origin, and the crankshaft at its right."""
-    reach = _reach(mechanism)
+    reach = _measure_reach(mechanism)
     tips = [1j * reach * cmath.rect(1.0, math.radians(cylinder.axis)) for cylinder in mechanism.cylinders]
-    shaft = _shaft(mechanism)
+    shaft = _trace_shaft(mechanism)
     around = np.array([*tips, *shaft, complex(-mechanism.crank, -mechanism.crank)])
-    return Box.around(around).grown(0.3 * mechanism.crank)
+    return Box.enclose(around).grow(0.3 * mechanism.crank)
 
 
-def _shaft(mechanism: EngineMechanism) -> list[complex]:
+def _trace_shaft(mechanism: EngineMechanism) -> list[complex]:
     """Return the line of the crankshaft in side view, to the right of the end view."""
-    reach, step = _reach(mechanism), 1.6 * mechanism.crank
+    reach, step = _measure_reach(mechanism), 1.6 * mechanism.crank
     left = 1.2 * reach
     points = [complex(left)]
     for n, phase in enumerate(mechanism.throws):
@@ -148,18 +159,18 @@ def _shaft(mechanism: EngineMechanism) -> list[complex]:
     return [*points, complex(left + step * (len(mechanism.throws) + 0.2))]
 
 
-def _throws(mechanism: EngineMechanism) -> list[complex]:
+def _place_throws(mechanism: EngineMechanism) -> list[complex]:
     """Return the crank pins from the front with the first throw up; lagging throws follow clockwise."""
     first = mechanism.throws[0]
     return [1j * cmath.rect(mechanism.crank, math.radians(first - phase)) for phase in mechanism.throws]
 
 
-def _pistons(mechanism: EngineMechanism) -> list[tuple[int, complex, complex, complex]]:
+def _place_pistons(mechanism: EngineMechanism) -> list[tuple[int, complex, complex, complex]]:
     """Return for each cylinder its number, crank pin, piston pin, and axis direction, with the first throw up.
 
     The distance of the piston from the shaft is r cos θ + √(l² − r² sin² θ) (Norton 13.1).
     """
-    pins, listed = _throws(mechanism), []
+    pins, listed = _place_throws(mechanism), []
     for cylinder in mechanism.cylinders:
         way, pin = 1j * cmath.rect(1.0, math.radians(cylinder.axis)), pins[cylinder.throw - 1]
         # Rotate so that the cylinder's axis is the real axis.
@@ -169,100 +180,102 @@ def _pistons(mechanism: EngineMechanism) -> list[tuple[int, complex, complex, co
     return listed
 
 
-def _crown(mechanism: EngineMechanism, piston: complex, way: complex) -> list[complex]:
+def _make_crown(mechanism: EngineMechanism, piston: complex, way: complex) -> list[complex]:
     """Return the corners of a piston around its pin."""
-    half = CROWN * mechanism.crank
+    half = PISTON_HALF_WIDTH * mechanism.crank
     return [piston + (along + 1j * side) * half * way for along, side in ((-0.7, 1), (-0.7, -1), (0.8, -1), (0.8, 1))]
 
 
-def _moving(mechanism: EngineMechanism, view: Viewport) -> list[Element]:
+def _draw_moving(mechanism: EngineMechanism, view: Viewport) -> list[Element]:
     """Draw rods and pistons from the front; of those that coincide only the foremost."""
     drawn, seen = [], set[tuple[float, float]]()
-    for number, pin, piston, way in _pistons(mechanism):
+    for number, pin, piston, way in _place_pistons(mechanism):
         place = round(piston.real, 6), round(piston.imag, 6)
         # Cylinders behind one another coincide in the end view.
         if place in seen:
             continue
         seen.add(place)
-        corners = [view.point(corner) for corner in _crown(mechanism, piston, way)]
+        corners = [view.point(corner) for corner in _make_crown(mechanism, piston, way)]
         at = view.point(piston)
         drawn.append(
-            polygon(corners, fill="#fff", fill_opacity=0.75, stroke=OUTPUT, stroke_width=1.6, data_piston=str(number))
+            draw_polygon(
+                corners, fill="#fff", fill_opacity=0.75, stroke=OUTPUT, stroke_width=1.6, data_piston=str(number)
+            )
         )
-        drawn.append(line(view.point(pin), at, stroke=COUPLER, stroke_width=3.0, stroke_linecap="round"))
-        drawn.append(circle(at, 3.0, fill="#fff", stroke=OUTPUT, stroke_width=1.4))
+        drawn.append(draw_line(view.point(pin), at, stroke=COUPLER, stroke_width=3.0, stroke_linecap="round"))
+        drawn.append(draw_circle(at, 3.0, fill="#fff", stroke=OUTPUT, stroke_width=1.4))
     return drawn
 
 
-def _beside(mechanism: EngineMechanism, view: Viewport) -> list[Element]:
+def _draw_side_pistons(mechanism: EngineMechanism, view: Viewport) -> list[Element]:
     """Draw rods and pistons of upright cylinders from the side; two on one throw are side by side."""
-    left, step = 1.2 * _reach(mechanism), 1.6 * mechanism.crank
+    left, step = 1.2 * _measure_reach(mechanism), 1.6 * mechanism.crank
     drawn = []
     throws = {cylinder.number: cylinder.throw for cylinder in mechanism.cylinders}
-    for number, pin, piston, way in _pistons(mechanism):
+    for number, pin, piston, way in _place_pistons(mechanism):
         # Nearly horizontal cylinders have no useful side view.
-        if way.imag < STANDING:
+        if way.imag < MIN_UPRIGHT:
             continue
         on = [other for other, throw in throws.items() if throw == throws[number]]
         # Pistons on one throw share its width.
         half = 0.36 * step / len(on)
         x = left + step * (throws[number] - 0.4) + half * (2 * on.index(number) + 1 - len(on))
-        high = CROWN * mechanism.crank * way.imag
+        high = PISTON_HALF_WIDTH * mechanism.crank * way.imag
         corners = [
             complex(x + a * half, piston.imag + b * high) for a, b in ((-1, -0.7), (1, -0.7), (1, 0.8), (-1, 0.8))
         ]
         shown = [view.point(corner) for corner in corners]
         drawn.append(
-            line(
+            draw_line(
                 view.point(complex(x, pin.imag)), view.point(complex(x, piston.imag)), stroke=COUPLER, stroke_width=2.4
             )
         )
-        drawn.append(polygon(shown, fill="#fff", stroke=OUTPUT, stroke_width=1.4, data_side=str(number)))
+        drawn.append(draw_polygon(shown, fill="#fff", stroke=OUTPUT, stroke_width=1.4, data_side=str(number)))
     return drawn
 
 
-def _panel(mechanism: EngineMechanism, view: Viewport, unit: str) -> Element:
-    group = framed(view.panel, "engine")
-    middle, reach = view.point(0j), _reach(mechanism)
+def _draw_panel(mechanism: EngineMechanism, view: Viewport, unit: str) -> Element:
+    group = draw_panel(view.panel, "engine")
+    middle, reach = view.point(0j), _measure_reach(mechanism)
     numbers: dict[float, list[int]] = {}
     for cylinder in mechanism.cylinders:
         # Cylinders of one bank share an axis.
         numbers.setdefault(cylinder.axis, []).append(cylinder.number)
-    half = CROWN * mechanism.crank
+    half = PISTON_HALF_WIDTH * mechanism.crank
     for axis, on in numbers.items():
         way = 1j * cmath.rect(1.0, math.radians(axis))
         low, high = mechanism.rod - mechanism.crank, mechanism.rod + mechanism.crank
-        group.add(line(middle, view.point(reach * way), stroke=GREY, stroke_width=0.8, stroke_dasharray="9 3 2 3"))
+        group.add(draw_line(middle, view.point(reach * way), stroke=GREY, stroke_width=0.8, stroke_dasharray="9 3 2 3"))
         for side in (-1j * half * way, 1j * half * way):
             walls = view.point(low * way + side), view.point(high * way + side)
-            group.add(line(*walls, stroke=GROUND, stroke_width=1.6))
+            group.add(draw_line(*walls, stroke=GROUND, stroke_width=1.6))
         at = view.point(reach * way)
         words = ", ".join(map(str, on))
-        group.add(text(at.real, at.imag, words, LETTERS, text_anchor="middle", fill=INK, data_bank=words))
-    group.add(*_moving(mechanism, view), *_beside(mechanism, view))
-    for n, pin in enumerate(_throws(mechanism), 1):
+        group.add(draw_text(at.real, at.imag, words, LETTER_SIZE, text_anchor="middle", fill=INK, data_bank=words))
+    group.add(*_draw_moving(mechanism, view), *_draw_side_pistons(mechanism, view))
+    for n, pin in enumerate(_place_throws(mechanism), 1):
         at = view.point(pin)
-        group.add(line(middle, at, stroke=INPUT, stroke_width=4.0, stroke_opacity=0.5, data_throw=str(n)))
-        group.add(circle(at, 4.0, fill="#fff", stroke=INPUT, stroke_width=1.6))
-    group.add(circle(middle, 4.0, fill=GROUND))
-    points = np.array([view.point(point) for point in _shaft(mechanism)])
-    group.add(path([points], stroke=COUPLER, stroke_width=3.0, stroke_linejoin="round"))
-    group.add(element("g", *_shaft_numbers(mechanism, view), fill=CURVE))
-    return group.add(scale_bar(view, unit)[0])
+        group.add(draw_line(middle, at, stroke=INPUT, stroke_width=4.0, stroke_opacity=0.5, data_throw=str(n)))
+        group.add(draw_circle(at, 4.0, fill="#fff", stroke=INPUT, stroke_width=1.6))
+    group.add(draw_circle(middle, 4.0, fill=GROUND))
+    points = np.array([view.point(point) for point in _trace_shaft(mechanism)])
+    group.add(draw_path([points], stroke=COUPLER, stroke_width=3.0, stroke_linejoin="round"))
+    group.add(make_element("g", *_draw_shaft_numbers(mechanism, view), fill=CURVE))
+    return group.add(draw_scale_bar(view, unit)[0])
 
 
-def _shaft_numbers(mechanism: EngineMechanism, view: Viewport) -> list[Element]:
+def _draw_shaft_numbers(mechanism: EngineMechanism, view: Viewport) -> list[Element]:
     """Draw the numbers of each throw's cylinders below the side view of the shaft."""
-    left, step = 1.2 * _reach(mechanism), 1.6 * mechanism.crank
+    left, step = 1.2 * _measure_reach(mechanism), 1.6 * mechanism.crank
     listed = []
     for n in range(len(mechanism.throws)):
         on = [str(cylinder.number) for cylinder in mechanism.cylinders if cylinder.throw == n + 1]
         at = view.point(complex(left + step * (n + 0.6), -1.5 * mechanism.crank))
-        listed.append(text(at.real, at.imag, ", ".join(on), LETTERS, text_anchor="middle"))
+        listed.append(draw_text(at.real, at.imag, ", ".join(on), LETTER_SIZE, text_anchor="middle"))
     return listed
 
 
-def engine_drawing(design: EngineDesign, problem: EngineProblem, title: str) -> str:
+def write_engine_dxf(design: EngineDesign, problem: EngineProblem, title: str) -> str:
     """Write end view and shaft as a DXF document (R2010)."""
     mechanism = design.mechanism
     layers = {
@@ -271,37 +284,37 @@ def engine_drawing(design: EngineDesign, problem: EngineProblem, title: str) -> 
         "CRANK": (5, "CONTINUOUS"),
         "TEXT": (7, "CONTINUOUS"),
     }
-    document = dxf.new_drawing(title or "Piston engine", problem.length_unit, layers)
+    document = dxf.create_drawing(title or "Piston engine", problem.length_unit, layers)
     space, letters = document.modelspace(), 0.25 * mechanism.crank
     for axis in sorted({cylinder.axis for cylinder in mechanism.cylinders}):
-        tip = 1j * _reach(mechanism) * cmath.rect(1.0, math.radians(axis))
+        tip = 1j * _measure_reach(mechanism) * cmath.rect(1.0, math.radians(axis))
         on = ", ".join(str(cylinder.number) for cylinder in mechanism.cylinders if cylinder.axis == axis)
         dxf.add_line(space, 0j, tip, "CYLINDERS")
         dxf.add_words(space, tip * 1.05, on, letters)
     dxf.add_circle(space, 0j, mechanism.crank, "CRANK")
-    for _, pin, piston, way in _pistons(mechanism):
-        corners = _crown(mechanism, piston, way)
+    for _, pin, piston, way in _place_pistons(mechanism):
+        corners = _make_crown(mechanism, piston, way)
         dxf.add_line(space, pin, piston, "PISTONS")
         for start, end in pairwise([*corners, corners[0]]):
             dxf.add_line(space, start, end, "PISTONS")
-    for pin in _throws(mechanism):
+    for pin in _place_throws(mechanism):
         dxf.add_line(space, 0j, pin, "CRANK")
         dxf.add_circle(space, pin, 0.15 * mechanism.crank, "CRANK")
-    points = _shaft(mechanism)
+    points = _trace_shaft(mechanism)
     for start, end in pairwise(points):
         dxf.add_line(space, start, end, "CRANK")
-    return dxf.written(document)
+    return dxf.write_document(document)
 
 
-def engine_table(design: EngineDesign, problem: EngineProblem, title: str) -> str:
+def write_engine_table(design: EngineDesign, problem: EngineProblem, title: str) -> str:
     """Write torques, shaking force and pin forces over a cycle if known; otherwise the cylinders and their firing."""
     course = design.course
     if course is not None:
         columns = {name: getattr(course, name) for name in type(course).model_fields}
-        return table(columns, (list(row) for row in zip(*columns.values(), strict=True)))
+        return write_table(columns, (list(row) for row in zip(*columns.values(), strict=True)))
     order = design.firing.orders[0]
     fires = dict(zip(order.order, order.angles, strict=True))
-    return table(
+    return write_table(
         ["cylinder", "throw", "axis_deg", "phase_deg", "place", "fires_deg"],
         (
             [one.number, one.throw, one.axis, one.phase, one.place, fires[one.number]]

@@ -16,10 +16,10 @@ def _solve(problem: BalancingProblem, progress: Progress) -> BalancingResult:
     return solve_balancing(problem, progress)
 
 
-def _brief(problem: BalancingProblem) -> bool:
+def _is_brief(problem: BalancingProblem) -> bool:
     """Return whether the answer is instant: only holes and weights in stock need a search."""
     correction = problem.correction
     return correction is None or (correction.holes is None and correction.stock is None)
 
 
-KIND = Kind("balancing", BalancingProblem, BalancingResult, _solve, brief=_brief, gallery=GALLERY)
+KIND = Kind("balancing", BalancingProblem, BalancingResult, _solve, brief=_is_brief, gallery=GALLERY)

@@ -5,21 +5,19 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
-from kinematics.dynamics.reactions import reactions
-from synthesis.analyses.driven import placed
+from kinematics.arrays import Real
+from kinematics.dynamics.reactions import compute_reactions
+from synthesis.analyses.linkages.requested_motion import place_machine
 from synthesis.kinds.balancing.design import BalancedDesign
-from synthesis.kinds.balancing.driven import inertial, task_of
+from synthesis.kinds.balancing.linkage.motion import build_balancing_task, strip_loads
 from synthesis.kinds.balancing.problem import BalancingProblem
-from synthesis.kinds.balancing.verify_linkage import machine_of_answer
+from synthesis.kinds.balancing.verification.linkage import build_answer_machine
 
-Real = NDArray[np.float64]
-
-POSITIONS = 361
+POSITION_COUNT = 361
 """Number of positions of a curve."""
 
-ROUNDING = 1e-9
+ROUNDING_TOLERANCE = 1e-9
 """Share of the unbalanced peak below which the balanced curve is drawn as zero."""
 
 
@@ -33,18 +31,20 @@ class ShakingCurves(NamedTuple):
     moment_after: Real
 
 
-def shaking_curves(problem: BalancingProblem, design: BalancedDesign) -> ShakingCurves:
+def compute_shaking_curves(problem: BalancingProblem, design: BalancedDesign) -> ShakingCurves:
     """Compute the curves of a linkage and of its design, from the inertia of the links alone."""
-    task = task_of(problem)
-    at = np.linspace(task.start, task.end, POSITIONS)
+    task = build_balancing_task(problem)
+    at = np.linspace(task.start, task.end, POSITION_COUNT)
     curves = []
-    for machine in (task.machine, machine_of_answer(problem, design.mechanism, design.dynamics)):
-        found = reactions(inertial(machine), placed(inertial(machine), at, task.speed, task.acceleration))
+    for machine in (task.machine, build_answer_machine(problem, design.mechanism, design.dynamics)):
+        found = compute_reactions(
+            strip_loads(machine), place_machine(strip_loads(machine), at, task.speed, task.acceleration)
+        )
         curves += [np.abs(found.shaking_force), found.shaking_moment]
     for before, after in ((0, 2), (1, 3)):
         # Rounding would otherwise be drawn as a noisy curve.
         curves[after] = np.where(
-            np.abs(curves[after]) > ROUNDING * np.nanmax(np.abs(curves[before])), curves[after], 0.0
+            np.abs(curves[after]) > ROUNDING_TOLERANCE * np.nanmax(np.abs(curves[before])), curves[after], 0.0
         )
-    shown = at if task.machine.mechanism.driven_by_slide else np.degrees(at)
+    shown = at if task.machine.mechanism.has_slide_input else np.degrees(at)
     return ShakingCurves(np.asarray(shown), *curves)

@@ -6,9 +6,9 @@ from typing import Annotated, Any, Literal
 
 from pydantic import Field
 
-from synthesis.model.answer import Answer, Point, Result, Verification, optional
+from synthesis.model.answer import Answer, Point, Result, Verification, optional_field
 from synthesis.model.dimension import INERTIA, Angle, Force, Grade, Length, Mass, Torque, Unbalance
-from synthesis.model.linkage_answer import Skeleton
+from synthesis.model.linkage.answer import Skeleton
 
 Inertia = Annotated[float, INERTIA]
 
@@ -28,8 +28,8 @@ class RotorCorrection(Answer):
     z: Length
     angle: Angle = Field(description="Angle of the mass, degrees.")
     unbalance: Unbalance = Field(description="Mass times radius.")
-    mass: Mass | None = optional("Omitted if no correction is given.")
-    radius: Length | None = optional("Omitted if no correction is given.")
+    mass: Mass | None = optional_field("Omitted if no correction is given.")
+    radius: Length | None = optional_field("Omitted if no correction is given.")
     removed: bool = Field(description="True if the mass is removed.")
 
 
@@ -40,7 +40,7 @@ class RotorMechanism(Answer):
     unbalances: list[RotorUnbalance]
     corrections: list[RotorCorrection]
     planes: list[Length]
-    bearings: tuple[Length, Length] | None = optional("Omitted if the problem does not give them.")
+    bearings: tuple[Length, Length] | None = optional_field("Omitted if the problem does not give them.")
 
 
 class PlaneBalance(Answer):
@@ -70,20 +70,22 @@ class RotorMetrics(Answer):
     optimal: bool = Field(description="True if the residual is proven minimal for this number of places in each plane.")
     places: int = Field(description="Number of masses or holes in all planes.")
     initial_unbalance: Unbalance = Field(description="Vector sum of the unbalances before the correction.")
-    residual_couple: Torque | None = optional(
+    residual_couple: Torque | None = optional_field(
         "Remaining couple about the plane at the given speed, if a single plane balances only the force."
     )
-    grade: Grade | None = optional("Balance quality grade after the correction; omitted without speed and rotor mass.")
-    initial_grade: Grade | None = optional("Balance quality grade before the correction.")
-    shaking_force: Force | None = optional("Shaking force before the correction, at the given speed.")
-    shaking_moment: Torque | None = optional(
+    grade: Grade | None = optional_field(
+        "Balance quality grade after the correction; omitted without speed and rotor mass."
+    )
+    initial_grade: Grade | None = optional_field("Balance quality grade before the correction.")
+    shaking_force: Force | None = optional_field("Shaking force before the correction, at the given speed.")
+    shaking_moment: Torque | None = optional_field(
         "Shaking moment before the correction, about the first plane, at the given speed."
     )
-    residual_vibration: list[float] | None = optional(
+    residual_vibration: list[float] | None = optional_field(
         "Amplitudes at the sensors predicted by the influence coefficients, in the unit of the readings."
     )
     planes: list[PlaneBalance]
-    bearings: list[BearingForces] | None = optional("Omitted without speed or bearings.")
+    bearings: list[BearingForces] | None = optional_field("Omitted without speed or bearings.")
 
 
 class RotorDesign(Answer):
@@ -118,7 +120,7 @@ class Counterweight(Answer):
     inertia: Inertia = Field(
         description="Moment of inertia about its own centre; for a disc, or for an inertia without mass."
     )
-    disc_radius: Length | None = optional("Radius of a disc of the given density and thickness.")
+    disc_radius: Length | None = optional_field("Radius of a disc of the given density and thickness.")
 
 
 class GearedInertia(Answer):
@@ -136,7 +138,7 @@ class ForceLevel(Answer):
     name: str
     norm: Literal["max", "rms"]
     weight: float
-    cap: float | None = optional("Omitted if there is none.")
+    cap: float | None = optional_field("Omitted if there is none.")
     ratio: float = Field(description="Value with the counterweights over the value without.")
 
 
@@ -150,7 +152,7 @@ class BalanceMetrics(Answer):
         description="Remaining share of the unbalanced value; with several quantities, their weighted sum."
     )
     bound: float = Field(description="Lower bound for all permitted counterweights.")
-    gap: float | None = optional("Excess of the value over the bound, as a share of the value, if minimized.")
+    gap: float | None = optional_field("Excess of the value over the bound, as a share of the value, if minimized.")
     levels: list[ForceLevel] = Field(
         description="Quantities in the objective or with a cap, if minimized; empty otherwise."
     )

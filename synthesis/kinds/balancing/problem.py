@@ -6,13 +6,13 @@ from typing import Any, Literal
 
 from pydantic import ConfigDict, Field
 
-from synthesis.kinds.balancing.stated_rotor import StatedRotor
-from synthesis.kinds.balancing.stated_weights import Counterweights, ForceCaps, ForceWeights
-from synthesis.model.dynamics import DynamicsBlock
-from synthesis.model.motions import Sweep
-from synthesis.model.statement import Contradiction
+from synthesis.kinds.balancing.statement.counterweights import Counterweights, ForceCaps, ForceWeights
+from synthesis.kinds.balancing.statement.rotor import RotorBase
+from synthesis.model.dynamics.request import DynamicsBlock
+from synthesis.model.linkage.input_motion import Sweep
+from synthesis.model.problem import Contradiction
 
-FOURBAR: dict[str, Any] = {
+EXAMPLE_FOURBAR: dict[str, Any] = {
     "mechanism": {
         "type": "fourbar",
         "fixed_pivots": {"input": [0.0, 0.0], "output": [280.0, 0.0]},
@@ -29,16 +29,16 @@ FOURBAR: dict[str, Any] = {
 }
 """A fourbar with masses, used by the examples."""
 
-OF_ROTORS = (
+ROTOR_FIELDS = (
     *("masses", "bearing_readings", "influence", "rpm", "planes", "bearings", "rotor_mass", "max_grade", "correction"),
     *("units", "rank_by"),
 )
-OF_LINKAGES = ("goal", "mechanism", "motion", "dynamics", "counterweights", "objective", "caps")
-OF_EXACT = ("radius", "mass")
-OF_MINIMIZED = ("reach", "max_mass", "total_mass", "max_gyration", "max_disc_radius")
+LINKAGE_FIELDS = ("goal", "mechanism", "motion", "dynamics", "counterweights", "objective", "caps")
+EXACT_FIELDS = ("radius", "mass")
+MINIMIZED_FIELDS = ("reach", "max_mass", "total_mass", "max_gyration", "max_disc_radius")
 
 
-class BalancingProblem(StatedRotor):
+class BalancingProblem(RotorBase):
     """Balancing of a rotor or a linkage: masses to add so that little or nothing shakes the frame.
 
     The unbalance of a rotor is known from its masses, from the forces on its bearings, or from runs with trial weights;
@@ -94,14 +94,14 @@ class BalancingProblem(StatedRotor):
                     "kind": "balancing",
                     "object": "linkage",
                     "goal": "force",
-                    **FOURBAR,
+                    **EXAMPLE_FOURBAR,
                     "counterweights": {"radius": 60.0},
                 },
                 {
                     "kind": "balancing",
                     "object": "linkage",
                     "goal": "force_and_moment",
-                    "mechanism": FOURBAR["mechanism"],
+                    "mechanism": EXAMPLE_FOURBAR["mechanism"],
                     "motion": {"speed_rpm": 300.0},
                     "dynamics": {
                         "bodies": {
@@ -116,7 +116,7 @@ class BalancingProblem(StatedRotor):
                     "kind": "balancing",
                     "object": "linkage",
                     "goal": "minimize",
-                    **FOURBAR,
+                    **EXAMPLE_FOURBAR,
                     "objective": {"shaking_force": 1.0, "shaking_moment": 0.5, "drive": 0.25},
                     "caps": {"drive": 1.0},
                     "counterweights": {"total_mass": 4.0, "reach": 150.0, "density": 7800.0, "thickness": 20.0},
@@ -154,9 +154,9 @@ class BalancingProblem(StatedRotor):
         """Unit system of the forces."""
         return self.units if self.dynamics is None else self.dynamics.units
 
-    def contradictions(self) -> list[Contradiction]:
+    def find_contradictions(self) -> list[Contradiction]:
         """Return fields of the other object, and errors in those of this one."""
-        strange = OF_LINKAGES if self.object == "rotor" else OF_ROTORS
+        strange = LINKAGE_FIELDS if self.object == "rotor" else ROTOR_FIELDS
         found = [
             Contradiction(f"/{name}", f"not applicable to a {self.object}; omit it")
             for name in strange
@@ -164,9 +164,9 @@ class BalancingProblem(StatedRotor):
         ]
         if found:
             return found
-        return self.rotor_faults() if self.object == "rotor" else self._linkage_faults()
+        return self.find_rotor_errors() if self.object == "rotor" else self._find_linkage_errors()
 
-    def _linkage_faults(self) -> list[Contradiction]:
+    def _find_linkage_errors(self) -> list[Contradiction]:
         missing = [name for name in ("mechanism", "dynamics") if getattr(self, name) is None]
         if missing:
             return [Contradiction(f"/{name}", "required to balance a linkage") for name in missing]
@@ -175,24 +175,24 @@ class BalancingProblem(StatedRotor):
         if self.motion.rate == 0.0:
             return [Contradiction("/motion", "a linkage at rest does not shake; give a speed")]
         # Imported here because it loads the analysis core, which parsing a problem should not wait for.
-        from synthesis.kinds.balancing.linkage_faults import linkage_faults
+        from synthesis.kinds.balancing.statement.linkage_errors import find_linkage_errors
 
         joints = {
             "/objective/joint_forces": self.objective.joint_forces,
             "/caps/joint_forces": self.caps.joint_forces,
         }
-        faults = self.motion.faults() or linkage_faults(
+        faults = self.motion.find_errors() or find_linkage_errors(
             self.mechanism, self.dynamics, self.length_unit, self.motion, self.counterweights, joints
         )
         found = [Contradiction(path, detail) for path, detail in faults]
-        return found or self._goal_faults()
+        return found or self._find_goal_errors()
 
-    def _goal_faults(self) -> list[Contradiction]:
+    def _find_goal_errors(self) -> list[Contradiction]:
         """Return fields of another goal, and missing requirements of a minimum."""
         minimized, weights = self.goal == "minimize", self.counterweights
         found = [
             Contradiction(f"/counterweights/{name}", f"not applicable to the goal {self.goal}; omit it")
-            for name in (OF_EXACT if minimized else OF_MINIMIZED)
+            for name in (EXACT_FIELDS if minimized else MINIMIZED_FIELDS)
             if getattr(weights, name) is not None
         ]
         if not minimized:

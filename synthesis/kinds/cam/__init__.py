@@ -5,7 +5,7 @@ from __future__ import annotations
 from synthesis.kinds.cam.design import CamResult
 from synthesis.kinds.cam.gallery import GALLERY
 from synthesis.kinds.cam.problem import CamProblem
-from synthesis.kinds.cam.segments import Move
+from synthesis.kinds.cam.statement.segments import Move
 from synthesis.model.kind import Kind, Progress
 
 __all__ = ["KIND"]
@@ -23,9 +23,9 @@ def _warm_up() -> None:
         _solve(CamProblem.model_validate(example), lambda fraction, message: None)
 
 
-def _brief(problem: CamProblem) -> bool:
+def _is_brief(problem: CamProblem) -> bool:
     """Return whether every law is given: the motion is then only drawn and measured, not optimized."""
     return not any(isinstance(segment, Move) and segment.law in ("auto", "optimal") for segment in problem.segments)
 
 
-KIND = Kind("cam", CamProblem, CamResult, _solve, _warm_up, brief=_brief, gallery=GALLERY)
+KIND = Kind("cam", CamProblem, CamResult, _solve, _warm_up, brief=_is_brief, gallery=GALLERY)

@@ -9,10 +9,9 @@ from typing import Any, Literal
 import numpy as np
 
 from kinematics.cam.dynamics import RunningCam
-from kinematics.cam.extremes import extremes
-from kinematics.cam.program import Program
+from kinematics.cam.motion.extremes import find_extremes
+from kinematics.cam.motion.program import Program
 from kinematics.cam.springs import Spring
-from synthesis.kinds.cam.composition import Composition, root_mean_square
 from synthesis.kinds.cam.design import (
     BarrelCamDesign,
     Binding,
@@ -28,35 +27,36 @@ from synthesis.kinds.cam.design import (
     PushingCam,
     SpringChoice,
 )
-from synthesis.kinds.cam.excesses import warning_of
-from synthesis.kinds.cam.followers import RateRange
-from synthesis.kinds.cam.loads import (
-    arm_length,
-    held,
-    least_rate,
-    radians_a_second,
-    weakest_contact,
+from synthesis.kinds.cam.dynamics.vibration import compute_train_vibration
+from synthesis.kinds.cam.follower_loads import (
+    compute_min_rate,
+    convert_rpm,
+    find_weakest_contact,
+    get_arm_length,
+    press_follower,
 )
 from synthesis.kinds.cam.problem import CamProblem
-from synthesis.kinds.cam.segments import Move
-from synthesis.kinds.cam.sizing import Size
-from synthesis.kinds.cam.vibration import train_vibration
+from synthesis.kinds.cam.program.composition import Composition, compute_root_mean_square
+from synthesis.kinds.cam.program.derivative_warnings import describe_excesses
+from synthesis.kinds.cam.sizing.sizing import Size
+from synthesis.kinds.cam.statement.followers import RateRange
+from synthesis.kinds.cam.statement.segments import Move
 from synthesis.model.answer import Check
 from synthesis.model.dimension import FORCE
-from synthesis.outcome.sifting import Sifting
-from synthesis.proof.checks import at_least
+from synthesis.results.candidate_log import CandidateLog
+from synthesis.verification.checks import check_minimum
 
 FORCE_SLACK = 1e-9
 """Relative slack of the minimum contact force: the smallest sufficient preload gives exactly that, to rounding."""
 
-SAMPLES = 181
+SAMPLE_COUNT = 181
 """Cam angles sampled between two wall changes to decide which cam pushes; it is the same cam throughout."""
 
-BINDS = 1e-6
+ACTIVE_TOLERANCE = 1e-6
 """Relative distance to a constraint within which the constraint counts as active."""
 
 
-def segments_of(problem: CamProblem, composed: Composition) -> list[CamSegment]:
+def describe_segments(problem: CamProblem, composed: Composition) -> list[CamSegment]:
     """Return every segment with its law, its cam angles and its exact peaks."""
     segments, start = [], 0.0
     unit = 1.0 / problem.displacement_unit
@@ -78,7 +78,7 @@ def segments_of(problem: CamProblem, composed: Composition) -> list[CamSegment]:
     return segments
 
 
-def joints_of(problem: CamProblem, program: Program) -> list[CamJoint]:
+def describe_joints(problem: CamProblem, program: Program) -> list[CamJoint]:
     """Return the joints between segments, and jumps inside segments."""
     names: tuple[Literal["s", "v", "a", "j"], ...] = ("s", "v", "a", "j")
     unit = 1.0 / problem.displacement_unit
@@ -96,7 +96,7 @@ def joints_of(problem: CamProblem, program: Program) -> list[CamJoint]:
     return joints
 
 
-def optimality_of(problem: CamProblem, composed: Composition, size: float) -> Optimality:
+def evaluate_optimality(problem: CamProblem, composed: Composition, size: float) -> Optimality:
     """Return the criterion's value and lower bound; ``size`` is the cam's, used if that is the criterion."""
     value, scope = composed.value, composed.scope
     if problem.minimize == "size":
@@ -108,8 +108,8 @@ def optimality_of(problem: CamProblem, composed: Composition, size: float) -> Op
     bound = None if composed.bound is None else min(composed.bound, value)
     # The program works with moments about an oscillating arm's pivot; the answer is in forces at the roller.
     if problem.minimize == "peak_contact_force":
-        value /= arm_length(problem)
-        bound = None if bound is None else bound / arm_length(problem)
+        value /= get_arm_length(problem)
+        bound = None if bound is None else bound / get_arm_length(problem)
     # A bound of zero proves nothing about the gap.
     gap = value / bound - 1.0 if bound else None
     return Optimality(
@@ -118,25 +118,25 @@ def optimality_of(problem: CamProblem, composed: Composition, size: float) -> Op
         bound=bound,
         gap=gap,
         scope=scope,
-        warning=warning_of(problem, composed),
+        warning=describe_excesses(problem, composed),
     )
 
 
-def forces_of(problem: CamProblem, program: Program) -> CamForces | None:
+def compute_forces(problem: CamProblem, program: Program) -> CamForces | None:
     """Compute contact force and torque of the follower; a free spring and a free preload are chosen first."""
     if problem.dynamics is None:
         return None
-    stated, pressed = problem, held(problem, program)
+    stated, pressed = problem, press_follower(problem, program)
     problem, running, spring, top_rpm = pressed.problem, pressed.running, pressed.spring, pressed.top_rpm
-    dynamics, load, arm = problem.dynamics, running.load, arm_length(problem)
+    dynamics, load, arm = problem.dynamics, running.load, get_arm_length(problem)
     assert dynamics is not None
-    groove = problem.grooved
+    groove = problem.is_form_closed
     force, torque = running.force_extremes, running.torque_extremes
-    over_speeds = None if top_rpm is None else _over_speeds(running, top_rpm, arm)
+    over_speeds = None if top_rpm is None else _find_contact_over_speeds(running, top_rpm, arm)
     # A groove has no preferred wall: the angles at which the force changes sign are the wall changes.
-    changes = np.unique(np.degrees(running.reversals()).round(9)).tolist() if groove else None
+    changes = np.unique(np.degrees(running.find_reversals()).round(9)).tolist() if groove else None
     damping = dynamics.damping_ratio
-    train, warning = train_vibration(problem, running)
+    train, warning = compute_train_vibration(problem, running)
     return CamForces(
         preload=load.preload / arm,
         least_preload=pressed.least_preload / arm,
@@ -145,22 +145,26 @@ def forces_of(problem: CamProblem, program: Program) -> CamForces | None:
         min_torque=torque.least,
         max_torque=torque.greatest,
         wall_changes=changes,
-        pushing=_pushing(running, changes) if problem.closure == "conjugate" and changes is not None else None,
+        pushing=_find_pushing_cams(running, changes)
+        if problem.closure == "conjugate" and changes is not None
+        else None,
         spring_rate=load.spring_rate / arm**2,
-        jump_speed=None if groove else _jump_rpm(running),
+        jump_speed=None if groove else _compute_jump_rpm(running),
         natural_frequency=load.natural_frequency,
         # An overdamped follower (damping ratio of at least 1) does not oscillate, so it has no damped
         # frequency.
         damped_frequency=load.natural_frequency * math.sqrt(1.0 - damping**2) if damping < 1.0 else None,
         frequency_ratio=load.natural_frequency / running.speed,
         over_speeds=over_speeds,
-        spring=None if spring is None or over_speeds is None else _choice(stated, spring, over_speeds, arm),
+        spring=None
+        if spring is None or over_speeds is None
+        else _describe_spring_choice(stated, spring, over_speeds, arm),
         train=train,
         warning=warning,
     )
 
 
-def _pushing(running: RunningCam, changes: Sequence[float]) -> list[PushingCam]:
+def _find_pushing_cams(running: RunningCam, changes: Sequence[float]) -> list[PushingCam]:
     """Find which conjugate cam pushes between wall changes: the first if the force acts along the displacement."""
     # Without any change one cam pushes over the whole turn.
     starts = list(changes) or [0.0]
@@ -170,21 +174,21 @@ def _pushing(running: RunningCam, changes: Sequence[float]) -> list[PushingCam]:
         last = end if end > start else end + 360.0
         # The sign is read where the force is greatest: near the changes it is only rounding. Both ends are
         # left out.
-        force = running.force(np.radians(np.linspace(start, last, SAMPLES)[1:-1]))
+        force = running.force(np.radians(np.linspace(start, last, SAMPLE_COUNT)[1:-1]))
         strongest = force[np.abs(force).argmax()]
         found.append(PushingCam(start=start, end=end, cam=1 if strongest >= 0.0 else 2))
     return found
 
 
-def _jump_rpm(running: RunningCam) -> float | None:
+def _compute_jump_rpm(running: RunningCam) -> float | None:
     """Return the speed at which the follower first leaves the cam, rev/min; resting without force is not leaving it."""
-    speed = running.jump_speed(-FORCE_SLACK * running.force_extremes.largest)
+    speed = running.find_jump_speed(-FORCE_SLACK * running.force_extremes.largest)
     return None if math.isinf(speed) else speed * 30.0 / math.pi
 
 
-def _over_speeds(running: RunningCam, top_rpm: float, arm: float) -> ContactOverSpeeds:
+def _find_contact_over_speeds(running: RunningCam, top_rpm: float, arm: float) -> ContactOverSpeeds:
     """Find the minimum contact force over the turn, at any speed up to the greatest."""
-    weakest = weakest_contact(running.program, running.load, top_rpm)
+    weakest = find_weakest_contact(running.program, running.load, top_rpm)
     return ContactOverSpeeds(
         max_rpm=top_rpm,
         min_contact_force=weakest.force / arm,
@@ -193,34 +197,36 @@ def _over_speeds(running: RunningCam, top_rpm: float, arm: float) -> ContactOver
     )
 
 
-def _choice(problem: CamProblem, spring: Spring, over_speeds: ContactOverSpeeds, arm: float) -> SpringChoice:
+def _describe_spring_choice(
+    problem: CamProblem, spring: Spring, over_speeds: ContactOverSpeeds, arm: float
+) -> SpringChoice:
     """Describe the chosen spring with its lower bound and its active constraints."""
     dynamics = problem.dynamics
     assert dynamics is not None
     assert problem.speed_rpm is not None
     force, rate, stated = spring.greatest_force / arm, spring.rate / arm**2, dynamics.spring_rate
     binding: list[Binding] = []
-    if over_speeds.min_contact_force <= dynamics.least_force + BINDS * abs(force):
+    if over_speeds.min_contact_force <= dynamics.least_force + ACTIVE_TOLERANCE * abs(force):
         binding.append("least_force")
     # A free rate has no range of its own.
     low, high = (stated.min, stated.max) if isinstance(stated, RateRange) else (0.0, math.inf)
     if dynamics.min_frequency_ratio is not None:
-        speed = radians_a_second(problem.speed_rpm)
-        needed = least_rate(dynamics, problem.length_unit, speed)
-        if low < needed and rate <= needed * (1.0 + BINDS):
+        speed = convert_rpm(problem.speed_rpm)
+        needed = compute_min_rate(dynamics, problem.length_unit, speed)
+        if low < needed and rate <= needed * (1.0 + ACTIVE_TOLERANCE):
             binding.append("min_frequency_ratio")
             # The frequency ratio, not the lower end of the range, fixes the rate: do not report both.
             low = -1.0
-    if rate <= low * (1.0 + BINDS):
+    if rate <= low * (1.0 + ACTIVE_TOLERANCE):
         binding.append("spring_rate/min")
-    if rate >= high * (1.0 - BINDS):
+    if rate >= high * (1.0 - ACTIVE_TOLERANCE):
         binding.append("spring_rate/max")
     bound = None if spring.bound is None else spring.bound / arm
     gap = force / bound - 1.0 if bound else None
     return SpringChoice(max_contact_force=force, bound=bound, gap=gap, binding=binding)
 
 
-def force_checks(problem: CamProblem, forces: CamForces | None) -> list[Check]:
+def check_forces(problem: CamProblem, forces: CamForces | None) -> list[Check]:
     """Check that the minimum contact force is at least the required one (0 by default).
 
     Between two walls the force may have either sign, so that only the frequency ratio is checked there.
@@ -229,7 +235,7 @@ def force_checks(problem: CamProblem, forces: CamForces | None) -> list[Check]:
         return []
     checks, demanded = [], problem.dynamics
     if demanded.min_frequency_ratio is not None:
-        checks.append(at_least("frequency_ratio", forces.frequency_ratio, demanded.min_frequency_ratio))
+        checks.append(check_minimum("frequency_ratio", forces.frequency_ratio, demanded.min_frequency_ratio))
     if forces.wall_changes is not None:
         return checks
     least, found = demanded.least_force, forces.min_contact_force
@@ -242,22 +248,24 @@ def force_checks(problem: CamProblem, forces: CamForces | None) -> list[Check]:
     ]
 
 
-def motion_metrics(problem: CamProblem, program: Program) -> dict[str, Any]:
+def compute_motion_metrics(problem: CamProblem, program: Program) -> dict[str, Any]:
     """Compute the metrics of the motion program alone, which do not depend on the cam."""
     _, v, a, j = program.peaks
-    torque = extremes(lambda at: np.asarray(program.pieces.motion(at).v * program.pieces.motion(at).a), program.breaks)
+    torque = find_extremes(
+        lambda at: np.asarray(program.pieces.motion(at).v * program.pieces.motion(at).a), program.breaks
+    )
     return {
         "peak_velocity": v.largest,
         "peak_acceleration": a.largest,
         # At a jump of the acceleration the jerk is unbounded, so no peak is reported.
         "peak_jerk": j.largest if program.obeys_fundamental_law else None,
-        "rms_acceleration": root_mean_square(program, lambda motion: motion.a),
+        "rms_acceleration": compute_root_mean_square(program, lambda motion: motion.a),
         "peak_inertia_torque": torque.largest,
-        "forces": forces_of(problem, program),
+        "forces": compute_forces(problem, program),
     }
 
 
-def result_of(
+def build_result(
     problem: CamProblem,
     composed: Composition,
     design: CamDesign | BarrelCamDesign,
@@ -267,8 +275,8 @@ def result_of(
     """Build the result with its only candidate; ``radius`` is its name and value, for the summary."""
     passed = design.verification.passed
     failed = [check.name for check in design.verification.checks if not check.passed]
-    sifting = Sifting[CamDesign | BarrelCamDesign](problem)
-    sifting.add(design)
+    sifting = CandidateLog[CamDesign | BarrelCamDesign](problem)
+    sifting.record_candidate(design)
     name, length = radius
     if passed:
         summary = f"A cam with a {name} radius of {length:.6g} {problem.length_unit} follows the program."
@@ -292,24 +300,26 @@ def result_of(
     # With the laws given and the smallest cam proven, a limit on size is broken by every cam.
     proof = given and size.proven and failed == ["size"]
     return CamResult(
-        designs=sifting.designs(list),
-        search=CamSearch(**dict(sifting.search(_method(composed, stated), complete=proof)), sizing_proven=size.proven),
+        designs=sifting.select_designs(list),
+        search=CamSearch(
+            **dict(sifting.build_search(_describe_method(composed, stated), complete=proof)), sizing_proven=size.proven
+        ),
         summary=summary,
     )
 
 
-def _method(composed: Composition, stated: bool) -> str:
+def _describe_method(composed: Composition, has_fixed_size: bool) -> str:
     program = "convex_program" if composed.bound is not None else "laws"
-    return f"{program}, {'stated size' if stated else 'exact sizing'}"
+    return f"{program}, {'stated size' if has_fixed_size else 'exact sizing'}"
 
 
-def none_of(problem: CamProblem, reason: str, proven: bool, cause: str) -> CamResult:
+def build_empty_result(problem: CamProblem, reason: str, proven: bool, cause: str) -> CamResult:
     """Build a result without designs that gives the reason."""
-    sifting = Sifting[CamDesign](problem)
+    sifting = CandidateLog[CamDesign](problem)
     sifting.reject(cause)
     method = "convex_program" if cause == "motion_limits" else "exact sizing"
     return CamResult(
         designs=[],
-        search=CamSearch(**dict(sifting.search(method, complete=proven)), sizing_proven=proven),
+        search=CamSearch(**dict(sifting.build_search(method, complete=proven)), sizing_proven=proven),
         summary=f"None exists: {reason}." if proven else f"None found: {reason}.",
     )

@@ -10,7 +10,7 @@ from typing import Generic, Literal, TypeVar
 
 from pydantic import Field
 
-from synthesis.model.answer import Answer, Result, Search, Verification, optional
+from synthesis.model.answer import Answer, Result, Search, Verification, optional_field
 from synthesis.model.dimension import (
     Acceleration,
     AccelerationSquared,
@@ -31,12 +31,14 @@ class CamFollower(Answer):
     """The follower and the dimensions of its type."""
 
     type: Literal["translating_roller", "oscillating_roller", "translating_flat", "oscillating_flat"]
-    roller_radius: Length | None = optional()
-    offset: Length | None = optional("Offset of a translating follower's slide; for a flat face only if it is not 0.")
-    arm: Length | None = optional()
-    pivot_distance: Length | None = optional()
-    face_offset: Length | None = optional()
-    sense: Literal[1, -1] | None = optional()
+    roller_radius: Length | None = optional_field()
+    offset: Length | None = optional_field(
+        "Offset of a translating follower's slide; for a flat face only if it is not 0."
+    )
+    arm: Length | None = optional_field()
+    pivot_distance: Length | None = optional_field()
+    face_offset: Length | None = optional_field()
+    sense: Literal[1, -1] | None = optional_field()
 
 
 class CamCurve(Answer):
@@ -68,7 +70,7 @@ class SecondCam(Answer):
     follower: CamFollower
     prime_radius: Length
     roller_distance: Length = Field(description="Distance of the two rollers' centres, the same at all cam angles.")
-    arm_angle: Angle | None = optional("Angle between the two arms of an oscillating follower, degrees.")
+    arm_angle: Angle | None = optional_field("Angle between the two arms of an oscillating follower, degrees.")
     profile: CamCurve
     pitch_curve: CamCurve
 
@@ -78,13 +80,13 @@ class CamMechanism(Answer):
 
     type: Literal["cam"] = "cam"
     follower: CamFollower
-    prime_radius: Length | None = optional("Prime radius of a roller follower's cam.")
-    base_radius: Length | None = optional("Base radius of a flat-faced follower's cam.")
+    prime_radius: Length | None = optional_field("Prime radius of a roller follower's cam.")
+    base_radius: Length | None = optional_field("Base radius of a flat-faced follower's cam.")
     rotation: Literal["ccw", "cw"]
     profile: CamCurve
-    outer_wall: CamCurve | None = optional("Outer wall of a groove; the profile is its inner wall.")
+    outer_wall: CamCurve | None = optional_field("Outer wall of a groove; the profile is its inner wall.")
     pitch_curve: CamCurve = Field(description="Path of the roller's centre; the profile itself under a flat face.")
-    second: SecondCam | None = optional("The second of two conjugate cams.")
+    second: SecondCam | None = optional_field("The second of two conjugate cams.")
     program: ProgramTable
 
 
@@ -151,10 +153,10 @@ class Optimality(Answer):
 
     criterion: str
     value: float
-    bound: float | None = optional()
-    gap: float | None = optional()
+    bound: float | None = optional_field()
+    gap: float | None = optional_field()
     scope: str
-    warning: str | None = optional(
+    warning: str | None = optional_field(
         "Warning about peaks that are many times those of a plain law, as the cost of this criterion."
     )
 
@@ -179,8 +181,8 @@ class SpringChoice(Answer):
     """
 
     max_contact_force: Force
-    bound: Force | None = optional()
-    gap: float | None = optional()
+    bound: Force | None = optional_field()
+    gap: float | None = optional_field()
     binding: list[Binding]
 
 
@@ -191,12 +193,12 @@ class TrainVibration(Answer):
     damped_frequency: RadianFrequency
     frequency_ratio: float = Field(description="Natural frequency over cam speed.")
     period_ratio: float = Field(description="τ: natural period over the time of the shortest move.")
-    residual_amplitude: Displacement | None = optional(
+    residual_amplitude: Displacement | None = optional_field(
         "Greatest amplitude of the free vibration at the start of a dwell; omitted without a dwell, at a resonance, "
         "and if the mass hardly follows the cam."
     )
-    min_contact_force: Force | None = optional("Minimum contact force between the cam and the vibrating train.")
-    max_contact_force: Force | None = optional()
+    min_contact_force: Force | None = optional_field("Minimum contact force between the cam and the vibrating train.")
+    max_contact_force: Force | None = optional_field()
 
 
 class PushingCam(Answer):
@@ -216,12 +218,12 @@ class CamForces(Answer):
     max_contact_force: Force
     min_torque: Torque
     max_torque: Torque
-    wall_changes: list[Angle] | None = optional(
+    wall_changes: list[Angle] | None = optional_field(
         "Cam angles at which a roller in a groove changes walls: the force along its motion changes sign there, "
         "compared "
         "with its last sign. Without spring and preload the force is zero in a dwell."
     )
-    pushing: list[PushingCam] | None = optional(
+    pushing: list[PushingCam] | None = optional_field(
         "The pushing one of two conjugate cams, from each wall change to the next."
     )
     spring_rate: Stiffness = Field(description="Rate of the return spring, given or chosen.")
@@ -233,10 +235,10 @@ class CamForces(Answer):
         description="Damped natural frequency, rad/s; null if the damping is critical or more."
     )
     frequency_ratio: float = Field(description="Natural frequency over cam speed.")
-    over_speeds: ContactOverSpeeds | None = optional("Given if a maximum speed is given or the spring is chosen.")
-    spring: SpringChoice | None = optional("Given if the spring's rate is free.")
-    train: TrainVibration | None = optional("Given if the stiffness of the train is given.")
-    warning: str | None = optional()
+    over_speeds: ContactOverSpeeds | None = optional_field("Given if a maximum speed is given or the spring is chosen.")
+    spring: SpringChoice | None = optional_field("Given if the spring's rate is free.")
+    train: TrainVibration | None = optional_field("Given if the stiffness of the train is given.")
+    warning: str | None = optional_field()
 
 
 class SecondMetrics(Answer):
@@ -246,7 +248,7 @@ class SecondMetrics(Answer):
     max_pressure_angle_rise: Angle = Field(description="Degrees.")
     max_pressure_angle_fall: Angle = Field(description="Degrees.")
     min_convex_radius: Length
-    min_concave_radius: Length | None = optional("None where it is convex.")
+    min_concave_radius: Length | None = optional_field("None where it is convex.")
     curvature_ratio: float
 
 
@@ -255,14 +257,16 @@ class CamMetrics(Answer):
 
     size: Length = Field(description="Greatest radius of the profile.")
     lift: Displacement
-    max_pressure_angle_rise: Angle | None = optional("Degrees.")
-    max_pressure_angle_fall: Angle | None = optional("Degrees.")
+    max_pressure_angle_rise: Angle | None = optional_field("Degrees.")
+    max_pressure_angle_fall: Angle | None = optional_field("Degrees.")
     min_convex_radius: Length = Field(description="Least convex radius of curvature of the profile.")
-    min_concave_radius: Length | None = optional("None where it is convex.")
-    curvature_ratio: float | None = optional("Least radius of curvature of the pitch curve over the roller's radius.")
-    face_width: Length | None = optional("Length that the contact sweeps.")
-    second: SecondMetrics | None = optional("Of conjugate cams.")
-    overturning_moment: Torque | None = optional(
+    min_concave_radius: Length | None = optional_field("None where it is convex.")
+    curvature_ratio: float | None = optional_field(
+        "Least radius of curvature of the pitch curve over the roller's radius."
+    )
+    face_width: Length | None = optional_field("Length that the contact sweeps.")
+    second: SecondMetrics | None = optional_field("Of conjugate cams.")
+    overturning_moment: Torque | None = optional_field(
         "Greatest moment on the slide of a translating follower, if its forces and the lever are known."
     )
     peak_velocity: Velocity
@@ -270,7 +274,7 @@ class CamMetrics(Answer):
     peak_jerk: Jerk | None = Field(description="Null if the acceleration jumps: the jerk is unbounded there.")
     rms_acceleration: Acceleration
     peak_inertia_torque: AccelerationSquared = Field(description="Greatest |v a|: torque by unit mass at unit speed.")
-    forces: CamForces | None = optional()
+    forces: CamForces | None = optional_field()
 
 
 class BarrelMetrics(Answer):
@@ -288,7 +292,7 @@ class BarrelMetrics(Answer):
     peak_jerk: Jerk | None = Field(description="Null if the acceleration jumps: the jerk is unbounded there.")
     rms_acceleration: Acceleration
     peak_inertia_torque: AccelerationSquared = Field(description="Greatest |v a|: torque by unit mass at unit speed.")
-    forces: CamForces | None = optional()
+    forces: CamForces | None = optional_field()
 
 
 Mechanism = TypeVar("Mechanism", CamMechanism, BarrelCamMechanism)

@@ -7,7 +7,7 @@ from typing import Annotated, Literal
 
 from pydantic import ConfigDict, Field
 
-from synthesis.kinds.cam.followers import (
+from synthesis.kinds.cam.statement.followers import (
     BarrelRoller,
     Follower,
     FollowerDynamics,
@@ -15,13 +15,13 @@ from synthesis.kinds.cam.followers import (
     RateRange,
     TranslatingFlat,
     TranslatingRoller,
-    follower_contradictions,
+    find_follower_contradictions,
 )
-from synthesis.kinds.cam.limits import CamLimits
-from synthesis.kinds.cam.segments import Move, Segment
-from synthesis.kinds.cam.stated_program import StatedProgram
+from synthesis.kinds.cam.statement.limits import CamLimits
+from synthesis.kinds.cam.statement.program import ProgramStatement
+from synthesis.kinds.cam.statement.segments import Move, Segment
 from synthesis.model.dimension import ROTATIONAL_SPEED
-from synthesis.model.statement import Contradiction, Count, Flag, PositiveNumber, StatedProblem
+from synthesis.model.problem import Contradiction, Count, Flag, PositiveNumber, ProblemBase
 
 METRES = {"mm": 1e-3, "cm": 1e-2, "m": 1.0, "in": 1.0}
 """Metres per length unit for F = m a with newtons and kilograms; lbf, lbf s²/in and inches are consistent."""
@@ -40,7 +40,7 @@ Criterion = Literal[
 ]
 
 
-class CamProblem(StatedProblem):
+class CamProblem(ProblemBase):
     """A motion program and the smallest feasible cam for it.
 
     Every segment follows the one before; their angles add up to one turn. Displacement, velocity and acceleration must
@@ -153,39 +153,39 @@ class CamProblem(StatedProblem):
     )
 
     @property
-    def oscillating(self) -> bool:
+    def is_oscillating(self) -> bool:
         """True if displacements are degrees of an arm."""
         return self.follower.type.startswith("oscillating")
 
     @property
     def displacement_unit(self) -> float:
         """Factor from requested displacements to the solver's: radians of an arm, or lengths."""
-        return math.pi / 180.0 if self.oscillating else 1.0
+        return math.pi / 180.0 if self.is_oscillating else 1.0
 
     @property
-    def program(self) -> StatedProgram:
+    def program(self) -> ProgramStatement:
         """The motion program, in the solver's displacements."""
-        return StatedProgram(self.segments, self.displacement_unit)
+        return ProgramStatement(self.segments, self.displacement_unit)
 
-    def contradictions(self) -> list[Contradiction]:
+    def find_contradictions(self) -> list[Contradiction]:
         """Return contradictions that no single field shows."""
         contradictions = [
-            *self.program.segment_contradictions(),
-            *self._closure(),
-            *follower_contradictions(self.follower),
-            *self._inputs(),
-            *self._limits(),
-            *self._overturning(),
+            *self.program.find_segment_contradictions(),
+            *self._check_closure(),
+            *find_follower_contradictions(self.follower),
+            *self._check_inputs(),
+            *self._check_limits(),
+            *self._check_overturning(),
         ]
         # Joints are checked only if the segments themselves are sound: their ends are undefined otherwise.
-        return contradictions or self.program.joint_contradictions(self.accept_discontinuity, self.grooved)
+        return contradictions or self.program.find_joint_contradictions(self.accept_discontinuity, self.is_form_closed)
 
     @property
-    def grooved(self) -> bool:
+    def is_form_closed(self) -> bool:
         """True if the follower runs between two walls, or two cams, so that no force has to hold it."""
         return self.closure != "force" or isinstance(self.follower, BarrelRoller)
 
-    def _closure(self) -> list[Contradiction]:
+    def _check_closure(self) -> list[Contradiction]:
         """Check the closure: a groove or two cams can only guide a roller."""
         if self.closure != "force" and isinstance(self.follower, TranslatingFlat | OscillatingFlat):
             detail = "a groove can only guide a roller; choose a roller follower, or closure `force`"
@@ -200,7 +200,7 @@ class CamProblem(StatedProblem):
             return [Contradiction("/follower/overhang", detail)]
         return []
 
-    def _spring(self, dynamics: FollowerDynamics) -> list[Contradiction]:
+    def _check_spring(self, dynamics: FollowerDynamics) -> list[Contradiction]:
         """Check a free spring, and the speeds up to which it holds the follower."""
         contradictions, rate, speed = [], dynamics.spring_rate, self.speed_rpm
         assert speed is not None
@@ -223,7 +223,7 @@ class CamProblem(StatedProblem):
             contradictions.append(Contradiction("/dynamics/train_damping_ratio", detail))
         if dynamics.max_rpm is not None and dynamics.max_rpm < speed:
             contradictions.append(Contradiction("/dynamics/max_rpm", "must be at least `speed_rpm`"))
-        if self.grooved:
+        if self.is_form_closed:
             detail = (
                 "between two walls no spring is needed to hold the follower; give a rate, or choose closure `force`"
             )
@@ -246,7 +246,7 @@ class CamProblem(StatedProblem):
                 contradictions.append(Contradiction("/dynamics/max_rpm", detail))
         return contradictions
 
-    def _overturning(self) -> list[Contradiction]:
+    def _check_overturning(self) -> list[Contradiction]:
         """Check the overturning moment: it needs forces, and a slide whose lever is known."""
         follower, contradictions = self.follower, []
         forces = self.dynamics is not None
@@ -275,7 +275,7 @@ class CamProblem(StatedProblem):
             contradictions.append(Contradiction("/follower/overhang", "required: the lever of the limited moment"))
         return contradictions
 
-    def _limits(self) -> list[Contradiction]:
+    def _check_limits(self) -> list[Contradiction]:
         """Check that limits on the motion have a motion to choose."""
         if any(isinstance(segment, Move) and segment.follows_criterion for segment in self.segments):
             return []
@@ -286,25 +286,25 @@ class CamProblem(StatedProblem):
             if getattr(self.limits, name) is not None
         ]
 
-    def _inputs(self) -> list[Contradiction]:
+    def _check_inputs(self) -> list[Contradiction]:
         """Check the inputs that a criterion needs."""
         contradictions = []
         force = self.minimize == "peak_contact_force"
         if force and self.dynamics is None:
             contradictions.append(Contradiction("/dynamics", "a contact force needs the follower's mass and spring"))
-        if force and self.grooved:
+        if force and self.is_form_closed:
             contradictions.append(
                 Contradiction("/minimize", "in a groove no force holds the follower; choose another criterion")
             )
-        if self.dynamics is not None and self.dynamics.least_force > 0.0 and self.grooved:
+        if self.dynamics is not None and self.dynamics.least_force > 0.0 and self.is_form_closed:
             detail = "in a groove the roller changes walls and the force its sign; omit `least_force`"
             contradictions.append(Contradiction("/dynamics/least_force", detail))
         if self.dynamics is not None and self.speed_rpm is None:
             contradictions.append(Contradiction("/speed_rpm", "forces need the cam's speed"))
         elif self.dynamics is not None:
-            contradictions += self._spring(self.dynamics)
+            contradictions += self._check_spring(self.dynamics)
         optimal = any(isinstance(segment, Move) and segment.law == "optimal" for segment in self.segments)
-        if optimal and self.minimize == "size" and self.oscillating:
+        if optimal and self.minimize == "size" and self.is_oscillating:
             detail = (
                 "optimal motions of minimum size are found for translating followers only; choose another criterion"
             )

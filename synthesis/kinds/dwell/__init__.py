@@ -5,6 +5,7 @@ from __future__ import annotations
 from synthesis.kinds.dwell.design import DwellDesign, DwellMechanism, DwellResult
 from synthesis.kinds.dwell.gallery import GALLERY
 from synthesis.kinds.dwell.problem import DwellProblem
+from synthesis.kinds.dwell.shorter_dwells import SHORTER_DWELLS
 from synthesis.model.kind import Kind, Progress
 
 __all__ = ["KIND"]
@@ -28,4 +29,13 @@ def _verify(problem: DwellProblem, mechanism: DwellMechanism) -> DwellDesign | N
     return verify_dwell(problem, mechanism)
 
 
-KIND = Kind("dwell", DwellProblem, DwellResult, _solve, _warm_up, verify=_verify, gallery=GALLERY)
+KIND = Kind(
+    "dwell",
+    DwellProblem,
+    DwellResult,
+    _solve,
+    _warm_up,
+    verify=_verify,
+    easing=SHORTER_DWELLS,
+    gallery=GALLERY,
+)

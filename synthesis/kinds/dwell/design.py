@@ -6,10 +6,18 @@ from typing import Literal
 
 from pydantic import Field
 
-from synthesis.model.answer import Answer, Point, Verification, optional
+from synthesis.model.answer import Answer, Point, Verification, optional_field
 from synthesis.model.dimension import Angle, Length, Output, OutputPerRadian, OutputPerRadianSquared
-from synthesis.model.forces_answer import DesignForces
-from synthesis.model.linkage_answer import LAYOUT, PEAKS, CouplerPoint, Layout, LinkageResult, MotionMetrics, Skeleton
+from synthesis.model.dynamics.peak_forces import DesignForces
+from synthesis.model.linkage.answer import (
+    LAYOUT_FIELD,
+    PEAKS_FIELD,
+    CouplerPoint,
+    Layout,
+    LinkageResult,
+    MotionMetrics,
+    Skeleton,
+)
 
 MechanismType = Literal[
     "dwell_rocker", "dwell_slider", "dwell_slot", "dwell_watt_rocker", "dwell_watt_slider", "dwell_stephenson_2"
@@ -40,7 +48,7 @@ class DwellMechanism(Answer):
         "ground_side (O4–O6). Of a Stephenson II ground (O2–O4), input (O2–A), link_3, link_4 (B–D), link_5 and output "
         "(O4–E); input_arm (O2–C), input_side (A–C), link_4_arm (B–E), link_4_side (D–E)."
     )
-    coupler_point: CouplerPoint | None = optional(
+    coupler_point: CouplerPoint | None = optional_field(
         "P on the coupler; left out if P is on the rocker, and for a Stephenson II."
     )
     reference_input_angle: Angle = Field(description="Crank angle at which the first dwell begins, absolute, degrees.")
@@ -93,11 +101,11 @@ class DwellDesign(Answer):
 
     mechanism: DwellMechanism
     targets: list[Rest]
-    dwells: list[PlacedDwell] | None = optional("For a problem with `dwells`: each of them, in its order.")
+    dwells: list[PlacedDwell] | None = optional_field("For a problem with `dwells`: each of them, in its order.")
     verification: Verification
     metrics: DwellMetrics
-    layout: Layout | None = LAYOUT
-    forces: DesignForces | None = PEAKS
+    layout: Layout | None = LAYOUT_FIELD
+    forces: DesignForces | None = PEAKS_FIELD
 
 
 class DwellResult(LinkageResult[DwellDesign]):

@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
-from synthesis.model.kind import Named
+from synthesis.model.kind import NamedExample
 
 GALLERY = (
-    Named("Indexing arm", "Lift and rest", "An arm swings by 90° and rests while the crank turns by 60°."),
-    Named("Press with two rests", "Lift and rest", "A rocker that rests at both of its ends."),
-    Named("Two rests of unlike length", "Lift and rest", "A rocker that rests longer at one end than at the other."),
+    NamedExample("Indexing arm", "Lift and rest", "An arm swings by 90° and rests while the crank turns by 60°."),
+    NamedExample("Press with two rests", "Lift and rest", "A rocker that rests at both of its ends."),
+    NamedExample(
+        "Two rests of unlike length", "Lift and rest", "A rocker that rests longer at one end than at the other."
+    ),
 )

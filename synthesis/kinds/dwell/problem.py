@@ -8,10 +8,10 @@ from typing import Annotated, Any, Literal, NamedTuple, Self
 from pydantic import ConfigDict, Discriminator, Field, Tag
 
 from synthesis.model.dimension import ANGLE, OUTPUT
-from synthesis.model.linkage_statement import LinkageProblem
-from synthesis.model.stated_types import UNCLASSED, no_class
-from synthesis.model.statement import (
-    ROUNDED_OFF,
+from synthesis.model.linkage.problem import LinkageProblem
+from synthesis.model.linkage.type_choice import UNCLASSED_SIXBAR, refuse_class
+from synthesis.model.problem import (
+    CANCELLATION_TOLERANCE,
     Contradiction,
     Count,
     Point,
@@ -28,14 +28,14 @@ DEFAULT_CRANK = 10.0
 """Length of the crank, in length units, if nothing else determines the linkage's size."""
 
 
-APART = 0.1
-"""Minimum separation of the places of two dwells, as a share of the output's range: twice :data:`END`, so that they
-differ."""
+MIN_PLACE_SEPARATION = 0.1
+"""Minimum separation of the places of two dwells, as a share of the output's range: twice :data:`PLACE_TOLERANCE`, so
+that they differ."""
 
-END = 0.05
+PLACE_TOLERANCE = 0.05
 """Maximum distance of a dwell's mean from its place in the output's range, as a share of the range."""
 
-LOW, HIGH = 0.0, 1.0
+LOW_PLACE, HIGH_PLACE = 0.0, 1.0
 """Places of a dwell at the ends of the output's range, as shares of it."""
 
 
@@ -46,7 +46,7 @@ Turning = Literal["crank_rocker", "double_crank"]
 """Classes of the fourbar O2 A B O4 whose crank turns through; a Stephenson II has no such fourbar."""
 
 
-class Wanted(NamedTuple):
+class RequestedDwell(NamedTuple):
     """A requested dwell: rotation of the crank, degrees, and share of the range; None for either end."""
 
     angle: float
@@ -67,19 +67,21 @@ class SliderOutput(Statement):
     stroke: PositiveLength = Field(description="In length units.")
 
 
-def _tag(statement: Any) -> str | None:
+def _get_tag(statement: Any) -> str | None:
     kind = statement.get("type", "rocker") if isinstance(statement, dict) else getattr(statement, "type", None)
     return f"<{kind}>" if kind in ("rocker", "slider") else None
 
 
 Output = Annotated[
     Annotated[RockerOutput, Tag("<rocker>")] | Annotated[SliderOutput, Tag("<slider>")],
-    Discriminator(_tag, custom_error_type="unknown_output", custom_error_message="type must be one of: rocker, slider"),
+    Discriminator(
+        _get_tag, custom_error_type="unknown_output", custom_error_message="type must be one of: rocker, slider"
+    ),
 ]
 """The output of a dwell mechanism; the field ``type`` selects it, a rocker by default."""
 
 
-class StatedDwell(Statement):
+class DwellRequest(Statement):
     """A dwell of a given length at a given place."""
 
     angle: Annotated[float, ANGLE, Field(strict=True, gt=0.0, lt=360.0), Sizable] = Field(
@@ -92,7 +94,7 @@ class StatedDwell(Statement):
     @property
     def place(self) -> float:
         """Share of the range."""
-        return {"low": LOW, "high": HIGH}[self.at] if isinstance(self.at, str) else self.at
+        return {"low": LOW_PLACE, "high": HIGH_PLACE}[self.at] if isinstance(self.at, str) else self.at
 
 
 class DwellProblem(LinkageProblem):
@@ -143,7 +145,7 @@ class DwellProblem(LinkageProblem):
     dwell_angle: Annotated[float, ANGLE, Field(strict=True, gt=0.0, lt=360.0), Sizable] | None = Field(
         default=None, description="Rotation of the crank during a dwell, or each of two, degrees. Or give `dwells`."
     )
-    dwells: Annotated[list[StatedDwell], Field(min_length=1, max_length=3)] | None = Field(
+    dwells: Annotated[list[DwellRequest], Field(min_length=1, max_length=3)] | None = Field(
         default=None, description="Each dwell by its length and its place in the range, instead of `dwell_angle`."
     )
     output: Output = Field(description="Type of the output, and its swing or stroke.")
@@ -175,7 +177,7 @@ class DwellProblem(LinkageProblem):
         return self.output.swing if isinstance(self.output, RockerOutput) else self.output.stroke
 
     @property
-    def allowed(self) -> float:
+    def max_movement(self) -> float:
         """Maximum movement of the output during a dwell, in units of the output."""
         return DEFAULT_TOLERANCE * self.way if self.tolerance is None else self.tolerance
 
@@ -185,16 +187,16 @@ class DwellProblem(LinkageProblem):
         return self.output.type == "slider"
 
     @property
-    def wanted(self) -> tuple[Wanted, ...]:
+    def dwell_requests(self) -> tuple[RequestedDwell, ...]:
         """The requested dwells; two of equal length without places lie one at each end."""
         if self.dwells is not None:
-            return tuple(Wanted(dwell.angle, dwell.place) for dwell in self.dwells)
-        return self.count * (Wanted(self.dwell_angle or 0.0, None),)
+            return tuple(RequestedDwell(dwell.angle, dwell.place) for dwell in self.dwells)
+        return self.count * (RequestedDwell(self.dwell_angle or 0.0, None),)
 
     @property
-    def placed(self) -> bool:
+    def has_placed_dwells(self) -> bool:
         """Whether outputs are searched by the place and length of each dwell."""
-        return self.dwells is not None or self.mechanism in ("watt_2", UNCLASSED)
+        return self.dwells is not None or self.mechanism in ("watt_2", UNCLASSED_SIXBAR)
 
     @property
     def types(self) -> tuple[SixbarType, ...]:
@@ -203,15 +205,15 @@ class DwellProblem(LinkageProblem):
             return (self.mechanism,)
         # A slotted link swings and cannot slide.
         slot: tuple[SixbarType, ...] = ("straight_slot",) if self.output.type == "rocker" else ()
-        pair: tuple[SixbarType, ...] = ("watt_2",) if self.placed else ()
+        pair: tuple[SixbarType, ...] = ("watt_2",) if self.has_placed_dwells else ()
         return ("pseudo_arc", *slot, *pair)
 
     @property
     def searches(self) -> tuple[tuple[SixbarType, Turning | None], ...]:
         """The types to be tried, each with a possible class of its fourbar, regardless of the required class."""
-        if self.mechanism == UNCLASSED:
-            return ((UNCLASSED, None),)
-        classes: tuple[Turning, ...] = ("crank_rocker", "double_crank") if self.placed else ("crank_rocker",)
+        if self.mechanism == UNCLASSED_SIXBAR:
+            return ((UNCLASSED_SIXBAR, None),)
+        classes: tuple[Turning, ...] = ("crank_rocker", "double_crank") if self.has_placed_dwells else ("crank_rocker",)
         return tuple(
             (name, turning)
             for name in self.types
@@ -220,20 +222,20 @@ class DwellProblem(LinkageProblem):
             if turning == "crank_rocker" or name != "straight_slot"
         )
 
-    def shortened(self, share: float) -> Self:
+    def with_shorter_dwells(self, share: float) -> Self:
         """Return the problem with each dwell shortened to a share of its length."""
         if self.dwells is None:
-            return self.model_copy(update={"dwell_angle": share * self.wanted[0].angle})
+            return self.model_copy(update={"dwell_angle": share * self.dwell_requests[0].angle})
         return self.model_copy(
             update={"dwells": [dwell.model_copy(update={"angle": share * dwell.angle}) for dwell in self.dwells]}
         )
 
-    def contradictions(self) -> list[Contradiction]:
+    def find_contradictions(self) -> list[Contradiction]:
         """Return requests that exclude one another."""
-        found = [*self.contradicting_demands(), *self._contradicting_dwells()]
+        found = [*self.find_contradicting_constraints(), *self._find_dwell_contradictions()]
         if self.output.type == "slider" and self.mechanism == "straight_slot":
             found.append(Contradiction("/mechanism", "a slotted output swings; choose pseudo_arc or a rocker"))
-        if self.output.type == "slider" and self.mechanism == UNCLASSED:
+        if self.output.type == "slider" and self.mechanism == UNCLASSED_SIXBAR:
             found.append(Contradiction("/mechanism", "its output swings; choose pseudo_arc, watt_2 or a rocker"))
         if self.output.type == "slider" and self.crank is not None:
             found.append(Contradiction("/crank", "the stroke determines the size; leave the crank out"))
@@ -241,7 +243,7 @@ class DwellProblem(LinkageProblem):
             (self.way, "/output/stroke") if self.output.type == "slider" else (self.crank or DEFAULT_CRANK, "/crank")
         )
         # Differences of large coordinates would lose the digits of the crank.
-        if self.pivot is not None and size < ROUNDED_OFF * max(map(abs, self.pivot)):
+        if self.pivot is not None and size < CANCELLATION_TOLERANCE * max(map(abs, self.pivot)):
             found.append(
                 Contradiction(field, "too short relative to the coordinates of the pivot; move the origin nearer")
             )
@@ -249,12 +251,12 @@ class DwellProblem(LinkageProblem):
             found.append(Contradiction("/tolerance", "not less than the output's range; no dwell would be needed"))
         classes = {turning for _, turning in self.searches if turning is not None}
         if not classes:
-            return [*found, *no_class(self.constraints)]
+            return [*found, *refuse_class(self.constraints)]
         searched = "crank-rockers and double cranks" if "double_crank" in classes else "crank-rockers"
         reason = f"the crank turns through: only {searched} are searched"
-        return [*found, *self.constraints.of_another_class(classes, reason)]
+        return [*found, *self.constraints.find_class_contradictions(classes, reason)]
 
-    def _contradicting_dwells(self) -> list[Contradiction]:
+    def _find_dwell_contradictions(self) -> list[Contradiction]:
         """Return contradictory dwell requests."""
         if self.dwells is None:
             if self.dwell_angle is None:
@@ -275,13 +277,13 @@ class DwellProblem(LinkageProblem):
             )
         for (n, one), (k, other) in combinations(enumerate(self.dwells), 2):
             apart = abs(one.place - other.place)
-            if apart < APART:
+            if apart < MIN_PLACE_SEPARATION:
                 detail = f"less than a tenth of the range from dwell {n + 1}; separate them further"
                 found.append(
                     Contradiction(f"/dwells/{k}/at", "the same place as dwell " + f"{n + 1}" if not apart else detail)
                 )
             # An output that may move from one place to the other would satisfy both with one dwell.
-            elif apart * self.way <= self.allowed:
+            elif apart * self.way <= self.max_movement:
                 found.append(
                     Contradiction(f"/dwells/{k}/at", f"within the tolerance of dwell {n + 1}; make them one dwell")
                 )

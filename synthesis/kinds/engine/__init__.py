@@ -16,9 +16,9 @@ def _solve(problem: EngineProblem, progress: Progress) -> EngineResult:
     return solve_engine(problem, progress)
 
 
-def _brief(problem: EngineProblem) -> bool:
+def _is_brief(problem: EngineProblem) -> bool:
     """Return whether the throws are given, so that the engine is only analysed."""
     return problem.layout.throws is not None
 
 
-KIND = Kind("engine", EngineProblem, EngineResult, _solve, brief=_brief, gallery=GALLERY)
+KIND = Kind("engine", EngineProblem, EngineResult, _solve, brief=_is_brief, gallery=GALLERY)

@@ -8,9 +8,8 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from synthesis.kinds.engine.problem import BANKS, EngineLayout
-
-Real = NDArray[np.float64]
+from kinematics.arrays import Real
+from synthesis.kinds.engine.problem import BANK_COUNTS, EngineLayout
 
 
 class Cylinders(NamedTuple):
@@ -31,11 +30,11 @@ class Cylinders(NamedTuple):
         return np.asarray(self.phase + self.axis)
 
 
-def axes_of(layout: EngineLayout, cylinders: int) -> list[list[float]]:
+def list_axes(layout: EngineLayout, cylinders: int) -> list[list[float]]:
     """List the axes of the cylinders on each throw, the first bank first."""
     if layout.type == "radial":
         return [[360.0 * n / cylinders for n in range(cylinders)]]
-    banks = BANKS[layout.type]
+    banks = BANK_COUNTS[layout.type]
     # Banks are spread symmetrically about the engine's own axis.
     half = 90.0 if layout.type == "opposed" else 0.5 * (banks - 1) * (layout.vee_angle or 0.0)
     step = 0.0 if banks == 1 else 2.0 * half / (banks - 1)
@@ -43,16 +42,16 @@ def axes_of(layout: EngineLayout, cylinders: int) -> list[list[float]]:
     row = [half - step * n for n in range(banks)]
     if layout.first_bank == "right":
         row.reverse()
-    count = layout.throw_count(cylinders)
+    count = layout.count_throws(cylinders)
     assert count is not None, "a layout without faults"
     if layout.pins == "own":
         return [[row[n % banks]] for n in range(count)]
     return [row] * count
 
 
-def cylinders_of(layout: EngineLayout, cylinders: int, throws: Sequence[float]) -> Cylinders:
+def arrange_cylinders(layout: EngineLayout, cylinders: int, throws: Sequence[float]) -> Cylinders:
     """Arrange the cylinders of an engine whose throws lag by these phases."""
-    axes = axes_of(layout, cylinders)
+    axes = list_axes(layout, cylinders)
     places = layout.positions or [float(n) for n in range(len(throws))]
     listed = [(n, axis, throws[n], places[n]) for n, row in enumerate(axes) for axis in row]
     if layout.numbering == "by_bank" and layout.type != "radial":
@@ -62,6 +61,6 @@ def cylinders_of(layout: EngineLayout, cylinders: int, throws: Sequence[float]) 
     return Cylinders(np.array(throw), np.array(axis), np.array(phase, np.float64), np.array(place, np.float64))
 
 
-def middle_of(places: Real) -> float:
+def compute_middle(places: Real) -> float:
     """Return the middle of the cylinders along the shaft."""
     return 0.5 * float(places.min() + places.max())

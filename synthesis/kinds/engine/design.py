@@ -6,7 +6,7 @@ from typing import Annotated, Literal
 
 from pydantic import Field
 
-from synthesis.model.answer import Answer, Result, Verification, optional
+from synthesis.model.answer import Answer, Result, Verification, optional_field
 from synthesis.model.dimension import (
     ENERGY,
     FORCE,
@@ -60,7 +60,7 @@ class EngineFiring(Answer):
     )
     even_choices: int = Field(description="Number of equally even choices of the cylinders' firing angles.")
     choices: int = Field(description="Number of all choices.")
-    stated_unevenness: Angle | None = optional("Unevenness of the given firing angles.")
+    stated_unevenness: Angle | None = optional_field("Unevenness of the given firing angles.")
 
 
 class VectorHarmonic(Answer):
@@ -96,7 +96,7 @@ class Balancer(Answer):
     forward_angle: Angle = Field(description="Its angle with the first throw at 0, degrees.")
     backward: float = Field(description="The weight, or couple of weights, that rotates opposite to the crank.")
     backward_angle: Angle
-    height_difference: Length | None = optional(
+    height_difference: Length | None = optional_field(
         "For a pair of shafts: with the forward one higher by the rod's length, the second harmonic of the "
         "inertia torque is cancelled too (Nakamura); with 0.7 of it if gas forces count."
     )
@@ -115,7 +115,7 @@ class EngineForces(Answer):
     """Peak forces at the given speed."""
 
     shaking_force: Force
-    shaking_moment: Torque | None = optional("Given if the spacing is given.")
+    shaking_moment: Torque | None = optional_field("Given if the spacing is given.")
     mean_torque: Torque
     max_torque: Torque
     min_torque: Torque
@@ -167,15 +167,17 @@ class LumpedMasses(Answer):
     )
     rod_wrist_pin: Annotated[float, MASS]
     rod_inertia: Annotated[float, INERTIA] = Field(description="Moment of inertia of these two about their centre.")
-    rod_inertia_error: Percent | None = optional("Excess of that over the rod's inertia, percent.")
-    percussion_distance: Length | None = optional("Distance from the rod's centre to the exact model's other mass.")
-    percussion_mass: Annotated[float, MASS] | None = optional(
+    rod_inertia_error: Percent | None = optional_field("Excess of that over the rod's inertia, percent.")
+    percussion_distance: Length | None = optional_field(
+        "Distance from the rod's centre to the exact model's other mass."
+    )
+    percussion_mass: Annotated[float, MASS] | None = optional_field(
         "The exact model's other mass, which gives the correct inertia."
     )
-    percussion_wrist_pin: Annotated[float, MASS] | None = optional("The exact model's mass at the wrist pin.")
-    throw_crank_pin: Annotated[float, MASS] | None = optional("Mass of the throw as one mass at the crank pin.")
-    throw_inertia: Annotated[float, INERTIA] | None = optional("Moment of inertia of that mass about the shaft.")
-    throw_inertia_error: Percent | None = optional("Excess of that over the throw's inertia, percent.")
+    percussion_wrist_pin: Annotated[float, MASS] | None = optional_field("The exact model's mass at the wrist pin.")
+    throw_crank_pin: Annotated[float, MASS] | None = optional_field("Mass of the throw as one mass at the crank pin.")
+    throw_inertia: Annotated[float, INERTIA] | None = optional_field("Moment of inertia of that mass about the shaft.")
+    throw_inertia_error: Percent | None = optional_field("Excess of that over the throw's inertia, percent.")
 
 
 class EngineMetrics(Answer):
@@ -190,8 +192,8 @@ class EngineMetrics(Answer):
     binomial_terms: list[float] = Field(
         description="Binomial terms of the root in the piston's position: λ²/2, λ⁴/8, λ⁶/16."
     )
-    forces: EngineForces | None = optional("Given if masses or pressure are given.")
-    masses: LumpedMasses | None = optional("Given if masses are given.")
+    forces: EngineForces | None = optional_field("Given if masses or pressure are given.")
+    masses: LumpedMasses | None = optional_field("Given if masses are given.")
 
 
 class EngineDesign(Answer):
@@ -203,9 +205,9 @@ class EngineDesign(Answer):
     firing: EngineFiring
     harmonics: list[EngineHarmonic]
     balancers: list[Balancer]
-    overbalance: Overbalance | None = optional("Given for one cylinder with masses.")
-    flywheel: EngineFlywheel | None = optional("Given if a flywheel is requested.")
-    course: EngineCourse | None = optional("Given if masses or pressure are given.")
+    overbalance: Overbalance | None = optional_field("Given for one cylinder with masses.")
+    flywheel: EngineFlywheel | None = optional_field("Given if a flywheel is requested.")
+    course: EngineCourse | None = optional_field("Given if masses or pressure are given.")
 
 
 class EngineResult(Result[EngineDesign]):

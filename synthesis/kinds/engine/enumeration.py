@@ -19,23 +19,20 @@ from collections.abc import Iterator, Sequence
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
-from synthesis.kinds.engine.arrangement import axes_of
+from synthesis.kinds.engine.arrangement import list_axes
 from synthesis.kinds.engine.problem import EngineLayout, EngineProblem
 
-Real = NDArray[np.float64]
-
-MOST_THROWS = 8
+MAX_LISTED_THROWS = 8
 """Number of throws up to which all arrangements are listed."""
 
-MOST_LISTED = 5040
+MAX_SAMPLED = 5040
 """Maximum number of listed symmetric arrangements of more throws."""
 
-WHOLE = 1e-9
+SLOT_TOLERANCE = 1e-9
 """Slots by which an angle between banks may miss a whole number of them."""
 
-DIGITS = 7
+ANGLE_DIGITS = 7
 """Decimals of a degree to which arrangements are compared."""
 
 
@@ -55,85 +52,91 @@ class Slots(NamedTuple):
     step: float
 
 
-def slots_of(cylinders: int, strokes: int) -> Slots:
+def compute_slots(cylinders: int, strokes: int) -> Slots:
     """Return the slots of even firing."""
     if strokes == 4 and cylinders % 2 == 0:
         return Slots(cylinders // 2, 2, 720.0 / cylinders)
     return Slots(cylinders, 1, 360.0 / cylinders)
 
 
-def even_arrangements(problem: EngineProblem, layout: EngineLayout) -> Arrangements:
+def list_even_arrangements(problem: EngineProblem, layout: EngineLayout) -> Arrangements:
     """List the arrangements of a layout's throws that fire evenly, the first throw at 0."""
-    axes = axes_of(layout, problem.cylinders)
-    slots = slots_of(problem.cylinders, problem.stroke_cycle)
+    axes = list_axes(layout, problem.cylinders)
+    slots = compute_slots(problem.cylinders, problem.stroke_cycle)
     # Bank angles relative to the throw's first cylinder, in slots.
     steps = [[(axis - row[0]) / slots.step for axis in row] for row in axes]
-    if any(abs(step - round(step)) > WHOLE for row in steps for step in row):
+    if any(abs(step - round(step)) > SLOT_TOLERANCE for row in steps for step in row):
         return Arrangements([], 0, True)
     taken = [[round(step) for step in row] for row in steps]
-    if len(axes) > MOST_THROWS:
-        words, count, complete = _symmetric(problem, slots, len(axes)), _counted(layout, slots, len(axes)), False
+    if len(axes) > MAX_LISTED_THROWS:
+        words, count, complete = (
+            _list_symmetric_words(problem, slots, len(axes)),
+            _count_arrangements(layout, slots, len(axes)),
+            False,
+        )
     else:
-        words, count, complete = _words(taken, slots), 0, True
+        words, count, complete = _enumerate_words(taken, slots), 0, True
     origin = [axes[0][0] - row[0] for row in axes]
     phases = (tuple(slots.step * s + o for s, o in zip(word, origin, strict=True)) for word in words)
-    listed = distinct(phases, layout, problem.cylinders)
+    listed = select_distinct(phases, layout, problem.cylinders)
     return Arrangements(listed, count or len(listed), complete)
 
 
-def stated_arrangements(problem: EngineProblem, layout: EngineLayout, angles: Sequence[float]) -> Arrangements:
+def list_requested_arrangements(problem: EngineProblem, layout: EngineLayout, angles: Sequence[float]) -> Arrangements:
     """List all arrangements of given phases, even or not, with the first throw at the first phase."""
-    throws = layout.throw_count(problem.cylinders) or 1
+    throws = layout.count_throws(problem.cylinders) or 1
     first = angles[0]
     combinations = itertools.product(angles, repeat=throws - 1)
-    listed = distinct(((first, *others) for others in combinations), layout, problem.cylinders)
+    listed = select_distinct(((first, *others) for others in combinations), layout, problem.cylinders)
     return Arrangements(listed, len(listed), True)
 
 
-def distinct(phases: Iterator[tuple[float, ...]], layout: EngineLayout, cylinders: int) -> list[tuple[float, ...]]:
+def select_distinct(
+    phases: Iterator[tuple[float, ...]], layout: EngineLayout, cylinders: int
+) -> list[tuple[float, ...]]:
     """Select one of each set of equivalent arrangements, the first throw at 0, in the order of their phases."""
     # Arrangements that a symmetry maps onto each other shake alike.
-    turns = _alike(layout, cylinders)
+    turns = _list_symmetries(layout, cylinders)
     found: dict[tuple[float, ...], tuple[float, ...]] = {}
     for throws in phases:
         images = []
         for mirror, other in turns:
             image = throws[::-1] if other else throws
-            exact = tuple(_within_turn(mirror * (phase - image[0])) for phase in image)
-            images.append((tuple(round(phase, DIGITS) for phase in exact), exact))
+            exact = tuple(_reduce_angle(mirror * (phase - image[0])) for phase in image)
+            images.append((tuple(round(phase, ANGLE_DIGITS) for phase in exact), exact))
         # The lexicographically smallest image represents the whole set.
         key, exact = min(images)
         found.setdefault(key, exact)
     return [found[key] for key in sorted(found)]
 
 
-def _within_turn(angle: float) -> float:
+def _reduce_angle(angle: float) -> float:
     """Reduce an angle to 0 up to below 360; a full turn except for rounding becomes 0."""
     turned = angle % 360.0
-    return 0.0 if min(turned, 360.0 - turned) < 0.5 * 10.0**-DIGITS else turned
+    return 0.0 if min(turned, 360.0 - turned) < 0.5 * 10.0**-ANGLE_DIGITS else turned
 
 
-def _alike(layout: EngineLayout, cylinders: int) -> list[tuple[float, bool]]:
+def _list_symmetries(layout: EngineLayout, cylinders: int) -> list[tuple[float, bool]]:
     """List the symmetries of the cylinders: mirror (−1) or none, and whether they are counted from the other end.
 
     The engine may also be turned by half: this maps opposed cylinders to those of the other bank.
     """
-    axes = axes_of(layout, cylinders)
+    axes = list_axes(layout, cylinders)
     places = layout.positions or list(range(len(axes)))
     ends = [low + high for low, high in zip(places, reversed(places), strict=True)]
 
-    def rows(mirror: float, turn: float) -> list[list[float]]:
-        return [sorted(round(_within_turn(mirror * axis + turn), DIGITS) for axis in row) for row in axes]
+    def transform_axes(mirror: float, turn: float) -> list[list[float]]:
+        return [sorted(round(_reduce_angle(mirror * axis + turn), ANGLE_DIGITS) for axis in row) for row in axes]
 
-    own, found = rows(1.0, 0.0), []
+    own, found = transform_axes(1.0, 0.0), []
     for mirror, other in itertools.product((1.0, -1.0), (False, True)):
-        images = [rows(mirror, turn)[:: -1 if other else 1] for turn in (0.0, 180.0)]
-        if own in images and (not other or max(ends) - min(ends) <= WHOLE):
+        images = [transform_axes(mirror, turn)[:: -1 if other else 1] for turn in (0.0, 180.0)]
+        if own in images and (not other or max(ends) - min(ends) <= SLOT_TOLERANCE):
             found.append((mirror, other))
     return found
 
 
-def _words(taken: list[list[int]], slots: Slots) -> Iterator[tuple[int, ...]]:
+def _enumerate_words(taken: list[list[int]], slots: Slots) -> Iterator[tuple[int, ...]]:
     """Yield words whose first letter is 0; ``taken`` are the slots that a throw occupies relative to its first."""
     # Free places per slot.
     left = [slots.capacity] * slots.number
@@ -158,7 +161,7 @@ def _words(taken: list[list[int]], slots: Slots) -> Iterator[tuple[int, ...]]:
     yield from follow()
 
 
-def _symmetric(problem: EngineProblem, slots: Slots, throws: int) -> Iterator[tuple[int, ...]]:
+def _list_symmetric_words(problem: EngineProblem, slots: Slots, throws: int) -> Iterator[tuple[int, ...]]:
     """Yield palindromic words; if each slot is taken once, the other end reads them mirrored."""
     if slots.capacity == 2:
         for half in itertools.permutations(range(1, slots.number)):
@@ -166,7 +169,7 @@ def _symmetric(problem: EngineProblem, slots: Slots, throws: int) -> Iterator[tu
         return
     # There are too many to list: a random sample is drawn.
     rng = np.random.default_rng(problem.seed)
-    for _ in range(MOST_LISTED):
+    for _ in range(MAX_SAMPLED):
         last = int(rng.integers(1, slots.number))
         pairs = [{slot, (last - slot) % slots.number} for slot in range(slots.number)]
         chosen = {min(pair): tuple(pair) for pair in pairs if len(pair) == 2}
@@ -179,19 +182,19 @@ def _symmetric(problem: EngineProblem, slots: Slots, throws: int) -> Iterator[tu
         yield (*front, *fixed, *((last - slot) % slots.number for slot in reversed(front)))
 
 
-def _counted(layout: EngineLayout, slots: Slots, throws: int) -> int:
+def _count_arrangements(layout: EngineLayout, slots: Slots, throws: int) -> int:
     """Count the arrangements of throws with one cylinder each, by Burnside's lemma; more than two slots."""
     m, c = slots.number, slots.capacity
-    alike = _alike(layout, throws)
+    alike = _list_symmetries(layout, throws)
     # Every turn of the shaft is combined with each of these; only involutions leave a word unchanged.
     halves = {0, m // 2} if m % 2 == 0 else {0}
     turns = [[(s + r) % m for s in range(m)] for r in halves if (1.0, True) in alike]
     mirrors = [[(r - s) % m for s in range(m)] for r in range(m) if (-1.0, True) in alike]
-    fixed = sum(_fixed(turn, c, throws) for turn in [*turns, *mirrors])
+    fixed = sum(_count_fixed_words(turn, c, throws) for turn in [*turns, *mirrors])
     return int(math.factorial(throws) // math.factorial(c) ** m + fixed) // (len(alike) * m)
 
 
-def _fixed(image: list[int], capacity: int, throws: int) -> int:
+def _count_fixed_words(image: list[int], capacity: int, throws: int) -> int:
     """Count the words that are their own image from the other end, for an involution of the slots."""
     kept = sum(image[slot] == slot for slot in range(len(image)))
     pairs = (len(image) - kept) // 2

@@ -5,23 +5,22 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from kinematics.engine.firing import SAME, firing_choices, unevenness
+from kinematics.arrays import Real
+from kinematics.engine.firing import ANGLE_TOLERANCE, compute_unevenness, list_firing_choices
 from synthesis.kinds.engine.arrangement import Cylinders
 from synthesis.kinds.engine.design import EngineFiring, FiringOrder
 from synthesis.kinds.engine.problem import EngineProblem
 
-Real = NDArray[np.float64]
-
-MOST_ORDERS = 64
+MAX_ORDERS = 64
 """Maximum number of listed orders."""
 
 
-def firing_of(problem: EngineProblem, cylinders: Cylinders) -> EngineFiring:
+def find_firing(problem: EngineProblem, cylinders: Cylinders) -> EngineFiring:
     """Find the most even firing orders, with the fewest successive neighbours first if requested."""
-    found = firing_choices(cylinders.top, problem.stroke_cycle)
+    found = list_firing_choices(cylinders.top, problem.stroke_cycle)
     orders: dict[tuple[int, ...], FiringOrder] = {}
     for angles in found.angles:
-        listed = _order(angles, cylinders)
+        listed = _build_order(angles, cylinders)
         # An order and its reverse count as one: the one that names the higher cylinder first represents both.
         known = orders.get(tuple(listed.reversed))
         if known is None or known.order < listed.order:
@@ -32,43 +31,43 @@ def firing_of(problem: EngineProblem, cylinders: Cylinders) -> EngineFiring:
     )
     return EngineFiring(
         unevenness=found.unevenness,
-        orders=ranked[:MOST_ORDERS],
+        orders=ranked[:MAX_ORDERS],
         even_choices=len(found.angles),
         choices=found.choices,
-        stated_unevenness=_stated(problem),
+        stated_unevenness=_measure_requested_unevenness(problem),
     )
 
 
-def _stated(problem: EngineProblem) -> float | None:
+def _measure_requested_unevenness(problem: EngineProblem) -> float | None:
     if problem.firing_angles is None:
         return None
-    return float(unevenness(np.array(problem.firing_angles), problem.cycle))
+    return float(compute_unevenness(np.array(problem.firing_angles), problem.cycle))
 
 
-def _order(angles: Real, cylinders: Cylinders) -> FiringOrder:
+def _build_order(angles: Real, cylinders: Cylinders) -> FiringOrder:
     number = np.lexsort((np.arange(len(angles)), np.round(angles, 6)))
     order = [int(k) + 1 for k in number]
     return FiringOrder(
         order=order,
         reversed=[order[0], *order[:0:-1]],
         angles=[float(angles[k]) for k in number],
-        adjacent=_adjacent(number, cylinders),
+        adjacent=_count_adjacent(number, cylinders),
     )
 
 
-def _adjacent(number: NDArray[np.int64], cylinders: Cylinders) -> int:
+def _count_adjacent(number: NDArray[np.int64], cylinders: Cylinders) -> int:
     """Count how often neighbours of a bank fire in succession, over the whole cycle."""
     if len(number) < 3:
         return 0
     following = np.roll(number, -1)
-    same = np.abs(cylinders.axis[number] - cylinders.axis[following]) <= SAME
+    same = np.abs(cylinders.axis[number] - cylinders.axis[following]) <= ANGLE_TOLERANCE
     # Rank in a bank: the number of distinct places of its cylinders before each.
-    rows = [np.unique(cylinders.place[np.abs(cylinders.axis - axis) <= SAME]) for axis in cylinders.axis]
+    rows = [np.unique(cylinders.place[np.abs(cylinders.axis - axis) <= ANGLE_TOLERANCE]) for axis in cylinders.axis]
     rank = np.array([int((row < place).sum()) for row, place in zip(rows, cylinders.place, strict=True)])
     return int((same & (np.abs(rank[number] - rank[following]) == 1)).sum())
 
 
-def fires(firing: EngineFiring) -> Real:
+def list_firing_angles(firing: EngineFiring) -> Real:
     """Return the firing angles by cylinder, of the first listed order."""
     first = firing.orders[0]
     at = np.empty(len(first.order))

@@ -19,18 +19,15 @@ import math
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.interpolate import CubicSpline
 
-from kinematics.engine.pistons import Rod, piston, two_mass_rod
-from synthesis.kinds.engine.arrangement import Cylinders, middle_of
+from kinematics.arrays import Complex, Real
+from kinematics.engine.pistons import Rod, build_two_mass_rod, compute_piston_motion
+from synthesis.kinds.engine.arrangement import Cylinders, compute_middle
 from synthesis.kinds.engine.problem import EngineProblem
-from synthesis.model.loads import PairRows
+from synthesis.model.dynamics.loads import PairRows
 
-Real = NDArray[np.float64]
-Complex = NDArray[np.complex128]
-
-STEPS = 1440
+STEPS_PER_TURN = 1440
 """Number of positions of a turn."""
 
 
@@ -66,19 +63,19 @@ class Masses(NamedTuple):
     turning: float
 
 
-def masses_of(problem: EngineProblem) -> Masses:
+def build_masses(problem: EngineProblem) -> Masses:
     """Build the masses in the units of the forces; zero if none are given."""
     stated, scale = problem.masses, problem.scale
     if stated is None:
         return Masses(0.0, Rod(0.0, 0.0, 0.0), 0.0)
     length = scale * problem.rod_length
     # The exact rod is two masses at its pins plus an excess moment of inertia.
-    rod = two_mass_rod(length, stated.rod.mass, scale * stated.rod.cg, stated.rod.inertia)
+    rod = build_two_mass_rod(length, stated.rod.mass, scale * stated.rod.cg, stated.rod.inertia)
     turning = 0.0 if stated.crank is None else stated.crank.mass * scale * stated.crank.cg
     return Masses(stated.piston, rod, turning)
 
 
-def gas_force(problem: EngineProblem, angle: Real) -> Real:
+def compute_gas_force(problem: EngineProblem, angle: Real) -> Real:
     """Compute the gas force on a piston towards the crank, over degrees after the top dead centre of its firing."""
     if problem.pressure is None or problem.bore is None:
         return np.zeros_like(angle)
@@ -96,15 +93,15 @@ def gas_force(problem: EngineProblem, angle: Real) -> Real:
     return np.asarray(area * CubicSpline(at, value, bc_type="periodic")(within))
 
 
-def one_cylinder(problem: EngineProblem, degrees: Real, speed: float) -> Cylinder:
+def compute_cylinder(problem: EngineProblem, degrees: Real, speed: float) -> Cylinder:
     """Compute the forces of one cylinder at angles after the top dead centre of its firing; speed in rad/s."""
     theta = np.radians(degrees)
     scale = problem.scale
-    crank, length, masses = scale * problem.crank, scale * problem.rod_length, masses_of(problem)
-    moved = piston(theta, crank, length, two_term=problem.method == "two_term")
+    crank, length, masses = scale * problem.crank, scale * problem.rod_length, build_masses(problem)
+    moved = compute_piston_motion(theta, crank, length, two_term=problem.method == "two_term")
     rod, square = masses.rod, speed**2
     to_and_fro = masses.piston + rod.wrist_pin
-    gas, inertia = gas_force(problem, degrees), to_and_fro * square * moved.bend
+    gas, inertia = compute_gas_force(problem, degrees), to_and_fro * square * moved.bend
     # The rod's swing, sin φ = (r/l) sin θ, is exact in both methods; its correction only applies to the exact one.
     excess = rod.excess if problem.method == "exact" else 0.0
     lean = np.arcsin(crank / length * np.sin(theta))
@@ -128,19 +125,21 @@ def one_cylinder(problem: EngineProblem, degrees: Real, speed: float) -> Cylinde
     )
 
 
-def whole_engine(problem: EngineProblem, cylinders: Cylinders, fires: Real, speed: float, steps: int = STEPS) -> Engine:
+def compute_engine(
+    problem: EngineProblem, cylinders: Cylinders, fires: Real, speed: float, steps: int = STEPS_PER_TURN
+) -> Engine:
     """Sum over an engine whose cylinders fire at these crank angles (degrees); moments in spacings."""
     count = round(steps * problem.cycle / 360.0)
     angle = problem.cycle * np.arange(count + 1) / count
     gas, inertia, two_mass = np.zeros(count + 1), np.zeros(count + 1), np.zeros(count + 1)
     shaking, moment = np.zeros(count + 1, np.complex128), np.zeros(count + 1, np.complex128)
-    about = 0.0 if problem.moment_about == "first_throw" else middle_of(cylinders.place)
+    about = 0.0 if problem.moment_about == "first_throw" else compute_middle(cylinders.place)
     for axis, place, fire in zip(cylinders.axis, cylinders.place, fires, strict=True):
-        one = one_cylinder(problem, angle - fire, speed)
+        one = compute_cylinder(problem, angle - fire, speed)
         force = one.shaking * np.exp(1j * math.radians(axis))
         gas, inertia, two_mass = gas + one.gas, inertia + one.inertia, two_mass + one.two_mass
         shaking, moment = shaking + force, moment + (place - about) * force
-    turning = masses_of(problem).turning * speed**2
+    turning = build_masses(problem).turning * speed**2
     # The rotating mass belongs to the throw: it counts once even if several cylinders share it.
     for throw in np.unique(cylinders.throw):
         k = int(np.argmax(cylinders.throw == throw))

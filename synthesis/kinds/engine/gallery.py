@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from synthesis.model.kind import Named
+from synthesis.model.kind import NamedExample
 
 GALLERY = (
-    Named("Four in line", "Run smoothly", "Shaking forces and firing order of a four-stroke engine."),
-    Named("V8", "Run smoothly", "Eight cylinders at 90°: shaking forces and firing orders."),
+    NamedExample("Four in line", "Run smoothly", "Shaking forces and firing order of a four-stroke engine."),
+    NamedExample("V8", "Run smoothly", "Eight cylinders at 90°: shaking forces and firing orders."),
 )

@@ -7,9 +7,9 @@ from typing import Annotated, Literal
 from pydantic import ConfigDict, Field
 
 from synthesis.model.dimension import ANGLE, INERTIA, LENGTH, MASS, ROTATIONAL_SPEED
-from synthesis.model.dynamics import METRES, StatedFlywheel
-from synthesis.model.loads import FULL_TURN, Interpolation, PairRows, period_fault
-from synthesis.model.statement import (
+from synthesis.model.dynamics.loads import FULL_TURN, Interpolation, PairRows, find_period_error
+from synthesis.model.dynamics.request import METRES_PER_UNIT, FlywheelSpec
+from synthesis.model.problem import (
     Contradiction,
     Count,
     Degrees,
@@ -18,23 +18,23 @@ from synthesis.model.statement import (
     Number,
     PositiveLength,
     PositiveNumber,
-    StatedProblem,
+    ProblemBase,
     Statement,
 )
 
-MOST_CYLINDERS = 16
+MAX_CYLINDERS = 16
 """Maximum number of cylinders: 2^15 choices of firing."""
 
-LEAST_ROD = 1.0 + 1e-3
+MIN_ROD_RATIO = 1.0 + 1e-3
 """Rod over crank below which the rod is refused: at 1 it could not pass the dead centre."""
 
-MOST_COMBINATIONS, MOST_CHOICES = 20_000, 20_000_000
+MAX_COMBINATIONS, MAX_CHOICES = 20_000, 20_000_000
 """Maximum number of combinations of given throw angles, and of their choices of firing in total."""
 
-MOST_ROD = 1e6
+MAX_ROD_RATIO = 1e6
 """Rod over crank above which it is no engine: its motion is lost in the rounding of the rod."""
 
-BANKS: dict[str, int] = {"inline": 1, "vee": 2, "opposed": 2, "w": 3}
+BANK_COUNTS: dict[str, int] = {"inline": 1, "vee": 2, "opposed": 2, "w": 3}
 """Number of banks by type of layout; a radial engine has a star of cylinders instead."""
 
 
@@ -54,13 +54,13 @@ class EngineLayout(Statement):
     throws: list[Degrees] | None = Field(
         default=None,
         min_length=1,
-        max_length=MOST_CYLINDERS,
+        max_length=MAX_CYLINDERS,
         description="Phases (lags) of the throws along the shaft, degrees. Default: they are found.",
     )
     positions: list[Number] | None = Field(
         default=None,
         min_length=1,
-        max_length=MOST_CYLINDERS,
+        max_length=MAX_CYLINDERS,
         description="Places of the throws along the shaft, in spacings; by default 0, 1, 2, ...",
     )
     spacing: PositiveLength | None = Field(
@@ -71,17 +71,17 @@ class EngineLayout(Statement):
     )
     first_bank: Literal["left", "right"] = Field(default="left", description="The bank that is numbered first.")
 
-    def throw_count(self, cylinders: int) -> int | None:
+    def count_throws(self, cylinders: int) -> int | None:
         """Return the number of throws for the cylinders; None if they do not fill the banks."""
         if self.type == "inline" or self.pins == "own":
             return cylinders
         if self.type == "radial":
             return 1
-        banks = BANKS[self.type]
+        banks = BANK_COUNTS[self.type]
         return None if cylinders % banks else cylinders // banks
 
 
-class StatedRod(Statement):
+class ConnectingRod(Statement):
     """A connecting rod."""
 
     mass: Annotated[NonNegative, MASS]
@@ -92,7 +92,7 @@ class StatedRod(Statement):
     )
 
 
-class StatedCrank(Statement):
+class CrankThrow(Statement):
     """One throw of the crankshaft."""
 
     mass: Annotated[NonNegative, MASS]
@@ -108,8 +108,8 @@ class EngineMasses(Statement):
     """Moving masses, equal for all cylinders."""
 
     piston: Annotated[PositiveNumber, MASS] = Field(description="Mass of the piston with its pin and rings.")
-    rod: StatedRod
-    crank: StatedCrank | None = None
+    rod: ConnectingRod
+    crank: CrankThrow | None = None
 
 
 class CylinderPressure(Statement):
@@ -119,13 +119,13 @@ class CylinderPressure(Statement):
     interpolation: Interpolation = "linear"
 
 
-class IdleFlywheel(StatedFlywheel):
+class IdleFlywheel(FlywheelSpec):
     """A flywheel to even the speed, usually at idle."""
 
     speed_rpm: Annotated[PositiveNumber, ROTATIONAL_SPEED]
 
 
-class EngineProblem(StatedProblem):
+class EngineProblem(ProblemBase):
     """Piston engine: its shaking, torque and firing, or the arrangements of its throws that fire evenly.
 
     With `throws` the engine is analysed: exact harmonics of forces, moments and torque instead of two terms; firing
@@ -184,7 +184,7 @@ class EngineProblem(StatedProblem):
         default="si",
         description="`si`: kg, N, N·m, Pa, lengths in the length unit; `consistent`: no conversion.",
     )
-    cylinders: Annotated[Count, Field(ge=1, le=MOST_CYLINDERS)]
+    cylinders: Annotated[Count, Field(ge=1, le=MAX_CYLINDERS)]
     stroke_cycle: Literal[2, 4]
     stroke: PositiveLength = Field(description="Stroke of the piston: twice the crank's radius.")
     rod: PositiveLength | None = Field(default=None, description="Length of the rod; give this or `rod_ratio`.")
@@ -217,13 +217,13 @@ class EngineProblem(StatedProblem):
     avoid_adjacent: Flag = Field(
         default=True, description="Rank firing orders lower if neighbours in one bank fire in succession."
     )
-    firing_order: list[Annotated[Count, Field(ge=1, le=MOST_CYLINDERS)]] | None = Field(
-        default=None, min_length=1, max_length=MOST_CYLINDERS, description="Required firing order."
+    firing_order: list[Annotated[Count, Field(ge=1, le=MAX_CYLINDERS)]] | None = Field(
+        default=None, min_length=1, max_length=MAX_CYLINDERS, description="Required firing order."
     )
     firing_angles: list[Degrees] | None = Field(
         default=None,
         min_length=1,
-        max_length=MOST_CYLINDERS,
+        max_length=MAX_CYLINDERS,
         description="Firing angles of these cylinders, in that order.",
     )
     flywheel: IdleFlywheel | None = None
@@ -236,7 +236,7 @@ class EngineProblem(StatedProblem):
     @property
     def scale(self) -> float:
         """The length unit in the unit of the forces."""
-        return METRES[self.length_unit] if self.units == "si" else 1.0
+        return METRES_PER_UNIT[self.length_unit] if self.units == "si" else 1.0
 
     @property
     def crank(self) -> float:
@@ -259,31 +259,33 @@ class EngineProblem(StatedProblem):
         others = [(f"/other_layouts/{n}", layout) for n, layout in enumerate(self.other_layouts)]
         return [("/layout", self.layout), *others]
 
-    def contradictions(self) -> list[Contradiction]:
+    def find_contradictions(self) -> list[Contradiction]:
         """Return lengths, counts and tables that do not agree."""
         found = []
         if (self.rod is None) == (self.rod_ratio is None):
             found.append(Contradiction("/rod", "give exactly one of rod and rod_ratio"))
-        elif self.rod_length < LEAST_ROD * self.crank:
+        elif self.rod_length < MIN_ROD_RATIO * self.crank:
             path = "/rod" if self.rod is not None else "/rod_ratio"
             found.append(Contradiction(path, "the rod must be longer than the crank's radius"))
-        elif self.rod_length > MOST_ROD * self.crank:
+        elif self.rod_length > MAX_ROD_RATIO * self.crank:
             path = "/rod" if self.rod is not None else "/rod_ratio"
-            found.append(Contradiction(path, f"the rod is more than {MOST_ROD:g} times as long as the crank's radius"))
+            found.append(
+                Contradiction(path, f"the rod is more than {MAX_ROD_RATIO:g} times as long as the crank's radius")
+            )
         for path, layout in self.layouts:
-            found += self._layout_faults(path, layout)
-        return found + self._force_faults() + self._firing_faults()
+            found += self._find_layout_errors(path, layout)
+        return found + self._find_force_errors() + self._find_firing_errors()
 
-    def _layout_faults(self, path: str, layout: EngineLayout) -> list[Contradiction]:
+    def _find_layout_errors(self, path: str, layout: EngineLayout) -> list[Contradiction]:
         found = []
         if (layout.type in ("vee", "w")) != (layout.vee_angle is not None):
             detail = "a vee or w needs the angle between its banks; other layouts have none"
             found.append(Contradiction(f"{path}/vee_angle", detail))
         if layout.type in ("inline", "radial") and layout.pins == "own":
             found.append(Contradiction(f"{path}/pins", "only layouts with several banks can have pins of their own"))
-        count = layout.throw_count(self.cylinders)
+        count = layout.count_throws(self.cylinders)
         if count is None:
-            detail = f"{self.cylinders} cylinders do not fill {BANKS[layout.type]} banks; use pins `own`"
+            detail = f"{self.cylinders} cylinders do not fill {BANK_COUNTS[layout.type]} banks; use pins `own`"
             found.append(Contradiction("/cylinders", detail))
         elif layout.throws is not None and len(layout.throws) != count:
             found.append(Contradiction(f"{path}/throws", f"expected {count}, one for each throw"))
@@ -294,7 +296,7 @@ class EngineProblem(StatedProblem):
             found.append(Contradiction(f"{path}/throws", "throws of further layouts are found; omit them"))
         return found
 
-    def _force_faults(self) -> list[Contradiction]:
+    def _find_force_errors(self) -> list[Contradiction]:
         found = []
         if self.speed_rpm is None and (self.masses is not None or self.pressure is not None):
             found.append(Contradiction("/speed_rpm", "forces of masses and gas need a speed"))
@@ -302,7 +304,7 @@ class EngineProblem(StatedProblem):
             # Without a bore, pressure gives no force.
             if self.bore is None:
                 found.append(Contradiction("/bore", "gas pressure acts on the bore; give `bore`"))
-            fault = period_fault(self.pressure.table, self.cycle)
+            fault = find_period_error(self.pressure.table, self.cycle)
             if fault is not None:
                 found.append(Contradiction("/pressure/table", fault))
         if self.masses is not None and self.masses.rod.cg > self.rod_length:
@@ -312,7 +314,7 @@ class EngineProblem(StatedProblem):
             found.append(Contradiction("/flywheel", "a flywheel evens the torque; give masses or pressure"))
         return found
 
-    def _firing_faults(self) -> list[Contradiction]:
+    def _find_firing_errors(self) -> list[Contradiction]:
         found, order, given = [], self.firing_order, self.layout.throws is not None
         if order is not None and sorted(order) != list(range(1, self.cylinders + 1)):
             found.append(Contradiction("/firing_order", f"expected each of the cylinders 1 to {self.cylinders} once"))
@@ -326,10 +328,10 @@ class EngineProblem(StatedProblem):
             # A four-stroke cylinder may fire in either of two turns.
             choices = 1 if self.stroke_cycle == 2 else 1 << (self.cylinders - 1)
             for path, layout in self.layouts:
-                count = layout.throw_count(self.cylinders) or 1
+                count = layout.count_throws(self.cylinders) or 1
                 # The first throw is fixed, as only differences matter.
                 combinations = len(self.throw_angles) ** (count - 1)
-                if combinations > MOST_COMBINATIONS or combinations * choices > MOST_CHOICES:
+                if combinations > MAX_COMBINATIONS or combinations * choices > MAX_CHOICES:
                     detail = f"{combinations} combinations of {count} throws for {path} are too many to compare"
                     found.append(Contradiction("/throw_angles", detail))
         return found

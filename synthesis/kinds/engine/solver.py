@@ -6,26 +6,23 @@ from functools import partial
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
-from kinematics.engine.firing import firing_choices
-from kinematics.engine.harmonics import torque_sum, turning_parts
-from synthesis.kinds.engine.arrangement import Cylinders, cylinders_of, middle_of
+from kinematics.engine.firing import list_firing_choices
+from kinematics.engine.harmonics import compute_turning_parts, sum_torque
+from synthesis.kinds.engine.arrangement import Cylinders, arrange_cylinders, compute_middle
 from synthesis.kinds.engine.design import EngineCylinder, EngineDesign, EngineMechanism, EngineResult
-from synthesis.kinds.engine.enumeration import even_arrangements, stated_arrangements
-from synthesis.kinds.engine.measures import measured
+from synthesis.kinds.engine.enumeration import list_even_arrangements, list_requested_arrangements
+from synthesis.kinds.engine.measures import measure_engine
 from synthesis.kinds.engine.problem import EngineLayout, EngineProblem
 from synthesis.kinds.engine.verification import verify_engine
-from synthesis.model.counting import grouped
+from synthesis.model.counting import format_integer
 from synthesis.model.kind import Progress
-from synthesis.outcome.sifting import Sifting
+from synthesis.results.candidate_log import CandidateLog
 
-Real = NDArray[np.float64]
-
-DIGITS = 9
+SCORE_DIGITS = 9
 """Decimals to which the ranking criteria of engines are compared."""
 
-CHOSEN = 3
+ANALYSED_FACTOR = 3
 """Number of analysed arrangements per requested design, if a firing order is required."""
 
 
@@ -45,16 +42,16 @@ def solve_engine(problem: EngineProblem, progress: Progress) -> EngineResult:
     EngineResult
         Complete if the throws are given, or all arrangements were listed: those of up to eight throws.
     """
-    sifting = Sifting[EngineDesign](problem)
+    sifting = CandidateLog[EngineDesign](problem)
     given = problem.layout.throws
     if given is not None:
         progress(0.1, "analysing")
-        sifting.sift([_Candidate((), 0, tuple(given))], partial(_design, problem))
+        sifting.verify_candidates([_Candidate((), 0, tuple(given))], partial(_build_design, problem))
         progress(1.0, "verified")
         return EngineResult(
-            designs=sifting.designs(list),
-            search=sifting.search("analysis", complete=not sifting.rejected),
-            summary=_told(sifting) + sifting.reasons(),
+            designs=sifting.select_designs(list),
+            search=sifting.build_search("analysis", complete=not sifting.rejected),
+            summary=_describe_best(sifting) + sifting.describe_reasons(),
             count=1,
         )
     candidates: list[_Candidate] = []
@@ -62,41 +59,45 @@ def solve_engine(problem: EngineProblem, progress: Progress) -> EngineResult:
     for place, (_, layout) in enumerate(problem.layouts):
         progress(0.6 * place / len(problem.layouts), f"arranging the throws of layout {place + 1}")
         angles = problem.throw_angles
-        found = even_arrangements(problem, layout) if angles is None else stated_arrangements(problem, layout, angles)
+        found = (
+            list_even_arrangements(problem, layout)
+            if angles is None
+            else list_requested_arrangements(problem, layout, angles)
+        )
         counted, complete = counted + found.total, complete and found.complete
-        candidates += _scored(problem, layout, place, found.phases)
+        candidates += _score_arrangements(problem, layout, place, found.phases)
     candidates.sort()
     progress(0.6, "analysing the best")
     # A required firing order rejects many: analyse more arrangements.
-    wanted = problem.max_designs * (CHOSEN if problem.firing_order is not None else 1)
-    sifting.sift(candidates[:wanted], partial(_design, problem), enough=problem.max_designs)
+    wanted = problem.max_designs * (ANALYSED_FACTOR if problem.firing_order is not None else 1)
+    sifting.verify_candidates(candidates[:wanted], partial(_build_design, problem), enough=problem.max_designs)
     verified = sifting.candidates
     sifting.reject("outranked", len(candidates) - verified)
     progress(1.0, "verified")
     return EngineResult(
-        designs=sifting.designs(list),
-        search=sifting.search("exhaustive", complete=complete and not sifting.failed),
-        summary=_summary(problem, sifting, counted, len(candidates)),
+        designs=sifting.select_designs(list),
+        search=sifting.build_search("exhaustive", complete=complete and not sifting.failed),
+        summary=_write_summary(problem, sifting, counted, len(candidates)),
         count=counted,
     )
 
 
-def _scored(
+def _score_arrangements(
     problem: EngineProblem, layout: EngineLayout, place: int, phases: list[tuple[float, ...]]
 ) -> list[_Candidate]:
     """Score the arrangements of one layout, all at once."""
     if not phases:
         return []
-    plain = cylinders_of(layout, problem.cylinders, phases[0])
+    plain = arrange_cylinders(layout, problem.cylinders, phases[0])
     lag = np.array(phases)[:, plain.throw]
     axis, top = np.radians(plain.axis), np.radians(lag + plain.axis)
-    places = plain.place - middle_of(plain.place)
-    force, moment = turning_parts(1, axis, top), turning_parts(1, axis, top, places)
-    second, second_moment = turning_parts(2, axis, top), turning_parts(2, axis, top, places)
-    torque = np.max([np.abs(torque_sum(k, top)) for k in (1, 2, 3)], axis=0)
+    places = plain.place - compute_middle(plain.place)
+    force, moment = compute_turning_parts(1, axis, top), compute_turning_parts(1, axis, top, places)
+    second, second_moment = compute_turning_parts(2, axis, top), compute_turning_parts(2, axis, top, places)
+    torque = np.max([np.abs(sum_torque(k, top)) for k in (1, 2, 3)], axis=0)
     uneven = np.zeros(len(phases))
     if problem.throw_angles is not None:
-        uneven = np.array([firing_choices(row, problem.stroke_cycle).unevenness for row in lag + plain.axis])
+        uneven = np.array([list_firing_choices(row, problem.stroke_cycle).unevenness for row in lag + plain.axis])
     columns = [
         uneven,
         np.abs(force.backward),
@@ -109,26 +110,26 @@ def _scored(
         np.abs(moment.forward),
     ]
     # Rounded, so that arrangements equal except for rounding stay in the order of their phases.
-    scores = np.round(np.stack(columns, axis=1), DIGITS) + 0.0
+    scores = np.round(np.stack(columns, axis=1), SCORE_DIGITS) + 0.0
     return [_Candidate(tuple(row), place, throws) for row, throws in zip(scores.tolist(), phases, strict=True)]
 
 
-def _design(problem: EngineProblem, candidate: _Candidate) -> EngineDesign:
+def _build_design(problem: EngineProblem, candidate: _Candidate) -> EngineDesign:
     """Build an arrangement as a verified design."""
     layout = problem.layouts[candidate.place][1]
-    cylinders = cylinders_of(layout, problem.cylinders, candidate.throws)
+    cylinders = arrange_cylinders(layout, problem.cylinders, candidate.throws)
     mechanism = EngineMechanism(
         layout=layout.type,
         crank=problem.crank,
         rod=problem.rod_length,
         throws=list(candidate.throws),
-        cylinders=_listed(cylinders),
+        cylinders=_list_cylinders(cylinders),
     )
-    design = measured(problem, layout, mechanism, cylinders)
+    design = measure_engine(problem, layout, mechanism, cylinders)
     return design.model_copy(update={"verification": verify_engine(problem, design)})
 
 
-def _listed(cylinders: Cylinders) -> list[EngineCylinder]:
+def _list_cylinders(cylinders: Cylinders) -> list[EngineCylinder]:
     columns = (column.tolist() for column in cylinders)
     return [
         EngineCylinder(number=n, throw=throw + 1, axis=axis, phase=phase, place=place)
@@ -136,7 +137,7 @@ def _listed(cylinders: Cylinders) -> list[EngineCylinder]:
     ]
 
 
-def _told(sifting: Sifting[EngineDesign]) -> str:
+def _describe_best(sifting: CandidateLog[EngineDesign]) -> str:
     """Describe the first design."""
     if not sifting.passed:
         return "No engine passed its checks."
@@ -153,9 +154,9 @@ def _told(sifting: Sifting[EngineDesign]) -> str:
     return f"{fired}. Unbalanced after crankshaft counterweights: {left}."
 
 
-def _summary(problem: EngineProblem, sifting: Sifting[EngineDesign], count: int, listed: int) -> str:
+def _write_summary(problem: EngineProblem, sifting: CandidateLog[EngineDesign], count: int, listed: int) -> str:
     if not count:
         return "No arrangement of these throws fires evenly; give throw_angles to compare uneven ones."
     evenly = "" if problem.throw_angles is not None else " with even firing"
-    part = "" if listed == count else f", of which {grouped(listed)} symmetric ones were compared"
-    return f"Arrangements of the throws{evenly}: {grouped(count)}{part}. {_told(sifting)}"
+    part = "" if listed == count else f", of which {format_integer(listed)} symmetric ones were compared"
+    return f"Arrangements of the throws{evenly}: {format_integer(count)}{part}. {_describe_best(sifting)}"

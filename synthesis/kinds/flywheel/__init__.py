@@ -5,7 +5,7 @@ from __future__ import annotations
 from synthesis.kinds.flywheel.design import FlywheelResult
 from synthesis.kinds.flywheel.gallery import GALLERY
 from synthesis.kinds.flywheel.problem import FlywheelProblem
-from synthesis.model.kind import Kind, Progress, always
+from synthesis.model.kind import Kind, Progress, return_true
 
 __all__ = ["KIND"]
 
@@ -16,4 +16,4 @@ def _solve(problem: FlywheelProblem, progress: Progress) -> FlywheelResult:
     return solve_flywheel(problem, progress)
 
 
-KIND = Kind("flywheel", FlywheelProblem, FlywheelResult, _solve, brief=always, gallery=GALLERY)
+KIND = Kind("flywheel", FlywheelProblem, FlywheelResult, _solve, brief=return_true, gallery=GALLERY)

@@ -6,19 +6,17 @@ import math
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
-from synthesis.analyses.cyclic import closes
-from synthesis.analyses.dynamics import DETERMINED, forces_of
-from synthesis.analyses.motions import MAX_POSITIONS, RAD_PER_S
-from synthesis.analyses.weighed import weighed_request
+from kinematics.arrays import Real
+from synthesis.analyses.input_motion import MAX_POSITIONS, RAD_PER_S
+from synthesis.analyses.linkages.cyclic_statistics import is_closed
+from synthesis.analyses.linkages.dynamics import DETERMINED_STATUSES, analyze_forces
+from synthesis.analyses.linkages.loaded_mechanism import build_loaded_request
 from synthesis.kinds.flywheel.problem import FlywheelProblem
-from synthesis.mechanisms.courses import repeated_after
-from synthesis.model.loads import FULL_TURN
+from synthesis.mechanisms.courses import find_period_turns
+from synthesis.model.dynamics.loads import FULL_TURN
 
-Real = NDArray[np.float64]
-
-STEPS = 3600
+MAX_STEPS_PER_TURN = 3600
 """Maximum number of positions of a turn at which a linkage's torque is computed. At the onset of a load, a cubic
 through them errs by the square of a step: some 1e-7 of a coefficient."""
 
@@ -27,7 +25,7 @@ class UnknownTorque(ValueError):
     """The torque is not known over the whole cycle; the message gives the reason."""
 
 
-class Course(NamedTuple):
+class TorqueCycle(NamedTuple):
     """Torque taken from a shaft over one cycle.
 
     Attributes
@@ -45,7 +43,7 @@ class Course(NamedTuple):
     smooth: bool
 
 
-def solver_course(problem: FlywheelProblem) -> Course:
+def compute_torque_cycle(problem: FlywheelProblem) -> TorqueCycle:
     """Compute the torque from the table's rows, or from the reactions in a linkage.
 
     Raises
@@ -54,7 +52,7 @@ def solver_course(problem: FlywheelProblem) -> Course:
         If a linkage's torque is not known at all positions, or does not repeat.
     """
     if problem.torque is None:
-        return machine_course(problem, "drive", 0.0)
+        return compute_machine_torque(problem, "drive", 0.0)
     rows = np.array(problem.torque.table, np.float64)
     angle, torque = np.radians(rows[:, 0]), rows[:, 1]
     cycle = 2.0 * math.pi * problem.torque.turns
@@ -64,10 +62,10 @@ def solver_course(problem: FlywheelProblem) -> Course:
     else:
         torque = np.append(torque[:-1], torque[0])
     sign = 1.0 if problem.torque.side == "demand" else -1.0
-    return Course(angle, sign * torque, problem.torque.interpolation == "periodic_cubic")
+    return TorqueCycle(angle, sign * torque, problem.torque.interpolation == "periodic_cubic")
 
 
-def machine_course(problem: FlywheelProblem, route: str, share: float) -> Course:
+def compute_machine_torque(problem: FlywheelProblem, route: str, share: float) -> TorqueCycle:
     """Compute a linkage's torque by one of the two ``route`` s to its forces, shifted by a ``share`` of a step.
 
     Raises
@@ -76,22 +74,22 @@ def machine_course(problem: FlywheelProblem, route: str, share: float) -> Course
         If it is not known at all positions, or does not repeat.
     """
     assert problem.machine is not None
-    request = weighed_request(problem.machine.mechanism, problem.machine.dynamics, problem.length_unit)
+    request = build_loaded_request(problem.machine.mechanism, problem.machine.dynamics, problem.length_unit)
     assert request.dynamics is not None
-    mechanism = request.mechanism.mechanism()
-    turns = repeated_after(request.dynamics, mechanism)
+    mechanism = request.mechanism.build_mechanism()
+    turns = find_period_turns(request.dynamics, mechanism)
     # At least 36 positions per turn must remain of the maximum number.
     if not 0 < turns < MAX_POSITIONS // 36:
         raise UnknownTorque("the linkage and its loads do not repeat within a few turns")
-    steps = turns * min(STEPS, (MAX_POSITIONS - 1) // turns)
+    steps = turns * min(MAX_STEPS_PER_TURN, (MAX_POSITIONS - 1) // turns)
     at = FULL_TURN * turns * (np.arange(steps + 1) + share) / steps
     # The linkage is driven at constant speed: the fluctuation is small.
     speed = np.full(len(at), problem.speed_rpm * RAD_PER_S)
-    found = forces_of(mechanism, request.dynamics, problem.length_unit, at, speed, 0.0)
+    found = analyze_forces(mechanism, request.dynamics, problem.length_unit, at, speed, 0.0)
     for status, angle in zip(found["status"], at, strict=True):
-        if status not in DETERMINED:
+        if status not in DETERMINED_STATUSES:
             raise UnknownTorque(f"the linkage's forces are not known over the whole cycle: {status} at {angle:.4g}°")
     demand = np.array(found[route], np.float64)
-    if not closes(mechanism, at, demand, turns):
+    if not is_closed(mechanism, at, demand, turns):
         raise UnknownTorque("the linkage's torque does not repeat after a cycle")
-    return Course(np.radians(at), np.append(demand[:-1], demand[0]), smooth=True)
+    return TorqueCycle(np.radians(at), np.append(demand[:-1], demand[0]), smooth=True)

@@ -8,7 +8,7 @@ from pydantic import Field
 
 from synthesis.model.answer import Answer, Result, Verification
 from synthesis.model.dimension import DENSITY, ENERGY, INERTIA, MASS, SPEED, Angle, Length, RotationalSpeed, Torque
-from synthesis.model.dynamics_answer import Pulse
+from synthesis.model.dynamics.answer import Pulse
 
 
 class FlywheelMechanism(Answer):

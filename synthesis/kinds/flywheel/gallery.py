@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from synthesis.model.kind import Named
+from synthesis.model.kind import NamedExample
 
 GALLERY = (
-    Named("Punch press", "Run smoothly", "A flywheel that keeps the speed within 5 % through the blow."),
-    Named("Pump with one cylinder", "Run smoothly", "The rim that evens out a slider-crank and its load."),
+    NamedExample("Punch press", "Run smoothly", "A flywheel that keeps the speed within 5 % through the blow."),
+    NamedExample("Pump with one cylinder", "Run smoothly", "The rim that evens out a slider-crank and its load."),
 )

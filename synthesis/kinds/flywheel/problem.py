@@ -7,15 +7,22 @@ from typing import Annotated, Any, Literal
 from pydantic import ConfigDict, Field, JsonValue
 
 from synthesis.model.dimension import DENSITY, ROTATIONAL_SPEED, SPEED
-from synthesis.model.dynamics import METRES, StatedFlywheel, WeighedLinkage
-from synthesis.model.loads import FULL_TURN, Interpolation, PairRows, Turns, period_fault
-from synthesis.model.statement import Contradiction, PositiveLength, PositiveNumber, Range, StatedProblem, Statement
+from synthesis.model.dynamics.loads import FULL_TURN, Interpolation, PairRows, Turns, find_period_error
+from synthesis.model.dynamics.request import METRES_PER_UNIT, FlywheelSpec, LoadedLinkage
+from synthesis.model.problem import Contradiction, PositiveLength, PositiveNumber, ProblemBase, Range, Statement
 
-PULSE: list[JsonValue] = [[0.0, 10.0], [60.0, 10.0], [90.0, 160.0], [120.0, 160.0], [150.0, 10.0], [360.0, 10.0]]
+EXAMPLE_TORQUE: list[JsonValue] = [
+    [0.0, 10.0],
+    [60.0, 10.0],
+    [90.0, 160.0],
+    [120.0, 160.0],
+    [150.0, 10.0],
+    [360.0, 10.0],
+]
 """Torque of the examples, N·m over degrees: a press that works over a sixth of a turn."""
 
 
-class StatedTorque(Statement):
+class TorqueTable(Statement):
     """The torque of a shaft over its angle, as a table that repeats after whole turns."""
 
     table: PairRows = Field(description="Rows of shaft angle (°) and torque.")
@@ -34,28 +41,28 @@ class Machine(Statement):
     """A linkage driven by the shaft, with its masses and loads; its torque is computed at constant speed."""
 
     mechanism: dict[str, Any] = Field(description="Mechanism as in `POST /v1/analyses`; its input is the shaft.")
-    dynamics: WeighedLinkage
+    dynamics: LoadedLinkage
 
 
-class Most(Statement):
+class MaxLength(Statement):
     """An upper limit of a length."""
 
     max: PositiveLength
 
 
-class Least(Statement):
+class MinLength(Statement):
     """A lower limit of a length."""
 
     min: PositiveLength
 
 
-class FastestRim(Statement):
+class MaxRimSpeed(Statement):
     """Maximum speed of the rim at the shaft's greatest speed."""
 
     max: Annotated[PositiveNumber, SPEED] = Field(description="Maximum rim speed, m/s or in consistent units.")
 
 
-class Flattest(Statement):
+class MaxSlenderness(Statement):
     """Maximum ratio of radius to thickness."""
 
     max: PositiveNumber
@@ -71,16 +78,16 @@ class Thickness(Range):
 class FlywheelLimits(Statement):
     """Limits of the wheel. Its mass falls as its radius grows, so that one of these determines its size."""
 
-    radius: Most | None = Field(default=None, description="Limit of the outer radius.")
+    radius: MaxLength | None = Field(default=None, description="Limit of the outer radius.")
     thickness: Thickness | None = None
-    wall: Least | None = Field(
+    wall: MinLength | None = Field(
         default=None, description="Limit of a rim's wall, between its inner and its outer radius."
     )
-    rim_speed: FastestRim | None = None
-    radius_to_thickness: Flattest | None = None
+    rim_speed: MaxRimSpeed | None = None
+    radius_to_thickness: MaxSlenderness | None = None
 
 
-class FlywheelProblem(StatedProblem, StatedFlywheel):
+class FlywheelProblem(ProblemBase, FlywheelSpec):
     """Flywheel: the lightest disc or rim with which a shaft keeps its speed within a coefficient of fluctuation.
 
     The torque over a cycle is a table, or that of a linkage with masses and loads. The moment of inertia follows
@@ -94,7 +101,7 @@ class FlywheelProblem(StatedProblem, StatedFlywheel):
             "examples": [
                 {
                     "kind": "flywheel",
-                    "torque": {"table": PULSE},
+                    "torque": {"table": EXAMPLE_TORQUE},
                     "speed_rpm": 300.0,
                     "coefficient": 0.05,
                     "form": "any",
@@ -133,7 +140,7 @@ class FlywheelProblem(StatedProblem, StatedFlywheel):
         default="si",
         description="`si`: kg, N·m, kg·m², s, and lengths in the length unit; `consistent`: no conversion.",
     )
-    torque: StatedTorque | None = Field(default=None, description="Torque table; give this or `machine`.")
+    torque: TorqueTable | None = Field(default=None, description="Torque table; give this or `machine`.")
     machine: Machine | None = None
     speed_rpm: Annotated[PositiveNumber, ROTATIONAL_SPEED] = Field(description="Shaft speed, mean over time.")
     form: Literal["disc", "rim", "any"] = Field(
@@ -150,27 +157,27 @@ class FlywheelProblem(StatedProblem, StatedFlywheel):
     @property
     def scale(self) -> float:
         """The length unit in the unit of the inertia."""
-        return METRES[self.length_unit] if self.units == "si" else 1.0
+        return METRES_PER_UNIT[self.length_unit] if self.units == "si" else 1.0
 
     @property
     def forms(self) -> tuple[Literal["disc", "rim"], ...]:
         """The requested forms."""
         return ("disc", "rim") if self.form == "any" else (self.form,)
 
-    def contradictions(self) -> list[Contradiction]:
+    def find_contradictions(self) -> list[Contradiction]:
         """Return a torque with two sources or none, tables that do not repeat, and wheels without bounds."""
         found = []
         if (self.torque is None) == (self.machine is None):
             found.append(Contradiction("/torque", "give exactly one of torque and machine"))
         if self.torque is not None:
-            fault = period_fault(self.torque.table, FULL_TURN * self.torque.turns)
+            fault = find_period_error(self.torque.table, FULL_TURN * self.torque.turns)
             if fault is not None:
                 found.append(Contradiction("/torque/table", fault))
         if self.machine is not None:
-            found += self._machine_faults(self.machine)
-        return found + self._unbounded()
+            found += self._find_machine_errors(self.machine)
+        return found + self._check_bounds()
 
-    def _unbounded(self) -> list[Contradiction]:
+    def _check_bounds(self) -> list[Contradiction]:
         limits, found = self.limits, []
         least = limits.thickness is not None and limits.thickness.min is not None
         # With a minimum thickness alone, a rim can still grow without bound as its wall gets thinner.
@@ -190,13 +197,13 @@ class FlywheelProblem(StatedProblem, StatedFlywheel):
             found.append(Contradiction("/limits/wall", "a disc has no wall; choose a rim, or omit the limit"))
         return found
 
-    def _machine_faults(self, machine: Machine) -> list[Contradiction]:
+    def _find_machine_errors(self, machine: Machine) -> list[Contradiction]:
         """Return the errors of the mechanism and its dynamics as the analysis reports them."""
         # Imported here because it loads the analysis core, which parsing a problem should not wait for.
-        from synthesis.analyses.weighed import weighed_faults
+        from synthesis.analyses.linkages.loaded_mechanism import find_loaded_errors
 
         if machine.dynamics.units != self.units:
             detail = f"the wheel is given in units {self.units}; give the machine in the same units"
             return [Contradiction("/machine/dynamics/units", detail)]
-        faults = weighed_faults(machine.mechanism, machine.dynamics, self.length_unit, shaft=True)
+        faults = find_loaded_errors(machine.mechanism, machine.dynamics, self.length_unit, shaft=True)
         return [Contradiction(f"/machine{path}", detail) for path, detail in faults]

@@ -18,7 +18,7 @@ import math
 from collections.abc import Callable
 from typing import NamedTuple
 
-HALVINGS = 200
+BISECTION_COUNT = 200
 """Number of bisections of a range of radii: until its ends are neighbouring floating-point numbers."""
 
 
@@ -43,7 +43,7 @@ class Wheel(NamedTuple):
     thickness: float
 
 
-def lightest(inertia: float, density: float, bounds: Bounds, *, rim: bool) -> Wheel | None:
+def find_lightest(inertia: float, density: float, bounds: Bounds, *, rim: bool) -> Wheel | None:
     """Find the lightest wheel of a moment of inertia; None if the limits permit none.
 
     Parameters
@@ -56,7 +56,7 @@ def lightest(inertia: float, density: float, bounds: Bounds, *, rim: bool) -> Wh
     """
     c = 2.0 * inertia / (math.pi * density)
 
-    def inner(radius: float) -> float:
+    def find_inner_radius(radius: float) -> float:
         """Return the greatest inner radius; negative if the wheel would be too thick."""
         if not rim:
             # The slack keeps a disc exactly at the thickness limit feasible.
@@ -68,23 +68,23 @@ def lightest(inertia: float, density: float, bounds: Bounds, *, rim: bool) -> Wh
         left = radius**4 - c / bounds.thickest
         return min(widest, left**0.25) if left >= 0.0 else -1.0
 
-    def too_thin(radius: float) -> bool:
-        open_ = inner(radius)
+    def is_too_thin(radius: float) -> bool:
+        open_ = find_inner_radius(radius)
         # The minimum thickness, directly or by the ratio to the radius.
         least = max(bounds.thinnest or 0.0, radius / bounds.flattest if bounds.flattest is not None else 0.0)
         return open_ >= 0.0 and (radius**4 - open_**4) * least > c
 
-    radius = _largest(too_thin, bounds.radius, c)
+    radius = _find_largest_radius(is_too_thin, bounds.radius, c)
     if radius is None:
         return None
-    open_ = inner(radius)
+    open_ = find_inner_radius(radius)
     if open_ < 0.0:
         return None
     ring = radius**4 - open_**4
     return Wheel(radius, open_, c / ring) if ring > 0.0 and math.isfinite(ring) else None
 
 
-def _largest(too_thin: Callable[[float], bool], limit: float | None, c: float) -> float | None:
+def _find_largest_radius(too_thin: Callable[[float], bool], limit: float | None, c: float) -> float | None:
     """Return the largest radius, up to its limit, at which the wheel is not too thin; None if it is unbounded."""
     if limit is not None and not too_thin(limit):
         return limit
@@ -99,7 +99,7 @@ def _largest(too_thin: Callable[[float], bool], limit: float | None, c: float) -
         low *= 0.5
         if low == 0.0:
             return None
-    for _ in range(HALVINGS):
+    for _ in range(BISECTION_COUNT):
         middle = 0.5 * (low + high)
         low, high = (low, middle) if too_thin(middle) else (middle, high)
     return low

@@ -5,15 +5,15 @@ from __future__ import annotations
 from functools import partial
 from typing import Literal
 
-from synthesis.analyses.motions import RAD_PER_S
-from synthesis.kinds.flywheel.course import Course, UnknownTorque, solver_course
+from synthesis.analyses.input_motion import RAD_PER_S
+from synthesis.kinds.flywheel.course import TorqueCycle, UnknownTorque, compute_torque_cycle
 from synthesis.kinds.flywheel.design import Fluctuation, FlywheelDesign, FlywheelMechanism, FlywheelResult
 from synthesis.kinds.flywheel.problem import FlywheelProblem
-from synthesis.kinds.flywheel.sizing import Bounds, lightest
+from synthesis.kinds.flywheel.sizing import Bounds, find_lightest
 from synthesis.kinds.flywheel.verification import verify_flywheel
 from synthesis.mechanisms import flywheel
 from synthesis.model.kind import Progress
-from synthesis.outcome.sifting import Sifting
+from synthesis.results.candidate_log import CandidateLog
 
 
 def solve_flywheel(problem: FlywheelProblem, progress: Progress) -> FlywheelResult:
@@ -25,61 +25,61 @@ def solve_flywheel(problem: FlywheelProblem, progress: Progress) -> FlywheelResu
         Complete whenever the torque is known: each form has one lightest wheel. Without designs if none is needed, or
         the limits permit none; ``summary`` gives the reason.
     """
-    sifting = Sifting[FlywheelDesign](problem)
+    sifting = CandidateLog[FlywheelDesign](problem)
     progress(0.0, "torque over a cycle")
     try:
-        course = solver_course(problem)
+        course = compute_torque_cycle(problem)
     except UnknownTorque as error:
         text = f"No flywheel found: {error}."
-        return FlywheelResult(designs=[], search=sifting.search("exact"), summary=text, fluctuation=None)
-    found = flywheel.table_fluctuation(course.angle, course.demand, smooth=course.smooth)
+        return FlywheelResult(designs=[], search=sifting.build_search("exact"), summary=text, fluctuation=None)
+    found = flywheel.compute_table_fluctuation(course.angle, course.demand, smooth=course.smooth)
     progress(0.3, "sizing")
-    asked = _asked(problem, course, found)
+    asked = _compute_fluctuation(problem, course, found)
     said = []
     wheels = []
     for form in problem.forms if asked.inertia > 0.0 else ():
-        wheel = _wheel(problem, found, asked.inertia, form)
+        wheel = _size_wheel(problem, found, asked.inertia, form)
         if wheel is None:
             said.append(f"No {form} of the required inertia fits within the limits.")
         else:
             wheels.append(wheel)
     progress(0.5, "integrating the speed")
-    sifting.sift(wheels, partial(verify_flywheel, problem))
+    sifting.verify_candidates(wheels, partial(verify_flywheel, problem))
     progress(1.0, "verified")
     return FlywheelResult(
-        designs=sifting.designs(lambda designs: sorted(designs, key=lambda design: design.metrics.mass)),
-        search=sifting.search("exact", complete=not sifting.rejected),
-        summary=" ".join([_summary(problem, asked, sifting), *said]),
+        designs=sifting.select_designs(lambda designs: sorted(designs, key=lambda design: design.metrics.mass)),
+        search=sifting.build_search("exact", complete=not sifting.rejected),
+        summary=" ".join([_write_summary(problem, asked, sifting), *said]),
         fluctuation=asked,
     )
 
 
-def _asked(problem: FlywheelProblem, course: Course, found: flywheel.Fluctuation) -> Fluctuation:
+def _compute_fluctuation(problem: FlywheelProblem, course: TorqueCycle, found: flywheel.Fluctuation) -> Fluctuation:
     """Compute the inertias that the torque requires in addition to the shaft's own."""
     speed, present = problem.speed_rpm * RAD_PER_S, problem.existing_inertia
-    whole = flywheel.first_order_inertia(found.energy, speed, problem.coefficient)
-    exact = flywheel.exact_inertia(found, speed, problem.coefficient)
+    whole = flywheel.compute_first_order_inertia(found.energy, speed, problem.coefficient)
+    exact = flywheel.find_exact_inertia(found, speed, problem.coefficient)
     # Reported torques keep the sign of the given side.
     sign = 1.0 if problem.torque is None or problem.torque.side == "demand" else -1.0
-    listed = flywheel.pulses(found, float(course.angle[-1] - course.angle[0]))
+    listed = flywheel.list_pulses(found, float(course.angle[-1] - course.angle[0]))
     return Fluctuation.model_validate(
         {
             "mean_torque": sign * found.mean,
             "energy": found.energy,
             "inertia": max(0.0, exact - present),
             "first_order_inertia": max(0.0, whole - present),
-            "first_order_coefficient": flywheel.exact_coefficient(found, max(whole, present), speed),
+            "first_order_coefficient": flywheel.compute_exact_coefficient(found, max(whole, present), speed),
             "pulses": [pulse | {"area": sign * pulse["area"]} for pulse in listed],
         }
     )
 
 
-def _wheel(
+def _size_wheel(
     problem: FlywheelProblem, found: flywheel.Fluctuation, inertia: float, form: Literal["disc", "rim"]
 ) -> FlywheelMechanism | None:
     """Size the lightest wheel of a form; None if the limits permit none."""
     scale, limits = problem.scale, problem.limits
-    ends = flywheel.extreme_speeds(found, inertia + problem.existing_inertia, problem.speed_rpm * RAD_PER_S)
+    ends = flywheel.find_extreme_speeds(found, inertia + problem.existing_inertia, problem.speed_rpm * RAD_PER_S)
     assert ends is not None, "the inertia was found by this speed"
     radii = [] if limits.radius is None else [scale * limits.radius.max]
     # The rim speed limit applies at the greatest speed of the cycle.
@@ -92,7 +92,7 @@ def _wheel(
         wall=None if limits.wall is None else scale * limits.wall.min,
         flattest=None if limits.radius_to_thickness is None else limits.radius_to_thickness.max,
     )
-    wheel = lightest(inertia, problem.density, bounds, rim=form == "rim")
+    wheel = find_lightest(inertia, problem.density, bounds, rim=form == "rim")
     if wheel is None:
         return None
     return FlywheelMechanism(
@@ -104,12 +104,12 @@ def _wheel(
     )
 
 
-def _summary(problem: FlywheelProblem, asked: Fluctuation, sifting: Sifting[FlywheelDesign]) -> str:
+def _write_summary(problem: FlywheelProblem, fluctuation: Fluctuation, sifting: CandidateLog[FlywheelDesign]) -> str:
     joule, kilogram, inertia = (" J", " kg", " kg·m²") if problem.units == "si" else ("", "", "")
-    text = [f"The energy fluctuates by {asked.energy:.6g}{joule} over a cycle."]
-    if asked.mean_torque < 0.0:
+    text = [f"The energy fluctuates by {fluctuation.energy:.6g}{joule} over a cycle."]
+    if fluctuation.mean_torque < 0.0:
         text.append("The mean torque is negative: on average the other side drives the shaft.")
-    if asked.inertia == 0.0:
+    if fluctuation.inertia == 0.0:
         text.append("No flywheel is needed: the shaft keeps the coefficient without one.")
     elif sifting.passed:
         best = min(sifting.passed, key=lambda design: design.metrics.mass)
@@ -118,4 +118,4 @@ def _summary(problem: FlywheelProblem, asked: Fluctuation, sifting: Sifting[Flyw
             f"The lightest wheel is a {best.mechanism.form} with a mass of {best.metrics.mass:.6g}{kilogram} "
             f"and an inertia of {best.metrics.inertia:.6g}{inertia}. Active limits: {limits}."
         )
-    return " ".join(text) + sifting.reasons()
+    return " ".join(text) + sifting.describe_reasons()

@@ -10,42 +10,40 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.interpolate import CubicSpline
 
-from synthesis.analyses.motions import RAD_PER_S
-from synthesis.kinds.flywheel.course import UnknownTorque, machine_course
+from kinematics.arrays import Real
+from synthesis.analyses.input_motion import RAD_PER_S
+from synthesis.kinds.flywheel.course import UnknownTorque, compute_machine_torque
 from synthesis.kinds.flywheel.design import FlywheelDesign, FlywheelMechanism, FlywheelMetrics, Limit, SpeedCurve
 from synthesis.kinds.flywheel.problem import FlywheelProblem
 from synthesis.model.answer import Check, Verification
 from synthesis.model.dimension import LENGTH, SPEED
-from synthesis.proof.checks import at_least, at_most, tolerated
-from synthesis.proof.shaft_speed import CYCLES, Run, integrated
+from synthesis.verification.checks import check_error, check_maximum, check_minimum
+from synthesis.verification.shaft_speed import CYCLE_COUNT, SpeedHistory, integrate_speed
 
-Real = NDArray[np.float64]
-
-GRID = 2048
+STEPS_PER_TURN = 2048
 """Equal steps of a turn, in addition to the rows of a table."""
 
-KEPT = 1e-6
+COEFFICIENT_TOLERANCE = 1e-6
 """Share by which the integrated coefficient may exceed the requested one."""
 
-REPEATS = 1e-7
+REPEAT_TOLERANCE = 1e-7
 """Share of the speed by which it may differ after a cycle: the method's error at corners of the torque."""
 
-RINGS = 64
+RING_COUNT = 64
 """Number of rings in the sums, each by Gauss's rule of three points, which is exact for cubic integrands."""
 
-SAMPLED = 400
+SAMPLE_COUNT = 400
 """Number of radii, inner and outer, of the wheels that are compared."""
 
-NO_LIGHTER = 1e-6
+MASS_TOLERANCE = 1e-6
 """Share by which a compared wheel may be lighter: twice the share of the coefficient."""
 
-AT_LIMIT = 1e-9
+ACTIVE_TOLERANCE = 1e-9
 """Share of a limit within which the limit counts as active."""
 
-SHOWN = 361
+CURVE_POINT_COUNT = 361
 """Number of positions of the speed curve in an answer."""
 
 
@@ -64,24 +62,26 @@ def verify_flywheel(problem: FlywheelProblem, wheel: FlywheelMechanism) -> Flywh
     FlywheelDesign or None
         None if the shaft would stop, or the energy balance does not determine the torque of a linkage.
     """
-    mass, inertia = _weighed(problem, wheel)
+    mass, inertia = _sum_rings(problem, wheel)
     try:
-        angle, middle, last = _torque(problem)
+        angle, middle, last = _sample_torque(problem)
     except UnknownTorque:
         return None
     mean_speed = problem.speed_rpm * RAD_PER_S
-    run = integrated(angle, middle, last, inertia + problem.existing_inertia, mean_speed)
+    run = integrate_speed(angle, middle, last, inertia + problem.existing_inertia, mean_speed)
     if run is None:
         return None
     coefficient = (run.greatest - run.least) / mean_speed
     rim = run.greatest * wheel.radius * problem.scale
     # Samples per cycle.
-    count = len(run.speed) // CYCLES
+    count = len(run.speed) // CYCLE_COUNT
     checks = [
-        at_most("coefficient", coefficient, problem.coefficient, slack=KEPT),
-        tolerated("speed_repeats", float(abs(run.speed[count] - run.speed[0])) / mean_speed, REPEATS),
-        *_limits(problem, wheel, rim),
-        at_least("lightest", _lightest_other(problem, inertia, run.greatest, wheel.form) / mass, 1.0, slack=NO_LIGHTER),
+        check_maximum("coefficient", coefficient, problem.coefficient, slack=COEFFICIENT_TOLERANCE),
+        check_error("speed_repeats", float(abs(run.speed[count] - run.speed[0])) / mean_speed, REPEAT_TOLERANCE),
+        *_check_limits(problem, wheel, rim),
+        check_minimum(
+            "lightest", _search_lighter(problem, inertia, run.greatest, wheel.form) / mass, 1.0, slack=MASS_TOLERANCE
+        ),
     ]
     metrics = FlywheelMetrics(
         mass=mass,
@@ -90,18 +90,21 @@ def verify_flywheel(problem: FlywheelProblem, wheel: FlywheelMechanism) -> Flywh
         least_speed=run.least / RAD_PER_S,
         greatest_speed=run.greatest / RAD_PER_S,
         rim_speed=rim,
-        at_limits=_at_limits(problem, wheel, rim),
+        at_limits=_list_active_limits(problem, wheel, rim),
     )
     return FlywheelDesign(
-        mechanism=wheel, verification=Verification.of(checks), metrics=metrics, course=_course(problem, run)
+        mechanism=wheel,
+        verification=Verification.from_checks(checks),
+        metrics=metrics,
+        course=_build_curve(problem, run),
     )
 
 
-def _weighed(problem: FlywheelProblem, wheel: FlywheelMechanism) -> tuple[float, float]:
+def _sum_rings(problem: FlywheelProblem, wheel: FlywheelMechanism) -> tuple[float, float]:
     """Compute mass and moment of inertia, summed over rings."""
     scale = problem.scale
     nodes, weights = np.polynomial.legendre.leggauss(3)
-    edges = scale * np.linspace(wheel.inner_radius, wheel.radius, RINGS + 1)
+    edges = scale * np.linspace(wheel.inner_radius, wheel.radius, RING_COUNT + 1)
     half = 0.5 * np.diff(edges)[:, None]
     # Gauss nodes of every ring.
     radius = 0.5 * (edges[1:] + edges[:-1])[:, None] + half * nodes
@@ -109,7 +112,7 @@ def _weighed(problem: FlywheelProblem, wheel: FlywheelMechanism) -> tuple[float,
     return float(ring.sum()), float((ring * radius**2).sum())
 
 
-def _torque(problem: FlywheelProblem) -> tuple[Real, Real, Real]:
+def _sample_torque(problem: FlywheelProblem) -> tuple[Real, Real, Real]:
     """Return angles of a cycle, the demand at the middle of each step, and at all step ends."""
     if problem.torque is not None:
         rows, turns = np.array(problem.torque.table, np.float64), problem.torque.turns
@@ -118,14 +121,14 @@ def _torque(problem: FlywheelProblem) -> tuple[Real, Real, Real]:
         values = rows[:, 1] if problem.torque.side == "demand" else -rows[:, 1]
     else:
         # The other half of the positions, by the energy balance instead of the reactions.
-        course = machine_course(problem, "virtual_work_drive", 0.5)
+        course = compute_machine_torque(problem, "virtual_work_drive", 0.5)
         own, values, smooth = course.angle, course.demand, True
         start, period = float(own[0]), float(own[-1] - own[0])
         turns = round(period / (2.0 * math.pi))
     own, kept = np.unique(np.append(own, start + period), return_index=True)
     values = np.append(values, values[0])[kept]
     values[-1] = values[0]
-    angle = np.union1d(own, start + period * np.arange(GRID * turns + 1) / (GRID * turns))
+    angle = np.union1d(own, start + period * np.arange(STEPS_PER_TURN * turns + 1) / (STEPS_PER_TURN * turns))
     angle = angle[(angle >= start) & (angle <= own[-1])]
     middle = 0.5 * (angle[1:] + angle[:-1])
     if smooth:
@@ -134,24 +137,26 @@ def _torque(problem: FlywheelProblem) -> tuple[Real, Real, Real]:
     return angle, np.interp(middle, own, values), np.interp(angle, own, values)
 
 
-def _limits(problem: FlywheelProblem, wheel: FlywheelMechanism, rim: float) -> list[Check]:
+def _check_limits(problem: FlywheelProblem, wheel: FlywheelMechanism, rim: float) -> list[Check]:
     limits, checks = problem.limits, []
     if limits.radius is not None:
-        checks.append(at_most("radius", wheel.radius, limits.radius.max, LENGTH))
+        checks.append(check_maximum("radius", wheel.radius, limits.radius.max, LENGTH))
     if limits.thickness is not None and limits.thickness.min is not None:
-        checks.append(at_least("min_thickness", wheel.thickness, limits.thickness.min, LENGTH))
+        checks.append(check_minimum("min_thickness", wheel.thickness, limits.thickness.min, LENGTH))
     if limits.thickness is not None and limits.thickness.max is not None:
-        checks.append(at_most("max_thickness", wheel.thickness, limits.thickness.max, LENGTH))
+        checks.append(check_maximum("max_thickness", wheel.thickness, limits.thickness.max, LENGTH))
     if limits.wall is not None and wheel.form == "rim":
-        checks.append(at_least("wall", wheel.radius - wheel.inner_radius, limits.wall.min, LENGTH))
+        checks.append(check_minimum("wall", wheel.radius - wheel.inner_radius, limits.wall.min, LENGTH))
     if limits.rim_speed is not None:
-        checks.append(at_most("rim_speed", rim, limits.rim_speed.max, SPEED, slack=KEPT))
+        checks.append(check_maximum("rim_speed", rim, limits.rim_speed.max, SPEED, slack=COEFFICIENT_TOLERANCE))
     if limits.radius_to_thickness is not None:
-        checks.append(at_most("radius_to_thickness", wheel.radius / wheel.thickness, limits.radius_to_thickness.max))
+        checks.append(
+            check_maximum("radius_to_thickness", wheel.radius / wheel.thickness, limits.radius_to_thickness.max)
+        )
     return checks
 
 
-def _at_limits(problem: FlywheelProblem, wheel: FlywheelMechanism, rim: float) -> list[Limit]:
+def _list_active_limits(problem: FlywheelProblem, wheel: FlywheelMechanism, rim: float) -> list[Limit]:
     """List the active limits of a wheel."""
     names: dict[str, Limit] = {
         "radius": "radius",
@@ -163,22 +168,23 @@ def _at_limits(problem: FlywheelProblem, wheel: FlywheelMechanism, rim: float) -
     }
     return [
         names[check.name]
-        for check in _limits(problem, wheel, rim)
+        for check in _check_limits(problem, wheel, rim)
         if check.value is not None
         and check.limit is not None
-        and abs(check.value - check.limit) <= (KEPT if check.name == "rim_speed" else AT_LIMIT) * check.limit
+        and abs(check.value - check.limit)
+        <= (COEFFICIENT_TOLERANCE if check.name == "rim_speed" else ACTIVE_TOLERANCE) * check.limit
     ]
 
 
-def _lightest_other(problem: FlywheelProblem, inertia: float, greatest: float, form: str) -> float:
+def _search_lighter(problem: FlywheelProblem, inertia: float, greatest: float, form: str) -> float:
     """Return the minimum mass of a grid of wheels with this inertia within the limits; infinite if there is none."""
     scale, limits = problem.scale, problem.limits
     c = 2.0 * inertia / (math.pi * problem.density)
     widest = [] if limits.radius is None else [scale * limits.radius.max]
     widest += [] if limits.rim_speed is None else [limits.rim_speed.max / greatest]
     # Without a radius limit the grid extends far beyond a wheel as thick as it is wide.
-    outer = min(widest, default=1e3 * c**0.2) * np.geomspace(1e-3, 1.0, SAMPLED)[:, None]
-    inner = outer * (np.linspace(0.0, 1.0, SAMPLED, endpoint=False) if form == "rim" else np.zeros(1))
+    outer = min(widest, default=1e3 * c**0.2) * np.geomspace(1e-3, 1.0, SAMPLE_COUNT)[:, None]
+    inner = outer * (np.linspace(0.0, 1.0, SAMPLE_COUNT, endpoint=False) if form == "rim" else np.zeros(1))
     ring = outer**4 - inner**4
     with np.errstate(divide="ignore", invalid="ignore"):
         thickness = c / ring
@@ -195,9 +201,9 @@ def _lightest_other(problem: FlywheelProblem, inertia: float, greatest: float, f
     return float(mass[allowed].min()) if allowed.any() else math.inf
 
 
-def _course(problem: FlywheelProblem, run: Run) -> SpeedCurve:
+def _build_curve(problem: FlywheelProblem, run: SpeedHistory) -> SpeedCurve:
     """Build the speed curve of a cycle at equal steps."""
-    at = run.angle[0] + run.cycle * np.arange(SHOWN) / (SHOWN - 1)
+    at = run.angle[0] + run.cycle * np.arange(CURVE_POINT_COUNT) / (CURVE_POINT_COUNT - 1)
     sign = 1.0 if problem.torque is None or problem.torque.side == "demand" else -1.0
     return SpeedCurve(
         angle=np.degrees(at).tolist(),

@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 from synthesis.kinds.function.design import FunctionDesign, FunctionMechanism, FunctionResult
 from synthesis.kinds.function.gallery import GALLERY
 from synthesis.kinds.function.problem import FunctionProblem
-from synthesis.model.kind import Kind, Progress
+from synthesis.model.kind import Kind, Progress, TableColumns
 
 __all__ = ["KIND"]
 
@@ -16,10 +18,12 @@ def _solve(problem: FunctionProblem, progress: Progress) -> FunctionResult:
     return solve_function(problem, progress)
 
 
-def _nearly(problem: FunctionProblem, design: FunctionDesign, mechanism: FunctionMechanism) -> FunctionDesign | None:
-    from synthesis.kinds.function.verification import verify_nearly
+def _verify_with_tolerance(
+    problem: FunctionProblem, design: FunctionDesign, mechanism: FunctionMechanism
+) -> FunctionDesign | None:
+    from synthesis.kinds.function.verification.verify import verify_with_tolerance
 
-    return verify_nearly(problem, design, mechanism)
+    return verify_with_tolerance(problem, design, mechanism)
 
 
 def _warm_up() -> None:
@@ -28,11 +32,26 @@ def _warm_up() -> None:
     warm_up()
 
 
-def _brief(problem: FunctionProblem) -> bool:
+def _list_warm_up_problems() -> list[dict[str, Any]]:
+    from synthesis.kinds.function.warm_up_problems import list_warm_up_problems
+
+    return list_warm_up_problems()
+
+
+def _is_short(problem: FunctionProblem) -> bool:
     """Return whether a job is short: precision points on fourbars are solved directly, everything else by search."""
     return problem.aim == "precision" and not problem.sixbars
 
 
 KIND = Kind(
-    "function", FunctionProblem, FunctionResult, _solve, _warm_up, brief=_brief, nearly=_nearly, gallery=GALLERY
+    "function",
+    FunctionProblem,
+    FunctionResult,
+    _solve,
+    _warm_up,
+    brief=_is_short,
+    nearly=_verify_with_tolerance,
+    list_warm_up_problems=_list_warm_up_problems,
+    columns=TableColumns("pairs", ("input", "output")),
+    gallery=GALLERY,
 )

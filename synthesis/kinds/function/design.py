@@ -8,11 +8,11 @@ from pydantic import Discriminator, Field
 
 from synthesis.model.answer import Answer, Verification
 from synthesis.model.dimension import Angle, Output
-from synthesis.model.forces_answer import DesignForces
-from synthesis.model.linkage_answer import (
-    EXACT,
-    LAYOUT,
-    PEAKS,
+from synthesis.model.dynamics.peak_forces import DesignForces
+from synthesis.model.linkage.answer import (
+    EXACT_FIELD,
+    LAYOUT_FIELD,
+    PEAKS_FIELD,
     ExactDesign,
     FourbarMechanism,
     Layout,
@@ -21,7 +21,7 @@ from synthesis.model.linkage_answer import (
     SixbarMechanism,
     SliderCrankMechanism,
 )
-from synthesis.model.manufacture_answer import MANUFACTURE, Manufactured
+from synthesis.model.manufacture.answer import MANUFACTURE_FIELD, ManufactureReport
 
 FunctionMechanism = Annotated[FourbarMechanism | SliderCrankMechanism | SixbarMechanism, Discriminator("type")]
 
@@ -119,10 +119,10 @@ class FunctionDesign(Answer):
     verification: Verification
     metrics: FunctionMetrics
     structural_error: StructuralError
-    layout: Layout | None = LAYOUT
-    forces: DesignForces | None = PEAKS
-    manufacture: Manufactured | None = MANUFACTURE
-    exact: ExactDesign | None = EXACT
+    layout: Layout | None = LAYOUT_FIELD
+    forces: DesignForces | None = PEAKS_FIELD
+    manufacture: ManufactureReport | None = MANUFACTURE_FIELD
+    exact: ExactDesign | None = EXACT_FIELD
 
 
 class FunctionResult(LinkageResult[FunctionDesign]):

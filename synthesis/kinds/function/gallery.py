@@ -2,15 +2,17 @@
 
 from __future__ import annotations
 
-from synthesis.model.kind import Named
+from synthesis.model.kind import NamedExample
 
 GALLERY = (
-    Named(
+    NamedExample(
         "Power law",
         "Make an output follow",
         "The output follows the power 1.5 of the input, with the smallest maximum error.",
     ),
-    Named("Three settings", "Make an output follow", "Three pairs of angles, met exactly."),
-    Named("Log scale on a slide", "Make an output follow", "A slider that moves as a logarithm."),
-    Named("Log scale by six bars", "Make an output follow", "A logarithm by a Watt six-bar, closer than any four-bar."),
+    NamedExample("Three settings", "Make an output follow", "Three pairs of angles, met exactly."),
+    NamedExample("Log scale on a slide", "Make an output follow", "A slider that moves as a logarithm."),
+    NamedExample(
+        "Log scale by six bars", "Make an output follow", "A logarithm by a Watt six-bar, closer than any four-bar."
+    ),
 )

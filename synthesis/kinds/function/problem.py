@@ -10,14 +10,21 @@ from typing import Annotated, Any, Literal
 import numpy as np
 from pydantic import ConfigDict, Field
 
-from synthesis.kinds.function.functions import FunctionStatement, Real
-from synthesis.kinds.function.stated_mechanisms import SIXBARS, Mechanisms, Sixbar, lacking, of_types
+from kinematics.arrays import Real
+from synthesis.kinds.function.statement.functions import FunctionStatement
+from synthesis.kinds.function.statement.mechanism_types import (
+    SIXBARS,
+    Mechanisms,
+    Sixbar,
+    check_types,
+    list_unsupported,
+)
 from synthesis.model.dimension import ANGLE, OUTPUT
-from synthesis.model.linkage_statement import Constraints, LinkageProblem
-from synthesis.model.manufacture import Held, Made, kept_pivots
-from synthesis.model.stated_types import looked_for, no_class, without_unclassed
-from synthesis.model.statement import (
-    ABSURD,
+from synthesis.model.linkage.problem import Constraints, LinkageProblem
+from synthesis.model.linkage.type_choice import refuse_class, remove_unclassed, select_searched_sixbars
+from synthesis.model.manufacture.request import ManufactureTask, RequiredTargets, list_fixed_coordinates
+from synthesis.model.problem import (
+    MAX_MAGNITUDE,
     Contradiction,
     Count,
     Degrees,
@@ -31,27 +38,27 @@ from synthesis.model.statement import (
 
 FULL_TURN = 360.0
 
-MOST_TURNED = 359.0
+MAX_RANGE = 359.0
 """Maximum range of an input or output, degrees: at a full turn the first value would coincide with the last."""
 
-LEAST_TURNED = 0.01
+MIN_RANGE = 0.01
 """Minimum range, degrees; below it there is no motion."""
 
-EQUAL_INPUTS = 1e-6
+INPUT_TOLERANCE = 1e-6
 """Tolerance for equal inputs, degrees: no linkage distinguishes closer ones."""
 
-EXACT_PAIRS = 3
+BASE_PAIR_COUNT = 3
 """Number of pairs that the three proportions alone can meet; each open zero or scale adds one."""
 
-MOST_EXACT = 7
+MAX_EXACT_PAIRS = 7
 
-MOST_BY_SIXBARS = 8
+MAX_SIXBAR_PAIRS = 8
 """Maximum number of pairs that the sixbar search meets exactly. Watt II has nine parameters, the others eleven."""
 
-ALL_WATTS = 9
+WATT_2_PAIR_COUNT = 9
 """Number of pairs that leave finitely many Watt II sixbars, all of which are computed."""
 
-HELD_PLACES = 41
+REQUIRED_POINT_COUNT = 41
 """Number of points of the range, including its ends, at which a manufactured approximation must match the function."""
 
 
@@ -92,19 +99,19 @@ class FunctionConstraints(Constraints):
     For many functions the error decreases without bound as the links get longer, so the limit is part of the task.
     """
 
-    max_link_ratio: Annotated[float, Field(strict=True, ge=1.0, le=ABSURD)] | None = Field(
+    max_link_ratio: Annotated[float, Field(strict=True, ge=1.0, le=MAX_MAGNITUDE)] | None = Field(
         default=100.0,
         description="Maximum ratio of the longest to the shortest link. Default 100; left open: no limit.",
     )
 
 
 @lru_cache(maxsize=64)
-def _onward(pairs: tuple[tuple[float, float], ...], slides: bool) -> Real:
+def _unwrap_pairs(pairs: tuple[tuple[float, float], ...], slides: bool) -> Real:
     """Unwrap the pairs' angles; cached and read-only, because every measured linkage needs them several times."""
     values = np.array(pairs)
     onward = np.unwrap(values[:, 0], period=FULL_TURN)
     # Inputs given in order are kept as they are: unwrapping could break a range of more than half a turn.
-    if not _one_way(values[:, 0]) and _one_way(onward):
+    if not _is_monotonic(values[:, 0]) and _is_monotonic(onward):
         values[:, 0] = onward
     if not slides:
         values[:, 1] = np.unwrap(values[:, 1], period=FULL_TURN)
@@ -112,7 +119,7 @@ def _onward(pairs: tuple[tuple[float, float], ...], slides: bool) -> Real:
     return values
 
 
-def _one_way(values: Real) -> bool:
+def _is_monotonic(values: Real) -> bool:
     steps = np.diff(values)
     return bool(np.all(steps > 0.0) or np.all(steps < 0.0))
 
@@ -196,7 +203,7 @@ class FunctionProblem(LinkageProblem):
         "link, or its extension, from the ground line, and opens the zeros if no such linkage satisfies all "
         "constraints. In all other cases `auto` leaves them open.",
     )
-    precision_points: Annotated[Count, Field(ge=2, le=ALL_WATTS)] | None = Field(
+    precision_points: Annotated[Count, Field(ge=2, le=WATT_2_PAIR_COUNT)] | None = Field(
         default=None,
         description="Number of points at which the function is met exactly. Nine points are possible only for watt_2 "
         "sixbars, all of which are computed.",
@@ -228,32 +235,34 @@ class FunctionProblem(LinkageProblem):
         if self.criterion is not None:
             return self.criterion
         if self.pairs is not None:
-            return "precision" if len(self.pairs) <= min(self.most_exact, MOST_BY_SIXBARS) else "minimax"
+            return "precision" if len(self.pairs) <= min(self.max_exact_pairs, MAX_SIXBAR_PAIRS) else "minimax"
         return "precision" if self.precision_points is not None else "minimax"
 
     @property
     def sixbars(self) -> tuple[Sixbar, ...]:
         """The types of sixbar to search."""
-        return without_unclassed(looked_for(self.mechanisms, SIXBARS, lacking(self)), no_class(self.constraints))
+        return remove_unclassed(
+            select_searched_sixbars(self.mechanisms, SIXBARS, list_unsupported(self)), refuse_class(self.constraints)
+        )
 
     @property
-    def of_simple(self) -> FunctionProblem | None:
+    def simple_problem(self) -> FunctionProblem | None:
         """The same problem restricted to the fourbars or slider-cranks in ``mechanisms``; None if there are none."""
-        return None if self.sixbars_alone else self.model_copy(update={"mechanisms": None})
+        return None if self.only_sixbars else self.model_copy(update={"mechanisms": None})
 
     @property
-    def of_sixbars(self) -> FunctionProblem:
+    def sixbar_problem(self) -> FunctionProblem:
         """The same problem restricted to the requested sixbars, with the same criterion and open zeros."""
         alone = {"mechanisms": list(self.sixbars), "criterion": self.aim, "zeros": None}
         return self.model_copy(update=alone)
 
     @property
-    def sixbars_alone(self) -> bool:
+    def only_sixbars(self) -> bool:
         """Whether only sixbars are requested."""
         return isinstance(self.mechanisms, list) and set(self.mechanisms) <= set(SIXBARS)
 
     @property
-    def stated_zeros_alone(self) -> bool:
+    def has_given_zeros(self) -> bool:
         """Whether a zero is given; zeros are measured from the ground line of a fourbar."""
         return isinstance(self.zeros, Zeros) and (self.zeros.input, self.zeros.output) != (None, None)
 
@@ -263,19 +272,19 @@ class FunctionProblem(LinkageProblem):
         return self.mechanism == "slider_crank"
 
     @property
-    def made(self) -> Made | str:
+    def manufacture_task(self) -> ManufactureTask | str:
         """Manufacturing analysis: the targets are output positions at given inputs of the dial."""
-        count = len(self.precision_shares) if self.aim == "precision" else HELD_PLACES
-        return Made(self.slides, not self.slides, False, count if self.pairs is None else len(self.pairs))
+        count = len(self.precision_shares) if self.aim == "precision" else REQUIRED_POINT_COUNT
+        return ManufactureTask(self.slides, not self.slides, False, count if self.pairs is None else len(self.pairs))
 
     @property
     def guides_a_point(self) -> bool:
         """Whether the linkage guides a coupler point P; never for a function generator."""
         return False
 
-    def held_to(self, design: Any) -> Held:
+    def build_required_targets(self, design: Any) -> RequiredTargets:
         """Return the pairs, precision points, or samples of the range that a manufactured design must keep."""
-        values = self._held_values()
+        values = self._list_required_inputs()
         if self.pairs is not None:
             outputs = self.values[:, 1]
         else:
@@ -287,11 +296,13 @@ class FunctionProblem(LinkageProblem):
             for dial, shown in ((dials.input, values), (dials.output, outputs))
         )
         pivots = self.fixed_pivots
-        kept = kept_pivots((None, None) if pivots is None else (pivots.input, pivots.output))
+        kept = list_fixed_coordinates((None, None) if pivots is None else (pivots.input, pivots.output))
         if self.slides:
-            return Held(np.radians(inputs), travels=places, free=False, size=float(np.ptp(places)) or 1.0, kept=kept)
-        zeros = self.stated_zeros
-        return Held(
+            return RequiredTargets(
+                np.radians(inputs), travels=places, free=False, size=float(np.ptp(places)) or 1.0, kept=kept
+            )
+        zeros = self.zero_choice
+        return RequiredTargets(
             np.radians(inputs),
             angles=np.radians(places),
             free=False,
@@ -299,33 +310,33 @@ class FunctionProblem(LinkageProblem):
             kept=kept,
         )
 
-    def _held_values(self) -> Real:
+    def _list_required_inputs(self) -> Real:
         """Return the input values at which a manufactured linkage must match its target."""
         if self.pairs is not None:
             return self.values[:, 0]
         assert self.function is not None
         low, high = self.function.interval
-        shares = self.precision_shares if self.aim == "precision" else np.linspace(0.0, 1.0, HELD_PLACES)
+        shares = self.precision_shares if self.aim == "precision" else np.linspace(0.0, 1.0, REQUIRED_POINT_COUNT)
         return np.asarray(low + (high - low) * shares)
 
     @property
     def from_ground(self) -> bool:
         """Whether pairs are first read as angles of a link, or its extension, from the ground line."""
-        few = self.pairs is not None and len(self.pairs) <= EXACT_PAIRS
-        return self.zeros == "auto" and few and not self.sixbars_alone
+        few = self.pairs is not None and len(self.pairs) <= BASE_PAIR_COUNT
+        return self.zeros == "auto" and few and not self.only_sixbars
 
     @property
-    def stated_zeros(self) -> tuple[float | None, float | None]:
+    def zero_choice(self) -> tuple[float | None, float | None]:
         """Zeros of input and output; None for an open one."""
         if self.from_ground:
             return 0.0, 0.0
         return (self.zeros.input, self.zeros.output) if isinstance(self.zeros, Zeros) else (None, None)
 
     @property
-    def most_exact(self) -> int:
+    def max_exact_pairs(self) -> int:
         """Maximum number of pairs that can be met exactly: the number of open proportions, zeros and scales."""
-        if self.sixbars_alone:
-            return ALL_WATTS if self.sixbars == ("watt_2",) else MOST_BY_SIXBARS
+        if self.only_sixbars:
+            return WATT_2_PAIR_COUNT if self.sixbars == ("watt_2",) else MAX_SIXBAR_PAIRS
         zeros = [self.zeros.input, self.zeros.output].count(None) if isinstance(self.zeros, Zeros) else 2
         if self.function is not None:
             free = [self.input_range, self.output_range].count(None)
@@ -333,24 +344,24 @@ class FunctionProblem(LinkageProblem):
             free = [self.scales.input, self.scales.output].count(None)
         else:
             free = 1 if self.slides else 2
-        return EXACT_PAIRS + zeros + free
+        return BASE_PAIR_COUNT + zeros + free
 
     @property
     def determines_watts(self) -> bool:
         """Whether nine pairs must be met exactly by Watt II sixbars, of which there are finitely many."""
         count = self.precision_points if self.pairs is None else len(self.pairs)
-        return self.watts_alone and self.aim == "precision" and count == ALL_WATTS
+        return self.only_watt_2 and self.aim == "precision" and count == WATT_2_PAIR_COUNT
 
     @property
     def follows_watts(self) -> bool:
         """Whether Watt II sixbars approximate nine or more pairs, any nine of which leave finitely many sixbars."""
-        many = self.pairs is not None and len(self.pairs) >= ALL_WATTS
-        return self.watts_alone and self.aim != "precision" and many and None not in self.scale_choice
+        many = self.pairs is not None and len(self.pairs) >= WATT_2_PAIR_COUNT
+        return self.only_watt_2 and self.aim != "precision" and many and None not in self.scale_choice
 
     @property
-    def watts_alone(self) -> bool:
+    def only_watt_2(self) -> bool:
         """Whether only Watt II sixbars are requested."""
-        return self.sixbars_alone and self.sixbars == ("watt_2",)
+        return self.only_sixbars and self.sixbars == ("watt_2",)
 
     def span(self, side: Literal["input", "output"]) -> float | None:
         """Return the signed range of a side, degrees or length units; None if it is open."""
@@ -369,10 +380,10 @@ class FunctionProblem(LinkageProblem):
         """Scales of pairs; None for an open one."""
         if self.scales is not None:
             return self.scales.input, self.scales.output
-        if self.aim != "precision" or self.pairs is None or self.sixbars_alone:
+        if self.aim != "precision" or self.pairs is None or self.only_sixbars:
             return 1.0, 1.0
-        zeros = sum(zero is None for zero in self.stated_zeros)
-        beyond = len(self.pairs) - EXACT_PAIRS - zeros
+        zeros = sum(zero is None for zero in self.zero_choice)
+        beyond = len(self.pairs) - BASE_PAIR_COUNT - zeros
         if beyond <= 0:
             return 1.0, 1.0
         if self.slides:
@@ -387,10 +398,10 @@ class FunctionProblem(LinkageProblem):
         always are.
         """
         assert self.pairs is not None
-        return _onward(tuple((pair.input, pair.output) for pair in self.pairs), self.slides)
+        return _unwrap_pairs(tuple((pair.input, pair.output) for pair in self.pairs), self.slides)
 
     @property
-    def output_open(self) -> bool:
+    def is_output_open(self) -> bool:
         """Whether the search may choose the output's range, or the scale of its values."""
         if self.pairs is None:
             return self.span("output") is None and self.range_limits[0] < self.range_limits[1]
@@ -400,33 +411,40 @@ class FunctionProblem(LinkageProblem):
     def open_scale(self, side: int) -> tuple[float, float]:
         """Open the scale of the input (0) or output (1): return its limits, with which no link makes a full turn."""
         low, high = self.scale_limits
-        most = MOST_TURNED / float(np.ptp(self.values[:, side]))
+        most = MAX_RANGE / float(np.ptp(self.values[:, side]))
         return low, max(min(high, most), low)
 
     @property
     def precision_shares(self) -> Real:
         """Positions of the precision points, as shares of the interval of x (Chebyshev or equal spacing)."""
-        n = self.precision_points or EXACT_PAIRS + 2
+        n = self.precision_points or BASE_PAIR_COUNT + 2
         if self.spacing == "equal":
             return np.linspace(0.0, 1.0, n)
         return np.asarray(0.5 - 0.5 * np.cos((2.0 * np.arange(n) + 1.0) * math.pi / (2.0 * n)))
 
-    def contradictions(self) -> list[Contradiction]:
+    def find_contradictions(self) -> list[Contradiction]:
         """Return errors of pairs, function and ranges, and contradictory constraints."""
-        found = [*self._asked(), *self._zeros_and_scales(), *self.contradicting_demands(), *of_types(self)]
+        found = [
+            *self._check_statement(),
+            *self._check_zeros_and_scales(),
+            *self.find_contradicting_constraints(),
+            *check_types(self),
+        ]
         if self.slides:
-            found += self.constraints.of_another_class((), "applies only to fourbars; a slider-crank has no class")
+            found += self.constraints.find_class_contradictions(
+                (), "applies only to fourbars; a slider-crank has no class"
+            )
         if self.fixed_pivots is not None and self.fixed_pivots.input == self.fixed_pivots.output:
             detail = "equals the input's pivot; the ground link would have length zero"
             found.append(Contradiction("/fixed_pivots/output", detail))
-        if self.range_limits[0] < LEAST_TURNED or self.range_limits[1] > MOST_TURNED:
-            detail = f"must lie between {LEAST_TURNED} and {MOST_TURNED} degrees"
+        if self.range_limits[0] < MIN_RANGE or self.range_limits[1] > MAX_RANGE:
+            detail = f"must lie between {MIN_RANGE} and {MAX_RANGE} degrees"
             found.append(Contradiction("/range_limits", detail))
         if self.scale_limits[0] <= 0.0:
             found.append(Contradiction("/scale_limits", "scales must be positive"))
         return found
 
-    def _asked(self) -> Iterator[Contradiction]:
+    def _check_statement(self) -> Iterator[Contradiction]:
         if (self.pairs is None) == (self.function is None):
             where = "/pairs" if self.pairs is None else "/function"
             yield Contradiction(where, "give either pairs or a function")
@@ -435,7 +453,7 @@ class FunctionProblem(LinkageProblem):
             for field in ("input_range", "output_range", "precision_points"):
                 if getattr(self, field) is not None:
                     yield Contradiction(f"/{field}", "applies only to a function; pairs define their own")
-            yield from self._faults_of_pairs(self.pairs)
+            yield from self._check_pairs(self.pairs)
             return
         assert self.function is not None
         if self.scales is not None:
@@ -443,19 +461,19 @@ class FunctionProblem(LinkageProblem):
         if self.criterion not in (None, "precision") and self.precision_points is not None:
             detail = f"{self.criterion} approximates the whole range and uses no precision points"
             yield Contradiction("/precision_points", detail)
-        faults = list(self.function.faults())
+        faults = list(self.function.find_errors())
         yield from (Contradiction(f"/function{fault.path}", fault.detail) for fault in faults)
         if not faults:
-            yield from self._faults_of_ranges()
+            yield from self._check_ranges()
 
-    def _faults_of_pairs(self, pairs: list[Pair]) -> Iterator[Contradiction]:
+    def _check_pairs(self, pairs: list[Pair]) -> Iterator[Contradiction]:
         turned = [float(value) for value in self.values[:, 0]]
         for k, later in enumerate(turned):
             for j, earlier in enumerate(turned[:k]):
-                if abs(math.remainder(later - earlier, FULL_TURN)) <= EQUAL_INPUTS:
+                if abs(math.remainder(later - earlier, FULL_TURN)) <= INPUT_TOLERANCE:
                     yield Contradiction(f"/pairs/{k}/input", f"equals that of pair {j}; inputs must differ")
                     return
-        if max(turned) - min(turned) > MOST_TURNED:
+        if max(turned) - min(turned) > MAX_RANGE:
             yield Contradiction("/pairs", "the inputs cover a full turn or more")
             return
         steps = np.sign(np.diff(turned))
@@ -464,33 +482,33 @@ class FunctionProblem(LinkageProblem):
             detail = "inputs must rise, or fall, from pair to pair, unless in_order is false"
             yield Contradiction(f"/pairs/{wrong[0] + 1}/input", detail)
         moved = [float(value) for value in self.values[:, 1]]
-        if not self.slides and max(moved) - min(moved) > MOST_TURNED:
+        if not self.slides and max(moved) - min(moved) > MAX_RANGE:
             yield Contradiction("/pairs", "the outputs cover a full turn or more")
-        if max(moved) - min(moved) <= EQUAL_INPUTS * (max(map(abs, moved)) if self.slides else 1.0):
+        if max(moved) - min(moved) <= INPUT_TOLERANCE * (max(map(abs, moved)) if self.slides else 1.0):
             yield Contradiction("/pairs", "the output does not move")
-        if self.aim == "precision" and len(pairs) > self.most_exact:
-            more = "request only watt_2 for nine" if self.sixbars_alone else "leave zeros or scales open"
-            detail = f"at most {self.most_exact} pairs can be met exactly; {more}, or use another criterion"
+        if self.aim == "precision" and len(pairs) > self.max_exact_pairs:
+            more = "request only watt_2 for nine" if self.only_sixbars else "leave zeros or scales open"
+            detail = f"at most {self.max_exact_pairs} pairs can be met exactly; {more}, or use another criterion"
             yield Contradiction("/pairs", detail)
 
-    def _faults_of_ranges(self) -> Iterator[Contradiction]:
+    def _check_ranges(self) -> Iterator[Contradiction]:
         for side in ("input", "output"):
             span = self.span("input" if side == "input" else "output")
             if span is None:
                 continue
             turns = side == "input" or not self.slides
-            if turns and not LEAST_TURNED <= abs(span) <= MOST_TURNED:
-                detail = f"a range must lie between {LEAST_TURNED} and {MOST_TURNED} degrees"
+            if turns and not MIN_RANGE <= abs(span) <= MAX_RANGE:
+                detail = f"a range must lie between {MIN_RANGE} and {MAX_RANGE} degrees"
                 yield Contradiction(f"/{side}_range", detail)
             elif span == 0.0:
                 yield Contradiction(f"/{side}_range", "the output does not move")
         if self.slides and self.output_range is None:
             yield Contradiction("/output_range", "a slider's range sets the size of the linkage and must be given")
-        if self.aim == "precision" and (self.precision_points or 0) > self.most_exact:
-            more = "request only watt_2 for nine" if self.sixbars_alone else "leave zeros or ranges open"
-            yield Contradiction("/precision_points", f"at most {self.most_exact} points can be exact; {more}")
+        if self.aim == "precision" and (self.precision_points or 0) > self.max_exact_pairs:
+            more = "request only watt_2 for nine" if self.only_sixbars else "leave zeros or ranges open"
+            yield Contradiction("/precision_points", f"at most {self.max_exact_pairs} points can be exact; {more}")
 
-    def _zeros_and_scales(self) -> Iterator[Contradiction]:
+    def _check_zeros_and_scales(self) -> Iterator[Contradiction]:
         if self.scales is not None and self.slides and self.scales.output is None:
             yield Contradiction("/scales/output", "must be given: a slider's scale only changes the linkage's size")
         if not self.determines_watts:

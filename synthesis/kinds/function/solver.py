@@ -12,90 +12,95 @@ from collections import Counter
 from functools import partial
 
 import numpy as np
-from numpy.typing import NDArray
 
-from synthesis.kinds.function.approximation import GeneratorDescent, approximations
-from synthesis.kinds.function.by_type import REASONS, solve_types
+from kinematics.arrays import Real
 from synthesis.kinds.function.design import FunctionDesign, FunctionResult
-from synthesis.kinds.function.limits import GeneratorLimits
-from synthesis.kinds.function.order import error_of, ordered
-from synthesis.kinds.function.precision import exact, family, many_exact, polished
+from synthesis.kinds.function.fourbar.approximation import GeneratorDescent, find_approximations
+from synthesis.kinds.function.fourbar.constraints import GeneratorLimits
+from synthesis.kinds.function.fourbar.free_scales import Scaling, solve_one_scale, solve_two_scales
+from synthesis.kinds.function.fourbar.precision_points import (
+    refine_generator,
+    sample_family,
+    solve_exact,
+    solve_many_exact,
+)
+from synthesis.kinds.function.fourbar.structural_error import PARAMETER_COUNT
+from synthesis.kinds.function.fourbar.task import FunctionTask, build_mechanism, make_function_task
 from synthesis.kinds.function.problem import FunctionProblem
-from synthesis.kinds.function.scales import Scaling, one_scale, two_scales
-from synthesis.kinds.function.structural_error import STEPS
-from synthesis.kinds.function.task import FunctionTask, built, function_task
-from synthesis.kinds.function.verification import verify_function
-from synthesis.model.counting import agreeing, counted, grouped
-from synthesis.model.kind import Progress, part_of
-from synthesis.outcome.sifting import OUTRANKED, Sifting
+from synthesis.kinds.function.ranking import get_error, rank_by_error
+from synthesis.kinds.function.type_selection import REASONS, solve_types
+from synthesis.kinds.function.verification.verify import verify_function
+from synthesis.model.counting import choose_word, format_count, format_integer
+from synthesis.model.kind import Progress, scale_progress
+from synthesis.results.candidate_log import OUTRANKED_REASON, CandidateLog
 
-Real = NDArray[np.float64]
-
-DRAWN = 4000
+MEMBER_COUNT = 4000
 """Number of sampled members of a family."""
 
-SLICES = 40
+SCALE_SLICE_COUNT = 40
 """Number of values of one scale at which the other is solved for, if both are open and only one is needed."""
 
-TRIED = 6
+VERIFIED_PER_DESIGN = 6
 """Maximum number of verified family members per requested design."""
 
-AWAY = (30.0, 10.0, 2.0)
+FALLBACK_ANGLES = (30.0, 10.0, 2.0)
 """Minimum transmission angles, degrees, tried in turn if the best approximation without a limit is at a toggle or
 change point and cannot be driven."""
 
-COARSE = 0.02
+COARSE_TOLERANCE = 0.02
 """Maximum constraint violation of a member, in the first estimate, for it to be verified."""
 
-STEERINGS, STEERED, STEERING_STEPS, ENOUGH_STEERED = 4, 24, 40, 3
+MAX_FIT_ROUNDS, FITS_PER_ROUND, MAX_FIT_STEPS, ENOUGH_FITS = 4, 24, 40, 3
 """Constrained fits if no sampled member satisfies the limits: maximum number of rounds with new samples, number of fits
 per round, steps of each, and number of designs that ends them."""
 
-MET, NEARLY_MET = 1e-12, 1e-7
+CONVERGED_ERROR, MAX_REFINABLE_ERROR = 1e-12, 1e-7
 """Error including constraint violation: convergence tolerance of a fit, and maximum for a member to be refined and
 verified."""
 
-HOPELESS = 0.2
+MAX_PROMISING_ERROR = 0.2
 """Smallest weighted error of a round above which no further round follows; it corresponds to a violation of a
 fiftieth."""
 
-APART = 0.1
+MIN_SEPARATION = 0.1
 """Minimum difference of verified family members, in the logarithm of a length or in an angle (radians)."""
 
-SAME = 1e-7
+DUPLICATE_TOLERANCE = 1e-7
 """Relative difference of the parameters below which two solutions are duplicates."""
 
-USABLE = math.sin(math.radians(30.0))
+USABLE_SINE = math.sin(math.radians(30.0))
 """Sine of the transmission angle below which a family member is returned only if none reaches it."""
 
-HELD_SHARE = 0.5
+FIXED_ZERO_SHARE = 0.5
 """Share of the progress assigned to the first search, with pairs as angles from the ground line, before the zeros are
 opened."""
 
-_NUMERICAL = {"residual", "cannot_be_driven"}
+_NUMERICAL_REASONS = {"residual", "cannot_be_driven"}
 """Rejection reasons that reflect numerical limits and prove nothing."""
 
-_PLACES = {"fixed_pivot_zones", "moving_pivot_zones", "box", "obstacles"}
+_PLACEMENT_REASONS = {"fixed_pivot_zones", "moving_pivot_zones", "box", "obstacles"}
 """Rejection reasons that mean that no placement in the workspace was found, if the placement is free."""
 
 
 def solve_function(problem: FunctionProblem, progress: Progress) -> FunctionResult:
     """Solve a function-generation problem, each type of linkage by its own search."""
     if problem.mechanisms is not None:
-        return solve_types(problem, _of_simple, progress)
-    return _of_simple(problem, progress)
+        return solve_types(problem, _solve_simple, progress)
+    return _solve_simple(problem, progress)
 
 
-def _of_simple(problem: FunctionProblem, progress: Progress) -> FunctionResult:
+def _solve_simple(problem: FunctionProblem, progress: Progress) -> FunctionResult:
     """Solve for fourbars or slider-cranks."""
     if not problem.from_ground:
-        return _with_zeros(problem, progress)
+        return _solve_with_zeros(problem, progress)
     # "auto" zeros: first read few pairs as angles from the ground line, and open the zeros only if that fails.
-    held = _with_zeros(problem, part_of(progress, 0.0, HELD_SHARE), steered=False)
+    held = _solve_with_zeros(problem, scale_progress(progress, 0.0, FIXED_ZERO_SHARE), fit_limits=False)
     if any(design.verification.passed for design in held.designs):
         progress(1.0, "verified")
-        return held.model_copy(update={"summary": f"{held.summary}{_HELD}"})
-    opened = _with_zeros(problem.model_copy(update={"zeros": None}), part_of(progress, HELD_SHARE, 1.0))
+        return held.model_copy(update={"summary": f"{held.summary}{_FIXED_ZEROS_REMARK}"})
+    opened = _solve_with_zeros(
+        problem.model_copy(update={"zeros": None}), scale_progress(progress, FIXED_ZERO_SHARE, 1.0)
+    )
     account = opened.search.model_copy(
         update={
             "candidates": held.search.candidates + opened.search.candidates,
@@ -106,21 +111,21 @@ def _of_simple(problem: FunctionProblem, progress: Progress) -> FunctionResult:
         update={
             "designs": [*opened.designs, *held.designs][: problem.max_designs],
             "search": account,
-            "summary": f"{_OPENED} {opened.summary}",
+            "summary": f"{_OPEN_ZEROS_REMARK} {opened.summary}",
         }
     )
 
 
-def _with_zeros(problem: FunctionProblem, progress: Progress, *, steered: bool = True) -> FunctionResult:
-    """Solve with the problem's zeros, given or open; ``steered`` as for :func:`_family`."""
-    task = function_task(problem)
+def _solve_with_zeros(problem: FunctionProblem, progress: Progress, *, fit_limits: bool = True) -> FunctionResult:
+    """Solve with the problem's zeros, given or open; ``steered`` as for :func:`_search_family`."""
+    task = make_function_task(problem)
     progress(0.0, "reading the problem")
     rng = np.random.default_rng(problem.seed)
-    harvest = _Harvest(task)
+    harvest = _FunctionLog(task)
     if problem.aim != "precision":
         judged = improved = 0
-        for least in (None, *(AWAY if problem.constraints.min_transmission_angle is None else ())):
-            found = approximations(task, rng, progress, least)
+        for least in (None, *(FALLBACK_ANGLES if problem.constraints.min_transmission_angle is None else ())):
+            found = find_approximations(task, rng, progress, least)
             judged, improved = judged + found.judged, improved + found.improved
             for one in found.optima:
                 harvest.verify(one.generator, one.sign)
@@ -128,28 +133,28 @@ def _with_zeros(problem: FunctionProblem, progress: Progress, *, steered: bool =
             if harvest.passed:
                 break
         progress(1.0, "verified")
-        return harvest.approximated(judged, improved)
+        return harvest.build_approximation_result(judged, improved)
     # Degrees of freedom: three proportions and the open zeros, less one per pair; scales supply the difference.
     missing = 3 + sum(zero is None for zero in task.zeros) - len(task.inputs)
     open_scales = int(task.free[5]) + int(task.free[6])
     if missing == -2 or (missing == -1 and open_scales == 2):
-        _with_two_scales(task, harvest, missing, progress)
-        return harvest.searched("two_scales")
+        _solve_two_scales(task, harvest, missing, progress)
+        return harvest.build_search_result("two_scales")
     if missing == -1:
-        proved = _with_one_scale(task, harvest)
-        return harvest.determined(proved, "one_scale")
+        proved = _solve_one_scale(task, harvest)
+        return harvest.build_exact_result(proved, "one_scale")
     if missing == 0 and open_scales == 0:
-        proved = _determined(task, harvest)
+        proved = _solve_determined(task, harvest)
         if harvest.passed or proved:
-            return harvest.determined(proved, "exact")
+            return harvest.build_exact_result(proved, "exact")
         # Pairs of a linkage with equivalents, for example a parallelogram, do not determine it: search the family.
-    _family(task, harvest, rng, progress, steered=steered)
-    return harvest.searched("family")
+    _search_family(task, harvest, rng, progress, fit_limits=fit_limits)
+    return harvest.build_search_result("family")
 
 
-_HELD = " The values were read as angles from the ground line; the zeros may be left open instead."
+_FIXED_ZEROS_REMARK = " The values were read as angles from the ground line; the zeros may be left open instead."
 
-_OPENED = (
+_OPEN_ZEROS_REMARK = (
     "No linkage with the values as angles from the ground line satisfies all constraints. With the zeros left open:"
 )
 
@@ -160,147 +165,149 @@ def warm_up() -> None:
         solve_function(FunctionProblem.model_validate(spec), lambda fraction, message: None)
 
 
-def _choices(task: FunctionTask) -> list[tuple[tuple[float, float], tuple[float, float]]]:
+def _list_scale_choices(task: FunctionTask) -> list[tuple[tuple[float, float], tuple[float, float]]]:
     return [(first, second) for first in task.scales[0] for second in task.scales[1]]
 
 
-def _determined(task: FunctionTask, harvest: _Harvest) -> bool:
+def _solve_determined(task: FunctionTask, harvest: _FunctionLog) -> bool:
     """Verify all linkages if nothing is open; return whether these are proved to be all."""
     proved = True
-    for (k, _), (scale, _) in _choices(task):
-        found = exact(task.closure, k * task.inputs, scale * task.outputs, task.zeros)
+    for (k, _), (scale, _) in _list_scale_choices(task):
+        found = solve_exact(task.closure, k * task.inputs, scale * task.outputs, task.zeros)
         proved &= found.proved
         harvest.reject("degenerate", found.degenerate)
         for dimensions in found.dimensions:
-            harvest.polish_and_verify(np.concatenate([dimensions, [k, scale]]))
+            harvest.refine_and_verify(np.concatenate([dimensions, [k, scale]]))
     return proved
 
 
-def _with_one_scale(task: FunctionTask, harvest: _Harvest) -> bool:
+def _solve_one_scale(task: FunctionTask, harvest: _FunctionLog) -> bool:
     """Verify all linkages if exactly one scale is open and must be found; return whether these are proved to be all."""
     side = 0 if task.free[5] else 1
     pairs = Scaling(task.closure, task.inputs, task.outputs, task.zeros)
     proved = True
-    for choice in _choices(task):
-        found = one_scale(pairs, choice[side], side, choice[1 - side][0])
+    for choice in _list_scale_choices(task):
+        found = solve_one_scale(pairs, choice[side], side, choice[1 - side][0])
         proved &= found.proved
         harvest.reject("degenerate", found.degenerate)
         for generator in found.dimensions:
-            harvest.polish_and_verify(generator)
+            harvest.refine_and_verify(generator)
     return proved
 
 
-def _with_two_scales(task: FunctionTask, harvest: _Harvest, missing: int, progress: Progress) -> None:
+def _solve_two_scales(task: FunctionTask, harvest: _FunctionLog, missing: int, progress: Progress) -> None:
     """Verify linkages if both scales are open: solve for both, or for one at each of many values of the other."""
     pairs = Scaling(task.closure, task.inputs, task.outputs, task.zeros)
     as_stated = np.ones((1 if task.problem.pairs is not None else 0, 2))
-    choices = _choices(task)
+    choices = _list_scale_choices(task)
     for n, (first, second) in enumerate(choices):
         progress(n / len(choices), "solving for scales")
         if missing == -2:
-            for generator in two_scales(pairs, first, second, as_stated):
-                harvest.polish_and_verify(generator)
+            for generator in solve_two_scales(pairs, first, second, as_stated):
+                harvest.refine_and_verify(generator)
         else:
-            for k in np.geomspace(*first, SLICES) if first[0] > 0.0 else np.linspace(*first, SLICES):
-                for generator in one_scale(pairs, second, 1, float(k)).dimensions:
-                    harvest.polish_and_verify(generator, scales_given=True)
+            for k in (
+                np.geomspace(*first, SCALE_SLICE_COUNT) if first[0] > 0.0 else np.linspace(*first, SCALE_SLICE_COUNT)
+            ):
+                for generator in solve_one_scale(pairs, second, 1, float(k)).dimensions:
+                    harvest.refine_and_verify(generator, scales_given=True)
 
 
-def _family(
-    task: FunctionTask, harvest: _Harvest, rng: np.random.Generator, progress: Progress, *, steered: bool
+def _search_family(
+    task: FunctionTask, harvest: _FunctionLog, rng: np.random.Generator, progress: Progress, *, fit_limits: bool
 ) -> None:
     """Verify the best distinct members of a family.
 
     If no sampled member satisfies the constraints and ``steered`` is set, others are fitted to the constraints.
     """
-    members = _members(task, rng)
+    members = _sample_members(task, rng)
     limits = GeneratorLimits(task)
     progress(0.3, f"{len(members)} members of the family")
-    generators, signs = _in_one_assembly(task, members)
+    generators, signs = _select_one_assembly(task, members)
     harvest.reject("circuit_defect", len(members) - len(generators))
     sine = limits.transmission(generators)
-    lacking = limits.lacking(generators)
-    worth = _worth(task, generators, signs, sine)
+    lacking = limits.measure_violations(generators)
+    worth = _rank_members(task, generators, signs, sine)
     closed = np.isfinite(worth)
     harvest.reject("branch_defect", int(np.count_nonzero(~closed)))
-    worth = np.where(lacking > COARSE, np.inf, worth)
+    worth = np.where(lacking > COARSE_TOLERANCE, np.inf, worth)
     harvest.reject("constraints", int(np.count_nonzero(closed & ~np.isfinite(worth))))
     order = np.argsort(worth)
     order = order[np.isfinite(worth[order])]
     features = np.column_stack([np.log(np.abs(generators[:, :3]) + 1e-12), generators[:, 3:5]])
     chosen: list[int] = []
     tried = 0
-    most = TRIED * task.problem.max_designs
+    most = VERIFIED_PER_DESIGN * task.problem.max_designs
     # Go down the ranking, skipping members too similar to one already verified.
     for j in order[:2000]:
         if tried == most or len(harvest.passed) >= task.problem.max_designs:
             break
-        if chosen and np.abs(features[chosen] - features[j]).max(axis=1).min() < APART:
+        if chosen and np.abs(features[chosen] - features[j]).max(axis=1).min() < MIN_SEPARATION:
             continue
         chosen.append(int(j))
         tried += 1
-        harvest.polish_and_verify(generators[j], scales_given=True)
+        harvest.refine_and_verify(generators[j], scales_given=True)
         progress(0.3 + 0.4 * tried / most, "verifying")
-    harvest.reject(OUTRANKED, len(order) - tried)
-    if steered and not harvest.passed:
-        _into_limits(task, limits, harvest, rng, progress)
+    harvest.reject(OUTRANKED_REASON, len(order) - tried)
+    if fit_limits and not harvest.passed:
+        _fit_to_limits(task, limits, harvest, rng, progress)
 
 
-def _into_limits(
-    task: FunctionTask, limits: GeneratorLimits, harvest: _Harvest, rng: np.random.Generator, progress: Progress
+def _fit_to_limits(
+    task: FunctionTask, limits: GeneratorLimits, harvest: _FunctionLog, rng: np.random.Generator, progress: Progress
 ) -> None:
     """Fit the family members with the smallest violations to the constraints, within the family."""
     descent = GeneratorDescent(task, limits)
-    enough = min(ENOUGH_STEERED, task.problem.max_designs)
-    for n in range(STEERINGS):
-        progress(0.7 + 0.3 * n / STEERINGS, "moving family members into the limits")
-        generators, signs = _in_one_assembly(task, _members(task, rng))
+    enough = min(ENOUGH_FITS, task.problem.max_designs)
+    for n in range(MAX_FIT_ROUNDS):
+        progress(0.7 + 0.3 * n / MAX_FIT_ROUNDS, "moving family members into the limits")
+        generators, signs = _select_one_assembly(task, _sample_members(task, rng))
         nearest = math.inf
-        for j in descent.apart(generators, limits.lacking(generators), STEERED):
-            moved = descent.minimax(generators[j], float(signs[j]), STEERING_STEPS, enough=MET)
+        for j in descent.select_distinct(generators, limits.measure_violations(generators), FITS_PER_ROUND):
+            moved = descent.minimax(generators[j], float(signs[j]), MAX_FIT_STEPS, enough=CONVERGED_ERROR)
             nearest = min(nearest, moved.error)
-            if moved.error > NEARLY_MET:
+            if moved.error > MAX_REFINABLE_ERROR:
                 harvest.reject("constraints")
                 continue
-            harvest.polish_and_verify(moved.generator[:STEPS], scales_given=True)
+            harvest.refine_and_verify(moved.generator[:PARAMETER_COUNT], scales_given=True)
             if len(harvest.passed) >= enough:
                 return
         # If even the closest fit stays far from feasible, new samples will not help.
-        if harvest.passed or nearest > HOPELESS:
+        if harvest.passed or nearest > MAX_PROMISING_ERROR:
             return
 
 
-def _in_one_assembly(task: FunctionTask, generators: Real) -> tuple[Real, Real]:
+def _select_one_assembly(task: FunctionTask, generators: Real) -> tuple[Real, Real]:
     """Return the members that meet all points in one assembly, and that assembly's sign."""
     signs = task.points().signs(generators)
     same = np.abs(signs.sum(axis=1)) > signs.shape[1] - 0.5
     return generators[same], signs[same, 0]
 
 
-def _members(task: FunctionTask, rng: np.random.Generator) -> Real:
+def _sample_members(task: FunctionTask, rng: np.random.Generator) -> Real:
     """Sample random members of a family, shape (k, 7): five dimensions and both scales."""
     most = 3 + sum(zero is None for zero in task.zeros)
     found = []
-    choices = _choices(task)
+    choices = _list_scale_choices(task)
     for first, second in choices:
-        count = DRAWN // len(choices)
-        k, scale = (_drawn(limits, count, rng) for limits in (first, second))
+        count = MEMBER_COUNT // len(choices)
+        k, scale = (_sample_scales(limits, count, rng) for limits in (first, second))
         pairs = k[:, None] * task.inputs, scale[:, None] * task.outputs
         if len(task.inputs) == most and task.free[5:].any():
-            members = many_exact(task.closure, *pairs, task.zeros)
+            members = solve_many_exact(task.closure, *pairs, task.zeros)
         else:
-            members = family(task.closure, *pairs, task.zeros, rng)
+            members = sample_family(task.closure, *pairs, task.zeros, rng)
         index = members[:, 5].astype(np.int64)
         found.append(np.column_stack([members[:, :5], k[index], scale[index]]))
     return np.concatenate(found)
 
 
-def _drawn(limits: tuple[float, float], count: int, rng: np.random.Generator) -> Real:
+def _sample_scales(limits: tuple[float, float], count: int, rng: np.random.Generator) -> Real:
     low, high = limits
     return np.asarray(low * (high / low) ** rng.random(count))
 
 
-def _worth(task: FunctionTask, generators: Real, signs: Real, sine: Real) -> Real:
+def _rank_members(task: FunctionTask, generators: Real, signs: Real, sine: Real) -> Real:
     """Return the ranking values of members, lowest first: structural error or negative quality; infinite if unfit."""
     problem, demanded = task.problem, task.problem.constraints
     lengths = generators[:, :2] if problem.slides else np.column_stack([np.ones(len(generators)), generators[:, :3]])
@@ -311,7 +318,7 @@ def _worth(task: FunctionTask, generators: Real, signs: Real, sine: Real) -> Rea
             errors = errors / np.abs(generators[:, 6])
         if demanded.min_transmission_angle is None:
             # Without a limit, accuracy should not outrank a usable transmission angle: penalise the error tenfold.
-            errors = errors * np.where(sine < USABLE, 10.0, 1.0)
+            errors = errors * np.where(sine < USABLE_SINE, 10.0, 1.0)
         worth = errors
     else:
         reach = lengths.max(axis=1) if problem.slides else 0.0
@@ -319,12 +326,12 @@ def _worth(task: FunctionTask, generators: Real, signs: Real, sine: Real) -> Rea
     return np.where((sine <= 0.0) | ~np.isfinite(worth), np.inf, worth)
 
 
-def _within(scale: float, choices: list[tuple[float, float]]) -> bool:
+def _is_allowed_scale(scale: float, choices: list[tuple[float, float]]) -> bool:
     """Return whether a scale lies in one of the permitted intervals, to rounding."""
     return any(low - 1e-9 * abs(low) <= scale <= high + 1e-9 * abs(high) for low, high in choices)
 
 
-class _Harvest(Sifting[FunctionDesign]):
+class _FunctionLog(CandidateLog[FunctionDesign]):
     """Record of verified linkages and rejections."""
 
     def __init__(self, task: FunctionTask) -> None:
@@ -333,15 +340,15 @@ class _Harvest(Sifting[FunctionDesign]):
         self.points = task.points()
         self._seen: list[Real] = []
 
-    def polish_and_verify(self, generator: Real, *, scales_given: bool = False) -> None:
+    def refine_and_verify(self, generator: Real, *, scales_given: bool = False) -> None:
         """Refine an almost exact generator to full precision, and verify it unless it is a duplicate."""
         free = self.task.free.copy()
         if scales_given:
             free[5:] = False
-        found = polished(self.points, generator, free)
-        if not all(_within(float(found[5 + side]), self.task.scales[side]) for side in (0, 1)):
+        found = refine_generator(self.points, generator, free)
+        if not all(_is_allowed_scale(float(found[5 + side]), self.task.scales[side]) for side in (0, 1)):
             return
-        if any(np.allclose(found, other, SAME, SAME) for other in self._seen):
+        if any(np.allclose(found, other, DUPLICATE_TOLERANCE, DUPLICATE_TOLERANCE) for other in self._seen):
             return
         self._seen.append(found)
         self.verify(found, float(self.points.signs(found[None])[0, 0]))
@@ -349,16 +356,16 @@ class _Harvest(Sifting[FunctionDesign]):
     def verify(self, generator: Real, sign: float) -> None:
         """Drive and verify a linkage, and record the result."""
         try:
-            mechanism, dials = built(self.task, generator, sign)
+            mechanism, dials = build_mechanism(self.task, generator, sign)
             design = verify_function(self.problem, mechanism, dials)
         except (ZeroDivisionError, OverflowError):
             design = None
-        self.add(design)
+        self.record_candidate(design)
 
-    def approximated(self, judged: int, improved: int) -> FunctionResult:
+    def build_approximation_result(self, judged: int, improved: int) -> FunctionResult:
         """Build the result of an approximation."""
         if self.passed:
-            best = min(self.passed, key=partial(error_of, self.problem))
+            best = min(self.passed, key=partial(get_error, self.problem))
             error = best.structural_error
             unit = "°" if error.unit == "degrees" else f" {self.problem.length_unit}"
             if self.problem.aim == "minimax":
@@ -367,32 +374,41 @@ class _Harvest(Sifting[FunctionDesign]):
             else:
                 text = f"Smallest root-mean-square structural error found: {error.rms:.4g}{unit}"
                 text += f" (maximum {error.max:.4g}{unit})"
-            text += f". {grouped(improved)} of {counted(judged, 'start')} were optimised; a better linkage may exist."
+            text += (
+                f". {format_integer(improved)} of {format_count(judged, 'start')} were optimised; a better linkage "
+                "may exist."
+            )
         else:
-            text = f"No design found: {grouped(improved)} of {counted(judged, 'start')} were optimised, but none "
-            text += f"satisfies all constraints.{self.reasons()}"
-        return self._result(self.problem.aim, False, text)
+            text = (
+                f"No design found: {format_integer(improved)} of {format_count(judged, 'start')} were optimised, but "
+                "none "
+            )
+            text += f"satisfies all constraints.{self.describe_reasons()}"
+        return self._build_result(self.problem.aim, False, text)
 
-    def determined(self, proved: bool, method: str) -> FunctionResult:
+    def build_exact_result(self, proved: bool, method: str) -> FunctionResult:
         """Build the result if all linkages were computed."""
-        unknown = _NUMERICAL | (_PLACES if self.problem.fixed_pivots is None else set())
+        unknown = _NUMERICAL_REASONS | (_PLACEMENT_REASONS if self.problem.fixed_pivots is None else set())
         complete = proved and not unknown & self.rejected.keys()
-        passed, of = len(self.passed), counted(self.candidates, "real linkage")
-        text = f"{grouped(passed)} of {of} {agreeing(passed, 'satisfies', 'satisfy')} all constraints.{self.reasons()}"
+        passed, of = len(self.passed), format_count(self.candidates, "real linkage")
+        text = (
+            f"{format_integer(passed)} of {of} {choose_word(passed, 'satisfies', 'satisfy')} all "
+            f"constraints.{self.describe_reasons()}"
+        )
         if not self.passed:
             text += " These are all, so no design exists." if complete else " Others may exist."
-        return self._result(method, complete, text)
+        return self._build_result(method, complete, text)
 
-    def searched(self, method: str) -> FunctionResult:
+    def build_search_result(self, method: str) -> FunctionResult:
         """Build the result of a search."""
-        among = counted(self.candidates, "candidate")
-        text = f"{counted(len(self.passed), 'design')} found among {among}.{self.reasons()}"
-        return self._result(method, False, text)
+        among = format_count(self.candidates, "candidate")
+        text = f"{format_count(len(self.passed), 'design')} found among {among}.{self.describe_reasons()}"
+        return self._build_result(method, False, text)
 
-    def _result(self, method: str, complete: bool, summary: str) -> FunctionResult:
+    def _build_result(self, method: str, complete: bool, summary: str) -> FunctionResult:
         return FunctionResult(
-            designs=self.designs(partial(ordered, self.problem)),
-            search=self.search(method, complete=complete),
+            designs=self.select_designs(partial(rank_by_error, self.problem)),
+            search=self.build_search(method, complete=complete),
             summary=summary,
         )
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from synthesis.kinds.gear_train.design import GearTrainResult
 from synthesis.kinds.gear_train.gallery import GALLERY
 from synthesis.kinds.gear_train.problem import GearTrainProblem
-from synthesis.model.kind import Kind, Progress
+from synthesis.model.kind import Kind, Progress, RatioCheck
 
 __all__ = ["KIND"]
 
@@ -16,9 +16,17 @@ def _solve(problem: GearTrainProblem, progress: Progress) -> GearTrainResult:
     return solve_gear_train(problem, progress)
 
 
-def _brief(problem: GearTrainProblem) -> bool:
+def _is_brief(problem: GearTrainProblem) -> bool:
     """Return whether the search is instant: at most two stages, without a stock and without a strength."""
     return problem.most_stages <= 2 and problem.stock is None and problem.strength is None
 
 
-KIND = Kind("gear_train", GearTrainProblem, GearTrainResult, _solve, brief=_brief, gallery=GALLERY)
+KIND = Kind(
+    "gear_train",
+    GearTrainProblem,
+    GearTrainResult,
+    _solve,
+    brief=_is_brief,
+    ratio_check=RatioCheck("ratio_error", "relative_error"),
+    gallery=GALLERY,
+)

@@ -7,11 +7,11 @@ from typing import Literal
 from pydantic import Field
 
 from kinematics.gear.train import StageKind
-from synthesis.model.answer import Answer, Result, Search, Verification, optional
+from synthesis.model.answer import Answer, Result, Search, Verification, optional_field
 from synthesis.model.dimension import Angle, Length
-from synthesis.model.gear_answer import MeshGeometry, OfGears, Ratio
-from synthesis.model.gear_stages import Hand
-from synthesis.model.gear_strength import PairStrength
+from synthesis.model.gears.answer import GearNumbers, MeshGeometry, Ratio
+from synthesis.model.gears.stages import Hand
+from synthesis.model.gears.strength import PairStrength
 
 
 class Stage(Answer):
@@ -20,18 +20,18 @@ class Stage(Answer):
     driver: int = Field(description="Teeth of the driving gear.")
     driven: int = Field(description="Teeth of the driven gear.")
     module: Length = Field(description="Module in length units.")
-    shift: OfGears | None = optional("Profile shift of both gears in modules, if teeth are fitted.")
-    centre_distance: Length | None = optional("Distance of the shafts without play, if teeth are fitted.")
-    face_width: Length | None = optional("Smallest face width that carries the given power, or the given one.")
-    type: StageKind | None = optional("Type of the stage, if the stages are given by type.")
-    helix_angle: Angle | None = optional("Helix angle of a helical driver, positive for a right-handed one.")
-    addendum: OfGears | None = optional(
+    shift: GearNumbers | None = optional_field("Profile shift of both gears in modules, if teeth are fitted.")
+    centre_distance: Length | None = optional_field("Distance of the shafts without play, if teeth are fitted.")
+    face_width: Length | None = optional_field("Smallest face width that carries the given power, or the given one.")
+    type: StageKind | None = optional_field("Type of the stage, if the stages are given by type.")
+    helix_angle: Angle | None = optional_field("Helix angle of a helical driver, positive for a right-handed one.")
+    addendum: GearNumbers | None = optional_field(
         "Addenda of an internal pair in modules: the ring's teeth are shortened for the pinion."
     )
-    shaft_angle: Angle | None = optional("Angle between the shafts of bevel gears.")
-    diameter_quotient: float | None = optional("Pitch diameter of a worm over its axial module.")
-    hand: Hand | None = optional("Hand of a worm.")
-    friction: float | None = optional("Coefficient of friction between a worm and its gear.")
+    shaft_angle: Angle | None = optional_field("Angle between the shafts of bevel gears.")
+    diameter_quotient: float | None = optional_field("Pitch diameter of a worm over its axial module.")
+    hand: Hand | None = optional_field("Hand of a worm.")
+    friction: float | None = optional_field("Coefficient of friction between a worm and its gear.")
 
 
 class Idler(Answer):
@@ -64,7 +64,7 @@ class TurningShaft(Answer):
     turns: Literal["same", "opposite"] | None = Field(
         description="Rotation relative to the input's; null if the shaft is not parallel to the input's."
     )
-    axis: tuple[float, float, float] | None = optional(
+    axis: tuple[float, float, float] | None = optional_field(
         "Axis about which the speed is counted, the input's along z; omitted if all shafts are parallel."
     )
 
@@ -82,8 +82,8 @@ class GearTrainMetrics(Answer):
     hunting_tooth: bool = Field(description="True if the teeth of every mesh have no common divisor.")
     centre_distances: list[Length] = Field(description="Distance of the shafts of each stage, with idlers in line.")
     meshes: list[MeshGeometry]
-    strength: list[PairStrength] | None = optional("Stresses of every mesh in order, under the given power.")
-    shafts: list[TurningShaft] | None = optional("Rotation of the shafts, if the stages are given by type.")
+    strength: list[PairStrength] | None = optional_field("Stresses of every mesh in order, under the given power.")
+    shafts: list[TurningShaft] | None = optional_field("Rotation of the shafts, if the stages are given by type.")
 
 
 class GearTrainDesign(Answer):
@@ -101,7 +101,7 @@ class ParetoTrain(Answer):
     relative_error: float
     stages: list[Stage]
     ratio: Ratio
-    idlers: list[Idler] | None = optional("With `strength`, if the ratio requires an idler.")
+    idlers: list[Idler] | None = optional_field("With `strength`, if the ratio requires an idler.")
 
 
 class GearTrainSearch(Search):
@@ -120,10 +120,10 @@ class GearTrainSearch(Search):
         "the judged trains that carry the power."
     )
     least_error: float | None = Field(description="Relative error of the nearest train; null if there is none.")
-    judged: int | None = optional(
+    judged: int | None = optional_field(
         "With `strength`: number of trains judged, in the order of the ranking; at most about 1000."
     )
-    every_judged: bool | None = optional(
+    every_judged: bool | None = optional_field(
         "With `strength`: true if all trains were judged, so that `ties` and `pareto` refer to all trains that carry "
         "the power; otherwise they refer to the judged ones only."
     )

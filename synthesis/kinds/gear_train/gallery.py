@@ -2,15 +2,15 @@
 
 from __future__ import annotations
 
-from synthesis.model.kind import Named
+from synthesis.model.kind import NamedExample
 
 GALLERY = (
-    Named("A ratio of π", "Change a speed", "Two stages that approximate π as closely as whole teeth allow."),
-    Named("12 : 1, coaxial", "Change a speed", "Exactly twelve, with input and output on one axis."),
-    Named(
+    NamedExample("A ratio of π", "Change a speed", "Two stages that approximate π as closely as whole teeth allow."),
+    NamedExample("12 : 1, coaxial", "Change a speed", "Exactly twelve, with input and output on one axis."),
+    NamedExample(
         "π between given centres", "Change a speed", "Coaxial, with standard modules and a centre distance of 120 mm."
     ),
-    Named("12 : 1 for 3 kW", "Change a speed", "Standard modules with sufficient bending and contact strength."),
-    Named("Helical, ring and spur", "Change a speed", "Three stages of three types for a ratio of 47."),
-    Named("Bevel, worm and spur", "Change a speed", "A ratio of one hundred around two corners."),
+    NamedExample("12 : 1 for 3 kW", "Change a speed", "Standard modules with sufficient bending and contact strength."),
+    NamedExample("Helical, ring and spur", "Change a speed", "Three stages of three types for a ratio of 47."),
+    NamedExample("Bevel, worm and spur", "Change a speed", "A ratio of one hundred around two corners."),
 )

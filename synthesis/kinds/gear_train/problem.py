@@ -6,12 +6,12 @@ from typing import Literal
 
 from pydantic import ConfigDict
 
-from synthesis.kinds.gear_train.contradictions import contradictions_of
-from synthesis.kinds.gear_train.stated_train import StatedTrain
-from synthesis.model.statement import Contradiction
+from synthesis.kinds.gear_train.statement.contradictions import find_train_contradictions
+from synthesis.kinds.gear_train.statement.train import GearTrainBase
+from synthesis.model.problem import Contradiction
 
 
-class GearTrainProblem(StatedTrain):
+class GearTrainProblem(GearTrainBase):
     """An ordinary gear train of one to four stages for a speed ratio, proven to be the best.
 
     Every train within the ranges, or of the gears in stock, is covered in exact arithmetic. The answer contains the
@@ -95,6 +95,6 @@ class GearTrainProblem(StatedTrain):
 
     kind: Literal["gear_train"]
 
-    def contradictions(self) -> list[Contradiction]:
+    def find_contradictions(self) -> list[Contradiction]:
         """Return contradictions that no single field shows, and searches that would take too long."""
-        return contradictions_of(self)
+        return find_train_contradictions(self)

@@ -5,7 +5,7 @@ from __future__ import annotations
 from synthesis.kinds.gearbox.design import GearboxResult
 from synthesis.kinds.gearbox.gallery import GALLERY
 from synthesis.kinds.gearbox.problem import GearboxProblem
-from synthesis.model.kind import Kind, Progress, always
+from synthesis.model.kind import Kind, Progress, RatioCheck, return_true
 
 __all__ = ["KIND"]
 
@@ -16,4 +16,12 @@ def _solve(problem: GearboxProblem, progress: Progress) -> GearboxResult:
     return solve_gearbox(problem, progress)
 
 
-KIND = Kind("gearbox", GearboxProblem, GearboxResult, _solve, brief=always, gallery=GALLERY)
+KIND = Kind(
+    "gearbox",
+    GearboxProblem,
+    GearboxResult,
+    _solve,
+    brief=return_true,
+    ratio_check=RatioCheck("speeds", "max_error"),
+    gallery=GALLERY,
+)

@@ -8,7 +8,7 @@ from pydantic import Field
 
 from synthesis.model.answer import Answer, Result, Verification
 from synthesis.model.dimension import Angle, Length, RotationalSpeed
-from synthesis.model.gear_answer import GearPairTeeth
+from synthesis.model.gears.answer import GearPairTeeth
 
 
 class GearboxStage(Answer):

@@ -19,15 +19,16 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from synthesis.kinds.gearbox.stages import SAME, Options, Real, Whole, worth_having
+from kinematics.arrays import Integers, Real
+from synthesis.kinds.gearbox.stages import EQUALITY_TOLERANCE, Options, select_undominated
 
-PARTS = (256.0, 128.0, 64.0, 32.0, 16.0, 8.0, 4.0, 2.0, 1.0)
+TOLERANCE_DIVISORS = (256.0, 128.0, 64.0, 32.0, 16.0, 8.0, 4.0, 2.0, 1.0)
 """Divisors of the tolerated error, run by run."""
 
-MOST_JOINED = 4
+MAX_COMBINED_STAGES = 4
 """Maximum number of stages of which all but one are combined; with more, all but two."""
 
-HELD = 1_000_000
+MAX_GATHERED = 1_000_000
 """Number of combinations that are gathered before the dominated ones are removed."""
 
 
@@ -39,7 +40,7 @@ class Choice(NamedTuple):
     stages: tuple[tuple[int, tuple[int, ...]], ...]
 
 
-class _Rest(NamedTuple):
+class _Remainder(NamedTuple):
     """Bounds of the contribution of the stages that are not yet combined."""
 
     half: float
@@ -48,7 +49,9 @@ class _Rest(NamedTuple):
     high: float
 
 
-def best_choices(stages: list[Options], level: float, widest: float, progress: Callable[[float], None]) -> list[Choice]:
+def find_best_choices(
+    stages: list[Options], level: float, widest: float, progress: Callable[[float], None]
+) -> list[Choice]:
     """Find for every total tooth sum the choice of minimum error, if it is smaller than for all smaller sums.
 
     Parameters
@@ -66,65 +69,69 @@ def best_choices(stages: list[Options], level: float, widest: float, progress: C
         return []
     most = sum(int(stage.size.max()) for stage in stages)
     front: list[Choice] = []
-    for run, part in enumerate(PARTS):
+    for run, part in enumerate(TOLERANCE_DIVISORS):
         bound = np.full(most + 1, widest / part)
         # A smaller gearbox with this error makes the same error at a larger sum useless.
         for choice in front:
             bound[choice.size :] = np.minimum(bound[choice.size :], choice.error)
-        front = _run(stages, _Wanted(level, bound), _part_of(progress, run / len(PARTS), (run + 1) / len(PARTS)))
+        front = _search_front(
+            stages,
+            _SearchBounds(level, bound),
+            _scale_progress(progress, run / len(TOLERANCE_DIVISORS), (run + 1) / len(TOLERANCE_DIVISORS)),
+        )
     return front
 
 
-class _Wanted(NamedTuple):
+class _SearchBounds(NamedTuple):
     """L, and the largest useful error by total tooth sum, which does not rise with it."""
 
     level: float
     bound: Real
 
-    def allows(self, middle: Real, half: Real, size: Whole, rest: _Rest) -> NDArray[np.bool_]:
+    def mark_feasible(self, middle: Real, half: Real, size: Integers, rest: _Remainder) -> NDArray[np.bool_]:
         """Return the choices that can stay within the bounds, with the best contribution of the other stages."""
         # |Σ c − L| + Σ h ≤ bound, with the extreme middles of the remaining stages.
-        room = self.bound[size + rest.size] - half - rest.half + SAME
+        room = self.bound[size + rest.size] - half - rest.half + EQUALITY_TOLERANCE
         short = middle - self.level
         return np.asarray((room >= 0.0) & (short + rest.low <= room) & (short + rest.high >= -room), np.bool_)
 
 
-def _part_of(progress: Callable[[float], None], start: float, end: float) -> Callable[[float], None]:
+def _scale_progress(progress: Callable[[float], None], start: float, end: float) -> Callable[[float], None]:
     """Return a progress callback for a part of the work."""
 
-    def told(share: float) -> None:
+    def report_share(share: float) -> None:
         progress(start + share * (end - start))
 
-    return told
+    return report_share
 
 
-def _run(stages: list[Options], wanted: _Wanted, progress: Callable[[float], None]) -> list[Choice]:
+def _search_front(stages: list[Options], wanted: _SearchBounds, progress: Callable[[float], None]) -> list[Choice]:
     """Compute the front within the bounds, exactly."""
     for k, stage in enumerate(stages):
-        others = _rest([*stages[:k], *stages[k + 1 :]])
-        stages = [*stages[:k], _allowed(stage, wanted, others), *stages[k + 1 :]]
+        others = _bound_remainder([*stages[:k], *stages[k + 1 :]])
+        stages = [*stages[:k], _filter_options(stage, wanted, others), *stages[k + 1 :]]
         if not stages[k].count:
             return []
     # The stage with the most choices is never multiplied out: its partners are found by bisection.
     order = sorted(range(len(stages)), key=lambda k: stages[k].count)
-    split = len(stages) - 1 - (len(stages) > MOST_JOINED)
+    split = len(stages) - 1 - (len(stages) > MAX_COMBINED_STAGES)
     parts = [[stages[k] for k in order[:split]], [stages[k] for k in order[split:]]]
     joined = []
     for part, beyond in (parts, parts[::-1]):
-        whole = part[0] if part else _nothing()
+        whole = part[0] if part else _make_empty()
         for k in range(1, len(part)):
-            whole = _together(whole, part[k], wanted, _rest([*part[k + 1 :], *beyond]), progress)
+            whole = _combine_options(whole, part[k], wanted, _bound_remainder([*part[k + 1 :], *beyond]), progress)
         if not whole.count:
             return []
         joined.append(whole)
     return [
         choice._replace(stages=tuple(choice.stages[order.index(k)] for k in range(len(stages))))
-        for choice in _front(joined[0], joined[1], wanted)
+        for choice in _match_halves(joined[0], joined[1], wanted)
     ]
 
 
-def _rest(stages: list[Options]) -> _Rest:
-    return _Rest(
+def _bound_remainder(stages: list[Options]) -> _Remainder:
+    return _Remainder(
         sum(float(stage.half.min()) for stage in stages),
         sum(int(stage.size.min()) for stage in stages),
         sum(float(stage.middle.min()) for stage in stages),
@@ -132,51 +139,53 @@ def _rest(stages: list[Options]) -> _Rest:
     )
 
 
-def _nothing() -> Options:
+def _make_empty() -> Options:
     """Return the single choice of no stage at all."""
     zero = np.zeros(1)
     return Options(zero, zero, np.zeros(1, np.int64), np.zeros((1, 0), np.int64), (), 1)
 
 
-def _allowed(stage: Options, wanted: _Wanted, rest: _Rest) -> Options:
-    kept = wanted.allows(stage.middle, stage.half, stage.size, rest)
+def _filter_options(stage: Options, wanted: _SearchBounds, rest: _Remainder) -> Options:
+    kept = wanted.mark_feasible(stage.middle, stage.half, stage.size, rest)
     return Options(
         stage.middle[kept], stage.half[kept], stage.size[kept], stage.picks[kept], stage.teeth, stage.covered
     )
 
 
-def _together(one: Options, other: Options, wanted: _Wanted, rest: _Rest, progress: Callable[[float], None]) -> Options:
+def _combine_options(
+    one: Options, other: Options, wanted: _SearchBounds, rest: _Remainder, progress: Callable[[float], None]
+) -> Options:
     """Combine the undominated choices of two sets of options."""
     pairs = np.zeros((0, 2), np.int64)
     gathered, held = [pairs], 0
-    step = max(1, HELD // other.count)
+    step = max(1, MAX_GATHERED // other.count)
     for start in range(0, one.count, step):
         progress(start / one.count)
         rows = np.arange(start, min(start + step, one.count))
         # Middles and half widths of independent stages add up.
         c, h = one.middle[rows, None] + other.middle, one.half[rows, None] + other.half
-        at, to = np.nonzero(wanted.allows(c, h, one.size[rows, None] + other.size, rest))
+        at, to = np.nonzero(wanted.mark_feasible(c, h, one.size[rows, None] + other.size, rest))
         gathered.append(np.stack((rows[at], to), axis=1))
         held += len(at)
-        if held > HELD:
-            gathered = [_kept(one, other, np.concatenate(gathered))]
+        if held > MAX_GATHERED:
+            gathered = [_select_pairs(one, other, np.concatenate(gathered))]
             held = len(gathered[0])
-    pairs = _kept(one, other, np.concatenate(gathered))
-    middle, half, size = _sums(one, other, pairs)
+    pairs = _select_pairs(one, other, np.concatenate(gathered))
+    middle, half, size = _add_pairs(one, other, pairs)
     picks = np.concatenate((one.picks[pairs[:, 0]], other.picks[pairs[:, 1]]), axis=1)
     return Options(middle, half, size, picks, (*one.teeth, *other.teeth), one.covered * other.covered)
 
 
-def _kept(one: Options, other: Options, pairs: Whole) -> Whole:
-    return np.asarray(pairs[worth_having(*_sums(one, other, pairs))])
+def _select_pairs(one: Options, other: Options, pairs: Integers) -> Integers:
+    return np.asarray(pairs[select_undominated(*_add_pairs(one, other, pairs))])
 
 
-def _sums(one: Options, other: Options, pairs: Whole) -> tuple[Real, Real, Whole]:
+def _add_pairs(one: Options, other: Options, pairs: Integers) -> tuple[Real, Real, Integers]:
     a, b = pairs[:, 0], pairs[:, 1]
     return one.middle[a] + other.middle[b], one.half[a] + other.half[b], one.size[a] + other.size[b]
 
 
-def _front(one: Options, other: Options, wanted: _Wanted) -> list[Choice]:
+def _match_halves(one: Options, other: Options, wanted: _SearchBounds) -> list[Choice]:
     """Find the best choice of every total tooth sum.
 
     For each choice of the first stages the best partner of one tooth sum has its middle next to the required one: the
@@ -187,29 +196,31 @@ def _front(one: Options, other: Options, wanted: _Wanted) -> list[Choice]:
         rows = np.flatnonzero(other.size == size)
         rows = rows[np.argsort(other.middle[rows], kind="stable")]
         c, h = other.middle[rows], other.half[rows]
-        level = _Rest(float(h.min()), size, float(c[0]), float(c[-1]))
-        firsts = np.flatnonzero(wanted.allows(one.middle, one.half, one.size, level))
+        level = _Remainder(float(h.min()), size, float(c[0]), float(c[-1]))
+        firsts = np.flatnonzero(wanted.mark_feasible(one.middle, one.half, one.size, level))
         # The middle that the partner should have for zero error.
         needed = wanted.level - one.middle[firsts]
         at = np.searchsorted(c, needed)
         # Running minima from both ends answer "the best partner below/above" for every position at once.
-        below, above = _running_least(h - c), _running_least((h + c)[::-1])
+        below, above = _find_running_minimum(h - c), _find_running_minimum((h + c)[::-1])
         for partner, there in (
             (below[np.maximum(at - 1, 0)], at > 0),
             (len(c) - 1 - above[np.maximum(len(c) - 1 - at, 0)], at < len(c)),
         ):
             error = np.where(there, np.abs(c[partner] - needed) + h[partner] + one.half[firsts], np.inf)
             total = one.size[firsts] + size
-            error[error > wanted.bound[total] + SAME] = np.inf
-            for k in _firsts(total, error):
+            error[error > wanted.bound[total] + EQUALITY_TOLERANCE] = np.inf
+            for k in _find_first_of_total(total, error):
                 candidate = (float(error[k]), int(firsts[k]), int(rows[partner[k]]))
                 whole = int(total[k])
-                if math.isfinite(candidate[0]) and (whole not in best or candidate[0] < best[whole][0] - SAME):
+                if math.isfinite(candidate[0]) and (
+                    whole not in best or candidate[0] < best[whole][0] - EQUALITY_TOLERANCE
+                ):
                     best[whole] = candidate
     front: list[Choice] = []
     for whole in sorted(best):
         least, first, second = best[whole]
-        if not front or least < front[-1].error - SAME:
+        if not front or least < front[-1].error - EQUALITY_TOLERANCE:
             picks = (*one.picks[first].tolist(), *other.picks[second].tolist())
             teeth = (*one.teeth, *other.teeth)
             stages = tuple(
@@ -220,13 +231,13 @@ def _front(one: Options, other: Options, wanted: _Wanted) -> list[Choice]:
     return front
 
 
-def _running_least(values: Real) -> Whole:
+def _find_running_minimum(values: Real) -> Integers:
     """Return for every place the place of the least value up to it."""
     least = np.minimum.accumulate(values)
     return np.asarray(np.maximum.accumulate(np.where(values <= least, np.arange(len(values)), 0)), np.int64)
 
 
-def _firsts(total: Whole, error: Real) -> Whole:
+def _find_first_of_total(total: Integers, error: Real) -> Integers:
     """Return the place of least error for each total."""
     order = np.lexsort((error, total))
     _, first = np.unique(total[order], return_index=True)

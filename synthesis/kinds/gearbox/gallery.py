@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
-from synthesis.model.kind import Named
+from synthesis.model.kind import NamedExample
 
-GALLERY = (Named("Lathe spindle", "Change a speed", "Six speeds from 25 to 800 rev/min in geometric progression."),)
+GALLERY = (
+    NamedExample("Lathe spindle", "Change a speed", "Six speeds from 25 to 800 rev/min in geometric progression."),
+)

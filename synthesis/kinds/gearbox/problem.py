@@ -7,12 +7,12 @@ from typing import Annotated, Literal, Self
 
 from pydantic import ConfigDict, Field, model_validator
 
-from kinematics.gear.gearbox import preferred_numbers, preferred_ratio, progression
+from kinematics.gear.gearbox import compute_progression, list_preferred_numbers, series_ratio
 from synthesis.model.dimension import ROTATIONAL_SPEED
-from synthesis.model.gear_statement import MOST_TOOTH_SUM, CommonPressureAngle, Module, ToothRange, tooth_faults
-from synthesis.model.statement import Contradiction, Count, Flag, PositiveNumber, Sizable, StatedProblem, Statement
+from synthesis.model.gears.request import MAX_TOOTH_SUM, CommonPressureAngle, Module, ToothRange, find_tooth_errors
+from synthesis.model.problem import Contradiction, Count, Flag, PositiveNumber, ProblemBase, Sizable, Statement
 
-STRICTLY = 1e-9
+STRUCTURE_MARGIN = 1e-9
 """Share by which a deviation stays below a quarter of a step, up to which every gearbox has a structure."""
 
 MAX_SPEED_RANGE = 1e6
@@ -42,12 +42,12 @@ class SpindleSpeeds(Statement):
     step: Annotated[Count, Field(ge=1, le=40)] = Field(default=1, description="Use every n-th preferred number.")
 
     @model_validator(mode="after")
-    def _one_progression(self) -> Self:
+    def _validate_progression(self) -> Self:
         if sum(stated is not None for stated in (self.max, self.ratio, self.series)) != 1:
             raise ValueError("give exactly one of max, ratio and series")
         if self.max is not None and self.max <= self.min:
             raise ValueError("max must be above min")
-        if self.series is not None and preferred_numbers(self.series, self.min, self.count, self.step) is None:
+        if self.series is not None and list_preferred_numbers(self.series, self.min, self.count, self.step) is None:
             raise ValueError(f"min must be a number of the series {self.series}")
         return self
 
@@ -55,8 +55,8 @@ class SpindleSpeeds(Statement):
     def progression_ratio(self) -> float:
         """Progression ratio φ."""
         if self.max is not None:
-            return progression(self.min, self.max, self.count)[0]
-        return self.ratio or preferred_ratio(self.series or "R40", self.step)
+            return compute_progression(self.min, self.max, self.count)[0]
+        return self.ratio or series_ratio(self.series or "R40", self.step)
 
     @property
     def nominal(self) -> list[float]:
@@ -71,13 +71,13 @@ class StageRatio(Statement):
     max: Annotated[float, Field(strict=True, gt=0.0, le=1e3), Sizable] = 2.0
 
     @model_validator(mode="after")
-    def _min_below_max(self) -> Self:
+    def _validate_order(self) -> Self:
         if self.min >= self.max:
             raise ValueError("min must be below max")
         return self
 
 
-class GearboxProblem(StatedProblem):
+class GearboxProblem(ProblemBase):
     """Machine-tool gearbox: tooth numbers for spindle speeds in geometric progression.
 
     All structural formulas, orders and tooth numbers within the limits are covered; the answer is proven to have the
@@ -142,19 +142,19 @@ class GearboxProblem(StatedProblem):
         """Maximum tolerated |ln(speed/nominal)|."""
         if self.tolerance is not None:
             return self.tolerance
-        return min(STANDARD_TOLERANCE * (self.speeds.progression_ratio - 1.0), self.structured)
+        return min(STANDARD_TOLERANCE * (self.speeds.progression_ratio - 1.0), self.structure_tolerance)
 
     @property
-    def structured(self) -> float:
+    def structure_tolerance(self) -> float:
         """Maximum |ln(speed/nominal)|, just below a quarter of ln φ, up to which every gearbox has a structure.
 
         Let the pairs of two stages add up to logarithms that lie within E of whole steps. The steps from one pair to
         another then differ by at most 4 E over the other engaged pairs, and as they are integers they are equal if 4 E
         is below a step: every pair has a number of steps of its own.
         """
-        return 0.25 * math.log(self.speeds.progression_ratio) * (1.0 - STRICTLY)
+        return 0.25 * math.log(self.speeds.progression_ratio) * (1.0 - STRUCTURE_MARGIN)
 
-    def contradictions(self) -> list[Contradiction]:
+    def find_contradictions(self) -> list[Contradiction]:
         """Return reversed or too wide limits, a structure with another number of speeds, and too wide progressions."""
         contradictions = []
         # Beyond half a step speeds and nominal values can no longer be assigned.
@@ -162,7 +162,7 @@ class GearboxProblem(StatedProblem):
         if self.widest >= half:
             detail = f"must be below half a step, {half:.4g}; beyond that a speed is nearer to another nominal one"
             contradictions.append(Contradiction("/tolerance", detail))
-        contradictions += tooth_faults(self.teeth, self.tooth_sum)
+        contradictions += find_tooth_errors(self.teeth, self.tooth_sum)
         if self.structure is not None and math.prod(self.structure) != self.speeds.count:
             detail = f"gives {math.prod(self.structure)} speeds, but speeds.count is {self.speeds.count}"
             contradictions.append(Contradiction("/structure", detail))
@@ -175,8 +175,8 @@ class GearboxProblem(StatedProblem):
             contradictions.append(Contradiction("/fixed_stage", "write a fixed stage as 1 in structure"))
         if self.speeds.progression_ratio ** (self.speeds.count - 1) > MAX_SPEED_RANGE:
             contradictions.append(Contradiction("/speeds", "the highest speed is more than a million times the lowest"))
-        if self.tooth_sum.max > MOST_TOOTH_SUM:
-            contradictions.append(Contradiction("/tooth_sum/max", f"at most {MOST_TOOTH_SUM}"))
+        if self.tooth_sum.max > MAX_TOOTH_SUM:
+            contradictions.append(Contradiction("/tooth_sum/max", f"at most {MAX_TOOTH_SUM}"))
         elif (pairs := self.pairs_of_a_stage) > MAX_PAIRS:
             detail = f"permits {pairs} pairs of gears for a stage, above the limit of {MAX_PAIRS}; "
             contradictions.append(Contradiction("/tooth_sum/max", detail + "narrow tooth_sum, teeth or stage_ratio"))

@@ -8,7 +8,7 @@ from collections.abc import Callable, Iterable
 from functools import partial
 from typing import NamedTuple
 
-from kinematics.gear.gearbox import preferred_numbers
+from kinematics.gear.gearbox import list_preferred_numbers
 from synthesis.kinds.gearbox.design import (
     GearboxDesign,
     GearboxMechanism,
@@ -16,21 +16,21 @@ from synthesis.kinds.gearbox.design import (
     GearboxStage,
     StructureVerdict,
 )
-from synthesis.kinds.gearbox.front import Choice, best_choices
+from synthesis.kinds.gearbox.front import Choice, find_best_choices
 from synthesis.kinds.gearbox.problem import GearboxProblem
-from synthesis.kinds.gearbox.stages import Options, StageLimits, stage_options
-from synthesis.kinds.gearbox.structures import Group, Structure, formula, spread, structures
+from synthesis.kinds.gearbox.stages import Options, StageLimits, list_stage_options
+from synthesis.kinds.gearbox.structures import Group, Structure, compute_spread, format_formula, list_structures
 from synthesis.kinds.gearbox.verification import measure, verify
-from synthesis.model.counting import counted
-from synthesis.model.gear_answer import GearPairTeeth
+from synthesis.model.counting import format_count
+from synthesis.model.gears.answer import GearPairTeeth
 from synthesis.model.kind import Progress
-from synthesis.outcome.sifting import Sifting
+from synthesis.results.candidate_log import CandidateLog
 
-FIXED = Group(1, 1)
+FIXED_STAGE = Group(1, 1)
 """A stage of one pair."""
 
 
-class _Toothed(NamedTuple):
+class _StructureTeeth(NamedTuple):
     """A structure with its teeth and its ranking criteria."""
 
     error: float
@@ -56,44 +56,44 @@ def solve_gearbox(problem: GearboxProblem, progress: Progress) -> GearboxResult:
         Complete if no gearbox within the limits has a smaller deviation at the same tooth sum: unless the problem
         permits gearboxes without a structural formula.
     """
-    tried = _structures(problem)
+    tried = _list_structures(problem)
     ratio = problem.speeds.progression_ratio
     # The teeth do not depend on the order of the stages: structures with equal groups share one search.
     kinds = {tuple(sorted(structure)): structure for structure in tried}
     covered, choices = 0, {}
     for k, groups in enumerate(kinds):
-        label = f"structure {formula(kinds[groups])}"
+        label = f"structure {format_formula(kinds[groups])}"
 
-        def within(share: float, done: int = k, message: str = label) -> None:
+        def report_share(share: float, done: int = k, message: str = label) -> None:
             progress((done + share) / len(kinds), message)
 
-        choices[groups], count = _choices(problem, groups, ratio, within)
+        choices[groups], count = _find_choices(problem, groups, ratio, report_share)
         covered += count
     gearboxes = []
     for groups, front in choices.items():
         orders = [structure for structure in tried if tuple(sorted(structure)) == groups]
-        gearboxes += [_ordered(choice, groups, orders) for choice in front]
+        gearboxes += [_order_stages(choice, groups, orders) for choice in front]
     gearboxes.sort(
         key=lambda m: (m.error, m.size, m.torque) if problem.rank_by == "error" else (m.size, m.error, m.torque)
     )
-    unsearched = _unsearched(problem, tried)
-    sifting = Sifting[GearboxDesign](problem)
-    sifting.sift_best(gearboxes[: problem.max_designs], covered, partial(_design, problem))
+    unsearched = _describe_unsearched(problem, tried)
+    sifting = CandidateLog[GearboxDesign](problem)
+    sifting.verify_best(gearboxes[: problem.max_designs], covered, partial(_build_design, problem))
     progress(1.0, "done")
     return GearboxResult(
-        designs=sifting.designs(list),
-        search=sifting.search("exhaustive", complete=not unsearched and not sifting.failed),
-        summary=_summary(problem, tried, sifting.passed, covered) + unsearched,
+        designs=sifting.select_designs(list),
+        search=sifting.build_search("exhaustive", complete=not unsearched and not sifting.failed),
+        summary=_write_summary(problem, tried, sifting.passed, covered) + unsearched,
         progression_ratio=ratio,
-        structures=[_verdict(structure, choices[tuple(sorted(structure))]) for structure in tried],
+        structures=[_build_verdict(structure, choices[tuple(sorted(structure))]) for structure in tried],
     )
 
 
-def _structures(problem: GearboxProblem) -> list[Structure]:
+def _list_structures(problem: GearboxProblem) -> list[Structure]:
     """List the structures to search: all of them, or those with the given pairs in the given order."""
     if problem.structure is None:
-        candidates = structures(problem.speeds.count, problem.max_pairs)
-        return [(FIXED, *structure) for structure in candidates] if problem.fixed_stage else candidates
+        candidates = list_structures(problem.speeds.count, problem.max_pairs)
+        return [(FIXED_STAGE, *structure) for structure in candidates] if problem.fixed_stage else candidates
     stated = [pairs for pairs in problem.structure if pairs > 1]
     candidates = []
     for order in itertools.permutations(range(len(stated))):
@@ -103,11 +103,11 @@ def _structures(problem: GearboxProblem) -> list[Structure]:
             characteristic *= stated[at]
         # Fixed stages keep their given places between the others.
         several = iter([groups[at] for at in range(len(stated))])
-        candidates.append(tuple(FIXED if pairs == 1 else next(several) for pairs in problem.structure))
+        candidates.append(tuple(FIXED_STAGE if pairs == 1 else next(several) for pairs in problem.structure))
     return candidates
 
 
-def _limits(problem: GearboxProblem) -> StageLimits:
+def _build_limits(problem: GearboxProblem) -> StageLimits:
     """Build the limits on the teeth of a stage."""
     return StageLimits(
         (problem.teeth.min, problem.teeth.max),
@@ -118,28 +118,28 @@ def _limits(problem: GearboxProblem) -> StageLimits:
     )
 
 
-def _choices(
+def _find_choices(
     problem: GearboxProblem, groups: tuple[Group, ...], ratio: float, progress: Callable[[float], None]
 ) -> tuple[list[Choice], int]:
     """Find Pareto choices of teeth for stages in the order of ``groups``, and the number of combinations covered."""
     progress(0.0)
-    limits = _limits(problem)
+    limits = _build_limits(problem)
     widest = problem.stage_ratio.max / problem.stage_ratio.min * math.exp(2.0 * problem.widest)
     # The ratios of a stage spread more than the stage ratio limits permit: no teeth can serve.
-    if any(spread(group, ratio) > widest for group in groups):
+    if any(compute_spread(group, ratio) > widest for group in groups):
         return [], 0
     known: dict[Group, Options] = {}
     for group in groups:
         if group not in known:
-            known[group] = stage_options(group, ratio, problem.widest, limits)
+            known[group] = list_stage_options(group, ratio, problem.widest, limits)
     stages = [known[group] for group in groups]
     # L: the lowest speed relative to the input, the target of the summed middles.
     level = math.log(problem.speeds.min / problem.input_speed)
-    front = best_choices(stages, level, problem.widest, progress)
+    front = find_best_choices(stages, level, problem.widest, progress)
     return front, math.prod(stage.covered for stage in stages)
 
 
-def _ordered(choice: Choice, groups: tuple[Group, ...], orders: Iterable[Structure]) -> _Toothed:
+def _order_stages(choice: Choice, groups: tuple[Group, ...], orders: Iterable[Structure]) -> _StructureTeeth:
     """Choose, among the permitted orders of the stages, the one that loads the intermediate shafts least."""
     gearboxes = []
     for structure in orders:
@@ -154,11 +154,11 @@ def _ordered(choice: Choice, groups: tuple[Group, ...], orders: Iterable[Structu
         for total, drivers in placed[:-1]:
             speed *= min(drivers) / (total - min(drivers))
             torque += 1.0 / speed
-        gearboxes.append(_Toothed(choice.error, choice.size, torque, structure, tuple(placed)))
+        gearboxes.append(_StructureTeeth(choice.error, choice.size, torque, structure, tuple(placed)))
     return min(gearboxes, key=lambda gearbox: gearbox.torque)
 
 
-def _design(problem: GearboxProblem, gearbox: _Toothed) -> GearboxDesign:
+def _build_design(problem: GearboxProblem, gearbox: _StructureTeeth) -> GearboxDesign:
     """Build a gearbox of the front as a verified design."""
     stages = []
     for group, (total, drivers) in zip(gearbox.structure, gearbox.stages, strict=True):
@@ -166,7 +166,7 @@ def _design(problem: GearboxProblem, gearbox: _Toothed) -> GearboxDesign:
         distance = 0.5 * problem.module * total
         stages.append(GearboxStage(characteristic=group.characteristic, pairs=pairs, centre_distance=distance))
     mechanism = GearboxMechanism(
-        formula=formula(gearbox.structure),
+        formula=format_formula(gearbox.structure),
         input_speed=problem.input_speed,
         stages=stages,
         module=problem.module,
@@ -176,27 +176,27 @@ def _design(problem: GearboxProblem, gearbox: _Toothed) -> GearboxDesign:
     standard = (
         None
         if series is None
-        else preferred_numbers(series, problem.speeds.min, problem.speeds.count, problem.speeds.step)
+        else list_preferred_numbers(series, problem.speeds.min, problem.speeds.count, problem.speeds.step)
     )
     return GearboxDesign(
         mechanism=mechanism, verification=verify(problem, mechanism), metrics=measure(problem, mechanism, standard)
     )
 
 
-def _verdict(structure: Structure, front: list[Choice]) -> StructureVerdict:
+def _build_verdict(structure: Structure, front: list[Choice]) -> StructureVerdict:
     best = front[-1] if front else None
     return StructureVerdict(
-        formula=formula(structure), max_error=best.error if best else None, tooth_sum=best.size if best else None
+        formula=format_formula(structure), max_error=best.error if best else None, tooth_sum=best.size if best else None
     )
 
 
-def _unsearched(problem: GearboxProblem, tried: list[Structure]) -> str:
+def _describe_unsearched(problem: GearboxProblem, tried: list[Structure]) -> str:
     """Describe the gearboxes without a structural formula that were not searched; empty if there are none.
 
     In a gearbox of several stages a stage with a prime number of pairs has one characteristic. One of 4 or 6 may have
     two: {0, 1, 4, 5} with {0, 2} makes the steps 0 to 7 too (de Bruijn, On number systems, Nieuw Arch. Wisk. 4, 1956).
     """
-    if problem.widest > problem.structured:
+    if problem.widest > problem.structure_tolerance:
         return " At this tolerance, above a quarter of a step, gearboxes without a structural formula exist; they "
         "were not searched."
     several = [[group.pairs for group in structure if group.pairs > 1] for structure in tried]
@@ -205,14 +205,14 @@ def _unsearched(problem: GearboxProblem, tried: list[Structure]) -> str:
     return ""
 
 
-def _summary(problem: GearboxProblem, tried: list[Structure], passed: list[GearboxDesign], covered: int) -> str:
+def _write_summary(problem: GearboxProblem, tried: list[Structure], passed: list[GearboxDesign], covered: int) -> str:
     """Write the coverage of the search and the best gearbox in one sentence."""
-    count, combinations = problem.speeds.count, counted(covered, "combination")
+    count, combinations = problem.speeds.count, format_count(covered, "combination")
     if not tried:
         return f"{count} speeds cannot be made by stages of 2 to {problem.max_pairs} pairs."
     if not passed:
         return (
-            f"No gearbox ({counted(len(tried), 'structure')}, {combinations} of tooth numbers) keeps all {count} "
+            f"No gearbox ({format_count(len(tried), 'structure')}, {combinations} of tooth numbers) keeps all {count} "
             "speeds "
             f"within {100.0 * problem.widest:.3g} % and the limits."
         )
@@ -220,6 +220,7 @@ def _summary(problem: GearboxProblem, tried: list[Structure], passed: list[Gearb
     error = first.metrics.max_error
     kept = f"within {100.0 * error:.3g} %" if error else "exactly"
     return (
-        f"{first.mechanism.formula} keeps {count} speeds {kept}: the best of {counted(len(tried), 'structure')} and "
+        f"{first.mechanism.formula} keeps {count} speeds {kept}: the best of {format_count(len(tried), 'structure')} "
+        "and "
         f"{combinations} of tooth numbers."
     )

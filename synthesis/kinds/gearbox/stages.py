@@ -23,15 +23,12 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
+from kinematics.arrays import Integers, Real
 from synthesis.kinds.gearbox.structures import Group
-from synthesis.model.mesh_limits import external_sound
+from synthesis.model.gears.mesh_limits import has_no_external_interference
 
-Real = NDArray[np.float64]
-Whole = NDArray[np.int64]
-
-SAME = 1e-13
+EQUALITY_TOLERANCE = 1e-13
 """Difference below which middles and half widths are equal: sums of a few rounded logarithms."""
 
 
@@ -64,9 +61,9 @@ class Options:
 
     middle: Real
     half: Real
-    size: Whole
-    picks: Whole
-    teeth: tuple[tuple[Whole, Whole], ...]
+    size: Integers
+    picks: Integers
+    teeth: tuple[tuple[Integers, Integers], ...]
     covered: int
 
     @property
@@ -75,7 +72,7 @@ class Options:
         return len(self.middle)
 
 
-def stage_options(group: Group, ratio: float, widest: float, limits: StageLimits) -> Options:
+def list_stage_options(group: Group, ratio: float, widest: float, limits: StageLimits) -> Options:
     """List all undominated choices for one stage.
 
     Parameters
@@ -95,31 +92,33 @@ def stage_options(group: Group, ratio: float, widest: float, limits: StageLimits
     ]
     covered = 0
     for total in range(limits.tooth_sum[0], limits.tooth_sum[1] + 1):
-        own = sound_drivers(total, limits)
+        own = find_sound_drivers(total, limits)
         covered += math.comb(len(own), group.pairs)
         if len(own) < group.pairs:
             continue
-        low, high, drivers = _narrowest(own, np.log(own / (total - own)), step, group.pairs, limits.cluster)
-        kept = high - low <= 2.0 * widest + SAME
+        low, high, drivers = _find_narrowest(own, np.log(own / (total - own)), step, group.pairs, limits.cluster)
+        kept = high - low <= 2.0 * widest + EQUALITY_TOLERANCE
         c, h, drivers = 0.5 * (low + high)[kept], 0.5 * (high - low)[kept], drivers[kept]
-        worth = worth_having(c, h, np.zeros(len(c), np.int64))
+        worth = select_undominated(c, h, np.zeros(len(c), np.int64))
         options.append((c[worth], h[worth], np.full(len(worth), total), drivers[worth]))
     middle, half, size, drivers = (np.concatenate(part) for part in zip(*options, strict=True))
-    worth = worth_having(middle, half, size)
+    worth = select_undominated(middle, half, size)
     return Options(middle[worth], half[worth], size[worth], worth[:, None], ((size, drivers),), covered)
 
 
-def sound_drivers(total: int, limits: StageLimits) -> Whole:
+def find_sound_drivers(total: int, limits: StageLimits) -> Integers:
     """Return the teeth of the drivers of sound pairs with this tooth sum, in rising order."""
     own = np.arange(max(limits.teeth[0], total - limits.teeth[1]), min(limits.teeth[1], total - limits.teeth[0]) + 1)
     quotient = own / np.maximum(total - own, 1)
     # Interference is decided for standard teeth.
-    sound = external_sound(own.astype(np.float64), (total - own).astype(np.float64), limits.pressure_angle)
-    least, most = limits.ratio[0] * (1.0 - SAME), limits.ratio[1] * (1.0 + SAME)
+    sound = has_no_external_interference(
+        own.astype(np.float64), (total - own).astype(np.float64), limits.pressure_angle
+    )
+    least, most = limits.ratio[0] * (1.0 - EQUALITY_TOLERANCE), limits.ratio[1] * (1.0 + EQUALITY_TOLERANCE)
     return np.asarray(own[(quotient >= least) & (quotient <= most) & sound], np.int64)
 
 
-def _narrowest(own: Whole, level: Real, step: float, pairs: int, cluster: int) -> tuple[Real, Real, Whole]:
+def _find_narrowest(own: Integers, level: Real, step: float, pairs: int, cluster: int) -> tuple[Real, Real, Integers]:
     """Find for every d of a driver as the least the narrowest choice: its least and greatest d (n,), drivers (n, p).
 
     With a minimum difference between the two largest drivers, the largest is moved up if necessary: it and the one
@@ -127,7 +126,7 @@ def _narrowest(own: Whole, level: Real, step: float, pairs: int, cluster: int) -
     """
     # Every d of a driver in the place of any pair is tried as the least one.
     least = np.concatenate([level - k * step for k in range(pairs)])
-    places = [np.searchsorted(level, least + (k * step - SAME)) for k in range(pairs)]
+    places = [np.searchsorted(level, least + (k * step - EQUALITY_TOLERANCE)) for k in range(pairs)]
     if pairs > 2 and cluster:
         below = own[np.minimum(places[-2], len(own) - 1)]
         places[-1] = np.maximum(places[-1], np.searchsorted(own, below + cluster))
@@ -137,7 +136,7 @@ def _narrowest(own: Whole, level: Real, step: float, pairs: int, cluster: int) -
     return values.min(axis=1), values.max(axis=1), own[at]
 
 
-def worth_having(middle: Real, half: Real, size: Whole) -> Whole:
+def select_undominated(middle: Real, half: Real, size: Integers) -> Integers:
     """Select the rows that no other row of at most their size dominates, smallest first."""
     order = np.lexsort((half, middle, size))
     ends = np.flatnonzero(np.diff(size[order], append=np.iinfo(np.int64).max)) + 1
@@ -149,12 +148,14 @@ def worth_having(middle: Real, half: Real, size: Whole) -> Whole:
             break
         left, right = half[own] - middle[own], half[own] + middle[own]
         # The first of several equal rows is kept.
-        replaced = (_least_before(left) <= left + SAME) | (_least_after(right) < right - SAME)
+        replaced = (_minimum_before(left) <= left + EQUALITY_TOLERANCE) | (
+            _minimum_after(right) < right - EQUALITY_TOLERANCE
+        )
         if len(kept):
             at = np.searchsorted(c, middle[own], side="right")
             # Dominated by a smaller size: |c − c'| + h' ≤ h, split into c' ≤ c and c' > c.
-            replaced |= np.append(_least_before(h - c), (h - c).min())[at] <= left + SAME
-            replaced |= np.append(np.minimum.accumulate((h + c)[::-1])[::-1], np.inf)[at] <= right + SAME
+            replaced |= np.append(_minimum_before(h - c), (h - c).min())[at] <= left + EQUALITY_TOLERANCE
+            replaced |= np.append(np.minimum.accumulate((h + c)[::-1])[::-1], np.inf)[at] <= right + EQUALITY_TOLERANCE
         new = own[~replaced]
         chosen.append(new)
         kept = np.concatenate((kept, new))
@@ -163,11 +164,11 @@ def worth_having(middle: Real, half: Real, size: Whole) -> Whole:
     return np.concatenate(chosen)
 
 
-def _least_before(values: Real) -> Real:
+def _minimum_before(values: Real) -> Real:
     """Return for every place the minimum of the values before it; infinite for the first."""
     return np.concatenate(([np.inf], np.minimum.accumulate(values)[:-1]))
 
 
-def _least_after(values: Real) -> Real:
+def _minimum_after(values: Real) -> Real:
     """Return for every place the minimum of the values after it; infinite for the last."""
-    return _least_before(values[::-1])[::-1]
+    return _minimum_before(values[::-1])[::-1]

@@ -23,17 +23,17 @@ class Group(NamedTuple):
 Structure = tuple[Group, ...]
 
 
-def formula(structure: Structure) -> str:
+def format_formula(structure: Structure) -> str:
     """Return the structural formula, e.g. ``3(1) 2(3)``; a single pair has no characteristic."""
     return " ".join(
         str(group.pairs) if group.pairs == 1 else f"{group.pairs}({group.characteristic})" for group in structure
     )
 
 
-def structures(count: int, most: int) -> list[Structure]:
+def list_structures(count: int, most: int) -> list[Structure]:
     """List all structures of ``count`` speeds with 2 to ``most`` pairs in a stage."""
     orders = []
-    for factors in _factorizations(count, most):
+    for factors in _list_factorizations(count, most):
         for order in itertools.permutations(range(len(factors))):
             characteristic, groups = 1, {}
             # The order in which characteristics are assigned is independent of the order of the shafts.
@@ -44,17 +44,17 @@ def structures(count: int, most: int) -> list[Structure]:
     return orders
 
 
-def _factorizations(count: int, most: int) -> list[tuple[int, ...]]:
+def _list_factorizations(count: int, most: int) -> list[tuple[int, ...]]:
     """List ordered factorizations into factors 2 to ``most``."""
     if count == 1:
         return [()]
     factorizations = []
     for factor in range(2, min(count, most) + 1):
         if count % factor == 0:
-            factorizations += [(factor, *rest) for rest in _factorizations(count // factor, most)]
+            factorizations += [(factor, *rest) for rest in _list_factorizations(count // factor, most)]
     return factorizations
 
 
-def spread(group: Group, ratio: float) -> float:
+def compute_spread(group: Group, ratio: float) -> float:
     """Return the quotient of the fastest and slowest ratio of a stage, φ^((p − 1) x)."""
     return math.exp((group.pairs - 1) * group.characteristic * math.log(ratio))

@@ -5,21 +5,21 @@ from __future__ import annotations
 import math
 from fractions import Fraction
 
-from kinematics.gear.gearbox import spindle_speeds
+from kinematics.gear.gearbox import list_spindle_speeds
 from kinematics.gear.teeth import Mesh
 from synthesis.kinds.gearbox.design import GearboxMechanism, GearboxMetrics, ShaftSpeeds, SpindleSpeed
 from synthesis.kinds.gearbox.problem import GearboxProblem
 from synthesis.model.answer import Check, Verification
-from synthesis.model.ratio_target import decimal
+from synthesis.model.gears.ratio_target import parse_decimal
 
-ROUNDING = 1e-12
+ROUNDING_TOLERANCE = 1e-12
 """Slack for the logarithms of the speeds, which are rounded by some 1e-15 on each side."""
 
 
 def verify(problem: GearboxProblem, mechanism: GearboxMechanism) -> Verification:
     """Check every constraint on a gearbox."""
-    stages = _teeth(mechanism)
-    errors = _errors(problem, mechanism)
+    stages = _read_teeth(mechanism)
+    errors = _compute_errors(problem, mechanism)
     sums = [{driver + driven for driver, driven in pairs} for pairs in stages]
     every = [pair for pairs in stages for pair in pairs]
     low, high = problem.teeth.min, problem.teeth.max
@@ -31,7 +31,8 @@ def verify(problem: GearboxProblem, mechanism: GearboxMechanism) -> Verification
     checks = [
         Check(
             name="speeds",
-            passed=len(errors) == problem.speeds.count and max(errors, default=0.0) <= problem.widest + ROUNDING,
+            passed=len(errors) == problem.speeds.count
+            and max(errors, default=0.0) <= problem.widest + ROUNDING_TOLERANCE,
             value=max(errors, default=None),
             limit=problem.widest,
         ),
@@ -45,7 +46,9 @@ def verify(problem: GearboxProblem, mechanism: GearboxMechanism) -> Verification
         Check(name="tooth_limits", passed=all(low <= z <= high for pair in every for z in pair)),
         Check(
             name="stage_ratios",
-            passed=all(least * (1.0 - ROUNDING) <= float(r) <= most * (1.0 + ROUNDING) for r in ratios),
+            passed=all(
+                least * (1.0 - ROUNDING_TOLERANCE) <= float(r) <= most * (1.0 + ROUNDING_TOLERANCE) for r in ratios
+            ),
         ),
         Check(name="structure", passed=problem.structure is None or counts == problem.structure),
         Check(name="interference", passed=not any(mesh.interferes for mesh in meshes)),
@@ -57,24 +60,24 @@ def verify(problem: GearboxProblem, mechanism: GearboxMechanism) -> Verification
         checks.append(
             Check(name="cluster_difference", passed=passed, value=narrowest, limit=problem.cluster_difference)
         )
-    return Verification.of(checks)
+    return Verification.from_checks(checks)
 
 
 def measure(problem: GearboxProblem, mechanism: GearboxMechanism, standard: list[float] | None) -> GearboxMetrics:
     """Measure speeds of all shafts, deviations and loads."""
-    stages = _teeth(mechanism)
+    stages = _read_teeth(mechanism)
     nominal = problem.speeds.nominal
-    speeds = spindle_speeds(decimal(mechanism.input_speed), stages)
+    speeds = list_spindle_speeds(parse_decimal(mechanism.input_speed), stages)
     rounded: list[float | None] = [*standard] if standard else [None] * len(speeds)
     shafts = [
         ShaftSpeeds(
             shaft=k + 1,
-            speeds=[float(s.speed) for s in spindle_speeds(decimal(mechanism.input_speed), stages[:k])],
+            speeds=[float(s.speed) for s in list_spindle_speeds(parse_decimal(mechanism.input_speed), stages[:k])],
         )
         for k in range(len(stages) + 1)
     ]
     return GearboxMetrics(
-        max_error=max(_errors(problem, mechanism)),
+        max_error=max(_compute_errors(problem, mechanism)),
         tooth_sum=sum(sum(pairs[0]) for pairs in stages),
         # The lowest speed of a shaft has the highest torque.
         torque=sum(mechanism.input_speed / shaft.speeds[0] for shaft in shafts[1:-1]),
@@ -92,13 +95,13 @@ def measure(problem: GearboxProblem, mechanism: GearboxMechanism, standard: list
     )
 
 
-def _teeth(mechanism: GearboxMechanism) -> list[list[tuple[int, int]]]:
+def _read_teeth(mechanism: GearboxMechanism) -> list[list[tuple[int, int]]]:
     return [[(pair.driver, pair.driven) for pair in stage.pairs] for stage in mechanism.stages]
 
 
-def _errors(problem: GearboxProblem, mechanism: GearboxMechanism) -> list[float]:
+def _compute_errors(problem: GearboxProblem, mechanism: GearboxMechanism) -> list[float]:
     """Compute |ln(speed/nominal)| of every speed, both in rising order."""
-    speeds = spindle_speeds(decimal(mechanism.input_speed), _teeth(mechanism))
+    speeds = list_spindle_speeds(parse_decimal(mechanism.input_speed), _read_teeth(mechanism))
     if len(speeds) != problem.speeds.count:
         return []
     return [

@@ -16,9 +16,9 @@ def _solve(problem: IndexingProblem, progress: Progress) -> IndexingResult:
     return solve_indexing(problem, progress)
 
 
-def _brief(problem: IndexingProblem) -> bool:
+def _is_brief(problem: IndexingProblem) -> bool:
     """Return whether the answer is in closed form: all drives except those with drag links."""
     return problem.driver == "crank"
 
 
-KIND = Kind("indexing", IndexingProblem, IndexingResult, _solve, brief=_brief, gallery=GALLERY)
+KIND = Kind("indexing", IndexingProblem, IndexingResult, _solve, brief=_is_brief, gallery=GALLERY)

@@ -6,33 +6,30 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from kinematics.arrays import Complex, Real
 from synthesis.kinds.indexing.design import GenevaMechanism, IndexingDesign
-from synthesis.kinds.indexing.on_sphere import measured_on_sphere
-from synthesis.kinds.indexing.polygons import depth, distance, play_of, split
+from synthesis.kinds.indexing.polygons import measure_depth, measure_distance, measure_play, subdivide_outline
+from synthesis.kinds.indexing.spherical_drive import measure_on_sphere
 
-Complex = NDArray[np.complex128]
-Real = NDArray[np.float64]
-
-MOVING, RESTING = 173, 61
+MOVING_POSITIONS, RESTING_POSITIONS = 173, 61
 """Number of positions of an index, different from those of which the disc was made, and of a rest."""
 
-FREE = 721
+PASSING_POSITIONS = 721
 """Number of positions of a rest at which the distance of the rollers from the wheel is measured."""
 
-FINE = 1.0 / 60.0
+MAX_PIECE_LENGTH = 1.0 / 60.0
 """Longest straight piece of an outline, in center distances."""
 
-TRIED = 0.005
+TRIAL_ANGLE = 0.005
 """Angle, radians, by which a resting wheel is turned beyond its play to test whether the disc holds it."""
 
-ON_SIDE = 1e-9
+CORNER_TOLERANCE = 1e-9
 """Share of a length within which a corner counts as on a line or a circle."""
 
 
 @dataclass(frozen=True)
-class Measured:
+class MeasuredDrive:
     """Measurements on the outlines of a drive, in length units except for ``locked``.
 
     Attributes
@@ -76,78 +73,81 @@ class Measured:
     size: float
 
 
-def measured(design: IndexingDesign, half: float) -> Measured:
+def measure_drive(design: IndexingDesign, half: float) -> MeasuredDrive:
     """Measure a drive; ``half`` is half of its index, radians of the crank."""
     mechanism = design.mechanism
     if not isinstance(mechanism, GenevaMechanism):
-        return Measured(**measured_on_sphere(mechanism))
+        return MeasuredDrive(**measure_on_sphere(mechanism))
     # In an internal drive the crank and the wheel's slots face the other way.
     c, sense = mechanism.center_distance, 1.0 if mechanism.type == "geneva_external" else -1.0
     outline = np.array(mechanism.profile.x) + 1j * np.array(mechanism.profile.y)
     stations = np.arange(mechanism.stations)
     arcs = c * np.exp(1j * math.pi * (2 * stations + 1) / mechanism.stations)
-    points = split(outline, FINE * c, arcs, mechanism.locking_arc_radius)
-    alpha = np.linspace(-half, half, MOVING)
+    points = subdivide_outline(outline, MAX_PIECE_LENGTH * c, arcs, mechanism.locking_arc_radius)
+    alpha = np.linspace(-half, half, MOVING_POSITIONS)
     roller = c - sense * mechanism.crank_radius * np.exp(1j * alpha)
     turn = np.angle(roller)
 
-    def deepest(crank: Real, wheel: Real) -> Real:
+    def find_deepest(crank: Real, wheel: Real) -> Real:
         """Return the greatest depth in each position: crank angles from mid-index, directions of slot 0."""
         seen = (points * np.exp(1j * wheel)[:, None] - c) * (-sense * np.exp(-1j * crank))[:, None]
-        return np.asarray(depth(mechanism.disc, seen).max(axis=1))
+        return np.asarray(measure_depth(mechanism.disc, seen).max(axis=1))
 
     # From the exit of one roller to the entry of the next.
-    rest = np.linspace(half, 2.0 * math.pi / mechanism.rollers - half, RESTING)
-    still = np.full(RESTING, turn[-1])
+    rest = np.linspace(half, 2.0 * math.pi / mechanism.rollers - half, RESTING_POSITIONS)
+    still = np.full(RESTING_POSITIONS, turn[-1])
     # Play is measured at mid-rest, farthest from entry and exit.
-    middle = float(rest[RESTING // 2])
-    play = play_of(lambda by: deepest(np.full_like(by, middle), still[0] + by), math.pi / mechanism.stations)
-    tried = TRIED + play
-    held = (deepest(rest, still + tried) > 0.0) & (deepest(rest, still - tried) > 0.0)
-    overlap = max(float(deepest(alpha, turn).max()), float(deepest(rest, still).max()), 0.0)
+    middle = float(rest[RESTING_POSITIONS // 2])
+    play = measure_play(lambda by: find_deepest(np.full_like(by, middle), still[0] + by), math.pi / mechanism.stations)
+    tried = TRIAL_ANGLE + play
+    held = (find_deepest(rest, still + tried) > 0.0) & (find_deepest(rest, still - tried) > 0.0)
+    overlap = max(float(find_deepest(alpha, turn).max()), float(find_deepest(rest, still).max()), 0.0)
     locked = float(held.mean())
-    return Measured(
-        roller=distance(outline, np.asarray(roller * np.exp(-1j * turn))),
-        passing=_passing(mechanism, outline, alpha, turn),
+    return MeasuredDrive(
+        roller=measure_distance(outline, np.asarray(roller * np.exp(-1j * turn))),
+        passing=_measure_passing(mechanism, outline, alpha, turn),
         overlap=overlap,
         locked=locked,
         play=math.degrees(play),
         locked_angle=locked * math.degrees(float(rest[-1] - rest[0])),
-        **_walls(mechanism, outline, arcs),
+        **_measure_walls(mechanism, outline, arcs),
         outmost=float(np.abs(outline).max()),
         neck=min(mechanism.disc.outer_radius),
-        size=_extent(mechanism, outline, sense),
+        size=_measure_extent(mechanism, outline, sense),
     )
 
 
-def _passing(mechanism: GenevaMechanism, outline: Complex, alpha: Real, turn: Real) -> float:
+def _measure_passing(mechanism: GenevaMechanism, outline: Complex, alpha: Real, turn: Real) -> float:
     """Return the least distance of rollers outside slots; ``alpha`` and ``turn`` are those of the first's index."""
     c, sense = mechanism.center_distance, 1.0 if mechanism.type == "geneva_external" else -1.0
     half, pitch = float(alpha[-1]), 2.0 * math.pi / mechanism.rollers
-    rest = np.linspace(half, pitch - half, FREE)
+    rest = np.linspace(half, pitch - half, PASSING_POSITIONS)
     # All crank angles at which the first roller is in no slot: the rest, and the indexes of the other rollers.
     crank = np.concatenate([rest, *(alpha + pitch * k for k in range(1, mechanism.rollers))])
     others = pitch * np.arange(mechanism.rollers)[:, None]
-    wheel = np.concatenate([np.full(FREE, turn[-1]), np.tile(turn, mechanism.rollers - 1)])
+    wheel = np.concatenate([np.full(PASSING_POSITIONS, turn[-1]), np.tile(turn, mechanism.rollers - 1)])
     at_rest = (rest + others[1:]).ravel()
     crank, wheel = np.append(crank, at_rest), np.append(wheel, np.full(len(at_rest), turn[-1]))
     places = np.asarray((c - sense * mechanism.crank_radius * np.exp(1j * crank)) * np.exp(-1j * wheel), np.complex128)
     # A roller farther from the wheel's circle than its own diameter cannot be near the wheel.
     apart = sense * (np.abs(places) - mechanism.wheel_radius)
-    sampled = distance(outline, places[apart < mechanism.roller_diameter])
+    sampled = measure_distance(outline, places[apart < mechanism.roller_diameter])
     # Corners that the path passes between two sampled positions: the path is a circle about the crank's axis.
     seen = (outline * np.exp(1j * turn[-1]) - c) * -sense
     passed = np.mod(np.angle(seen) - half, pitch) <= pitch - 2.0 * half
     return min(sampled, float(np.abs(np.abs(seen[passed]) - mechanism.crank_radius).min(initial=math.inf)))
 
 
-def _walls(mechanism: GenevaMechanism, outline: Complex, arcs: Complex) -> dict[str, float]:
+def _measure_walls(mechanism: GenevaMechanism, outline: Complex, arcs: Complex) -> dict[str, float]:
     """Measure wall, web and innermost point by the corners of the outline."""
     half_slot, step = 0.5 * mechanism.slot_width, math.pi / mechanism.stations
-    on_arc = np.abs(np.abs(outline - arcs[0]) - mechanism.locking_arc_radius) < ON_SIDE * mechanism.locking_arc_radius
+    on_arc = (
+        np.abs(np.abs(outline - arcs[0]) - mechanism.locking_arc_radius)
+        < CORNER_TOLERANCE * mechanism.locking_arc_radius
+    )
     from_slot = np.abs(outline.imag)
     # Slot 0, with all points within half its width of its axis; and the next one.
-    near = (from_slot <= half_slot * (1.0 + ON_SIDE)) & (outline.real > 0.0)
+    near = (from_slot <= half_slot * (1.0 + CORNER_TOLERANCE)) & (outline.real > 0.0)
     slot = outline[near]
     if not (on_arc.any() and near.any()):
         # An outline without slots or arcs at the reported places.
@@ -159,7 +159,7 @@ def _walls(mechanism: GenevaMechanism, outline: Complex, arcs: Complex) -> dict[
     }
 
 
-def _extent(mechanism: GenevaMechanism, outline: Complex, sense: float) -> float:
+def _measure_extent(mechanism: GenevaMechanism, outline: Complex, sense: float) -> float:
     if mechanism.ring_radius is not None:
         return 2.0 * mechanism.ring_radius
     far = float(np.abs(outline).max())

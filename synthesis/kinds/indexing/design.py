@@ -6,7 +6,7 @@ from typing import Literal
 
 from pydantic import Field
 
-from synthesis.model.answer import Answer, Point, Result, Verification, optional
+from synthesis.model.answer import Answer, Point, Result, Verification, optional_field
 from synthesis.model.dimension import (
     Acceleration,
     Angle,
@@ -64,13 +64,13 @@ class GenevaMechanism(Answer):
     crank_radius: Length
     roller_diameter: Length
     wheel_radius: Length = Field(description="Radius to the mouths of the slots: outside, for a ring inside.")
-    ring_radius: Length | None = optional("Outer radius of a ring.")
+    ring_radius: Length | None = optional_field("Outer radius of a ring.")
     slot_width: Length
     slot_end_radius: Length = Field(description="Distance from the wheel's axis to the center of a slot's rounded end.")
     locking_radius: Length = Field(description="Radius of the disc on the crank.")
     locking_arc_radius: Length = Field(description="Radius of the arcs in the wheel.")
     bore: Length
-    drag_link: DragLinkDriver | None = optional("Given if the crank is not the input.")
+    drag_link: DragLinkDriver | None = optional_field("Given if the crank is not the input.")
     profile: Profile
     disc: LockingDisc
 
@@ -141,7 +141,7 @@ class IndexingMetrics(Answer):
     )
     peak_jerk: Jerk
     steady_share: float = Field(description="Share of an index with at least nine tenths of the greatest speed.")
-    min_transmission_angle: Angle | None = optional("Minimum transmission angle of a drag link.")
+    min_transmission_angle: Angle | None = optional_field("Minimum transmission angle of a drag link.")
     entry_speed: float = Field(
         description="Speed of the wheel over the crank's when the roller enters; 0 without shock."
     )
@@ -156,7 +156,7 @@ class IndexingMetrics(Answer):
         description="Angle by which the locked wheel can be turned in either direction, in the middle of a rest."
     )
     size: Length = Field(description="Extent along the line of both axes; for a ring or a sphere its diameter.")
-    sized_by: SizedBy | None = optional("Constraint that determines the smallest size, if the size is found.")
+    sized_by: SizedBy | None = optional_field("Constraint that determines the smallest size, if the size is found.")
 
 
 class IndexingDesign(Answer):
@@ -213,7 +213,7 @@ class RatchetMetrics(Answer):
     lift: Angle = Field(description="Rotation of a pawl when a tip passes.")
     overtravel: Angle = Field(description="Angle by which the wheel must turn beyond a stop for the pawl to fall in.")
     size: Length = Field(description="Diameter to the tips.")
-    sized_by: SizedBy | None = optional("Constraint that determines the smallest size, if the size is found.")
+    sized_by: SizedBy | None = optional_field("Constraint that determines the smallest size, if the size is found.")
 
 
 class RatchetDesign(Answer):

@@ -11,16 +11,13 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
-from kinematics.cam.extremes import extremes
-from kinematics.indexing.drag_link import Course
+from kinematics.arrays import Real
+from kinematics.cam.motion.extremes import find_extremes
+from kinematics.indexing.drag_link import CrankCourse
 from kinematics.indexing.geneva import Geneva
 
-Real = NDArray[np.float64]
-
-
-ALIKE = 1e-9
+TIE_TOLERANCE = 1e-9
 """Relative difference up to which two peaks count as equal, so that the first is reported."""
 
 
@@ -33,7 +30,7 @@ class Load:
     speed: float
 
 
-def arm(drive: Geneva, angle: Real, size: float) -> Real:
+def compute_arm(drive: Geneva, angle: Real, size: float) -> Real:
     """Return the distance of the roller from the wheel's axis; ``size``: center distance or sphere radius."""
     if drive.drive == "geneva_spherical":
         sine, cosine = math.sin(math.atan(drive.ratio)), math.cos(math.atan(drive.ratio))
@@ -42,14 +39,16 @@ def arm(drive: Geneva, angle: Real, size: float) -> Real:
     return np.asarray(size * np.sqrt(1.0 - 2.0 * ratio * np.cos(angle) + ratio * ratio))
 
 
-def wheel_torque(course: Course, load: Load, angle: Real) -> Real:
+def compute_wheel_torque(course: CrankCourse, load: Load, angle: Real) -> Real:
     """Return the torque on the wheel at angles (radians) of the input."""
     return np.asarray(load.inertia * load.speed**2 * course.motion(angle).a + load.torque)
 
 
-def pin_force(course: Course, load: Load, angle: Real, size: float) -> Real:
+def compute_pin_force(course: CrankCourse, load: Load, angle: Real, size: float) -> Real:
     """Return the force of the roller on the slot's side at angles of the input."""
-    return np.asarray(wheel_torque(course, load, angle) / arm(course.geneva, course.crank(angle).s, size))
+    return np.asarray(
+        compute_wheel_torque(course, load, angle) / compute_arm(course.geneva, course.crank(angle).s, size)
+    )
 
 
 @dataclass(frozen=True)
@@ -65,7 +64,7 @@ class Peaks:
     pin_force: float
 
 
-def peaks(course: Course, load: Load, size: float) -> Peaks:
+def find_peaks(course: CrankCourse, load: Load, size: float) -> Peaks:
     """Find the peaks of motion and forces; ``size`` in the unit of torque over force.
 
     ``acceleration_at`` is the input's angle from the entry.
@@ -73,17 +72,19 @@ def peaks(course: Course, load: Load, size: float) -> Peaks:
     start, end = course.start, course.end
     # The motion is symmetrical about mid-index; its derivatives are smooth on each half.
     breaks = [start, 0.5 * (start + end), end]
-    acceleration = extremes(lambda at: course.motion(at).a, breaks)
+    acceleration = find_extremes(lambda at: course.motion(at).a, breaks)
     # Of two equal peaks the positive one is reported, independent of rounding.
     at = acceleration.at_greatest
-    if abs(acceleration.least) > acceleration.greatest * (1.0 + ALIKE):
+    if abs(acceleration.least) > acceleration.greatest * (1.0 + TIE_TOLERANCE):
         at = acceleration.at_least
     return Peaks(
-        velocity=extremes(lambda at: course.motion(at).v, breaks).largest,
+        velocity=find_extremes(lambda at: course.motion(at).v, breaks).largest,
         acceleration=acceleration.largest,
         acceleration_at=at - start,
-        jerk=extremes(lambda at: course.motion(at).j, breaks).largest,
-        wheel_torque=extremes(lambda at: wheel_torque(course, load, at), breaks).largest,
-        drive_torque=extremes(lambda at: wheel_torque(course, load, at) * course.motion(at).v, breaks).largest,
-        pin_force=extremes(lambda at: pin_force(course, load, at, size), breaks).largest,
+        jerk=find_extremes(lambda at: course.motion(at).j, breaks).largest,
+        wheel_torque=find_extremes(lambda at: compute_wheel_torque(course, load, at), breaks).largest,
+        drive_torque=find_extremes(
+            lambda at: compute_wheel_torque(course, load, at) * course.motion(at).v, breaks
+        ).largest,
+        pin_force=find_extremes(lambda at: compute_pin_force(course, load, at, size), breaks).largest,
     )

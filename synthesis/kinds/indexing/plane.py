@@ -6,18 +6,18 @@ import math
 
 import numpy as np
 
-from kinematics.indexing.drag_link import Course
+from kinematics.indexing.drag_link import CrankCourse
 from kinematics.indexing.geneva import Geneva
-from kinematics.indexing.locking import Disc, crescent, disc
+from kinematics.indexing.locking import Disc, build_crescent, build_disc
 from kinematics.indexing.wheel import Wheel
 from synthesis.kinds.indexing.design import DragLinkDriver, GenevaMechanism, LockingDisc, Profile
 from synthesis.kinds.indexing.problem import IndexingProblem
 
-FEW = 9
+CRESCENT_RAY_COUNT = 9
 """Number of rays in which a crescent is measured to size it."""
 
 
-def wheel_of(problem: IndexingProblem, drive: Geneva, center_distance: float) -> Wheel:
+def build_wheel(problem: IndexingProblem, drive: Geneva, center_distance: float) -> Wheel:
     """Build the wheel of a drive; its locking arc is NaN if the wall leaves none."""
     internal = problem.drive == "geneva_internal"
     step, radius = math.pi / problem.stations, drive.ratio * center_distance
@@ -26,11 +26,11 @@ def wheel_of(problem: IndexingProblem, drive: Geneva, center_distance: float) ->
     # The rim goes through the entering roller's far side.
     reach = math.hypot(entry, 0.5 * problem.roller)
     end = center_distance + radius + problem.slot_room if internal else center_distance - radius - problem.slot_room
-    lock = _lock(internal, step, center_distance, reach, half_slot + problem.wall)
+    lock = _compute_lock_radius(internal, step, center_distance, reach, half_slot + problem.wall)
     return Wheel(internal, problem.stations, center_distance, reach, half_slot, end, lock)
 
 
-def _lock(internal: bool, step: float, center_distance: float, reach: float, apart: float) -> float:
+def _compute_lock_radius(internal: bool, step: float, center_distance: float, reach: float, apart: float) -> float:
     """Compute the radius of locking arcs at the distance ``apart`` from the axes of the slots."""
     foot = math.hypot(center_distance * math.cos(step), apart)
     # The arc is nearest to the slot's axis at the foot of the perpendicular, if that is on the wheel.
@@ -44,12 +44,12 @@ def _lock(internal: bool, step: float, center_distance: float, reach: float, apa
     return math.sqrt(reach**2 + center_distance**2 - 2.0 * reach * center_distance * math.cos(beside))
 
 
-def margins(problem: IndexingProblem, drive: Geneva, center_distance: float) -> dict[str, float]:
+def compute_margins(problem: IndexingProblem, drive: Geneva, center_distance: float) -> dict[str, float]:
     """Compute by how much a drive exceeds each of its wall constraints; NaN or negative if it is too small.
 
     The disc is at least as large as the roller.
     """
-    wheel = wheel_of(problem, drive, center_distance)
+    wheel = build_wheel(problem, drive, center_distance)
     shaft = 0.5 * problem.crank_shaft_diameter
     disc = wheel.lock - problem.clearances.locking
     found = {
@@ -58,7 +58,7 @@ def margins(problem: IndexingProblem, drive: Geneva, center_distance: float) -> 
         "web": wheel.web - problem.wall,
     }
     if wheel.internal:
-        found["crescent"] = _thickness(problem, drive, wheel)
+        found["crescent"] = _compute_crescent_margin(problem, drive, wheel)
     else:
         found["bore"] = wheel.slot_end - wheel.half_slot - 0.5 * problem.wheel_shaft_diameter - problem.wall
         if shaft > 0.0:
@@ -66,32 +66,32 @@ def margins(problem: IndexingProblem, drive: Geneva, center_distance: float) -> 
     return found
 
 
-def _thickness(problem: IndexingProblem, drive: Geneva, wheel: Wheel) -> float:
+def _compute_crescent_margin(problem: IndexingProblem, drive: Geneva, wheel: Wheel) -> float:
     """Compute by how much the crescent of an internal drive is thicker than a wall at its thinnest place."""
-    if not drawable(wheel, problem.clearances.locking):
+    if not is_drawable(wheel, problem.clearances.locking):
         return math.nan
-    found = crescent(wheel, drive, problem.clearances.locking, problem.relief, FEW)
+    found = build_crescent(wheel, drive, problem.clearances.locking, problem.relief, CRESCENT_RAY_COUNT)
     return float((found.outer - found.inner).min()) - problem.wall
 
 
-def drawable(wheel: Wheel, gap: float) -> bool:
+def is_drawable(wheel: Wheel, gap: float) -> bool:
     """Return whether the outline exists: arcs that cut the wheel between slots, and slots that end before its axis."""
     return wheel.lock > gap and wheel.land > 0.0 and wheel.slot_end > wheel.half_slot and wheel.web > 0.0
 
 
-def size_of(problem: IndexingProblem, wheel: Wheel, crank_radius: float) -> float:
+def compute_size(problem: IndexingProblem, wheel: Wheel, crank_radius: float) -> float:
     """Compute the extent: for an external drive along the line of both axes, for a ring its diameter."""
     if wheel.internal:
-        return 2.0 * ring_radius(problem, wheel)
+        return 2.0 * compute_ring_radius(problem, wheel)
     return wheel.reach + wheel.center_distance + crank_radius + 0.5 * problem.roller
 
 
-def ring_radius(problem: IndexingProblem, wheel: Wheel) -> float:
+def compute_ring_radius(problem: IndexingProblem, wheel: Wheel) -> float:
     """Compute the outer radius of a ring, one wall beyond the ends of its slots."""
     return wheel.slot_end + wheel.half_slot + problem.wall
 
 
-def mechanism_of(problem: IndexingProblem, course: Course, wheel: Wheel, rollers: int) -> GenevaMechanism:
+def build_mechanism(problem: IndexingProblem, course: CrankCourse, wheel: Wheel, rollers: int) -> GenevaMechanism:
     """Build all dimensions and outlines of a drive that can be drawn."""
     drive = course.geneva
     assert drive.drive != "geneva_spherical"
@@ -104,19 +104,19 @@ def mechanism_of(problem: IndexingProblem, course: Course, wheel: Wheel, rollers
         crank_radius=drive.ratio * wheel.center_distance,
         roller_diameter=problem.roller,
         wheel_radius=wheel.reach,
-        ring_radius=ring_radius(problem, wheel) if wheel.internal else None,
+        ring_radius=compute_ring_radius(problem, wheel) if wheel.internal else None,
         slot_width=2.0 * wheel.half_slot,
         slot_end_radius=wheel.slot_end,
         locking_radius=wheel.lock - gap,
         locking_arc_radius=wheel.lock,
         bore=problem.wheel_shaft_diameter,
-        drag_link=_driver(course, wheel.center_distance),
+        drag_link=_build_driver(course, wheel.center_distance),
         profile=Profile(x=wheel.outline.real.tolist(), y=wheel.outline.imag.tolist()),
-        disc=_listed(disc(wheel, drive, rollers, gap, problem.relief)),
+        disc=_build_disc(build_disc(wheel, drive, rollers, gap, problem.relief)),
     )
 
 
-def _driver(course: Course, center_distance: float) -> DragLinkDriver | None:
+def _build_driver(course: CrankCourse, center_distance: float) -> DragLinkDriver | None:
     """Scale the drag link: its output is as long as the crank."""
     link = course.link
     if link is None:
@@ -136,7 +136,7 @@ def _driver(course: Course, center_distance: float) -> DragLinkDriver | None:
     )
 
 
-def _listed(found: Disc) -> LockingDisc:
+def _build_disc(found: Disc) -> LockingDisc:
     return LockingDisc(
         angle=np.degrees(found.angle).tolist(), outer_radius=found.outer.tolist(), inner_radius=found.inner.tolist()
     )

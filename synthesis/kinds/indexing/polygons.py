@@ -6,33 +6,29 @@ import math
 from collections.abc import Callable
 
 import numpy as np
-from numpy.typing import NDArray
 
+from kinematics.arrays import Complex, Real
 from synthesis.kinds.indexing.design import LockingDisc
 
-Complex = NDArray[np.complex128]
-Real = NDArray[np.float64]
-
-
-ON_ARC = 1e-9
+ARC_TOLERANCE = 1e-9
 """Share of a radius within which a corner counts as on an arc."""
 
-HALVINGS, EVENLY = 24, 48
+BISECTION_COUNT, TRIAL_COUNT = 24, 48
 """Number of halvings of half a station, for the play of a locked wheel, and of even steps at which it is tested."""
 
 
-def closed(outline: Complex) -> Complex:
+def close_outline(outline: Complex) -> Complex:
     """Return an outline with its first corner repeated at its end."""
     return np.append(outline, outline[:1])
 
 
-def split(outline: Complex, longest: float, arcs: Complex, radius: float) -> Complex:
+def subdivide_outline(outline: Complex, longest: float, arcs: Complex, radius: float) -> Complex:
     """Return the corners of a closed outline, with points in between on edges longer than ``longest``.
 
     Edges of arcs of a radius about given centers are left unchanged: points in between would not be on the arc.
     """
-    corners = closed(outline)
-    on_arc = np.any(np.abs(np.abs(corners[:, None] - arcs) - radius) < ON_ARC * radius, axis=1)
+    corners = close_outline(outline)
+    on_arc = np.any(np.abs(np.abs(corners[:, None] - arcs) - radius) < ARC_TOLERANCE * radius, axis=1)
     start, edge = corners[:-1], np.diff(corners)
     counts = np.ceil(np.abs(edge) / longest).astype(int)
     counts = np.where(on_arc[:-1] & on_arc[1:], 1, np.maximum(counts, 1))
@@ -41,7 +37,7 @@ def split(outline: Complex, longest: float, arcs: Complex, radius: float) -> Com
     return np.asarray(start[of_edge] + edge[of_edge] * (within / counts[of_edge]))
 
 
-def depth(disc: LockingDisc, points: Complex) -> Real:
+def measure_depth(disc: LockingDisc, points: Complex) -> Real:
     """Measure the depth of points of the crank's frame in a disc, along the ray from its axis; negative outside."""
     angle = np.radians(disc.angle)
     outer, inner = np.array(disc.outer_radius), np.array(disc.inner_radius)
@@ -54,13 +50,13 @@ def depth(disc: LockingDisc, points: Complex) -> Real:
     k = np.clip(np.searchsorted(angle, at, side="right") - 1, 0, len(angle) - 2)
     before, after = at - angle[k], angle[k + 1] - at
     far = np.abs(points)
-    found = _edge(outer[k], outer[k + 1], before, after) - far
+    found = _measure_edge_distance(outer[k], outer[k + 1], before, after) - far
     if not whole:
-        found = np.minimum(found, far - _edge(inner[k], inner[k + 1], before, after))
+        found = np.minimum(found, far - _measure_edge_distance(inner[k], inner[k + 1], before, after))
     return np.where(within, found, -far)
 
 
-def _edge(first: Real, second: Real, before: Real, after: Real) -> Real:
+def _measure_edge_distance(first: Real, second: Real, before: Real, after: Real) -> Real:
     """Return the distance of the edge between two corners along rays between them."""
     # The ray through the origin meets the chord where both triangles share its length.
     whole = first * np.sin(before) + second * np.sin(after)
@@ -68,7 +64,7 @@ def _edge(first: Real, second: Real, before: Real, after: Real) -> Real:
         return np.where(whole > 0.0, first * second * np.sin(before + after) / whole, 0.0)
 
 
-def play_of(deepest: Callable[[Real], Real], step: float) -> float:
+def measure_play(deepest: Callable[[Real], Real], step: float) -> float:
     """Measure the angle by which a locked wheel can be turned, radians; half a station if nothing holds it.
 
     Parameters
@@ -79,13 +75,15 @@ def play_of(deepest: Callable[[Real], Real], step: float) -> float:
         Half the angle between stations: there a slot faces the disc, which may fit into it.
     """
     # The angles rise densely from zero: beyond the first held angle the wheel may be free again.
-    tried = step * np.unique(np.concatenate([2.0 ** -np.arange(HALVINGS), np.arange(1, EVENLY) / EVENLY]))
+    tried = step * np.unique(
+        np.concatenate([2.0 ** -np.arange(BISECTION_COUNT), np.arange(1, TRIAL_COUNT) / TRIAL_COUNT])
+    )
     within = np.nonzero(deepest(tried) > 0.0)[0]
     if not len(within):
         return step
     first = int(within[0])
     free, held = float(tried[first - 1]) if first else 0.0, float(tried[first])
-    for _ in range(HALVINGS):
+    for _ in range(BISECTION_COUNT):
         middle = 0.5 * (free + held)
         if float(deepest(np.array([middle]))[0]) > 0.0:
             held = middle
@@ -94,7 +92,7 @@ def play_of(deepest: Callable[[Real], Real], step: float) -> float:
     return held
 
 
-def distance(outline: Complex, points: Complex) -> float:
+def measure_distance(outline: Complex, points: Complex) -> float:
     """Return the least distance of points, shape (m,), from the edges of a closed outline."""
     start = outline
     edge = np.roll(outline, -1) - outline

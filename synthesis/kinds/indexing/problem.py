@@ -16,38 +16,38 @@ from synthesis.model.dimension import (
     ROTATIONAL_SPEED,
     TORQUE,
 )
-from synthesis.model.dynamics import METRES
-from synthesis.model.statement import (
+from synthesis.model.dynamics.request import METRES_PER_UNIT
+from synthesis.model.problem import (
     Contradiction,
     Count,
     Flag,
     NonNegative,
     PositiveLength,
     PositiveNumber,
+    ProblemBase,
     Range,
-    StatedProblem,
     Statement,
 )
 
-MOST_STATIONS, MOST_STOPS = 48, 720
+MAX_STATIONS, MAX_STOPS = 48, 720
 """Maximum number of stations of a Geneva wheel, which would be all slots beyond; and of stops of a ratchet."""
 
-FEWEST_TEETH, MOST_GROUPS = 12, 4
+MIN_TEETH, MAX_GROUPS = 12, 4
 """Minimum number of teeth of a ratchet wheel with straight backs; maximum number of groups of staggered pawls."""
 
-NEAR_ONE = 0.999
+MAX_CRANK_RATIO = 0.999
 """Maximum crank radius over center distance of a plane drive: at 1 the roller would reach the wheel's axis."""
 
-AS_TYPED = 1e-5
+CRANK_TOLERANCE = 1e-5
 """Share by which a crank may differ from that of shock-free entry and still count as it: six typed digits."""
 
-MOST_ROLLERS = 5
+MAX_ROLLERS = 5
 """Maximum number of rollers on a crank."""
 
-LEAST_ROOM, MOST_ROOM = 0.01, 3.0
+MIN_CLEARANCE, MAX_CLEARANCE = 0.01, 3.0
 """Minimum clearance at the end of a slot and at the disc, and maximum of any clearance, in roller diameters."""
 
-TRANSMISSION = 40.0
+DEFAULT_TRANSMISSION_ANGLE = 40.0
 """Default minimum transmission angle of a drag link, degrees."""
 
 Share = Annotated[float, Field(strict=True, gt=0.0, lt=1.0, allow_inf_nan=False)]
@@ -143,7 +143,7 @@ class Ratcheting(Statement):
     )
 
 
-class IndexingProblem(StatedProblem):
+class IndexingProblem(ProblemBase):
     """Indexing: a wheel turned from station to station by a crank's roller, and locked in between; or held by pawls.
 
     External, internal and spherical Geneva drives, and ratchets. Motion, torque and pin force follow in closed form;
@@ -239,11 +239,11 @@ class IndexingProblem(StatedProblem):
         "whose "
         "output is that crank, found for the minimum peak acceleration of a plane Geneva drive.",
     )
-    stations: Annotated[Count, Field(ge=3, le=MOST_STOPS)] = Field(
-        description=f"Number of stations, up to {MOST_STATIONS} for a Geneva drive; for a ratchet the number of stops "
+    stations: Annotated[Count, Field(ge=3, le=MAX_STOPS)] = Field(
+        description=f"Number of stations, up to {MAX_STATIONS} for a Geneva drive; for a ratchet the number of stops "
         "in a turn."
     )
-    rollers: Annotated[Count, Field(ge=1, le=MOST_ROLLERS)] | None = Field(
+    rollers: Annotated[Count, Field(ge=1, le=MAX_ROLLERS)] | None = Field(
         default=None,
         description="Rollers on the crank, equally spaced; default: one design for each number with which the wheel "
         "rests.",
@@ -291,7 +291,7 @@ class IndexingProblem(StatedProblem):
         return self.units
 
     @property
-    def oscillating(self) -> bool:
+    def is_oscillating(self) -> bool:
         """True: displacements are angles of the wheel."""
         return True
 
@@ -311,12 +311,12 @@ class IndexingProblem(StatedProblem):
     def transmission_angle(self) -> float:
         """Minimum transmission angle of a drag link, degrees."""
         stated = self.constraints.min_transmission_angle
-        return TRANSMISSION if stated is None else stated
+        return DEFAULT_TRANSMISSION_ANGLE if stated is None else stated
 
     @property
     def scale(self) -> float:
         """The length unit in the unit of torque over force."""
-        return METRES[self.length_unit] if self.units == "si" else 1.0
+        return METRES_PER_UNIT[self.length_unit] if self.units == "si" else 1.0
 
     @property
     def spherical(self) -> bool:
@@ -340,23 +340,23 @@ class IndexingProblem(StatedProblem):
         stated = self.clearances.relief
         return 0.05 * self.roller if stated is None else stated
 
-    def contradictions(self) -> list[Contradiction]:
+    def find_contradictions(self) -> list[Contradiction]:
         """Return fields of another drive, rollers that leave no rest, and cranks that reach no slot."""
         if self.drive == "ratchet":
-            return self._ratchet_faults()
+            return self._find_ratchet_errors()
         found = [
             Contradiction(f"/{name}", f"required for {self.drive}")
             for name in ("roller_diameter", "speed_rpm")
             if getattr(self, name) is None
         ]
-        if self.stations > MOST_STATIONS:
-            found.append(Contradiction("/stations", f"a Geneva drive has at most {MOST_STATIONS} stations"))
+        if self.stations > MAX_STATIONS:
+            found.append(Contradiction("/stations", f"a Geneva drive has at most {MAX_STATIONS} stations"))
         if self.pawls is not None:
             found.append(Contradiction("/pawls", f"not applicable to {self.drive}; omit it"))
         if found:
             return found
         # From here on the roller and the speed are known to be given.
-        found += self._driver_faults()
+        found += self._find_driver_errors()
         # A spherical drive has a sphere radius instead of lengths in the plane.
         foreign = ("center_distance", "crank_radius") if self.spherical else ("sphere_radius",)
         found += [
@@ -369,7 +369,7 @@ class IndexingProblem(StatedProblem):
             detail = "only a crank larger than that of shock-free entry has a shock; give its radius, or omit this"
             found.append(Contradiction("/constraints/shock_free", detail))
         if not self.spherical and self.crank_radius is not None:
-            found += self._crank_faults(self.crank_radius)
+            found += self._find_crank_errors(self.crank_radius)
             if found:
                 return found
         most = self.most_rollers
@@ -388,13 +388,13 @@ class IndexingProblem(StatedProblem):
         # Smaller clearances would be lost in the steps of the outlines.
         for name in ("slot_end", "relief"):
             stated = getattr(self.clearances, name)
-            if stated is not None and stated < LEAST_ROOM * self.roller:
-                detail = f"must be at least {LEAST_ROOM:g} roller diameters, the resolution of the outlines"
+            if stated is not None and stated < MIN_CLEARANCE * self.roller:
+                detail = f"must be at least {MIN_CLEARANCE:g} roller diameters, the resolution of the outlines"
                 found.append(Contradiction(f"/clearances/{name}", detail))
         for name in ("slot", "locking", "slot_end", "relief"):
             stated = getattr(self.clearances, name)
-            if stated is not None and stated > MOST_ROOM * self.roller:
-                detail = f"must be at most {MOST_ROOM:g} roller diameters"
+            if stated is not None and stated > MAX_CLEARANCE * self.roller:
+                detail = f"must be at most {MAX_CLEARANCE:g} roller diameters"
                 found.append(Contradiction(f"/clearances/{name}", detail))
         return found
 
@@ -408,7 +408,7 @@ class IndexingProblem(StatedProblem):
         step = math.pi / self.stations
         # Half of an index as a share of half a turn.
         index = (math.asin(min(1.0, math.sin(step) / self.crank_ratio)) - step) / math.pi
-        return min(MOST_ROLLERS, max(1, math.ceil(1.0 / index - 1e-9) - 1))
+        return min(MAX_ROLLERS, max(1, math.ceil(1.0 / index - 1e-9) - 1))
 
     @property
     def crank_ratio(self) -> float:
@@ -421,9 +421,9 @@ class IndexingProblem(StatedProblem):
             return least
         # Rounded input must not count as a crank with a shock.
         ratio = self.crank_radius / self.center_distance
-        return ratio if ratio > least * (1.0 + (AS_TYPED if self.constraints.shock_free else 0.0)) else least
+        return ratio if ratio > least * (1.0 + (CRANK_TOLERANCE if self.constraints.shock_free else 0.0)) else least
 
-    def _driver_faults(self) -> list[Contradiction]:
+    def _find_driver_errors(self) -> list[Contradiction]:
         if self.driver == "crank":
             if self.constraints.min_transmission_angle is not None:
                 detail = "a crank has no transmission angle; choose a drag link, or omit this"
@@ -433,7 +433,7 @@ class IndexingProblem(StatedProblem):
             return [Contradiction("/driver", "a drag link drives plane Geneva drives only")]
         return []
 
-    def _ratchet_faults(self) -> list[Contradiction]:
+    def _find_ratchet_errors(self) -> list[Contradiction]:
         stated = self.model_fields_set
         foreign = {
             "rollers": self.rollers,
@@ -463,7 +463,7 @@ class IndexingProblem(StatedProblem):
             found.append(Contradiction("/wall_thickness", "required: the thickness of a tooth at its foot"))
         # No pair of tooth and pawl numbers stops at all stations.
         if not self.teeth_choices:
-            detail = f"no number of teeth from {FEWEST_TEETH} on gives these stations with this number of pawls"
+            detail = f"no number of teeth from {MIN_TEETH} on gives these stations with this number of pawls"
             found.append(Contradiction("/pawls/count", detail))
         return found
 
@@ -482,18 +482,18 @@ class IndexingProblem(StatedProblem):
         shared = self.pawl.overlap
         choices = [
             (self.stations // groups, groups * shared)
-            for groups in range(1, MOST_GROUPS + 1)
-            if self.stations % groups == 0 and self.stations // groups >= max(FEWEST_TEETH, shared)
+            for groups in range(1, MAX_GROUPS + 1)
+            if self.stations % groups == 0 and self.stations // groups >= max(MIN_TEETH, shared)
         ]
         return [choice for choice in choices if self.pawl.count is None or choice[1] == self.pawl.count]
 
-    def _crank_faults(self, radius: float) -> list[Contradiction]:
+    def _find_crank_errors(self, radius: float) -> list[Contradiction]:
         if self.center_distance is None:
             return [Contradiction("/crank_radius", "give the center distance as well, or omit both")]
         # The crank of shock-free entry is the smallest that reaches a slot.
         least = self.center_distance * math.sin(math.pi / self.stations)
-        most = NEAR_ONE * self.center_distance
-        if not least * (1.0 - AS_TYPED) <= radius <= most:
+        most = MAX_CRANK_RATIO * self.center_distance
+        if not least * (1.0 - CRANK_TOLERANCE) <= radius <= most:
             detail = f"must be between {least:.9g} (entry without shock) and {most:.9g}: a smaller crank reaches"
             return [Contradiction("/crank_radius", f"{detail} no slot, a larger one the wheel's axis")]
         return []

@@ -12,21 +12,18 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from kinematics.arrays import Complex, Real
 from kinematics.indexing.geneva import Motion
-from kinematics.linkage.fourbar import OPEN, Fourbar
-from kinematics.linkage.planar.catalogue import fourbar as planar_fourbar
+from kinematics.linkage.fourbar import OPEN_ASSEMBLY, Fourbar
+from kinematics.linkage.planar.catalogue import make_fourbar as planar_fourbar
 from kinematics.linkage.planar.drive import MechanismMotion, drive
 from synthesis.kinds.indexing.design import GenevaMechanism, SphericalGenevaMechanism
 from synthesis.kinds.indexing.forces import Load
 
-Complex = NDArray[np.complex128]
-Real = NDArray[np.float64]
-
 
 @dataclass(frozen=True)
-class Driven:
+class DrivenIndex:
     """A drive over crank angles from the middle of an index.
 
     Attributes
@@ -48,17 +45,17 @@ class Driven:
     drive_torque: Real
 
 
-def driven_link(mechanism: GenevaMechanism, angle: Real) -> MechanismMotion:
+def drive_link(mechanism: GenevaMechanism, angle: Real) -> MechanismMotion:
     """Drive the drag link of a mechanism by the analysis core, over angles of its input, radians."""
     link = mechanism.drag_link
     assert link is not None
     pivots = complex(*link.input_pivot), complex(mechanism.center_distance)
     fourbar = Fourbar(pivots[0], pivots[1], link.input, link.coupler, link.output, 0j)
     # Its ground line points along −x, from the input's pivot to the crank's axis.
-    return drive(planar_fourbar(fourbar, math.pi + float(angle[0]), OPEN), math.pi + angle)
+    return drive(planar_fourbar(fourbar, math.pi + float(angle[0]), OPEN_ASSEMBLY), math.pi + angle)
 
 
-def crank_motion(mechanism: GenevaMechanism | SphericalGenevaMechanism, angle: Real) -> Motion:
+def compute_crank_motion(mechanism: GenevaMechanism | SphericalGenevaMechanism, angle: Real) -> Motion:
     """Compute the crank's angle from the middle of the index, and its derivatives by the input's angle (radians).
 
     A drag link is driven by the analysis core; otherwise the crank is the input.
@@ -66,7 +63,7 @@ def crank_motion(mechanism: GenevaMechanism | SphericalGenevaMechanism, angle: R
     link = getattr(mechanism, "drag_link", None)
     if link is None or not isinstance(mechanism, GenevaMechanism):
         return Motion(angle, np.ones_like(angle), np.zeros_like(angle), np.zeros_like(angle))
-    moved = driven_link(mechanism, angle)
+    moved = drive_link(mechanism, angle)
     output = moved.angles["output"]
     arm = moved.joints["B"][0] - mechanism.center_distance
     towards = math.pi if mechanism.type == "geneva_external" else 0.0
@@ -74,7 +71,9 @@ def crank_motion(mechanism: GenevaMechanism | SphericalGenevaMechanism, angle: R
     return Motion(first + output[0] - output[0, 0], output[1], output[2], output[3])
 
 
-def driven(mechanism: GenevaMechanism | SphericalGenevaMechanism, load: Load, scale: float, angle: Real) -> Driven:
+def drive_roller(
+    mechanism: GenevaMechanism | SphericalGenevaMechanism, load: Load, scale: float, angle: Real
+) -> DrivenIndex:
     """Drive the roller of a mechanism through its slot.
 
     Parameters
@@ -87,7 +86,7 @@ def driven(mechanism: GenevaMechanism | SphericalGenevaMechanism, load: Load, sc
     angle : float, shape (n,)
         Input angles, radians: from the middle of the index for a crank, otherwise the drag link's own.
     """
-    place, rates = _path(mechanism, crank_motion(mechanism, angle))
+    place, rates = _compute_path(mechanism, compute_crank_motion(mechanism, angle))
     # Derivatives of log z from those of z.
     first, second, third = (rate / place for rate in rates)
     sense = -1.0 if mechanism.type == "geneva_external" else 1.0
@@ -103,12 +102,14 @@ def driven(mechanism: GenevaMechanism | SphericalGenevaMechanism, load: Load, sc
     along = sense * 1j * place / np.abs(place)
     # Power of the force at the roller's own velocity; the component along the slot does no work.
     drive = force * scale * (along.conj() * rates[0]).real
-    return Driven(place, np.angle(place), motion, torque, force, drive)
+    return DrivenIndex(place, np.angle(place), motion, torque, force, drive)
 
 
-def _path(mechanism: GenevaMechanism | SphericalGenevaMechanism, crank: Motion) -> tuple[Complex, list[Complex]]:
+def _compute_path(
+    mechanism: GenevaMechanism | SphericalGenevaMechanism, crank: Motion
+) -> tuple[Complex, list[Complex]]:
     """Compute the roller seen along the wheel's axis, and its three derivatives by the input's angle."""
-    place, (first, second, third) = _circle(mechanism, crank.s)
+    place, (first, second, third) = _compute_circle(mechanism, crank.s)
     return place, [
         first * crank.v,
         second * crank.v**2 + first * crank.a,
@@ -116,7 +117,9 @@ def _path(mechanism: GenevaMechanism | SphericalGenevaMechanism, crank: Motion) 
     ]
 
 
-def _circle(mechanism: GenevaMechanism | SphericalGenevaMechanism, alpha: Real) -> tuple[Complex, list[Complex]]:
+def _compute_circle(
+    mechanism: GenevaMechanism | SphericalGenevaMechanism, alpha: Real
+) -> tuple[Complex, list[Complex]]:
     """Compute the roller and its derivatives by the crank's own angle."""
     if isinstance(mechanism, SphericalGenevaMechanism):
         cone = math.radians(mechanism.cone_angle)

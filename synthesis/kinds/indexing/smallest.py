@@ -10,47 +10,47 @@ from collections.abc import Callable
 from functools import partial
 from typing import cast
 
-from kinematics.indexing.drag_link import Course
+from kinematics.indexing.drag_link import CrankCourse
 from kinematics.indexing.geneva import Geneva
 from synthesis.kinds.indexing import plane, sphere
 from synthesis.kinds.indexing.design import IndexingDesign, SizedBy
-from synthesis.kinds.indexing.forces import Load, peaks
+from synthesis.kinds.indexing.forces import Load, find_peaks
 from synthesis.kinds.indexing.problem import IndexingProblem
-from synthesis.model.statement import ABSURD
+from synthesis.model.problem import MAX_MAGNITUDE
 
-HALVINGS = 70
+BISECTION_COUNT = 70
 """Number of bisections of an interval a thousand times as wide as the minimum size: to rounding."""
 
 
-OUTGROWN: dict[str, SizedBy] = {
+SIZE_DEPENDENT_CHECKS: dict[str, SizedBy] = {
     "play": "play",
     "locked_at_rest": "locked_rest",
     "roller_clears_wheel": "passing_roller",
 }
 """Checks on outlines that a larger drive may pass, with their names as constraints that determine the size."""
 
-LARGEST, GROWN_TO = 256.0, 1e-6
+MAX_GROWTH, SIZE_TOLERANCE = 256.0, 1e-6
 """Maximum enlargement over the minimum size by walls, and relative accuracy of the enlarged size."""
 
 
-def smallest(problem: IndexingProblem, course: Course, load: Load) -> tuple[float, SizedBy] | None:
+def find_smallest(problem: IndexingProblem, course: CrankCourse, load: Load) -> tuple[float, SizedBy] | None:
     """Find the minimum center distance or sphere radius, and the constraint that sets it; None if none up to 1e9."""
     drive = course.geneva
     least: dict[str, float] = {}
-    for name in _margins(problem, drive, ABSURD):
-        found = least_size(partial(_margin, problem, drive, name), problem.roller)
+    for name in _compute_margins(problem, drive, MAX_MAGNITUDE):
+        found = find_least_size(partial(_compute_margin, problem, drive, name), problem.roller)
         if found is None:
             return None
         least[name] = found
     limit = problem.constraints.pin_force
     if limit is not None:
         # At constant speed the force falls as the size grows.
-        least["pin_force"] = peaks(course, load, problem.scale).pin_force / limit
+        least["pin_force"] = find_peaks(course, load, problem.scale).pin_force / limit
     setting = max(least, key=lambda name: least[name])
     return least[setting], cast(SizedBy, setting)
 
 
-def outgrown(
+def enlarge_until_verified(
     least: tuple[float, SizedBy], of_size: Callable[[float, SizedBy], IndexingDesign | str]
 ) -> IndexingDesign | str:
     """Find the smallest verified drive whose wheel is held and passed as required.
@@ -68,46 +68,46 @@ def outgrown(
         The drive of minimum size if it fails no other check, or if no size up to ``LARGEST`` times as large helps.
     """
     design = of_size(*least)
-    lacking = _lacking(design)
+    lacking = _list_failed_checks(design)
     if not lacking:
         return design
     low = high = least[0]
     sized_by = least[1]
     # Double the size until all checks pass, then bisect.
     while lacking:
-        low, high, sized_by = high, 2.0 * high, OUTGROWN[lacking[0]]
-        if high > LARGEST * least[0]:
+        low, high, sized_by = high, 2.0 * high, SIZE_DEPENDENT_CHECKS[lacking[0]]
+        if high > MAX_GROWTH * least[0]:
             return design
-        lacking = _lacking(of_size(high, sized_by))
+        lacking = _list_failed_checks(of_size(high, sized_by))
         if lacking is None:
             return design
-    while high - low > GROWN_TO * high:
+    while high - low > SIZE_TOLERANCE * high:
         middle = 0.5 * (low + high)
-        lacking = _lacking(of_size(middle, sized_by))
+        lacking = _list_failed_checks(of_size(middle, sized_by))
         if lacking == []:
             high = middle
         else:
-            low, sized_by = middle, OUTGROWN[lacking[0]] if lacking else sized_by
+            low, sized_by = middle, SIZE_DEPENDENT_CHECKS[lacking[0]] if lacking else sized_by
     return of_size(high, sized_by)
 
 
-def _lacking(design: IndexingDesign | str) -> list[str] | None:
+def _list_failed_checks(design: IndexingDesign | str) -> list[str] | None:
     """List the failed checks of a design; None if there is no design, or if size cannot repair one of them."""
     if isinstance(design, str):
         return None
     broken = [check.name for check in design.verification.checks if not check.passed]
-    return broken if set(broken) <= OUTGROWN.keys() else None
+    return broken if set(broken) <= SIZE_DEPENDENT_CHECKS.keys() else None
 
 
-def _margins(problem: IndexingProblem, drive: Geneva, size: float) -> dict[str, float]:
-    return sphere.margins(problem, size) if problem.spherical else plane.margins(problem, drive, size)
+def _compute_margins(problem: IndexingProblem, drive: Geneva, size: float) -> dict[str, float]:
+    return sphere.compute_margins(problem, size) if problem.spherical else plane.compute_margins(problem, drive, size)
 
 
-def _margin(problem: IndexingProblem, drive: Geneva, name: str, size: float) -> float:
-    return _margins(problem, drive, size)[name]
+def _compute_margin(problem: IndexingProblem, drive: Geneva, name: str, size: float) -> float:
+    return _compute_margins(problem, drive, size)[name]
 
 
-def least_size(margin: Callable[[float], float], first: float) -> float | None:
+def find_least_size(margin: Callable[[float], float], first: float) -> float | None:
     """Find the least size with a positive margin, which grows with the size, by bisection; None if none up to 1e9.
 
     Parameters
@@ -121,11 +121,11 @@ def least_size(margin: Callable[[float], float], first: float) -> float | None:
     kept = low = first
     while not margin(kept) > 0.0:
         low, kept = kept, 2.0 * kept
-        if kept > ABSURD:
+        if kept > MAX_MAGNITUDE:
             return None
     if kept == low:
         low = 0.5 * kept
-    for _ in range(HALVINGS):
+    for _ in range(BISECTION_COUNT):
         middle = 0.5 * (low + kept)
         if margin(middle) > 0.0:
             kept = middle

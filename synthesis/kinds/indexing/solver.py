@@ -7,7 +7,7 @@ from functools import partial
 
 import numpy as np
 
-from kinematics.indexing.drag_link import Course, steady_share
+from kinematics.indexing.drag_link import CrankCourse, compute_steady_share
 from kinematics.indexing.geneva import Geneva
 from synthesis.kinds.indexing import plane, sphere
 from synthesis.kinds.indexing.design import (
@@ -21,20 +21,20 @@ from synthesis.kinds.indexing.design import (
     SizedBy,
     SphericalGenevaMechanism,
 )
-from synthesis.kinds.indexing.driver import best_course
-from synthesis.kinds.indexing.forces import Load, peaks, pin_force, wheel_torque
+from synthesis.kinds.indexing.driver import find_best_course
+from synthesis.kinds.indexing.forces import Load, compute_pin_force, compute_wheel_torque, find_peaks
 from synthesis.kinds.indexing.problem import IndexingProblem
-from synthesis.kinds.indexing.ratchets import solve_ratchet
-from synthesis.kinds.indexing.smallest import outgrown, smallest
-from synthesis.kinds.indexing.verification import verify_indexing
+from synthesis.kinds.indexing.ratchet import solve_ratchet
+from synthesis.kinds.indexing.smallest import enlarge_until_verified, find_smallest
+from synthesis.kinds.indexing.verification.verify import verify_indexing
 from synthesis.model.answer import Verification
 from synthesis.model.kind import Progress
-from synthesis.outcome.sifting import NUMERICAL, Sifting
+from synthesis.results.candidate_log import NUMERICAL_REASONS, CandidateLog
 
-SHOWN = 361
+PROGRAM_POINT_COUNT = 361
 """Number of positions of a program."""
 
-UNPROVEN = NUMERICAL | {
+UNPROVEN_REASONS = NUMERICAL_REASONS | {
     "no_drag_link_found",
     "reaches_next_station",
     "program_is_driven",
@@ -78,18 +78,18 @@ def solve_indexing(problem: IndexingProblem, progress: Progress) -> IndexingResu
     """
     if problem.drive == "ratchet":
         return solve_ratchet(problem, progress)
-    sifting = Sifting[IndexingDesign | RatchetDesign](problem)
+    sifting = CandidateLog[IndexingDesign | RatchetDesign](problem)
     numbers = range(1, problem.most_rollers + 1) if problem.rollers is None else [problem.rollers]
     progress(0.0, "sizing")
-    sifting.sift(numbers, partial(_candidate, problem))
+    sifting.verify_candidates(numbers, partial(_build_candidate, problem))
     progress(1.0, "verified")
-    designs = sifting.designs(lambda found: found)
+    designs = sifting.select_designs(lambda found: found)
     # The best drag link is searched, not enumerated.
-    complete = problem.driver == "crank" and not UNPROVEN & sifting.rejected.keys()
+    complete = problem.driver == "crank" and not UNPROVEN_REASONS & sifting.rejected.keys()
     return IndexingResult(
         designs=designs,
-        search=sifting.search(METHODS[problem.driver], complete=complete),
-        summary=_summary(problem, sifting, complete),
+        search=sifting.build_search(METHODS[problem.driver], complete=complete),
+        summary=_write_summary(problem, sifting, complete),
     )
 
 
@@ -101,55 +101,57 @@ def _drive(problem: IndexingProblem) -> Geneva:
     return Geneva(problem.drive, problem.stations, problem.crank_ratio)
 
 
-def _candidate(problem: IndexingProblem, rollers: int) -> IndexingDesign | str:
+def _build_candidate(problem: IndexingProblem, rollers: int) -> IndexingDesign | str:
     """Build the drive with a number of rollers, verified; the reason if it cannot be drawn."""
     drive = _drive(problem)
-    course = Course(drive) if problem.driver == "crank" else best_course(problem, drive)
+    course = CrankCourse(drive) if problem.driver == "crank" else find_best_course(problem, drive)
     if course is None:
         return NO_DRAG_LINK
     # A given size is used as it is; otherwise the smallest is searched.
     stated = problem.sphere_radius if problem.spherical else problem.center_distance
     if stated is not None:
-        return _of_size(problem, course, rollers, stated, None)
-    found = smallest(problem, course, _load(problem))
+        return _build_of_size(problem, course, rollers, stated, None)
+    found = find_smallest(problem, course, _build_load(problem))
     if found is None:
         return NOT_DRAWABLE
-    return outgrown(found, partial(_of_size, problem, course, rollers))
+    return enlarge_until_verified(found, partial(_build_of_size, problem, course, rollers))
 
 
-def _load(problem: IndexingProblem) -> Load:
+def _build_load(problem: IndexingProblem) -> Load:
     return Load(problem.load_inertia, problem.load_torque, problem.crank_speed)
 
 
-def _of_size(
-    problem: IndexingProblem, course: Course, rollers: int, size: float, sized_by: SizedBy | None
+def _build_of_size(
+    problem: IndexingProblem, course: CrankCourse, rollers: int, size: float, sized_by: SizedBy | None
 ) -> IndexingDesign | str:
     """Build the drive of a size, verified; the reason if it cannot be drawn."""
-    drive, load = course.geneva, _load(problem)
+    drive, load = course.geneva, _build_load(problem)
     if problem.spherical:
-        hemisphere = sphere.hemisphere_of(problem, size)
-        if not sphere.drawable(problem, hemisphere):
+        hemisphere = sphere.build_hemisphere(problem, size)
+        if not sphere.is_drawable(problem, hemisphere):
             return NOT_DRAWABLE
         walls = {"wall": hemisphere.wall, "web": hemisphere.web, "size": 2.0 * size}
         free = hemisphere.inmost - 0.5 * problem.wheel_shaft_diameter
-        mechanism: GenevaMechanism | SphericalGenevaMechanism = sphere.mechanism_of(problem, hemisphere)
+        mechanism: GenevaMechanism | SphericalGenevaMechanism = sphere.build_mechanism(problem, hemisphere)
     else:
-        wheel = plane.wheel_of(problem, drive, size)
-        if not plane.drawable(wheel, problem.clearances.locking):
+        wheel = plane.build_wheel(problem, drive, size)
+        if not plane.is_drawable(wheel, problem.clearances.locking):
             return NOT_DRAWABLE
-        walls = {"wall": wheel.wall, "web": wheel.web, "size": plane.size_of(problem, wheel, drive.ratio * size)}
+        walls = {"wall": wheel.wall, "web": wheel.web, "size": plane.compute_size(problem, wheel, drive.ratio * size)}
         # A ring has no bore.
         free = math.inf if wheel.internal else wheel.slot_end - wheel.half_slot - 0.5 * problem.wheel_shaft_diameter
-        mechanism = plane.mechanism_of(problem, course, wheel, rollers)
-    metrics = _metrics(problem, course, load, size, walls, undercut=free < 0.0 or walls["web"] < 0.0, sized_by=sized_by)
+        mechanism = plane.build_mechanism(problem, course, wheel, rollers)
+    metrics = _compute_metrics(
+        problem, course, load, size, walls, undercut=free < 0.0 or walls["web"] < 0.0, sized_by=sized_by
+    )
     start, end = course.start, course.end
-    angle = np.linspace(start, end, SHOWN)
+    angle = np.linspace(start, end, PROGRAM_POINT_COUNT)
     # Samples to plot.
-    motion, torque = course.motion(angle), wheel_torque(course, load, angle)
+    motion, torque = course.motion(angle), compute_wheel_torque(course, load, angle)
     index = math.degrees(end - start)
     design = IndexingDesign(
         mechanism=mechanism,
-        verification=Verification.of([]),
+        verification=Verification.from_checks([]),
         index_angle=index,
         dwell_share=1.0 - rollers * index / 360.0,
         program=IndexingProgram(
@@ -162,16 +164,16 @@ def _of_size(
         course=IndexingCourse(
             wheel_torque=torque.tolist(),
             drive_torque=(torque * motion.v).tolist(),
-            pin_force=pin_force(course, load, angle, problem.scale * size).tolist(),
+            pin_force=compute_pin_force(course, load, angle, problem.scale * size).tolist(),
         ),
         metrics=metrics,
     )
     return verify_indexing(problem, design)
 
 
-def _metrics(
+def _compute_metrics(
     problem: IndexingProblem,
-    course: Course,
+    course: CrankCourse,
     load: Load,
     size: float,
     walls: dict[str, float],
@@ -179,7 +181,7 @@ def _metrics(
     undercut: bool,
     sized_by: SizedBy | None,
 ) -> IndexingMetrics:
-    greatest, drive, link = peaks(course, load, problem.scale * size), course.geneva, course.link
+    greatest, drive, link = find_peaks(course, load, problem.scale * size), course.geneva, course.link
     acceleration, at = greatest.acceleration, greatest.acceleration_at
     if link is None:
         # With a constant crank speed, the peak is known in closed form.
@@ -191,7 +193,7 @@ def _metrics(
         peak_velocity=greatest.velocity,
         peak_acceleration=acceleration,
         peak_acceleration_angle=math.degrees(at),
-        steady_share=steady_share(evenly),
+        steady_share=compute_steady_share(evenly),
         min_transmission_angle=None if link is None else math.degrees(float(link.transmission_angle)),
         peak_jerk=greatest.jerk,
         entry_speed=float(course.motion(np.array(course.start)).v),
@@ -206,11 +208,13 @@ def _metrics(
     )
 
 
-def _summary(problem: IndexingProblem, sifting: Sifting[IndexingDesign | RatchetDesign], complete: bool) -> str:
+def _write_summary(
+    problem: IndexingProblem, sifting: CandidateLog[IndexingDesign | RatchetDesign], complete: bool
+) -> str:
     best = sifting.passed[0] if sifting.passed else None
     if not isinstance(best, IndexingDesign):
         told = "None exists" if complete else "None found"
-        return f"{told}: {sifting.listed()}."
+        return f"{told}: {sifting.format_reasons()}."
     metrics, unit = best.metrics, problem.length_unit
     size = f"its size is {metrics.size:.6g} {unit}"
     if metrics.sized_by is not None:
@@ -218,5 +222,5 @@ def _summary(problem: IndexingProblem, sifting: Sifting[IndexingDesign | Ratchet
     turned = "crank" if problem.driver == "crank" else "drag link's input"
     return (
         f"The wheel turns during {best.index_angle:.6g}° of the {turned} and rests for "
-        f"{100.0 * best.dwell_share:.4g} % of the time; {size}." + sifting.reasons()
+        f"{100.0 * best.dwell_share:.4g} % of the time; {size}." + sifting.describe_reasons()
     )

@@ -11,20 +11,18 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from kinematics.arrays import Complex
 from synthesis.kinds.indexing.design import Profile, SphericalGenevaMechanism
 from synthesis.kinds.indexing.problem import IndexingProblem
 
-Complex = NDArray[np.complex128]
-
-PASSES = 4001
+RIM_POSITIONS = 4001
 """Number of positions of half an index at which the reach of the rim is evaluated."""
 
-LEAST_CAP = 0.15
+MIN_CAP_SHARE = 0.15
 """Minimum distance of the cap's end as a share of its radius, so that it locks over a rest except at its ends."""
 
-STEPS = 12
+STEP_COUNT = 12
 """Number of outline steps over half a slot's end, and over a land."""
 
 
@@ -69,7 +67,7 @@ class Hemisphere:
 
         Before the middle of an index the corner between rim and hollow, at the azimuth η, reaches sin η sin(−α).
         """
-        alpha = np.linspace(-0.5 * math.pi, 0.0, PASSES)
+        alpha = np.linspace(-0.5 * math.pi, 0.0, RIM_POSITIONS)
         # Azimuth of the corner while the slot follows the roller.
         corner = np.arctan(math.tan(self.step) * np.sin(alpha)) + self.step - self.lock
         return self.radius * max(0.0, float((-np.sin(alpha) * np.sin(corner)).max()))
@@ -82,19 +80,19 @@ class Hemisphere:
     @property
     def outline(self) -> Complex:
         """The wheel seen along its axis, slot 0 along x; a closed polygon without a repeated point."""
-        turn = np.linspace(0.0, 0.5 * math.pi, STEPS + 1)
+        turn = np.linspace(0.0, 0.5 * math.pi, STEP_COUNT + 1)
         flat = math.sin(self.slot_end)
         middle = self.radius * math.cos(self.slot_end)
         end = middle + self.half_slot * (-flat * np.cos(turn) + 1j * np.sin(turn))
         mouth = math.asin(self.half_slot / self.radius)
-        land = self.radius * np.exp(1j * np.linspace(mouth, self.step - self.lock, STEPS))
+        land = self.radius * np.exp(1j * np.linspace(mouth, self.step - self.lock, STEP_COUNT))
         chord = self.radius * math.cos(self.lock) * np.exp(1j * self.step)
         half = np.concatenate([end, land, [chord]])
         sector = np.concatenate([half[::-1].conj(), half[1:-1]])
         return np.asarray((np.exp(2j * self.step * np.arange(self.stations))[:, None] * sector).ravel())
 
 
-def hemisphere_of(problem: IndexingProblem, radius: float) -> Hemisphere:
+def build_hemisphere(problem: IndexingProblem, radius: float) -> Hemisphere:
     """Build the wheel of a sphere's radius."""
     step, half_slot = math.pi / problem.stations, 0.5 * (problem.roller + problem.clearances.slot)
     apart = (half_slot + problem.wall) / radius
@@ -102,18 +100,18 @@ def hemisphere_of(problem: IndexingProblem, radius: float) -> Hemisphere:
     return Hemisphere(problem.stations, radius, half_slot, step + problem.slot_room / radius, lock)
 
 
-def margins(problem: IndexingProblem, radius: float) -> dict[str, float]:
+def compute_margins(problem: IndexingProblem, radius: float) -> dict[str, float]:
     """Compute by how much a sphere exceeds each of its wall constraints; NaN or negative if it is too small."""
-    wheel = hemisphere_of(problem, radius)
+    wheel = build_hemisphere(problem, radius)
     cap = wheel.lock - problem.clearances.locking / radius
     return {
-        "locking_disc": LEAST_CAP * radius * math.sin(cap) - wheel.rim_passes - problem.relief,
+        "locking_disc": MIN_CAP_SHARE * radius * math.sin(cap) - wheel.rim_passes - problem.relief,
         "web": wheel.web - problem.wall,
         "bore": wheel.inmost - 0.5 * problem.wheel_shaft_diameter - problem.wall,
     }
 
 
-def drawable(problem: IndexingProblem, wheel: Hemisphere) -> bool:
+def is_drawable(problem: IndexingProblem, wheel: Hemisphere) -> bool:
     """Return whether the outline exists."""
     gap = problem.clearances.locking / wheel.radius
     return (
@@ -125,7 +123,7 @@ def drawable(problem: IndexingProblem, wheel: Hemisphere) -> bool:
     )
 
 
-def mechanism_of(problem: IndexingProblem, wheel: Hemisphere) -> SphericalGenevaMechanism:
+def build_mechanism(problem: IndexingProblem, wheel: Hemisphere) -> SphericalGenevaMechanism:
     """Build all dimensions and the outline of a drive that can be drawn."""
     outline = wheel.outline
     return SphericalGenevaMechanism(

@@ -5,7 +5,7 @@ from __future__ import annotations
 from synthesis.kinds.layshaft_gearbox.design import LayshaftResult
 from synthesis.kinds.layshaft_gearbox.gallery import GALLERY
 from synthesis.kinds.layshaft_gearbox.problem import LayshaftProblem
-from synthesis.model.kind import Kind, Progress, always
+from synthesis.model.kind import Kind, Progress, RatioCheck, return_true
 
 __all__ = ["KIND"]
 
@@ -16,4 +16,12 @@ def _solve(problem: LayshaftProblem, progress: Progress) -> LayshaftResult:
     return solve_layshaft_gearbox(problem, progress)
 
 
-KIND = Kind("layshaft_gearbox", LayshaftProblem, LayshaftResult, _solve, brief=always, gallery=GALLERY)
+KIND = Kind(
+    "layshaft_gearbox",
+    LayshaftProblem,
+    LayshaftResult,
+    _solve,
+    brief=return_true,
+    ratio_check=RatioCheck("ratios", "max_error"),
+    gallery=GALLERY,
+)

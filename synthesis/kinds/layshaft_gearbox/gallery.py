@@ -2,6 +2,6 @@
 
 from __future__ import annotations
 
-from synthesis.model.kind import Named
+from synthesis.model.kind import NamedExample
 
-GALLERY = (Named("Car gearbox", "Change a speed", "Four gears and reverse on one layshaft."),)
+GALLERY = (NamedExample("Car gearbox", "Change a speed", "Four gears and reverse on one layshaft."),)

@@ -6,11 +6,11 @@ from typing import Annotated, Literal
 
 from pydantic import ConfigDict, Field
 
-from synthesis.model.gear_statement import MOST_TOOTH_SUM, CommonPressureAngle, Module, ToothRange, tooth_faults
-from synthesis.model.statement import Contradiction, Flag, StatedProblem
+from synthesis.model.gears.request import MAX_TOOTH_SUM, CommonPressureAngle, Module, ToothRange, find_tooth_errors
+from synthesis.model.problem import Contradiction, Flag, ProblemBase
 
 
-class LayshaftProblem(StatedProblem):
+class LayshaftProblem(ProblemBase):
     """Layshaft gearbox of a vehicle: tooth numbers for given gears and reverse, with one tooth sum for all pairs.
 
     A head pair turns the layshaft; each gear is a pair from there to the main shaft, in constant mesh. A gear of ratio
@@ -60,14 +60,14 @@ class LayshaftProblem(StatedProblem):
         description="error: smallest maximum error first. size: smallest tooth sum within the tolerance first.",
     )
 
-    def contradictions(self) -> list[Contradiction]:
+    def find_contradictions(self) -> list[Contradiction]:
         """Return reversed limits, and gears out of order or given twice."""
-        contradictions = tooth_faults(self.teeth, self.tooth_sum)
+        contradictions = find_tooth_errors(self.teeth, self.tooth_sum)
         for k, (before, after) in enumerate(zip(self.ratios, self.ratios[1:], strict=False), start=1):
             if after >= before:
                 contradictions.append(Contradiction(f"/ratios/{k}", "must be below the ratio of the previous gear"))
         if self.rank_by == "size" and self.tolerance is None:
             contradictions.append(Contradiction("/tolerance", "ranking by size needs a tolerance for the ratios"))
-        if self.tooth_sum.max > MOST_TOOTH_SUM:
-            contradictions.append(Contradiction("/tooth_sum/max", f"at most {MOST_TOOTH_SUM}"))
+        if self.tooth_sum.max > MAX_TOOTH_SUM:
+            contradictions.append(Contradiction("/tooth_sum/max", f"at most {MAX_TOOTH_SUM}"))
         return contradictions

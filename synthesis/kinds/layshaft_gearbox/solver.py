@@ -13,9 +13,9 @@ from functools import partial
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
-from kinematics.gear.gearbox import layshaft_ratios
+from kinematics.arrays import Integers, Real
+from kinematics.gear.gearbox import compute_layshaft_ratios
 from synthesis.kinds.layshaft_gearbox.design import (
     LayshaftDesign,
     LayshaftGear,
@@ -25,17 +25,14 @@ from synthesis.kinds.layshaft_gearbox.design import (
     ReverseGear,
 )
 from synthesis.kinds.layshaft_gearbox.problem import LayshaftProblem
-from synthesis.kinds.layshaft_gearbox.verification import PASSING, measure, verify
-from synthesis.model.counting import counted
-from synthesis.model.gear_answer import GearPairTeeth, Ratio
+from synthesis.kinds.layshaft_gearbox.verification import CLEARANCE_TOLERANCE, measure, verify
+from synthesis.model.counting import format_count
+from synthesis.model.gears.answer import GearPairTeeth, Ratio
+from synthesis.model.gears.mesh_limits import has_no_external_interference
+from synthesis.model.gears.ratio_target import parse_decimal
 from synthesis.model.kind import Progress
-from synthesis.model.mesh_limits import external_sound
-from synthesis.model.ratio_target import decimal
-from synthesis.outcome.exhaustive import first_within, pareto
-from synthesis.outcome.sifting import Sifting
-
-Real = NDArray[np.float64]
-Whole = NDArray[np.int64]
+from synthesis.results.candidate_log import CandidateLog
+from synthesis.results.exhaustive import select_pareto, select_within_tolerance
 
 ERROR_TOLERANCE = 1e-12
 """Difference of errors below which they are compared as exact fractions."""
@@ -54,10 +51,10 @@ class _Box(NamedTuple):
 class _Level(NamedTuple):
     """The best of one tooth sum: largest error by head pair, with the layshaft teeth of every gear and of reverse."""
 
-    heads: Whole
+    heads: Integers
     error: Real
-    layshaft: list[Whole | None]
-    reverse: tuple[Whole, Whole, Whole] | None
+    layshaft: list[Integers | None]
+    reverse: tuple[Integers, Integers, Integers] | None
     covered: int
 
 
@@ -82,38 +79,38 @@ def solve_layshaft_gearbox(problem: LayshaftProblem, progress: Progress) -> Lays
     sums = range(problem.tooth_sum.min, problem.tooth_sum.max + 1)
     for k, size in enumerate(sums):
         progress(k / len(sums), f"tooth sum {size}")
-        level = _level(problem, size)
+        level = _search_tooth_sum(problem, size)
         covered += level.covered
-        own = _of_level(problem, size, level, problem.max_designs)
+        own = _select_boxes(problem, size, level, problem.max_designs)
         boxes = sorted([*boxes, *own])[: problem.max_designs]
         best += own[:1]
-    sifting = Sifting[LayshaftDesign](problem)
+    sifting = CandidateLog[LayshaftDesign](problem)
     ranked = boxes if problem.rank_by == "error" else best
-    chosen = first_within(ranked, problem.tolerance, problem.max_designs)
-    sifting.sift_best(chosen, covered, partial(_design, problem))
+    chosen = select_within_tolerance(ranked, problem.tolerance, problem.max_designs)
+    sifting.verify_best(chosen, covered, partial(_build_design, problem))
     progress(1.0, "done")
     return LayshaftResult(
-        designs=sifting.designs(list),
-        search=sifting.search("exhaustive", complete=not sifting.failed),
-        summary=_summary(problem, sifting.passed, boxes, covered),
-        pareto=[_outlined(box) for box in pareto(best, lambda box: box.error)],
+        designs=sifting.select_designs(list),
+        search=sifting.build_search("exhaustive", complete=not sifting.failed),
+        summary=_write_summary(problem, sifting.passed, boxes, covered),
+        pareto=[_build_pareto(box) for box in select_pareto(best, lambda box: box.error)],
     )
 
 
-def _level(problem: LayshaftProblem, size: int) -> _Level:
+def _search_tooth_sum(problem: LayshaftProblem, size: int) -> _Level:
     """Find the best pair of every gear for each head pair of one tooth sum."""
     low, high = problem.teeth.min, problem.teeth.max
     # Both gears of a pair must be within the limits: c and S − c.
     own = np.arange(max(low, size - high), min(high, size - low) + 1)
     if problem.interference == "refuse" and len(own):
         angle = math.radians(problem.pressure_angle)
-        own = own[external_sound(own.astype(np.float64), (size - own).astype(np.float64), angle)]
-    backs = _reverse_pairs(problem, size) if problem.reverse is not None else None
+        own = own[has_no_external_interference(own.astype(np.float64), (size - own).astype(np.float64), angle)]
+    backs = _list_reverse_pairs(problem, size) if problem.reverse is not None else None
     if not len(own) or (backs is not None and not len(backs[0])):
         return _Level(np.zeros(0, np.int64), np.zeros(0), [], None, 0)
     turned = (size - own) / own
     error = np.zeros(len(own))
-    chosen: list[Whole | None] = []
+    chosen: list[Integers | None] = []
     covered = len(own)
     for ratio in problem.ratios:
         if ratio == 1.0 and problem.direct:
@@ -140,7 +137,7 @@ def _level(problem: LayshaftProblem, size: int) -> _Level:
     return _Level(own, error, chosen, reverse, covered)
 
 
-def _reverse_pairs(problem: LayshaftProblem, size: int) -> tuple[Whole, Whole, Whole]:
+def _list_reverse_pairs(problem: LayshaftProblem, size: int) -> tuple[Integers, Integers, Integers]:
     """List gears on layshaft and main shaft that clear each other, with the smallest sound idler that reaches both."""
     low, high = problem.teeth.min, problem.teeth.max
     counts = np.arange(low, high + 1)
@@ -148,17 +145,17 @@ def _reverse_pairs(problem: LayshaftProblem, size: int) -> tuple[Whole, Whole, W
     # The idler must bridge the gap: half the sum of all three diameters is at least the distance.
     idler = np.maximum(low, -((one + other - size) // 2))
     # Tips extend one module beyond each pitch circle.
-    kept = (0.5 * (size - one - other) - 2.0 >= PASSING) & (idler <= high)
+    kept = (0.5 * (size - one - other) - 2.0 >= CLEARANCE_TOLERANCE) & (idler <= high)
     one, idler, other = one[kept], idler[kept], other[kept]
     if problem.interference == "refuse":
-        idler = _sound_idler(counts, one, idler, other, math.radians(problem.pressure_angle))
+        idler = _find_sound_idler(counts, one, idler, other, math.radians(problem.pressure_angle))
         kept = idler <= high
         one, idler, other = one[kept], idler[kept], other[kept]
     order = np.lexsort((one, other / one))
     return one[order], idler[order], other[order]
 
 
-def _sound_idler(counts: Whole, one: Whole, idler: Whole, other: Whole, angle: float) -> Whole:
+def _find_sound_idler(counts: Integers, one: Integers, idler: Integers, other: Integers, angle: float) -> Integers:
     """Return the smallest idler from ``idler`` on that interferes with neither gear; beyond the range if none exists.
 
     An idler can be too small for a large mate and too large for a small one: for each mate the sound ones are those
@@ -167,7 +164,7 @@ def _sound_idler(counts: Whole, one: Whole, idler: Whole, other: Whole, angle: f
     """
     real = counts.astype(np.float64)
     # Table of all pairs of tooth numbers, evaluated once.
-    sound = external_sound(real[:, None], real[None, :], angle)
+    sound = has_no_external_interference(real[:, None], real[None, :], angle)
     least = np.where(sound.any(axis=1), counts[sound.argmax(axis=1)], counts[-1] + 1)
     most = counts[-1] - sound[:, ::-1].argmax(axis=1)
     at, to = one - counts[0], other - counts[0]
@@ -176,7 +173,7 @@ def _sound_idler(counts: Whole, one: Whole, idler: Whole, other: Whole, angle: f
     return np.asarray(np.where(sound_one, smallest, counts[-1] + 1), np.int64)
 
 
-def _of_level(problem: LayshaftProblem, size: int, level: _Level, count: int) -> list[_Box]:
+def _select_boxes(problem: LayshaftProblem, size: int, level: _Level, count: int) -> list[_Box]:
     """Select the best gearboxes of one tooth sum, one for each head pair."""
     if not len(level.heads):
         return []
@@ -191,29 +188,29 @@ def _of_level(problem: LayshaftProblem, size: int, level: _Level, count: int) ->
         if level.reverse is not None:
             e, f, g = (int(side[k]) for side in level.reverse)
             reverse = (e, f, g)
-        ratios = layshaft_ratios((own, size - own), gears, reverse)
-        demanded = [decimal(ratio) for ratio in problem.ratios]
+        ratios = compute_layshaft_ratios((own, size - own), gears, reverse)
+        demanded = [parse_decimal(ratio) for ratio in problem.ratios]
         errors = [abs(r / t - 1) for r, t in zip(ratios.forward, demanded, strict=True)]
         if ratios.reverse is not None and problem.reverse is not None:
-            errors.append(abs(-ratios.reverse / decimal(problem.reverse) - 1))
+            errors.append(abs(-ratios.reverse / parse_decimal(problem.reverse) - 1))
         boxes.append(_Box(max(errors), size, (own, size - own), gears, reverse))
     return sorted(boxes, key=lambda box: box[:3])[:count]
 
 
-def _design(problem: LayshaftProblem, box: _Box) -> LayshaftDesign:
+def _build_design(problem: LayshaftProblem, box: _Box) -> LayshaftDesign:
     """Build a choice of teeth as a verified design."""
-    ratios = layshaft_ratios(box.head, box.gears, box.reverse)
+    ratios = compute_layshaft_ratios(box.head, box.gears, box.reverse)
     reverse = None
     if box.reverse is not None and ratios.reverse is not None:
         e, f, g = box.reverse
-        reverse = ReverseGear(layshaft=e, idler=f, mainshaft=g, ratio=Ratio.of(ratios.reverse))
+        reverse = ReverseGear(layshaft=e, idler=f, mainshaft=g, ratio=Ratio.from_fraction(ratios.reverse))
     mechanism = LayshaftMechanism(
         head=GearPairTeeth(driver=box.head[0], driven=box.head[1]),
         gears=[
             LayshaftGear(
                 layshaft=None if pair is None else pair[0],
                 mainshaft=None if pair is None else pair[1],
-                ratio=Ratio.of(ratio),
+                ratio=Ratio.from_fraction(ratio),
             )
             for pair, ratio in zip(box.gears, ratios.forward, strict=True)
         ],
@@ -227,15 +224,15 @@ def _design(problem: LayshaftProblem, box: _Box) -> LayshaftDesign:
     )
 
 
-def _outlined(box: _Box) -> ParetoLayshaft:
+def _build_pareto(box: _Box) -> ParetoLayshaft:
     """Build a gearbox of the Pareto set as the answer reports it."""
     head = GearPairTeeth(driver=box.head[0], driven=box.head[1])
     return ParetoLayshaft(tooth_sum=box.size, max_error=float(box.error), head=head)
 
 
-def _summary(problem: LayshaftProblem, passed: list[LayshaftDesign], boxes: list[_Box], covered: int) -> str:
+def _write_summary(problem: LayshaftProblem, passed: list[LayshaftDesign], boxes: list[_Box], covered: int) -> str:
     """Write the coverage of the search and the best gearbox in one sentence."""
-    searched = f"{counted(covered, 'combination')} of tooth numbers searched"
+    searched = f"{format_count(covered, 'combination')} of tooth numbers searched"
     if passed:
         first = passed[0]
         return (

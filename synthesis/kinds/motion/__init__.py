@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import Any
 
 from synthesis.kinds.motion.design import MotionResult
 from synthesis.kinds.motion.gallery import GALLERY
 from synthesis.kinds.motion.problem import MotionProblem
-from synthesis.model.kind import Kind, Progress
-from synthesis.model.linkage_answer import LinkageDesign, LinkageMechanism
+from synthesis.model.kind import Kind, Progress, TableColumns
+from synthesis.model.linkage.answer import LinkageDesign, LinkageMechanism
 
 __all__ = ["KIND"]
 
@@ -19,16 +20,20 @@ def _solve(problem: MotionProblem, progress: Progress) -> MotionResult:
     return solve_motion(problem, progress)
 
 
-def _nearer(problem: MotionProblem, designs: Sequence[LinkageDesign], progress: Progress) -> list[LinkageDesign] | None:
-    from synthesis.kinds.motion.solver import continued
+def _continue_designs(
+    problem: MotionProblem, designs: Sequence[LinkageDesign], progress: Progress
+) -> list[LinkageDesign] | None:
+    from synthesis.kinds.motion.solver import continue_from_designs
 
-    return continued(problem, designs, progress)
+    return continue_from_designs(problem, designs, progress)
 
 
-def _nearly(problem: MotionProblem, _design: LinkageDesign, mechanism: LinkageMechanism) -> LinkageDesign | None:
-    from synthesis.kinds.motion.verification import verify_nearly
+def _verify_with_tolerance(
+    problem: MotionProblem, _design: LinkageDesign, mechanism: LinkageMechanism
+) -> LinkageDesign | None:
+    from synthesis.kinds.motion.verification.verify import verify_with_tolerance
 
-    return verify_nearly(problem, mechanism)
+    return verify_with_tolerance(problem, mechanism)
 
 
 def _warm_up() -> None:
@@ -37,7 +42,13 @@ def _warm_up() -> None:
         _solve(MotionProblem.model_validate(example), lambda fraction, message: None)
 
 
-def _brief(problem: MotionProblem) -> bool:
+def _list_warm_up_problems() -> list[dict[str, Any]]:
+    from synthesis.kinds.motion.warm_up_problems import list_warm_up_problems
+
+    return list_warm_up_problems(KIND.examples)
+
+
+def _is_short(problem: MotionProblem) -> bool:
     """Return whether a job is short: exact positions, fourbars only, no driver dyad, hence no iterative fit."""
     fitted = problem.approximate or problem.driver is not None or problem.slider is not None
     return not (fitted or problem.sixbars)
@@ -49,8 +60,11 @@ KIND = Kind(
     MotionResult,
     _solve,
     _warm_up,
-    brief=_brief,
-    nearer=_nearer,
-    nearly=_nearly,
+    brief=_is_short,
+    nearer=_continue_designs,
+    nearly=_verify_with_tolerance,
+    is_first_loaded=True,
+    list_warm_up_problems=_list_warm_up_problems,
+    columns=TableColumns("positions", ("x", "y", "angle")),
     gallery=GALLERY,
 )

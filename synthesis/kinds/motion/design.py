@@ -5,7 +5,7 @@ from __future__ import annotations
 from pydantic import Field
 
 from synthesis.model.answer import Answer, Point
-from synthesis.model.linkage_answer import LinkageDesign, LinkageResult
+from synthesis.model.linkage.answer import LinkageDesign, LinkageResult
 
 
 class BurmesterBranch(Answer):

@@ -9,31 +9,31 @@ from typing import Any, Literal
 import numpy as np
 from pydantic import ConfigDict, Field, PrivateAttr
 
-from synthesis.kinds.motion.contradictions import contradictions_of
-from synthesis.kinds.motion.stated_dyads import DriverDyad, DyadChoices, GroundLine
-from synthesis.kinds.motion.stated_mechanisms import (
+from synthesis.kinds.motion.statement.contradictions import list_contradictions
+from synthesis.kinds.motion.statement.dyad_choices import DriverDyad, DyadChoices, GroundLine
+from synthesis.kinds.motion.statement.mechanism_types import (
     SIXBARS,
     Chain,
     Mechanisms,
     Sixbar,
-    beyond_unclassed,
-    lacking,
+    list_unsupported,
+    list_unsupported_stephenson_2,
 )
-from synthesis.kinds.motion.stated_positions import MOST_HELD, MOST_OF_SIXBARS, Position, Tolerance
-from synthesis.model.linkage_statement import LinkageProblem
-from synthesis.model.manufacture import Held, Made, kept_pivots
-from synthesis.model.stated_types import looked_for, without_unclassed
-from synthesis.model.statement import Contradiction, Flag
+from synthesis.kinds.motion.statement.positions import MAX_EXACT_POSITIONS, MAX_SIXBAR_POSITIONS, Position, Tolerance
+from synthesis.model.linkage.problem import LinkageProblem
+from synthesis.model.linkage.type_choice import remove_unclassed, select_searched_sixbars
+from synthesis.model.manufacture.request import ManufactureTask, RequiredTargets, list_fixed_coordinates
+from synthesis.model.problem import Contradiction, Flag
 
-LEAST_TOLERANCE = 1e-12
+MIN_TOLERANCE = 1e-12
 """Largest tolerance that counts as zero, as a share of the largest coordinate (or of the task's size) and in radians:
 such a coordinate is met exactly. Doubles resolve 1e-16 of either, and driving a linkage to a position leaves an error
 of several thousand times that."""
 
-LEAST_MOTION = 1e-3
+MIN_MOTION_RATIO = 1e-3
 """Minimum motion of P, as a share of its distance to given pivots, that sets the task's size."""
 
-SIDES = "input_side", "output_side"
+SIDE_FIELDS = "input_side", "output_side"
 
 
 class MotionProblem(LinkageProblem):
@@ -204,10 +204,13 @@ class MotionProblem(LinkageProblem):
     @property
     def sixbars(self) -> tuple[Sixbar, ...]:
         """The types of sixbar to search."""
-        return without_unclassed(looked_for(self.mechanisms, SIXBARS, lacking(self)), beyond_unclassed(self))
+        return remove_unclassed(
+            select_searched_sixbars(self.mechanisms, SIXBARS, list_unsupported(self)),
+            list_unsupported_stephenson_2(self),
+        )
 
     @property
-    def of_two_dyads(self) -> MotionProblem | None:
+    def two_dyad_problem(self) -> MotionProblem | None:
         """The same problem restricted to the fourbars and slider-cranks in ``mechanisms``; None if there are none."""
         named = self.mechanisms
         sides: dict[str, DyadChoices] = {}
@@ -216,7 +219,7 @@ class MotionProblem(LinkageProblem):
                 return None
             # Fix the dyad types, so that a failed search does not fall back on a type that was not requested.
             if "slider_crank" not in named:
-                sides = {side: getattr(self, side).model_copy(update={"dyad": "RR"}) for side in SIDES}
+                sides = {side: getattr(self, side).model_copy(update={"dyad": "RR"}) for side in SIDE_FIELDS}
             elif "fourbar" not in named:
                 sides = {"output_side": self.output_side.model_copy(update={"dyad": "PR"})}
         part = self.model_copy(update={"mechanisms": None, "chain": None, **sides})
@@ -225,26 +228,26 @@ class MotionProblem(LinkageProblem):
         return part
 
     @property
-    def kinds_of_slider(self) -> tuple[Literal["PR", "RP"], ...]:
+    def slider_kinds(self) -> tuple[Literal["PR", "RP"], ...]:
         """Kinds of slider that may replace pins: RP (inverted slider-crank) only if ``mechanisms`` is no list."""
         return self._kinds_of_slider
 
     @property
-    def few_enough(self) -> bool:
+    def sixbars_possible(self) -> bool:
         """Whether the number of positions is within the limit for sixbars."""
-        return len(self.positions) <= MOST_OF_SIXBARS
+        return len(self.positions) <= MAX_SIXBAR_POSITIONS
 
     @property
-    def made(self) -> Made | str:
+    def manufacture_task(self) -> ManufactureTask | str:
         """Manufacturing analysis: the targets are poses at free input angles; an error text if it is unsupported."""
         if self.driver is not None:
             return "does not support linkages with a driver dyad; omit one of the two"
         if self.slider == "RP" or self.input_side.dyad == "PR":
             return "supports only fourbars, and slider-cranks with the slider on the output side"
-        return Made(True, True, True, len(self.positions), self._ungridded)
+        return ManufactureTask(True, True, True, len(self.positions), self._grid_conflict)
 
     @property
-    def _ungridded(self) -> str:
+    def _grid_conflict(self) -> str:
         """Error text for a given value that rounding to a grid would change; empty if there is none."""
         for name, side in (("input_side", self.input_side), ("output_side", self.output_side)):
             for field in ("moving_pivot", "coupler_vector", "link_angle", "rotations"):
@@ -252,19 +255,19 @@ class MotionProblem(LinkageProblem):
                     return f"a grid cannot keep {name}.{field} at its given value; omit one of the two"
         return "" if self.ground_line is None else "a grid cannot keep pivots on ground_line; omit one of the two"
 
-    def held_to(self, design: Any) -> Held:
+    def build_required_targets(self, design: Any) -> RequiredTargets:
         """Return the positions and tolerances that a manufactured design must keep; angles in radians."""
         limits = np.array(self.limits)
         limits[:, 2] = np.radians(limits[:, 2])
         stands = design.mechanism.reference_body_angle
-        return Held(
+        return RequiredTargets(
             inputs=np.radians([target.input_angle for target in design.targets]),
             points=np.array([position.point for position in self.positions]),
             angles=np.radians([position.angle for position in self.positions]),
             body=math.radians(self.positions[0].angle if stands is None else stands),
             limits=limits,
             size=self.task_size,
-            kept=kept_pivots((self.input_side.fixed_pivot, self.output_side.fixed_pivot)),
+            kept=list_fixed_coordinates((self.input_side.fixed_pivot, self.output_side.fixed_pivot)),
         )
 
     @property
@@ -298,70 +301,70 @@ class MotionProblem(LinkageProblem):
 
         0 for a coordinate that is met exactly; infinite for one that is fitted without a limit.
         """
-        fitted = self.fitted
-        return [self._limits_of(position, fitted) for position in self.positions]
+        fitted = self.is_least_squares
+        return [self._compute_limits(position, fitted) for position in self.positions]
 
-    def _limits_of(self, position: Position, fitted: bool) -> tuple[float, float, float]:
+    def _compute_limits(self, position: Position, fitted: bool) -> tuple[float, float, float]:
         tolerance = position.tolerance
         if isinstance(tolerance, Tolerance):
-            return self._resolved(tolerance.x or 0.0, tolerance.y or 0.0, tolerance.angle or 0.0)
+            return self._clip_tolerances(tolerance.x or 0.0, tolerance.y or 0.0, tolerance.angle or 0.0)
         if tolerance is not None:
             # The angle may move a point one task size away by as much as the length tolerance.
-            return self._resolved(tolerance, tolerance, math.degrees(min(tolerance / self.task_size, math.pi)))
+            return self._clip_tolerances(tolerance, tolerance, math.degrees(min(tolerance / self.task_size, math.pi)))
         return (math.inf, math.inf, math.inf) if fitted and not position.exact else (0.0, 0.0, 0.0)
 
-    def _resolved(self, x: float, y: float, angle: float) -> tuple[float, float, float]:
+    def _clip_tolerances(self, x: float, y: float, angle: float) -> tuple[float, float, float]:
         """Return the tolerances, with those below double-precision resolution set to 0."""
-        least = LEAST_TOLERANCE * max(self.task_size, *(max(abs(p.x), abs(p.y)) for p in self.positions))
-        turned = math.degrees(LEAST_TOLERANCE)
+        least = MIN_TOLERANCE * max(self.task_size, *(max(abs(p.x), abs(p.y)) for p in self.positions))
+        turned = math.degrees(MIN_TOLERANCE)
         return x if x > least else 0.0, y if y > least else 0.0, angle if angle > turned else 0.0
 
     @property
-    def fitted(self) -> bool:
+    def is_least_squares(self) -> bool:
         """Whether positions without a tolerance are fitted: more than five positions, or least squares requested.
 
         If any position has a tolerance, those without one are met exactly.
         """
-        if self._toleranced:
+        if self._has_tolerances:
             return False
-        enough = len(self.positions) >= MOST_HELD + (self.method == "auto")
+        enough = len(self.positions) >= MAX_EXACT_POSITIONS + (self.method == "auto")
         return self.method != "exact" and enough
 
     @property
     def approximate(self) -> bool:
         """Whether five or more positions are fitted, with tolerances or without."""
-        return self.fitted or (self._misses_allowed and len(self.positions) >= MOST_HELD)
+        return self.is_least_squares or (self._allows_deviations and len(self.positions) >= MAX_EXACT_POSITIONS)
 
     @property
-    def few_tolerated(self) -> bool:
+    def has_few_tolerances(self) -> bool:
         """Whether there are two to four positions, some with tolerances that the method may use."""
-        return self._misses_allowed and len(self.positions) < MOST_HELD and self.method != "exact"
+        return self._allows_deviations and len(self.positions) < MAX_EXACT_POSITIONS and self.method != "exact"
 
     @property
-    def steered(self) -> bool:
+    def is_constrained_fit(self) -> bool:
         """Whether a constrained fit uses these tolerances: fourbars with no given values but pivots."""
-        return self.few_tolerated and self._pivots_alone
+        return self.has_few_tolerances and self._has_only_pivots
 
     @property
-    def steered_in_room(self) -> bool:
+    def is_workspace_fit(self) -> bool:
         """Whether a constrained fit applies tolerances and a workspace together, for any number of positions."""
-        tolerated = self._misses_allowed and (self.few_tolerated or self.approximate)
-        return tolerated and self._pivots_alone and self.space is not None and self.space.demanding
+        tolerated = self._allows_deviations and (self.has_few_tolerances or self.approximate)
+        return tolerated and self._has_only_pivots and self.space is not None and self.space.has_constraints
 
     @property
-    def _pivots_alone(self) -> bool:
+    def _has_only_pivots(self) -> bool:
         """Whether the problem is a plain fourbar whose only given values are pivots."""
         sides = self.input_side, self.output_side
-        return self.driver is None and all(side.dyad in ("any", "RR") and side.pivots_alone for side in sides)
+        return self.driver is None and all(side.dyad in ("any", "RR") and side.has_only_pivots for side in sides)
 
     @property
-    def _toleranced(self) -> bool:
+    def _has_tolerances(self) -> bool:
         return any(position.tolerance is not None for position in self.positions)
 
     @property
-    def _misses_allowed(self) -> bool:
+    def _allows_deviations(self) -> bool:
         """Whether some tolerance exceeds rounding error."""
-        return self._toleranced and any(limit > 0.0 for limits in self.limits for limit in limits)
+        return self._has_tolerances and any(limit > 0.0 for limits in self.limits for limit in limits)
 
     @property
     def task_size(self) -> float:
@@ -372,11 +375,11 @@ class MotionProblem(LinkageProblem):
         """
         points = [position.point for position in self.positions]
         moved = max(abs(p - q) for p in points for q in points)
-        reach = max([self.size_of_chain, *(abs(z - points[0]) for z in self._stated_points())])
-        return max(moved, 0.0 if moved >= LEAST_MOTION * reach else reach) or 1.0
+        reach = max([self.chain_size, *(abs(z - points[0]) for z in self._list_given_points())])
+        return max(moved, 0.0 if moved >= MIN_MOTION_RATIO * reach else reach) or 1.0
 
     @property
-    def size_of_chain(self) -> float:
+    def chain_size(self) -> float:
         """The longest given length of the chain, or distance to one of its pivots; 0 if none is given."""
         return 0.0 if self.chain is None else self.chain.size_from(self.positions[0].point)
 
@@ -386,9 +389,9 @@ class MotionProblem(LinkageProblem):
         first = self.positions[0].angle
         return [math.radians(math.remainder(position.angle - first, 360.0)) for position in self.positions]
 
-    def _stated_points(self) -> list[complex]:
+    def _list_given_points(self) -> list[complex]:
         first = self.positions[0]
-        points = [] if self.ground_line is None else [self.ground_line.foot(first.point)]
+        points = [] if self.ground_line is None else [self.ground_line.project_point(first.point)]
         for side in (self.input_side, self.output_side):
             for pivot in (side.fixed_pivot, side.moving_pivot):
                 if pivot is not None:
@@ -399,22 +402,22 @@ class MotionProblem(LinkageProblem):
                 points += [complex(x, y) for x in region.x for y in region.y]
         return points
 
-    def contradictions(self) -> list[Contradiction]:
+    def find_contradictions(self) -> list[Contradiction]:
         """Return errors that involve several fields: equal positions, too many or conflicting choices."""
-        listed = contradictions_of(self)
-        part = None if self.mechanisms is None else self.of_two_dyads
-        return listed if part is None else list(dict.fromkeys([*listed, *part.contradictions()]))
+        listed = list_contradictions(self)
+        part = None if self.mechanisms is None else self.two_dyad_problem
+        return listed if part is None else list(dict.fromkeys([*listed, *part.find_contradictions()]))
 
     @property
-    def held_at_ends(self) -> tuple[dict[int, complex], dict[int, complex]]:
+    def exact_end_poses(self) -> tuple[dict[int, complex], dict[int, complex]]:
         """P and the body's rotation e^{iα} at the first and last position, by index, if these are met exactly.
 
         The last position is included only if the first one is exact too: rotations are measured from the first.
         """
         ends = [k for k in (0, len(self.positions) - 1) if self.limits[k] == (0.0, 0.0, 0.0)]
-        return self.places_of(ends if 0 in ends else [])
+        return self.list_poses(ends if 0 in ends else [])
 
-    def places_of(self, listed: list[int]) -> tuple[dict[int, complex], dict[int, complex]]:
+    def list_poses(self, listed: list[int]) -> tuple[dict[int, complex], dict[int, complex]]:
         """Return P (length units) and the body's rotation e^{iα} at the listed positions, both by index."""
         turns = self.turns
         return {k: self.positions[k].point for k in listed}, {k: cmath.rect(1.0, turns[k]) for k in listed}

@@ -5,7 +5,7 @@ from __future__ import annotations
 from synthesis.kinds.parallel_motion.design import ParallelMotionResult
 from synthesis.kinds.parallel_motion.gallery import GALLERY
 from synthesis.kinds.parallel_motion.problem import ParallelMotionProblem
-from synthesis.model.kind import Kind, Progress, always
+from synthesis.model.kind import Kind, Progress, return_true
 
 __all__ = ["KIND"]
 
@@ -23,5 +23,5 @@ def _warm_up() -> None:
 
 
 KIND = Kind(
-    "parallel_motion", ParallelMotionProblem, ParallelMotionResult, _solve, _warm_up, brief=always, gallery=GALLERY
+    "parallel_motion", ParallelMotionProblem, ParallelMotionResult, _solve, _warm_up, brief=return_true, gallery=GALLERY
 )

@@ -8,10 +8,10 @@ from pydantic import Field
 
 from synthesis.model.answer import Answer, Point, Verification
 from synthesis.model.dimension import Angle, Length
-from synthesis.model.forces_answer import DesignForces
-from synthesis.model.linkage_answer import (
-    LAYOUT,
-    PEAKS,
+from synthesis.model.dynamics.peak_forces import DesignForces
+from synthesis.model.linkage.answer import (
+    LAYOUT_FIELD,
+    PEAKS_FIELD,
     CouplerPoint,
     Layout,
     LinkageMetrics,
@@ -60,8 +60,8 @@ class ParallelMotionDesign(Answer):
     targets: list[Target] = Field(description="The points of the path; empty if a linkage was given.")
     verification: Verification
     metrics: ParallelMotionMetrics
-    layout: Layout | None = LAYOUT
-    forces: DesignForces | None = PEAKS
+    layout: Layout | None = LAYOUT_FIELD
+    forces: DesignForces | None = PEAKS_FIELD
 
 
 class ParallelMotionResult(LinkageResult[ParallelMotionDesign]):

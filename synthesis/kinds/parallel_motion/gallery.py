@@ -2,6 +2,6 @@
 
 from __future__ import annotations
 
-from synthesis.model.kind import Named
+from synthesis.model.kind import NamedExample
 
-GALLERY = (Named("Level platform", "Carry a body", "A body that follows a coupler curve and never tilts."),)
+GALLERY = (NamedExample("Level platform", "Carry a body", "A body that follows a coupler curve and never tilts."),)

@@ -10,26 +10,26 @@ from pydantic import ConfigDict, Field, model_validator
 from pydantic_core import PydanticCustomError
 
 from synthesis.kinds.path.problem import PathProblem
-from synthesis.model.linkage_statement import LinkageProblem
-from synthesis.model.stated_linkage import (
-    AGREES,
-    BODY,
+from synthesis.model.linkage.given_linkage import (
+    AGREEMENT_TOLERANCE,
+    BODY_DESCRIPTION,
     Assembly,
+    CouplerPointSpec,
+    FixedPivotsSpec,
     FourbarLengths,
-    StatedCouplerPoint,
-    StatedPivots,
-    StatedSkeleton,
+    SkeletonSpec,
 )
-from synthesis.model.statement import ROUNDED_OFF, Contradiction, Degrees, Statement
+from synthesis.model.linkage.problem import LinkageProblem
+from synthesis.model.problem import CANCELLATION_TOLERANCE, Contradiction, Degrees, Statement
 
-AT_PIN = 1e-6
+PIN_TOLERANCE = 1e-6
 """Distance of P from A or B, as a share of the coupler, below which P is on the pin: it has no cognate, and P runs on a
 circle."""
 
 
-PIVOTS = frozenset({"O2", "O4", "A", "B"})
+JOINT_NAMES = frozenset({"O2", "O4", "A", "B"})
 
-PINS = ({"O2", "O4"}, {"O2", "A"}, {"A", "B"}, {"O4", "B"})
+LINK_JOINTS = ({"O2", "O4"}, {"O2", "A"}, {"A", "B"}, {"O4", "B"})
 """Joints of the links of a fourbar in a skeleton; the coupler may also contain P."""
 
 
@@ -37,9 +37,9 @@ class SourceLinkage(Statement):
     """The fourbar whose coupler curve is to be followed: by its dimensions, or in the form of an answer."""
 
     type: Literal["fourbar"] = "fourbar"
-    fixed_pivots: StatedPivots
+    fixed_pivots: FixedPivotsSpec
     links: FourbarLengths
-    coupler_point: StatedCouplerPoint
+    coupler_point: CouplerPointSpec
     assembly: Assembly = Field(
         default="open", description="open: B lies to the left of the directed line from A to O4."
     )
@@ -48,20 +48,21 @@ class SourceLinkage(Statement):
         description="Input angle of the first position, absolute, degrees; by default the skeleton's, or any possible "
         "one.",
     )
-    reference_body_angle: Degrees | None = Field(default=None, description=BODY)
-    skeleton: StatedSkeleton | None = Field(
+    reference_body_angle: Degrees | None = Field(default=None, description=BODY_DESCRIPTION)
+    skeleton: SkeletonSpec | None = Field(
         default=None, description="In the first position; its joints must agree with the dimensions."
     )
 
     @model_validator(mode="before")
     @classmethod
-    def _a_fourbar(cls, stated: Any) -> Any:
-        if isinstance(stated, dict) and stated.get("type", "fourbar") != "fourbar":
+    def check_is_fourbar(cls, given: Any) -> Any:
+        """Reject mechanisms other than a fourbar, whose cognates guide the body."""
+        if isinstance(given, dict) and given.get("type", "fourbar") != "fourbar":
             raise PydanticCustomError(
                 "no_fourbar",
                 "only a fourbar has the cognates that guide the body; for another mechanism give the path of its point",
             )
-        return stated
+        return given
 
     @property
     def reference(self) -> float | None:
@@ -124,24 +125,24 @@ class ParallelMotionProblem(LinkageProblem):
         description="Also build sixbars from the cognates of `linkage`, and with the output link as the input.",
     )
 
-    def contradictions(self) -> list[Contradiction]:
+    def find_contradictions(self) -> list[Contradiction]:
         """Return contradictory requests: no curve or two, a point without a cognate, lengths that form no linkage."""
-        found = list(self.contradicting_demands())
+        found = list(self.find_contradicting_constraints())
         if (self.linkage is None) == (self.path is None):
             found.append(Contradiction("/linkage", "give either a linkage or a path"))
         if self.path is not None:
-            found += [fault._replace(path=f"/path{fault.path}") for fault in self.path.contradictions()]
+            found += [fault._replace(path=f"/path{fault.path}") for fault in self.path.find_contradictions()]
             # Both describe the finished mechanism.
             for name in ("layout", "space"):
                 if getattr(self.path, name) is not None:
                     detail = "the sixbar is built, not the fourbar; give this next to the path"
                     found.append(Contradiction(f"/path/{name}", detail))
         if self.linkage is not None:
-            found += _faults(self.linkage)
+            found += _find_linkage_errors(self.linkage)
         return found
 
 
-def _faults(linkage: SourceLinkage) -> list[Contradiction]:
+def _find_linkage_errors(linkage: SourceLinkage) -> list[Contradiction]:
     found = []
     links, point = linkage.links, linkage.coupler_point
     ground = math.dist(linkage.fixed_pivots.input, linkage.fixed_pivots.output)
@@ -152,20 +153,20 @@ def _faults(linkage: SourceLinkage) -> list[Contradiction]:
         )
     elif lengths[3] >= sum(lengths[:3]):
         found.append(Contradiction("/linkage/links", "one link is at least as long as the others together"))
-    if links.ground is not None and abs(links.ground - ground) > AGREES * max(ground, links.ground):
+    if links.ground is not None and abs(links.ground - ground) > AGREEMENT_TOLERANCE * max(ground, links.ground):
         detail = f"the fixed pivots give {ground:.9g}; leave the field out or correct it"
         found.append(Contradiction("/linkage/links/ground", detail))
     far = max(map(abs, (*linkage.fixed_pivots.input, *linkage.fixed_pivots.output)))
-    if min(lengths[0], point.distance or lengths[0]) < ROUNDED_OFF * far and ground > 0.0:
+    if min(lengths[0], point.distance or lengths[0]) < CANCELLATION_TOLERANCE * far and ground > 0.0:
         detail = "too short relative to the coordinates of the pivots; move the origin nearer"
         found.append(Contradiction("/linkage/links", detail))
-    if min(point.distance, abs(point.vector - links.coupler)) <= AT_PIN * links.coupler:
+    if min(point.distance, abs(point.vector - links.coupler)) <= PIN_TOLERANCE * links.coupler:
         detail = "on a pin of the coupler P runs on a circle and has no cognate; a parallelogram carries a body there"
         found.append(Contradiction("/linkage/coupler_point", detail))
-    return found or [*_reference_faults(linkage), *_skeleton_faults(linkage)]
+    return found or [*_find_reference_errors(linkage), *_find_skeleton_errors(linkage)]
 
 
-def _reference_faults(linkage: SourceLinkage) -> list[Contradiction]:
+def _find_reference_errors(linkage: SourceLinkage) -> list[Contradiction]:
     """Return an error if coupler and output do not meet at the given input angle."""
     if linkage.reference_input_angle is None:
         return []
@@ -173,26 +174,31 @@ def _reference_faults(linkage: SourceLinkage) -> list[Contradiction]:
     reach = abs(joints["O4"] - joints["A"])
     low, high = abs(links.coupler - links.output), links.coupler + links.output
     # Triangle A B O4 closes, up to the rounding of printed dimensions.
-    if (1.0 - AGREES) * low <= reach <= (1.0 + AGREES) * high:
+    if (1.0 - AGREEMENT_TOLERANCE) * low <= reach <= (1.0 + AGREEMENT_TOLERANCE) * high:
         return []
     detail = "the linkage cannot be assembled at this input angle; leave it out or correct it"
     return [Contradiction("/linkage/reference_input_angle", detail)]
 
 
-def _skeleton_faults(linkage: SourceLinkage) -> list[Contradiction]:
+def _find_skeleton_errors(linkage: SourceLinkage) -> list[Contradiction]:
     """Return an error if the skeleton is not the fourbar's, or its joints disagree with the dimensions."""
     skeleton = linkage.skeleton
     if skeleton is None:
         return []
     # P may be listed on the coupler or left out.
     shape = {frozenset(link.joints) - {"P"} for link in skeleton.links}
-    if shape != set(map(frozenset, PINS)) or skeleton.slides or skeleton.gears or not skeleton.joints.keys() >= PIVOTS:
+    if (
+        shape != set(map(frozenset, LINK_JOINTS))
+        or skeleton.slides
+        or skeleton.gears
+        or not skeleton.joints.keys() >= JOINT_NAMES
+    ):
         detail = "not that of a fourbar with the links O2–O4, O2–A, A–B–P and O4–B; leave it out"
         return [Contradiction("/linkage/skeleton", detail)]
     size = max(abs(z) for z in linkage.joints.values())
     for name, place in linkage.joints.items():
         stated = skeleton.joints.get(name)
-        if stated is not None and abs(complex(*stated) - place) > AGREES * size:
+        if stated is not None and abs(complex(*stated) - place) > AGREEMENT_TOLERANCE * size:
             detail = f"the dimensions put {name} at ({place.real:.9g}, {place.imag:.9g}); leave the skeleton out"
             return [Contradiction(f"/linkage/skeleton/joints/{name}", detail)]
     return []

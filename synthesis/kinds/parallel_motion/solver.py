@@ -9,31 +9,37 @@ from collections.abc import Iterator
 from functools import partial
 from typing import Literal, NamedTuple
 
-from kinematics.linkage.fourbar import Fourbar, cognates, parallel_motion, positions
+from kinematics.linkage.fourbar import Fourbar, build_cognates, build_parallel_motion, positions
 from synthesis.kinds.parallel_motion.design import ParallelMotionDesign, ParallelMotionMechanism, ParallelMotionResult
 from synthesis.kinds.parallel_motion.problem import ParallelMotionProblem, SourceLinkage
 from synthesis.kinds.parallel_motion.verification import verify_parallel_motion
 from synthesis.kinds.path.solver import solve_path
 from synthesis.mechanisms import GivenFourbar, MechanismError
-from synthesis.model.counting import agreeing, counted, grouped
-from synthesis.model.kind import Progress, part_of
-from synthesis.model.linkage_answer import FourbarMechanism
-from synthesis.model.linkages import FourbarConfiguration, coupler_point, driven_fourbar, skeleton, to_point
-from synthesis.model.statement import Contradiction, ContradictionError
-from synthesis.outcome.ranking import ranked
-from synthesis.outcome.sifting import DEFECTS, Sifting, reported
+from synthesis.model.counting import choose_word, format_count, format_integer
+from synthesis.model.kind import Progress, scale_progress
+from synthesis.model.linkage.answer import FourbarMechanism
+from synthesis.model.linkage.conversion import (
+    FourbarConfiguration,
+    build_coupler_point,
+    build_driven_fourbar,
+    build_skeleton,
+    to_point,
+)
+from synthesis.model.problem import Contradiction, ContradictionError
+from synthesis.results.candidate_log import DEFECT_REASONS, CandidateLog, report_candidates
+from synthesis.results.ranking import rank_designs
 
 Base = Literal["source", "left_cognate", "right_cognate", "path"]
 InputSide = Literal["input", "output"]
 
-PATH_SHARE = 0.9
+PATH_PROGRESS_SHARE = 0.9
 """Share of the progress assigned to a path problem."""
 
-REASONS = DEFECTS | {"translates": "rotation", "on_curve": "deviation"}
+REJECTION_REASONS = DEFECT_REASONS | {"translates": "rotation", "on_curve": "deviation"}
 """Reasons of rejections by failed check; other checks name their own reason."""
 
 
-class _Fourbar(NamedTuple):
+class _SourceFourbar(NamedTuple):
     """A fourbar that traces the curve, in its first position."""
 
     base: Base
@@ -44,23 +50,25 @@ class _Fourbar(NamedTuple):
 def solve_parallel_motion(problem: ParallelMotionProblem, progress: Progress) -> ParallelMotionResult:
     """Solve a problem of parallel motion."""
     if problem.path is not None:
-        found = solve_path(problem.path, part_of(progress, 0.0, PATH_SHARE))
+        found = solve_path(problem.path, scale_progress(progress, 0.0, PATH_PROGRESS_SHARE))
         mechanisms = [design.mechanism for design in found.designs]
         # Sixbars and slider-cranks have no cognates of this kind.
-        fourbars = list(_of_path([one for one in mechanisms if isinstance(one, FourbarMechanism)]))
+        fourbars = list(_list_from_path([one for one in mechanisms if isinstance(one, FourbarMechanism)]))
     else:
         assert problem.linkage is not None
-        fourbars = list(_of_linkage(problem.linkage, cognates_too=problem.include_cognates))
-    sifting = Sifting[ParallelMotionDesign](problem, REASONS)
-    sifting.sift(
-        reported(fourbars, progress, (PATH_SHARE, 1.0), "driving sixbars"),
-        lambda fourbar: verify_parallel_motion(problem, _sixbar(fourbar.joints), fourbar.base, fourbar.input_side),
+        fourbars = list(_list_from_linkage(problem.linkage, cognates_too=problem.include_cognates))
+    sifting = CandidateLog[ParallelMotionDesign](problem, REJECTION_REASONS)
+    sifting.verify_candidates(
+        report_candidates(fourbars, progress, (PATH_PROGRESS_SHARE, 1.0), "driving sixbars"),
+        lambda fourbar: verify_parallel_motion(
+            problem, _build_sixbar(fourbar.joints), fourbar.base, fourbar.input_side
+        ),
     )
     progress(1.0, "verified")
     return ParallelMotionResult(
-        designs=sifting.designs(partial(_ranked, problem.rank_by)),
-        search=sifting.search("cognates, one of them moved to the other's pivot"),
-        summary=_summary(problem, sifting),
+        designs=sifting.select_designs(partial(_rank_designs, problem.rank_by)),
+        search=sifting.build_search("cognates, one of them moved to the other's pivot"),
+        summary=_describe_result(problem, sifting),
     )
 
 
@@ -73,26 +81,28 @@ def warm_up() -> None:
     solve_parallel_motion(ParallelMotionProblem.model_validate(examples[0]), lambda fraction, message: None)
 
 
-def _ranked(rank_by: str, designs: list[ParallelMotionDesign]) -> list[ParallelMotionDesign]:
+def _rank_designs(rank_by: str, designs: list[ParallelMotionDesign]) -> list[ParallelMotionDesign]:
     """Rank designs; equally good ones keep their order: the given fourbar, then its cognates."""
-    return ranked(designs, rank_by, {"accuracy": lambda design: design.metrics.rms_residual}, ties=lambda design: 0.0)
+    return rank_designs(
+        designs, rank_by, {"accuracy": lambda design: design.metrics.rms_residual}, ties=lambda design: 0.0
+    )
 
 
-def _of_linkage(given: SourceLinkage, *, cognates_too: bool) -> Iterator[_Fourbar]:
+def _list_from_linkage(given: SourceLinkage, *, cognates_too: bool) -> Iterator[_SourceFourbar]:
     """Yield the given fourbar and both cognates, each with either fixed pivot as the input's."""
     stated = given.model_dump(exclude={"skeleton", "reference_body_angle"}, exclude_none=True)
     try:
-        mechanism = GivenFourbar.model_validate({**stated, "reference_input_angle": given.reference}).mechanism()
+        mechanism = GivenFourbar.model_validate({**stated, "reference_input_angle": given.reference}).build_mechanism()
     except MechanismError as error:
         raise ContradictionError(Contradiction(f"/linkage{error.path}", error.detail)) from None
     joints = FourbarConfiguration(*(complex(mechanism.joints[name]) for name in ("O2", "A", "B", "O4", "P")))
-    yield _Fourbar("source", "input", joints)
+    yield _SourceFourbar("source", "input", joints)
     if not cognates_too:
         return
     # Either fixed pivot can carry the input; the sixbars differ, the curve does not.
-    yield _Fourbar("source", "output", _reversed(joints))
-    linkage, angle, side = _as_linkage(joints)
-    pair = cognates(linkage)
+    yield _SourceFourbar("source", "output", _reverse_input(joints))
+    linkage, angle, side = _convert_to_linkage(joints)
+    pair = build_cognates(linkage)
     names: tuple[Base, Base] = ("left_cognate", "right_cognate")
     for name, cognate in zip(names, pair, strict=True):
         # All cognates are shown in the position in which P is at the same place.
@@ -105,26 +115,26 @@ def _of_linkage(given: SourceLinkage, *, cognates_too: bool) -> Iterator[_Fourba
             complex(cognate.linkage.output_pivot),
             complex(at.p),
         )
-        yield _Fourbar(name, "input", own)
-        yield _Fourbar(name, "output", _reversed(own))
+        yield _SourceFourbar(name, "input", own)
+        yield _SourceFourbar(name, "output", _reverse_input(own))
 
 
-def _of_path(mechanisms: list[FourbarMechanism]) -> Iterator[_Fourbar]:
+def _list_from_path(mechanisms: list[FourbarMechanism]) -> Iterator[_SourceFourbar]:
     for mechanism in mechanisms:
-        linkage, side, reference = driven_fourbar(mechanism)
+        linkage, side, reference = build_driven_fourbar(mechanism)
         at = positions(linkage, reference, side)
         pivots = complex(linkage.input_pivot), complex(linkage.output_pivot)
-        yield _Fourbar(
+        yield _SourceFourbar(
             "path", "input", FourbarConfiguration(pivots[0], complex(at.a), complex(at.b), pivots[1], complex(at.p))
         )
 
 
-def _reversed(joints: FourbarConfiguration) -> FourbarConfiguration:
+def _reverse_input(joints: FourbarConfiguration) -> FourbarConfiguration:
     """Return the fourbar with the output link as the input."""
     return FourbarConfiguration(joints.o4, joints.b, joints.a, joints.o2, joints.p)
 
 
-def _as_linkage(joints: FourbarConfiguration) -> tuple[Fourbar, float, int]:
+def _convert_to_linkage(joints: FourbarConfiguration) -> tuple[Fourbar, float, int]:
     """Return the analysis core's value of a fourbar with these joints, its input angle and its assembly."""
     o2, a, b, o4, p = joints
     coupler = b - a
@@ -133,11 +143,11 @@ def _as_linkage(joints: FourbarConfiguration) -> tuple[Fourbar, float, int]:
     return linkage, cmath.phase(a - o2), side
 
 
-def _sixbar(joints: FourbarConfiguration) -> ParallelMotionMechanism:
+def _build_sixbar(joints: FourbarConfiguration) -> ParallelMotionMechanism:
     """Build the sixbar: the fourbar with pin C on its input, the guide C–Q and the body P–Q."""
     o2, a, b, o4, p = joints
-    linkage, angle, _ = _as_linkage(joints)
-    made = parallel_motion(linkage)
+    linkage, angle, _ = _convert_to_linkage(joints)
+    made = build_parallel_motion(linkage)
     places = {
         "O2": o2,
         "O4": o4,
@@ -161,20 +171,21 @@ def _sixbar(joints: FourbarConfiguration) -> ParallelMotionMechanism:
             **{name: abs(places[listed[1]] - places[listed[0]]) for name, listed in links.items()},
             "input_arm": abs(places["C"] - o2),
         },
-        coupler_point=coupler_point(a, b, p),
+        coupler_point=build_coupler_point(a, b, p),
         reference_input_angle=math.degrees(angle),
-        skeleton=skeleton(places, links),
+        skeleton=build_skeleton(places, links),
     )
 
 
-def _summary(problem: ParallelMotionProblem, sifting: Sifting[ParallelMotionDesign]) -> str:
+def _describe_result(problem: ParallelMotionProblem, sifting: CandidateLog[ParallelMotionDesign]) -> str:
     if not sifting.passed:
-        reasons = sifting.listed() or "no fourbar"
-        return f"None of {counted(sifting.candidates, 'sixbar')} carries the body along the curve ({reasons})."
-    best, passed = _ranked(problem.rank_by, sifting.passed)[0].metrics, len(sifting.passed)
+        reasons = sifting.format_reasons() or "no fourbar"
+        return f"None of {format_count(sifting.candidates, 'sixbar')} carries the body along the curve ({reasons})."
+    best, passed = _rank_designs(problem.rank_by, sifting.passed)[0].metrics, len(sifting.passed)
     goes = "" if best.full_rotation else " (driven back and forth along a part of the curve)"
     return (
-        f"{grouped(passed)} of {counted(sifting.candidates, 'sixbar')} {agreeing(passed, 'carries', 'carry')} the "
+        f"{format_integer(passed)} of {format_count(sifting.candidates, 'sixbar')} "
+        f"{choose_word(passed, 'carries', 'carry')} the "
         "body along the curve without turning it. Best design: minimum transmission angle "
         f"{best.min_transmission_angle:.1f}°{goes}, driven at Q = ({best.translation[0]:.6g}, "
         f"{best.translation[1]:.6g}) relative to P."

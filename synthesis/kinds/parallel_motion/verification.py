@@ -11,50 +11,47 @@ from functools import partial
 from typing import Literal, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
+from kinematics.arrays import Complex, Real
 from kinematics.linkage.planar.drive import drive
 from kinematics.linkage.planar.mechanism import Mechanism
-from synthesis.analyses.cycle import cycle_of
+from synthesis.analyses.linkages.cycle import find_cycle
 from synthesis.kinds.parallel_motion.design import ParallelMotionDesign, ParallelMotionMechanism, ParallelMotionMetrics
 from synthesis.kinds.parallel_motion.problem import ParallelMotionProblem, SourceLinkage
-from synthesis.kinds.path.verification import verify_path
+from synthesis.kinds.path.verification.fourbar import verify_path
 from synthesis.model.answer import Check, Verification
-from synthesis.model.linkage_answer import Target
-from synthesis.model.linkages import FourbarConfiguration, fourbar_mechanism
-from synthesis.proof.checks import tolerated
-from synthesis.proof.closer import GRID, least_angles, turn_from
-from synthesis.proof.constraints import constraint_checks
-from synthesis.proof.measures import (
-    TURNS_THROUGH,
-    barker_of,
-    diagonal,
-    fixed_pivots,
-    link_lengths,
-    measured,
-    moving_pivots,
-    reach_of,
+from synthesis.model.linkage.answer import Target
+from synthesis.model.linkage.conversion import FourbarConfiguration, build_fourbar
+from synthesis.verification.checks import check_error
+from synthesis.verification.constraints import check_constraints
+from synthesis.verification.measures import (
+    ROTATING_INPUT_CLASSES,
+    classify_fourbar,
+    list_fixed_pivots,
+    list_link_lengths,
+    list_moving_pivots,
+    measure_diagonal,
+    measure_linkage,
+    measure_reach,
 )
-from synthesis.proof.rebuilt import rebuilt
+from synthesis.verification.reconstruction import rebuild_mechanism
+from synthesis.verification.refined_extremes import GRID_SIZE, find_min_transmission_angles, list_full_turn
 
-Real = NDArray[np.float64]
-Complex = NDArray[np.complex128]
-
-TRANSLATES = 1e-9
+TRANSLATION_TOLERANCE = 1e-9
 """Maximum rotation of the body, radians, and maximum distance of P from the curve, as a share of the curve's size."""
 
-FAR = 64.0 * float(np.finfo(np.float64).eps)
+ROUNDING_ALLOWANCE = 64.0 * float(np.finfo(np.float64).eps)
 """Allowance for rounding in addition, as a share of the largest coordinate over the body's length or the curve's
 size."""
 
-NO_TOGGLE = 1e-6
+MIN_TOGGLE_SINE = 1e-6
 """Minimum sine of a transmission angle at which the mechanism still moves in a defined direction."""
 
-WITHIN = 0.01
+TOGGLE_MARGIN_SHARE = 0.01
 """Share of its range, at each toggle, that an input between toggles leaves out."""
 
 
-class _Path(NamedTuple):
+class _PathVerification(NamedTuple):
     """Verification results of the fourbar itself, for problems with a path."""
 
     checks: list[Check]
@@ -85,39 +82,39 @@ def verify_parallel_motion(
     ParallelMotionDesign or None
         None if the mechanism cannot be driven.
     """
-    mechanism = rebuilt(design)
+    mechanism = rebuild_mechanism(design)
     if mechanism is None:
         return None
     place = {name: complex(z) for name, z in mechanism.joints.items()}
     configuration = FourbarConfiguration(*(place[name] for name in ("O2", "A", "B", "O4", "P")))
-    path = _path(problem, configuration)
+    path = _verify_path(problem, configuration)
     if problem.path is not None and path is None:
         return None
-    barker = barker_of(mechanism)
-    turns = barker.motion in TURNS_THROUGH
-    inputs = _inputs(mechanism, None if turns or path is None else path.rotation, turns=turns)
+    barker = classify_fourbar(mechanism)
+    turns = barker.motion in ROTATING_INPUT_CLASSES
+    inputs = _list_inputs(mechanism, None if turns or path is None else path.rotation, turns=turns)
     motion = drive(mechanism, inputs, order=1)
     if not motion.smooth.all():
         return None
     p, q = motion.joints["P"][0], motion.joints["Q"][0]
-    curve_size = diagonal(p)
+    curve_size = measure_diagonal(p)
     joints = np.concatenate([jet[0] for jet in motion.joints.values()])
     reach = float(np.abs(joints).max())
     body = motion.angles["body"][0]
     # Angles modulo a full turn.
     rotation = float(np.abs(np.angle(np.exp(1j * (body - body[0])))).max())
-    transmission = least_angles(partial(drive, mechanism, order=0), inputs, motion)
-    off_curve = None if problem.linkage is None else float(_off_curve(problem.linkage, p).max())
+    transmission = find_min_transmission_angles(partial(drive, mechanism, order=0), inputs, motion)
+    off_curve = None if problem.linkage is None else float(_measure_curve_distance(problem.linkage, p).max())
     task = curve_size if problem.path is None else problem.path.task_size
-    measures = measured(
-        link_lengths(design),
-        reach_of(mechanism),
+    measures = measure_linkage(
+        list_link_lengths(design),
+        measure_reach(mechanism),
         task,
         transmission,
         joints,
         barker=barker,
-        same_branch=min(transmission.values()) > NO_TOGGLE and (path is None or _kept(path, "same_branch")),
-        visits_in_order=path is None or _kept(path, "visits_in_order"),
+        same_branch=min(transmission.values()) > MIN_TOGGLE_SINE and (path is None or _has_passed(path, "same_branch")),
+        visits_in_order=path is None or _has_passed(path, "visits_in_order"),
         full_rotation=turns,
         used=(float(inputs[0]), float(inputs[-1])),
     )
@@ -130,66 +127,68 @@ def verify_parallel_motion(
         translation=(float((q[0] - p[0]).real), float((q[0] - p[0]).imag)),
         curve_distance=off_curve,
         input_range=(math.degrees(float(inputs[0])), math.degrees(float(inputs[-1]))),
-        **measures.within(ParallelMotionMetrics),
+        **measures.select_fields(ParallelMotionMetrics),
     )
-    limit = TRANSLATES + FAR * reach / abs(complex(q[0] - p[0]))
-    checks = [tolerated("translates", rotation, limit)]
+    limit = TRANSLATION_TOLERANCE + ROUNDING_ALLOWANCE * reach / abs(complex(q[0] - p[0]))
+    checks = [check_error("translates", rotation, limit)]
     if off_curve is not None:
-        limit = TRANSLATES + FAR * reach / curve_size
+        limit = TRANSLATION_TOLERANCE + ROUNDING_ALLOWANCE * reach / curve_size
         checks.append(
             Check(name="on_curve", passed=off_curve <= limit * curve_size, value=off_curve / curve_size, limit=limit)
         )
     if path is not None:
         checks += path.checks
-    pivots = fixed_pivots(mechanism), moving_pivots(mechanism)
+    pivots = list_fixed_pivots(mechanism), list_moving_pivots(mechanism)
     # Checks that both the path and the sixbar contain are reported once, as failed if either fails.
-    own = {check.name: check for check in constraint_checks(problem.constraints, measures, *pivots)}
+    own = {check.name: check for check in check_constraints(problem.constraints, measures, *pivots)}
     checks = [check for check in checks if not check.passed or check.name not in own]
     checks += [check for name, check in own.items() if name not in {check.name for check in checks}]
     return ParallelMotionDesign(
         mechanism=design,
         targets=[] if path is None else path.targets,
-        verification=Verification.of(checks),
+        verification=Verification.from_checks(checks),
         metrics=metrics,
     )
 
 
-def _path(problem: ParallelMotionProblem, configuration: FourbarConfiguration) -> _Path | None:
+def _verify_path(problem: ParallelMotionProblem, configuration: FourbarConfiguration) -> _PathVerification | None:
     """Drive the fourbar of the sixbar past the points of the requested path."""
     if problem.path is None:
         return None
-    driven = verify_path(problem.path, fourbar_mechanism(configuration))
+    driven = verify_path(problem.path, build_fourbar(configuration))
     if driven is None:
         return None
     metrics = driven.metrics
     assert metrics.input_rotation is not None, "the input of a fourbar turns"
-    return _Path(driven.verification.checks, driven.targets, math.radians(metrics.input_rotation), metrics.rms_residual)
+    return _PathVerification(
+        driven.verification.checks, driven.targets, math.radians(metrics.input_rotation), metrics.rms_residual
+    )
 
 
-def _kept(path: _Path, name: str) -> bool:
+def _has_passed(path: _PathVerification, name: str) -> bool:
     """Return whether a check of the path passed, or is not part of it."""
     return all(check.passed for check in path.checks if check.name == name)
 
 
-def _inputs(mechanism: Mechanism, rotation: float | None, *, turns: bool) -> Real:
+def _list_inputs(mechanism: Mechanism, rotation: float | None, *, turns: bool) -> Real:
     """Return the inputs of the range: a full turn, the path's rotation, or nearly from toggle to toggle."""
     at = float(mechanism.reference_input)
     if turns:
-        return turn_from(at)
+        return list_full_turn(at)
     if rotation is not None:
-        return np.asarray(np.linspace(at, at + rotation, GRID))
+        return np.asarray(np.linspace(at, at + rotation, GRID_SIZE))
     fourbar = Mechanism(
         {name: mechanism.joints[name] for name in ("O2", "O4", "A", "B")},
         {"ground": ("O2", "O4"), "input": ("O2", "A"), "coupler": ("A", "B"), "output": ("O4", "B")},
         "input",
     )
     # The toggles are those of the fourbar; the guide and the body follow.
-    low, high = cycle_of(fourbar)
-    spare = WITHIN * (high - low)
-    return np.asarray(np.linspace(low + spare, high - spare, GRID))
+    low, high = find_cycle(fourbar)
+    spare = TOGGLE_MARGIN_SHARE * (high - low)
+    return np.asarray(np.linspace(low + spare, high - spare, GRID_SIZE))
 
 
-def _off_curve(linkage: SourceLinkage, points: Complex) -> Real:
+def _measure_curve_distance(linkage: SourceLinkage, points: Complex) -> Real:
     """Return the approximate distance of points from a fourbar's coupler curve: B's distance from the output's
     circle."""
     o2, o4 = complex(*linkage.fixed_pivots.input), complex(*linkage.fixed_pivots.output)

@@ -5,8 +5,8 @@ from __future__ import annotations
 from synthesis.kinds.path.design import PathDesign, PathResult
 from synthesis.kinds.path.gallery import GALLERY
 from synthesis.kinds.path.problem import PathProblem
-from synthesis.model.kind import Kind, Progress
-from synthesis.model.linkage_answer import LinkageMechanism
+from synthesis.model.kind import Kind, Progress, TableColumns
+from synthesis.model.linkage.answer import LinkageMechanism
 
 __all__ = ["KIND"]
 
@@ -17,10 +17,10 @@ def _solve(problem: PathProblem, progress: Progress) -> PathResult:
     return solve_path(problem, progress)
 
 
-def _nearly(problem: PathProblem, _design: PathDesign, mechanism: LinkageMechanism) -> PathDesign | None:
-    from synthesis.kinds.path.verify_nearly import verify_nearly
+def _verify_on_grid(problem: PathProblem, _design: PathDesign, mechanism: LinkageMechanism) -> PathDesign | None:
+    from synthesis.kinds.path.verification.on_grid import verify_on_grid
 
-    return verify_nearly(problem, mechanism)
+    return verify_on_grid(problem, mechanism)
 
 
 def _warm_up() -> None:
@@ -29,9 +29,19 @@ def _warm_up() -> None:
     warm_up()
 
 
-def _brief(problem: PathProblem) -> bool:
+def _is_brief(problem: PathProblem) -> bool:
     """Return whether the problem is solved in a moment: points with crank angles need no search for their timing."""
     return problem.prescribed
 
 
-KIND = Kind("path", PathProblem, PathResult, _solve, _warm_up, brief=_brief, nearly=_nearly, gallery=GALLERY)
+KIND = Kind(
+    "path",
+    PathProblem,
+    PathResult,
+    _solve,
+    _warm_up,
+    brief=_is_brief,
+    nearly=_verify_on_grid,
+    columns=TableColumns("points", ("x", "y")),
+    gallery=GALLERY,
+)

@@ -6,9 +6,9 @@ from typing import Literal
 
 from pydantic import Field
 
-from synthesis.model.answer import Answer, Point, optional
+from synthesis.model.answer import Answer, Point, optional_field
 from synthesis.model.dimension import Angle, Area, Length
-from synthesis.model.linkage_answer import FourbarMechanism, LinkageDesign, LinkageMetrics, LinkageResult
+from synthesis.model.linkage.answer import FourbarMechanism, LinkageDesign, LinkageMetrics, LinkageResult
 
 
 class CognateTriples(Answer):
@@ -28,27 +28,27 @@ class PathMetrics(LinkageMetrics):
     sum_of_squares: Area = Field(description="Sum of squared distances of P from the points, length units squared.")
     rms_distance: Length = Field(description="Root mean square of these distances, length units.")
     max_distance: Length = Field(description="Largest of these distances, length units.")
-    curve_distance: Length | None = optional(
+    curve_distance: Length | None = optional_field(
         "For fits: the largest distance of the traced curve from the straight lines through the points, over a full "
         "turn if these are closed, else from the first point to the last; length units."
     )
-    excursion: Length | None = optional(
+    excursion: Length | None = optional_field(
         "For fits: how far the traced curve strays from these lines beyond max_distance and the bulge that a curve may "
         "have between points, a quarter of their distance; length units."
     )
-    both_way_rms: Length | None = optional(
+    both_way_rms: Length | None = optional_field(
         "For fits by sixbars to 24 points or more: root mean square of the points' distances from the curve and of "
         "the curve's, weighted by its length, from the straight lines through the points; length units."
     )
-    stance_flatness: Length | None = optional(
+    stance_flatness: Length | None = optional_field(
         "Height, across the stance line, of the band in which P stays from the first point of a stance to its last; "
         "length units."
     )
-    stance_speed_deviation: float | None = optional(
+    stance_speed_deviation: float | None = optional_field(
         "Largest deviation of P's speed along the stance line from its mean, as a share of the mean, at constant "
         "input speed."
     )
-    stance_rotation: Angle | None = optional("Rotation of the input during the stance, degrees.")
+    stance_rotation: Angle | None = optional_field("Rotation of the input during the stance, degrees.")
 
 
 class CurvePlacement(Answer):
@@ -80,9 +80,11 @@ class PathDesign(LinkageDesign):
     """A linkage that guides a point, with its verification."""
 
     metrics: PathMetrics
-    placement: CurvePlacement | None = optional("For a curve with a free place; the metrics refer to this placement.")
+    placement: CurvePlacement | None = optional_field(
+        "For a curve with a free place; the metrics refer to this placement."
+    )
     cognates: list[PathCognate] = Field(default=[], description="The two other fourbars of the same curve.")
-    point_link: str | None = optional("The link of a sixbar that carries P, by its name in the skeleton.")
+    point_link: str | None = optional_field("The link of a sixbar that carries P, by its name in the skeleton.")
     cognate_choice: str = Field(default="", description="Comparison of the design with its cognates.")
 
 
@@ -123,10 +125,10 @@ class CurveSweep(Answer):
 class PathResult(LinkageResult[PathDesign]):
     """Linkages whose coupler point goes through the points."""
 
-    triples: CognateTriples | None = optional(
+    triples: CognateTriples | None = optional_field(
         "For up to nine points of free timing; left out if other methods were used."
     )
-    sweep: CurveSweep | None = optional("For curves that are matched as a whole.")
-    given_pivots: GivenPivotSolutions | None = optional("For five points on two given fixed pivots.")
-    family: FamilySearch | None = optional("For fewer than nine points with constraints.")
-    timed: TimedDyads | None = optional("For five points at their crank angles.")
+    sweep: CurveSweep | None = optional_field("For curves that are matched as a whole.")
+    given_pivots: GivenPivotSolutions | None = optional_field("For five points on two given fixed pivots.")
+    family: FamilySearch | None = optional_field("For fewer than nine points with constraints.")
+    timed: TimedDyads | None = optional_field("For five points at their crank angles.")

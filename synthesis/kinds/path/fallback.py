@@ -13,19 +13,19 @@ from collections.abc import Callable
 
 from synthesis.kinds.path.design import PathDesign, PathResult
 from synthesis.kinds.path.problem import PathProblem
-from synthesis.kinds.path.stated_mechanisms import NAMES
-from synthesis.model.kind import Progress, part_of
+from synthesis.kinds.path.statement.mechanism_types import TYPE_NAMES
+from synthesis.model.kind import Progress, scale_progress
 
-FIRST_PART = 0.8
+EXACT_PROGRESS_SHARE = 0.8
 """Share of the progress assigned to the exact search."""
 
-FAR = 0.05
+MAX_FIT_MISS = 0.05
 """Maximum miss of a point, as a share of the task's size, of a fit that replaces an exact design."""
 
 Solve = Callable[[PathProblem, Progress], PathResult]
 
 
-def exact_or_fitted(problem: PathProblem, progress: Progress, exact: Solve, fitted: Solve) -> PathResult:
+def solve_exactly_or_fit(problem: PathProblem, progress: Progress, exact: Solve, fitted: Solve) -> PathResult:
     """Return the result of an exact search or, if it has no design that passes, that of least squares.
 
     Parameters
@@ -39,28 +39,30 @@ def exact_or_fitted(problem: PathProblem, progress: Progress, exact: Solve, fitt
     """
     if problem.method != "auto":
         return exact(problem, progress)
-    first = exact(problem, part_of(progress, 0.0, FIRST_PART))
+    first = exact(problem, scale_progress(progress, 0.0, EXACT_PROGRESS_SHARE))
     # Any exact design is preferred to every fit.
     if first.search.accepted:
         return first
     nearly = problem.model_copy(update={"method": "least_squares"})
-    second = fitted(nearly, part_of(progress, FIRST_PART, 1.0))
+    second = fitted(nearly, scale_progress(progress, EXACT_PROGRESS_SHARE, 1.0))
     # The client asked for exact points; a rough fit would be misleading as an answer.
-    near = [design for design in second.designs if _farthest(design) <= FAR * problem.task_size]
+    near = [design for design in second.designs if _compute_max_miss(design) <= MAX_FIT_MISS * problem.task_size]
     if not any(design.verification.passed for design in near):
-        return first.model_copy(update={"summary": f"{first.summary}{_too_far(second.designs, problem.length_unit)}"})
+        return first.model_copy(
+            update={"summary": f"{first.summary}{_describe_misses(second.designs, problem.length_unit)}"}
+        )
     account = second.search.model_copy(
         update={
             # A fit can never prove that no exact design exists.
             "complete": False,
             "candidates": first.search.candidates + second.search.candidates,
-            "rejected": _sum(first.search.rejected, second.search.rejected),
+            "rejected": _add_counts(first.search.rejected, second.search.rejected),
         }
     )
     counted = {name: getattr(first, name) for name in ("triples", "given_pivots", "family", "timed")}
     # Failed exact designs are shown only on request, behind the fits.
     shown = [*near, *first.designs] if problem.include_failed else near
-    name = NAMES["sixbar" if problem.sixbars else problem.mechanism]
+    name = TYPE_NAMES["sixbar" if problem.sixbars else problem.mechanism]
     begun = (
         f"No {name}{'' if first.search.complete else ' was found that'} meets the points exactly and satisfies all "
         "constraints"
@@ -75,22 +77,23 @@ def exact_or_fitted(problem: PathProblem, progress: Progress, exact: Solve, fitt
     )
 
 
-def _farthest(design: PathDesign) -> float:
+def _compute_max_miss(design: PathDesign) -> float:
     """Return the maximum distance by which a design misses a point, length units."""
     return max(target.point_residual for target in design.targets)
 
 
-def _too_far(fitted: list[PathDesign], unit: str) -> str:
+def _describe_misses(fitted: list[PathDesign], unit: str) -> str:
     """Describe in a sentence how near the best feasible fit comes to the points."""
-    misses = [_farthest(design) for design in fitted if design.verification.passed]
+    misses = [_compute_max_miss(design) for design in fitted if design.verification.passed]
     if not misses:
         return ""
     return (
-        f" The best least-squares fit misses a point by {min(misses):.4g} {unit}, more than {FAR:.0%} of the task's "
+        f" The best least-squares fit misses a point by {min(misses):.4g} {unit}, more than {MAX_FIT_MISS:.0%} of the "
+        "task's "
         f"size; choose method least_squares to get such designs."
     )
 
 
-def _sum(one: dict[str, int], other: dict[str, int]) -> dict[str, int]:
+def _add_counts(one: dict[str, int], other: dict[str, int]) -> dict[str, int]:
     """Add the counts of two tables of reasons."""
     return {name: one.get(name, 0) + other.get(name, 0) for name in (*one, *other)}

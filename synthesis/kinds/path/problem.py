@@ -8,26 +8,26 @@ from itertools import pairwise
 from typing import Annotated, Any, Literal, Self
 
 import numpy as np
-from numpy.typing import NDArray
 from pydantic import ConfigDict, Field, model_validator
 
-from synthesis.kinds.path.stated_mechanisms import (
-    SIXBARS,
+from kinematics.arrays import Real
+from synthesis.kinds.path.statement.mechanism_types import (
+    SIXBAR_TYPES,
     Mechanisms,
     Simple,
     Sixbar,
-    beyond_unclassed,
-    lacking,
-    of_types,
-    simple_of,
+    find_mechanism_contradictions,
+    find_unsupported,
+    find_unsupported_unclassed,
+    list_simple_types,
 )
-from synthesis.kinds.path.stated_stance import Stance, faults_of_stance
-from synthesis.kinds.path.stated_start import StartFourbar, faults_of_start
+from synthesis.kinds.path.statement.stance import Stance, find_stance_errors
+from synthesis.kinds.path.statement.start import StartFourbar, find_start_errors
 from synthesis.model.dimension import LENGTH
-from synthesis.model.linkage_statement import Constraints, LinkageProblem, Region
-from synthesis.model.manufacture import Held, Made, kept_pivots
-from synthesis.model.stated_types import UNCLASSED, looked_for, without_unclassed
-from synthesis.model.statement import (
+from synthesis.model.linkage.problem import Constraints, LinkageProblem, Region
+from synthesis.model.linkage.type_choice import UNCLASSED_SIXBAR, remove_unclassed, select_searched_sixbars
+from synthesis.model.manufacture.request import ManufactureTask, RequiredTargets, list_fixed_coordinates
+from synthesis.model.problem import (
     Contradiction,
     Coordinate,
     Count,
@@ -40,15 +40,13 @@ from synthesis.model.statement import (
     Statement,
 )
 
-Real = NDArray[np.float64]
-
-EQUAL_POINTS = 1e-9
+POINT_TOLERANCE = 1e-9
 """Points closer than this share of the coordinates' size count as equal."""
 
-EQUAL_ANGLES = 1e-9
+ANGLE_TOLERANCE = 1e-9
 """Crank angles closer than this, in degrees modulo full turns, count as equal."""
 
-MAX_EXACT = {"fourbar": 9, "slider_crank": 8, "geared_fivebar": 11}
+MAX_EXACT_POINTS = {"fourbar": 9, "slider_crank": 8, "geared_fivebar": 11}
 """Maximum number of points that a linkage can meet exactly, in general: its number of dimensions without the gear
 ratio."""
 
@@ -58,7 +56,7 @@ MAX_GEAR_TURNS = 60
 MAX_POINTS = 1000
 """Maximum number of points accepted; a curve that needs more is oversampled."""
 
-MAX_LINK = 5.0
+MAX_LINK_DIAGONALS = 5.0
 """Longest link of a curve match without a limit, in diagonals of the box around the curve: fits without one run off to
 links that are many times longer without being better."""
 
@@ -103,12 +101,12 @@ class PathPivots(Statement):
     input: PartialPoint | None = None
     output: PartialPoint | None = None
 
-    def given(self) -> int:
+    def count_given(self) -> int:
         """Return the number of given coordinates."""
         return sum(value is not None for pivot in (self.input, self.output) for value in pivot or ())
 
     @model_validator(mode="after")
-    def _apart(self) -> Self:
+    def _check_distinct(self) -> Self:
         if self.input is not None and self.input == self.output and None not in self.input:
             raise ValueError("the fixed pivots must differ")
         return self
@@ -259,17 +257,17 @@ class PathProblem(LinkageProblem):
     @property
     def task_size(self) -> float:
         """The maximum distance between two points, relative to which tolerances are measured, in length units."""
-        return _greatest_distance(tuple(point.point for point in self.points)) or 1.0
+        return _compute_max_distance(tuple(point.point for point in self.points)) or 1.0
 
     @property
     def sixbars(self) -> tuple[Sixbar, ...]:
         """The types of sixbars to search; ``auto`` excludes Stephenson II."""
-        named = looked_for(self.mechanisms, SIXBARS, lacking(self))
+        named = select_searched_sixbars(self.mechanisms, SIXBAR_TYPES, find_unsupported(self))
         if self.mechanisms == "auto":
-            return tuple(name for name in named if name != UNCLASSED)
-        return without_unclassed(named, beyond_unclassed(self))
+            return tuple(name for name in named if name != UNCLASSED_SIXBAR)
+        return remove_unclassed(named, find_unsupported_unclassed(self))
 
-    def of_type(self, name: Simple) -> PathProblem:
+    def select_type(self, name: Simple) -> PathProblem:
         """Return the problem for one type with a single closure, as requested without ``mechanisms``."""
         ratio = self.gear_ratio if name == "geared_fivebar" else None
         return self.model_copy(update={"mechanisms": None, "mechanism": name, "gear_ratio": ratio})
@@ -284,11 +282,11 @@ class PathProblem(LinkageProblem):
         """Maximum number of points that can be met exactly, in general: as many as there are degrees of freedom for."""
         # Every given coordinate takes one degree of freedom; a prescribed point takes two, because its crank angle is
         # known.
-        free = MAX_EXACT[self.mechanism] - self.fixed_pivots.given()
+        free = MAX_EXACT_POINTS[self.mechanism] - self.fixed_pivots.count_given()
         return (free + (self.crank_phase == "free")) // 2 if self.prescribed else free
 
     @property
-    def fitted(self) -> bool:
+    def is_fitted(self) -> bool:
         """Whether the points are met approximately, not exactly."""
         if self.method == "auto":
             # Tolerances and a stance make sense for approximate points only.
@@ -302,22 +300,22 @@ class PathProblem(LinkageProblem):
         return np.array(stated) if len(stated) == len(self.points) else None
 
     @property
-    def made(self) -> Made | str:
+    def manufacture_task(self) -> ManufactureTask | str:
         """Places of P that a manufactured linkage must reproduce, at free inputs if timing is free; or why it is not
         supported."""
         if self.mechanism == "geared_fivebar":
             return "supports fourbars and slider-cranks, not geared fivebars"
         if self.placement_free:
             return "does not support curves with a free place; leave placement_free out"
-        return Made(True, False, not self.prescribed, len(self.points))
+        return ManufactureTask(True, False, not self.prescribed, len(self.points))
 
-    def held_to(self, design: Any) -> Held:
+    def build_required_targets(self, design: Any) -> RequiredTargets:
         """Return the points and tolerances that a design must keep, in any direction."""
         widths = self.tolerances
         limits = None
         if widths is not None:
             limits = np.stack([widths, widths, np.zeros(len(widths))], axis=1)
-        return Held(
+        return RequiredTargets(
             inputs=np.radians([target.input_angle for target in design.targets]),
             points=np.array([point.point for point in self.points]),
             free=not self.prescribed,
@@ -325,11 +323,11 @@ class PathProblem(LinkageProblem):
             around=True,
             size=self.task_size,
             on_ground=(self.crank_phase == "ground_line", False),
-            kept=kept_pivots((self.fixed_pivots.input, self.fixed_pivots.output)),
+            kept=list_fixed_coordinates((self.fixed_pivots.input, self.fixed_pivots.output)),
         )
 
     @property
-    def matched(self) -> bool:
+    def is_matched(self) -> bool:
         """Whether the points form a curve to be drawn as a whole."""
         return self.method == "curve_match"
 
@@ -340,7 +338,7 @@ class PathProblem(LinkageProblem):
         if limit is not None and limit.max is not None:
             return limit.max
         points = np.array([point.point for point in self.points])
-        return MAX_LINK * math.hypot(float(np.ptp(points.real)), float(np.ptp(points.imag)))
+        return MAX_LINK_DIAGONALS * math.hypot(float(np.ptp(points.real)), float(np.ptp(points.imag)))
 
     @property
     def crank_turns(self) -> list[float]:
@@ -353,39 +351,39 @@ class PathProblem(LinkageProblem):
         onward = [0.0]
         for one, other in pairwise(angles):
             # Each step is taken as a positive angle below a full turn, so that the run is monotone.
-            onward.append(onward[-1] + _turn(other - one))
+            onward.append(onward[-1] + _normalize_turn(other - one))
         backward = [0.0]
         for one, other in pairwise(angles):
-            backward.append(backward[-1] - _turn(one - other))
-        runs = [run for run in (onward, backward) if abs(run[-1]) <= 360.0 + EQUAL_ANGLES]
+            backward.append(backward[-1] - _normalize_turn(one - other))
+        runs = [run for run in (onward, backward) if abs(run[-1]) <= 360.0 + ANGLE_TOLERANCE]
         run = min(runs, key=lambda turns: abs(turns[-1])) if runs else [angle - angles[0] for angle in angles]
         return [math.radians(turn) for turn in run]
 
-    def contradictions(self) -> list[Contradiction]:
+    def find_contradictions(self) -> list[Contradiction]:
         """Return contradictory requests: equal points, incomplete or impossible timing, and constraints that exclude
         one another."""
         if self.mechanisms is None:
-            return self._of_one_type()
+            return self._find_type_contradictions()
         # Requests are checked for each type, because some apply to one type only.
-        types = simple_of(self.mechanisms) or ("fourbar",)
-        each = [fault for name in types for fault in self.of_type(name)._of_one_type()]
-        return list(dict.fromkeys([*of_types(self), *each]))
+        types = list_simple_types(self.mechanisms) or ("fourbar",)
+        each = [fault for name in types for fault in self.select_type(name)._find_type_contradictions()]
+        return list(dict.fromkeys([*find_mechanism_contradictions(self), *each]))
 
-    def _of_one_type(self) -> list[Contradiction]:
+    def _find_type_contradictions(self) -> list[Contradiction]:
         return [
-            *self._timing(),
-            *self._equal_points(),
-            *self._method(),
-            *self._tolerances(),
-            *self._pivots(),
-            *self._mechanism(),
-            *self._closed(),
-            *faults_of_stance(self),
-            *faults_of_start(self),
-            *self.contradicting_demands(),
+            *self._check_timing(),
+            *self._check_equal_points(),
+            *self._check_method(),
+            *self._check_tolerances(),
+            *self._check_pivots(),
+            *self._check_mechanism(),
+            *self._check_closed(),
+            *find_stance_errors(self),
+            *find_start_errors(self),
+            *self.find_contradicting_constraints(),
         ]
 
-    def _timing(self) -> list[Contradiction]:
+    def _check_timing(self) -> list[Contradiction]:
         given = [k for k, point in enumerate(self.points) if point.crank_angle is not None]
         if not self.prescribed:
             faults = [
@@ -404,13 +402,15 @@ class PathProblem(LinkageProblem):
         missing = [k for k in range(len(self.points)) if k not in set(given)]
         if missing:
             return [Contradiction(f"/points/{k}/crank_angle", "timing is prescribed; give an angle") for k in missing]
-        return [*self._equal_angles(), *self._turns()]
+        return [*self._check_equal_angles(), *self._check_turns()]
 
-    def _equal_angles(self) -> list[Contradiction]:
+    def _check_equal_angles(self) -> list[Contradiction]:
         """Return points at equal crank angles, for exact tasks; a fit needs at least three different angles."""
         angles = [point.crank_angle or 0.0 for point in self.points]
-        if self.fitted:
-            different = {round(_turn(angle) / EQUAL_ANGLES) % round(360.0 / EQUAL_ANGLES) for angle in angles}
+        if self.is_fitted:
+            different = {
+                round(_normalize_turn(angle) / ANGLE_TOLERANCE) % round(360.0 / ANGLE_TOLERANCE) for angle in angles
+            }
             if len(different) < 3:
                 return [Contradiction("/points", "prescribed timing needs at least three different crank angles")]
             return []
@@ -418,14 +418,14 @@ class PathProblem(LinkageProblem):
             Contradiction(f"/points/{k}/crank_angle", f"equal to that of point {j}; exact points need different angles")
             for k, later in enumerate(angles)
             for j, earlier in enumerate(angles[:k])
-            if abs(math.remainder(later - earlier, 360.0)) <= EQUAL_ANGLES
+            if abs(math.remainder(later - earlier, 360.0)) <= ANGLE_TOLERANCE
         ]
 
-    def _turns(self) -> list[Contradiction]:
+    def _check_turns(self) -> list[Contradiction]:
         turned = self.crank_turns
         if self.constraints.in_order and abs(turned[-1] - turned[0]) > 0.0:
             steps = [other - one for one, other in pairwise(turned)]
-            if min(steps) < 0.0 < max(steps) or max(turned) - min(turned) > math.tau * (1.0 + EQUAL_ANGLES):
+            if min(steps) < 0.0 < max(steps) or max(turned) - min(turned) > math.tau * (1.0 + ANGLE_TOLERANCE):
                 detail = (
                     "the crank angles do not follow one another within one turn; "
                     'reorder the points, or set "in_order": false'
@@ -433,11 +433,11 @@ class PathProblem(LinkageProblem):
                 return [Contradiction("/points", detail)]
         return []
 
-    def _equal_points(self) -> list[Contradiction]:
+    def _check_equal_points(self) -> list[Contradiction]:
         points = np.array([point.point for point in self.points])
         size = float(np.abs(np.concatenate([points.real, points.imag])).max())
-        equal = np.abs(points[:, None] - points) <= EQUAL_POINTS * size
-        if self.fitted:
+        equal = np.abs(points[:, None] - points) <= POINT_TOLERANCE * size
+        if self.is_fitted:
             different = sum(not equal[k, :k].any() for k in range(len(points)))
             if different < 3:
                 return [Contradiction("/points", f"only {different} of them differ; at least three must differ")]
@@ -453,10 +453,10 @@ class PathProblem(LinkageProblem):
             if equal[k, j]
         ]
 
-    def _method(self) -> list[Contradiction]:
-        if self.placement_free and not (self.matched and self.mechanism == "fourbar"):
+    def _check_method(self) -> list[Contradiction]:
+        if self.placement_free and not (self.is_matched and self.mechanism == "fourbar"):
             return [Contradiction("/placement_free", "applies to curve_match by fourbars only; leave it out")]
-        if self.matched:
+        if self.is_matched:
             if self.prescribed:
                 return [Contradiction("/timing", "a curve matched as a whole has no timing; leave it free")]
             return []
@@ -466,7 +466,7 @@ class PathProblem(LinkageProblem):
             return [Contradiction("/method", detail)]
         return []
 
-    def _tolerances(self) -> list[Contradiction]:
+    def _check_tolerances(self) -> list[Contradiction]:
         given = [k for k, point in enumerate(self.points) if point.tolerance is not None]
         if not given:
             return []
@@ -477,7 +477,7 @@ class PathProblem(LinkageProblem):
         detail = "missing, though other points have one; give it for all points, or for none"
         return [Contradiction(f"/points/{k}/tolerance", detail) for k in open_ones[:1]]
 
-    def _pivots(self) -> list[Contradiction]:
+    def _check_pivots(self) -> list[Contradiction]:
         faults = []
         limits = self.constraints
         for side, pivot, regions in (
@@ -494,7 +494,7 @@ class PathProblem(LinkageProblem):
                     faults.append(Contradiction(f"/fixed_pivots/{side}", "outside the region that it must lie in"))
         return faults
 
-    def _mechanism(self) -> list[Contradiction]:
+    def _check_mechanism(self) -> list[Contradiction]:
         """Return requests that only fourbars support, and invalid gear ratios."""
         faults = []
         if self.gear_ratio is not None:
@@ -505,7 +505,7 @@ class PathProblem(LinkageProblem):
                 faults.append(
                     Contradiction("/gear_ratio", "with an output that does not turn it is a fourbar; request that")
                 )
-            elif float(np.abs(turns - np.round(turns)).min()) > EQUAL_ANGLES:
+            elif float(np.abs(turns - np.round(turns)).min()) > ANGLE_TOLERANCE:
                 detail = f"the gears do not repeat within {MAX_GEAR_TURNS} turns; give a ratio of small whole numbers"
                 faults.append(Contradiction("/gear_ratio", detail))
         if self.mechanism == "fourbar":
@@ -514,7 +514,9 @@ class PathProblem(LinkageProblem):
             faults.append(
                 Contradiction("/timing", f"only fourbars support prescribed timing; free it for a {self.mechanism}")
             )
-        faults += self.constraints.of_another_class((), f"classifies fourbars; a {self.mechanism} has no class")
+        faults += self.constraints.find_class_contradictions(
+            (), f"classifies fourbars; a {self.mechanism} has no class"
+        )
         if self.constraints.coupler_point is not None:
             detail = f"limits the place of P on a fourbar's coupler; leave it out for a {self.mechanism}"
             faults.append(Contradiction("/constraints/coupler_point", detail))
@@ -522,7 +524,7 @@ class PathProblem(LinkageProblem):
             faults.append(Contradiction("/fixed_pivots/output", "a slider-crank has one fixed pivot, the crank's"))
         return faults
 
-    def _closed(self) -> list[Contradiction]:
+    def _check_closed(self) -> list[Contradiction]:
         if self.closed and self.constraints.grashof in ("double_rocker", "non_grashof"):
             detail = f"the input of a {self.constraints.grashof} linkage does not turn through; a closed curve needs it"
             return [Contradiction("/constraints/grashof", detail)]
@@ -530,13 +532,13 @@ class PathProblem(LinkageProblem):
 
 
 @lru_cache(maxsize=64)
-def _greatest_distance(points: tuple[complex, ...]) -> float:
+def _compute_max_distance(points: tuple[complex, ...]) -> float:
     """Return the maximum distance between two points; cached, because every measured linkage needs it."""
     places = np.array(points)
     return float(np.abs(places[:, None] - places).max())
 
 
-def _turn(degrees: float) -> float:
+def _normalize_turn(degrees: float) -> float:
     """Return an angle in [0, 360) degrees, with 0 for one that is 0 up to rounding."""
     turned = math.fmod(degrees, 360.0) % 360.0
-    return 0.0 if 360.0 - turned <= EQUAL_ANGLES else turned
+    return 0.0 if 360.0 - turned <= ANGLE_TOLERANCE else turned

@@ -5,7 +5,7 @@ from __future__ import annotations
 from synthesis.kinds.planetary_train.design import PlanetaryResult
 from synthesis.kinds.planetary_train.gallery import GALLERY
 from synthesis.kinds.planetary_train.problem import PlanetaryProblem
-from synthesis.model.kind import Kind, Progress, always
+from synthesis.model.kind import Kind, Progress, RatioCheck, return_true
 
 __all__ = ["KIND"]
 
@@ -16,4 +16,12 @@ def _solve(problem: PlanetaryProblem, progress: Progress) -> PlanetaryResult:
     return solve_planetary_train(problem, progress)
 
 
-KIND = Kind("planetary_train", PlanetaryProblem, PlanetaryResult, _solve, brief=always, gallery=GALLERY)
+KIND = Kind(
+    "planetary_train",
+    PlanetaryProblem,
+    PlanetaryResult,
+    _solve,
+    brief=return_true,
+    ratio_check=RatioCheck("ratio", "error"),
+    gallery=GALLERY,
+)

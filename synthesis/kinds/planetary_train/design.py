@@ -6,10 +6,10 @@ from typing import Literal
 
 from pydantic import Field
 
-from synthesis.model.answer import Answer, Result, Search, Verification, optional
+from synthesis.model.answer import Answer, Result, Search, Verification, optional_field
 from synthesis.model.dimension import Angle, Length
-from synthesis.model.gear_answer import Ratio
-from synthesis.model.gear_strength import PairStrength
+from synthesis.model.gears.answer import Ratio
+from synthesis.model.gears.strength import PairStrength
 
 
 class PlanetPlaces(Answer):
@@ -37,7 +37,7 @@ class PlanetaryMechanism(Answer):
     output: str
     fixed: str
     ratio: Ratio
-    face_widths: list[Length | None] | None = optional(
+    face_widths: list[Length | None] | None = optional_field(
         "Smallest face width of each plane that carries the given power; null for an unloaded plane."
     )
 
@@ -56,7 +56,7 @@ class MeshContact(Answer):
         description="Depth of tip interference with the mating teeth, found by trying all positions of the tools that "
         "cut the mate; 0 for tips that run free."
     )
-    strength: PairStrength | None = optional(
+    strength: PairStrength | None = optional_field(
         "Stresses of one copy under the given power; omitted for an unloaded mesh."
     )
 
@@ -101,15 +101,15 @@ class ParetoPlanetaryTrain(Answer):
     ratio: Ratio
     error: float = Field(description="Relative error of the ratio, with its sign.")
     size: Length
-    module: Length | None = optional("With `strength`: module with which the train carries the power.")
-    face_widths: list[Length | None] | None = optional("With `strength`: face width of each plane.")
+    module: Length | None = optional_field("With `strength`: module with which the train carries the power.")
+    face_widths: list[Length | None] | None = optional_field("With `strength`: face width of each plane.")
 
 
 class PlanetarySearch(Search):
     """The search of a finite set of trains; with `strength`, `complete` is false if better trains may be unjudged."""
 
-    judged: int | None = optional("With `strength`: number of trains judged, in the order of the ranking.")
-    every_judged: bool | None = optional(
+    judged: int | None = optional_field("With `strength`: number of trains judged, in the order of the ranking.")
+    every_judged: bool | None = optional_field(
         "True if all trains within the tolerance were judged, so that `ties` and `pareto` refer to all trains that "
         "carry "
         "the power; otherwise they refer to the judged ones only."

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from synthesis.model.kind import Named
+from synthesis.model.kind import NamedExample
 
 GALLERY = (
-    Named("Planetary hub", "Change a speed", "Sun, planets and ring for 5.5 : 1."),
-    Named("Planetary hub for 5 kW", "Change a speed", "The same ratio, strong enough within a face of 12 mm."),
+    NamedExample("Planetary hub", "Change a speed", "Sun, planets and ring for 5.5 : 1."),
+    NamedExample("Planetary hub for 5 kW", "Change a speed", "The same ratio, strong enough within a face of 12 mm."),
 )

@@ -20,21 +20,19 @@ from functools import cache, cached_property
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
+from kinematics.arrays import Integers, Real
 from kinematics.gear.arrangements import ARRANGEMENTS, Arrangement
 from synthesis.kinds.planetary_train.ratio_form import (
     Polynomial,
     RatioForm,
-    arrangement_form,
-    evaluated,
-    mesh_row,
-    ratio_form,
-    set_rows,
+    build_mesh_row,
+    build_set_rows,
+    derive_arrangement_form,
+    derive_ratio_form,
+    evaluate_polynomial,
 )
-from synthesis.kinds.planetary_train.tooth_numbers import Whole
 
-Real = NDArray[np.float64]
 Roles = tuple[str, str, str]
 """Input, output and fixed member."""
 
@@ -55,7 +53,7 @@ class Candidate(NamedTuple):
 
 
 @dataclass
-class Nearest:
+class NearestTrains:
     """The best trains of one arrangement and choice of members.
 
     ``best`` in order of error, size and number of teeth; ``by_size`` the train of minimum error of each size; ``ties``
@@ -74,8 +72,8 @@ class SetTable:
     ``value`` is the set's train value, for sets that are coupled to another.
     """
 
-    teeth: dict[str, Whole]
-    size: Whole
+    teeth: dict[str, Integers]
+    size: Integers
     value: RatioForm | None = None
 
     @cached_property
@@ -84,7 +82,7 @@ class SetTable:
         return {gear: array.astype(np.float64) for gear, array in self.teeth.items()}
 
     @cached_property
-    def total(self) -> Whole:
+    def total(self) -> Integers:
         """Sum of all teeth of one copy."""
         return np.asarray(np.sum(np.stack(list(self.teeth.values())), axis=0), np.int64)
 
@@ -95,38 +93,42 @@ class SetTable:
         return TrainValues(self, self.value)
 
     @cached_property
-    def by_size(self) -> tuple[Whole, Whole, Whole]:
+    def by_size(self) -> tuple[Integers, Integers, Integers]:
         """Order by size, the start of each size in it, and the sizes."""
         order = np.argsort(self.size, kind="stable")
         sizes, starts = np.unique(self.size[order], return_index=True)
         return order, starts, sizes
 
-    def row(self, at: int) -> tuple[tuple[str, int], ...]:
+    def read_row(self, at: int) -> tuple[tuple[str, int], ...]:
         """Return the teeth of one row."""
         return tuple((gear, int(array[at])) for gear, array in self.teeth.items())
 
 
-def nearest(
+def find_nearest(
     arrangement: Arrangement, tables: Sequence[SetTable], roles: Roles, target: Fraction, count: int
-) -> Nearest | None:
+) -> NearestTrains | None:
     """Find the ``count`` best trains, and the best of each size; None if a planet set does not affect the ratio."""
     if any(len(table.size) == 0 for table in tables):
-        return Nearest()
+        return NearestTrains()
     if len(tables) == 1:
-        form = arrangement_form(arrangement.name, *roles)
-        return _of_one_set(arrangement.name, tables[0], roles, form, target, count)
-    coupling = Coupling.of(arrangement, roles)
-    return None if coupling is None else _TwoSets(arrangement.name, tables, roles, coupling, target).nearest(count)
+        form = derive_arrangement_form(arrangement.name, *roles)
+        return _search_one_set(arrangement.name, tables[0], roles, form, target, count)
+    coupling = Coupling.from_arrangement(arrangement, roles)
+    return (
+        None
+        if coupling is None
+        else _TwoSetSearch(arrangement.name, tables, roles, coupling, target).find_nearest(count)
+    )
 
 
-def _errors(over: Real, under: Real, target: Fraction) -> Real:
+def _compute_errors(over: Real, under: Real, target: Fraction) -> Real:
     """Compute relative errors; infinite if the ratio has the other direction or does not exist."""
     with np.errstate(divide="ignore", invalid="ignore"):
         share = over / under / float(target)
     return np.where(np.isfinite(share) & (share > 0.0), np.abs(share - 1.0), np.inf)
 
 
-def _exact_errors(over: Real, under: Real, target: Fraction) -> tuple[list[Fraction], list[Fraction], Whole]:
+def _compute_exact_errors(over: Real, under: Real, target: Fraction) -> tuple[list[Fraction], list[Fraction], Integers]:
     """Return distinct ratios and their errors, and the index of each quotient among them."""
     whole = over.astype(np.int64), under.astype(np.int64)
     common = np.gcd(*whole)
@@ -137,26 +139,31 @@ def _exact_errors(over: Real, under: Real, target: Fraction) -> tuple[list[Fract
     return ratios, [abs(ratio / target - 1) for ratio in ratios], which.reshape(-1)
 
 
-def _ranks(errors: list[Fraction]) -> Whole:
+def _rank_errors(errors: list[Fraction]) -> Integers:
     order = {error: rank for rank, error in enumerate(sorted(set(errors)))}
     return np.array([order[error] for error in errors], np.int64)
 
 
-def _of_one_set(name: str, table: SetTable, roles: Roles, form: RatioForm, target: Fraction, count: int) -> Nearest:
+def _search_one_set(
+    name: str, table: SetTable, roles: Roles, form: RatioForm, target: Fraction, count: int
+) -> NearestTrains:
     """Find the nearest trains if one planet set determines the ratio, by evaluating all its tooth numbers."""
-    nearest_trains = Nearest()
+    nearest_trains = NearestTrains()
     if not form.over:
         return nearest_trains
     size = len(table.size)
-    over, under = evaluated(form.over, table.values, size), evaluated(form.under, table.values, size)
-    errors = _errors(over, under, target)
+    over, under = (
+        evaluate_polynomial(form.over, table.values, size),
+        evaluate_polynomial(form.under, table.values, size),
+    )
+    errors = _compute_errors(over, under, target)
     possible = int(np.count_nonzero(np.isfinite(errors)))
     if not possible:
         return nearest_trains
 
-    def candidates(rows: Whole, first_by: str, most: int) -> tuple[list[Candidate], int]:
-        ratios, exact, which = _exact_errors(over[rows], under[rows], target)
-        rank = _ranks(exact)[which]
+    def list_candidates(rows: Integers, first_by: str, most: int) -> tuple[list[Candidate], int]:
+        ratios, exact, which = _compute_exact_errors(over[rows], under[rows], target)
+        rank = _rank_errors(exact)[which]
         gears = [table.teeth[gear][rows] for gear in reversed(table.teeth)]
         keys = [*gears, table.total[rows]]
         keys += [table.size[rows], rank] if first_by == "error" else [rank, table.size[rows]]
@@ -172,7 +179,7 @@ def _of_one_set(name: str, table: SetTable, roles: Roles, form: RatioForm, targe
                 int(table.total[rows[k]]),
                 name,
                 roles,
-                table.row(int(rows[k])),
+                table.read_row(int(rows[k])),
                 ratios[which[k]],
             )
             for k in chosen
@@ -182,14 +189,14 @@ def _of_one_set(name: str, table: SetTable, roles: Roles, form: RatioForm, targe
     # Everything within rounding of the last place is ranked exactly, so that the cut is exact.
     most = min(count, possible)
     limit = np.partition(errors, most - 1)[most - 1]
-    nearest_trains.best, nearest_trains.ties = candidates(
+    nearest_trains.best, nearest_trains.ties = list_candidates(
         np.flatnonzero(errors <= limit + ERROR_TOLERANCE), "error", most
     )
     order, starts, sizes = table.by_size
     # Smallest error of each size; everything within rounding of it is ranked exactly.
     least = np.minimum.reduceat(errors[order], starts)
     close = errors[order] <= np.repeat(least, np.diff([*starts, size])) + ERROR_TOLERANCE
-    listed, _ = candidates(order[close & np.isfinite(errors[order])], "size", len(sizes))
+    listed, _ = list_candidates(order[close & np.isfinite(errors[order])], "size", len(sizes))
     nearest_trains.by_size = {candidate.size: candidate for candidate in listed}
     return nearest_trains
 
@@ -204,14 +211,14 @@ class TrainValue(NamedTuple):
 
 
 @cache
-def train_value(name: str, planets: tuple[str, ...]) -> TrainValue:
+def compute_train_value(name: str, planets: tuple[str, ...]) -> TrainValue:
     """Compute the train value of a planet set with two members besides its carrier."""
     arrangement = ARRANGEMENTS[name]
-    lines = set_rows(arrangement, planets)
+    lines = build_set_rows(arrangement, planets)
     carrier = arrangement.carriers[planets[0]]
     bodies = dict.fromkeys(body for line in lines for body in line)
     one, other = (body for body in bodies if body not in (*planets, carrier))
-    return TrainValue(one, other, carrier, ratio_form(lines, one, other, carrier))
+    return TrainValue(one, other, carrier, derive_ratio_form(lines, one, other, carrier))
 
 
 class TrainValues:
@@ -223,7 +230,7 @@ class TrainValues:
 
     def __init__(self, table: SetTable, form: RatioForm) -> None:
         size = len(table.size)
-        whole = [evaluated(part, table.values, size).astype(np.int64) for part in form]
+        whole = [evaluate_polynomial(part, table.values, size).astype(np.int64) for part in form]
         # A positive denominator makes equal values equal pairs.
         common = np.gcd(*whole) * np.where(whole[1] < 0, -1, 1)
         over, under = (part // common for part in whole)
@@ -234,11 +241,11 @@ class TrainValues:
         self.size = table.size[self.rows]
         self.starts = np.flatnonzero(np.concatenate(([True], np.diff(self.value) != 0.0)))
 
-    def part(self, at: Whole) -> tuple[Real, Real]:
+    def read_values(self, at: Integers) -> tuple[Real, Real]:
         """Return n and d at places of the order."""
         return self.over[at], self.under[at]
 
-    def members(self, start: int) -> Whole:
+    def list_rows(self, start: int) -> Integers:
         """Return the rows with the value that begins at a place."""
         after = np.searchsorted(self.starts, start, side="right")
         end = self.starts[after] if after < len(self.starts) else len(self.rows)
@@ -253,21 +260,21 @@ class Coupling:
     under: tuple[int, int, int, int]
 
     @classmethod
-    def of(cls, arrangement: Arrangement, roles: Roles) -> Coupling | None:
+    def from_arrangement(cls, arrangement: Arrangement, roles: Roles) -> Coupling | None:
         """Derive the coupling of an arrangement of two sets; None if the ratio does not depend on one of them."""
         rows = []
         for k, planets in enumerate(arrangement.planet_sets):
-            value = train_value(arrangement.name, planets)
+            value = compute_train_value(arrangement.name, planets)
             # ω_one/ω_other relative to the carrier is n/d: d (ω_one − ω_c) = n (ω_other − ω_c).
-            rows.append(mesh_row(value.one, value.other, value.carrier, (f"d{k}", f"n{k}"), 1))
-        form = ratio_form(rows, *roles)
+            rows.append(build_mesh_row(value.one, value.other, value.carrier, (f"d{k}", f"n{k}"), 1))
+        form = derive_ratio_form(rows, *roles)
         if not (form.over and form.under) or not any(len(term) == 2 for term in (*form.over, *form.under)):
             return None
-        coupling = cls(_bilinear(form.over), _bilinear(form.under))
-        return coupling if coupling.hangs_on_second and coupling.swapped().hangs_on_second else None
+        coupling = cls(_read_coefficients(form.over), _read_coefficients(form.under))
+        return coupling if coupling.depends_on_second and coupling.swap_sets().depends_on_second else None
 
     @property
-    def hangs_on_second(self) -> bool:
+    def depends_on_second(self) -> bool:
         """True if the ratio (a + b x₁ + (c + d x₁) x₂)/(e + f x₁ + (g + h x₁) x₂) changes with x₂.
 
         It does not if (a + b x₁)(g + h x₁) = (c + d x₁)(e + f x₁) for all x₁: then the factor with x₂ cancels.
@@ -275,28 +282,28 @@ class Coupling:
         (a, b, c, d), (e, f, g, h) = self.over, self.under
         return (a * g, a * h + b * g, b * h) != (c * e, c * f + d * e, d * f)
 
-    def quotient(self, one: tuple[Real, Real], other: tuple[Real, Real]) -> tuple[Real, Real]:
+    def compute_quotient(self, one: tuple[Real, Real], other: tuple[Real, Real]) -> tuple[Real, Real]:
         """Return numerator and denominator of the ratio for train values n/d of both sets."""
         products = (one[1] * other[1], one[0] * other[1], one[1] * other[0], one[0] * other[0])
         over, under = (sum(c * p for c, p in zip(side, products, strict=True)) for side in (self.over, self.under))
         return np.asarray(over, np.float64), np.asarray(under, np.float64)
 
-    def partner(self, one: tuple[Real, Real], target: float) -> Real:
+    def solve_partner(self, one: tuple[Real, Real], target: float) -> Real:
         """Return the x₂ that would give the target with each x₁."""
         a, b, c, d = (o - target * u for o, u in zip(self.over, self.under, strict=True))
         with np.errstate(divide="ignore", invalid="ignore"):
             return np.nan_to_num(-(a * one[1] + b * one[0]) / (c * one[1] + d * one[0]))
 
-    def swapped(self) -> Coupling:
+    def swap_sets(self) -> Coupling:
         """Return the same coupling with the sets in the other order."""
 
-        def turned(side: tuple[int, int, int, int]) -> tuple[int, int, int, int]:
+        def swap_terms(side: tuple[int, int, int, int]) -> tuple[int, int, int, int]:
             return side[0], side[2], side[1], side[3]
 
-        return Coupling(turned(self.over), turned(self.under))
+        return Coupling(swap_terms(self.over), swap_terms(self.under))
 
 
-def _bilinear(polynomial: Polynomial) -> tuple[int, int, int, int]:
+def _read_coefficients(polynomial: Polynomial) -> tuple[int, int, int, int]:
     terms = [("d0", "d1"), ("d1", "n0"), ("d0", "n1"), ("n0", "n1")]
     if not polynomial.keys() <= set(terms):
         raise ValueError(f"expected one train value from each set in every term, got {sorted(polynomial)}")
@@ -304,7 +311,7 @@ def _bilinear(polynomial: Polynomial) -> tuple[int, int, int, int]:
     return first, second, third, fourth
 
 
-class _TwoSets:
+class _TwoSetSearch:
     """The search over pairs of rows of two coupled sets."""
 
     def __init__(
@@ -314,68 +321,70 @@ class _TwoSets:
         self._coupling, self._target = coupling, target
         self._sides = [table.train_values for table in tables]
 
-    def nearest(self, count: int) -> Nearest:
+    def find_nearest(self, count: int) -> NearestTrains:
         """Find the best trains and the best of each size."""
-        nearest_trains = Nearest()
-        pairs, errors = self._near_pairs(count)
+        nearest_trains = NearestTrains()
+        pairs, errors = self._list_near_pairs(count)
         if not len(errors):
             return nearest_trains
         limit = np.partition(errors, min(count, len(errors)) - 1)[min(count, len(errors)) - 1]
         kept = pairs[:, errors <= limit + ERROR_TOLERANCE]
-        one, other = (side.part(at) for side, at in zip(self._sides, kept, strict=True))
-        ratios, exact, which = _exact_errors(*self._coupling.quotient(one, other), self._target)
+        one, other = (side.read_values(at) for side, at in zip(self._sides, kept, strict=True))
+        ratios, exact, which = _compute_exact_errors(*self._coupling.compute_quotient(one, other), self._target)
         ranked = sorted(
-            (exact[w], *self._least(a, b), a, b, w)
+            (exact[w], *self._find_smallest(a, b), a, b, w)
             for a, b, w in zip(kept[0].tolist(), kept[1].tolist(), which.tolist(), strict=True)
         )
         # Each pair of values gives at least one train, and none better than the pair's own minimum size and teeth.
         nearest_trains.best = sorted(
             candidate
             for error, _, _, a, b, w in ranked[:count]
-            for candidate in self._members(a, b, error, ratios[w], count)
+            for candidate in self._list_members(a, b, error, ratios[w], count)
         )[:count]
         nearest_trains.ties = sum(
-            len(self._sides[0].members(a)) * len(self._sides[1].members(b))
+            len(self._sides[0].list_rows(a)) * len(self._sides[1].list_rows(b))
             for error, _, _, a, b, _ in ranked
             if error == ranked[0][0]
         )
         for size in np.unique(np.concatenate([table.size for table in self._tables])).tolist():
-            best = [c for swap in (False, True) if (c := self._best_of_size(size, swap)) is not None]
+            best = [c for swap in (False, True) if (c := self._find_best_of_size(size, swap)) is not None]
             if best:
                 nearest_trains.by_size[size] = min(best)
         return nearest_trains
 
-    def _near_pairs(self, count: int) -> tuple[Whole, Real]:
+    def _list_near_pairs(self, count: int) -> tuple[Integers, Real]:
         """Return pairs of distinct train values that include the ``count`` best, and their errors."""
         one, other = self._sides
         firsts, values = one.starts, other.value[other.starts]
-        at = np.searchsorted(values, self._coupling.partner(one.part(firsts), float(self._target)))
+        at = np.searchsorted(values, self._coupling.solve_partner(one.read_values(firsts), float(self._target)))
         # One more on each side, because rounding may put a neighbour on the wrong side.
         width = count + 1
         steps = range(-width, width) if 2 * width <= len(values) else range(len(values))
         # The projective line is closed: neighbours beyond one end continue at the other.
         chosen = np.concatenate([(at + step) % len(values) for step in steps])
         pairs = np.stack([np.tile(firsts, len(steps)), other.starts[chosen]])
-        errors = _errors(*self._coupling.quotient(one.part(pairs[0]), other.part(pairs[1])), self._target)
+        errors = _compute_errors(
+            *self._coupling.compute_quotient(one.read_values(pairs[0]), other.read_values(pairs[1])), self._target
+        )
         kept = np.isfinite(errors)
         return pairs[:, kept], errors[kept]
 
-    def _least(self, a: int, b: int) -> tuple[int, int]:
+    def _find_smallest(self, a: int, b: int) -> tuple[int, int]:
         """Return size and teeth of the smallest train with a pair of train values."""
-        rows = [side.members(at) for side, at in zip(self._sides, (a, b), strict=True)]
+        rows = [side.list_rows(at) for side, at in zip(self._sides, (a, b), strict=True)]
         size = max(int(table.size[row[0]]) for table, row in zip(self._tables, rows, strict=True))
         total = 0
         for table, row in zip(self._tables, rows, strict=True):
             total += int(table.total[row[table.size[row] <= size]].min())
         return size, total
 
-    def _members(self, a: int, b: int, error: Fraction, ratio: Fraction, count: int) -> list[Candidate]:
+    def _list_members(self, a: int, b: int, error: Fraction, ratio: Fraction, count: int) -> list[Candidate]:
         """List the smallest trains with a pair of train values."""
-        rows = [side.members(at).tolist() for side, at in zip(self._sides, (a, b), strict=True)]
-        candidates = [self._candidate(one, other, error, ratio) for one, other in itertools.product(*rows)]
+        rows = [side.list_rows(at).tolist() for side, at in zip(self._sides, (a, b), strict=True)]
+        candidates = [self._build_candidate(one, other, error, ratio) for one, other in itertools.product(*rows)]
         return sorted(candidates)[:count]
 
-    def _candidate(self, one: int, other: int, error: Fraction, ratio: Fraction) -> Candidate:
+    def _build_candidate(self, one: int, other: int, error: Fraction, ratio: Fraction) -> Candidate:
         first, second = self._tables
         return Candidate(
             error,
@@ -383,32 +392,32 @@ class _TwoSets:
             int(first.total[one] + second.total[other]),
             self._name,
             self._roles,
-            (*first.row(one), *second.row(other)),
+            (*first.read_row(one), *second.read_row(other)),
             ratio,
         )
 
-    def _best_of_size(self, size: int, swap: bool) -> Candidate | None:
+    def _find_best_of_size(self, size: int, swap: bool) -> Candidate | None:
         """Find the train of minimum error with this size in one set and at most this size in the other."""
         first, second = reversed(self._sides) if swap else self._sides
-        coupling = self._coupling.swapped() if swap else self._coupling
+        coupling = self._coupling.swap_sets() if swap else self._coupling
         large, small = np.flatnonzero(first.size == size), np.flatnonzero(second.size <= size)
         if not len(large) or not len(small):
             return None
         values, count = second.value[small], len(small)
-        at = np.searchsorted(values, coupling.partner(first.part(large), float(self._target)))
+        at = np.searchsorted(values, coupling.solve_partner(first.read_values(large), float(self._target)))
         # Both neighbours, and one more on each side for rounding; of equal values the first has the fewest teeth.
         near = [np.searchsorted(values, values[(at + step) % count]) for step in (-2, -1, 0, 1)]
         pairs = np.stack([np.tile(large, len(near)), small[np.concatenate(near)]])
-        over, under = coupling.quotient(first.part(pairs[0]), second.part(pairs[1]))
-        errors = _errors(over, under, self._target)
+        over, under = coupling.compute_quotient(first.read_values(pairs[0]), second.read_values(pairs[1]))
+        errors = _compute_errors(over, under, self._target)
         if not np.isfinite(errors).any():
             return None
         kept = np.flatnonzero(errors <= errors.min() + ERROR_TOLERANCE)
-        ratios, exact, which = _exact_errors(over[kept], under[kept], self._target)
+        ratios, exact, which = _compute_exact_errors(over[kept], under[kept], self._target)
         best: Candidate | None = None
         for k, w in zip(kept.tolist(), which.tolist(), strict=True):
             rows = [int(first.rows[pairs[0, k]]), int(second.rows[pairs[1, k]])]
             one, other = rows[::-1] if swap else rows
-            candidate = self._candidate(one, other, exact[w], ratios[w])
+            candidate = self._build_candidate(one, other, exact[w], ratios[w])
             best = candidate if best is None or candidate < best else best
         return best

@@ -9,19 +9,19 @@ from pydantic import ConfigDict, Field
 
 from kinematics.gear.arrangements import ARRANGEMENTS, Arrangement
 from synthesis.model.dimension import LENGTH
-from synthesis.model.gear_statement import CommonPressureAngle, ExactRatio, Module, RangedTeeth, ToothRange
-from synthesis.model.planet_strength import PAIRS, PlanetPower
-from synthesis.model.ratio_target import parse_target
-from synthesis.model.statement import Contradiction, Count, PositiveLength, StatedProblem, Statement
+from synthesis.model.gears.planet_strength import PAIRS_NOTE, PlanetPower
+from synthesis.model.gears.ratio_target import parse_target
+from synthesis.model.gears.request import CommonPressureAngle, ExactRatio, Module, RangedTeeth, ToothRange
+from synthesis.model.problem import Contradiction, Count, PositiveLength, ProblemBase, Statement
 
-MOST_COMBINATIONS = 2 * 10**8
+MAX_COMBINATIONS = 2 * 10**8
 """Maximum number of combinations of independent tooth numbers in one planet set: a search of minutes."""
 
-IRRATIONAL = 512
+ENCLOSURE_BITS = 512
 """Bits of precision of an irrational ratio. Two ratios of planetary trains differ by more than 2^-100, so that this
 ranks them like the number itself."""
 
-TOUCH = 1e-9
+CLEARANCE_TOLERANCE = 1e-9
 """Clearance in modules that is attributed to rounding: less is contact, and a shortfall by less passes."""
 
 
@@ -43,7 +43,7 @@ class PlanetaryTeeth(Statement):
         return self.min, self.ring_max if internal else self.max
 
 
-class PlanetaryProblem(StatedProblem):
+class PlanetaryProblem(ProblemBase):
     """Planetary train: the best tooth numbers of an epicyclic arrangement for a speed ratio, proven to be the best.
 
     Every design is coaxial, can be assembled with its planets in their places, and has clearance between all gears and
@@ -154,7 +154,7 @@ class PlanetaryProblem(StatedProblem):
         description="Power that every mesh must carry, by a first estimate. Each train gets the smallest of its "
         "modules "
         "for which a face of at most `max_face_width` modules suffices, and each plane the smallest such face; trains "
-        f"that fail are rejected. Losses are not included. Spur gears only. {PAIRS}",
+        f"that fail are rejected. Losses are not included. Spur gears only. {PAIRS_NOTE}",
     )
     mesh_efficiency: Annotated[float, Field(strict=True, gt=0.5, le=1.0)] = Field(
         default=0.99, description="Efficiency of one mesh on fixed axes, for the efficiency of the train."
@@ -167,10 +167,10 @@ class PlanetaryProblem(StatedProblem):
 
     @property
     def target(self) -> Fraction:
-        """The requested ratio; an irrational one to :data:`IRRATIONAL` bits."""
+        """The requested ratio; an irrational one to :data:`ENCLOSURE_BITS` bits."""
         # An irrational target is replaced by the middle of its enclosure.
         sign, target = parse_target(self.ratio)
-        low, high = target.enclosure(IRRATIONAL)
+        low, high = target.enclose(ENCLOSURE_BITS)
         return sign * (target.rational or (low + high) / 2)
 
     @property
@@ -179,22 +179,22 @@ class PlanetaryProblem(StatedProblem):
         if self.arrangement != "auto":
             return [ARRANGEMENTS[self.arrangement]]
         stated = {member for member in (self.input, self.output, self.fixed) if member is not None}
-        return [row for row in self._every_arrangement() if stated <= set(row.members)]
+        return [row for row in self._list_arrangements() if stated <= set(row.members)]
 
-    def _every_arrangement(self) -> list[Arrangement]:
+    def _list_arrangements(self) -> list[Arrangement]:
         """List the arrangements of `auto`: with a power only those of spur gears."""
         return [row for row in ARRANGEMENTS.values() if self.strength is None or not row.bevel]
 
     @property
-    def listed_modules(self) -> list[float]:
+    def module_choices(self) -> list[float]:
         """The permitted modules, the smallest first."""
         return [self.module] if self.modules is None else sorted(self.modules)
 
-    def least_room(self, module: float) -> float:
+    def compute_min_clearance(self, module: float) -> float:
         """Return the minimum clearance between gears of a module that do not mesh, in modules."""
-        return max(self.min_clearance / module - TOUCH, TOUCH)
+        return max(self.min_clearance / module - CLEARANCE_TOLERANCE, CLEARANCE_TOLERANCE)
 
-    def roles(self, arrangement: Arrangement) -> list[tuple[str, str, str]]:
+    def list_roles(self, arrangement: Arrangement) -> list[tuple[str, str, str]]:
         """List every choice of input, output and fixed member that the problem permits."""
         stated = self.input, self.output, self.fixed
         members = arrangement.members
@@ -207,11 +207,11 @@ class PlanetaryProblem(StatedProblem):
             and all(want in (None, got) for want, got in zip(stated, (one, two, three), strict=True))
         ]
 
-    def contradictions(self) -> list[Contradiction]:
+    def find_contradictions(self) -> list[Contradiction]:
         """Return unknown members and gears, members with two roles, and reversed limits."""
-        return [*self._members(), *self._limits(), *self._extent(), *self._power()]
+        return [*self._check_members(), *self._check_limits(), *self._check_extent(), *self._check_power()]
 
-    def _power(self) -> list[Contradiction]:
+    def _check_power(self) -> list[Contradiction]:
         """Check the power, and that it decides between several modules."""
         contradictions = []
         if self.modules is not None:
@@ -224,7 +224,7 @@ class PlanetaryProblem(StatedProblem):
                 contradictions.append(Contradiction("/modules", "lists a module twice; each is a choice"))
         if self.strength is None:
             return contradictions
-        wrong = [*self.strength.faults(), *self.strength.faults_of_planets(self.planets)]
+        wrong = [*self.strength.find_errors(), *self.strength.find_planet_errors(self.planets)]
         contradictions += [Contradiction(f"/strength{path}", detail) for path, detail in wrong]
         if self.arrangement == "bevel_differential":
             contradictions.append(
@@ -232,7 +232,7 @@ class PlanetaryProblem(StatedProblem):
             )
         return contradictions
 
-    def _members(self) -> list[Contradiction]:
+    def _check_members(self) -> list[Contradiction]:
         contradictions = []
         parts = {"input": self.input, "output": self.output, "fixed": self.fixed}
         rows = list(ARRANGEMENTS.values()) if self.arrangement == "auto" else [ARRANGEMENTS[self.arrangement]]
@@ -246,7 +246,7 @@ class PlanetaryProblem(StatedProblem):
             contradictions.append(Contradiction("/input", "no arrangement has all the given members"))
         return contradictions
 
-    def _limits(self) -> list[Contradiction]:
+    def _check_limits(self) -> list[Contradiction]:
         contradictions = []
         teeth = self.teeth
         if teeth.min > teeth.max:
@@ -262,18 +262,18 @@ class PlanetaryProblem(StatedProblem):
             contradictions.append(Contradiction("/tolerance", "ranking by size needs a tolerance for the ratio"))
         return contradictions
 
-    def _extent(self) -> list[Contradiction]:
+    def _check_extent(self) -> list[Contradiction]:
         """Refuse a search that would take hours."""
         for row in self.arrangements:
             for members in row.planet_sets:
                 count = 1
-                for gear in row.independent_gears(members):
+                for gear in row.list_independent_gears(members):
                     low, high = self.teeth.limits(gear, row.places[gear].internal)
                     count *= max(0, high - low + 1)
-                if count > MOST_COMBINATIONS:
+                if count > MAX_COMBINATIONS:
                     detail = (
                         f"{row.name} has {count:.2g} combinations of teeth, more than the limit of "
-                        f"{MOST_COMBINATIONS:.0e}"
+                        f"{MAX_COMBINATIONS:.0e}"
                     )
                     return [Contradiction("/teeth", f"{detail}; narrow the limits, or give limits for single gears")]
         return []

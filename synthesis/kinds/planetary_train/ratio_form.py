@@ -31,14 +31,14 @@ class RatioForm(NamedTuple):
     under: Polynomial
 
 
-def mesh_row(first: str, second: str, carrier: str, names: tuple[str, str], sense: int) -> Row:
+def build_mesh_row(first: str, second: str, carrier: str, names: tuple[str, str], sense: int) -> Row:
     """Return the row N1 (ω1 − ωc) − σ N2 (ω2 − ωc) = 0 for tooth numbers with these names."""
     one: Polynomial = {(names[0],): 1}
     other: Polynomial = {(names[1],): -sense}
-    return {first: one, second: other, carrier: _sum([(-1, one), (-1, other)])}
+    return {first: one, second: other, carrier: _add_polynomials([(-1, one), (-1, other)])}
 
 
-def ratio_form(rows: Sequence[Row], driver: str, driven: str, held: str) -> RatioForm:
+def derive_ratio_form(rows: Sequence[Row], driver: str, driven: str, held: str) -> RatioForm:
     """Derive the speed of ``driver`` over that of ``driven``, ``held`` at rest; no terms if the train is locked."""
     bodies = dict.fromkeys(body for row in rows for body in row)
     unknown = [body for body in bodies if body not in (driver, held)]
@@ -49,17 +49,19 @@ def ratio_form(rows: Sequence[Row], driver: str, driven: str, held: str) -> Rati
     at = unknown.index(driven)
     right = [{term: -c for term, c in row.get(driver, {}).items()} for row in rows]
     swapped = [[*line[:at], value, *line[at + 1 :]] for line, value in zip(matrix, right, strict=True)]
-    return _reduced(_determinant(matrix), _determinant(swapped))
+    return _reduce_form(_expand_determinant(matrix), _expand_determinant(swapped))
 
 
 @cache
-def arrangement_form(name: str, driver: str, driven: str, held: str) -> RatioForm:
+def derive_arrangement_form(name: str, driver: str, driven: str, held: str) -> RatioForm:
     """Derive the ratio of a known arrangement between three of its members."""
     row = ARRANGEMENTS[name]
-    return ratio_form([line for planets in row.planet_sets for line in set_rows(row, planets)], driver, driven, held)
+    return derive_ratio_form(
+        [line for planets in row.planet_sets for line in build_set_rows(row, planets)], driver, driven, held
+    )
 
 
-def set_rows(arrangement: Arrangement, planets: tuple[str, ...]) -> list[Row]:
+def build_set_rows(arrangement: Arrangement, planets: tuple[str, ...]) -> list[Row]:
     """Build the speed equations of the meshes of one planet set."""
     rows = []
     for one, other in arrangement.meshes:
@@ -67,11 +69,13 @@ def set_rows(arrangement: Arrangement, planets: tuple[str, ...]) -> list[Row]:
         on = [body for body in bodies if body in planets]
         if on:
             carrier = arrangement.carriers[on[0]]
-            rows.append(mesh_row(*bodies, carrier, (one, other), arrangement.sense(one, other)))
+            rows.append(build_mesh_row(*bodies, carrier, (one, other), arrangement.sense(one, other)))
     return rows
 
 
-def evaluated(polynomial: Polynomial, values: Mapping[str, NDArray[np.float64]], size: int) -> NDArray[np.float64]:
+def evaluate_polynomial(
+    polynomial: Polynomial, values: Mapping[str, NDArray[np.float64]], size: int
+) -> NDArray[np.float64]:
     """Evaluate a polynomial at arrays of tooth numbers; integers, exact below 2^53."""
     total = np.zeros(size)
     for term, coefficient in polynomial.items():
@@ -82,7 +86,7 @@ def evaluated(polynomial: Polynomial, values: Mapping[str, NDArray[np.float64]],
     return total
 
 
-def exact(polynomial: Polynomial, values: Mapping[str, int]) -> int:
+def evaluate_exactly(polynomial: Polynomial, values: Mapping[str, int]) -> int:
     """Evaluate a polynomial at one set of tooth numbers."""
     total = 0
     for term, coefficient in polynomial.items():
@@ -93,26 +97,26 @@ def exact(polynomial: Polynomial, values: Mapping[str, int]) -> int:
     return total
 
 
-def _determinant(matrix: Sequence[Sequence[Polynomial]]) -> Polynomial:
+def _expand_determinant(matrix: Sequence[Sequence[Polynomial]]) -> Polynomial:
     """Expand along the first row; the matrices are small and sparse."""
     if not matrix:
         return {(): 1}
     parts = []
     for k, entry in enumerate(matrix[0]):
         if entry:
-            minor = _determinant([[*line[:k], *line[k + 1 :]] for line in matrix[1:]])
-            parts.append(((-1) ** k, _product(entry, minor)))
-    return _sum(parts)
+            minor = _expand_determinant([[*line[:k], *line[k + 1 :]] for line in matrix[1:]])
+            parts.append(((-1) ** k, _multiply_polynomials(entry, minor)))
+    return _add_polynomials(parts)
 
 
-def _product(one: Polynomial, other: Polynomial) -> Polynomial:
+def _multiply_polynomials(one: Polynomial, other: Polynomial) -> Polynomial:
     parts = []
     for a, x in one.items():
         parts.append((x, {tuple(sorted(a + b)): y for b, y in other.items()}))
-    return _sum(parts)
+    return _add_polynomials(parts)
 
 
-def _sum(parts: Iterable[tuple[int, Polynomial]]) -> Polynomial:
+def _add_polynomials(parts: Iterable[tuple[int, Polynomial]]) -> Polynomial:
     total: Polynomial = {}
     for factor, polynomial in parts:
         for term, coefficient in polynomial.items():
@@ -120,7 +124,7 @@ def _sum(parts: Iterable[tuple[int, Polynomial]]) -> Polynomial:
     return {term: coefficient for term, coefficient in total.items() if coefficient}
 
 
-def _reduced(over: Polynomial, under: Polynomial) -> RatioForm:
+def _reduce_form(over: Polynomial, under: Polynomial) -> RatioForm:
     """Divide both by the integer and the monomial that divide every term of both."""
     terms = [*over, *under]
     if not over or not under:
@@ -137,7 +141,7 @@ def _reduced(over: Polynomial, under: Polynomial) -> RatioForm:
     # Common integer factor of all coefficients.
     number = gcd(*over.values(), *under.values())
 
-    def divided(polynomial: Polynomial) -> Polynomial:
+    def divide_terms(polynomial: Polynomial) -> Polynomial:
         quotient = {}
         for term, coefficient in polynomial.items():
             rest = list(term)
@@ -146,4 +150,4 @@ def _reduced(over: Polynomial, under: Polynomial) -> RatioForm:
             quotient[tuple(rest)] = coefficient // number
         return quotient
 
-    return RatioForm(divided(over), divided(under))
+    return RatioForm(divide_terms(over), divide_terms(under))

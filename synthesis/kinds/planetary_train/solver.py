@@ -11,7 +11,7 @@ from collections import Counter
 from fractions import Fraction
 from functools import partial
 
-from synthesis.kinds.planetary_train.carrying import Borne, Judged, Listing, judged
+from synthesis.kinds.planetary_train.build import build_demands, build_mechanism
 from synthesis.kinds.planetary_train.design import (
     ParetoPlanetaryTrain,
     PlanetaryDesign,
@@ -19,18 +19,29 @@ from synthesis.kinds.planetary_train.design import (
     PlanetaryResult,
     PlanetarySearch,
 )
-from synthesis.kinds.planetary_train.making import demands_of, mechanism_of
-from synthesis.kinds.planetary_train.nearest import Candidate, Nearest, SetTable, nearest, train_value
+from synthesis.kinds.planetary_train.nearest import (
+    Candidate,
+    NearestTrains,
+    SetTable,
+    compute_train_value,
+    find_nearest,
+)
+from synthesis.kinds.planetary_train.power_capacity import (
+    CarryingTrain,
+    StrengthResult,
+    TrainListing,
+    find_carrying_trains,
+)
 from synthesis.kinds.planetary_train.problem import PlanetaryProblem
 from synthesis.kinds.planetary_train.tooth_numbers import ToothNumbers
 from synthesis.kinds.planetary_train.verification import measure, verify
-from synthesis.model.counting import counted, grouped
-from synthesis.model.gear_answer import Ratio
-from synthesis.model.gear_strength import carrying_words, too_weak_words
+from synthesis.model.counting import format_count, format_integer
+from synthesis.model.gears.answer import Ratio
+from synthesis.model.gears.ratio_target import format_ratio
+from synthesis.model.gears.strength import describe_power_rejections, describe_too_weak
 from synthesis.model.kind import Progress
-from synthesis.model.ratio_target import as_stated
-from synthesis.outcome.exhaustive import first_within, pareto
-from synthesis.outcome.sifting import Sifting
+from synthesis.results.candidate_log import CandidateLog
+from synthesis.results.exhaustive import select_pareto, select_within_tolerance
 
 
 def solve_planetary_train(problem: PlanetaryProblem, progress: Progress) -> PlanetaryResult:
@@ -48,29 +59,32 @@ def solve_planetary_train(problem: PlanetaryProblem, progress: Progress) -> Plan
     PlanetaryResult
         Always complete: every combination of tooth numbers within the limits was covered.
     """
-    ranking, listing = _Ranking(problem), Listing(problem)
+    ranking, listing = _Ranking(problem), TrainListing(problem)
     rows = problem.arrangements
     for k, arrangement in enumerate(rows):
         progress(k / len(rows), f"{arrangement.name}: tooth numbers")
         numbers = [
-            ToothNumbers(arrangement, planets, demands_of(problem, arrangement)) for planets in arrangement.planet_sets
+            ToothNumbers(arrangement, planets, build_demands(problem, arrangement))
+            for planets in arrangement.planet_sets
         ]
         # Only coupled sets need train values.
         coupled = len(numbers) > 1
         tables = [
-            SetTable(each.teeth, each.size, train_value(arrangement.name, planets).form if coupled else None)
+            SetTable(each.teeth, each.size, compute_train_value(arrangement.name, planets).form if coupled else None)
             for each, planets in zip(numbers, arrangement.planet_sets, strict=True)
         ]
-        roles = problem.roles(arrangement)
+        roles = problem.list_roles(arrangement)
         for j, members in enumerate(roles):
             progress((k + j / len(roles)) / len(rows), f"{arrangement.name}: {' to '.join(members[:2])}")
-            ranking.take(numbers, nearest(arrangement, tables, members, problem.target, problem.max_designs))
+            ranking.record_nearest(
+                numbers, find_nearest(arrangement, tables, members, problem.target, problem.max_designs)
+            )
             listing.add(arrangement, tables, members)
     if problem.strength is not None:
         progress(1.0, "judging the strength of the trains")
-        return ranking.result_of(judged(problem, problem.strength, listing))
+        return ranking.build_carrying_result(find_carrying_trains(problem, problem.strength, listing))
     progress(1.0, "done")
-    return ranking.result()
+    return ranking.build_result()
 
 
 class _Ranking:
@@ -82,9 +96,9 @@ class _Ranking:
         self._by_size: dict[int, Candidate] = {}
         self._ties: Counter[Fraction] = Counter()
         self._sound = self._idle = 0
-        self._sifting = Sifting[PlanetaryDesign](problem)
+        self._sifting = CandidateLog[PlanetaryDesign](problem)
 
-    def take(self, numbers: list[ToothNumbers], nearest: Nearest | None) -> None:
+    def record_nearest(self, numbers: list[ToothNumbers], nearest: NearestTrains | None) -> None:
         """Record the best trains of one choice of members; None if a planet set does not affect its ratio."""
         if nearest is None:
             self._idle += 1
@@ -109,66 +123,72 @@ class _Ranking:
                 self._sifting.reject(reason, before * fallen * after)
             before *= each.count
 
-    def result(self) -> PlanetaryResult:
+    def build_result(self) -> PlanetaryResult:
         """Build the verified answer."""
         problem = self._problem
         by_size = [self._by_size[size] for size in sorted(self._by_size)]
         ranked = self._best if problem.rank_by == "error" else by_size
         sifting = self._sifting
-        best = first_within(ranked, problem.tolerance, problem.max_designs)
-        sifting.sift_best([_made(problem, one) for one in best], self._sound, partial(_design, problem))
-        front = pareto(by_size, lambda candidate: candidate.error)
+        best = select_within_tolerance(ranked, problem.tolerance, problem.max_designs)
+        sifting.verify_best(
+            [_build_mechanism(problem, one) for one in best], self._sound, partial(_build_design, problem)
+        )
+        front = select_pareto(by_size, lambda candidate: candidate.error)
         return PlanetaryResult(
-            designs=sifting.designs(list),
-            search=PlanetarySearch(**dict(sifting.search("exhaustive", complete=not sifting.failed))),
-            summary=self._summary(self._ties[self._best[0].error] if self._best else 0),
+            designs=sifting.select_designs(list),
+            search=PlanetarySearch(**dict(sifting.build_search("exhaustive", complete=not sifting.failed))),
+            summary=self._write_summary(self._ties[self._best[0].error] if self._best else 0),
             ties=self._ties[self._best[0].error] if self._best else 0,
             pareto=[
-                _pareto(problem, candidate, candidate.size * problem.module)
+                _build_pareto(problem, candidate, candidate.size * problem.module)
                 for candidate in front
-                if _holds(problem, _made(problem, candidate))
+                if _is_verified(problem, _build_mechanism(problem, candidate))
             ],
         )
 
-    def result_of(self, borne: Judged) -> PlanetaryResult:
+    def build_carrying_result(self, borne: StrengthResult) -> PlanetaryResult:
         """Build the verified answer for a given power: the best of the trains that carry it."""
         problem, sifting = self._problem, self._sifting
         sifting.reject("strength", borne.failed)
         made = [one.mechanism for one in borne.best]
-        sifting.sift_best(made, self._sound - borne.failed, partial(_design, problem))
-        search = sifting.search("exhaustive", complete=borne.proven and not sifting.failed)
+        sifting.verify_best(made, self._sound - borne.failed, partial(_build_design, problem))
+        search = sifting.build_search("exhaustive", complete=borne.proven and not sifting.failed)
         told = ""
         if sifting.passed:
-            told = f" {carrying_words(borne.failed)}"
+            told = f" {describe_power_rejections(borne.failed)}"
         return PlanetaryResult(
-            designs=sifting.designs(list),
+            designs=sifting.select_designs(list),
             search=PlanetarySearch(**dict(search), judged=borne.judged, every_judged=borne.every),
-            summary=self._too_weak(borne) or f"{self._summary(borne.ties)}{told}",
+            summary=self._explain_too_weak(borne) or f"{self._write_summary(borne.ties)}{told}",
             ties=borne.ties,
-            pareto=[_borne_pareto(problem, one) for one in borne.front if _holds(problem, one.mechanism)],
+            pareto=[
+                _build_carrying_pareto(problem, one) for one in borne.front if _is_verified(problem, one.mechanism)
+            ],
         )
 
-    def _too_weak(self, borne: Judged) -> str:
+    def _explain_too_weak(self, borne: StrengthResult) -> str:
         """Explain that trains are near enough but none carries the power; empty otherwise."""
         stated = self._problem.strength
         if borne.best or not borne.failed or stated is None:
             return ""
-        return too_weak_words(stated, borne.failed, borne.every, borne.strongest)
+        return describe_too_weak(stated, borne.failed, borne.every, borne.strongest)
 
-    def _summary(self, ties: int) -> str:
+    def _write_summary(self, ties: int) -> str:
         """Write the coverage of the search and the best train in one sentence."""
         problem, sifting = self._problem, self._sifting
-        covered = f"{counted(sifting.candidates, 'combination')} of tooth numbers and members searched"
+        covered = f"{format_count(sifting.candidates, 'combination')} of tooth numbers and members searched"
         if sifting.passed:
             first = sifting.passed[0]
             exact = "exactly" if first.metrics.error == 0 else f"with an error of {100.0 * first.metrics.error:.4g} %"
-            alike = f"; {grouped(ties)} trains have this error" if problem.rank_by == "error" and ties > 1 else ""
+            alike = (
+                f"; {format_integer(ties)} trains have this error" if problem.rank_by == "error" and ties > 1 else ""
+            )
             name = first.mechanism.arrangement.replace("_", " ")
-            return f"The {name} arrangement reaches {as_stated(problem.ratio)} {exact}; {covered}{alike}."
+            return f"The {name} arrangement reaches {format_ratio(problem.ratio)} {exact}; {covered}{alike}."
         if self._idle and not sifting.candidates:
             return "With these members a planet set does not affect the ratio; choose a simpler arrangement."
         if not self._sound:
-            return f"No train keeps the limits: {covered} ({sifting.listed() or 'the limits permit none'})."
+            return f"No train keeps the limits: {covered} ({sifting.format_reasons() or 'the limits permit none'})."
         if not self._best:
             direction = "the same" if problem.target > 0 else "the opposite"
             return f"With these members no train turns input and output in {direction} direction; {covered}."
@@ -181,29 +201,31 @@ class _Ranking:
         )
 
 
-def _made(problem: PlanetaryProblem, candidate: Candidate) -> PlanetaryMechanism:
-    return mechanism_of(problem, candidate, problem.module)
+def _build_mechanism(problem: PlanetaryProblem, candidate: Candidate) -> PlanetaryMechanism:
+    return build_mechanism(problem, candidate, problem.module)
 
 
-def _design(problem: PlanetaryProblem, mechanism: PlanetaryMechanism) -> PlanetaryDesign:
+def _build_design(problem: PlanetaryProblem, mechanism: PlanetaryMechanism) -> PlanetaryDesign:
     return PlanetaryDesign(
         mechanism=mechanism, verification=verify(problem, mechanism), metrics=measure(problem, mechanism)
     )
 
 
-def _holds(problem: PlanetaryProblem, mechanism: PlanetaryMechanism) -> bool:
+def _is_verified(problem: PlanetaryProblem, mechanism: PlanetaryMechanism) -> bool:
     """Return whether a train passes its checks except the tolerance: a smaller train may be less exact."""
     verification = verify(problem.model_copy(update={"tolerance": None}), mechanism)
     return verification.passed
 
 
-def _borne_pareto(problem: PlanetaryProblem, borne: Borne) -> ParetoPlanetaryTrain:
+def _build_carrying_pareto(problem: PlanetaryProblem, borne: CarryingTrain) -> ParetoPlanetaryTrain:
     """Build a train of the Pareto set in the form that carries the power."""
     made = {"module": borne.mechanism.module, "face_widths": borne.mechanism.face_widths}
-    return _pareto(problem, borne.candidate, borne.candidate.size * borne.mechanism.module).model_copy(update=made)
+    return _build_pareto(problem, borne.candidate, borne.candidate.size * borne.mechanism.module).model_copy(
+        update=made
+    )
 
 
-def _pareto(problem: PlanetaryProblem, candidate: Candidate, size: float) -> ParetoPlanetaryTrain:
+def _build_pareto(problem: PlanetaryProblem, candidate: Candidate, size: float) -> ParetoPlanetaryTrain:
     """Build a train of the Pareto set as the answer reports it."""
     driving, driven, fixed = candidate.roles
     return ParetoPlanetaryTrain(
@@ -212,7 +234,7 @@ def _pareto(problem: PlanetaryProblem, candidate: Candidate, size: float) -> Par
         output=driven,
         fixed=fixed,
         teeth=dict(candidate.teeth),
-        ratio=Ratio.of(candidate.ratio),
+        ratio=Ratio.from_fraction(candidate.ratio),
         error=float(candidate.ratio / problem.target - 1),
         size=size,
     )

@@ -15,31 +15,31 @@ from functools import lru_cache
 
 from kinematics.errors import DimensionError
 from kinematics.gear.arrangements import ARRANGEMENTS, Arrangement
-from kinematics.gear.assembly import Gap, fits_at, gaps, is_coaxial, pin_distances
-from kinematics.gear.cut_space import tip_depth
-from kinematics.gear.planetary import speed_ratio, speeds
-from kinematics.gear.power import power_flow
+from kinematics.gear.assembly import Gap, compute_pin_distances, has_fit_at, is_coaxial, measure_gaps
+from kinematics.gear.cut_space import measure_tip_depth
+from kinematics.gear.planetary import compute_speed_ratio, solve_speeds
+from kinematics.gear.power import solve_power_flow
 from kinematics.gear.teeth import Gear, Mesh
 from synthesis.kinds.planetary_train.design import MeshContact, PlanetaryMechanism, PlanetaryMetrics
 from synthesis.kinds.planetary_train.problem import PlanetaryProblem
 from synthesis.model.answer import Check, Verification
 from synthesis.model.dimension import LENGTH
-from synthesis.model.dynamics import METRES
-from synthesis.model.gear_answer import reaches_fillet, shaped_ring
-from synthesis.model.gear_strength import PairStrength
-from synthesis.model.planet_strength import MeshLoad, strengths
-from synthesis.model.ratio_target import decimal
-from synthesis.outcome.exhaustive import within_tolerance
-from synthesis.proof.checks import at_least, at_most, tolerated
+from synthesis.model.dynamics.request import METRES_PER_UNIT
+from synthesis.model.gears.answer import is_fillet_reached, shape_ring
+from synthesis.model.gears.planet_strength import MeshLoad, describe_strengths
+from synthesis.model.gears.ratio_target import parse_decimal
+from synthesis.model.gears.strength import PairStrength
+from synthesis.results.exhaustive import is_within_tolerance
+from synthesis.verification.checks import check_error, check_maximum, check_minimum
 
 SIZE_SLACK = 1e-12
 """Relative slack of the size, an integer number of half modules except for the rounding of one product."""
 
 
-TOUCHED = 1e-6
+TIP_DEPTH_TOLERANCE = 1e-6
 """Apparent tip interference, in modules, of flanks that touch: the positions of the tools are tried in steps."""
 
-ROUNDED = 1e-9
+ROUNDING_TOLERANCE = 1e-9
 """Share by which a safety or a face may miss its limit by rounding."""
 
 
@@ -47,26 +47,26 @@ def verify(problem: PlanetaryProblem, mechanism: PlanetaryMechanism) -> Verifica
     """Check every constraint on a planetary train."""
     arrangement = ARRANGEMENTS[mechanism.arrangement]
     coaxial = is_coaxial(arrangement, mechanism.teeth)
-    checks = [_ratio(problem, mechanism, arrangement), _limits(problem, mechanism, arrangement)]
+    checks = [_check_ratio(problem, mechanism, arrangement), _check_limits(problem, mechanism, arrangement)]
     checks.append(Check(name="coaxial", passed=coaxial))
     # Without coaxial gears there are no pin distances to measure.
     if coaxial:
-        checks += _strength_checks(problem, mechanism)
-        checks += [_assembly(mechanism, arrangement), _clearance(problem, mechanism, arrangement)]
-        checks += _meshes(problem, mechanism, arrangement)
+        checks += _check_strength(problem, mechanism)
+        checks += [_check_assembly(mechanism, arrangement), _check_clearance(problem, mechanism, arrangement)]
+        checks += _check_meshes(problem, mechanism, arrangement)
         if problem.max_size is not None:
-            size = size_of(mechanism) * mechanism.module
-            checks.append(at_most("size", size, problem.max_size, LENGTH, SIZE_SLACK))
-    return Verification.of(checks)
+            size = compute_size(mechanism) * mechanism.module
+            checks.append(check_maximum("size", size, problem.max_size, LENGTH, SIZE_SLACK))
+    return Verification.from_checks(checks)
 
 
-def _strengths(problem: PlanetaryProblem, mechanism: PlanetaryMechanism) -> list[PairStrength | None]:
+def _compute_strengths(problem: PlanetaryProblem, mechanism: PlanetaryMechanism) -> list[PairStrength | None]:
     """Compute the stresses of every mesh over the faces, from lossless torques and speeds in exact fractions."""
     arrangement, stated = ARRANGEMENTS[mechanism.arrangement], problem.strength
-    train = arrangement.train(mechanism.teeth)
+    train = arrangement.build_train(mechanism.teeth)
     members = mechanism.input, mechanism.output, mechanism.fixed
-    turning = {body: w or Fraction(0) for body, w in speeds(train, {members[2]: 0, members[0]: 1}).values.items()}
-    flow = power_flow(train, turning, members, {members[0]: 1})
+    turning = {body: w or Fraction(0) for body, w in solve_speeds(train, {members[2]: 0, members[0]: 1}).values.items()}
+    flow = solve_power_flow(train, turning, members, {members[0]: 1})
     if stated is None or flow is None:
         return [None] * len(train.meshes)
     torque = stated.power / stated.speed
@@ -77,44 +77,44 @@ def _strengths(problem: PlanetaryProblem, mechanism: PlanetaryMechanism) -> list
         )
         for mesh, load in zip(train.meshes, flow.meshes, strict=True)
     ]
-    gears = {name: _gear(mechanism, arrangement, name) for name in mechanism.teeth}
-    unit = 1000.0 * METRES[problem.length_unit]
-    told = strengths(arrangement, gears, loads, mechanism.planets, stated, mechanism.face_widths, unit)
+    gears = {name: _build_gear(mechanism, arrangement, name) for name in mechanism.teeth}
+    unit = 1000.0 * METRES_PER_UNIT[problem.length_unit]
+    told = describe_strengths(arrangement, gears, loads, mechanism.planets, stated, mechanism.face_widths, unit)
     return [None if one is None else PairStrength(**one) for one in told]
 
 
-def _strength_checks(problem: PlanetaryProblem, mechanism: PlanetaryMechanism) -> list[Check]:
+def _check_strength(problem: PlanetaryProblem, mechanism: PlanetaryMechanism) -> list[Check]:
     """Check the safeties of all judged gears, and the face widths."""
     stated = problem.strength
     if stated is None:
         return []
-    meshes = [mesh for mesh in _strengths(problem, mechanism) if mesh is not None]
+    meshes = [mesh for mesh in _compute_strengths(problem, mechanism) if mesh is not None]
     safeties = [
         getattr(gear, name)
         for mesh in meshes
         for gear in mesh.gears
-        for name in stated.kept
+        for name in stated.required_safeties
         if name != "bending_safety" or gear.bending_judged is None
     ]
     least = min(0.0 if safety is None else safety for safety in safeties)
     widest = max((mesh.face_width or math.inf) / mechanism.module for mesh in meshes)
     return [
-        Check(name="strength", passed=least >= 1.0 - ROUNDED, value=least, limit=1.0),
-        tolerated("relative_face_width", widest, stated.max_face_width * (1.0 + ROUNDED)),
+        Check(name="strength", passed=least >= 1.0 - ROUNDING_TOLERANCE, value=least, limit=1.0),
+        check_error("relative_face_width", widest, stated.max_face_width * (1.0 + ROUNDING_TOLERANCE)),
     ]
 
 
-def exact_ratio_of(mechanism: PlanetaryMechanism) -> Fraction | None:
+def compute_exact_ratio(mechanism: PlanetaryMechanism) -> Fraction | None:
     """Compute the ratio by the speed equations; None if the train is locked or the output does not turn."""
-    train = ARRANGEMENTS[mechanism.arrangement].train(mechanism.teeth)
-    return speed_ratio(train, mechanism.input, mechanism.output, [mechanism.fixed])
+    train = ARRANGEMENTS[mechanism.arrangement].build_train(mechanism.teeth)
+    return compute_speed_ratio(train, mechanism.input, mechanism.output, [mechanism.fixed])
 
 
-def size_of(mechanism: PlanetaryMechanism) -> float:
+def compute_size(mechanism: PlanetaryMechanism) -> float:
     """Compute the largest pitch diameter around the axis, planets included, in modules; for coaxial gears."""
     arrangement, teeth = ARRANGEMENTS[mechanism.arrangement], mechanism.teeth
     reach = [float(teeth[gear.name]) for gear in arrangement.gears if gear.internal]
-    distances = pin_distances(arrangement, teeth)
+    distances = compute_pin_distances(arrangement, teeth)
     for gear in arrangement.gears:
         if gear.body in arrangement.carriers:
             at = float(distances[gear.body][0])
@@ -125,24 +125,24 @@ def size_of(mechanism: PlanetaryMechanism) -> float:
 def measure(problem: PlanetaryProblem, mechanism: PlanetaryMechanism) -> PlanetaryMetrics:
     """Measure the properties of a coaxial train that its checks do not cover."""
     arrangement = ARRANGEMENTS[mechanism.arrangement]
-    train = arrangement.train(mechanism.teeth)
-    turning = speeds(train, {mechanism.fixed: 0, mechanism.input: 1}).values
+    train = arrangement.build_train(mechanism.teeth)
+    turning = solve_speeds(train, {mechanism.fixed: 0, mechanism.input: 1}).values
     known = {body: speed for body, speed in turning.items() if speed is not None}
-    flow = power_flow(
+    flow = solve_power_flow(
         train,
         known,
         (mechanism.input, mechanism.output, mechanism.fixed),
         {mechanism.input: 1},
-        decimal(problem.mesh_efficiency),
+        parse_decimal(problem.mesh_efficiency),
     )
     assert flow is not None
-    ratio = exact_ratio_of(mechanism)
+    ratio = compute_exact_ratio(mechanism)
     assert ratio is not None
-    rooms = _gaps(mechanism, arrangement)
-    toothed = _toothed(mechanism, arrangement)
+    rooms = _measure_gaps(mechanism, arrangement)
+    toothed = _build_meshes(mechanism, arrangement)
     return PlanetaryMetrics(
         error=float(ratio / problem.target - 1),
-        size=size_of(mechanism) * mechanism.module,
+        size=compute_size(mechanism) * mechanism.module,
         total_teeth=sum(mechanism.teeth.values()),
         speeds={body: float(speed) for body, speed in known.items()},
         efficiency=float(flow.efficiency or 0),
@@ -155,89 +155,89 @@ def measure(problem: PlanetaryProblem, mechanism: PlanetaryMechanism) -> Planeta
             MeshContact(
                 gears=pair,
                 contact_ratio=mesh.contact_ratio,
-                centre_distance=_apart(arrangement, pair, mesh),
-                fillet_interference=reaches_fillet(mesh),
-                tip_depth=_tip_depth(mesh),
+                centre_distance=_compute_centre_distance(arrangement, pair, mesh),
+                fillet_interference=is_fillet_reached(mesh),
+                tip_depth=_measure_tip_depth(mesh),
                 strength=strength,
             )
-            for (pair, mesh), strength in zip(toothed.items(), _strengths(problem, mechanism), strict=True)
+            for (pair, mesh), strength in zip(toothed.items(), _compute_strengths(problem, mechanism), strict=True)
         ],
         undercut=[
             gear.name
             for gear in arrangement.gears
-            if not gear.internal and _gear(mechanism, arrangement, gear.name).is_undercut
+            if not gear.internal and _build_gear(mechanism, arrangement, gear.name).is_undercut
         ],
     )
 
 
-def _ratio(problem: PlanetaryProblem, mechanism: PlanetaryMechanism, arrangement: Arrangement) -> Check:
+def _check_ratio(problem: PlanetaryProblem, mechanism: PlanetaryMechanism, arrangement: Arrangement) -> Check:
     """Check that the reported ratio is that of the teeth, with the requested direction, within the tolerance."""
-    ratio = exact_ratio_of(mechanism)
+    ratio = compute_exact_ratio(mechanism)
     members = (mechanism.input, mechanism.output, mechanism.fixed)
-    if ratio is None or members not in problem.roles(arrangement):
+    if ratio is None or members not in problem.list_roles(arrangement):
         return Check(name="ratio", passed=False)
     # Exact fractions, so the error is not rounded.
     error = abs(ratio / problem.target - 1)
     passed = (
-        ratio == mechanism.ratio.exact and ratio * problem.target > 0 and within_tolerance(error, problem.tolerance)
+        ratio == mechanism.ratio.exact and ratio * problem.target > 0 and is_within_tolerance(error, problem.tolerance)
     )
     return Check(name="ratio", passed=passed, value=float(error), limit=problem.tolerance)
 
 
-def _limits(problem: PlanetaryProblem, mechanism: PlanetaryMechanism, arrangement: Arrangement) -> Check:
+def _check_limits(problem: PlanetaryProblem, mechanism: PlanetaryMechanism, arrangement: Arrangement) -> Check:
     """Check the tooth numbers against their limits; planets and module must be as requested."""
     within = all(
         low <= mechanism.teeth[gear.name] <= high
         for gear in arrangement.gears
         for low, high in [problem.teeth.limits(gear.name, gear.internal)]
     )
-    as_asked = mechanism.planets == problem.planets and mechanism.module in problem.listed_modules
+    as_asked = mechanism.planets == problem.planets and mechanism.module in problem.module_choices
     return Check(name="tooth_limits", passed=within and as_asked)
 
 
-def _turns(mechanism: PlanetaryMechanism) -> dict[str, list[Fraction]]:
+def _list_turns(mechanism: PlanetaryMechanism) -> dict[str, list[Fraction]]:
     return {
         planet: [Fraction(step, places.divisions) for step in places.steps]
         for planet, places in mechanism.places.items()
     }
 
 
-def _assembly(mechanism: PlanetaryMechanism, arrangement: Arrangement) -> Check:
+def _check_assembly(mechanism: PlanetaryMechanism, arrangement: Arrangement) -> Check:
     """Check that every copy of every planet set can be assembled at its place, and that no two coincide."""
-    turns = _turns(mechanism)
+    turns = _list_turns(mechanism)
     passed = True
     for members in arrangement.planet_sets:
         places = turns[members[0]]
         # Planets of one set sit on one carrier: their copies share the same places.
         alike = all(turns[planet] == places for planet in members)
         passed &= alike and len({turn % 1 for turn in places}) == mechanism.planets
-        passed &= all(fits_at(arrangement, mechanism.teeth, members, turn) for turn in places)
+        passed &= all(has_fit_at(arrangement, mechanism.teeth, members, turn) for turn in places)
     return Check(name="assembly", passed=passed)
 
 
-def _gaps(mechanism: PlanetaryMechanism, arrangement: Arrangement) -> list[Gap]:
-    return gaps(arrangement, mechanism.teeth, _turns(mechanism))
+def _measure_gaps(mechanism: PlanetaryMechanism, arrangement: Arrangement) -> list[Gap]:
+    return measure_gaps(arrangement, mechanism.teeth, _list_turns(mechanism))
 
 
-def _clearance(problem: PlanetaryProblem, mechanism: PlanetaryMechanism, arrangement: Arrangement) -> Check:
+def _check_clearance(problem: PlanetaryProblem, mechanism: PlanetaryMechanism, arrangement: Arrangement) -> Check:
     """Check the minimum clearance between tips of gears that do not mesh."""
-    rooms = _gaps(mechanism, arrangement)
+    rooms = _measure_gaps(mechanism, arrangement)
     # Room is in modules.
     least = min((gap.room for gap in rooms), default=math.inf)
     return Check(
         name="clearance",
-        passed=least >= problem.least_room(mechanism.module),
+        passed=least >= problem.compute_min_clearance(mechanism.module),
         value=least * mechanism.module if rooms else None,
         limit=problem.min_clearance,
         dimension=LENGTH,
     )
 
 
-def _gear(mechanism: PlanetaryMechanism, arrangement: Arrangement, name: str, mate: str | None = None) -> Gear:
+def _build_gear(mechanism: PlanetaryMechanism, arrangement: Arrangement, name: str, mate: str | None = None) -> Gear:
     """Build a gear; for bevel gears the spur gear with the teeth of the back cone (Tredgold; Norton, Sec. 9.7)."""
     teeth: float = mechanism.teeth[name]
     if arrangement.bevel:
-        meshed = mechanism.teeth[mate or arrangement.meshing(name)[0]]
+        meshed = mechanism.teeth[mate or arrangement.list_mates(name)[0]]
         # The back cone has z/cos δ teeth, with tan δ the ratio of the teeth.
         teeth *= math.hypot(teeth, meshed) / meshed
     return Gear(
@@ -249,43 +249,43 @@ def _gear(mechanism: PlanetaryMechanism, arrangement: Arrangement, name: str, ma
     )
 
 
-def _toothed(mechanism: PlanetaryMechanism, arrangement: Arrangement) -> dict[tuple[str, str], Mesh]:
+def _build_meshes(mechanism: PlanetaryMechanism, arrangement: Arrangement) -> dict[tuple[str, str], Mesh]:
     """Build every mesh with its teeth."""
     meshes = {}
     for first, second in arrangement.meshes:
         # A ring is always the gear of its mesh.
         pinion, gear = (second, first) if arrangement.places[first].internal else (first, second)
         meshes[first, second] = Mesh(
-            _gear(mechanism, arrangement, pinion, gear), _gear(mechanism, arrangement, gear, pinion)
+            _build_gear(mechanism, arrangement, pinion, gear), _build_gear(mechanism, arrangement, gear, pinion)
         )
     return meshes
 
 
-def _apart(arrangement: Arrangement, pair: tuple[str, str], mesh: Mesh) -> float:
+def _compute_centre_distance(arrangement: Arrangement, pair: tuple[str, str], mesh: Mesh) -> float:
     """Return the distance of the axes of a mesh; bevel axes intersect."""
     return 0.0 if arrangement.bevel else mesh.centre_distance
 
 
-def _meshes(problem: PlanetaryProblem, mechanism: PlanetaryMechanism, arrangement: Arrangement) -> list[Check]:
+def _check_meshes(problem: PlanetaryProblem, mechanism: PlanetaryMechanism, arrangement: Arrangement) -> list[Check]:
     """Check the interference and the contact ratio of all meshes."""
     # Impossible teeth fail as interference.
     try:
-        meshes: Mapping[tuple[str, str], Mesh] = _toothed(mechanism, arrangement)
+        meshes: Mapping[tuple[str, str], Mesh] = _build_meshes(mechanism, arrangement)
     except DimensionError:
         return [Check(name="interference", passed=False)]
     least = min(mesh.contact_ratio for mesh in meshes.values())
     checks = [
         Check(name="interference", passed=not any(mesh.interferes for mesh in meshes.values())),
-        at_least("contact_ratio", least, problem.min_contact_ratio),
+        check_minimum("contact_ratio", least, problem.min_contact_ratio),
     ]
     if problem.fillets == "refuse":
         # The worst mesh decides.
         depth, reached = 0.0, False
         for mesh in meshes.values():
-            depth, reached = max(depth, _tip_depth(mesh)), reached or reaches_fillet(mesh)
+            depth, reached = max(depth, _measure_tip_depth(mesh)), reached or is_fillet_reached(mesh)
         # Touching flanks appear to overlap by the step of the tool positions.
-        limit = TOUCHED * mechanism.module
-        rings = [shaped_ring(mesh) for mesh in meshes.values() if mesh.gear.internal]
+        limit = TIP_DEPTH_TOLERANCE * mechanism.module
+        rings = [shape_ring(mesh) for mesh in meshes.values() if mesh.gear.internal]
         checks += [
             Check(
                 name="fillet_interference",
@@ -300,6 +300,6 @@ def _meshes(problem: PlanetaryProblem, mechanism: PlanetaryMechanism, arrangemen
 
 
 @lru_cache(maxsize=1024)
-def _tip_depth(mesh: Mesh) -> float:
+def _measure_tip_depth(mesh: Mesh) -> float:
     """Measure how deep tips dig into the teeth that the rack and the usual cutter leave; 0 if they run free."""
-    return max(0.0, tip_depth(mesh, shaped_ring(mesh).cutter_teeth if mesh.gear.internal else 0))
+    return max(0.0, measure_tip_depth(mesh, shape_ring(mesh).cutter_teeth if mesh.gear.internal else 0))

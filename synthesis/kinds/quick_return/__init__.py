@@ -5,7 +5,7 @@ from __future__ import annotations
 from synthesis.kinds.quick_return.design import QuickReturnResult
 from synthesis.kinds.quick_return.gallery import GALLERY
 from synthesis.kinds.quick_return.problem import QuickReturnProblem
-from synthesis.model.kind import Kind, Progress, always
+from synthesis.model.kind import Kind, Progress, return_true
 
 __all__ = ["KIND"]
 
@@ -16,4 +16,4 @@ def _solve(problem: QuickReturnProblem, progress: Progress) -> QuickReturnResult
     return solve_quick_return(problem, progress)
 
 
-KIND = Kind("quick_return", QuickReturnProblem, QuickReturnResult, _solve, brief=always, gallery=GALLERY)
+KIND = Kind("quick_return", QuickReturnProblem, QuickReturnResult, _solve, brief=return_true, gallery=GALLERY)

@@ -14,7 +14,7 @@ MAX_LINK_RATIO = 20.0
 """Link ratio above which a design is offered only as far as needed to come near to the best transmission angle, or to
 the required one."""
 
-RATIOS = (20.0, 15.0, 10.0, 7.0, 5.0, 4.0, 3.0, 2.5, 2.0)
+LINK_RATIOS = (20.0, 15.0, 10.0, 7.0, 5.0, 4.0, 3.0, 2.5, 2.0)
 """Link ratios at which designs with shorter links than the best one's are offered too."""
 
 MIN_TRANSMISSION_ANGLE = math.radians(10.0)
@@ -27,7 +27,7 @@ LIMIT_TOLERANCE = 1e-9
 """Relative distance of a length or a link ratio from its limit, so that rounding does not carry it beyond."""
 
 
-def shorter_members(
+def list_shorter_members(
     best: float, at_link_ratio: Callable[[float], float], transmission: Callable[[float], float]
 ) -> list[float]:
     """Return members with smaller link ratios than the best one's, by their couplers over the crank, in decreasing
@@ -43,7 +43,7 @@ def shorter_members(
         Minimum transmission angle of a member, radians.
     """
     members: list[float] = []
-    for ratio in RATIOS:
+    for ratio in LINK_RATIOS:
         member = at_link_ratio(ratio)
         # Only members that are really shorter than all before.
         if 1.0 < member < min([best, *members]) and transmission(member) >= MIN_TRANSMISSION_ANGLE:

@@ -40,21 +40,21 @@ from synthesis.kinds.quick_return.alternatives import (
     LIMIT_TOLERANCE,
     MAX_LINK_RATIO,
     RANGE_END_TOLERANCE,
-    shorter_members,
+    list_shorter_members,
 )
 from synthesis.kinds.quick_return.design import RatioRange
-from synthesis.kinds.quick_return.problem import QuickReturnProblem, stroke_imbalance
-from synthesis.model.linkage_answer import CouplerPoint, FixedPivots, FourbarLinks, FourbarMechanism
-from synthesis.model.linkages import skeleton, to_point
+from synthesis.kinds.quick_return.problem import QuickReturnProblem, compute_stroke_imbalance
+from synthesis.model.linkage.answer import CouplerPoint, FixedPivots, FourbarLinks, FourbarMechanism
+from synthesis.model.linkage.conversion import build_skeleton, to_point
 
-NEAR_BEST = math.radians(0.005)
+BEST_ANGLE_TOLERANCE = math.radians(0.005)
 """Tolerance of the best transmission angle, radians: half of the hundredth of a degree that answers show."""
 
-MAX_COUPLER = 1e6
+MAX_COUPLER_RATIO = 1e6
 """Maximum of coupler over crank; longer ones differ from the bound by less than rounding."""
 
 
-class Family(NamedTuple):
+class CrankRockerFamily(NamedTuple):
     """Crank-rockers whose rocker swings by ψ while the crank turns by φ from extension to overlap; radians."""
 
     phi: float
@@ -78,29 +78,29 @@ class Family(NamedTuple):
         inside = 0.5 * math.pi + RANGE_END_TOLERANCE < mean < 1.5 * math.pi - RANGE_END_TOLERANCE
         return 0.0 < self.psi < math.pi - RANGE_END_TOLERANCE and inside
 
-    def lengths(self, rho: float) -> tuple[float, float, float]:
+    def compute_lengths(self, rho: float) -> tuple[float, float, float]:
         """Return coupler, rocker and ground in lengths of the crank."""
         s, eta = math.sin(0.5 * self.psi), 0.5 * (self.phi - self.psi)
         c = math.hypot(math.sin(0.5 * self.phi), rho * math.cos(0.5 * self.phi)) / s
         return rho, c, math.hypot(math.sin(eta), rho * math.cos(eta)) / s
 
-    def cosine(self, rho: float) -> float:
+    def compute_cosine(self, rho: float) -> float:
         """Return the cosine of the minimum transmission angle; 1 at a change point."""
-        _, c, d = self.lengths(rho)
+        _, c, d = self.compute_lengths(rho)
         s, eta = math.sin(0.5 * self.psi), 0.5 * (self.phi - self.psi)
         # (ρ − 1)(ρ + 1) instead of ρ² − 1 keeps the digits near ρ = 1.
         bend = abs(math.cos(0.5 * self.phi) * math.sin(eta)) * (rho - 1.0) * (rho + 1.0)
         return (bend / s + d) / (rho * c)
 
-    def transmission(self, rho: float) -> float:
+    def compute_transmission(self, rho: float) -> float:
         """Return the minimum transmission angle, radians."""
-        return math.acos(min(self.cosine(rho), 1.0))
+        return math.acos(min(self.compute_cosine(rho), 1.0))
 
     def link_ratio(self, rho: float) -> float:
         """Return the longest link over the crank, which is the shortest."""
-        return max(self.lengths(rho))
+        return max(self.compute_lengths(rho))
 
-    def longest(self, limit: float) -> float:
+    def find_longest(self, limit: float) -> float:
         """Return the ρ at which the link ratio equals the limit; below 1 if every member exceeds it."""
         s, eta = math.sin(0.5 * self.psi), 0.5 * (self.phi - self.psi)
         bounds = [limit]
@@ -110,54 +110,54 @@ class Family(NamedTuple):
             bounds.append(math.sqrt(max(room, 0.0)) / max(abs(math.cos(angle)), 1e-300))
         return min(bounds)
 
-    def best(self) -> float:
+    def find_best(self) -> float:
         """Return the ρ of the best transmission angle; infinite for a time ratio of 1."""
         kappa, lam = self.kappa, self.lam
         if kappa == 0.0:
             return math.inf
 
-        def cubic(q: float) -> float:
+        def evaluate_cubic(q: float) -> float:
             return ((q + 2.0 * kappa) * q - kappa) * q - kappa * (1.0 + kappa) * lam
 
         # κλ and 1 are the ends of the range, where cos μ is 1; the cubic changes its sign once between them.
-        return 1.0 / math.sqrt(brentq(cubic, kappa * lam, 1.0, xtol=1e-300, rtol=1e-15))
+        return 1.0 / math.sqrt(brentq(evaluate_cubic, kappa * lam, 1.0, xtol=1e-300, rtol=1e-15))
 
     @property
     def supremum(self) -> float:
         """The best transmission angle, or its bound that no member reaches; radians."""
-        best = self.best()
-        return self.transmission(best) if math.isfinite(best) else 0.5 * (math.pi - self.psi)
+        best = self.find_best()
+        return self.compute_transmission(best) if math.isfinite(best) else 0.5 * (math.pi - self.psi)
 
-    def near_best(self, demanded: float) -> float:
+    def find_near_best(self, demanded: float) -> float:
         """Return the ρ of the best, or of the shortest links that come near to it if its own are very long.
 
         Near enough to have the ``demanded`` transmission angle (radians), if the best exceeds it.
         """
-        best = min(self.best(), MAX_COUPLER)
+        best = min(self.find_best(), MAX_COUPLER_RATIO)
         # Up to this ratio the optimum itself is practical.
         if self.link_ratio(best) <= MAX_LINK_RATIO:
             return best
-        wanted = self.supremum - NEAR_BEST
+        wanted = self.supremum - BEST_ANGLE_TOLERANCE
         # The requirement is between the near-best angle and the bound: satisfy it rather than shorten the links.
         if wanted < demanded < self.supremum:
-            wanted = min(demanded, self.transmission(best))
-        return float(brentq(lambda rho: self.transmission(rho) - wanted, 1.0, best, xtol=1e-12, rtol=1e-12))
+            wanted = min(demanded, self.compute_transmission(best))
+        return float(brentq(lambda rho: self.compute_transmission(rho) - wanted, 1.0, best, xtol=1e-12, rtol=1e-12))
 
 
-def families(time_ratio: float, swing: float) -> list[Family]:
+def list_families(time_ratio: float, swing: float) -> list[CrankRockerFamily]:
     """Return the families with a time ratio and a swing (radians) that have members, φ > π first."""
-    delta = stroke_imbalance(time_ratio)
+    delta = compute_stroke_imbalance(time_ratio)
     # With a ratio of 1 the second family is the mirror image of the first.
     signs = (1.0,) if delta == 0.0 else (1.0, -1.0)
-    both = [Family(math.pi + sign * delta, swing) for sign in signs]
+    both = [CrankRockerFamily(math.pi + sign * delta, swing) for sign in signs]
     return [family for family in both if family.exists]
 
 
-def reachable(problem: QuickReturnProblem) -> RatioRange:
+def compute_ratio_range(problem: QuickReturnProblem) -> RatioRange:
     """Return the time ratios of crank-rockers with the given swing."""
     swing = problem.swing_angle or 0.0
     greatest = (540.0 + swing) / (180.0 - swing) if swing < 180.0 else 1.0
-    reaches = bool(families(problem.time_ratio, math.radians(swing)))
+    reaches = bool(list_families(problem.time_ratio, math.radians(swing)))
     if swing >= 180.0:
         reason = "a crank-rocker swings by less than 180°"
     else:
@@ -167,26 +167,26 @@ def reachable(problem: QuickReturnProblem) -> RatioRange:
     )
 
 
-def crank_rockers(problem: QuickReturnProblem) -> list[FourbarMechanism]:
+def build_crank_rockers(problem: QuickReturnProblem) -> list[FourbarMechanism]:
     """Return the best of each family within the limit of the link ratio, and some with shorter links."""
     assert problem.swing_angle is not None
     limit = problem.link_ratio_limit
     demanded = math.radians(problem.constraints.min_transmission_angle or 0.0)
     mechanisms: list[FourbarMechanism] = []
-    for family in families(problem.time_ratio, math.radians(problem.swing_angle)):
-        best = family.near_best(demanded)
+    for family in list_families(problem.time_ratio, math.radians(problem.swing_angle)):
+        best = family.find_near_best(demanded)
         # The transmission angle increases up to the optimum, so that the limit itself is best below it.
-        rho = best if limit is None else min(best, family.longest(limit * (1.0 - LIMIT_TOLERANCE)))
+        rho = best if limit is None else min(best, family.find_longest(limit * (1.0 - LIMIT_TOLERANCE)))
         if rho <= 1.0:
             continue  # every member has a larger link ratio
-        members = [rho, *shorter_members(rho, family.longest, family.transmission)]
-        mechanisms += [_mechanism(problem, family, member) for member in members]
+        members = [rho, *list_shorter_members(rho, family.find_longest, family.compute_transmission)]
+        mechanisms += [_build_mechanism(problem, family, member) for member in members]
     return mechanisms
 
 
-def _mechanism(problem: QuickReturnProblem, family: Family, rho: float) -> FourbarMechanism:
+def _build_mechanism(problem: QuickReturnProblem, family: CrankRockerFamily, rho: float) -> FourbarMechanism:
     """Build the member of a family at the beginning of its slow stroke."""
-    b, c, d = family.lengths(rho)
+    b, c, d = family.compute_lengths(rho)
     turn = complex(math.cos(family.psi), math.sin(family.psi))
     overlap = complex(math.cos(family.phi), math.sin(family.phi))
     # Crank along +x in the position of extension; B goes from 1 + ρ to −(ρ − 1) e^{iφ}.
@@ -195,7 +195,7 @@ def _mechanism(problem: QuickReturnProblem, family: Family, rho: float) -> Fourb
     extended = family.phi >= math.pi
     # The slow stroke begins in extension for φ > π, in overlap for φ < π.
     at_b, at_a = (b1, 1.0 + 0j) if extended else (b2, overlap)
-    scale = problem.scaled(1.0, max(b, c, d), c)
+    scale = problem.compute_scale(1.0, max(b, c, d), c)
     angle = math.radians(problem.direction)
     place = scale * complex(math.cos(angle), math.sin(angle)) * o4.conjugate() / abs(o4)
     ground = scale * d * complex(math.cos(angle), math.sin(angle))
@@ -221,7 +221,7 @@ def _mechanism(problem: QuickReturnProblem, family: Family, rho: float) -> Fourb
         assembly="open" if (diagonal.conjugate() * coupler).imag >= 0.0 else "crossed",
         reference_input_angle=math.degrees(cmath.phase(place * at_a)),
         reference_body_angle=None if standing is None else standing.angle,
-        skeleton=skeleton(
+        skeleton=build_skeleton(
             joints | body,
             {"ground": ["O2", "O4"], "input": ["O2", "A"], "coupler": ["A", "B"], "output": ["O4", "B", *body]},
         ),

@@ -6,12 +6,12 @@ from typing import Annotated, Literal
 
 from pydantic import Discriminator, Field
 
-from synthesis.model.answer import Answer, Point, Verification, optional
+from synthesis.model.answer import Answer, Point, Verification, optional_field
 from synthesis.model.dimension import Angle, Length, Output
-from synthesis.model.forces_answer import DesignForces
-from synthesis.model.linkage_answer import (
-    LAYOUT,
-    PEAKS,
+from synthesis.model.dynamics.peak_forces import DesignForces
+from synthesis.model.linkage.answer import (
+    LAYOUT_FIELD,
+    PEAKS_FIELD,
     FixedPivots,
     FourbarMechanism,
     Layout,
@@ -82,8 +82,8 @@ class QuickReturnMetrics(MotionMetrics):
     time_ratio: float = Field(description="Slow stroke over fast one, from the measured limit positions.")
     slow_rotation: Angle = Field(description="Crank rotation of the slow stroke, degrees.")
     fast_rotation: Angle = Field(description="Crank rotation of the fast stroke, degrees.")
-    swing: Angle | None = optional("Swing of a swinging output, degrees.")
-    stroke: Length | None = optional("Stroke of a sliding output, length units.")
+    swing: Angle | None = optional_field("Swing of a swinging output, degrees.")
+    stroke: Length | None = optional_field("Stroke of a sliding output, length units.")
 
 
 class QuickReturnDesign(Answer):
@@ -93,8 +93,8 @@ class QuickReturnDesign(Answer):
     targets: list[LimitPosition]
     verification: Verification
     metrics: QuickReturnMetrics
-    layout: Layout | None = LAYOUT
-    forces: DesignForces | None = PEAKS
+    layout: Layout | None = LAYOUT_FIELD
+    forces: DesignForces | None = PEAKS_FIELD
 
 
 class RatioRange(Answer):

@@ -25,36 +25,36 @@ from scipy.optimize import brentq, minimize_scalar
 from kinematics.compiling import njit
 from synthesis.kinds.quick_return.design import DragLinkMechanism, RatioRange
 from synthesis.kinds.quick_return.problem import QuickReturnProblem
-from synthesis.model.linkages import skeleton, slide, to_point
+from synthesis.model.linkage.conversion import build_skeleton, build_slide, to_point
 
-RATIOS = (10.0, 6.0, 4.0, 3.0, 2.0)
+MAX_LINK_RATIOS = (10.0, 6.0, 4.0, 3.0, 2.0)
 """Maximum link ratios of the drag links that are searched."""
 
-LEAST = 1.0 + 1e-4
+MIN_INPUT_LENGTH = 1.0 + 1e-4
 """Shortest crank that is searched, in grounds; with a crank like the ground every position is near a change point."""
 
-STARTS = 90
+DIRECTION_COUNT = 90
 """Number of directions ψ0 that are evaluated first."""
 
-GOLDEN, SECTIONS = 0.6180339887498949, 40
+GOLDEN_RATIO, SECTION_COUNT = 0.6180339887498949, 40
 """Share that a golden section keeps, and the number of sections: 4e-9 of the first interval is left."""
 
-LENGTHS = 25
+LENGTH_COUNT = 25
 """Number of lengths of the input that are evaluated first."""
 
-SAME_LENGTH = 1e-3
+LENGTH_SEPARATION = 1e-3
 """Drag links whose inputs differ by less than this, in grounds, are duplicates."""
 
 LENGTH_TOLERANCE = 1e-9
 """Tolerance of the best length of the input, in grounds; the transmission angle is flat at its maximum."""
 
-BEYOND = 1e-8
+RATIO_MARGIN = 1e-8
 """Share by which the drag link's maximum time ratio exceeds the required one, so that some ψ0 gives that exactly."""
 
-SLIDER_DYAD = math.radians(75.0)
+SLIDER_DYAD_ANGLE = math.radians(75.0)
 """Transmission angle of the slider's dyad, radians, unless a greater one is required."""
 
-ROCKER_DYAD = 3.0
+ROCKER_DYAD_RATIO = 3.0
 """Link 5 over the second crank of a rocker's dyad, unless a transmission angle requires a longer one."""
 
 
@@ -75,7 +75,7 @@ class DragLink(NamedTuple):
         return math.acos(min((abs(b * b + c * c - a * a - 1.0) + 2.0 * a) / (2.0 * b * c), 1.0))
 
 
-def slider_reachable(problem: QuickReturnProblem) -> RatioRange:
+def compute_slider_range(problem: QuickReturnProblem) -> RatioRange:
     """Return the time ratios of drag-link sixbars with a slider: all."""
     reason = "a drag link near its change point is as uneven as one likes"
     return RatioRange(
@@ -83,7 +83,7 @@ def slider_reachable(problem: QuickReturnProblem) -> RatioRange:
     )
 
 
-def rocker_reachable(problem: QuickReturnProblem) -> RatioRange:
+def compute_rocker_range(problem: QuickReturnProblem) -> RatioRange:
     """Return the time ratios of drag-link sixbars with a rocker: all, for a swing below half a turn."""
     swings = problem.swing is not None and problem.swing < 180.0
     return RatioRange(
@@ -98,56 +98,56 @@ def rocker_reachable(problem: QuickReturnProblem) -> RatioRange:
     )
 
 
-def drag_link_sliders(problem: QuickReturnProblem) -> list[DragLinkMechanism]:
+def build_drag_link_sliders(problem: QuickReturnProblem) -> list[DragLinkMechanism]:
     """Return drag-link sixbars with a slider, one for each limit of the drag link's lengths."""
     assert problem.stroke is not None
     demanded = math.radians(problem.constraints.min_transmission_angle or 0.0)
     mechanisms = []
-    for drag in _drag_links(problem):
+    for drag in _find_drag_links(problem):
         scale = 0.5 * problem.stroke / drag.output
-        link = drag.output / math.cos(max(SLIDER_DYAD, demanded)) * (1.0 + 1e-12)
+        link = drag.output / math.cos(max(SLIDER_DYAD_ANGLE, demanded)) * (1.0 + 1e-12)
         turn = cmath.exp(1j * (math.radians(problem.direction) - drag.start))
         end = cmath.exp(1j * drag.start) * (drag.output + link)
-        mechanisms.append(_mechanism(problem, drag, scale, turn, link, 1.0 + end, None))
+        mechanisms.append(_build_mechanism(problem, drag, scale, turn, link, 1.0 + end, None))
     return mechanisms
 
 
-def drag_link_rockers(problem: QuickReturnProblem) -> list[DragLinkMechanism]:
+def build_drag_link_rockers(problem: QuickReturnProblem) -> list[DragLinkMechanism]:
     """Return drag-link sixbars with a rocker, one for each limit of the drag link's lengths."""
     assert problem.swing is not None
     demanded = math.radians(problem.constraints.min_transmission_angle or 0.0)
     half = math.radians(0.5 * problem.swing)
-    sine, rho = math.sin(half), ROCKER_DYAD
+    sine, rho = math.sin(half), ROCKER_DYAD_RATIO
     # cos² μ = sin²(ψ/2) + cos²(ψ/2)/ρ²
     room = (math.cos(demanded) - sine) * (math.cos(demanded) + sine)
     if room > 0.0:
         rho = max(rho, math.cos(half) / math.sqrt(room) * (1.0 + 1e-9))
     mechanisms = []
-    for drag in _drag_links(problem):
+    for drag in _find_drag_links(problem):
         c = drag.output
         along = cmath.exp(1j * drag.start)
         o6 = 1.0 + along * c * complex(rho, math.sqrt((1.0 / sine - 1.0) * (1.0 / sine + 1.0)))
         c_pin = 1.0 + along * c * (rho + 1.0)
         lengths = [1.0, drag.input, drag.coupler, c, rho * c, c / sine, abs(o6 - 1.0)]
-        scale = problem.scaled(min(lengths), max(lengths), c / sine)
+        scale = problem.compute_scale(min(lengths), max(lengths), c / sine)
         turn = cmath.exp(1j * math.radians(problem.direction))
-        mechanisms.append(_mechanism(problem, drag, scale, turn, rho * c, c_pin, o6))
+        mechanisms.append(_build_mechanism(problem, drag, scale, turn, rho * c, c_pin, o6))
     return mechanisms
 
 
-def _drag_links(problem: QuickReturnProblem) -> list[DragLink]:
+def _find_drag_links(problem: QuickReturnProblem) -> list[DragLink]:
     limit = problem.constraints.max_link_ratio
     # The limit itself is tried as well: transmission usually improves with the ratio.
-    ratios = [ratio for ratio in RATIOS if limit is None or ratio < limit] + ([] if limit is None else [limit])
+    ratios = [ratio for ratio in MAX_LINK_RATIOS if limit is None or ratio < limit] + ([] if limit is None else [limit])
     drag_links: list[DragLink] = []
     for ratio in sorted(ratios, reverse=True):
-        best = drag_link(problem.time_ratio, ratio)
-        if best is not None and all(abs(best.input - kept.input) > SAME_LENGTH for kept in drag_links):
+        best = find_drag_link(problem.time_ratio, ratio)
+        if best is not None and all(abs(best.input - kept.input) > LENGTH_SEPARATION for kept in drag_links):
             drag_links.append(best)
     return drag_links
 
 
-def drag_link(time_ratio: float, link_ratio: float) -> DragLink | None:
+def find_drag_link(time_ratio: float, link_ratio: float) -> DragLink | None:
     """Find the drag link of the best transmission angle whose second crank turns half a turn with a time ratio.
 
     Parameters
@@ -162,51 +162,51 @@ def drag_link(time_ratio: float, link_ratio: float) -> DragLink | None:
     DragLink or None
         None if no member of the family within the limit has the time ratio.
     """
-    if link_ratio <= LEAST:
+    if link_ratio <= MIN_INPUT_LENGTH:
         return None
-    lengths = np.exp(np.linspace(math.log(LEAST), math.log(link_ratio), LENGTHS))
+    lengths = np.exp(np.linspace(math.log(MIN_INPUT_LENGTH), math.log(link_ratio), LENGTH_COUNT))
     # The grid brackets the minimum, which a bounded search then refines.
-    cosines = [_cosine(a, time_ratio) for a in lengths]
+    cosines = [_compute_cosine(a, time_ratio) for a in lengths]
     k = int(np.argmin(cosines))
     # No length has the time ratio.
     if cosines[k] > 1.0:
         return None
     a = float(lengths[k])
-    low, high = float(lengths[max(k - 1, 0)]), float(lengths[min(k + 1, LENGTHS - 1)])
+    low, high = float(lengths[max(k - 1, 0)]), float(lengths[min(k + 1, LENGTH_COUNT - 1)])
     closer = minimize_scalar(
-        _cosine, bounds=(low, high), args=(time_ratio,), method="bounded", options={"xatol": LENGTH_TOLERANCE}
+        _compute_cosine, bounds=(low, high), args=(time_ratio,), method="bounded", options={"xatol": LENGTH_TOLERANCE}
     )
     if closer.fun < cosines[k]:
         a = float(closer.x)
-    c = _output(a, time_ratio)
+    c = _find_output(a, time_ratio)
     assert c is not None
-    start = _start(a, c, time_ratio)
+    start = _find_start(a, c, time_ratio)
     if start is None:
         return None
-    return DragLink(a, math.sqrt((a - c) * (a + c) + 1.0), c, start, _input_angle(a, c, start))
+    return DragLink(a, math.sqrt((a - c) * (a + c) + 1.0), c, start, _compute_input_angle(a, c, start))
 
 
-def _cosine(a: float, time_ratio: float) -> float:
+def _compute_cosine(a: float, time_ratio: float) -> float:
     """Return cos μ of the best drag link with an input of length a; 2 if none has the time ratio."""
-    c = _output(a, time_ratio)
+    c = _find_output(a, time_ratio)
     return 2.0 if c is None else a / (c * math.sqrt((a - c) * (a + c) + 1.0))
 
 
-def _output(a: float, time_ratio: float) -> float | None:
+def _find_output(a: float, time_ratio: float) -> float | None:
     """Return the longest second crank with which an input of length a has the time ratio."""
-    wanted = time_ratio * (1.0 + BEYOND)
+    wanted = time_ratio * (1.0 + RATIO_MARGIN)
     high = math.sqrt(0.5 * (a * a + 1.0))
     # At c = 1 exactly the drag link has a change point.
     low = 1.0 + (high - 1.0) * 1e-6
-    if _greatest_ratio(a, high) >= wanted:
+    if _compute_max_ratio(a, high) >= wanted:
         return high
-    if not _greatest_ratio(a, low) > wanted:
+    if not _compute_max_ratio(a, low) > wanted:
         return None
-    return float(brentq(lambda c: _greatest_ratio(a, c) - wanted, low, high, xtol=1e-13, rtol=1e-13))
+    return float(brentq(lambda c: _compute_max_ratio(a, c) - wanted, low, high, xtol=1e-13, rtol=1e-13))
 
 
 @njit(cache=True, nogil=True)
-def _input_angle(a: float, c: float, direction: float) -> float:
+def _compute_input_angle(a: float, c: float, direction: float) -> float:
     """Return the input angle at a direction of the second crank, from the line O2 → O4."""
     x, y = 1.0 + c * math.cos(direction), c * math.sin(direction)
     f = math.hypot(x, y)
@@ -216,58 +216,58 @@ def _input_angle(a: float, c: float, direction: float) -> float:
 
 
 @njit(cache=True, nogil=True)
-def _slow(a: float, c: float, start: float) -> float:
+def _compute_slow_rotation(a: float, c: float, start: float) -> float:
     """Return the input rotation while the second crank turns half a turn from a direction on."""
     # Both angles are known modulo a full turn; the difference of a drag link is positive.
-    return (_input_angle(a, c, start + math.pi) - _input_angle(a, c, start)) % (2.0 * math.pi)
+    return (_compute_input_angle(a, c, start + math.pi) - _compute_input_angle(a, c, start)) % (2.0 * math.pi)
 
 
 @njit(cache=True, nogil=True)
-def _slowest(a: float, c: float) -> float:
+def _find_slowest_direction(a: float, c: float) -> float:
     """Find the direction from which half a turn of the second crank takes most of the input's turn, by golden
     section."""
-    step = 2.0 * math.pi / STARTS
+    step = 2.0 * math.pi / DIRECTION_COUNT
     best, most = 0.0, -1.0
-    for k in range(STARTS):
-        rotation = _slow(a, c, k * step)
+    for k in range(DIRECTION_COUNT):
+        rotation = _compute_slow_rotation(a, c, k * step)
         if rotation > most:
             best, most = k * step, rotation
     low, high = best - step, best + step
-    left, right = high - GOLDEN * (high - low), low + GOLDEN * (high - low)
-    at_left, at_right = _slow(a, c, left), _slow(a, c, right)
-    for _ in range(SECTIONS):
+    left, right = high - GOLDEN_RATIO * (high - low), low + GOLDEN_RATIO * (high - low)
+    at_left, at_right = _compute_slow_rotation(a, c, left), _compute_slow_rotation(a, c, right)
+    for _ in range(SECTION_COUNT):
         if at_left > at_right:
             high, right, at_right = right, left, at_left
-            left = high - GOLDEN * (high - low)
-            at_left = _slow(a, c, left)
+            left = high - GOLDEN_RATIO * (high - low)
+            at_left = _compute_slow_rotation(a, c, left)
         else:
             low, left, at_left = left, right, at_right
-            right = low + GOLDEN * (high - low)
-            at_right = _slow(a, c, right)
+            right = low + GOLDEN_RATIO * (high - low)
+            at_right = _compute_slow_rotation(a, c, right)
     return 0.5 * (low + high)
 
 
 @njit(cache=True, nogil=True)
-def _greatest_ratio(a: float, c: float) -> float:
-    slow = _slow(a, c, _slowest(a, c))
+def _compute_max_ratio(a: float, c: float) -> float:
+    slow = _compute_slow_rotation(a, c, _find_slowest_direction(a, c))
     return slow / (2.0 * math.pi - slow)
 
 
-def _start(a: float, c: float, time_ratio: float) -> float | None:
+def _find_start(a: float, c: float, time_ratio: float) -> float | None:
     """Find the direction of the second crank at the beginning of a slow stroke with the time ratio."""
     wanted = 2.0 * math.pi * time_ratio / (time_ratio + 1.0)
 
-    def off(at: float) -> float:
-        return _slow(a, c, at) - wanted
+    def compute_error(at: float) -> float:
+        return _compute_slow_rotation(a, c, at) - wanted
 
-    best = _slowest(a, c)
-    if off(best) < 0.0:
+    best = _find_slowest_direction(a, c)
+    if compute_error(best) < 0.0:
         return None
     # Half a turn further on the strokes are exchanged, so that the root is bracketed.
-    return float(brentq(off, best, best + math.pi, xtol=1e-15, rtol=1e-15))
+    return float(brentq(compute_error, best, best + math.pi, xtol=1e-15, rtol=1e-15))
 
 
-def _mechanism(
+def _build_mechanism(
     problem: QuickReturnProblem,
     drag: DragLink,
     scale: float,
@@ -298,9 +298,9 @@ def _mechanism(
         type="drag_link_slider" if o6 is None else "drag_link_rocker",
         fixed_pivots={name: to_point(joints[name]) for name in fixed},
         links={name: scale * length for name, length in lengths.items()},
-        skeleton=skeleton(
+        skeleton=build_skeleton(
             joints,
             {"ground": fixed, **dict(links)},
-            slides=[slide("C", "ground", joints["O4"], cmath.phase(turn) + drag.start)] if o6 is None else [],
+            slides=[build_slide("C", "ground", joints["O4"], cmath.phase(turn) + drag.start)] if o6 is None else [],
         ),
     )

@@ -27,60 +27,60 @@ from synthesis.kinds.quick_return.alternatives import (
     LIMIT_TOLERANCE,
     MAX_LINK_RATIO,
     RANGE_END_TOLERANCE,
-    shorter_members,
+    list_shorter_members,
 )
 from synthesis.kinds.quick_return.design import RatioRange
-from synthesis.kinds.quick_return.problem import QuickReturnProblem, stroke_imbalance
-from synthesis.model.linkage_answer import SliderCrankMechanism
-from synthesis.model.linkages import slider_crank_mechanism, without_coupler_point
+from synthesis.kinds.quick_return.problem import QuickReturnProblem, compute_stroke_imbalance
+from synthesis.model.linkage.answer import SliderCrankMechanism
+from synthesis.model.linkage.conversion import build_slider_crank, remove_coupler_point
 
 
-def reachable(problem: QuickReturnProblem) -> RatioRange:
+def compute_ratio_range(problem: QuickReturnProblem) -> RatioRange:
     """Return the time ratios of offset slider-cranks."""
     return RatioRange(
         type="offset_slider_crank",
         least=1.0,
         least_included=True,
         greatest=3.0,
-        reaches=stroke_imbalance(problem.time_ratio) < 0.5 * math.pi - RANGE_END_TOLERANCE,
+        reaches=compute_stroke_imbalance(problem.time_ratio) < 0.5 * math.pi - RANGE_END_TOLERANCE,
         reason="from 3 on the coupler would have to pass square to the slide",
     )
 
 
-def offset_slider_cranks(problem: QuickReturnProblem) -> list[SliderCrankMechanism]:
+def build_offset_slider_cranks(problem: QuickReturnProblem) -> list[SliderCrankMechanism]:
     """Return the best within the limit of the link ratio, and some with shorter couplers."""
     assert problem.stroke is not None
-    n = math.sin(0.5 * stroke_imbalance(problem.time_ratio)) ** 2
-    best = best_ratio(n)
+    n = math.sin(0.5 * compute_stroke_imbalance(problem.time_ratio)) ** 2
+    best = compute_best_ratio(n)
     # For nearly equal strokes the best coupler is very long; a shorter one transmits almost as well.
     x = max(best, 1.0 / MAX_LINK_RATIO)
     demanded = math.cos(math.radians(problem.constraints.min_transmission_angle or 0.0))
     # The shortened coupler fails the requirement that the best one satisfies: lengthen it just enough.
-    if cosine(best, n) < demanded < cosine(x, n):
-        x = float(brentq(lambda ratio: cosine(ratio, n) - demanded, best, x, xtol=1e-300, rtol=1e-15))
+    if compute_cosine(best, n) < demanded < compute_cosine(x, n):
+        x = float(brentq(lambda ratio: compute_cosine(ratio, n) - demanded, best, x, xtol=1e-300, rtol=1e-15))
     limit = problem.constraints.max_link_ratio
     if limit is not None:
         x = max(x, (1.0 + LIMIT_TOLERANCE) / limit)
     # The crank would be as long as the coupler: a change point.
     if x >= 1.0:
         return []
-    shorter = shorter_members(1.0 / x, float, lambda ratio: math.acos(min(cosine(1.0 / ratio, n), 1.0)))
-    return [_mechanism(problem, member, n) for member in (x, *(1.0 / ratio for ratio in shorter))]
+    shorter = list_shorter_members(1.0 / x, float, lambda ratio: math.acos(min(compute_cosine(1.0 / ratio, n), 1.0)))
+    return [_build_mechanism(problem, member, n) for member in (x, *(1.0 / ratio for ratio in shorter))]
 
 
-def best_ratio(n: float) -> float:
+def compute_best_ratio(n: float) -> float:
     """Return crank over coupler of the best transmission angle; 0 for equal strokes."""
     w = 0.5 * (n + math.sqrt(n * (n + 4.0)))
     return math.sqrt((w - n) / (1.0 - n))
 
 
-def cosine(x: float, n: float) -> float:
+def compute_cosine(x: float, n: float) -> float:
     """Return the cosine of the minimum transmission angle."""
     w = n + (1.0 - n) * x * x
     return x + ((1.0 - x) * (1.0 + x) * math.sqrt(n * (1.0 - n) / w) if w > 0.0 else 0.0)
 
 
-def _mechanism(problem: QuickReturnProblem, x: float, n: float) -> SliderCrankMechanism:
+def _build_mechanism(problem: QuickReturnProblem, x: float, n: float) -> SliderCrankMechanism:
     """Build the member with x = a/b in the position of extension, where its slow stroke begins."""
     assert problem.stroke is not None
     w = n + (1.0 - n) * x * x
@@ -91,4 +91,4 @@ def _mechanism(problem: QuickReturnProblem, x: float, n: float) -> SliderCrankMe
     o2 = problem.o2
     far = complex(math.sqrt((a + b - e) * (a + b + e)), e) * along
     pin_a = o2 + a * far / abs(far)
-    return without_coupler_point(slider_crank_mechanism(o2, pin_a, o2 + far, math.radians(problem.direction), pin_a))
+    return remove_coupler_point(build_slider_crank(o2, pin_a, o2 + far, math.radians(problem.direction), pin_a))

@@ -8,9 +8,9 @@ from typing import Annotated, Literal
 from pydantic import ConfigDict, Field
 
 from synthesis.model.dimension import ANGLE
-from synthesis.model.linkage_statement import LinkageProblem, RankBy
-from synthesis.model.statement import (
-    ABSURD,
+from synthesis.model.linkage.problem import LinkageProblem, RankBy
+from synthesis.model.problem import (
+    MAX_MAGNITUDE,
     Contradiction,
     Coordinate,
     Degrees,
@@ -24,28 +24,28 @@ QuickReturnType = Literal[
     "fourbar", "drag_link_rocker", "drag_link_slider", "crank_shaper", "whitworth", "offset_slider_crank"
 ]
 
-ROCKERS: tuple[QuickReturnType, ...] = ("fourbar", "drag_link_rocker")
+ROCKER_TYPES: tuple[QuickReturnType, ...] = ("fourbar", "drag_link_rocker")
 """Types whose output swings."""
 
-SLIDERS: tuple[QuickReturnType, ...] = ("offset_slider_crank", "crank_shaper", "whitworth", "drag_link_slider")
+SLIDER_TYPES: tuple[QuickReturnType, ...] = ("offset_slider_crank", "crank_shaper", "whitworth", "drag_link_slider")
 """Types whose output slides."""
 
 
-CLASSES: dict[QuickReturnType, str] = {
+GRASHOF_CLASSES: dict[QuickReturnType, str] = {
     "fourbar": "crank_rocker",
     "drag_link_rocker": "double_crank",
     "drag_link_slider": "double_crank",
 }
 """Grashof's class of the fourbar that the crank drives, for each type that has one."""
 
-LEAST_ROTATION = 1e-4
+MIN_ROTATION = 1e-4
 """Minimum rotation of a body, degrees: for less the rotopole is a million times as far away as the body moves."""
 
-SAME_POLE = 1e-6
+POLE_TOLERANCE = 1e-6
 """Share of the body's distance from it by which a given rotopole may miss the computed one: printed digits."""
 
 
-def stroke_imbalance(time_ratio: float) -> float:
+def compute_stroke_imbalance(time_ratio: float) -> float:
     """Return δ = π (T − 1)/(T + 1): the rotation of the crank beyond half a turn in the slow stroke, radians."""
     return math.pi * (time_ratio - 1.0) / (time_ratio + 1.0)
 
@@ -106,7 +106,7 @@ class QuickReturnProblem(LinkageProblem):
     )
 
     kind: Literal["quick_return"]
-    time_ratio: Annotated[float, Field(strict=True, ge=1.0, le=ABSURD, allow_inf_nan=False)] = Field(
+    time_ratio: Annotated[float, Field(strict=True, ge=1.0, le=MAX_MAGNITUDE, allow_inf_nan=False)] = Field(
         description="Time of the slow stroke over time of the fast one."
     )
     swing: Annotated[float, ANGLE, Field(strict=True, gt=0.0, lt=360.0), Sizable] | None = Field(
@@ -156,7 +156,7 @@ class QuickReturnProblem(LinkageProblem):
             return (self.mechanism,)
         if self.positions is not None:
             return ("fourbar",)
-        return ROCKERS if self.swing is not None else SLIDERS
+        return ROCKER_TYPES if self.swing is not None else SLIDER_TYPES
 
     @property
     def o2(self) -> complex:
@@ -169,7 +169,7 @@ class QuickReturnProblem(LinkageProblem):
         return 0.0 if self.ground_angle is None else self.ground_angle
 
     @property
-    def placed(self) -> bool:
+    def is_positioned(self) -> bool:
         """Whether the problem determines the place of the mechanism."""
         return self.crank_pivot is not None or self.rotopole is not None or self.positions is not None
 
@@ -206,7 +206,7 @@ class QuickReturnProblem(LinkageProblem):
             limits.append(lengths.max / lengths.min)
         return min(limits, default=None)
 
-    def scaled(self, shortest: float, longest: float, rocker: float) -> float:
+    def compute_scale(self, shortest: float, longest: float, rocker: float) -> float:
         """Return the scale of a linkage that swings, from its shortest and longest link and its rocker."""
         lengths = self.constraints.link_length
         if self.rocker_length is not None:
@@ -220,12 +220,12 @@ class QuickReturnProblem(LinkageProblem):
             return lengths.max / longest
         return lengths.min / shortest if lengths is not None and lengths.min > 0.0 else 1.0 / rocker
 
-    def contradictions(self) -> list[Contradiction]:
+    def find_contradictions(self) -> list[Contradiction]:
         """Return an output that is not the type's, and requests that exclude one another."""
         if self.positions is not None:
-            return [*self._of_positions(), *self._of_constraints()]
+            return [*self._find_position_contradictions(), *self._find_class_contradictions()]
         contradictions = []
-        if self.rotopole is not None and (self.stroke is not None or self.mechanism in SLIDERS):
+        if self.rotopole is not None and (self.stroke is not None or self.mechanism in SLIDER_TYPES):
             contradictions.append(Contradiction("/rotopole", "an output that slides has no fixed pivot; leave it out"))
         elif self.rotopole is not None and self.mechanism != "fourbar":
             contradictions.append(
@@ -238,20 +238,20 @@ class QuickReturnProblem(LinkageProblem):
             contradictions.append(
                 Contradiction("/swing", f"give either the swing or the stroke of the output; {which} is given")
             )
-        if self.mechanism in ROCKERS:
-            contradictions += self._one("swing", "stroke", "swings")
-        if self.mechanism in SLIDERS:
-            contradictions += self._one("stroke", "swing", "slides")
-        return [*contradictions, *self._of_constraints()]
+        if self.mechanism in ROCKER_TYPES:
+            contradictions += self._check_output("swing", "stroke", "swings")
+        if self.mechanism in SLIDER_TYPES:
+            contradictions += self._check_output("stroke", "swing", "slides")
+        return [*contradictions, *self._find_class_contradictions()]
 
-    def _of_constraints(self) -> list[Contradiction]:
+    def _find_class_contradictions(self) -> list[Contradiction]:
         """Return classes of fourbars that the types do not have."""
-        classes = {CLASSES[name] for name in self.types if name in CLASSES}
+        classes = {GRASHOF_CLASSES[name] for name in self.types if name in GRASHOF_CLASSES}
         listed = " or ".join(sorted(classes)).replace("_", "-") or "of no class of fourbars"
         reason = f"its crank turns through, and the requested mechanism is {listed}"
-        return [*self.constraints.of_another_class(classes, reason), *self.contradicting_demands()]
+        return [*self.constraints.find_class_contradictions(classes, reason), *self.find_contradicting_constraints()]
 
-    def _of_positions(self) -> list[Contradiction]:
+    def _find_position_contradictions(self) -> list[Contradiction]:
         """Return requests that two positions of a body exclude."""
         contradictions = []
         for name in ("swing", "stroke", "crank_pivot"):
@@ -261,7 +261,7 @@ class QuickReturnProblem(LinkageProblem):
                 )
         if self.mechanism not in ("fourbar", "auto"):
             contradictions.append(Contradiction("/mechanism", "a body is carried by the rocker of a fourbar"))
-        if abs(self.rotation) < LEAST_ROTATION:
+        if abs(self.rotation) < MIN_ROTATION:
             detail = "the body must turn between its positions; a translation has no rotopole"
             return [*contradictions, Contradiction("/positions/1/angle", detail)]
         pole = self.pole
@@ -269,12 +269,12 @@ class QuickReturnProblem(LinkageProblem):
         assert self.positions is not None
         if self.rotopole is not None:
             reach = max(abs(position.point - pole) for position in self.positions)
-            if abs(complex(*self.rotopole) - pole) > SAME_POLE * max(reach, abs(pole)):
+            if abs(complex(*self.rotopole) - pole) > POLE_TOLERANCE * max(reach, abs(pole)):
                 detail = f"the positions have theirs at ({pole.real:.9g}, {pole.imag:.9g}); leave it out or correct it"
                 contradictions.append(Contradiction("/rotopole", detail))
         return contradictions
 
-    def _one(self, wanted: str, other: str, does: str) -> list[Contradiction]:
+    def _check_output(self, wanted: str, other: str, does: str) -> list[Contradiction]:
         contradictions = []
         if getattr(self, wanted) is None:
             contradictions.append(

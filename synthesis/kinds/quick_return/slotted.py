@@ -20,78 +20,78 @@ from __future__ import annotations
 import cmath
 import math
 
-from kinematics.linkage.planar.catalogue import quick_return
+from kinematics.linkage.planar.catalogue import make_quick_return
 from synthesis.kinds.quick_return.alternatives import LIMIT_TOLERANCE
 from synthesis.kinds.quick_return.design import QuickReturnLinks, QuickReturnMechanism, RatioRange
-from synthesis.kinds.quick_return.problem import QuickReturnProblem, stroke_imbalance
-from synthesis.model.linkage_answer import FixedPivots, Line
-from synthesis.model.linkages import skeleton, slide, to_point
+from synthesis.kinds.quick_return.problem import QuickReturnProblem, compute_stroke_imbalance
+from synthesis.model.linkage.answer import FixedPivots, Line
+from synthesis.model.linkage.conversion import build_skeleton, build_slide, to_point
 
-REACH = 0.9
+MAX_PIN_REACH = 0.9
 """Maximum distance of the crank pin from O4 on the slotted link, as a share of its arm to C: the block stays clear of
 C."""
 
-SHAPER_COUPLER = 1.0
+SHAPER_COUPLER_RATIO = 1.0
 """Coupler of a crank-shaper in strokes, unless a transmission angle requires a longer one."""
 
-CLEAR = 0.9
+LINE_HEIGHT_SHARE = 0.9
 """Height of the ram's line over the ends of the arc, as a share of that at which the ram would turn back too early."""
 
-WHITWORTH_COUPLER = 4.0
+WHITWORTH_COUPLER_RATIO = 4.0
 """Coupler of a Whitworth in arms, for a transmission angle of 75.5°, unless a longer one is required."""
 
 
-def crank_shaper_reachable(problem: QuickReturnProblem) -> RatioRange:
+def compute_crank_shaper_range(problem: QuickReturnProblem) -> RatioRange:
     """Return the time ratios of crank-shapers."""
-    return _above_one(problem, "crank_shaper", "equal strokes would need a crank without length")
+    return _make_range_above_one(problem, "crank_shaper", "equal strokes would need a crank without length")
 
 
-def whitworth_reachable(problem: QuickReturnProblem) -> RatioRange:
+def compute_whitworth_range(problem: QuickReturnProblem) -> RatioRange:
     """Return the time ratios of Whitworth mechanisms."""
-    return _above_one(problem, "whitworth", "equal strokes would need both fixed pivots in one place")
+    return _make_range_above_one(problem, "whitworth", "equal strokes would need both fixed pivots in one place")
 
 
-def crank_shapers(problem: QuickReturnProblem) -> list[QuickReturnMechanism]:
+def build_crank_shapers(problem: QuickReturnProblem) -> list[QuickReturnMechanism]:
     """Return the crank-shaper, at the beginning of its slow stroke."""
     assert problem.stroke is not None
-    half = 0.5 * stroke_imbalance(problem.time_ratio)
+    half = 0.5 * compute_stroke_imbalance(problem.time_ratio)
     sine = math.sin(half)
     rocker = 0.5 * problem.stroke / sine
     # The pin is farthest from O4 at ground + crank, and must stay below the arm.
-    ground = REACH * rocker / (1.0 + sine)
+    ground = MAX_PIN_REACH * rocker / (1.0 + sine)
     rise = rocker * 2.0 * math.sin(0.5 * half) ** 2
-    shortest = SHAPER_COUPLER * problem.stroke
-    above = min(0.5 * rise, CLEAR * shortest * math.cos(half))
-    coupler = max(shortest, (rise - above) * _stretch(problem))
+    shortest = SHAPER_COUPLER_RATIO * problem.stroke
+    above = min(0.5 * rise, LINE_HEIGHT_SHARE * shortest * math.cos(half))
+    coupler = max(shortest, (rise - above) * _compute_coupler_ratio(problem))
     # With a longer coupler the line may be higher, and the coupler leans less than permitted.
-    height = rocker * math.cos(half) + min(0.5 * rise, CLEAR * coupler * math.cos(half))
-    return [_mechanism(problem, "crank_shaper", ground, ground * sine, rocker, coupler, height, -half)]
+    height = rocker * math.cos(half) + min(0.5 * rise, LINE_HEIGHT_SHARE * coupler * math.cos(half))
+    return [_build_mechanism(problem, "crank_shaper", ground, ground * sine, rocker, coupler, height, -half)]
 
 
-def whitworths(problem: QuickReturnProblem) -> list[QuickReturnMechanism]:
+def build_whitworths(problem: QuickReturnProblem) -> list[QuickReturnMechanism]:
     """Return the Whitworth mechanism, at the beginning of its slow stroke."""
     assert problem.stroke is not None
-    half = 0.5 * stroke_imbalance(problem.time_ratio)
+    half = 0.5 * compute_stroke_imbalance(problem.time_ratio)
     # The arm's end moves the ram by twice its length.
     rocker = 0.5 * problem.stroke
-    crank = REACH * rocker / (1.0 + math.sin(half))
-    coupler = rocker * max(WHITWORTH_COUPLER, _stretch(problem))
-    return [_mechanism(problem, "whitworth", crank * math.sin(half), crank, rocker, coupler, 0.0, -half)]
+    crank = MAX_PIN_REACH * rocker / (1.0 + math.sin(half))
+    coupler = rocker * max(WHITWORTH_COUPLER_RATIO, _compute_coupler_ratio(problem))
+    return [_build_mechanism(problem, "whitworth", crank * math.sin(half), crank, rocker, coupler, 0.0, -half)]
 
 
-def _above_one(problem: QuickReturnProblem, name: str, reason: str) -> RatioRange:
+def _make_range_above_one(problem: QuickReturnProblem, name: str, reason: str) -> RatioRange:
     return RatioRange(
         type=name, least=1.0, least_included=False, greatest=None, reaches=problem.time_ratio > 1.0, reason=reason
     )
 
 
-def _stretch(problem: QuickReturnProblem) -> float:
+def _compute_coupler_ratio(problem: QuickReturnProblem) -> float:
     """Return the coupler over the height that it bridges, for the required transmission angle."""
     demanded = math.radians(problem.constraints.min_transmission_angle or 0.0)
     return (1.0 + LIMIT_TOLERANCE) / math.cos(demanded)
 
 
-def _mechanism(
+def _build_mechanism(
     problem: QuickReturnProblem,
     kind: str,
     ground: float,
@@ -108,7 +108,7 @@ def _mechanism(
     up = 1j * cmath.exp(1j * turn)
     o4 = o2 - ground * up
     line = o4 + height * up
-    mechanism = quick_return(o2, o4, crank, rocker, coupler, line, turn, crank_angle + turn)
+    mechanism = make_quick_return(o2, o4, crank, rocker, coupler, line, turn, crank_angle + turn)
     return QuickReturnMechanism.model_validate(
         {
             "type": kind,
@@ -117,10 +117,10 @@ def _mechanism(
             "slide": Line(point=to_point(line), angle=problem.direction),
             "assembly": "open",
             "reference_input_angle": math.degrees(crank_angle) + problem.direction,
-            "skeleton": skeleton(
+            "skeleton": build_skeleton(
                 {name: complex(z) for name, z in mechanism.joints.items()},
                 mechanism.links,
-                slides=[slide(at.joint, at.link, complex(at.point), float(at.angle)) for at in mechanism.slides],
+                slides=[build_slide(at.joint, at.link, complex(at.point), float(at.angle)) for at in mechanism.slides],
             ),
         }
     )

@@ -15,9 +15,9 @@ from kinematics.errors import MechanismError
 from kinematics.linkage.fourbar import Fourbar, barker_class
 from kinematics.linkage.fourbar.classification import BarkerClass
 from kinematics.linkage.planar.drive import drive
-from kinematics.linkage.planar.limits import branches, holding_reference
+from kinematics.linkage.planar.limits import find_branches, find_reference_branch
 from kinematics.linkage.planar.mechanism import Mechanism
-from kinematics.linkage.planar.strokes import Strokes, strokes
+from kinematics.linkage.planar.strokes import Strokes, find_strokes
 from synthesis.kinds.quick_return.design import (
     DragLinkMechanism,
     LimitPosition,
@@ -28,27 +28,33 @@ from synthesis.kinds.quick_return.design import (
 from synthesis.kinds.quick_return.problem import QuickReturnProblem, RockerPosition
 from synthesis.model.answer import Check, Verification
 from synthesis.model.dimension import ANGLE
-from synthesis.model.linkage_answer import FourbarMechanism
-from synthesis.proof.checks import tolerated
-from synthesis.proof.closer import least_angles, turn_from
-from synthesis.proof.constraints import constraint_checks
-from synthesis.proof.measures import fixed_pivots, link_lengths, measured, moving_pivots, reach_of
-from synthesis.proof.rebuilt import rebuilt
+from synthesis.model.linkage.answer import FourbarMechanism
+from synthesis.verification.checks import check_error
+from synthesis.verification.constraints import check_constraints
+from synthesis.verification.measures import (
+    list_fixed_pivots,
+    list_link_lengths,
+    list_moving_pivots,
+    measure_linkage,
+    measure_reach,
+)
+from synthesis.verification.reconstruction import rebuild_mechanism
+from synthesis.verification.refined_extremes import find_min_transmission_angles, list_full_turn
 
-RATIO_MET = 1e-9
+RATIO_TOLERANCE = 1e-9
 """Maximum relative error of the measured time ratio; rounding leaves some 1e-14."""
 
-SWING_MET = 1e-9
+SWING_TOLERANCE = 1e-9
 """Maximum error of the measured swing, degrees."""
 
-BODY_MET = 1e-9
+BODY_TOLERANCE = 1e-9
 """Maximum error of the positions of a body on the rocker: share of its distance from the rocker's pivot, and
 radians."""
 
-STROKE_MET = 1e-9
+STROKE_TOLERANCE = 1e-9
 """Maximum relative error of the measured stroke."""
 
-OUTPUTS = {
+OUTPUT_NAMES = {
     "fourbar": "output",
     "slider_crank": "B",
     "crank_shaper": "D",
@@ -74,23 +80,23 @@ def verify_quick_return(problem: QuickReturnProblem, design: QuickReturnMechanis
     QuickReturnDesign or None
         None unless the output reverses exactly twice while the crank turns through.
     """
-    output = OUTPUTS[design.type]
-    mechanism = rebuilt(design)
+    output = OUTPUT_NAMES[design.type]
+    mechanism = rebuild_mechanism(design)
     if mechanism is None:
         return None
     # Only the skeleton contains the body's place on the rocker.
-    carrier = None if problem.positions is None else rebuilt(design, from_skeleton=True)
+    carrier = None if problem.positions is None else rebuild_mechanism(design, from_skeleton=True)
     if problem.positions is not None and carrier is None:
         return None
     try:
-        here = holding_reference(mechanism, branches(mechanism))
-        reversals = strokes(mechanism, output)
+        here = find_reference_branch(mechanism, find_branches(mechanism))
+        reversals = find_strokes(mechanism, output)
     except MechanismError:
         return None
     # An output with more than two reversals has no time ratio.
     if reversals is None or here is None or not here.full:
         return None
-    inputs = turn_from(float(mechanism.reference_input))
+    inputs = list_full_turn(float(mechanism.reference_input))
     motion = drive(mechanism, inputs, order=1)
     # The point of a body on the rocker is a joint of it, as the point of a coupler is.
     whole = mechanism if carrier is None else carrier
@@ -98,14 +104,14 @@ def verify_quick_return(problem: QuickReturnProblem, design: QuickReturnMechanis
     turns = bool(motion.smooth.all())
     swings = output in mechanism.links
     travel = math.degrees(reversals.travel) if swings else reversals.travel
-    measures = measured(
-        link_lengths(design),
-        reach_of(whole),
+    measures = measure_linkage(
+        list_link_lengths(design),
+        measure_reach(whole),
         # Displacement of the output's pin, as the chord of its arc or along its slide.
-        2.0 * _rocker(design) * abs(math.sin(0.5 * reversals.travel)) if swings else travel,
-        least_angles(partial(drive, mechanism, order=0), inputs, motion),
+        2.0 * _get_rocker_length(design) * abs(math.sin(0.5 * reversals.travel)) if swings else travel,
+        find_min_transmission_angles(partial(drive, mechanism, order=0), inputs, motion),
         np.concatenate([jet[0] for jet in places.values()]),
-        barker=_barker(design),
+        barker=_classify_fourbar(design),
         same_branch=turns,
         visits_in_order=turns,  # the output reverses twice in a turn: there is one order
         full_rotation=turns,
@@ -117,22 +123,22 @@ def verify_quick_return(problem: QuickReturnProblem, design: QuickReturnMechanis
         fast_rotation=math.degrees(reversals.fast),
         swing=travel if swings else None,
         stroke=None if swings else travel,
-        **measures.within(QuickReturnMetrics),
+        **measures.select_fields(QuickReturnMetrics),
     )
     checks = [
-        *_task_checks(problem, metrics),
-        *_body_checks(problem, design, carrier, reversals),
-        *constraint_checks(problem.constraints, measures, fixed_pivots(mechanism), moving_pivots(mechanism)),
+        *_check_task(problem, metrics),
+        *_check_body(problem, design, carrier, reversals),
+        *check_constraints(problem.constraints, measures, list_fixed_pivots(mechanism), list_moving_pivots(mechanism)),
     ]
     return QuickReturnDesign(
         mechanism=design,
-        targets=_limits(reversals, float(mechanism.reference_input), swings=swings),
-        verification=Verification.of(checks),
+        targets=_list_limits(reversals, float(mechanism.reference_input), swings=swings),
+        verification=Verification.from_checks(checks),
         metrics=metrics,
     )
 
 
-def _limits(measured: Strokes, reference: float, *, swings: bool) -> list[LimitPosition]:
+def _list_limits(measured: Strokes, reference: float, *, swings: bool) -> list[LimitPosition]:
     """Return the limit positions, in the turn whose first one is nearest to the reference; angles of links from (−180°,
     180°] on."""
     inputs = measured.inputs - 2.0 * math.pi * round((measured.inputs[0] - reference) / (2.0 * math.pi))
@@ -142,22 +148,22 @@ def _limits(measured: Strokes, reference: float, *, swings: bool) -> list[LimitP
     return [LimitPosition(index=k, input_angle=math.degrees(inputs[k]), output=float(outputs[k])) for k in range(2)]
 
 
-def _task_checks(problem: QuickReturnProblem, metrics: QuickReturnMetrics) -> list[Check]:
+def _check_task(problem: QuickReturnProblem, metrics: QuickReturnMetrics) -> list[Check]:
     off = abs(metrics.time_ratio / problem.time_ratio - 1.0)
     checks = [
         Check(name="crank_turns", passed=metrics.full_rotation),
-        tolerated("time_ratio", off, RATIO_MET),
+        check_error("time_ratio", off, RATIO_TOLERANCE),
     ]
     if problem.swing_angle is not None:
         off = math.inf if metrics.swing is None else abs(metrics.swing - problem.swing_angle)
-        checks.append(tolerated("swing", off, SWING_MET, ANGLE))
+        checks.append(check_error("swing", off, SWING_TOLERANCE, ANGLE))
     if problem.stroke is not None:
         off = math.inf if metrics.stroke is None else abs(metrics.stroke / problem.stroke - 1.0)
-        checks.append(tolerated("stroke", off, STROKE_MET))
+        checks.append(check_error("stroke", off, STROKE_TOLERANCE))
     return checks
 
 
-def _body_checks(
+def _check_body(
     problem: QuickReturnProblem, design: QuickReturnMechanisms, mechanism: Mechanism | None, measured: Strokes
 ) -> list[Check]:
     """Check that the body on the rocker stands at its two positions when the driven rocker is at its limits.
@@ -176,25 +182,25 @@ def _body_checks(
     # A body near its pole would have no size of its own.
     size = max(size, design.links.output)
 
-    def missed(k: int, position: RockerPosition) -> float:
+    def measure_miss(k: int, position: RockerPosition) -> float:
         turn = math.radians(math.remainder(angles[k] - position.angle, 360.0))
         return max(float(abs(points[k] - position.point)) / size, abs(turn))
 
     first, second = problem.positions
     # Either position may be the begin of the slow stroke.
-    worst = min(max(missed(k, first), missed(1 - k, second)) for k in (0, 1))
-    return [tolerated("reaches_targets", worst, BODY_MET)]
+    worst = min(max(measure_miss(k, first), measure_miss(1 - k, second)) for k in (0, 1))
+    return [check_error("reaches_targets", worst, BODY_TOLERANCE)]
 
 
-def _rocker(design: QuickReturnMechanisms) -> float:
+def _get_rocker_length(design: QuickReturnMechanisms) -> float:
     """Return the length of the output link of a mechanism whose output swings."""
     return design.links["output"] if isinstance(design.links, dict) else float(design.links.model_dump()["output"])
 
 
-def _barker(design: QuickReturnMechanisms) -> BarkerClass | None:
+def _classify_fourbar(design: QuickReturnMechanisms) -> BarkerClass | None:
     """Return Grashof's class and Barker's code of the fourbar that the crank drives."""
     if isinstance(design, FourbarMechanism):
-        d, a, b, c = link_lengths(design)
+        d, a, b, c = list_link_lengths(design)
     elif isinstance(design, DragLinkMechanism):
         d, a, b, c = (design.links[name] for name in ("ground", "input", "coupler", "driven_crank"))
     else:

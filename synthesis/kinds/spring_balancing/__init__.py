@@ -16,9 +16,9 @@ def _solve(problem: SpringBalancingProblem, progress: Progress) -> SpringBalanci
     return solve_spring_balancing(problem, progress)
 
 
-def _brief(problem: SpringBalancingProblem) -> bool:
+def _is_brief(problem: SpringBalancingProblem) -> bool:
     """Return whether the program is convex for all springs, so that no ends are searched."""
     return all(spring.convex for spring in problem.springs)
 
 
-KIND = Kind("spring_balancing", SpringBalancingProblem, SpringBalancingResult, _solve, brief=_brief, gallery=GALLERY)
+KIND = Kind("spring_balancing", SpringBalancingProblem, SpringBalancingResult, _solve, brief=_is_brief, gallery=GALLERY)

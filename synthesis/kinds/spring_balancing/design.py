@@ -6,9 +6,9 @@ from typing import Annotated, Any, Literal
 
 from pydantic import Field
 
-from synthesis.model.answer import Answer, Point, Result, Verification, optional
+from synthesis.model.answer import Answer, Point, Result, Verification, optional_field
 from synthesis.model.dimension import TORSION_STIFFNESS, Angle, Force, Length, Stiffness, Torque
-from synthesis.model.linkage_answer import Skeleton
+from synthesis.model.linkage.answer import Skeleton
 
 TorsionStiffness = Annotated[float, TORSION_STIFFNESS]
 
@@ -31,27 +31,27 @@ class FoundSpring(Answer):
     """A spring of the answer: between two ends, or a torsion spring between two links."""
 
     number: int = Field(description="Number of the spring in the problem, from 0.")
-    ends: tuple[FoundEnd, FoundEnd] | None = optional()
-    rate: Stiffness | None = optional()
-    free_length: Length | None = optional()
-    preload: Force | None = optional("Tension at the free length.")
-    min_length: Length | None = optional("Minimum length over the motion.")
-    max_length: Length | None = optional("Maximum length over the motion.")
-    max_force: Force | None = optional("Maximum magnitude of the force over the motion.")
-    links: tuple[str, str] | None = optional()
-    torsion: TorsionStiffness | None = optional()
-    free_angle: Angle | None = optional(
+    ends: tuple[FoundEnd, FoundEnd] | None = optional_field()
+    rate: Stiffness | None = optional_field()
+    free_length: Length | None = optional_field()
+    preload: Force | None = optional_field("Tension at the free length.")
+    min_length: Length | None = optional_field("Minimum length over the motion.")
+    max_length: Length | None = optional_field("Maximum length over the motion.")
+    max_force: Force | None = optional_field("Maximum magnitude of the force over the motion.")
+    links: tuple[str, str] | None = optional_field()
+    torsion: TorsionStiffness | None = optional_field()
+    free_angle: Angle | None = optional_field(
         "Rotation of the second link relative to the first at which there is no torque."
     )
-    max_torque: Torque | None = optional("Maximum torque over the motion.")
+    max_torque: Torque | None = optional_field("Maximum torque over the motion.")
 
 
 class SpringMetrics(Answer):
     """The drive with the springs and without; a force if the input slides."""
 
     value: float = Field(description="Remaining share of the unbalanced drive: of its peak, or its rms.")
-    bound: float | None = optional("Lower bound for all springs within the limits. Omitted if it is unknown.")
-    gap: float | None = optional("Excess of the value over the bound, as a share of the value.")
+    bound: float | None = optional_field("Lower bound for all springs within the limits. Omitted if it is unknown.")
+    gap: float | None = optional_field("Excess of the value over the bound, as a share of the value.")
     exact: bool = Field(
         description="True if the drive vanishes, to rounding; at rest with steady loads the energy is then constant."
     )
@@ -59,7 +59,7 @@ class SpringMetrics(Answer):
     unbalanced_drive: Torque = Field(description="Peak drive without springs.")
     rms_drive: Torque = Field(description="Root mean square of the drive over the motion, with the springs.")
     unbalanced_rms_drive: Torque
-    energy_variation: float | None = optional(
+    energy_variation: float | None = optional_field(
         "Variation of the potential energy of all bodies, steady loads and springs over the motion, as a share of that "
         "without the requested springs. Omitted if loads have no potential or the linkage moves."
     )

@@ -26,22 +26,20 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from kinematics.dynamics.balance import balance
+from kinematics.arrays import Complex, Real
+from kinematics.dynamics.balance import compute_balance
 from kinematics.dynamics.places import Places
-from kinematics.dynamics.reactions import reactions
+from kinematics.dynamics.reactions import compute_reactions
 from kinematics.linkage.planar.mechanism import GROUND
-from synthesis.analyses.driven import Task, driven_task, paced, placed
+from synthesis.analyses.linkages.requested_motion import Task, build_task, pace_machine, place_machine
 from synthesis.kinds.spring_balancing.problem import SpringBalancingProblem
-from synthesis.kinds.spring_balancing.stated_springs import SoughtSpring
-from synthesis.mechanisms.machine import place_on, torsion_spring
+from synthesis.kinds.spring_balancing.requested_springs import SoughtSpring
+from synthesis.mechanisms.machine import build_torsion_spring, locate_on_link
 
-Real = NDArray[np.float64]
-Complex = NDArray[np.complex128]
-
-GRID = 2880
+GRID_SIZE = 2880
 """Number of positions of the motion for peaks and means; the motion's steps if these are more."""
 
-MET = 1e-9
+MIN_LENGTH_SHARE = 1e-9
 """Length of a spring, as a share of the size, at which its ends coincide and its force has no direction."""
 
 
@@ -53,7 +51,7 @@ class Carrier(NamedTuple):
     place_rate: Complex
     turn_rate: Complex
 
-    def points(self, of: Complex) -> tuple[Complex, Complex]:
+    def move_points(self, of: Complex) -> tuple[Complex, Complex]:
         """Return points of the reference over positions, shape (len(of), N), and their rates."""
         z = np.asarray(of)[:, None]
         return self.place + self.turn * z, self.place_rate + self.turn_rate * z
@@ -102,13 +100,13 @@ class Setting:
 
     def __init__(self, problem: SpringBalancingProblem) -> None:
         self.problem = problem
-        self.task: Task = driven_task(problem.mechanism, problem.dynamics, problem.length_unit, problem.motion)
+        self.task: Task = build_task(problem.mechanism, problem.dynamics, problem.length_unit, problem.motion)
         machine = self.task.machine
-        grid = self.task.positions(max(GRID, problem.motion.steps))
-        now = placed(machine, grid, self.task.speed, self.task.acceleration)
-        self._paced = paced(machine, grid)
-        found = reactions(machine, now)
-        check = balance(machine, now, self._paced, found.rubbing)
+        grid = self.task.list_positions(max(GRID_SIZE, problem.motion.steps))
+        now = place_machine(machine, grid, self.task.speed, self.task.acceleration)
+        self._paced = pace_machine(machine, grid)
+        found = compute_reactions(machine, now)
+        check = compute_balance(machine, now, self._paced, found.rubbing)
         self._known = found.solved & np.isfinite(check.drive)
         self.at = grid[self._known]
         self.fixed = check.drive[self._known]
@@ -121,15 +119,17 @@ class Setting:
         """The greatest drive without springs."""
         return float(np.abs(self.fixed).max(initial=0.0))
 
-    def places(self, spring: SoughtSpring) -> list[Complex]:
+    def list_corners(self, spring: SoughtSpring) -> list[Complex]:
         """List the corners of the areas of both ends of a spring, one for a given end; none for a torsion spring."""
         machine = self.task.machine
         return [
-            hull(np.array([place_on(machine.mechanism, end.link, corner, machine.scale) for corner in end.corners]))
+            find_hull(
+                np.array([locate_on_link(machine.mechanism, end.link, corner, machine.scale) for corner in end.corners])
+            )
             for end in spring.ends or ()
         ]
 
-    def thinned(self, count: int) -> Setting:
+    def thin_positions(self, count: int) -> Setting:
         """Return the same setting on ``count`` of its positions, spread evenly."""
         few = copy(self)
         kept = np.unique(np.linspace(0, len(self.at) - 1, count).astype(int))
@@ -140,29 +140,30 @@ class Setting:
         few._carriers = {}
         return few
 
-    def carrier(self, link: str) -> Carrier:
+    def get_carrier(self, link: str) -> Carrier:
         """Return a link over the known positions."""
         if link not in self._carriers:
-            self._carriers[link] = _carrier(self._paced, link, self._known)
+            self._carriers[link] = _build_carrier(self._paced, link, self._known)
         return self._carriers[link]
 
-    def lengths(self, spring: SoughtSpring, ends: Sequence[complex]) -> Real:
+    def compute_lengths(self, spring: SoughtSpring, ends: Sequence[complex]) -> Real:
         """Compute the lengths of a spring between two points."""
         assert spring.ends is not None
         one, other = (
-            self.carrier(end.link).points(np.array([at]))[0][0] for end, at in zip(spring.ends, ends, strict=True)
+            self.get_carrier(end.link).move_points(np.array([at]))[0][0]
+            for end, at in zip(spring.ends, ends, strict=True)
         )
         return np.asarray(np.abs(other - one))
 
-    def rotation(self, links: tuple[str, str]) -> tuple[Real, Real]:
+    def compute_rotation(self, links: tuple[str, str]) -> tuple[Real, Real]:
         """Compute the rotation of the second link relative to the first from the reference, and its rate."""
-        spring = torsion_spring(self.task.machine.mechanism, links)
+        spring = build_torsion_spring(self.task.machine.mechanism, links)
         turned = spring.rotation(self._paced)[self._known]
         rates = [np.broadcast_to(self._paced.spins[link][1], self._known.shape)[self._known] for link in links]
         return np.asarray(turned), np.asarray(rates[1] - rates[0])
 
 
-def _carrier(now: Places, link: str, known: NDArray[np.bool_]) -> Carrier:
+def _build_carrier(now: Places, link: str, known: NDArray[np.bool_]) -> Carrier:
     count = int(known.sum())
     if link == GROUND:
         return Carrier(*(np.full(count, value, np.complex128) for value in (0.0, 1.0, 0.0, 0.0)))
@@ -173,7 +174,7 @@ def _carrier(now: Places, link: str, known: NDArray[np.bool_]) -> Carrier:
     return Carrier(place - about * turn, turn, rate - about * turn_rate, turn_rate)
 
 
-def hull(points: Complex) -> Complex:
+def find_hull(points: Complex) -> Complex:
     """Return the corners of the convex hull of points, counter-clockwise; two for a line, one for a point."""
     distinct = sorted({complex(z) for z in points}, key=lambda z: (z.real, z.imag))
     if len(distinct) < 3:
@@ -190,21 +191,23 @@ def hull(points: Complex) -> Complex:
     return np.array([*chains[0], *chains[1]])
 
 
-def effects_of(setting: Setting, spring: SoughtSpring, ends: Sequence[Complex]) -> Effects:
+def compute_effects(setting: Setting, spring: SoughtSpring, ends: Sequence[Complex]) -> Effects:
     """Compute the effects of a spring with ends between corners; only a superposed spring may have several."""
     if spring.links is not None:
-        return _turning(setting, spring)
+        return _compute_torsion(setting, spring)
     assert spring.ends is not None
-    one, other = (setting.carrier(end.link).points(corners) for end, corners in zip(spring.ends, ends, strict=True))
+    one, other = (
+        setting.get_carrier(end.link).move_points(corners) for end, corners in zip(spring.ends, ends, strict=True)
+    )
     span = (other[0][None] - one[0][:, None]).reshape(-1, len(setting.at))
     rate = (other[1][None] - one[1][:, None]).reshape(span.shape)
     along = span.real * rate.real + span.imag * rate.imag
-    if spring.superposed:
-        return _superposed(setting, spring, span, along)
-    return _single(setting, spring, span[0], along[0])
+    if spring.is_superposable:
+        return _compute_superposed(setting, spring, span, along)
+    return _compute_single(setting, spring, span[0], along[0])
 
 
-class _Rows:
+class _LimitRows:
     """Collects the linear limits of parameters."""
 
     def __init__(self, count: int) -> None:
@@ -212,28 +215,28 @@ class _Rows:
         self.rows: list[list[float]] = []
         self.limits: list[float] = []
 
-    def at_most(self, row: Sequence[float], limit: float = 0.0) -> None:
+    def add_maximum(self, row: Sequence[float], limit: float = 0.0) -> None:
         self.rows.append(list(row))
         self.limits.append(limit)
 
-    def between(self, row: Sequence[float], low: float, high: float | None) -> None:
-        self.at_most([-entry for entry in row], -low)
+    def add_range(self, row: Sequence[float], low: float, high: float | None) -> None:
+        self.add_maximum([-entry for entry in row], -low)
         if high is not None:
-            self.at_most(row, high)
+            self.add_maximum(row, high)
 
     @property
     def matrix(self) -> Real:
         return np.array(self.rows, np.float64).reshape(-1, self.count)
 
 
-def _superposed(setting: Setting, spring: SoughtSpring, span: Complex, along: Real) -> Effects:
+def _compute_superposed(setting: Setting, spring: SoughtSpring, span: Complex, along: Real) -> Effects:
     """Compute the effects of rates at the pairs of corners."""
     count, scale = len(span), setting.task.machine.scale
-    kept = _Rows(count)
+    kept = _LimitRows(count)
     for n in range(count):
-        kept.at_most([-1.0 if k == n else 0.0 for k in range(count)])
+        kept.add_maximum([-1.0 if k == n else 0.0 for k in range(count)])
     ones = np.ones(count)
-    kept.between(ones.tolist(), *spring.rates)
+    kept.add_range(ones.tolist(), *spring.rates)
     # Without a free length the deflection is the length.
     lengths = [limit for limit in (spring.max_length, spring.max_deflection) if limit is not None]
     longest = scale * min(lengths, default=np.inf)
@@ -243,14 +246,14 @@ def _superposed(setting: Setting, spring: SoughtSpring, span: Complex, along: Re
         return Effects(along, kept.matrix, np.array(kept.limits), ones, limited, longest, strongest)
     length = np.abs(span[0])
     # A single spring beyond its length limit cannot exist at all: its rate must be zero.
-    if length.max() > longest * (1.0 + MET):
-        kept.at_most([1.0])
+    if length.max() > longest * (1.0 + MIN_LENGTH_SHARE):
+        kept.add_maximum([1.0])
     if np.isfinite(strongest):
-        kept.at_most([float(length.max()) / strongest], 1.0)
+        kept.add_maximum([float(length.max()) / strongest], 1.0)
     return Effects(along, kept.matrix, np.array(kept.limits), ones)
 
 
-def free_limits(spring: SoughtSpring, scale: float, length: Real) -> tuple[float, float]:
+def compute_free_limits(spring: SoughtSpring, scale: float, length: Real) -> tuple[float, float]:
     """Compute the range of free lengths of a spring with these lengths; the minimum exceeds the maximum if none fits.
 
     An extension spring is never shorter, a compression spring never longer, and none exceeds its stroke.
@@ -268,48 +271,52 @@ def free_limits(spring: SoughtSpring, scale: float, length: Real) -> tuple[float
     return least, most
 
 
-def _single(setting: Setting, spring: SoughtSpring, span: Complex, along: Real) -> Effects:
+def _compute_single(setting: Setting, spring: SoughtSpring, span: Complex, along: Real) -> Effects:
     """Compute the effects of rate, rate times free length, and preload."""
     scale = setting.task.machine.scale
     length = np.abs(span)
     low, high = float(length.min()), float(length.max())
     # L' = (L²)'/(2 L); a spring of no length has no direction.
     lengthening = along / np.where(length > 0.0, length, 1.0)
-    kept = _Rows(3)
-    kept.between([1.0, 0.0, 0.0], *spring.rates)
-    kept.between([0.0, 0.0, 1.0], *spring.preloads)
+    kept = _LimitRows(3)
+    kept.add_range([1.0, 0.0, 0.0], *spring.rates)
+    kept.add_range([0.0, 0.0, 1.0], *spring.preloads)
     # Free length limits are linear in rate and rate × free length: low · k ≤ k L₀ ≤ high · k.
-    shortest, free = free_limits(spring, scale, length)
-    none = shortest > free * (1.0 + MET)
-    kept.at_most([shortest, -1.0, 0.0])
-    kept.at_most([-max(free, shortest), 1.0, 0.0])
+    shortest, free = compute_free_limits(spring, scale, length)
+    none = shortest > free * (1.0 + MIN_LENGTH_SHARE)
+    kept.add_maximum([shortest, -1.0, 0.0])
+    kept.add_maximum([-max(free, shortest), 1.0, 0.0])
     if spring.max_force is not None:
         # The tension is monotonic in the length: its extremes are at the shortest and the longest.
         for end in (low, high):
-            kept.at_most([end, -1.0, 1.0], spring.max_force)
-            kept.at_most([-end, 1.0, -1.0], spring.max_force)
+            kept.add_maximum([end, -1.0, 1.0], spring.max_force)
+            kept.add_maximum([-end, 1.0, -1.0], spring.max_force)
     least = 0.0 if spring.min_length is None else scale * spring.min_length
     most = np.inf if spring.max_length is None else scale * spring.max_length
-    if none or low < max(least * (1.0 - MET), MET * setting.size) or high > most * (1.0 + MET):
+    if (
+        none
+        or low < max(least * (1.0 - MIN_LENGTH_SHARE), MIN_LENGTH_SHARE * setting.size)
+        or high > most * (1.0 + MIN_LENGTH_SHARE)
+    ):
         # No such spring is possible at these places.
-        kept.at_most([1.0, 0.0, 0.0])
-        kept.at_most([0.0, 0.0, 1.0])
+        kept.add_maximum([1.0, 0.0, 0.0])
+        kept.add_maximum([0.0, 0.0, 1.0])
     drive = np.stack([along, -lengthening, lengthening])
     return Effects(drive, kept.matrix, np.array(kept.limits), np.array([1.0, 0.0, 1.0]))
 
 
-def _turning(setting: Setting, spring: SoughtSpring) -> Effects:
+def _compute_torsion(setting: Setting, spring: SoughtSpring) -> Effects:
     """Compute the effects of rate, and rate times free angle."""
     assert spring.links is not None
-    rotation, rate = setting.rotation(spring.links)
-    kept = _Rows(2)
-    kept.between([1.0, 0.0], *spring.rates)
+    rotation, rate = setting.compute_rotation(spring.links)
+    kept = _LimitRows(2)
+    kept.add_range([1.0, 0.0], *spring.rates)
     least, most = np.radians(spring.free_angles)
-    kept.at_most([float(least), -1.0])
-    kept.at_most([-float(most), 1.0])
+    kept.add_maximum([float(least), -1.0])
+    kept.add_maximum([-float(most), 1.0])
     if spring.max_torque is not None:
         for end in (float(rotation.min()), float(rotation.max())):
-            kept.at_most([end, -1.0], spring.max_torque)
-            kept.at_most([-end, 1.0], spring.max_torque)
+            kept.add_maximum([end, -1.0], spring.max_torque)
+            kept.add_maximum([-end, 1.0], spring.max_torque)
     drive = np.stack([rotation * rate, -rate])
     return Effects(drive, kept.matrix, np.array(kept.limits), np.array([1.0, 0.0]))

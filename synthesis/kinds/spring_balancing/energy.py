@@ -3,15 +3,13 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
+from kinematics.arrays import Real
 from kinematics.dynamics.machine import Machine
 from kinematics.dynamics.places import Places, dot
 from kinematics.dynamics.springs import Spring, TorsionSpring
-from synthesis.mechanisms.machine import place_on
-from synthesis.model.dynamics import DynamicsBlock
-
-Real = NDArray[np.float64]
+from synthesis.mechanisms.machine import locate_on_link
+from synthesis.model.dynamics.request import DynamicsBlock
 
 
 def has_potential(block: DynamicsBlock) -> bool:
@@ -23,7 +21,7 @@ def has_potential(block: DynamicsBlock) -> bool:
     return True
 
 
-def potential(machine: Machine, block: DynamicsBlock, now: Places) -> tuple[Real, float]:
+def compute_potential(machine: Machine, block: DynamicsBlock, now: Places) -> tuple[Real, float]:
     """Compute the energy over positions, up to a constant, and its greatest part, for a block with a potential."""
     gravity = np.asarray(machine.gravity)
     parts: list[Real] = [np.zeros(now.smooth.shape)]
@@ -45,31 +43,31 @@ def potential(machine: Machine, block: DynamicsBlock, now: Places) -> tuple[Real
             place = now.joints[load.joint][0]
         else:
             assert load.point is not None
-            at = place_on(machine.mechanism, str(load.link), load.point, machine.scale)
+            at = locate_on_link(machine.mechanism, str(load.link), load.point, machine.scale)
             place = now.point(str(load.link), np.asarray(at))[0]
         parts.append(-dot(force, place))
     for spring in machine.loads:
         if isinstance(spring, Spring):
-            parts.append(_stored(spring, lengths(spring, now)))
+            parts.append(_compute_stored_energy(spring, compute_lengths(spring, now)))
         elif isinstance(spring, TorsionSpring):
             parts.append(0.5 * spring.rate * (spring.rotation(now) - spring.free) ** 2)
     return np.asarray(np.sum(parts, axis=0)), max(float(np.abs(part).max()) for part in parts)
 
 
-def lengths(spring: Spring, now: Places) -> Real:
+def compute_lengths(spring: Spring, now: Places) -> Real:
     """Compute the length of a spring over positions."""
     first, second = (now.point(link, at)[0] for link, at in zip(spring.links, spring.places, strict=True))
     return np.asarray(np.abs(second - first))
 
 
-def tension(spring: Spring, length: Real) -> Real:
+def compute_tension(spring: Spring, length: Real) -> Real:
     """Compute the tension of a spring at rest as if it were two-sided."""
     return np.asarray(spring.rate * (length - spring.free_length) + spring.preload)
 
 
-def _stored(spring: Spring, length: Real) -> Real:
+def _compute_stored_energy(spring: Spring, length: Real) -> Real:
     """Return ½ T²/k, or T L without a rate."""
-    pull = tension(spring, length)
+    pull = compute_tension(spring, length)
     if spring.one_sided == "pull":
         pull = np.maximum(pull, 0.0)
     elif spring.one_sided == "push":

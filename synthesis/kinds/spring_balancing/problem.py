@@ -6,12 +6,12 @@ from typing import Any, Literal
 
 from pydantic import ConfigDict, Field
 
-from synthesis.kinds.spring_balancing.stated_springs import SoughtSpring
-from synthesis.model.dynamics import DynamicsBlock
-from synthesis.model.motions import Sweep
-from synthesis.model.statement import Contradiction, StatedProblem
+from synthesis.kinds.spring_balancing.requested_springs import SoughtSpring
+from synthesis.model.dynamics.request import DynamicsBlock
+from synthesis.model.linkage.input_motion import Sweep
+from synthesis.model.problem import Contradiction, ProblemBase
 
-LEVER: dict[str, Any] = {
+EXAMPLE_LEVER: dict[str, Any] = {
     "mechanism": {
         "type": "skeleton",
         "skeleton": {
@@ -25,7 +25,7 @@ LEVER: dict[str, Any] = {
 }
 """A lever with a weight, used by the examples."""
 
-ROCKER: dict[str, Any] = {
+EXAMPLE_ROCKER: dict[str, Any] = {
     "mechanism": {
         "type": "fourbar",
         "fixed_pivots": {"input": [0.0, 0.0], "output": [300.0, 0.0]},
@@ -54,7 +54,7 @@ class Holding(Sweep):
         return 0.0 if self.speed is None and self.speed_rpm is None else super().rate
 
 
-class SpringBalancingProblem(StatedProblem):
+class SpringBalancingProblem(ProblemBase):
     """Spring balancing: springs that minimize the drive of a linkage under its weights and loads.
 
     Rates, preloads and free lengths at given ends, and one open end of a zero-free-length spring, are optimal with a
@@ -68,7 +68,7 @@ class SpringBalancingProblem(StatedProblem):
             "examples": [
                 {
                     "kind": "spring_balancing",
-                    **LEVER,
+                    **EXAMPLE_LEVER,
                     "springs": [
                         {
                             "ends": [
@@ -81,7 +81,7 @@ class SpringBalancingProblem(StatedProblem):
                 },
                 {
                     "kind": "spring_balancing",
-                    **ROCKER,
+                    **EXAMPLE_ROCKER,
                     "springs": [
                         {
                             "ends": [
@@ -100,7 +100,7 @@ class SpringBalancingProblem(StatedProblem):
                 },
                 {
                     "kind": "spring_balancing",
-                    **ROCKER,
+                    **EXAMPLE_ROCKER,
                     "springs": [
                         {
                             "ends": [
@@ -113,7 +113,7 @@ class SpringBalancingProblem(StatedProblem):
                 },
                 {
                     "kind": "spring_balancing",
-                    **ROCKER,
+                    **EXAMPLE_ROCKER,
                     "springs": [
                         {
                             "ends": [
@@ -151,15 +151,15 @@ class SpringBalancingProblem(StatedProblem):
         """Unit system of the forces."""
         return self.dynamics.units
 
-    def contradictions(self) -> list[Contradiction]:
+    def find_contradictions(self) -> list[Contradiction]:
         """Return errors in the linkage and its loads, and in the places of the springs' ends."""
         if self.dynamics.friction is not None:
             detail = "the best springs can only be computed without friction; omit it"
             return [Contradiction("/dynamics/friction", detail)]
         # Imported here because it loads the analysis core, which parsing a problem should not wait for.
-        from synthesis.kinds.spring_balancing.faults import spring_faults
+        from synthesis.kinds.spring_balancing.errors import find_spring_errors
 
-        faults = self.motion.faults() or spring_faults(
+        faults = self.motion.find_errors() or find_spring_errors(
             self.mechanism, self.dynamics, self.length_unit, self.motion, self.springs
         )
         return [Contradiction(path, detail) for path, detail in faults]

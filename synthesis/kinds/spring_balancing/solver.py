@@ -4,19 +4,19 @@ from __future__ import annotations
 
 from functools import partial
 
-from synthesis.kinds.spring_balancing.branching import branched
+from synthesis.kinds.spring_balancing.branching import branch_and_bound
 from synthesis.kinds.spring_balancing.design import SpringBalancingResult, SprungDesign
 from synthesis.kinds.spring_balancing.effects import Setting
 from synthesis.kinds.spring_balancing.problem import SpringBalancingProblem
-from synthesis.kinds.spring_balancing.search import searched
+from synthesis.kinds.spring_balancing.search import search_springs
 from synthesis.kinds.spring_balancing.verification import verify_springs
-from synthesis.model.kind import Progress, part_of
-from synthesis.outcome.sifting import Sifting
+from synthesis.model.kind import Progress, scale_progress
+from synthesis.results.candidate_log import CandidateLog
 
-LEAST_POSITIONS = 5
+MIN_POSITIONS = 5
 """Minimum number of positions with known forces for a motion to count."""
 
-NOTHING = 1e-12
+ZERO_TOLERANCE = 1e-12
 """Drive as a share of the magnitudes of its parts that counts as zero: rounding."""
 
 
@@ -30,48 +30,50 @@ def solve_spring_balancing(problem: SpringBalancingProblem, progress: Progress) 
     """
     progress(0.0, "measuring the linkage")
     setting = Setting(problem)
-    sifting = Sifting[SprungDesign](problem)
-    if len(setting.at) < LEAST_POSITIONS:
-        return _answer(sifting, "exact", "The mechanism cannot be held over this motion.", complete=False)
-    if not setting.peak > NOTHING * setting.parts:
+    sifting = CandidateLog[SprungDesign](problem)
+    if len(setting.at) < MIN_POSITIONS:
+        return _build_result(sifting, "exact", "The mechanism cannot be held over this motion.", complete=False)
+    if not setting.peak > ZERO_TOLERANCE * setting.parts:
         text = "The drive is zero without springs; there is nothing to balance."
-        return _answer(sifting, "exact", text, complete=True)
-    report = part_of(progress, 0.1, 0.8)
-    places = [setting.places(spring) for spring in problem.springs]
-    if all(spring.convex or spring.superposed for spring in problem.springs):
+        return _build_result(sifting, "exact", text, complete=True)
+    report = scale_progress(progress, 0.1, 0.8)
+    places = [setting.list_corners(spring) for spring in problem.springs]
+    if all(spring.convex or spring.is_superposable for spring in problem.springs):
         method = "convex" if all(spring.convex for spring in problem.springs) else "branch_and_bound"
-        best = branched(setting, places, partial(_reported, report))
+        best = branch_and_bound(setting, places, partial(_report_share, report))
         if best.status == "infeasible":
             text = "None exists: no such springs keep their limits over this motion."
-            return _answer(sifting, method, text, complete=True)
+            return _build_result(sifting, method, text, complete=True)
         found, bound, proved = [best.springs] if best.status == "solved" else [], best.bound, best.proved
     else:
         method, bound, proved = "search", None, False
-        found = searched(setting, partial(_reported, report))
+        found = search_springs(setting, partial(_report_share, report))
     progress(0.8, "verifying")
-    sifting.sift(found, partial(verify_springs, setting, bound=bound, proved=proved))
+    sifting.verify_candidates(found, partial(verify_springs, setting, bound=bound, proved=proved))
     progress(1.0, "verified")
     exact = bool(sifting.passed) and sifting.passed[0].metrics.exact
-    return _answer(
-        sifting, method, _summary(sifting, proved or exact), complete=(proved or exact) and bool(sifting.passed)
+    return _build_result(
+        sifting, method, _write_summary(sifting, proved or exact), complete=(proved or exact) and bool(sifting.passed)
     )
 
 
-def _reported(progress: Progress, share: float) -> None:
+def _report_share(progress: Progress, share: float) -> None:
     progress(share, "finding springs")
 
 
-def _answer(sifting: Sifting[SprungDesign], method: str, summary: str, *, complete: bool) -> SpringBalancingResult:
+def _build_result(
+    sifting: CandidateLog[SprungDesign], method: str, summary: str, *, complete: bool
+) -> SpringBalancingResult:
     return SpringBalancingResult(
-        designs=sifting.designs(lambda designs: sorted(designs, key=lambda design: design.metrics.value)),
-        search=sifting.search(method, complete=complete),
+        designs=sifting.select_designs(lambda designs: sorted(designs, key=lambda design: design.metrics.value)),
+        search=sifting.build_search(method, complete=complete),
         summary=summary,
     )
 
 
-def _summary(sifting: Sifting[SprungDesign], proved: bool) -> str:
+def _write_summary(sifting: CandidateLog[SprungDesign], proved: bool) -> str:
     if not sifting.passed:
-        return f"No design found.{sifting.reasons()}"
+        return f"No design found.{sifting.describe_reasons()}"
     metrics = min(sifting.passed, key=lambda design: design.metrics.value).metrics
     if metrics.exact:
         energy = "" if metrics.energy_variation is None else " and the potential energy constant"

@@ -6,17 +6,17 @@ from typing import Annotated, Literal
 
 from pydantic import Discriminator, Field
 
-from synthesis.model.answer import Answer, Point, Verification, optional
+from synthesis.model.answer import Answer, Point, Verification, optional_field
 from synthesis.model.dimension import Angle, Length
-from synthesis.model.forces_answer import DesignForces
-from synthesis.model.linkage_answer import (
-    LAYOUT,
-    PEAKS,
-    DrivenTo,
+from synthesis.model.dynamics.peak_forces import DesignForces
+from synthesis.model.linkage.answer import (
+    LAYOUT_FIELD,
+    PEAKS_FIELD,
     FourbarMechanism,
     Layout,
     LinkageResult,
     Skeleton,
+    TargetInput,
     UsedRange,
 )
 
@@ -34,7 +34,7 @@ SteeringMechanisms = Annotated[FourbarMechanism | DavisMechanism, Discriminator(
 """Any steering mechanism; the field ``type`` selects it."""
 
 
-class SteeringPosition(DrivenTo):
+class SteeringPosition(TargetInput):
     """The steering turned to the left, as measured on the driven mechanism, whose input is the left arm or the bar."""
 
     inner: Angle
@@ -58,7 +58,7 @@ class SteeringMetrics(UsedRange):
     min_transmission_angle: Angle = Field(description="Over the whole range, degrees.")
     link_ratio: float = Field(description="Longest link over shortest.")
     size: Length = Field(description="Diagonal of the box around all joints in the straight position.")
-    bar_travel: Length | None = optional("Travel of Davis's bar, to each side.")
+    bar_travel: Length | None = optional_field("Travel of Davis's bar, to each side.")
 
 
 class SteeringDesign(Answer):
@@ -68,8 +68,8 @@ class SteeringDesign(Answer):
     targets: list[SteeringPosition]
     verification: Verification
     metrics: SteeringMetrics
-    layout: Layout | None = LAYOUT
-    forces: DesignForces | None = PEAKS
+    layout: Layout | None = LAYOUT_FIELD
+    forces: DesignForces | None = PEAKS_FIELD
 
 
 class SteeringResult(LinkageResult[SteeringDesign]):

@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from synthesis.model.kind import Named
+from synthesis.model.kind import NamedExample
 
 GALLERY = (
-    Named(
+    NamedExample(
         "Car steering",
         "Make an output follow",
         "Both front wheels turn about one point, as near as four links can do it.",

@@ -7,10 +7,10 @@ from typing import Annotated, Literal
 from pydantic import ConfigDict, Field
 
 from synthesis.model.dimension import ANGLE
-from synthesis.model.linkage_statement import LinkageProblem
-from synthesis.model.statement import Contradiction, PositiveLength, Range, Sizable
+from synthesis.model.linkage.problem import LinkageProblem
+from synthesis.model.problem import Contradiction, PositiveLength, Range, Sizable
 
-ARM = (0.1, 0.25)
+DEFAULT_ARM_LIMITS = (0.1, 0.25)
 """Default minimum and maximum length of the steering arms, in distances of the kingpins."""
 
 
@@ -63,7 +63,7 @@ class SteeringProblem(LinkageProblem):
     def arms(self) -> tuple[float, float]:
         """Minimum and maximum length of the steering arms, in pivot distances."""
         if self.arm_length is None:
-            return ARM
+            return DEFAULT_ARM_LIMITS
         return self.arm_length.min / self.pivot_distance, self.arm_length.max / self.pivot_distance
 
     @property
@@ -76,7 +76,7 @@ class SteeringProblem(LinkageProblem):
         """Whether a sliding bar drives the mechanism, as in Davis's gear."""
         return self.mechanism == "davis"
 
-    def contradictions(self) -> list[Contradiction]:
+    def find_contradictions(self) -> list[Contradiction]:
         """Return contradictory requests: wheels between their kingpins, arms that would meet, and others."""
         found = []
         if self.track is not None and self.track < self.pivot_distance:
@@ -92,9 +92,9 @@ class SteeringProblem(LinkageProblem):
             detail = "a steering mechanism that passes a toggle between its locks does not steer; leave this true"
             found.append(Contradiction("/constraints/same_branch", detail))
         if self.mechanism == "davis":
-            found += self.constraints.of_another_class((), "Davis's gear has slides and no class of fourbars")
+            found += self.constraints.find_class_contradictions((), "Davis's gear has slides and no class of fourbars")
         else:
             # The arms are equal and the tie rod differs from the ground: S + L > P + Q always.
             reason = "Ackermann's linkage, with two equal arms, is never Grashof"
-            found += self.constraints.of_another_class(("non_grashof",), reason)
-        return [*found, *self.contradicting_demands()]
+            found += self.constraints.find_class_contradictions(("non_grashof",), reason)
+        return [*found, *self.find_contradicting_constraints()]

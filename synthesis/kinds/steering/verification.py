@@ -11,13 +11,13 @@ from collections.abc import Callable
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.interpolate import CubicSpline
 
+from kinematics.arrays import Real
 from kinematics.errors import DimensionError, MechanismError
-from kinematics.linkage.fourbar import BarkerClass, barker_class, positions, stays_on_branch, transmission_extremes
+from kinematics.linkage.fourbar import BarkerClass, barker_class, find_transmission_extremes, positions, stays_on_branch
 from kinematics.linkage.planar.drive import drive
-from kinematics.linkage.steering import outer_angle
+from kinematics.linkage.steering import compute_outer_angle
 from synthesis.kinds.steering.design import (
     DavisMechanism,
     SteeringDesign,
@@ -28,36 +28,34 @@ from synthesis.kinds.steering.design import (
 from synthesis.kinds.steering.problem import SteeringProblem
 from synthesis.model.answer import Check, Verification
 from synthesis.model.dimension import ANGLE
-from synthesis.model.linkage_answer import FourbarMechanism
-from synthesis.model.linkages import driven_fourbar
-from synthesis.proof.checks import at_most
-from synthesis.proof.closer import least_near
-from synthesis.proof.constraints import constraint_checks
-from synthesis.proof.measures import link_lengths, measured
-from synthesis.proof.rebuilt import rebuilt
+from synthesis.model.linkage.answer import FourbarMechanism
+from synthesis.model.linkage.conversion import build_driven_fourbar
+from synthesis.verification.checks import check_maximum
+from synthesis.verification.constraints import check_constraints
+from synthesis.verification.measures import list_link_lengths, measure_linkage
+from synthesis.verification.reconstruction import rebuild_mechanism
+from synthesis.verification.refined_extremes import find_minimum_near
 
-Real = NDArray[np.float64]
-
-SAMPLES = 2049
+SAMPLE_COUNT = 2049
 """Number of inputs from lock to lock, half of them on each side of the straight position: 64 per reported position."""
 
-SHOWN = 17
+REPORTED_COUNT = 17
 """Number of positions that an answer lists, from straight to the lock."""
 
-LOCKED = 1e-9
+LOCK_TOLERANCE = 1e-9
 """Maximum miss of the lock by the inner wheel, radians; its input is found by bisection."""
 
-HALVINGS = 60
+MAX_BISECTIONS = 60
 """Number of bisections to find a lock: 2⁻⁶⁰ of the range is below rounding."""
 
-FARTHEST = 1e6
+MAX_BAR_TRAVEL = 1e6
 """Maximum travel of the bar to lock a wheel, in pivot distances; a gear that needs more does not lock."""
 
-EXACT = 1e-9
+MAX_EXACT_ERROR = 1e-9
 """Maximum steering error, degrees, that is rounding, for Davis's gear."""
 
 
-class _Driven(NamedTuple):
+class _SteeringMotion(NamedTuple):
     """Wheel angles over inputs from lock to lock, and at any other; radians, counter-clockwise from straight."""
 
     inputs: Real
@@ -84,27 +82,27 @@ def verify_steering(problem: SteeringProblem, design: SteeringMechanisms) -> Ste
     SteeringDesign or None
         None if the mechanism does not reach both locks.
     """
-    driven = _fourbar(problem, design) if isinstance(design, FourbarMechanism) else _gear(problem, design)
+    driven = _drive_fourbar(problem, design) if isinstance(design, FourbarMechanism) else _drive_gear(problem, design)
     if driven is None:
         return None
     ratio, lock = problem.pivot_distance / problem.wheelbase, math.radians(problem.lock)
     # Both turns are measured at once: the left wheel is the inner one in left turns only.
-    inner, outer = _by_turn(driven.left, driven.right)
-    error = np.degrees(outer - outer_angle(inner, ratio))
+    inner, outer = _sort_wheels(driven.left, driven.right)
+    error = np.degrees(outer - compute_outer_angle(inner, ratio))
 
-    def errs(inputs: Real) -> Real:
-        nearer, farther = _by_turn(*driven.wheels(inputs))
-        return -np.abs(np.degrees(farther - outer_angle(nearer, ratio)))
+    def evaluate_errors(inputs: Real) -> Real:
+        nearer, farther = _sort_wheels(*driven.wheels(inputs))
+        return -np.abs(np.degrees(farther - compute_outer_angle(nearer, ratio)))
 
-    worst = -least_near(errs, driven.inputs, -np.abs(error))[1]
+    worst = -find_minimum_near(evaluate_errors, driven.inputs, -np.abs(error))[1]
     joints = {name: complex(*place) for name, place in design.skeleton.joints.items()}
     arm = joints["A"] - joints["O2"]
     behind = arm.imag < 0.0
-    required = float(outer_angle(lock, ratio))
+    required = float(compute_outer_angle(lock, ratio))
     # The mechanism is symmetrical: positions of the left turn are enough for the report.
-    half = [values[SAMPLES // 2 :] for values in (inner, outer, error, driven.inputs)]
-    measures = measured(
-        link_lengths(design),
+    half = [values[SAMPLE_COUNT // 2 :] for values in (inner, outer, error, driven.inputs)]
+    measures = measure_linkage(
+        list_link_lengths(design),
         problem.pivot_distance,
         math.inf,  # steering has no quality
         driven.transmission,
@@ -118,28 +116,28 @@ def verify_steering(problem: SteeringProblem, design: SteeringMechanisms) -> Ste
     )
     metrics = SteeringMetrics(
         steering_error=worst,
-        correct_at=_changes(np.degrees(half[0]), half[2]) if worst > EXACT else [],
+        correct_at=_find_sign_changes(np.degrees(half[0]), half[2]) if worst > MAX_EXACT_ERROR else [],
         outer_lock=math.degrees(float(half[1][-1])),
         arm_length=abs(arm),
         arm_angle=math.degrees(math.atan2(arm.real if behind else -arm.real, abs(arm.imag))),
         tie_rod="behind" if behind else "ahead",
         turning_radius=problem.wheelbase / math.sin(required)
         + 0.5 * ((problem.track or problem.pivot_distance) - problem.pivot_distance),
-        **measures.within(SteeringMetrics),
+        **measures.select_fields(SteeringMetrics),
         bar_travel=None if isinstance(design, FourbarMechanism) else float(np.abs(driven.inputs).max()),
     )
     checks = [
-        Check(name="reaches_locks", passed=abs(float(inner.max()) - lock) <= LOCKED),
+        Check(name="reaches_locks", passed=abs(float(inner.max()) - lock) <= LOCK_TOLERANCE),
         Check(name="same_branch", passed=driven.on_branch),
     ]
     if not isinstance(design, FourbarMechanism):
-        checks.append(at_most("steers_correctly", worst, EXACT, ANGLE))
+        checks.append(check_maximum("steers_correctly", worst, MAX_EXACT_ERROR, ANGLE))
     if problem.max_steering_error is not None:
-        checks.append(at_most("steering_error", worst, problem.max_steering_error, ANGLE))
+        checks.append(check_maximum("steering_error", worst, problem.max_steering_error, ANGLE))
     fixed = [joints.pop(name) for name in ("O2", "O4")]
-    of_constraints = constraint_checks(problem.constraints, measures, fixed, list(joints.values()))
+    of_constraints = check_constraints(problem.constraints, measures, fixed, list(joints.values()))
     checks += [check for check in of_constraints if check.name != "same_branch"]  # always checked above
-    listed = np.linspace(0, len(half[0]) - 1, SHOWN, dtype=int)
+    listed = np.linspace(0, len(half[0]) - 1, REPORTED_COUNT, dtype=int)
     turns = isinstance(design, FourbarMechanism)
     return SteeringDesign(
         mechanism=design,
@@ -150,56 +148,58 @@ def verify_steering(problem: SteeringProblem, design: SteeringMechanisms) -> Ste
                 input_place=None if turns else float(half[3][k]),
                 inner=math.degrees(float(half[0][k])),
                 outer=math.degrees(float(half[1][k])),
-                required=math.degrees(float(outer_angle(half[0][k], ratio))),
+                required=math.degrees(float(compute_outer_angle(half[0][k], ratio))),
                 error=float(half[2][k]),
             )
             for n, k in enumerate(listed)
         ],
-        verification=Verification.of(checks),
+        verification=Verification.from_checks(checks),
         metrics=metrics,
     )
 
 
-def _by_turn(left: Real, right: Real) -> tuple[Real, Real]:
+def _sort_wheels(left: Real, right: Real) -> tuple[Real, Real]:
     """Return the angles of the inner and the outer wheel."""
     to_left = left >= 0.0
     return np.where(to_left, left, -right), np.where(to_left, right, -left)
 
 
-def _fourbar(problem: SteeringProblem, design: FourbarMechanism) -> _Driven | None:
+def _drive_fourbar(problem: SteeringProblem, design: FourbarMechanism) -> _SteeringMotion | None:
     """Drive the fourbar at its left arm, to the lock on one side and until the right wheel locks on the other."""
     try:
-        linkage, assembly, straight = driven_fourbar(design)
+        linkage, assembly, straight = build_driven_fourbar(design)
     except DimensionError:
         return None
     lock = math.radians(problem.lock)
     start = positions(linkage, straight, assembly)
 
-    def right(turned: Real) -> Real:
+    def measure_right_wheel(turned: Real) -> Real:
         at = positions(linkage, straight + turned, assembly).output_angle
         return np.asarray(np.angle(np.exp(1j * (at - float(start.output_angle)))))
 
     # In a right turn the right wheel is the inner one and determines the lock.
-    low = _where(right, -lock, lock)
+    low = _find_right_lock(measure_right_wheel, -lock, lock)
     if low is None:
         return None
-    half = SAMPLES // 2
+    half = SAMPLE_COUNT // 2
     left = np.concatenate([np.linspace(low, 0.0, half + 1)[:-1], np.linspace(0.0, lock, half + 1)])
-    moved = right(left)
+    moved = measure_right_wheel(left)
     if not np.isfinite(moved).all():
         return None
-    least = float(transmission_extremes(linkage, straight + low, straight + lock)[0])
+    least = float(find_transmission_extremes(linkage, straight + low, straight + lock)[0])
     stays = bool(stays_on_branch(linkage, straight + low, straight + lock))
 
-    def wheels(inputs: Real) -> tuple[Real, Real]:
-        return inputs - straight, right(inputs - straight)
+    def measure_wheels(inputs: Real) -> tuple[Real, Real]:
+        return inputs - straight, measure_right_wheel(inputs - straight)
 
-    return _Driven(straight + left, left, moved, wheels, {"coupler": least}, stays, barker_class(linkage))
+    return _SteeringMotion(
+        straight + left, left, moved, measure_wheels, {"coupler": least}, stays, barker_class(linkage)
+    )
 
 
-def _gear(problem: SteeringProblem, design: DavisMechanism) -> _Driven | None:
+def _drive_gear(problem: SteeringProblem, design: DavisMechanism) -> _SteeringMotion | None:
     """Drive Davis's gear at its bar, until the inner wheel locks on either side."""
-    mechanism = rebuilt(design)
+    mechanism = rebuild_mechanism(design)
     if mechanism is None:
         return None
     try:
@@ -211,48 +211,48 @@ def _gear(problem: SteeringProblem, design: DavisMechanism) -> _Driven | None:
     sense = -1.0 if float(mechanism.joints["A"].imag) > 0.0 else 1.0
     straight = float(mechanism.reference_input)
 
-    def arm(name: str, travel: Real) -> Real:
+    def measure_arm(name: str, travel: Real) -> Real:
         turned = drive(mechanism, straight + sense * travel, order=0).angles[name][0] - mechanism.link_angle(name)
         return np.asarray(np.angle(np.exp(1j * turned)))
 
     far = size
-    while not float(arm("left_arm", np.array([far]))[0]) > lock:
+    while not float(measure_arm("left_arm", np.array([far]))[0]) > lock:
         # The travel to the lock has no simple bound: double it until the wheel is beyond the lock.
         far *= 2.0
-        if far > FARTHEST * size:
+        if far > MAX_BAR_TRAVEL * size:
             return None
-    _, locked = _narrowed(lambda bar: not float(arm("left_arm", np.array([bar]))[0]) < lock, 0.0, far)
-    travel = np.linspace(-locked, locked, SAMPLES)
+    _, locked = _bisect_lock(lambda bar: not float(measure_arm("left_arm", np.array([bar]))[0]) < lock, 0.0, far)
+    travel = np.linspace(-locked, locked, SAMPLE_COUNT)
     motion = drive(mechanism, straight + sense * travel, order=1)
-    left, right = arm("left_arm", travel), arm("right_arm", travel)
+    left, right = measure_arm("left_arm", travel), measure_arm("right_arm", travel)
     if not (np.isfinite(left).all() and np.isfinite(right).all()):
         return None
     least = {link: math.asin(min(float(np.abs(sine).min()), 1.0)) for link, sine in motion.sines.items()}
 
-    def wheels(inputs: Real) -> tuple[Real, Real]:
+    def measure_wheels(inputs: Real) -> tuple[Real, Real]:
         at = sense * (inputs - straight)
-        return arm("left_arm", at), arm("right_arm", at)
+        return measure_arm("left_arm", at), measure_arm("right_arm", at)
 
-    return _Driven(straight + sense * travel, left, right, wheels, least, bool(motion.smooth.all()))
+    return _SteeringMotion(straight + sense * travel, left, right, measure_wheels, least, bool(motion.smooth.all()))
 
 
-def _where(right: Callable[[Real], Real], low: float, lock: float) -> float | None:
+def _find_right_lock(right: Callable[[Real], Real], low: float, lock: float) -> float | None:
     """Find the left wheel's angle, negative, at which the right one stands at −lock; None if it does not get there."""
     # The right wheel is the inner one there and turns further; beyond its lock it may have no position at all.
     if float(right(np.array([low]))[0]) > -lock:
         return None
-    return _narrowed(lambda left: not float(right(np.array([left]))[0]) > -lock, 0.0, low)[0]
+    return _bisect_lock(lambda left: not float(right(np.array([left]))[0]) > -lock, 0.0, low)[0]
 
 
-def _narrowed(beyond: Callable[[float], bool], inside: float, outside: float) -> tuple[float, float]:
+def _bisect_lock(beyond: Callable[[float], bool], inside: float, outside: float) -> tuple[float, float]:
     """Bisect between an input on either side of a lock; return the last one before and the first one beyond it."""
-    for _ in range(HALVINGS):
+    for _ in range(MAX_BISECTIONS):
         middle = 0.5 * (inside + outside)
         inside, outside = (inside, middle) if beyond(middle) else (middle, outside)
     return inside, outside
 
 
-def _changes(inner: Real, error: Real) -> list[float]:
+def _find_sign_changes(inner: Real, error: Real) -> list[float]:
     """Return the inner angles at which the error changes sign, beyond the straight position: by cubic pieces between
     samples."""
     return [float(at) for at in CubicSpline(inner, error).roots(extrapolate=False) if at > inner[1]]

@@ -5,7 +5,7 @@ from __future__ import annotations
 from synthesis.kinds.straight_line.design import StraightLineResult
 from synthesis.kinds.straight_line.gallery import GALLERY
 from synthesis.kinds.straight_line.problem import StraightLineProblem
-from synthesis.model.kind import Kind, Progress, always
+from synthesis.model.kind import Kind, Progress, return_true
 
 __all__ = ["KIND"]
 
@@ -22,4 +22,6 @@ def _warm_up() -> None:
     warm_up()
 
 
-KIND = Kind("straight_line", StraightLineProblem, StraightLineResult, _solve, _warm_up, brief=always, gallery=GALLERY)
+KIND = Kind(
+    "straight_line", StraightLineProblem, StraightLineResult, _solve, _warm_up, brief=return_true, gallery=GALLERY
+)

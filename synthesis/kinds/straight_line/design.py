@@ -7,12 +7,12 @@ from typing import Annotated, Literal
 from pydantic import Discriminator, Field
 
 from synthesis.kinds.straight_line.problem import LineMechanism
-from synthesis.model.answer import Answer, Point, Verification, optional
+from synthesis.model.answer import Answer, Point, Verification, optional_field
 from synthesis.model.dimension import Angle, Length, LengthPerRadian, Percent
-from synthesis.model.forces_answer import DesignForces
-from synthesis.model.linkage_answer import (
-    LAYOUT,
-    PEAKS,
+from synthesis.model.dynamics.peak_forces import DesignForces
+from synthesis.model.linkage.answer import (
+    LAYOUT_FIELD,
+    PEAKS_FIELD,
     FourbarMechanism,
     Layout,
     LinkageResult,
@@ -72,7 +72,7 @@ class StraightLineMetrics(MotionMetrics):
         description="Rotation of the input from the line's start to its end, degrees, with its sign."
     )
     moving_links: int
-    cycle_transmission_angle: Angle | None = optional(
+    cycle_transmission_angle: Angle | None = optional_field(
         "Minimum transmission angle over the full turn of an input that turns through, degrees."
     )
     same_branch: bool
@@ -86,8 +86,8 @@ class StraightLineDesign(Answer):
     targets: list[LinePoint]
     verification: Verification
     metrics: StraightLineMetrics
-    layout: Layout | None = LAYOUT
-    forces: DesignForces | None = PEAKS
+    layout: Layout | None = LAYOUT_FIELD
+    forces: DesignForces | None = PEAKS_FIELD
 
 
 class StraightLineResult(LinkageResult[StraightLineDesign]):

@@ -20,31 +20,28 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
-from kinematics.linkage.fourbar import CROSSED, OPEN, Fourbar, coupler_motion, positions
+from kinematics.arrays import Complex, Real
+from kinematics.linkage.fourbar import CROSSED_ASSEMBLY, OPEN_ASSEMBLY, Fourbar, coupler_motion, positions
 from synthesis.kinds.straight_line.problem import LineMechanism
-from synthesis.numerics.narrowing import Values
+from synthesis.numerics.narrowing import ShapeValues
 
-Real = NDArray[np.float64]
-Complex = NDArray[np.complex128]
-
-SAMPLES = 65
+SAMPLE_COUNT = 65
 """Number of inputs at which a motion is evaluated, in Chebyshev's spacing; a band of six ripples is resolved to 1 %."""
 
-SPARSER = 4
+CONSTRAINT_STRIDE = 4
 """Velocity and transmission angle, which change slowly, are constrained at every fourth sample."""
 
-FORWARD = 0.02
+MIN_FORWARD_VELOCITY = 0.02
 """Minimum velocity along the line, in units of the mean: P must not turn back."""
 
-OFF_MIDDLE, OFF_CHORD = 0.6, 0.3
+MAX_MIDDLE_OFFSET, MAX_CHORD_ANGLE = 0.6, 0.3
 """Maximum offset of the middle of the range from its place by symmetry, and of the line from the chord, radians."""
 
-MIDDLES = np.linspace(-0.9 * OFF_MIDDLE, 0.9 * OFF_MIDDLE, 13)
+MIDDLE_OFFSETS = np.linspace(-0.9 * MAX_MIDDLE_OFFSET, 0.9 * MAX_MIDDLE_OFFSET, 13)
 """Offsets of the middle that are tried first, radians."""
 
-TURNS = 0.02
+MIN_GRASHOF_MARGIN = 0.02
 """Minimum margin of a crank of 1 in Grashof's condition: at zero it would meet a change point."""
 
 
@@ -72,18 +69,18 @@ class Family:
     high: tuple[float, ...]
     symmetric: bool = False
 
-    def bounds(self, *, fixed: tuple[float, ...] | None = None) -> tuple[Real, Real]:
+    def get_bounds(self, *, fixed: tuple[float, ...] | None = None) -> tuple[Real, Real]:
         """Return bounds of a shape, with the proportions fixed or free."""
-        off = [] if self.symmetric else [OFF_MIDDLE, OFF_CHORD]
+        off = [] if self.symmetric else [MAX_MIDDLE_OFFSET, MAX_CHORD_ANGLE]
         low, high = (self.low, self.high) if fixed is None else (fixed, fixed)
         return np.array([*low, *(-x for x in off)]), np.array([*high, *off])
 
-    def beginnings(self, proportions: Real) -> Real:
+    def list_starts(self, proportions: Real) -> Real:
         """Return shapes with given proportions (m, k) and, if the middle is free, several offsets of it."""
         if self.symmetric:
             return proportions
-        repeated = np.repeat(proportions, len(MIDDLES), axis=0)
-        offsets = np.stack([np.tile(MIDDLES, len(proportions)), np.zeros(len(repeated))], axis=1)
+        repeated = np.repeat(proportions, len(MIDDLE_OFFSETS), axis=0)
+        offsets = np.stack([np.tile(MIDDLE_OFFSETS, len(proportions)), np.zeros(len(repeated))], axis=1)
         return np.concatenate([repeated, offsets], axis=1)
 
 
@@ -96,7 +93,7 @@ class LineLimits(NamedTuple):
     link_ratio: float
 
 
-class Line(NamedTuple):
+class LineMotion(NamedTuple):
     """Motion of P: points (m, N), and the line's direction (unit vectors), its length, the input's angles."""
 
     p: Complex
@@ -106,12 +103,12 @@ class Line(NamedTuple):
     theta: Real
 
 
-def chebyshev_nodes(count: int) -> Real:
+def compute_chebyshev_nodes(count: int) -> Real:
     """Return points in [−1/2, 1/2] that are densest at the ends, which they include."""
     return np.asarray(-0.5 * np.cos(np.pi * np.arange(count) / (count - 1)))
 
 
-def run(family: Family, shapes: Real, span: float, nodes: Real) -> tuple[Line, Shapes]:
+def run_linkages(family: Family, shapes: Real, span: float, nodes: Real) -> tuple[LineMotion, Shapes]:
     """Compute the motion of P over the range, in the family's frame; NaN where a shape is no linkage there."""
     k = len(family.classical)
     members = family.make(shapes[:, :k])
@@ -124,14 +121,14 @@ def run(family: Family, shapes: Real, span: float, nodes: Real) -> tuple[Line, S
         # By symmetry the line of Hoeken's linkage lies along the axis; lines of other types lie near the chord.
         along = np.sign(chord.real) + 0j if family.symmetric else chord / np.abs(chord) * np.exp(1j * shapes[:, k + 1])
         length = (chord * along.conj()).real
-    return Line(motion.p, motion.velocity, along, length, theta), members
+    return LineMotion(motion.p, motion.velocity, along, length, theta), members
 
 
-def values_of(family: Family, demands: LineLimits, nodes: Real) -> Callable[[Real], Values]:
+def make_objective(family: Family, demands: LineLimits, nodes: Real) -> Callable[[Real], ShapeValues]:
     """Return the function that computes objective and constraints of shapes."""
 
-    def values(shapes: Real) -> Values:
-        line, members = run(family, shapes, demands.span, nodes)
+    def evaluate_shapes(shapes: Real) -> ShapeValues:
+        line, members = run_linkages(family, shapes, demands.span, nodes)
         turned = line.direction.conj()[:, None]
         with np.errstate(invalid="ignore", divide="ignore"):
             across = (line.p * turned).imag / line.length[:, None]
@@ -139,30 +136,31 @@ def values_of(family: Family, demands: LineLimits, nodes: Real) -> Callable[[Rea
             speed = (line.velocity * turned).real * (demands.span / line.length)[:, None]
             positive = np.concatenate(
                 [
-                    speed[:, ::SPARSER] - FORWARD,
-                    _transmission(members.linkage, line.theta[:, ::SPARSER]) - math.sin(demands.transmission) ** 2,
-                    _ratios(members.linkage, demands.link_ratio),
+                    speed[:, ::CONSTRAINT_STRIDE] - MIN_FORWARD_VELOCITY,
+                    _compute_transmission(members.linkage, line.theta[:, ::CONSTRAINT_STRIDE])
+                    - math.sin(demands.transmission) ** 2,
+                    _compute_ratio_margins(members.linkage, demands.link_ratio),
                     members.spare,
                 ],
                 axis=1,
             )
         # Even velocity is the objective, and the width of the strip is limited by the caller.
         if demands.velocity:
-            return Values(speed, across, positive)
-        return Values(across, np.empty((len(shapes), 0)), positive)
+            return ShapeValues(speed, across, positive)
+        return ShapeValues(across, np.empty((len(shapes), 0)), positive)
 
-    return values
+    return evaluate_shapes
 
 
-def configuration(family: Family, shape: Real, span: float) -> tuple[Complex, Line]:
+def build_configuration(family: Family, shape: Real, span: float) -> tuple[Complex, LineMotion]:
     """Return joints O2, A, B, O4, P at the start of the range, and the motion of one shape in the family's frame."""
-    line, members = run(family, shape[None], span, chebyshev_nodes(SAMPLES))
+    line, members = run_linkages(family, shape[None], span, compute_chebyshev_nodes(SAMPLE_COUNT))
     at = positions(members.linkage, line.theta[:, :1], np.array([family.assembly]))
     pivots = members.linkage.input_pivot[0], members.linkage.output_pivot[0]
-    return np.array([pivots[0], at.a[0, 0], at.b[0, 0], pivots[1], at.p[0, 0]]), Line(*(part[0] for part in line))
+    return np.array([pivots[0], at.a[0, 0], at.b[0, 0], pivots[1], at.p[0, 0]]), LineMotion(*(part[0] for part in line))
 
 
-def _transmission(linkage: Fourbar, theta: Real) -> Real:
+def _compute_transmission(linkage: Fourbar, theta: Real) -> Real:
     """Return sin² of the transmission angle, by the law of cosines in the triangle A B O4."""
     pin = linkage.input_pivot[:, None] + linkage.input[:, None] * np.exp(1j * theta)
     diagonal = np.abs(linkage.output_pivot[:, None] - pin)
@@ -170,40 +168,40 @@ def _transmission(linkage: Fourbar, theta: Real) -> Real:
     return np.asarray(1.0 - ((b * b + c * c - diagonal * diagonal) / (2.0 * b * c)) ** 2)
 
 
-def _ratios(linkage: Fourbar, most: float) -> Real:
+def _compute_ratio_margins(linkage: Fourbar, most: float) -> Real:
     """Return log(most) − log(longest / shortest), for each pair of links."""
     logs = np.log(linkage.lengths)
     return np.asarray((math.log(most) + logs[:, :, None] - logs[:, None, :]).reshape(len(logs), -1))
 
 
-def _hoeken(x: Real) -> Shapes:
+def _make_hoeken(x: Real) -> Shapes:
     ground, coupler = x[:, 0], x[:, 1]
     # A, B and P in line with B in the middle: the coupler point is at twice the coupler.
     linkage = Fourbar.from_lengths(np.ones_like(ground), coupler, coupler, ground, 2.0 * coupler)
-    spare = np.stack([ground - 1.0 - TURNS, 2.0 * coupler - ground - 1.0 - TURNS], axis=1)
+    spare = np.stack([ground - 1.0 - MIN_GRASHOF_MARGIN, 2.0 * coupler - ground - 1.0 - MIN_GRASHOF_MARGIN], axis=1)
     return Shapes(linkage, np.full(len(x), np.pi), spare)
 
 
-def _norton(x: Real) -> Shapes:
+def _make_norton(x: Real) -> Shapes:
     """Return Hoeken's linkages with 2 L3 = 3 L1 − L2, which include those of Norton's Table 3-1."""
-    return _hoeken(np.stack([x[:, 0], 1.5 * x[:, 0] - 0.5], axis=1))
+    return _make_hoeken(np.stack([x[:, 0], 1.5 * x[:, 0] - 0.5], axis=1))
 
 
-def _beside(height: Real) -> Real:
+def _compute_height(height: Real) -> Real:
     """Return the root of a squared height that must be positive for the middle position to exist."""
     with np.errstate(invalid="ignore"):
         return np.sqrt(height)
 
 
-def _chebyshev(x: Real) -> Shapes:
+def _make_chebyshev(x: Real) -> Shapes:
     rocker, coupler = x[:, 0], x[:, 1]
     reach = 0.5 * (1.0 + coupler)
-    middle = np.arctan2(_beside(rocker**2 - reach**2), reach)
+    middle = np.arctan2(_compute_height(rocker**2 - reach**2), reach)
     linkage = Fourbar.from_lengths(rocker, coupler, rocker, np.ones_like(rocker), 0.5 * coupler)
     return Shapes(linkage, middle, np.empty((len(x), 0)))
 
 
-def _watt(x: Real) -> Shapes:
+def _make_watt(x: Real) -> Shapes:
     rocker, coupler = x[:, 0], x[:, 1]
     with np.errstate(invalid="ignore"):
         # In the middle A and B lie opposite each other about the ground's middle: |1 − 2 a e^{iθ}| = b.
@@ -212,31 +210,40 @@ def _watt(x: Real) -> Shapes:
     return Shapes(linkage, middle, np.empty((len(x), 0)))
 
 
-def _roberts(x: Real) -> Shapes:
+def _make_roberts(x: Real) -> Shapes:
     rocker, coupler, drop = x[:, 0], x[:, 1], x[:, 2]
     reach = 0.5 * (1.0 - coupler)
-    middle = np.arctan2(_beside(rocker**2 - reach**2), reach)
+    middle = np.arctan2(_compute_height(rocker**2 - reach**2), reach)
     linkage = Fourbar.from_lengths(rocker, coupler, rocker, np.ones_like(rocker), 0.5 * coupler - 1j * drop)
     return Shapes(linkage, middle, np.empty((len(x), 0)))
 
 
-def _evans(x: Real) -> Shapes:
+def _make_evans(x: Real) -> Shapes:
     coupler, rocker, beyond = x[:, 0], x[:, 1], x[:, 2]
     pivot = x[:, 3] - 1j * x[:, 4]
     linkage = Fourbar(np.zeros(len(x)), pivot, np.ones(len(x)), coupler, rocker, -beyond)
     return Shapes(linkage, np.zeros(len(x)), np.empty((len(x), 0)))
 
 
-HOEKEN = Family("hoeken", _hoeken, OPEN, (2.625, 3.4375), (1.0, 1.0), (6.0, 12.0), symmetric=True)
-NORTON = Family("hoeken", _norton, OPEN, (1.9,), (1.0,), (6.0,), symmetric=True)
+HOEKEN = Family("hoeken", _make_hoeken, OPEN_ASSEMBLY, (2.625, 3.4375), (1.0, 1.0), (6.0, 12.0), symmetric=True)
+NORTON = Family("hoeken", _make_norton, OPEN_ASSEMBLY, (1.9,), (1.0,), (6.0,), symmetric=True)
 
 FOURBARS: dict[str, Family] = {
     "hoeken": HOEKEN,
-    "chebyshev": Family("chebyshev", _chebyshev, CROSSED, (1.25, 0.5), (0.3, 0.1), (4.0, 3.0)),
-    "watt": Family("watt", _watt, CROSSED, (2.0 / math.sqrt(17.0), 1.0 / math.sqrt(17.0)), (0.2, 0.1), (2.0, 2.0)),
-    "roberts": Family("roberts", _roberts, OPEN, (0.5, 0.5, math.sqrt(3.0) / 4.0), (0.3, 0.1, 0.05), (2.0, 2.0, 2.0)),
+    "chebyshev": Family("chebyshev", _make_chebyshev, CROSSED_ASSEMBLY, (1.25, 0.5), (0.3, 0.1), (4.0, 3.0)),
+    "watt": Family(
+        "watt", _make_watt, CROSSED_ASSEMBLY, (2.0 / math.sqrt(17.0), 1.0 / math.sqrt(17.0)), (0.2, 0.1), (2.0, 2.0)
+    ),
+    "roberts": Family(
+        "roberts", _make_roberts, OPEN_ASSEMBLY, (0.5, 0.5, math.sqrt(3.0) / 4.0), (0.3, 0.1, 0.05), (2.0, 2.0, 2.0)
+    ),
     "evans": Family(
-        "evans", _evans, OPEN, (1.0, 3.0, 1.0, 1.9, 3.0), (0.5, 0.8, 0.3, 0.2, 0.3), (3.0, 6.0, 4.0, 6.0, 6.0)
+        "evans",
+        _make_evans,
+        OPEN_ASSEMBLY,
+        (1.0, 3.0, 1.0, 1.9, 3.0),
+        (0.5, 0.8, 0.3, 0.2, 0.3),
+        (3.0, 6.0, 4.0, 6.0, 6.0),
     ),
 }
 """Families by the names of the types. Classical: Chebyshev 4:5:2; Watt rockers 2, coupler 1 at right angles to both in

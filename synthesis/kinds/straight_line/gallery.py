@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from synthesis.model.kind import Named
+from synthesis.model.kind import NamedExample
 
 GALLERY = (
-    Named("Straight edge", "Draw a curve", "Hoeken's linkage, as straight as possible over a third of a turn."),
-    Named("Exact line", "Draw a curve", "Peaucellier's eight links: no error at all."),
+    NamedExample("Straight edge", "Draw a curve", "Hoeken's linkage, as straight as possible over a third of a turn."),
+    NamedExample("Exact line", "Draw a curve", "Peaucellier's eight links: no error at all."),
 )

@@ -7,8 +7,15 @@ from typing import Annotated, Literal, get_args
 from pydantic import ConfigDict, Field
 
 from synthesis.model.dimension import ANGLE, PERCENT
-from synthesis.model.linkage_statement import LinkageProblem
-from synthesis.model.statement import ROUNDED_OFF, Contradiction, Degrees, Point, PositiveLength, PositiveNumber
+from synthesis.model.linkage.problem import LinkageProblem
+from synthesis.model.problem import (
+    CANCELLATION_TOLERANCE,
+    Contradiction,
+    Degrees,
+    Point,
+    PositiveLength,
+    PositiveNumber,
+)
 
 LineMechanism = Literal["hoeken", "chebyshev", "watt", "roberts", "evans", "peaucellier", "hart", "scott_russell"]
 """Types of straight-line mechanism."""
@@ -30,10 +37,10 @@ DEFAULT_RANGE: dict[LineMechanism, float] = {
 }
 """Default rotation of the input, degrees: the usual range of each type."""
 
-LEAST_RANGE = 1e-3
+MIN_RANGE = 1e-3
 """Minimum rotation of the input, degrees: for less the linkage is 10⁵ times as long as the line."""
 
-MOST_RANGE: dict[LineMechanism, float] = {"scott_russell": 180.0}
+MAX_RANGE: dict[LineMechanism, float] = {"scott_russell": 180.0}
 """Exclusive upper limits of the range of some types; all others stay below a full turn."""
 
 
@@ -65,7 +72,7 @@ class StraightLineProblem(LinkageProblem):
 
     kind: Literal["straight_line"]
     length: PositiveLength = Field(description="Length of the line, in length units.")
-    crank_range: Annotated[float, ANGLE, Field(strict=True, ge=LEAST_RANGE, lt=360.0)] | None = Field(
+    crank_range: Annotated[float, ANGLE, Field(strict=True, ge=MIN_RANGE, lt=360.0)] | None = Field(
         default=None,
         description="Rotation of the input while P runs along the line, degrees. By default the usual range of the "
         f"type: {', '.join(f'{name} {value:g}' for name, value in DEFAULT_RANGE.items())}.",
@@ -99,9 +106,9 @@ class StraightLineProblem(LinkageProblem):
         """The types to be tried."""
         if self.mechanism != "auto":
             return (self.mechanism,)
-        return tuple(name for name in LINE_MECHANISMS if self.range_of(name) < MOST_RANGE.get(name, 360.0))
+        return tuple(name for name in LINE_MECHANISMS if self.get_range(name) < MAX_RANGE.get(name, 360.0))
 
-    def range_of(self, mechanism: LineMechanism) -> float:
+    def get_range(self, mechanism: LineMechanism) -> float:
         """Return the rotation of the input for a type, degrees."""
         return DEFAULT_RANGE[mechanism] if self.crank_range is None else self.crank_range
 
@@ -110,19 +117,19 @@ class StraightLineProblem(LinkageProblem):
         """The name of the optimized metric, if it is not the default."""
         return "velocity_variation" if self.optimize == "velocity" else None
 
-    def contradictions(self) -> list[Contradiction]:
+    def find_contradictions(self) -> list[Contradiction]:
         """Return ranges that a type cannot have, and requests that exclude one another."""
-        contradictions = list(self.contradicting_demands())
+        contradictions = list(self.find_contradicting_constraints())
         # Scott-Russell's line is traced back beyond half a turn.
-        for name, most in MOST_RANGE.items():
-            if self.mechanism == name and self.range_of(name) >= most:
+        for name, most in MAX_RANGE.items():
+            if self.mechanism == name and self.get_range(name) >= most:
                 detail = f"the crank of {name} turns by less than {most:g}°; give less or choose another mechanism"
                 contradictions.append(Contradiction("/crank_range", detail))
-        if self.length < ROUNDED_OFF * max(map(abs, self.start)):
+        if self.length < CANCELLATION_TOLERANCE * max(map(abs, self.start)):
             contradictions.append(
                 Contradiction("/length", "too short relative to the coordinates of the start; move the origin nearer")
             )
         if self.mechanism in EXACT_LINES:
             reason = f"applies to fourbars; a {self.mechanism} mechanism has no class"
-            contradictions += self.constraints.of_another_class((), reason)
+            contradictions += self.constraints.find_class_contradictions((), reason)
         return contradictions

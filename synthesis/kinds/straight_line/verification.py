@@ -15,35 +15,47 @@ from typing import Literal, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from kinematics.arrays import Real
 from kinematics.linkage.planar.drive import MechanismMotion, drive
 from kinematics.linkage.planar.mechanism import Mechanism
 from synthesis.kinds.straight_line.design import ExactLineMechanism, LinePoint, StraightLineDesign, StraightLineMetrics
 from synthesis.kinds.straight_line.problem import LineMechanism, StraightLineProblem
 from synthesis.model.answer import Check, Verification
 from synthesis.model.dimension import LENGTH, PERCENT
-from synthesis.model.linkage_answer import FourbarMechanism
-from synthesis.proof.checks import at_most, tolerated
-from synthesis.proof.closer import GRID, extremes_of, least_angles, turn_from
-from synthesis.proof.constraints import constraint_checks
-from synthesis.proof.measures import Measures, barker_of, fixed_pivots, link_lengths, measured, moving_pivots, reach_of
-from synthesis.proof.rebuilt import rebuilt
+from synthesis.model.linkage.answer import FourbarMechanism
+from synthesis.verification.checks import check_error, check_maximum
+from synthesis.verification.constraints import check_constraints
+from synthesis.verification.measures import (
+    Measures,
+    classify_fourbar,
+    list_fixed_pivots,
+    list_link_lengths,
+    list_moving_pivots,
+    measure_linkage,
+    measure_reach,
+)
+from synthesis.verification.reconstruction import rebuild_mechanism
+from synthesis.verification.refined_extremes import (
+    GRID_SIZE,
+    find_extremes,
+    find_min_transmission_angles,
+    list_full_turn,
+)
 
-Real = NDArray[np.float64]
-
-REACHED = 1e-9
+REACH_TOLERANCE = 1e-9
 """Maximum distance of P from the ends of the line, along it, and from an exact line: a share of the length."""
 
-ROUNDING = 64.0 * float(np.finfo(np.float64).eps)
+ROUNDING_ALLOWANCE = 64.0 * float(np.finfo(np.float64).eps)
 """Allowance for rounding in addition, as a share of the largest coordinate: mechanisms far from the origin lose
 digits."""
 
-NO_TOGGLE = 1e-6
+MIN_TOGGLE_SINE = 1e-6
 """Minimum sine of a transmission angle at which the mechanism still moves in a defined direction."""
 
 LineMechanisms = FourbarMechanism | ExactLineMechanism
 
 
-class _Along(NamedTuple):
+class _LineMeasurement(NamedTuple):
     """The motion along the line: extremes of the distance across it and of the velocity along it, and places."""
 
     across: tuple[float, float]
@@ -76,16 +88,16 @@ def verify_straight_line(
     StraightLineDesign or None
         None if the mechanism cannot be driven through the range.
     """
-    mechanism = rebuilt(design)
+    mechanism = rebuild_mechanism(design)
     if mechanism is None:
         return None
-    span = math.radians(problem.range_of(family))
+    span = math.radians(problem.get_range(family))
     start, along = complex(*problem.start), cmath.exp(1j * math.radians(problem.direction))
-    sense = _sense(mechanism, along)
+    sense = _find_sense(mechanism, along)
     if sense is None:
         return None
-    inputs = float(mechanism.reference_input) + sense * span * np.linspace(0.0, 1.0, GRID)
-    driven = _driven(mechanism, inputs, start, along, sense)
+    inputs = float(mechanism.reference_input) + sense * span * np.linspace(0.0, 1.0, GRID_SIZE)
+    driven = _drive_along_line(mechanism, inputs, start, along, sense)
     if driven is None:
         return None
     length = problem.length
@@ -94,15 +106,15 @@ def verify_straight_line(
     if not travelled > 0.0:
         return None
     mean = travelled / span
-    whole = _whole_turn(mechanism)
-    measures = measured(
-        _lengths(design, mechanism),
-        reach_of(mechanism),
+    whole = _measure_full_turn(mechanism)
+    measures = measure_linkage(
+        _list_lengths(design, mechanism),
+        measure_reach(mechanism),
         length,
         driven.transmission,
         driven.joints,
-        barker=barker_of(mechanism) if isinstance(design, FourbarMechanism) else None,
-        same_branch=min(driven.transmission.values()) > NO_TOGGLE,
+        barker=classify_fourbar(mechanism) if isinstance(design, FourbarMechanism) else None,
+        same_branch=min(driven.transmission.values()) > MIN_TOGGLE_SINE,
         visits_in_order=driven.velocity[0] > 0.0,
         full_rotation=whole is not None,
         used=(float(inputs[0]), float(inputs[-1])),
@@ -118,9 +130,9 @@ def verify_straight_line(
         input_rotation=math.degrees(sense * span),
         moving_links=len(mechanism.links) - 1,
         cycle_transmission_angle=whole,
-        **measures.within(StraightLineMetrics),
+        **measures.select_fields(StraightLineMetrics),
     )
-    checks = _checks(problem, driven, metrics, sense, mechanism, measures)
+    checks = _check_design(problem, driven, metrics, sense, mechanism, measures)
     return StraightLineDesign(
         mechanism=design,
         targets=[
@@ -128,42 +140,42 @@ def verify_straight_line(
             for k, (at, local) in enumerate(zip(inputs[[0, -1]].tolist(), driven.ends, strict=True))
             for place in [start + along * local]
         ],
-        verification=Verification.of(checks),
+        verification=Verification.from_checks(checks),
         metrics=metrics,
     )
 
 
-def _checks(
+def _check_design(
     problem: StraightLineProblem,
-    driven: _Along,
+    driven: _LineMeasurement,
     metrics: StraightLineMetrics,
     sense: int,
     mechanism: Mechanism,
     measures: Measures,
 ) -> list[Check]:
     length = problem.length
-    limit = REACHED + ROUNDING * float(np.abs(driven.joints).max()) / length
+    limit = REACH_TOLERANCE + ROUNDING_ALLOWANCE * float(np.abs(driven.joints).max()) / length
     gap = max(abs(driven.ends[0].real), abs(driven.ends[1].real - length)) / length
-    checks = [tolerated("reaches_ends", gap, limit)]
+    checks = [check_error("reaches_ends", gap, limit)]
     # An exact mechanism may deviate by rounding only.
     if metrics.proportions == "exact":
         off = metrics.deviation / length
-        checks.append(tolerated("exact_line", off, limit))
+        checks.append(check_error("exact_line", off, limit))
     if problem.max_deviation is not None:
-        checks.append(at_most("deviation", metrics.deviation, problem.max_deviation, LENGTH))
+        checks.append(check_maximum("deviation", metrics.deviation, problem.max_deviation, LENGTH))
     if problem.max_velocity_variation is not None:
         checks.append(
-            at_most("velocity_variation", metrics.velocity_variation, problem.max_velocity_variation, PERCENT)
+            check_maximum("velocity_variation", metrics.velocity_variation, problem.max_velocity_variation, PERCENT)
         )
     if problem.rotation != "any":
         checks.append(Check(name="rotation", passed=(sense > 0) == (problem.rotation == "ccw")))
     return [
         *checks,
-        *constraint_checks(problem.constraints, measures, fixed_pivots(mechanism), moving_pivots(mechanism)),
+        *check_constraints(problem.constraints, measures, list_fixed_pivots(mechanism), list_moving_pivots(mechanism)),
     ]
 
 
-def _sense(mechanism: Mechanism, along: complex) -> int | None:
+def _find_sense(mechanism: Mechanism, along: complex) -> int | None:
     """Return the direction in which the input turns while P goes forward; None at a toggle."""
     motion = drive(mechanism, mechanism.reference_input[None], order=1)
     # First derivative of P by the input, along the line.
@@ -171,45 +183,49 @@ def _sense(mechanism: Mechanism, along: complex) -> int | None:
     return (1 if forward > 0.0 else -1) if motion.smooth[0] and forward != 0.0 else None
 
 
-def _driven(mechanism: Mechanism, inputs: Real, start: complex, along: complex, sense: int) -> _Along | None:
+def _drive_along_line(
+    mechanism: Mechanism, inputs: Real, start: complex, along: complex, sense: int
+) -> _LineMeasurement | None:
     """Measure the motion of P along the line; None if the mechanism cannot be driven all along it."""
     motion = drive(mechanism, inputs, order=1)
     if not motion.smooth.all():
         return None
 
-    def across(motion: MechanismMotion) -> Real:
+    def measure_offset(motion: MechanismMotion) -> Real:
         return np.asarray(((motion.joints["P"][0] - start) * along.conjugate()).imag)
 
-    def velocity(motion: MechanismMotion) -> Real:
+    def measure_velocity(motion: MechanismMotion) -> Real:
         return np.asarray(sense * (motion.joints["P"][1] * along.conjugate()).real)
 
     local = (motion.joints["P"][0] - start) * along.conjugate()
-    return _Along(
-        extremes_of(mechanism, inputs, across(motion), across),
-        extremes_of(mechanism, inputs, velocity(motion), velocity),
+    return _LineMeasurement(
+        find_extremes(mechanism, inputs, measure_offset(motion), measure_offset),
+        find_extremes(mechanism, inputs, measure_velocity(motion), measure_velocity),
         (complex(local[0]), complex(local[-1])),
-        float(velocity(motion)[GRID // 2]),
-        least_angles(partial(drive, mechanism, order=0), inputs, motion),
+        float(measure_velocity(motion)[GRID_SIZE // 2]),
+        find_min_transmission_angles(partial(drive, mechanism, order=0), inputs, motion),
         np.concatenate([jet[0] for jet in motion.joints.values()]),
     )
 
 
-def _whole_turn(mechanism: Mechanism) -> float | None:
+def _measure_full_turn(mechanism: Mechanism) -> float | None:
     """Return the minimum transmission angle over a full turn of the input, degrees; None if it does not turn
     through."""
-    inputs = turn_from(float(mechanism.reference_input))
+    inputs = list_full_turn(float(mechanism.reference_input))
     motion = drive(mechanism, inputs, order=1)
     if not motion.smooth.all():
         return None
-    least = min(least_angles(partial(drive, mechanism, order=0), inputs, motion).values())
+    least = min(find_min_transmission_angles(partial(drive, mechanism, order=0), inputs, motion).values())
     # A linkage may return in another assembly after one turn of its input.
-    closed = all(abs(jet[0, -1] - jet[0, 0]) <= REACHED * np.abs(jet[0]).max() for jet in motion.joints.values())
-    return math.degrees(least) if closed and least > NO_TOGGLE else None
+    closed = all(
+        abs(jet[0, -1] - jet[0, 0]) <= REACH_TOLERANCE * np.abs(jet[0]).max() for jet in motion.joints.values()
+    )
+    return math.degrees(least) if closed and least > MIN_TOGGLE_SINE else None
 
 
-def _lengths(design: LineMechanisms, mechanism: Mechanism) -> list[float]:
+def _list_lengths(design: LineMechanisms, mechanism: Mechanism) -> list[float]:
     """Return the lengths of the links, with the ground's if it has two pivots."""
-    lengths = link_lengths(design)
+    lengths = list_link_lengths(design)
     if isinstance(design, FourbarMechanism):
         return lengths
-    return [*lengths, *(abs(after - before) for before, after in pairwise(fixed_pivots(mechanism)))]
+    return [*lengths, *(abs(after - before) for before, after in pairwise(list_fixed_pivots(mechanism)))]

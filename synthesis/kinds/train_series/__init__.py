@@ -9,7 +9,7 @@ from synthesis.model.kind import Kind, Progress
 
 __all__ = ["KIND"]
 
-FEW = 5_000_000
+MAX_BRIEF_SERIES = 5_000_000
 """Number of series of trains that are searched in a fraction of a second."""
 
 
@@ -19,9 +19,9 @@ def _solve(problem: TrainSeriesProblem, progress: Progress) -> TrainSeriesResult
     return solve_train_series(problem, progress)
 
 
-def _brief(problem: TrainSeriesProblem) -> bool:
+def _is_brief(problem: TrainSeriesProblem) -> bool:
     """Return whether the search is instant: the series are few."""
-    return problem.combinations <= FEW
+    return problem.combinations <= MAX_BRIEF_SERIES
 
 
-KIND = Kind("train_series", TrainSeriesProblem, TrainSeriesResult, _solve, brief=_brief, gallery=GALLERY)
+KIND = Kind("train_series", TrainSeriesProblem, TrainSeriesResult, _solve, brief=_is_brief, gallery=GALLERY)

@@ -11,34 +11,31 @@ from fractions import Fraction
 from typing import Any, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
-from synthesis.kinds.gear_train.every import every_train as every_ordinary
-from synthesis.kinds.gear_train.making import mechanism_of as ordinary_mechanism
-from synthesis.kinds.gear_train.pairing import MOST_STAGES
+from kinematics.arrays import Integers, Real
+from synthesis.kinds.gear_train.construction.train import build_mechanism as ordinary_mechanism
 from synthesis.kinds.gear_train.problem import GearTrainProblem
-from synthesis.kinds.gear_train.search import Train
-from synthesis.kinds.gear_train.stated_stages import sense_of
-from synthesis.kinds.gear_train.task import gear_train_task
-from synthesis.kinds.planetary_train.every import SoundTrains
-from synthesis.kinds.planetary_train.every import every_train as every_planetary
-from synthesis.kinds.planetary_train.making import mechanism_of as planetary_mechanism
+from synthesis.kinds.gear_train.search.enumeration import list_every_train as every_ordinary
+from synthesis.kinds.gear_train.search.pairing_rules import MAX_STAGES
+from synthesis.kinds.gear_train.search.search import Train
+from synthesis.kinds.gear_train.search.task import build_task
+from synthesis.kinds.gear_train.statement.stages import compute_sense
+from synthesis.kinds.planetary_train.build import build_mechanism as planetary_mechanism
+from synthesis.kinds.planetary_train.enumeration import SoundTrains
+from synthesis.kinds.planetary_train.enumeration import list_every_train as every_planetary
 from synthesis.kinds.planetary_train.problem import PlanetaryProblem
-from synthesis.kinds.train_series.stated_units import problem_of
+from synthesis.kinds.train_series.units import build_unit_problem
 
-Whole = NDArray[np.int64]
-Real = NDArray[np.float64]
-
-GREATEST = 1e9
+MAX_RATIO = 1e9
 """Maximum ratio of a unit, and inverse of the minimum: no larger ratio may be requested."""
 
 
 class Batch(NamedTuple):
     """Trains of a unit: their ratios over/under, the sums of their teeth, and the builder of one by its row."""
 
-    over: Whole
-    under: Whole
-    total: Whole
+    over: Integers
+    under: Integers
+    total: Integers
     made: Callable[[int], Any]
 
 
@@ -50,15 +47,15 @@ class Catalogue(NamedTuple):
     """
 
     value: Real
-    over: Whole
-    under: Whole
-    total: Whole
-    starts: Whole
-    trains: Whole
+    over: Integers
+    under: Integers
+    total: Integers
+    starts: Integers
+    trains: Integers
     batches: list[Batch]
 
     @property
-    def counts(self) -> Whole:
+    def counts(self) -> Integers:
         """Number of trains of each entry."""
         return np.diff(self.starts)
 
@@ -72,11 +69,11 @@ class Catalogue(NamedTuple):
         return self.batches[batch].made(int(at))
 
 
-def catalogue_of(unit: Any, length_unit: str) -> Catalogue:
+def build_catalogue(unit: Any, length_unit: str) -> Catalogue:
     """Build the catalogue of a consistent unit."""
-    problem = problem_of(unit, Fraction(1), length_unit)
-    batches = list(_ordinary(problem) if isinstance(problem, GearTrainProblem) else _planetary(problem))
-    parts = [_reduced(batch, k) for k, batch in enumerate(batches)]
+    problem = build_unit_problem(unit, Fraction(1), length_unit)
+    batches = list(_list_ordinary(problem) if isinstance(problem, GearTrainProblem) else _list_planetary(problem))
+    parts = [_reduce_batch(batch, k) for k, batch in enumerate(batches)]
     over, under, total, batch, row = (
         np.concatenate([part[column] for part in parts] or [np.zeros(0, np.int64)]) for column in range(5)
     )
@@ -98,39 +95,39 @@ def catalogue_of(unit: Any, length_unit: str) -> Catalogue:
     )
 
 
-def _reduced(batch: Batch, number: int) -> tuple[Whole, Whole, Whole, Whole, Whole]:
+def _reduce_batch(batch: Batch, number: int) -> tuple[Integers, Integers, Integers, Integers, Integers]:
     """Reduce the fractions of a batch, without locked trains: over, under, total, the batch and the row."""
     with np.errstate(divide="ignore", invalid="ignore"):
         # Locked trains give 0/0 or x/0 and are dropped by the comparison.
         size = np.abs(batch.over / batch.under)
-    row = np.flatnonzero((size <= GREATEST) & (size >= 1.0 / GREATEST))
+    row = np.flatnonzero((size <= MAX_RATIO) & (size >= 1.0 / MAX_RATIO))
     over, under = batch.over[row], batch.under[row]
     common = np.gcd(over, under) * np.where(under < 0, -1, 1)
     return over // common, under // common, batch.total[row], np.full(len(row), number), row
 
 
-def _planetary(problem: PlanetaryProblem) -> Iterator[Batch]:
+def _list_planetary(problem: PlanetaryProblem) -> Iterator[Batch]:
     for sound in every_planetary(problem):
 
-        def made(row: int, sound: SoundTrains = sound) -> Any:
-            return planetary_mechanism(problem, sound.candidate(row), problem.module)
+        def build_train(row: int, sound: SoundTrains = sound) -> Any:
+            return planetary_mechanism(problem, sound.build_candidate(row), problem.module)
 
-        yield Batch(sound.over, sound.under, sound.total, made)
+        yield Batch(sound.over, sound.under, sound.total, build_train)
 
 
-def _ordinary(problem: GearTrainProblem) -> Iterator[Batch]:
-    task = gear_train_task(problem, coprime=problem.hunting_tooth == "require")
+def _list_ordinary(problem: GearTrainProblem) -> Iterator[Batch]:
+    task = build_task(problem, coprime=problem.hunting_tooth == "require")
     every = every_ordinary(task)
 
-    def made(row: int) -> Any:
+    def build_train(row: int) -> Any:
         numbers = every.rows[row].tolist()
-        k = sum(n > 0 for n in numbers[:MOST_STAGES])
-        parts = (tuple(numbers[start : start + k]) for start in (0, MOST_STAGES, 2 * MOST_STAGES))
+        k = sum(n > 0 for n in numbers[:MAX_STAGES])
+        parts = (tuple(numbers[start : start + k]) for start in (0, MAX_STAGES, 2 * MAX_STAGES))
         return ordinary_mechanism(problem, task, Train(*parts))
 
     # Every external stage reverses the direction; an idler, which a given direction may need, restores it.
-    count = np.count_nonzero(every.rows[:, :MOST_STAGES], axis=1)
+    count = np.count_nonzero(every.rows[:, :MAX_STAGES], axis=1)
     # Stages that are given one by one determine the direction themselves.
-    wanted = problem.demanded_sign if problem.stages is None else sense_of(problem.stages)
+    wanted = problem.required_sign if problem.stages is None else compute_sense(problem.stages)
     sign = np.where(count % 2, -1, 1) if wanted == 0 else np.full(len(count), wanted)
-    yield Batch(sign * every.over, every.under, every.total, made)
+    yield Batch(sign * every.over, every.under, every.total, build_train)

@@ -9,7 +9,7 @@ from pydantic import Discriminator, Field
 from synthesis.kinds.gear_train.design import GearTrainMechanism, GearTrainMetrics
 from synthesis.kinds.planetary_train.design import PlanetaryMechanism, PlanetaryMetrics
 from synthesis.model.answer import Answer, Result, Search, Verification
-from synthesis.model.gear_answer import Ratio
+from synthesis.model.gears.answer import Ratio
 
 UnitMechanism = Annotated[PlanetaryMechanism | GearTrainMechanism, Discriminator("type")]
 

@@ -8,21 +8,21 @@ from typing import Annotated, Any, Literal
 
 from pydantic import ConfigDict, Field
 
-from synthesis.kinds.train_series.stated_units import Unit, Units, contradictions_of, trains_of
-from synthesis.model.gear_statement import ExactRatio
-from synthesis.model.ratio_target import Target, decimal, parse_target
-from synthesis.model.statement import Contradiction, StatedProblem
+from synthesis.kinds.train_series.units import Unit, Units, estimate_train_count, find_unit_contradictions
+from synthesis.model.gears.ratio_target import RatioTarget, parse_decimal, parse_target
+from synthesis.model.gears.request import ExactRatio
+from synthesis.model.problem import Contradiction, ProblemBase
 
-MOST_TRAINS = 50_000_000
+MAX_PLANETARY_TRAINS = 50_000_000
 """Maximum number of trains of a planetary unit, by its independent tooth numbers; most of them are not sound."""
 
-MOST_ORDINARY = 5_000_000
+MAX_ORDINARY_TRAINS = 5_000_000
 """Maximum number of trains of a unit of ordinary gears: all of them are kept in memory."""
 
-MOST_HALF, LEAST_HALF = 2_000_000_000, 100_000_000
+MAX_LARGER_HALF, MAX_SMALLER_HALF = 2_000_000_000, 100_000_000
 """Maximum number of series of the units on the larger and on the smaller side of the search: minutes at worst."""
 
-SET: dict[str, Any] = {
+EXAMPLE_UNIT: dict[str, Any] = {
     "type": "planetary_train",
     "arrangement": "simple",
     "input": "sun",
@@ -33,7 +33,7 @@ SET: dict[str, Any] = {
 }
 
 
-class TrainSeriesProblem(StatedProblem):
+class TrainSeriesProblem(ProblemBase):
     """Trains in series: two to four trains, each driving the next, for a speed ratio; proven to be the best.
 
     Every unit has its own constraints and its own fixed member. All trains of all units are covered in exact
@@ -44,12 +44,23 @@ class TrainSeriesProblem(StatedProblem):
         title="Trains in series",
         json_schema_extra={
             "examples": [
-                {"kind": "train_series", "ratio": 25, "units": [SET, SET], "tolerance": 0.0, "max_designs": 3},
-                {"kind": "train_series", "ratio": 333, "units": [SET, SET, SET], "max_designs": 3},
+                {
+                    "kind": "train_series",
+                    "ratio": 25,
+                    "units": [EXAMPLE_UNIT, EXAMPLE_UNIT],
+                    "tolerance": 0.0,
+                    "max_designs": 3,
+                },
+                {
+                    "kind": "train_series",
+                    "ratio": 333,
+                    "units": [EXAMPLE_UNIT, EXAMPLE_UNIT, EXAMPLE_UNIT],
+                    "max_designs": 3,
+                },
                 {
                     "kind": "train_series",
                     "ratio": -40,
-                    "units": [{"type": "gear_train", "teeth": {"min": 18, "max": 100}, "module": 1.5}, SET],
+                    "units": [{"type": "gear_train", "teeth": {"min": 18, "max": 100}, "module": 1.5}, EXAMPLE_UNIT],
                     "tolerance": 1e-3,
                     "rank_by": "size",
                     "max_designs": 3,
@@ -85,58 +96,58 @@ class TrainSeriesProblem(StatedProblem):
         return parse_target(self.ratio)[0]
 
     @property
-    def target(self) -> Target:
+    def target(self) -> RatioTarget:
         """Magnitude of the requested ratio, exact."""
         return parse_target(self.ratio)[1]
 
     @property
     def exact_tolerance(self) -> Fraction | None:
         """The tolerance as the decimal that was written."""
-        return None if self.tolerance is None else decimal(self.tolerance)
+        return None if self.tolerance is None else parse_decimal(self.tolerance)
 
     @property
-    def alike(self) -> list[int]:
+    def first_equal_units(self) -> list[int]:
         """For every unit the first unit that is equal to it."""
         return [self.units.index(unit) for unit in self.units]
 
     @property
     def combinations(self) -> int:
         """Estimated maximum number of series of a consistent problem."""
-        return math.prod(trains_of(unit, self.length_unit) for unit in self.units)
+        return math.prod(estimate_train_count(unit, self.length_unit) for unit in self.units)
 
-    def contradictions(self) -> list[Contradiction]:
+    def find_contradictions(self) -> list[Contradiction]:
         """Return errors of the units, a ranking that needs a tolerance, and searches that would take hours."""
         faults = [
             Contradiction(f"/units/{k}{fault.path}", fault.detail)
             for k, unit in enumerate(self.units)
-            for fault in contradictions_of(unit, self.length_unit)
+            for fault in find_unit_contradictions(unit, self.length_unit)
         ]
         if self.rank_by == "size" and self.tolerance is None:
             faults.append(Contradiction("/tolerance", "ranking by size needs a tolerance for the ratio"))
-        return faults or self._extent()
+        return faults or self._check_extent()
 
-    def _extent(self) -> list[Contradiction]:
-        counts = [trains_of(unit, self.length_unit) for unit in self.units]
+    def _check_extent(self) -> list[Contradiction]:
+        counts = [estimate_train_count(unit, self.length_unit) for unit in self.units]
         faults = []
         for k, (unit, count) in enumerate(zip(self.units, counts, strict=True)):
             most, way = (
-                (MOST_ORDINARY, "make its stages separate units")
+                (MAX_ORDINARY_TRAINS, "make its stages separate units")
                 if unit.type == "gear_train"
-                else (MOST_TRAINS, "give an arrangement and its members")
+                else (MAX_PLANETARY_TRAINS, "give an arrangement and its members")
             )
             if count > most:
                 detail = f"about {count:.0e} trains exceed the limit of {most:.0e} per unit"
                 faults.append(Contradiction(f"/units/{k}/teeth", f"{detail}; narrow the tooth numbers, or {way}"))
         # The search needs one split of the units with both sides within their limits.
         if not faults and not any(
-            least <= LEAST_HALF and most <= MOST_HALF for least, most in map(sorted, _halves(counts))
+            least <= MAX_SMALLER_HALF and most <= MAX_LARGER_HALF for least, most in map(sorted, _list_halves(counts))
         ):
             detail = f"about {math.prod(counts):.0e} series are too many for the search"
             faults.append(Contradiction("/units", f"{detail}; narrow the tooth numbers, or give members"))
         return faults
 
 
-def _halves(counts: list[int]) -> list[tuple[int, int]]:
+def _list_halves(counts: list[int]) -> list[tuple[int, int]]:
     """List the numbers of series of some units and of the others, for every split."""
     n = len(counts)
     return [

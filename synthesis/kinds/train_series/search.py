@@ -19,20 +19,21 @@ from typing import NamedTuple
 
 import numpy as np
 
-from synthesis.kinds.train_series.catalogue import Catalogue, Real, Whole
-from synthesis.model.ratio_target import Target
-from synthesis.outcome.exhaustive import pareto
+from kinematics.arrays import Integers, Real
+from synthesis.kinds.train_series.catalogue import Catalogue
+from synthesis.model.gears.ratio_target import RatioTarget
+from synthesis.results.exhaustive import select_pareto
 
-STORED = 1 << 21
+MAX_STORED_PRODUCTS = 1 << 21
 """Maximum number of sorted products in memory; the others are processed in blocks."""
 
-BLOCK = 1 << 18
+BLOCK_SIZE = 1 << 18
 """Number of products that are looked up at once."""
 
-MARGIN = 1e-13
+WINDOW_MARGIN = 1e-13
 """Error by which a window is widened: the products of a few floats are off by some 1e-15 of themselves."""
 
-WIDER = 10.0
+WINDOW_GROWTH = 10.0
 """Growth factor of the window of errors from one step of the Pareto search to the next."""
 
 
@@ -45,7 +46,7 @@ class Series(NamedTuple):
 
 
 @dataclass(frozen=True)
-class Found:
+class SearchResult:
     """Result of a search: the best series in the order of the ranking, the Pareto set, and the number of ties.
 
     ``nearest`` is the nearest series of all, within the tolerance or not; None if no series has the direction.
@@ -61,11 +62,11 @@ class _Half(NamedTuple):
     """Products of some units' ratios: their values, teeth, and the entry of each unit, one row per unit."""
 
     value: Real
-    total: Whole
-    entries: Whole
+    total: Integers
+    entries: Integers
 
 
-class Search:
+class SeriesSearch:
     """A search of all series of some units.
 
     Parameters
@@ -79,13 +80,13 @@ class Search:
         Its direction.
     """
 
-    def __init__(self, catalogues: Sequence[Catalogue], alike: Sequence[int], target: Target, sign: int) -> None:
+    def __init__(self, catalogues: Sequence[Catalogue], alike: Sequence[int], target: RatioTarget, sign: int) -> None:
         self._catalogues, self._alike = catalogues, alike
         self._target, self._sign = target, sign
         # Number of orders of equal units in which one series can occur.
         self._swaps = math.prod(math.factorial(alike.count(first)) for first in set(alike))
         self._wanted = sign * float(target)
-        self._near = cmp_to_key(target.nearer)
+        self._near = cmp_to_key(target.compare_distances)
 
     @property
     def combinations(self) -> int:
@@ -96,25 +97,27 @@ class Search:
             for first in set(self._alike)
         )
 
-    def found(self, tolerance: Fraction | None, near: Fraction, count: int, by_size: bool) -> Found:
+    def find_best(self, tolerance: Fraction | None, near: Fraction, count: int, by_size: bool) -> SearchResult:
         """Find the ``count`` best series within the tolerance, and the Pareto set with errors up to ``near``."""
         if any(len(catalogue.value) == 0 for catalogue in self._catalogues):
-            return Found([], [], 0, None)
+            return SearchResult([], [], 0, None)
         # First an error bound by bisection, then all series within it.
-        limit = self._error_of_nearest(count)
+        limit = self._bound_error(count)
         if limit is None:
-            return Found([], [], 0, None)
-        ranked = self._ranked(self._within(limit, None))
+            return SearchResult([], [], 0, None)
+        ranked = self._rank_series(self._list_within(limit, None))
         nearest = ranked[0]
-        ties = sum(self._trains(one) for one in ranked if self._target.nearer(one.ratio, nearest.ratio) == 0)
-        front = self._front(nearest, near)
+        ties = sum(
+            self._count_trains(one) for one in ranked if self._target.compare_distances(one.ratio, nearest.ratio) == 0
+        )
+        front = self._search_front(nearest, near)
         if by_size:
             assert tolerance is not None
-            ranked = self._smallest(tolerance, count)
-        best = [one for one in ranked if tolerance is None or self._target.within(abs(one.ratio), tolerance)]
-        return Found(best[:count], front, ties, nearest)
+            ranked = self._find_smallest(tolerance, count)
+        best = [one for one in ranked if tolerance is None or self._target.is_within(abs(one.ratio), tolerance)]
+        return SearchResult(best[:count], front, ties, nearest)
 
-    def rows(self, one: Series) -> Iterator[tuple[int, ...]]:
+    def list_rows(self, one: Series) -> Iterator[tuple[int, ...]]:
         """Yield the trains of a series, by their rows in the catalogues: every choice of trains of its entries."""
         choices = [
             range(int(catalogue.starts[e]), int(catalogue.starts[e + 1]))
@@ -135,7 +138,7 @@ class Search:
             places[first] = k
         return pairs
 
-    def _trains(self, one: Series) -> int:
+    def _count_trains(self, one: Series) -> int:
         """Count the series of trains with these entries."""
         count = 1
         for first in set(self._alike):
@@ -147,7 +150,7 @@ class Search:
                 count *= math.comb(trains + repeated - 1, repeated)
         return count
 
-    def _halves(self, most_total: int | None) -> tuple[list[int], Iterator[_Half], list[int], _Half]:
+    def _split_units(self, most_total: int | None) -> tuple[list[int], Iterator[_Half], list[int], _Half]:
         """Split the units: those processed in blocks with their products, and those held with their sorted products.
 
         ``most_total`` bounds the teeth of all units together.
@@ -166,22 +169,23 @@ class Search:
         choices = [[k for k in range(n) if chosen >> k & 1] for chosen in range(1, (1 << n) - 1)]
         products = [math.prod(sizes[k] for k in units) for units in choices]
         # Hold the largest set of units that fits into memory, so that the fewest products are processed.
-        fitting = [place for place, product in enumerate(products) if product <= STORED]
+        fitting = [place for place, product in enumerate(products) if product <= MAX_STORED_PRODUCTS]
         place = (
             max(fitting, key=products.__getitem__) if fitting else min(range(len(products)), key=products.__getitem__)
         )
         held = choices[place]
         through = [k for k in range(n) if k not in held]
-        whole = self._products(held, allowed, 0, products[place])
+        whole = self._list_products(held, allowed, 0, products[place])
         order = np.argsort(whole.value, kind="stable")
         ordered = _Half(whole.value[order], whole.total[order], whole.entries[:, order])
         every = math.prod(sizes[k] for k in through)
         blocks = (
-            self._products(through, allowed, start, min(start + BLOCK, every)) for start in range(0, every, BLOCK)
+            self._list_products(through, allowed, start, min(start + BLOCK_SIZE, every))
+            for start in range(0, every, BLOCK_SIZE)
         )
         return through, blocks, held, ordered
 
-    def _products(self, units: list[int], allowed: list[Whole], start: int, end: int) -> _Half:
+    def _list_products(self, units: list[int], allowed: list[Integers], start: int, end: int) -> _Half:
         """Compute the products of a range of choices, with the last unit's entries varying fastest."""
         rest = np.arange(start, end)
         entries = np.zeros((len(units), end - start), np.int64)
@@ -199,7 +203,7 @@ class Search:
             total = total + self._catalogues[unit].total[own]
         return _Half(value, total, entries)
 
-    def _error_of_nearest(self, count: int) -> float | None:
+    def _bound_error(self, count: int) -> float | None:
         """Return an error that at least ``count`` series do not exceed, infinite if there are fewer; None: no series.
 
         For every processed product the neighbours of its ideal partner on both sides are evaluated.
@@ -207,7 +211,7 @@ class Search:
         # Equal units are met in every order: each series may be counted that many times.
         needed, width = count * self._swaps, 1
         while True:
-            _, blocks, _, held = self._halves(None)
+            _, blocks, _, held = self._split_units(None)
             least = np.zeros(0)
             for block in blocks:
                 at = np.searchsorted(held.value, self._wanted / block.value)
@@ -225,11 +229,11 @@ class Search:
             # Too few partners with the right sign: widen the neighbourhood.
             width = min(2 * width, len(held.value))
 
-    def _within(self, error: float, most_total: int | None) -> Whole:
+    def _list_within(self, error: float, most_total: int | None) -> Integers:
         """List the entries of all series with errors up to a limit and at most this many teeth, one column each."""
-        through, blocks, held_units, held = self._halves(most_total)
+        through, blocks, held_units, held = self._split_units(most_total)
         found = [np.zeros((len(self._catalogues), 0), np.int64)]
-        low, high = max(0.0, 1.0 - error - MARGIN), 1.0 + error + MARGIN
+        low, high = max(0.0, 1.0 - error - WINDOW_MARGIN), 1.0 + error + WINDOW_MARGIN
         for block in blocks:
             wanted = self._wanted / block.value
             # A negative product reverses the window.
@@ -250,12 +254,12 @@ class Search:
             found.append(entries[:, kept])
         return np.concatenate(found, axis=1)
 
-    def _ranked(self, entries: Whole) -> list[Series]:
+    def _rank_series(self, entries: Integers) -> list[Series]:
         """Sort series by error and size, exactly; among equal ones those with the larger ratios first come first."""
-        listed = self._measured(entries)
+        listed = self._build_series(entries)
         return sorted(listed, key=lambda one: (self._near(abs(one.ratio)), one.total, [-e for e in one.entries]))
 
-    def _measured(self, entries: Whole) -> list[Series]:
+    def _build_series(self, entries: Integers) -> list[Series]:
         """Build the series of entries with their exact ratios and teeth."""
         total = np.zeros(entries.shape[1], np.int64)
         for catalogue, own in zip(self._catalogues, entries, strict=True):
@@ -274,27 +278,27 @@ class Search:
             listed.append(Series(tuple(own), ratio, teeth))
         return listed
 
-    def _front(self, nearest: Series, near: Fraction) -> list[Series]:
+    def _search_front(self, nearest: Series, near: Fraction) -> list[Series]:
         """Search the Pareto set of error against size, with errors up to ``near``, by rising size.
 
         It begins at the nearest series of fewest teeth. Then follow larger errors with fewer teeth: a window that has
         grown tenfold is searched for series with fewer teeth than all before.
         """
-        if not self._target.within(abs(nearest.ratio), near):
+        if not self._target.is_within(abs(nearest.ratio), near):
             return []
         met, fewest = [nearest], nearest.total
-        error = max(abs(self._target.relative_error(abs(nearest.ratio))), MARGIN)
+        error = max(abs(self._target.compute_relative_error(abs(nearest.ratio))), WINDOW_MARGIN)
         while True:
-            error = min(WIDER * error, float(near))
-            listed = self._measured(self._within(error, fewest - 1))
-            met += [one for one in listed if self._target.within(abs(one.ratio), near)]
+            error = min(WINDOW_GROWTH * error, float(near))
+            listed = self._build_series(self._list_within(error, fewest - 1))
+            met += [one for one in listed if self._target.is_within(abs(one.ratio), near)]
             fewest = min([fewest, *(one.total for one in met)])
             if error >= float(near):
                 break
         rising = sorted(met, key=lambda one: (one.total, self._near(abs(one.ratio)), [-e for e in one.entries]))
-        return pareto(rising, lambda one: self._near(abs(one.ratio)))
+        return select_pareto(rising, lambda one: self._near(abs(one.ratio)))
 
-    def _smallest(self, tolerance: Fraction, count: int) -> list[Series]:
+    def _find_smallest(self, tolerance: Fraction, count: int) -> list[Series]:
         """Find the series of fewest teeth within a tolerance, the nearest of equally small ones first."""
         least, most = (sum(int(end(catalogue.total)) for catalogue in self._catalogues) for end in (np.min, np.max))
         reach = 1
@@ -302,10 +306,10 @@ class Search:
             bound = min(least + reach, most)
             listed = [
                 one
-                for one in self._measured(self._within(float(tolerance), bound))
-                if self._target.within(abs(one.ratio), tolerance)
+                for one in self._build_series(self._list_within(float(tolerance), bound))
+                if self._target.is_within(abs(one.ratio), tolerance)
             ]
-            if sum(self._trains(one) for one in listed) >= count or bound >= most:
+            if sum(self._count_trains(one) for one in listed) >= count or bound >= most:
                 return sorted(
                     listed, key=lambda one: (one.total, self._near(abs(one.ratio)), [-e for e in one.entries])
                 )

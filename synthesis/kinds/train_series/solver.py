@@ -7,9 +7,9 @@ from fractions import Fraction
 from typing import Any
 
 from synthesis.kinds.gear_train.problem import GearTrainProblem
-from synthesis.kinds.gear_train.solver import SEARCHED
-from synthesis.kinds.gear_train.stated_train import NEAR
-from synthesis.kinds.train_series.catalogue import Catalogue, catalogue_of
+from synthesis.kinds.gear_train.solver import SEARCH_NOTE
+from synthesis.kinds.gear_train.statement.train import DEFAULT_TOLERANCE
+from synthesis.kinds.train_series.catalogue import Catalogue, build_catalogue
 from synthesis.kinds.train_series.design import (
     ParetoSeries,
     TrainSeriesDesign,
@@ -18,16 +18,16 @@ from synthesis.kinds.train_series.design import (
     TrainSeriesSearch,
 )
 from synthesis.kinds.train_series.problem import TrainSeriesProblem
-from synthesis.kinds.train_series.search import Found, Search, Series
-from synthesis.kinds.train_series.stated_units import problem_of
+from synthesis.kinds.train_series.search import SearchResult, Series, SeriesSearch
+from synthesis.kinds.train_series.units import build_unit_problem
 from synthesis.kinds.train_series.verification import verify
-from synthesis.model.counting import counted
-from synthesis.model.gear_answer import Ratio
+from synthesis.model.counting import format_count
+from synthesis.model.gears.answer import Ratio
+from synthesis.model.gears.ratio_target import format_ratio
 from synthesis.model.kind import Progress
-from synthesis.model.ratio_target import as_stated
-from synthesis.outcome.sifting import Sifting
+from synthesis.results.candidate_log import CandidateLog
 
-MOST_TRIED = 1000
+MAX_EXTRA_SERIES = 1000
 """Number of series tried beyond the requested ones if some cannot be made."""
 
 
@@ -48,75 +48,76 @@ def solve_train_series(problem: TrainSeriesProblem, progress: Progress) -> Train
     """
     # Equal units share one catalogue.
     listed: dict[int, Catalogue] = {}
-    for k, first in enumerate(problem.alike):
+    for k, first in enumerate(problem.first_equal_units):
         progress(0.5 * k / len(problem.units), f"unit {k + 1}: tooth numbers")
         if first not in listed:
-            listed[first] = catalogue_of(problem.units[first], problem.length_unit)
-    catalogues = [listed[first] for first in problem.alike]
-    search = Search(catalogues, problem.alike, problem.target, problem.sign)
+            listed[first] = build_catalogue(problem.units[first], problem.length_unit)
+    catalogues = [listed[first] for first in problem.first_equal_units]
+    search = SeriesSearch(catalogues, problem.first_equal_units, problem.target, problem.sign)
     progress(0.5, f"{search.combinations:.3g} series")
     tolerance = problem.exact_tolerance
-    near = NEAR if tolerance is None else tolerance
-    sifting = Sifting[TrainSeriesDesign](problem, undriven="gears")
+    near = DEFAULT_TOLERANCE if tolerance is None else tolerance
+    sifting = CandidateLog[TrainSeriesDesign](problem, undriven="gears")
     wanted, met = problem.max_designs, set[tuple[int, ...]]()
 
-    def untried(best: list[Series]) -> Iterator[tuple[tuple[int, ...], Series]]:
+    def list_untried(best: list[Series]) -> Iterator[tuple[tuple[int, ...], Series]]:
         for series in best:
-            for rows in search.rows(series):
-                if len(met) >= MOST_TRIED + problem.max_designs:
+            for rows in search.list_rows(series):
+                if len(met) >= MAX_EXTRA_SERIES + problem.max_designs:
                     return
                 if rows not in met:
                     met.add(rows)
                     yield rows, series
 
-    def made(chosen: tuple[tuple[int, ...], Series]) -> TrainSeriesDesign | str | None:
-        mechanism = _mechanism(catalogues, *chosen)
+    def verify_series(chosen: tuple[tuple[int, ...], Series]) -> TrainSeriesDesign | str | None:
+        mechanism = _build_mechanism(catalogues, *chosen)
         return "idler" if mechanism is None else verify(problem, mechanism)
 
     while True:
-        found = search.found(tolerance, near, wanted, problem.rank_by == "size")
+        found = search.find_best(tolerance, near, wanted, problem.rank_by == "size")
         progress(0.9, "verifying")
-        sifting.sift(untried(found.best), made, problem.max_designs)
+        sifting.verify_candidates(list_untried(found.best), verify_series, problem.max_designs)
         # Series that cannot be made leave places for others behind them.
         enough = len(sifting.passed) >= problem.max_designs
-        if enough or len(found.best) < wanted or len(met) >= MOST_TRIED:
+        if enough or len(found.best) < wanted or len(met) >= MAX_EXTRA_SERIES:
             break
         wanted *= 4
     progress(1.0, "verified")
-    searched = _searched(problem)
-    least = None if found.nearest is None else abs(problem.target.relative_error(abs(found.nearest.ratio)))
+    searched = _is_searched_in_steps(problem)
+    least = None if found.nearest is None else abs(problem.target.compute_relative_error(abs(found.nearest.ratio)))
     return TrainSeriesResult(
-        designs=sifting.designs(list),
+        designs=sifting.select_designs(list),
         search=TrainSeriesSearch(
-            **dict(sifting.search("exhaustive", complete=not sifting.rejected and not searched)),
+            **dict(sifting.build_search("exhaustive", complete=not sifting.rejected and not searched)),
             combinations=search.combinations,
             ties=found.ties,
             least_error=least,
         ),
-        summary=_summary(problem, search, found, catalogues, sifting.passed) + (f" {SEARCHED}" if searched else ""),
-        pareto=[entry for one in found.front if (entry := _pareto(problem, search, catalogues, one)) is not None],
+        summary=_write_summary(problem, search, found, catalogues, sifting.passed)
+        + (f" {SEARCH_NOTE}" if searched else ""),
+        pareto=[entry for one in found.front if (entry := _build_pareto(problem, search, catalogues, one)) is not None],
     )
 
 
-def _searched(problem: TrainSeriesProblem) -> bool:
+def _is_searched_in_steps(problem: TrainSeriesProblem) -> bool:
     """Return whether the feasible distances of a unit's gears are searched in steps, so that nothing is proven."""
-    units = (problem_of(unit, Fraction(1), problem.length_unit) for unit in problem.units)
+    units = (build_unit_problem(unit, Fraction(1), problem.length_unit) for unit in problem.units)
     return any(isinstance(unit, GearTrainProblem) and unit.searches_distances for unit in units)
 
 
-def _mechanism(catalogues: list[Catalogue], rows: tuple[int, ...], one: Series) -> TrainSeriesMechanism | None:
+def _build_mechanism(catalogues: list[Catalogue], rows: tuple[int, ...], one: Series) -> TrainSeriesMechanism | None:
     units: list[Any] = [catalogue.train(row) for catalogue, row in zip(catalogues, rows, strict=True)]
     if any(unit is None for unit in units):
         return None
-    return TrainSeriesMechanism(units=units, ratio=Ratio.of(one.ratio))
+    return TrainSeriesMechanism(units=units, ratio=Ratio.from_fraction(one.ratio))
 
 
-def _pareto(
-    problem: TrainSeriesProblem, search: Search, catalogues: list[Catalogue], one: Series
+def _build_pareto(
+    problem: TrainSeriesProblem, search: SeriesSearch, catalogues: list[Catalogue], one: Series
 ) -> ParetoSeries | None:
     """Build a series of the Pareto set from the first of its trains that can be made."""
-    for rows in search.rows(one):
-        mechanism = _mechanism(catalogues, rows, one)
+    for rows in search.list_rows(one):
+        mechanism = _build_mechanism(catalogues, rows, one)
         design = None if mechanism is None else verify(problem, mechanism)
         if design is not None and design.verification.passed:
             return ParetoSeries(
@@ -128,26 +129,26 @@ def _pareto(
     return None
 
 
-def _summary(
+def _write_summary(
     problem: TrainSeriesProblem,
-    search: Search,
-    found: Found,
+    search: SeriesSearch,
+    found: SearchResult,
     catalogues: list[Catalogue],
     accepted: list[TrainSeriesDesign],
 ) -> str:
     """Write one or two sentences: the result, or the reason why there is none."""
-    covered = f"{counted(search.combinations, 'series', 'series')} searched"
+    covered = f"{format_count(search.combinations, 'series', 'series')} searched"
     if accepted:
         first = accepted[0]
         parts = " × ".join(f"{unit.ratio.value:.6g}" for unit in first.mechanism.units).replace("-", "−")
         ratio = first.mechanism.ratio.value
         exact = (
-            f"is exactly {as_stated(problem.ratio)}"
+            f"is exactly {format_ratio(problem.ratio)}"
             if first.metrics.error == 0.0
-            else f"is {ratio:.8g} instead of {as_stated(problem.ratio)}, "
+            else f"is {ratio:.8g} instead of {format_ratio(problem.ratio)}, "
             f"an error of {100.0 * first.metrics.error:.4g} %"
         ).replace("-", "−")
-        alike = f"; {counted(found.ties, 'series', 'series')} have this error" if found.ties > 1 else ""
+        alike = f"; {format_count(found.ties, 'series', 'series')} have this error" if found.ties > 1 else ""
         return f"{parts} {exact}; {covered}{alike}."
     for k, catalogue in enumerate(catalogues, 1):
         if not len(catalogue.value):
@@ -157,7 +158,7 @@ def _summary(
         return f"No such series exists: none turns input and output in {direction} direction; {covered}."
     if found.best:
         return f"No series passed the verification; {covered}."
-    error = abs(problem.target.relative_error(abs(found.nearest.ratio)))
+    error = abs(problem.target.compute_relative_error(abs(found.nearest.ratio)))
     return (
         f"No such series exists: the nearest has the ratio {float(found.nearest.ratio):.6g}, an error of "
         f"{100.0 * error:.4g} %; {covered}."

@@ -12,27 +12,27 @@ from fractions import Fraction
 from typing import Any
 
 from kinematics.gear.arrangements import ARRANGEMENTS
-from kinematics.gear.planetary import GROUND, Mesh, Train, speeds
+from kinematics.gear.planetary import GROUND, Mesh, Train, solve_speeds
 from synthesis.kinds.gear_train.design import GearTrainMechanism, GearTrainMetrics
-from synthesis.kinds.gear_train.verification import driven_train
+from synthesis.kinds.gear_train.verification import build_train
 from synthesis.kinds.gear_train.verification import verify as verify_ordinary
 from synthesis.kinds.planetary_train.design import PlanetaryMechanism, PlanetaryMetrics
 from synthesis.kinds.planetary_train.verification import measure
 from synthesis.kinds.planetary_train.verification import verify as verify_planetary
 from synthesis.kinds.train_series.design import TrainSeriesDesign, TrainSeriesMechanism, TrainSeriesMetrics
 from synthesis.kinds.train_series.problem import TrainSeriesProblem
-from synthesis.kinds.train_series.stated_units import problem_of
+from synthesis.kinds.train_series.units import build_unit_problem
 from synthesis.model.answer import Check, Verification
 
 
-def joined(mechanism: TrainSeriesMechanism) -> Train:
+def join_units(mechanism: TrainSeriesMechanism) -> Train:
     """Join all units to one train; the shafts between them are the bodies ``shaft_0``, ``shaft_1``, ..."""
     meshes: list[Mesh] = []
     planets: set[str] = set()
     for k, unit in enumerate(mechanism.units):
         ends = f"shaft_{k}", f"shaft_{k + 1}"
         if isinstance(unit, PlanetaryMechanism):
-            train = ARRANGEMENTS[unit.arrangement].train(unit.teeth)
+            train = ARRANGEMENTS[unit.arrangement].build_train(unit.teeth)
             names = {body: f"unit_{k + 1}_{body}" for body in train.bodies}
             names |= {unit.input: ends[0], unit.output: ends[1], unit.fixed: GROUND, GROUND: GROUND}
             planets |= {names[body] for body in train.planets}
@@ -41,14 +41,14 @@ def joined(mechanism: TrainSeriesMechanism) -> Train:
                 for m in train.meshes
             ]
         else:
-            meshes += _ordinary(unit, k, *ends)
+            meshes += _build_ordinary_meshes(unit, k, *ends)
     return Train(tuple(meshes), frozenset(planets))
 
 
-def _ordinary(unit: GearTrainMechanism, number: int, driving: str, driven: str) -> list[Mesh]:
+def _build_ordinary_meshes(unit: GearTrainMechanism, number: int, driving: str, driven: str) -> list[Mesh]:
     """Build the meshes of ordinary gears on fixed shafts."""
     meshes = []
-    stages = driven_train(unit).stages
+    stages = build_train(unit).stages
     shaft = driving
     for k, stage in enumerate(stages):
         bodies = [shaft, *(f"unit_{number + 1}_idler_{k}_{i}" for i in range(len(stage.idlers)))]
@@ -62,13 +62,13 @@ def _ordinary(unit: GearTrainMechanism, number: int, driving: str, driven: str) 
 
 def verify(problem: TrainSeriesProblem, mechanism: TrainSeriesMechanism) -> TrainSeriesDesign | None:
     """Drive a series and measure it; None if gears of a unit cannot be made at all, or are not coaxial with it."""
-    turning = speeds(joined(mechanism), {"shaft_0": 1})
+    turning = solve_speeds(join_units(mechanism), {"shaft_0": 1})
     shafts = [turning.values[f"shaft_{k}"] for k in range(len(mechanism.units) + 1)]
     known = [speed for speed in shafts if speed]
     checks = [Check(name="ratio", passed=False)]
     error = Fraction(0)
     if len(known) == len(shafts) and turning.contradiction is None:
-        error, ratio_checks = _ratio(problem, mechanism, 1 / known[-1])
+        error, ratio_checks = _check_ratio(problem, mechanism, 1 / known[-1])
         checks = ratio_checks
     metrics: list[PlanetaryMetrics | GearTrainMetrics] = []
     for k, (stated, unit, (before, after)) in enumerate(
@@ -76,7 +76,7 @@ def verify(problem: TrainSeriesProblem, mechanism: TrainSeriesMechanism) -> Trai
     ):
         if not before or not after:
             return None
-        measured = _unit(problem_of(stated, before / after, problem.length_unit), unit)
+        measured = _verify_unit(build_unit_problem(stated, before / after, problem.length_unit), unit)
         if measured is None:
             return None
         metrics.append(measured[1])
@@ -90,7 +90,7 @@ def verify(problem: TrainSeriesProblem, mechanism: TrainSeriesMechanism) -> Trai
             efficiency *= one.efficiency
     return TrainSeriesDesign(
         mechanism=mechanism,
-        verification=Verification.of(checks),
+        verification=Verification.from_checks(checks),
         metrics=TrainSeriesMetrics(
             error=float(error),
             total_teeth=sum(one.total_teeth for one in metrics),
@@ -102,12 +102,12 @@ def verify(problem: TrainSeriesProblem, mechanism: TrainSeriesMechanism) -> Trai
     )
 
 
-def _ratio(
+def _check_ratio(
     problem: TrainSeriesProblem, mechanism: TrainSeriesMechanism, ratio: Fraction
 ) -> tuple[Fraction, list[Check]]:
     """Compute the relative error of the ratio, and check ratio, direction and tolerance, in exact fractions."""
     signed = ratio * problem.sign
-    low, high = problem.target.enclosure(512)
+    low, high = problem.target.enclose(512)
     error = signed / ((low + high) / 2) - 1
     stated = mechanism.ratio.exact
     checks = [
@@ -116,12 +116,12 @@ def _ratio(
     ]
     tolerance = problem.exact_tolerance
     if tolerance is not None:
-        passed = signed > 0 and problem.target.within(signed, tolerance)
+        passed = signed > 0 and problem.target.is_within(signed, tolerance)
         checks.append(Check(name="ratio_error", passed=passed, value=abs(float(error)), limit=float(tolerance)))
     return error, checks
 
 
-def _unit(problem: Any, unit: Any) -> tuple[Verification, PlanetaryMetrics | GearTrainMetrics] | None:
+def _verify_unit(problem: Any, unit: Any) -> tuple[Verification, PlanetaryMetrics | GearTrainMetrics] | None:
     """Verify the unit by its own kind, for exactly the ratio that the unit has."""
     if isinstance(unit, PlanetaryMechanism):
         verification = verify_planetary(problem, unit)

@@ -7,10 +7,10 @@ import math
 import numpy as np
 
 from kinematics.cam.follower import Follower, OscillatingFlat, OscillatingRoller, TranslatingFlat, TranslatingRoller
-from kinematics.cam.motion_laws import LAWS
+from kinematics.cam.motion.laws import LAWS
+from kinematics.cam.motion.program import TURN, Program
+from kinematics.cam.motion.segments import Segment, build_dwell, build_law_segment
 from kinematics.cam.profile import Cam
-from kinematics.cam.program import TURN, Program
-from kinematics.cam.segments import Segment, dwell, law_segment
 from tests.oracles.cam_formulas import pressure_angle_extremes, undercut
 
 SMOOTH_LAWS = ("cycloidal", "modified_trapezoid", "modified_sine", "polynomial_345", "polynomial_4567")
@@ -31,7 +31,7 @@ def random_program(rng: np.random.Generator, lift: float) -> Program:
     segments: list[Segment] = []
     for angle, start, end in zip(angles, heights, heights[1:], strict=False):
         law = LAWS[str(rng.choice(SMOOTH_LAWS))]
-        segments.append(dwell(angle, start) if start == end else law_segment(law, angle, start, end))
+        segments.append(build_dwell(angle, start) if start == end else build_law_segment(law, angle, start, end))
     return Program(segments)
 
 

@@ -7,10 +7,10 @@ from typing import Any
 
 import numpy as np
 
-from kinematics.cam.motion_laws import LAWS
-from kinematics.cam.pieces import polynomial_pieces
-from kinematics.cam.program import Program
-from kinematics.cam.segments import Segment, dwell, law_segment
+from kinematics.cam.motion.laws import LAWS
+from kinematics.cam.motion.pieces import build_polynomial_pieces
+from kinematics.cam.motion.program import Program
+from kinematics.cam.motion.segments import Segment, build_dwell, build_law_segment
 
 NAMES = {
     "const_velocity": "constant_velocity",
@@ -37,7 +37,7 @@ NAMES = {
 
 def coefficient_segment(angle: float, coefficients: list[float]) -> Segment:
     """Σ c_k (θ/β)^k with Norton's coefficients, constant first."""
-    return Segment("polynomial", polynomial_pieces([0.0, 1.0], np.atleast_2d(coefficients)).scaled(angle, 1.0))
+    return Segment("polynomial", build_polynomial_pieces([0.0, 1.0], np.atleast_2d(coefficients)).scaled(angle, 1.0))
 
 
 def segment_of(row: dict[str, Any]) -> Segment:
@@ -45,9 +45,9 @@ def segment_of(row: dict[str, Any]) -> Segment:
     if "coef" in row:
         return coefficient_segment(angle, row["coef"])
     if row["law"] == "dwell":
-        return dwell(angle, row["start"])
+        return build_dwell(angle, row["start"])
     end = row["start"] + row["scale"] if "scale" in row else row["end"]
-    return law_segment(LAWS[NAMES[row["law"]]], angle, row["start"], end)
+    return build_law_segment(LAWS[NAMES[row["law"]]], angle, row["start"], end)
 
 
 def program_of(rows: list[dict[str, Any]]) -> Program:

@@ -7,9 +7,9 @@ import math
 import numpy as np
 import pytest
 
-from kinematics.cam.contact import Contour
+from kinematics.cam.finished.contact import Contour
 from kinematics.cam.follower import OscillatingFlat, OscillatingRoller, TranslatingFlat, TranslatingRoller
-from kinematics.cam.profile import Cam, even_angles
+from kinematics.cam.profile import Cam, space_angles
 from kinematics.errors import DimensionError, ShapeError
 from tests.campaign import sampled
 from tests.kinematics.cam.sampling import FOLLOWERS, sound_cam
@@ -20,14 +20,14 @@ POINTS = 1440
 
 
 def measured(cam: Cam, count: int = POINTS) -> Contour:
-    return Contour(cam.profile(even_angles(count)))
+    return Contour(cam.profile(space_angles(count)))
 
 
 @pytest.mark.parametrize("kind", FOLLOWERS)
 @pytest.mark.parametrize("seed", range(6))
 def test_the_profile_gives_the_program_back(kind: str, seed: int) -> None:
     cam = sound_cam(np.random.default_rng(seed), kind)
-    angles = even_angles(361) + 1e-3
+    angles = space_angles(361) + 1e-3
     found = measured(cam).follow(cam.follower, angles, cam.rotation)
     assert found.valid.all()
     assert found.s == pytest.approx(cam.program.motion(angles).s, abs=1e-7 * cam.program.lift)
@@ -50,7 +50,7 @@ def test_the_profile_gives_the_program_back(kind: str, seed: int) -> None:
 def test_many_profiles_give_their_programs_back(kind: str) -> None:
     for seed in range(100, 100 + sampled(200)):
         cam = sound_cam(np.random.default_rng(seed), kind)
-        angles = even_angles(721) + 1e-3
+        angles = space_angles(721) + 1e-3
         found = measured(cam).follow(cam.follower, angles, cam.rotation)
         assert np.abs(found.s - cam.program.motion(angles).s).max() <= 1e-6 * cam.program.lift
         assert len(measured(cam, 360).crossings) == 0
@@ -58,7 +58,7 @@ def test_many_profiles_give_their_programs_back(kind: str) -> None:
 
 def brute_stand(cam: Cam, angles: np.ndarray, count: int = 60_000) -> np.ndarray:
     """The follower over a dense polygon, moved outward by halving until it touches nothing."""
-    points = cam.profile(even_angles(count))
+    points = cam.profile(space_angles(count))
     sense = 1.0 if cam.rotation == "ccw" else -1.0
     follower, result = cam.follower, []
     for theta in angles:
@@ -88,7 +88,7 @@ def brute_stand(cam: Cam, angles: np.ndarray, count: int = 60_000) -> np.ndarray
 @pytest.mark.parametrize("kind", FOLLOWERS)
 def test_contact_agrees_with_a_follower_moved_until_it_is_clear(kind: str) -> None:
     cam = sound_cam(np.random.default_rng(11), kind)
-    angles = even_angles(7) + 0.1
+    angles = space_angles(7) + 0.1
     found = measured(cam).follow(cam.follower, angles, cam.rotation)
     assert found.s == pytest.approx(brute_stand(cam, angles), abs=1e-6 * max(cam.size, 1.0) * cam.program.lift)
 
@@ -96,7 +96,7 @@ def test_contact_agrees_with_a_follower_moved_until_it_is_clear(kind: str) -> No
 @pytest.mark.parametrize("offset", [0.0, 0.5])
 def test_knife_edges(offset: float) -> None:
     cam = Cam(double_dwell(), TranslatingRoller(2.0, 0.0, offset))
-    angles = even_angles(100) + 0.01
+    angles = space_angles(100) + 0.01
     found = measured(cam).follow(cam.follower, angles, cam.rotation)
     assert found.s == pytest.approx(cam.program.motion(angles).s, abs=1e-8)
     assert found.pressure_angle == pytest.approx(np.abs(cam.pressure_angle(angles)), abs=2e-5)
@@ -105,7 +105,7 @@ def test_knife_edges(offset: float) -> None:
 @pytest.mark.parametrize("sense", [1, -1])
 def test_a_knife_edge_on_an_arm(sense: int) -> None:
     cam = Cam(double_dwell(0.3), OscillatingRoller(2.0, 0.0, 2.5, 3.0, sense), "cw")
-    angles = even_angles(100) + 0.01
+    angles = space_angles(100) + 0.01
     found = measured(cam).follow(cam.follower, angles, "cw")
     assert found.s == pytest.approx(cam.program.motion(angles).s, abs=1e-8)
     assert found.pressure_angle == pytest.approx(np.abs(cam.pressure_angle(angles)), abs=2e-5)
@@ -113,9 +113,9 @@ def test_a_knife_edge_on_an_arm(sense: int) -> None:
 
 def test_points_may_run_either_way_and_start_anywhere() -> None:
     cam = sound_cam(np.random.default_rng(3), "offset_roller")
-    angles = even_angles(50)
+    angles = space_angles(50)
     there = measured(cam).follow(cam.follower, angles, cam.rotation)
-    back = Contour(np.roll(cam.profile(even_angles(POINTS))[::-1], 17)).follow(cam.follower, angles, cam.rotation)
+    back = Contour(np.roll(cam.profile(space_angles(POINTS))[::-1], 17)).follow(cam.follower, angles, cam.rotation)
     assert back.s == pytest.approx(there.s, abs=1e-10)
     assert back.pressure_angle == pytest.approx(there.pressure_angle, abs=2e-5)
     assert 1.0 / back.radius == pytest.approx(1.0 / there.radius, abs=0.02 / cam.size)
@@ -129,10 +129,10 @@ def test_a_profile_of_another_program_is_told_apart() -> None:
 
 
 def test_curvature_of_a_circle_and_of_its_points() -> None:
-    circle = Contour(0.3 + 2.0 * np.exp(1j * even_angles(90)))
+    circle = Contour(0.3 + 2.0 * np.exp(1j * space_angles(90)))
     assert circle.curvature() == pytest.approx(np.full(360, 0.5), abs=1e-6)
     assert circle.sharpest_turn == pytest.approx(math.radians(4.0))
-    assert not circle.cusped
+    assert not circle.has_cusp
     assert len(circle.crossings) == 0
 
 
@@ -143,16 +143,16 @@ def test_an_undercut_profile_is_found() -> None:
         cam = Cam(program, TranslatingRoller(1.5, share * sharpest))
         contour = measured(cam)
         assert undercut(cam) is bad
-        assert contour.cusped is bad
+        assert contour.has_cusp is bad
         assert (len(contour.crossings) > 0) is bad
-        found = contour.follow(cam.follower, even_angles(720), cam.rotation)
-        assert bool(np.abs(found.s - program.motion(even_angles(720)).s).max() > 1e-4) is bad
+        found = contour.follow(cam.follower, space_angles(720), cam.rotation)
+        assert bool(np.abs(found.s - program.motion(space_angles(720)).s).max() > 1e-4) is bad
 
 
 def test_a_cusp_under_a_flat_face_is_found() -> None:
     cam = Cam(double_dwell(1.0), TranslatingFlat(1.0))
     assert undercut(cam)
-    assert measured(cam).cusped
+    assert measured(cam).has_cusp
     assert len(measured(cam).crossings) > 0
 
 
@@ -168,7 +168,7 @@ def test_a_roller_too_large_for_a_hollow_stands_off() -> None:
 
 
 def test_a_follower_beside_the_cam_touches_nothing() -> None:
-    circle = Contour(np.exp(1j * even_angles(360)))
+    circle = Contour(np.exp(1j * space_angles(360)))
     found = circle.follow(TranslatingRoller(5.0, 0.5, offset=4.0), [0.0, 1.0])
     assert not found.valid.any()
     assert np.isnan(found.s).all()
@@ -180,10 +180,10 @@ def test_a_follower_beside_the_cam_touches_nothing() -> None:
 
 def test_profiles_that_are_none_are_refused() -> None:
     with pytest.raises(ShapeError):
-        Contour(np.exp(1j * even_angles(8)))
+        Contour(np.exp(1j * space_angles(8)))
     with pytest.raises(DimensionError, match="points"):
-        Contour(np.where(np.arange(20) == 3, np.nan, np.exp(1j * even_angles(20))))
+        Contour(np.where(np.arange(20) == 3, np.nan, np.exp(1j * space_angles(20))))
     with pytest.raises(DimensionError, match="points"):
-        Contour(np.append(np.exp(1j * even_angles(20)), np.exp(1j * even_angles(20)[-1])))
+        Contour(np.append(np.exp(1j * space_angles(20)), np.exp(1j * space_angles(20)[-1])))
     with pytest.raises(DimensionError, match="roller radius"):
-        Contour(np.exp(1j * even_angles(20))).follow(TranslatingRoller(2.0, 0.01), 0.0)
+        Contour(np.exp(1j * space_angles(20))).follow(TranslatingRoller(2.0, 0.01), 0.0)

@@ -8,21 +8,21 @@ import numpy as np
 import pytest
 
 from kinematics.cam.barrel import BarrelCam
-from kinematics.cam.contact import Contour
 from kinematics.cam.contours import (
     Arc,
     Flank,
     SpecifiedContour,
-    circular_arc_cam,
-    eccentric_circle,
-    flank_radius_of,
-    tangent_cam,
+    build_circular_arc_cam,
+    build_eccentric_circle,
+    build_tangent_cam,
+    compute_flank_radius,
 )
-from kinematics.cam.extremes import extremes
+from kinematics.cam.finished.contact import Contour
 from kinematics.cam.follower import TranslatingFlat, TranslatingRoller
-from kinematics.cam.profile import Rotation, even_angles
-from kinematics.cam.program import TURN, Program
-from kinematics.cam.segments import dwell
+from kinematics.cam.motion.extremes import find_extremes
+from kinematics.cam.motion.program import TURN, Program
+from kinematics.cam.motion.segments import build_dwell
+from kinematics.cam.profile import Rotation, space_angles
 from kinematics.errors import DimensionError
 from tests.cases import Case, cases
 from tests.oracles.cam_formulas import least_groove_radius
@@ -33,19 +33,21 @@ DEGREE = math.pi / 180.0
 
 # Convex everywhere but the last: an eccentric, arcs, straight and hollow flanks.
 CONTOURS = {
-    "eccentric": eccentric_circle(3.5, 1.2),
-    "arcs": circular_arc_cam(3.25, 1.5, 3.0, 6.25),
-    "tangent": tangent_cam(2.25, 1.8, 1.7),
-    "hollow": circular_arc_cam(2.0, 0.8, 2.6, -5.0),
+    "eccentric": build_eccentric_circle(3.5, 1.2),
+    "arcs": build_circular_arc_cam(3.25, 1.5, 3.0, 6.25),
+    "tangent": build_tangent_cam(2.25, 1.8, 1.7),
+    "hollow": build_circular_arc_cam(2.0, 0.8, 2.6, -5.0),
 }
 
 
 @pytest.mark.parametrize("case", cases("eccentric", "cam"))
 def test_eccentric_cams(case: Case) -> None:
     x = case.inputs
-    contour = eccentric_circle(x["Rc"], x["E"])
+    contour = build_eccentric_circle(x["Rc"], x["E"])
     follower = TranslatingRoller(x["Rc"] - x["E"] + x["Rr"], x["Rr"])
-    worst = extremes(lambda angle: follower.pressure_angle(contour.motion(follower, angle)), contour.breaks(follower))
+    worst = find_extremes(
+        lambda angle: follower.pressure_angle(contour.motion(follower, angle)), contour.breaks(follower)
+    )
     case.check(
         l=x["Rc"] + x["Rr"],
         l_over_E=(x["Rc"] + x["Rr"]) / x["E"],
@@ -59,8 +61,8 @@ def test_circular_arc_cams(case: Case) -> None:
     """The row's arcs, whose printed half action of 75° is 75.32° when they are to be tangent."""
     x = case.inputs
     base, distance = x["max_radius"] - x["L"], x["max_radius"] - x["rhoN"]
-    radius = flank_radius_of(base, x["rhoN"], distance, 75.32 * DEGREE)
-    contour = circular_arc_cam(base, x["rhoN"], distance, radius)
+    radius = compute_flank_radius(base, x["rhoN"], distance, 75.32 * DEGREE)
+    contour = build_circular_arc_cam(base, x["rhoN"], distance, radius)
     assert radius == pytest.approx(base + x["E"], rel=1e-3)
     follower = TranslatingRoller(base + x["Rr"], x["Rr"])
     assert contour.motion(follower, 0.0).s == pytest.approx(x["L"])
@@ -72,7 +74,7 @@ def test_circular_arc_cams(case: Case) -> None:
 @pytest.mark.parametrize("case", cases("arc_cam_rho", "cam"))
 def test_least_radius_of_a_tangent_cam(case: Case) -> None:
     x = case.inputs
-    case.check(cam_rho_min=tangent_cam(x["Rc"], x["rhoN"], x["E"]).least_radius)
+    case.check(cam_rho_min=build_tangent_cam(x["Rc"], x["rhoN"], x["E"]).least_radius)
 
 
 @pytest.mark.parametrize("rotation", ["ccw", "cw"])
@@ -81,7 +83,7 @@ def test_least_radius_of_a_tangent_cam(case: Case) -> None:
 def test_motion_of_a_roller_agrees_with_the_contact_search(name: str, offset: float, rotation: Rotation) -> None:
     contour = CONTOURS[name]
     follower = TranslatingRoller(contour.base_radius + 0.9, 0.9, offset)
-    angles = even_angles(180) + 0.003
+    angles = space_angles(180) + 0.003
     found = Contour(contour.points(2000)).follow(follower, angles, rotation)
     motion = contour.motion(follower, angles, rotation)
     assert found.s == pytest.approx(motion.s, abs=1e-6)
@@ -93,7 +95,7 @@ def test_motion_of_a_roller_agrees_with_the_contact_search(name: str, offset: fl
 def test_motion_of_a_face_agrees_with_the_contact_search(name: str, rotation: Rotation) -> None:
     contour = CONTOURS[name]
     follower = TranslatingFlat(contour.base_radius)
-    angles = even_angles(180) + 0.003
+    angles = space_angles(180) + 0.003
     found = Contour(contour.points(4000)).follow(follower, angles, rotation)
     assert found.s == pytest.approx(contour.motion(follower, angles, rotation).s, abs=2e-6)
 
@@ -111,7 +113,7 @@ def test_velocities_agree_with_differences(name: str, follower_kind: str) -> Non
         if follower_kind == "roller"
         else TranslatingFlat(contour.base_radius)
     )
-    angles = even_angles(120) + 0.001
+    angles = space_angles(120) + 0.001
     breaks = contour.breaks(follower, "cw")
     angles = angles[np.abs(angles[:, None] - breaks).min(axis=1) > 5.0 * step]
     found = contour.motion(follower, angles, "cw")
@@ -138,22 +140,22 @@ def test_flank_radius_for_a_half_action() -> None:
         contour = CONTOURS[name]
         if half_action is None:
             half_action = math.degrees(math.acos((2.25 - 1.8) / 1.7))
-            assert abs(flank_radius_of(2.25, 1.8, 1.7, half_action * DEGREE)) > 1e12
+            assert abs(compute_flank_radius(2.25, 1.8, 1.7, half_action * DEGREE)) > 1e12
         else:
-            assert flank_radius_of(3.25, 1.5, 3.0, half_action * DEGREE) == pytest.approx(6.25, abs=5e-3)
+            assert compute_flank_radius(3.25, 1.5, 3.0, half_action * DEGREE) == pytest.approx(6.25, abs=5e-3)
         assert contour.least_radius in (1.5, 1.8)
 
 
 def test_contours_that_are_none_are_refused() -> None:
     for make in (
-        lambda: eccentric_circle(1.0, 1.0),
-        lambda: eccentric_circle(1.0, -0.1),
-        lambda: tangent_cam(2.0, 0.5, 1.0),
-        lambda: tangent_cam(-2.0, 0.5, 3.0),
-        lambda: tangent_cam(2.0, 0.0, 3.0),
-        lambda: circular_arc_cam(3.25, 1.5, 3.0, 3.3),
-        lambda: circular_arc_cam(3.25, 1.5, 3.0, math.nan),
-        lambda: flank_radius_of(3.25, 1.5, 3.0, 4.0),
+        lambda: build_eccentric_circle(1.0, 1.0),
+        lambda: build_eccentric_circle(1.0, -0.1),
+        lambda: build_tangent_cam(2.0, 0.5, 1.0),
+        lambda: build_tangent_cam(-2.0, 0.5, 3.0),
+        lambda: build_tangent_cam(2.0, 0.0, 3.0),
+        lambda: build_circular_arc_cam(3.25, 1.5, 3.0, 3.3),
+        lambda: build_circular_arc_cam(3.25, 1.5, 3.0, math.nan),
+        lambda: compute_flank_radius(3.25, 1.5, 3.0, 4.0),
         lambda: SpecifiedContour(1.0, (Arc(0j, 1.0, 0.0), Arc(0.1 + 0j, 1.0, math.pi))),
         lambda: SpecifiedContour(1.0, (Arc(0j, 1.0, 0.0), Flank(2.0, 1.0))),
         lambda: SpecifiedContour(1.0, (Flank(1.0, 0.0), Flank(1.0, 2.0))),
@@ -167,9 +169,9 @@ def test_contours_that_are_none_are_refused() -> None:
 def test_barrel_cams() -> None:
     program = double_dwell(2.0)
     barrel = BarrelCam(program, 3.0, 0.2)
-    steepest = extremes(barrel.pressure_angle, program.breaks).greatest
+    steepest = find_extremes(barrel.pressure_angle, program.breaks).greatest
     assert steepest == pytest.approx(math.atan(4.0 / (math.pi / 2.0) / 3.0))
-    angles = even_angles(200) + 1e-3
+    angles = space_angles(200) + 1e-3
     angles = angles[np.abs(angles[:, None] - program.breaks).min(axis=1) > 5e-3]
     slope = derivative(lambda h: barrel.pitch_curve(angles + h), 1, 1e-3)
     assert barrel.pressure_angle(angles) == pytest.approx(np.angle(slope), abs=1e-9)
@@ -182,7 +184,7 @@ def test_barrel_cams() -> None:
             np.full(len(angles), 0.2)
         )
     assert (barrel.wall(0.0, 1) - barrel.wall(0.0, -1)).imag == pytest.approx(0.4)
-    assert least_groove_radius(BarrelCam(Program([dwell(TURN, 0.0)]), 3.0, 1.0)) == math.inf
+    assert least_groove_radius(BarrelCam(Program([build_dwell(TURN, 0.0)]), 3.0, 1.0)) == math.inf
     with pytest.raises(DimensionError, match="cylinder"):
         BarrelCam(program, 0.0)
     with pytest.raises(DimensionError, match="roller"):

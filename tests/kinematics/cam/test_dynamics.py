@@ -10,11 +10,11 @@ import numpy as np
 import pytest
 
 from kinematics.cam.dynamics import Camshaft, FollowerLoad, RunningCam
-from kinematics.cam.motion_laws import LAWS
-from kinematics.cam.profile import even_angles
-from kinematics.cam.program import TURN, Program
+from kinematics.cam.motion.laws import LAWS
+from kinematics.cam.motion.program import TURN, Program
+from kinematics.cam.motion.segments import build_dwell, build_law_segment
+from kinematics.cam.profile import space_angles
 from kinematics.cam.response import FollowerTrain, Response
-from kinematics.cam.segments import dwell, law_segment
 from kinematics.errors import DimensionError
 from tests.cases import Case, cases
 from tests.kinematics.cam.sampling import random_program
@@ -24,7 +24,7 @@ from tests.support.kinematics.cam.profile import double_dwell
 
 
 def running(x: dict[str, Any], design: dict[str, Any]) -> RunningCam:
-    load = FollowerLoad(x["mass"], x["k"], design["preload"]).damped(x["zeta"])
+    load = FollowerLoad(x["mass"], x["k"], design["preload"]).with_damping_ratio(x["zeta"])
     return RunningCam(program_of(design["segments"]), load, x["omega_rad_s"])
 
 
@@ -64,7 +64,7 @@ def some_cam(seed: int) -> RunningCam:
 @pytest.mark.parametrize("seed", range(6))
 def test_least_preload_just_holds_the_floor(seed: int) -> None:
     cam, floor = some_cam(seed), 3.0
-    preload = cam.least_preload(floor)
+    preload = cam.compute_min_preload(floor)
     held = replace(cam, load=replace(cam.load, preload=preload)).force_extremes.least
     assert held == pytest.approx(floor) if preload > 0.0 else held >= floor
 
@@ -74,7 +74,7 @@ def test_least_preload_just_holds_the_floor(seed: int) -> None:
 def test_the_jump_speed_is_the_first_at_which_contact_is_lost(seed: int, damping: float) -> None:
     cam = some_cam(seed)
     cam = replace(cam, load=replace(cam.load, damping=damping))
-    speed = cam.jump_speed()
+    speed = cam.find_jump_speed()
     at = replace(cam, speed=speed).force_extremes
     assert at.least == pytest.approx(0.0, abs=1e-6 * at.greatest)
     for share in np.linspace(0.05, 0.99, 12):
@@ -82,19 +82,19 @@ def test_the_jump_speed_is_the_first_at_which_contact_is_lost(seed: int, damping
 
 
 def test_jump_speeds_without_a_jump() -> None:
-    rest = Program([dwell(TURN, 0.0)])
-    assert RunningCam(rest, FollowerLoad(1.0, 1.0, 1.0), 1.0).jump_speed() == math.inf
-    assert RunningCam(rest, FollowerLoad(1.0, 1.0, 1.0), 1.0).jump_speed(2.0) == 0.0
-    assert RunningCam(double_dwell(), FollowerLoad(1.0, 1.0, 0.0), 1.0).jump_speed() == 0.0
-    assert RunningCam(double_dwell(), FollowerLoad(1.0, 1.0, 0.0, 0.1), 1.0).jump_speed() == 0.0
+    rest = Program([build_dwell(TURN, 0.0)])
+    assert RunningCam(rest, FollowerLoad(1.0, 1.0, 1.0), 1.0).find_jump_speed() == math.inf
+    assert RunningCam(rest, FollowerLoad(1.0, 1.0, 1.0), 1.0).find_jump_speed(2.0) == 0.0
+    assert RunningCam(double_dwell(), FollowerLoad(1.0, 1.0, 0.0), 1.0).find_jump_speed() == 0.0
+    assert RunningCam(double_dwell(), FollowerLoad(1.0, 1.0, 0.0, 0.1), 1.0).find_jump_speed() == 0.0
 
 
 def test_a_form_closed_follower_changes_walls() -> None:
     cam = RunningCam(double_dwell(), FollowerLoad(2.0), 10.0)
     assert cam.force_extremes.least <= 0.0
-    assert cam.reversals() == pytest.approx([TURN / 8.0, 5.0 * TURN / 8.0])
+    assert cam.find_reversals() == pytest.approx([TURN / 8.0, 5.0 * TURN / 8.0])
     parabolic = RunningCam(double_dwell(law="constant_acceleration"), FollowerLoad(2.0), 10.0)
-    assert parabolic.reversals() == pytest.approx([TURN / 8.0, 5.0 * TURN / 8.0])
+    assert parabolic.find_reversals() == pytest.approx([TURN / 8.0, 5.0 * TURN / 8.0])
 
 
 def test_a_force_that_comes_to_zero_changes_no_walls() -> None:
@@ -102,26 +102,32 @@ def test_a_force_that_comes_to_zero_changes_no_walls() -> None:
 
     Of a rise and a fall under a spring the force is negative in the second half of the rise and the first of the fall.
     """
-    fall = law_segment(LAWS["polynomial_4567"], math.radians(99.231), 17.538, 0.0)
-    rise = law_segment(LAWS["polynomial_4567"], math.radians(83.06), 0.0, 17.538)
-    rests = [dwell(math.radians(120.64), 17.538), dwell(TURN - rise.angle - fall.angle - math.radians(120.64), 0.0)]
+    fall = build_law_segment(LAWS["polynomial_4567"], math.radians(99.231), 17.538, 0.0)
+    rise = build_law_segment(LAWS["polynomial_4567"], math.radians(83.06), 0.0, 17.538)
+    rests = [
+        build_dwell(math.radians(120.64), 17.538),
+        build_dwell(TURN - rise.angle - fall.angle - math.radians(120.64), 0.0),
+    ]
     load = FollowerLoad(2.838720768024683e-3, 0.8649565934885397)
     cam = RunningCam(Program([rise, rests[0], fall, rests[1]]), load, 315.9850877302169 * TURN / 60.0)
-    assert np.degrees(cam.reversals()) == pytest.approx([42.004297502, 79.690055086, 208.601572308, 252.497784357])
+    assert np.degrees(cam.find_reversals()) == pytest.approx([42.004297502, 79.690055086, 208.601572308, 252.497784357])
 
 
 def test_a_follower_changes_walls_where_a_rest_without_force_ends() -> None:
     """Braked at the end of the rise, it is pressed to the other wall by the next rise; after the fall as before it."""
-    rise, rest = law_segment(LAWS["cycloidal"], 1.0, 0.0, 1.0), dwell(1.0, 1.0)
-    again, fall = law_segment(LAWS["cycloidal"], 1.0, 1.0, 2.0), law_segment(LAWS["cycloidal"], 2.0, 2.0, 0.0)
-    cam = RunningCam(Program([rise, rest, again, fall, dwell(TURN - 5.0, 0.0)]), FollowerLoad(2.0), 10.0)
-    assert cam.reversals() == pytest.approx([0.5, 2.0, 2.5, 4.0])
+    rise, rest = build_law_segment(LAWS["cycloidal"], 1.0, 0.0, 1.0), build_dwell(1.0, 1.0)
+    again, fall = (
+        build_law_segment(LAWS["cycloidal"], 1.0, 1.0, 2.0),
+        build_law_segment(LAWS["cycloidal"], 2.0, 2.0, 0.0),
+    )
+    cam = RunningCam(Program([rise, rest, again, fall, build_dwell(TURN - 5.0, 0.0)]), FollowerLoad(2.0), 10.0)
+    assert cam.find_reversals() == pytest.approx([0.5, 2.0, 2.5, 4.0])
 
 
 def test_torque_does_the_work_of_friction() -> None:
     cam = some_cam(3)
     shaft = Camshaft([cam])
-    at = even_angles(20_000)
+    at = space_angles(20_000)
     lost = (cam.load.damping * cam.speed * cam.program.motion(at).v ** 2).mean()
     assert shaft.mean_torque == pytest.approx(lost, rel=1e-6)
     assert shaft.torque_extremes.greatest == pytest.approx(cam.torque_extremes.greatest)
@@ -130,14 +136,14 @@ def test_torque_does_the_work_of_friction() -> None:
 def test_several_cams_on_one_shaft() -> None:
     cams = [replace(some_cam(k), speed=2.0, phase=0.7 * k) for k in range(3)]
     shaft = Camshaft(cams)
-    at = even_angles(100_000)
+    at = space_angles(100_000)
     torque = shaft.torque(at)
     assert torque == pytest.approx(sum(cam.torque(at - cam.phase) for cam in cams))
     assert shaft.torque_extremes.greatest == pytest.approx(torque.max(), rel=1e-6)
     assert shaft.torque_extremes.least == pytest.approx(torque.min(), rel=1e-6)
     energy = np.cumsum(torque - torque.mean()) * TURN / len(at)
     assert shaft.energy_fluctuation == pytest.approx(energy.max() - energy.min(), rel=1e-3)
-    assert shaft.flywheel_inertia(0.05) == pytest.approx(shaft.energy_fluctuation / (0.05 * 4.0))
+    assert shaft.compute_flywheel_inertia(0.05) == pytest.approx(shaft.energy_fluctuation / (0.05 * 4.0))
 
 
 def test_energy_of_a_mass_is_its_kinetic_energy() -> None:
@@ -156,12 +162,12 @@ def test_loads_that_are_none_are_refused() -> None:
         lambda: FollowerLoad(0.0),
         lambda: FollowerLoad(1.0, -1.0),
         lambda: FollowerLoad(1.0, 1.0, math.nan),
-        lambda: FollowerLoad(1.0, 1.0).damped(-0.1),
+        lambda: FollowerLoad(1.0, 1.0).with_damping_ratio(-0.1),
         lambda: RunningCam(double_dwell(), FollowerLoad(1.0), 0.0),
         lambda: RunningCam(double_dwell(), FollowerLoad(1.0), 1.0, math.nan),
         lambda: Camshaft([]),
         lambda: Camshaft([some_cam(1), some_cam(2)]),
-        lambda: Camshaft([some_cam(1)]).flywheel_inertia(0.0),
+        lambda: Camshaft([some_cam(1)]).compute_flywheel_inertia(0.0),
         lambda: FollowerTrain(1.0, 0.0),
         lambda: Response(double_dwell(), FollowerTrain(1.0, 1.0), 0.0),
         lambda: Response(double_dwell(), FollowerTrain(1.0, 1.0, 2.0), 1.0),
@@ -173,7 +179,7 @@ def test_loads_that_are_none_are_refused() -> None:
 def harmonic(lift: float) -> Program:
     half = TURN / 2.0
     law = LAWS["simple_harmonic"]
-    return Program([law_segment(law, half, 0.0, lift), law_segment(law, half, lift, 0.0)])
+    return Program([build_law_segment(law, half, 0.0, lift), build_law_segment(law, half, lift, 0.0)])
 
 
 @pytest.mark.campaign
@@ -216,7 +222,7 @@ def test_response_is_what_integration_settles_to() -> None:
     response = Response(double_dwell(), train, 3.0)
     steps = 720
     expected = runge_kutta(response, 6, steps)
-    found = np.interp(even_angles(steps), response.angle, response.displacement)
+    found = np.interp(space_angles(steps), response.angle, response.displacement)
     assert found == pytest.approx(expected, abs=2e-5)
 
 

@@ -7,7 +7,7 @@ from itertools import pairwise
 import numpy as np
 import pytest
 
-from kinematics.cam.extremes import extremes, stationary_points
+from kinematics.cam.motion.extremes import find_extremes, find_stationary_points
 
 
 @pytest.mark.parametrize("waves", [0.0, 1.0, 40.0])
@@ -21,8 +21,8 @@ def test_extremes_are_the_greatest_of_all_stationary_points(seed: int, waves: fl
         piece = np.clip(np.searchsorted(breaks, x) - 1, 0, 30)
         return np.asarray(jumps[piece] + slopes[piece] * np.sin(waves * x + piece))
 
-    found = extremes(function, breaks)
-    points, values = stationary_points(function, breaks)
+    found = find_extremes(function, breaks)
+    points, values = find_stationary_points(function, breaks)
     assert (found.least, found.greatest) == (values.min(), values.max())
     assert (found.at_least, found.at_greatest) == (points[values.argmin()], points[values.argmax()])
     fine = np.concatenate([np.linspace(a, b, 400)[1:-1] for a, b in pairwise(breaks)])

@@ -5,10 +5,10 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from kinematics.cam.contact import Contour
+from kinematics.cam.finished.contact import Contour
+from kinematics.cam.finished.motion_program import measure_program
 from kinematics.cam.follower import TranslatingRoller
-from kinematics.cam.measured import measured_program
-from kinematics.cam.profile import Cam, even_angles
+from kinematics.cam.profile import Cam, space_angles
 from kinematics.errors import DimensionError
 from tests.kinematics.cam.sampling import FOLLOWERS, sound_cam
 from tests.support.kinematics.cam.profile import double_dwell
@@ -17,8 +17,8 @@ from tests.support.kinematics.cam.profile import double_dwell
 @pytest.mark.parametrize("kind", FOLLOWERS)
 def test_the_measured_program_is_the_stated_one(kind: str) -> None:
     cam = sound_cam(np.random.default_rng(5), kind)
-    program = measured_program(Contour(cam.profile(even_angles(1440))), cam.follower, cam.rotation, 720)
-    angles = even_angles(1000) + 1e-3
+    program = measure_program(Contour(cam.profile(space_angles(1440))), cam.follower, cam.rotation, 720)
+    angles = space_angles(1000) + 1e-3
     stated, found = cam.program.motion(angles), program.motion(angles)
     assert found.s == pytest.approx(stated.s, abs=1e-6 * cam.program.lift)
     assert found.v == pytest.approx(stated.v, abs=1e-3 * cam.program.peaks[1].largest)
@@ -30,4 +30,4 @@ def test_the_measured_program_is_the_stated_one(kind: str) -> None:
 def test_a_follower_beside_the_cam_has_no_program() -> None:
     cam = Cam(double_dwell(), TranslatingRoller(3.0, 0.5))
     with pytest.raises(DimensionError, match="touched"):
-        measured_program(Contour(cam.profile(even_angles(720))), TranslatingRoller(7.0, 0.5, 6.0), "cw", 90)
+        measure_program(Contour(cam.profile(space_angles(720))), TranslatingRoller(7.0, 0.5, 6.0), "cw", 90)

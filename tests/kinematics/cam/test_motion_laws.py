@@ -7,8 +7,8 @@ import math
 import numpy as np
 import pytest
 
-from kinematics.cam.motion_laws import LAWS, sine_constant_cosine
-from kinematics.cam.pieces import Pieces
+from kinematics.cam.motion.laws import LAWS, build_sine_constant_cosine
+from kinematics.cam.motion.pieces import Pieces
 from kinematics.errors import DimensionError
 from tests.oracles.differences import derivative
 
@@ -144,7 +144,7 @@ def test_the_kernel_agrees_with_its_twin(name: str) -> None:
 def test_one_law_is_a_case_of_another() -> None:
     u = np.linspace(0.0, 1.0, 21)
     for name, parts in (("cycloidal", (0.25, 0.0, 0.25)), ("simple_harmonic", (0.0, 0.0, 0.5))):
-        made = sine_constant_cosine(name, *parts).motion(u)
+        made = build_sine_constant_cosine(name, *parts).motion(u)
         for ours, known in zip(made, LAWS[name].motion(u), strict=True):
             assert ours[:-1] == pytest.approx(known[:-1], abs=1e-11)
 
@@ -152,4 +152,4 @@ def test_one_law_is_a_case_of_another() -> None:
 def test_impossible_parts_are_refused() -> None:
     for parts in ((0.3, 0.1, 0.2), (-0.1, 0.3, 0.1), (0.0, 0.0, 0.0)):
         with pytest.raises(DimensionError, match="parts of the law"):
-            sine_constant_cosine("impossible", *parts)
+            build_sine_constant_cosine("impossible", *parts)

@@ -8,10 +8,10 @@ import numpy as np
 import pytest
 
 from kinematics.cam.follower import OscillatingFlat, OscillatingRoller, TranslatingFlat, TranslatingRoller
-from kinematics.cam.motion_laws import LAWS
-from kinematics.cam.profile import Cam, even_angles
-from kinematics.cam.program import TURN, Program
-from kinematics.cam.segments import dwell, law_segment
+from kinematics.cam.motion.laws import LAWS
+from kinematics.cam.motion.program import TURN, Program
+from kinematics.cam.motion.segments import build_dwell, build_law_segment
+from kinematics.cam.profile import Cam, space_angles
 from kinematics.errors import DimensionError
 from tests.kinematics.cam.sampling import FOLLOWERS, sound_cam
 from tests.oracles.cam_formulas import (
@@ -31,7 +31,7 @@ FLATS = ("translating_flat", "oscillating_flat")
 
 
 def smooth_angles(cam: Cam, count: int, margin: float) -> np.ndarray:
-    angles = even_angles(count) + 1e-4
+    angles = space_angles(count) + 1e-4
     return angles[np.abs(angles[:, None] - cam.program.breaks).min(axis=1) > margin]
 
 
@@ -89,8 +89,8 @@ def test_pressure_angle_is_between_normal_and_motion(kind: str, seed: int) -> No
 def test_profile_is_the_envelope_of_the_roller(kind: str) -> None:
     """Every profile point lies on the roller of its own angle, and in no other roller."""
     cam = sound_cam(np.random.default_rng(3), kind)
-    centres = cam.pitch_curve(even_angles(7200))
-    profile = cam.profile(even_angles(240))
+    centres = cam.pitch_curve(space_angles(7200))
+    profile = cam.profile(space_angles(240))
     nearest = np.abs(profile[:, None] - centres).min(axis=1)
     assert nearest == pytest.approx(np.full(240, cam.roller_radius), abs=1e-5 * cam.size)
 
@@ -99,8 +99,8 @@ def test_profile_is_the_envelope_of_the_roller(kind: str) -> None:
 def test_profile_is_the_envelope_of_the_face(kind: str) -> None:
     """The greatest reach of the profile along each face's normal is that face's distance."""
     cam = sound_cam(np.random.default_rng(4), kind)
-    profile = cam.profile(even_angles(7200))
-    at = even_angles(90)
+    profile = cam.profile(space_angles(7200))
+    at = space_angles(90)
     normal = cam.normal(at)
     reach = (profile[:, None] * np.conj(normal)).real.max(axis=0)
     assert reach == pytest.approx((cam.profile(at) * np.conj(normal)).real, abs=1e-6 * cam.size)
@@ -110,7 +110,7 @@ def test_profile_is_the_envelope_of_the_face(kind: str) -> None:
 def test_the_other_rotation_is_the_mirror_image(kind: str) -> None:
     cam = sound_cam(np.random.default_rng(5), kind)
     other = Cam(cam.program, cam.follower, "cw" if cam.rotation == "ccw" else "ccw")
-    angles = even_angles(50)
+    angles = space_angles(50)
     assert other.profile(angles) == pytest.approx(np.conj(cam.profile(angles)), abs=1e-12)
     assert pressure_angle_extremes(other) == pressure_angle_extremes(cam)
 
@@ -119,7 +119,7 @@ def test_the_other_rotation_is_the_mirror_image(kind: str) -> None:
 def test_worst_points_bound_a_fine_grid(kind: str) -> None:
     for seed in range(5):
         cam = sound_cam(np.random.default_rng(seed), kind)
-        grid = even_angles(20_000)
+        grid = space_angles(20_000)
         worst, found = pressure_angle_extremes(cam), cam.pressure_angle(grid)
         assert worst.least <= found.min() + 1e-12
         assert worst.greatest >= found.max() - 1e-12
@@ -139,14 +139,16 @@ def test_eccentric_circle_from_harmonic_motion() -> None:
     """Harmonic rise and fall of half a turn each under a flat face make an eccentric circle (Norton Fig 8-10)."""
     half = TURN / 2.0
     law = LAWS["simple_harmonic"]
-    cam = Cam(Program([law_segment(law, half, 0.0, 1.0), law_segment(law, half, 1.0, 0.0)]), TranslatingFlat(2.0))
-    profile = cam.profile(even_angles(36))
+    cam = Cam(
+        Program([build_law_segment(law, half, 0.0, 1.0), build_law_segment(law, half, 1.0, 0.0)]), TranslatingFlat(2.0)
+    )
+    profile = cam.profile(space_angles(36))
     assert np.abs(profile - (-0.5)) == pytest.approx(np.full(36, 2.5), abs=1e-12)
 
 
 def test_cutters_touch_where_the_roller_does() -> None:
     cam = sound_cam(np.random.default_rng(6), "offset_roller")
-    angles = even_angles(12)
+    angles = space_angles(12)
     for radius in (0.1, 0.3, 2.0):
         assert np.abs(cutter_path(cam, angles, radius) - cam.profile(angles)) == pytest.approx(np.full(12, radius))
     assert np.abs(cam.outer_wall(angles) - cam.profile(angles)) == pytest.approx(np.full(12, 2.0 * cam.roller_radius))
@@ -158,7 +160,7 @@ def test_largest_cutter_just_fits_the_hollow() -> None:
     radius = largest_cutter(cam)
     assert math.isfinite(radius)
     assert -1.0 / cam.pitch_curvature_extremes.least == pytest.approx(
-        -profile_radius(cam, even_angles(72_000))[np.argmin(cam.pitch_curvature(even_angles(72_000)))]
+        -profile_radius(cam, space_angles(72_000))[np.argmin(cam.pitch_curvature(space_angles(72_000)))]
         - cam.roller_radius,
         rel=1e-6,
     )
@@ -180,12 +182,12 @@ def test_undercut_begins_where_the_pitch_curve_is_as_sharp_as_the_roller() -> No
 
 
 def test_dwell_alone_is_a_circle() -> None:
-    cam = Cam(Program([dwell(TURN, 0.0)]), TranslatingRoller(2.0, 0.5, offset=0.3))
-    assert np.abs(cam.profile(even_angles(7))) == pytest.approx(np.full(7, 1.5))
+    cam = Cam(Program([build_dwell(TURN, 0.0)]), TranslatingRoller(2.0, 0.5, offset=0.3))
+    assert np.abs(cam.profile(space_angles(7))) == pytest.approx(np.full(7, 1.5))
     assert not undercut(cam)
     assert least_convex_radius(cam) == pytest.approx(2.0)
     assert largest_cutter(cam) == math.inf
-    flat = Cam(Program([dwell(TURN, 0.0)]), TranslatingFlat(2.0))
+    flat = Cam(Program([build_dwell(TURN, 0.0)]), TranslatingFlat(2.0))
     assert reach_extremes(flat).largest == 0.0
 
 

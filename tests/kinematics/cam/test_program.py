@@ -9,10 +9,16 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from kinematics.cam.extremes import extremes, roots, stationary_points
-from kinematics.cam.motion_laws import LAWS
-from kinematics.cam.program import Program
-from kinematics.cam.segments import Condition, dwell, knot_segment, law_segment, polynomial_segment
+from kinematics.cam.motion.extremes import find_extremes, find_roots, find_stationary_points
+from kinematics.cam.motion.laws import LAWS
+from kinematics.cam.motion.program import Program
+from kinematics.cam.motion.segments import (
+    Condition,
+    build_dwell,
+    build_knot_segment,
+    build_law_segment,
+    build_polynomial_segment,
+)
 from kinematics.errors import DimensionError
 from tests.kinematics.cam.stating import coefficient_segment
 
@@ -30,7 +36,7 @@ def programs(draw: st.DrawFn) -> Program:
     laws = [draw(st.sampled_from([*SMOOTH, "simple_harmonic", "eighth_power", "trapezoidal"])) for _ in range(count)]
     return Program(
         [
-            dwell(angle, start) if start == end else law_segment(LAWS[law], angle, start, end)
+            build_dwell(angle, start) if start == end else build_law_segment(LAWS[law], angle, start, end)
             for angle, law, start, end in zip(angles, laws, heights, heights[1:], strict=False)
         ]
     )
@@ -69,8 +75,8 @@ def test_a_joint_says_what_the_motion_does(program: Program) -> None:
 
 def double_dwell(law: str) -> Program:
     quarter = TURN / 4.0
-    rise, fall = law_segment(LAWS[law], quarter, 0.0, 1.0), law_segment(LAWS[law], quarter, 1.0, 0.0)
-    return Program([dwell(quarter, 0.0), rise, dwell(quarter, 1.0), fall])
+    rise, fall = build_law_segment(LAWS[law], quarter, 0.0, 1.0), build_law_segment(LAWS[law], quarter, 1.0, 0.0)
+    return Program([build_dwell(quarter, 0.0), rise, build_dwell(quarter, 1.0), fall])
 
 
 def test_smoothness_of_laws_between_dwells() -> None:
@@ -93,7 +99,7 @@ def test_a_jump_within_a_segment_is_listed() -> None:
 
 
 def test_dwell_alone_moves_nothing() -> None:
-    program = Program([dwell(TURN, 2.0)])
+    program = Program([build_dwell(TURN, 2.0)])
     assert program.lift == 0.0
     assert program.smoothness == 4
     assert [peak.largest for peak in program.peaks] == [2.0, 0.0, 0.0, 0.0]
@@ -101,7 +107,7 @@ def test_dwell_alone_moves_nothing() -> None:
 
 def test_more_than_sixteen_segments() -> None:
     angle = TURN / 40.0
-    program = Program([law_segment(LAWS["modified_sine"], angle, k % 2, (k + 1) % 2) for k in range(40)])
+    program = Program([build_law_segment(LAWS["modified_sine"], angle, k % 2, (k + 1) % 2) for k in range(40)])
     assert program.obeys_fundamental_law
     assert program.peaks[1].greatest == pytest.approx(4.0 * math.pi / (math.pi + 4.0) / angle, rel=1e-12)
 
@@ -117,7 +123,7 @@ def test_polynomial_meets_interior_conditions() -> None:
         Condition(2.0, 1, 0.0),
         Condition(2.0, 2, 0.0),
     ]
-    segment = polynomial_segment(2.0, conditions)
+    segment = build_polynomial_segment(2.0, conditions)
     for at, order, value in conditions:
         assert segment.pieces.motion(at)[order] == pytest.approx(value, abs=1e-9)
 
@@ -131,7 +137,7 @@ def test_norton_coefficients_are_of_the_share_of_the_angle() -> None:
 @pytest.mark.parametrize("angles", [(math.pi, math.pi - 1e-6), (TURN, 0.1), (1.0,)])
 def test_angles_that_are_no_turn_are_refused(angles: tuple[float, ...]) -> None:
     with pytest.raises(DimensionError, match="one turn"):
-        Program([dwell(angle, 0.0) for angle in angles])
+        Program([build_dwell(angle, 0.0) for angle in angles])
 
 
 def test_no_segments_are_refused() -> None:
@@ -142,20 +148,20 @@ def test_no_segments_are_refused() -> None:
 @pytest.mark.parametrize("angle", [0.0, -1.0, math.nan, math.inf])
 def test_segments_without_an_angle_are_refused(angle: float) -> None:
     with pytest.raises(DimensionError, match="angle of a segment"):
-        dwell(angle, 0.0)
+        build_dwell(angle, 0.0)
 
 
 def test_values_that_are_no_numbers_are_refused() -> None:
     with pytest.raises(DimensionError, match="end"):
-        law_segment(LAWS["cycloidal"], 1.0, 0.0, math.nan)
+        build_law_segment(LAWS["cycloidal"], 1.0, 0.0, math.nan)
     with pytest.raises(DimensionError, match="position"):
-        dwell(1.0, math.inf)
+        build_dwell(1.0, math.inf)
     with pytest.raises(DimensionError, match="breaks"):
-        knot_segment([0.0, 1.0], [[math.nan]])
+        build_knot_segment([0.0, 1.0], [[math.nan]])
     with pytest.raises(DimensionError, match="first knot"):
-        knot_segment([0.5, 1.0], [[1.0]])
+        build_knot_segment([0.5, 1.0], [[1.0]])
     with pytest.raises(DimensionError, match="breaks"):
-        knot_segment([0.0, 1.0, 2.0], [[1.0]])
+        build_knot_segment([0.0, 1.0, 2.0], [[1.0]])
 
 
 @pytest.mark.parametrize(
@@ -171,26 +177,26 @@ def test_values_that_are_no_numbers_are_refused() -> None:
 )
 def test_conditions_without_one_answer_are_refused(conditions: list[Condition]) -> None:
     with pytest.raises(DimensionError, match="condition"):
-        polynomial_segment(1.0, conditions)
+        build_polynomial_segment(1.0, conditions)
 
 
 def test_extremes_of_a_jump_are_its_two_sides() -> None:
-    found = extremes(lambda x: np.where(x < 1.0, x, x - 3.0), [0.0, 1.0, 2.0])
+    found = find_extremes(lambda x: np.where(x < 1.0, x, x - 3.0), [0.0, 1.0, 2.0])
     assert (found.least, found.greatest) == pytest.approx((-2.0, 1.0))
     assert (found.at_least, found.at_greatest) == pytest.approx((1.0, 1.0))
 
 
 def test_a_hidden_kink_is_found() -> None:
-    found = extremes(lambda x: -np.abs(x - 0.123456), [0.0, 1.0])
+    found = find_extremes(lambda x: -np.abs(x - 0.123456), [0.0, 1.0])
     assert found.greatest == pytest.approx(0.0, abs=1e-7)
 
 
 def test_roots_of_a_wave() -> None:
-    assert roots(lambda x: np.sin(25.0 * x), np.array([0.1, 1.7, 3.0])) == pytest.approx(
+    assert find_roots(lambda x: np.sin(25.0 * x), np.array([0.1, 1.7, 3.0])) == pytest.approx(
         np.arange(1, 24) * math.pi / 25.0, abs=1e-12
     )
-    assert len(roots(lambda x: 0.0 * x, np.array([0.0, 1.0]))) == 0
-    assert len(roots(lambda x: 2.0 + x, np.array([0.0, 1.0]))) == 0
+    assert len(find_roots(lambda x: 0.0 * x, np.array([0.0, 1.0]))) == 0
+    assert len(find_roots(lambda x: 2.0 + x, np.array([0.0, 1.0]))) == 0
 
 
 def test_a_function_that_is_rounding_is_not_halved_for_ever() -> None:
@@ -201,6 +207,6 @@ def test_a_function_that_is_rounding_is_not_halved_for_ever() -> None:
         asked += at.size
         return (1.0 + 1e-12 * np.sin(7.0 * at)) - 1.0
 
-    _, values = stationary_points(rounding, np.array([0.0, 1.0, 3.0]))
+    _, values = find_stationary_points(rounding, np.array([0.0, 1.0, 3.0]))
     assert asked < 500_000
     assert values.max() == pytest.approx(1e-12, rel=1e-3)

@@ -7,8 +7,8 @@ import math
 import numpy as np
 import pytest
 
-from kinematics.cam.motion_laws import LAWS, Law
-from kinematics.cam.segments import Condition, law_segment, polynomial_segment
+from kinematics.cam.motion.laws import LAWS, Law
+from kinematics.cam.motion.segments import Condition, build_law_segment, build_polynomial_segment
 from tests.cases import Case, Expected, cases
 from tests.kinematics.cam.stating import NAMES, program_of
 
@@ -115,7 +115,7 @@ def test_polynomials_through_conditions(case: Case) -> None:
     angle = x.get("beta_deg", math.degrees(1.0)) * DEGREE
     speed = x.get("omega_rad_s", 1.0)
     conditions = [Condition(u * angle, order, value / speed**order) for u, order, value in x["bcs"]]
-    segment = polynomial_segment(angle, conditions)
+    segment = build_polynomial_segment(angle, conditions)
     coefficients = segment.pieces.polynomial[0] * angle ** np.arange(len(conditions))
     start, end = segment.pieces.motion(0.0), segment.pieces.motion(angle)
     velocity, acceleration = segment.extremes(1), segment.extremes(2)
@@ -136,7 +136,9 @@ def test_tables_of_laws(case: Case) -> None:
     h, base = x["h"], x.get("base", 0.0)
     if x["law"].endswith("_fall"):
         h, base = -h, base + h
-    s, v, a, j = law_segment(law_of(x["law"]), angle, base, base + h).pieces.motion(np.array(x["theta_deg"]) * DEGREE)
+    s, v, a, j = build_law_segment(law_of(x["law"]), angle, base, base + h).pieces.motion(
+        np.array(x["theta_deg"]) * DEGREE
+    )
     case.check(y=s, v=v, a=a, j=j)
 
 

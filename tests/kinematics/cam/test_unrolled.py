@@ -8,11 +8,11 @@ import numpy as np
 import pytest
 
 from kinematics.cam.barrel import BarrelCam
-from kinematics.cam.motion_laws import LAWS
-from kinematics.cam.profile import even_angles
-from kinematics.cam.program import TURN, Program
-from kinematics.cam.segments import dwell, law_segment
-from kinematics.cam.unrolled import UnrolledWall
+from kinematics.cam.finished.barrel_contact import UnrolledWall
+from kinematics.cam.motion.laws import LAWS
+from kinematics.cam.motion.program import TURN, Program
+from kinematics.cam.motion.segments import build_dwell, build_law_segment
+from kinematics.cam.profile import space_angles
 from kinematics.errors import DimensionError
 from tests.oracles.cam_formulas import least_groove_radius
 
@@ -21,16 +21,16 @@ QUARTER = 0.25 * TURN
 
 def barrel(scale: float = 1.0) -> BarrelCam:
     segments = [
-        law_segment(LAWS["cycloidal"], QUARTER, 0.0, 20.0 * scale),
-        dwell(QUARTER, 20.0 * scale),
-        law_segment(LAWS["modified_sine"], 1.5 * QUARTER, 20.0 * scale, 0.0),
-        dwell(0.5 * QUARTER, 0.0),
+        build_law_segment(LAWS["cycloidal"], QUARTER, 0.0, 20.0 * scale),
+        build_dwell(QUARTER, 20.0 * scale),
+        build_law_segment(LAWS["modified_sine"], 1.5 * QUARTER, 20.0 * scale, 0.0),
+        build_dwell(0.5 * QUARTER, 0.0),
     ]
     return BarrelCam(Program(segments), 40.0 * scale, 6.0 * scale)
 
 
 def wall(cam: BarrelCam, side: int, count: int = 1440) -> UnrolledWall:
-    return UnrolledWall(cam.wall(even_angles(count), side), TURN * cam.radius)
+    return UnrolledWall(cam.wall(space_angles(count), side), TURN * cam.radius)
 
 
 @pytest.mark.parametrize("scale", [1e-6, 1.0, 1e6])
@@ -48,7 +48,7 @@ def test_the_program_comes_back(side: int, scale: float) -> None:
 def test_brute_force_agrees() -> None:
     """The greatest height that any of very many points of the exact wall asks for."""
     cam = barrel()
-    dense = cam.wall(even_angles(200_000), -1)
+    dense = cam.wall(space_angles(200_000), -1)
     for theta in (0.3, 1.1, 2.9, 4.4, 6.0):
         across = dense.real - cam.radius * theta
         across -= TURN * cam.radius * np.round(across / (TURN * cam.radius))
@@ -69,10 +69,10 @@ def test_a_straight_groove() -> None:
 
 def test_an_undercut_wall_is_cusped() -> None:
     cam = barrel()
-    assert not wall(cam, -1).cusped
+    assert not wall(cam, -1).has_cusp
     small = BarrelCam(cam.program, 6.0, 6.0)
     assert least_groove_radius(small) <= small.roller_radius
-    assert wall(small, 1, 4000).cusped or wall(small, -1, 4000).cusped
+    assert wall(small, 1, 4000).has_cusp or wall(small, -1, 4000).has_cusp
 
 
 @pytest.mark.parametrize(

@@ -8,7 +8,7 @@ import numpy as np
 
 from kinematics.dynamics import JointForce, Machine, PointForce, Torque
 from kinematics.linkage.planar.closures import Step, decompose
-from kinematics.linkage.planar.drive import assembly_signs
+from kinematics.linkage.planar.drive import find_assembly_signs
 from kinematics.linkage.planar.mechanism import GROUND, Mechanism
 
 Jet = tuple[Any, Any, Any]
@@ -37,16 +37,16 @@ class Twin:
         self.input = np.stack([at, still + speed, still])
         mechanism, steps = self.mechanism, decompose(self.mechanism).steps
         moved = at - np.asarray(mechanism.reference_input)[..., None]
-        if mechanism.driven_by_slide:
+        if mechanism.has_slide_input:
             self.line = next(s for s in mechanism.slides if s.joint == mechanism.input and s.link == GROUND)
             along = np.exp(1j * self.line.angle)[..., None]
             self.moving[mechanism.input] = (self.place[mechanism.input] + moved * along, speed * along + still, still)
         self._know(GROUND, "")
-        if not mechanism.driven_by_slide:
+        if not mechanism.has_slide_input:
             self.turn[mechanism.input] = (np.exp(1j * moved), still + speed, still)
             self.angle = {mechanism.input: moved}
             self._know(mechanism.input, mechanism.input_pivot)
-        for step, sign in zip(steps, assembly_signs(mechanism, steps), strict=True):
+        for step, sign in zip(steps, find_assembly_signs(mechanism, steps), strict=True):
             self._close(step, sign[..., None])
         self._reactions(steps)
 
@@ -183,7 +183,7 @@ class Twin:
                     pins[step.joint] -= push
             pins[step.pin] -= felt(force[link] - push)
         mechanism = self.mechanism
-        if mechanism.driven_by_slide:
+        if mechanism.has_slide_input:
             left, joint = pins[mechanism.input], moving[mechanism.input][0]
             self.drive = -dot(np.exp(1j * self.line.angle)[..., None], left)
             ground, moment = ground + left, moment + cross(joint - machine.about, left)

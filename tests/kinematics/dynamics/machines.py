@@ -15,11 +15,11 @@ from kinematics.dynamics import (
     Places,
     PointForce,
     Torque,
-    balance,
-    constant,
-    reactions,
+    compute_balance,
+    compute_reactions,
+    make_constant,
 )
-from kinematics.dynamics.friction import Friction, rubbing_joints
+from kinematics.dynamics.friction import Friction, find_rubbing_joints
 from kinematics.dynamics.loads import Resistance, TurningResistance
 from kinematics.dynamics.springs import Spring, TorsionSpring
 from kinematics.linkage.planar.drive import drive
@@ -61,10 +61,10 @@ def loads(rng: Rng, mechanism: Mechanism) -> tuple[Load, ...]:
 
     links = rng.choice(moving, size=3)
     return (
-        PointForce(str(links[0]), place(), constant(strength()), True),
-        PointForce(str(links[1]), place(), constant(strength())),
-        JointForce(str(rng.choice(list(mechanism.joints))), constant(strength())),
-        Torque(str(links[2]), constant(strength().real)),
+        PointForce(str(links[0]), place(), make_constant(strength()), True),
+        PointForce(str(links[1]), place(), make_constant(strength())),
+        JointForce(str(rng.choice(list(mechanism.joints))), make_constant(strength())),
+        Torque(str(links[2]), make_constant(strength().real)),
         Resistance(str(rng.choice(list(mechanism.joints))), 3.0, 5.0),
         TurningResistance(str(rng.choice(moving)), 2.0, 1.0),
     )
@@ -94,7 +94,7 @@ def machine(rng: Rng, mechanism: Mechanism) -> Machine:
 
 def rubbing(rng: Rng, whole: Machine) -> Machine:
     """The same machine with friction at all pins and slides."""
-    pins = {joint: (float(rng.uniform(0.05, 0.3)), 0.05) for joint in rubbing_joints(whole.mechanism)}
+    pins = {joint: (float(rng.uniform(0.05, 0.3)), 0.05) for joint in find_rubbing_joints(whole.mechanism)}
     slides = {n: float(rng.uniform(0.05, 0.2)) for n in range(len(whole.mechanism.slides))}
     return replace(whole, friction=Friction(pins, slides))
 
@@ -120,7 +120,7 @@ def differences(rng: Rng, mechanism: Mechanism, reach: float = 0.3, count: int =
     """The largest disagreement of reactions with energy and momentum over all positions that have forces."""
     whole = machine(rng, mechanism)
     now, paced = moved(mechanism, reach, count)
-    found, check = reactions(whole, now), balance(whole, now, paced)
+    found, check = compute_reactions(whole, now), compute_balance(whole, now, paced)
 
     def peak(values: np.ndarray) -> np.ndarray:
         return np.where(found.solved, np.abs(values), 0.0).max(axis=-1)

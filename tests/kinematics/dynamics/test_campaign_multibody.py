@@ -7,7 +7,7 @@ from itertools import pairwise
 import numpy as np
 import pytest
 
-from kinematics.dynamics import Machine, Places, Spring, body, reactions
+from kinematics.dynamics import Machine, Places, Spring, compute_reactions, make_body
 from kinematics.linkage.planar.drive import drive
 from kinematics.linkage.planar.mechanism import GROUND, Mechanism
 from tests.oracles.multibody import simulated
@@ -41,7 +41,7 @@ def weighed(mechanism: Mechanism) -> Machine:
     bodies = {}
     for n, link in enumerate(link for link in mechanism.links if link != GROUND):
         first, second = (complex(mechanism.joints[joint]) for joint in mechanism.links[link][:2])
-        bodies[link] = body(0.4 + 0.2 * n, first + (0.4 + 0.1j) * (second - first), 0.001 + 0.002 * n)
+        bodies[link] = make_body(0.4 + 0.2 * n, first + (0.4 + 0.1j) * (second - first), 0.001 + 0.002 * n)
     last = list(mechanism.links)[-1]
     end = complex(mechanism.joints[mechanism.links[last][-1]])
     spring = Spring((GROUND, last), (np.asarray(end + 0.2 + 0.3j), np.asarray(end)), 60.0, 0.25, damping=2.0)
@@ -54,7 +54,9 @@ def test_torque_is_what_a_simulation_converges_to(mechanism: Mechanism) -> None:
     apart = []
     for steps in STEPS:
         found = simulated(machine, SPEED, steps)
-        torque = reactions(machine, Places(mechanism, drive(mechanism, found.input, speed=SPEED, order=2))).drive
+        torque = compute_reactions(
+            machine, Places(mechanism, drive(mechanism, found.input, speed=SPEED, order=2))
+        ).drive
         compared = slice(round(BEGUN * steps), None)
         apart.append(np.abs(found.torque - torque)[compared].max() / np.abs(torque).max())
     assert apart[-1] < 1e-3

@@ -7,8 +7,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from kinematics.dynamics import JointForce, Machine, Places, PointForce, Torque, constant, reactions
-from kinematics.dynamics.dyads import NoDyadsError, closes_by_dyads, dyad_forces
+from kinematics.dynamics import JointForce, Machine, Places, PointForce, Torque, compute_reactions, make_constant
+from kinematics.dynamics.dyads import NoDyadsError, compute_dyad_forces, is_built_of_dyads
 from kinematics.dynamics.friction import Friction
 from kinematics.linkage.planar.drive import drive
 from kinematics.linkage.planar.mechanism import GROUND, Mechanism
@@ -37,10 +37,10 @@ def loaded(rng: Rng, mechanism: Mechanism) -> Machine:
         return np.asarray(rng.normal(size=mechanism.shape) + 1j * rng.normal(size=mechanism.shape))
 
     loads = (
-        PointForce(first, place(), constant(complex(4.0, -7.0)), True),
-        PointForce(second, place(), constant(complex(-5.0, 2.0))),
+        PointForce(first, place(), make_constant(complex(4.0, -7.0)), True),
+        PointForce(second, place(), make_constant(complex(-5.0, 2.0))),
         JointForce(str(rng.choice(list(mechanism.joints))), lambda input: 3.0 * np.exp(1j * input[0])),
-        Torque(third, constant(2.0)),
+        Torque(third, make_constant(2.0)),
     )
     return Machine(mechanism, bodies, pin_masses, GRAVITY, loads, complex(*rng.normal(size=2)))
 
@@ -51,8 +51,8 @@ def test_forces_are_those_of_the_general_equations(name: str) -> None:
     whole = replace(loaded(rng, MAKES[name](rng, 40)), scale=1.0)
     mechanism = whole.mechanism
     at = np.asarray(mechanism.reference_input)[:, None] + np.linspace(-0.3, 0.3, 5)
-    found = dyad_forces(whole, at, 2.0, 3.0)
-    general = reactions(whole, Places(mechanism, drive(mechanism, at, speed=2.0, acceleration=3.0, order=2)))
+    found = compute_dyad_forces(whole, at, 2.0, 3.0)
+    general = compute_reactions(whole, Places(mechanism, drive(mechanism, at, speed=2.0, acceleration=3.0, order=2)))
     np.testing.assert_array_equal(np.isfinite(found.drive), general.solved)
     posed = general.solved & (general.condition < WELL_POSED)
     assert posed.any(axis=-1).sum() > 10
@@ -76,7 +76,7 @@ def test_plain_numpy_gives_the_same(name: str) -> None:
     rng = np.random.default_rng([27, list(MAKES).index(name)])
     whole = loaded(rng, MAKES[name](rng, 20))
     at = np.asarray(whole.mechanism.reference_input)[:, None] + np.linspace(-0.1, 0.1, 3)
-    found = dyad_forces(whole, at, -1.5)
+    found = compute_dyad_forces(whole, at, -1.5)
     with np.errstate(invalid="ignore"):
         twin = Twin(whole, at, -1.5)
     for one, other in (
@@ -112,7 +112,7 @@ def test_lengths_in_another_unit_and_a_far_origin() -> None:
         about=whole.about + far,
     )
     at = np.asarray(mechanism.reference_input)[:, None]
-    for one, other in zip(dyad_forces(moved, at, 2.0), dyad_forces(whole, at, 2.0), strict=True):
+    for one, other in zip(compute_dyad_forces(moved, at, 2.0), compute_dyad_forces(whole, at, 2.0), strict=True):
         np.testing.assert_allclose(one, other, rtol=1e-6)
 
 
@@ -126,13 +126,13 @@ def test_others_are_left_to_the_general_equations() -> None:
         Machine(fourbar, friction=Friction({"A": (0.1, 0.1)})),
     ]
     for other in others:
-        assert not closes_by_dyads(other)
+        assert not is_built_of_dyads(other)
         with pytest.raises(NoDyadsError):
-            dyad_forces(other, [0.3])
+            compute_dyad_forces(other, [0.3])
 
 
 def test_toggle_and_open_positions_have_no_forces() -> None:
     links = {"ground": ("O2", "O4"), "input": ("O2", "A"), "coupler": ("A", "B"), "output": ("O4", "B")}
     folded = Mechanism({"O2": 0.0, "A": 1.0, "B": 3.0 + 1.0j, "O4": 4.0}, links, "input")
-    found = dyad_forces(Machine(folded, gravity=-9.81j, pin_masses={"B": np.asarray(1.0)}), [0.0, np.pi])
+    found = compute_dyad_forces(Machine(folded, gravity=-9.81j, pin_masses={"B": np.asarray(1.0)}), [0.0, np.pi])
     assert np.isfinite(found.drive).tolist() == [True, False]

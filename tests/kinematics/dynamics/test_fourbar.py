@@ -7,8 +7,17 @@ import math
 import numpy as np
 import pytest
 
-from kinematics.dynamics import JointForce, Machine, Places, PointForce, Torque, body, constant, reactions
-from kinematics.dynamics.fourbar import COUPLER, OUTPUT, PIN_A, PIN_B, Fourbars, Weights, peaks
+from kinematics.dynamics import (
+    JointForce,
+    Machine,
+    Places,
+    PointForce,
+    Torque,
+    compute_reactions,
+    make_body,
+    make_constant,
+)
+from kinematics.dynamics.fourbar import COUPLER, OUTPUT, PIN_A, PIN_B, Fourbars, Weights, compute_peaks
 from kinematics.dynamics.fourbar import INPUT as CRANK
 from kinematics.linkage.planar.drive import drive
 from kinematics.linkage.planar.mechanism import Mechanism
@@ -60,21 +69,24 @@ def test_peaks_are_those_of_the_general_equations(seed):
     )
     on = np.array([CRANK, COUPLER, OUTPUT, PIN_A, PIN_B])
     weights = Weights(mass, (centres - bases) / units, inertia, pins, GRAVITY, on, arm, force, turning, couples, about)
-    found = peaks(linkages, weights, SPEED, POSITIONS)
+    found = compute_peaks(linkages, weights, SPEED, POSITIONS)
 
     compared = 0
     for n in range(COUNT):
         at = {name: complex(places[n]) for name, places in joints.items()}
         mechanism = Mechanism(at, LINKS, "input")
         loads = [
-            PointForce(link, complex(places[n, k]), constant(complex(forces[n, k])), bool(turning[k]))
+            PointForce(link, complex(places[n, k]), make_constant(complex(forces[n, k])), bool(turning[k]))
             for k, link in enumerate(ON)
         ]
-        loads += [JointForce("A", constant(complex(forces[n, 3]))), JointForce("B", constant(complex(forces[n, 4])))]
-        loads += [Torque(link, constant(float(couples[k]))) for k, link in enumerate(ON)]
+        loads += [
+            JointForce("A", make_constant(complex(forces[n, 3]))),
+            JointForce("B", make_constant(complex(forces[n, 4]))),
+        ]
+        loads += [Torque(link, make_constant(float(couples[k]))) for k, link in enumerate(ON)]
         machine = Machine(
             mechanism,
-            {link: body(mass[n, k], complex(centres[n, k]), inertia[n, k]) for k, link in enumerate(ON)},
+            {link: make_body(mass[n, k], complex(centres[n, k]), inertia[n, k]) for k, link in enumerate(ON)},
             {joint: np.asarray(pins[n, k]) for k, joint in enumerate("ABP")},
             GRAVITY,
             tuple(loads),
@@ -85,7 +97,7 @@ def test_peaks_are_those_of_the_general_equations(seed):
         motion = drive(mechanism, inputs, speed=np.full(POSITIONS, SPEED), order=2)
         if not motion.valid.all() or np.abs(motion.sines[next(iter(motion.sines))]).min() < 0.05:
             continue
-        general = reactions(machine, Places(mechanism, motion))
+        general = compute_reactions(machine, Places(mechanism, motion))
         pin = max(np.abs(f).max() for on_link in general.joints.values() for f in on_link.values())
         expected = [
             np.abs(general.drive).max(),
@@ -107,4 +119,4 @@ def test_what_cannot_be_assembled_has_no_peaks():
         nothing, nothing + 0j, nothing, nothing, 0j, np.empty(0, np.int64), np.empty((1, 0), complex),
         np.empty((1, 0), complex), np.empty(0, bool), np.zeros(3), 0j * one,
     )  # fmt: skip
-    assert (peaks(linkages, weights, 1.0, 9) == np.inf).all()
+    assert (compute_peaks(linkages, weights, 1.0, 9) == np.inf).all()

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from kinematics.dynamics import balance, reactions
+from kinematics.dynamics import compute_balance, compute_reactions
 from kinematics.linkage.planar.mechanism import GROUND
 from tests.kinematics.dynamics.machines import machine, moved, rubbing
 from tests.kinematics.mechanism_sampling import EVERY
@@ -34,7 +34,7 @@ def test_every_link_is_in_equilibrium_with_friction(name: str) -> None:
     mechanism = EVERY[name](rng, 6)
     whole = rubbing(rng, machine(rng, mechanism))
     now, paced = moved(mechanism)
-    found = reactions(whole, now)
+    found = compute_reactions(whole, now)
     known = found.solved & (found.condition < 1e4)
     assert known.any()
     forces = {link: np.zeros(now.smooth.shape, complex) for link in mechanism.links}
@@ -65,7 +65,7 @@ def test_every_link_is_in_equilibrium_with_friction(name: str) -> None:
     for gear, torque in zip(mechanism.gears, found.gears, strict=True):
         add(gear.second, 0.0 * torque, 0.0 * torque, torque)
         add(gear.first, 0.0 * torque, 0.0 * torque, -gear.ratio * torque)
-    if not mechanism.driven_by_slide:
+    if not mechanism.has_slide_input:
         add(mechanism.input, 0.0 * found.drive, 0.0 * found.drive, found.drive)
     for load in whole.loads:
         for effort in load.efforts(now):
@@ -83,7 +83,7 @@ def test_every_link_is_in_equilibrium_with_friction(name: str) -> None:
             angular = cross(at, momentum) + part.inertia[:, None] * now.spins[link][2]
         assert np.abs((forces[link] - momentum)[known]).max() < CLOSE * scale
         assert np.abs((moments[link] - angular)[known]).max() < 100.0 * CLOSE * scale
-    check = balance(whole, now, paced, found.rubbing)
+    check = compute_balance(whole, now, paced, found.rubbing)
     assert np.abs((found.drive - check.drive)[known]).max() < CLOSE * check.scale[known].max()
     assert (found.rubbing.work(now)[known] < 0.0).all()
 
@@ -94,13 +94,13 @@ def test_friction_grows_from_none() -> None:
     mechanism = EVERY["slider-crank"](rng, 5)
     whole = machine(rng, mechanism)
     now, _ = moved(mechanism)
-    free = reactions(whole, now)
+    free = compute_reactions(whole, now)
     little = rubbing(rng, whole)
     for joint, (_, radius) in list(little.friction.pins.items()):
         little.friction.pins[joint] = (1e-6, radius)
     for slide in little.friction.slides:
         little.friction.slides[slide] = 1e-6
-    found = reactions(little, now)
+    found = compute_reactions(little, now)
     known = free.solved & (free.condition < 1e3)
     grown = (found.drive - free.drive)[known] * now.input[1][known]
     np.testing.assert_allclose(grown, -found.rubbing.work(now)[known], rtol=1e-3, atol=1e-9)

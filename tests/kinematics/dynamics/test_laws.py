@@ -7,8 +7,18 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from kinematics.dynamics import Body, JointForce, Machine, Places, PointForce, Reactions, Torque, constant, reactions
-from kinematics.dynamics.bodies import joined
+from kinematics.dynamics import (
+    Body,
+    JointForce,
+    Machine,
+    Places,
+    PointForce,
+    Reactions,
+    Torque,
+    compute_reactions,
+    make_constant,
+)
+from kinematics.dynamics.bodies import join_bodies
 from kinematics.linkage.planar.drive import drive
 from kinematics.linkage.planar.mechanism import GROUND, Mechanism
 from tests.kinematics.dynamics.machines import GRAVITY, Rng, masses
@@ -35,9 +45,9 @@ class Pull:
         """As they are seen, by what becomes of a vector and of a place."""
         vector, place = seen
         return (
-            PointForce(self.links[0], place(self.place), constant(vector(self.forces[0])), True),
-            JointForce(self.joint, constant(vector(self.forces[1]))),
-            Torque(self.links[1], constant(torque * self.torque)),
+            PointForce(self.links[0], place(self.place), make_constant(vector(self.forces[0])), True),
+            JointForce(self.joint, make_constant(vector(self.forces[1]))),
+            Torque(self.links[1], make_constant(torque * self.torque)),
         )
 
 
@@ -53,7 +63,9 @@ def drawn(name: str) -> tuple[Machine, Pull]:
 def run(whole: Machine, sign: float = 1.0, speed: float = SPEED, acceleration: float = ACCELERATION) -> Reactions:
     mechanism = whole.mechanism
     at = np.asarray(mechanism.reference_input)[:, None] + sign * np.linspace(-0.2, 0.2, 3)
-    return reactions(whole, Places(mechanism, drive(mechanism, at, speed=speed, acceleration=acceleration, order=2)))
+    return compute_reactions(
+        whole, Places(mechanism, drive(mechanism, at, speed=speed, acceleration=acceleration, order=2))
+    )
 
 
 def same(one: Reactions, other: Reactions, drive: float = 1.0, moment: float = 1.0, vector=lambda z: z) -> None:
@@ -109,7 +121,7 @@ def test_mirror_turns_torques_round(name: str) -> None:
     mirrored = replace(
         whole, mechanism=seen, bodies=bodies, gravity=np.conj(GRAVITY), loads=loads, about=np.conj(whole.about)
     )
-    sign = 1.0 if mechanism.driven_by_slide else -1.0
+    sign = 1.0 if mechanism.has_slide_input else -1.0
     found = run(mirrored, sign, sign * SPEED, sign * ACCELERATION)
     same(run(whole), found, drive=sign, moment=-1.0, vector=np.conj)
 
@@ -132,6 +144,6 @@ def test_body_may_be_two_that_are_one(name: str) -> None:
             Body(0.5 * part.mass, part.cg + side * apart, 0.5 * (part.inertia - part.mass * np.abs(apart) ** 2))
             for side in (1.0, -1.0)
         ]
-        return joined(pieces)
+        return join_bodies(pieces)
 
     same(run(whole), run(replace(whole, bodies={link: halves(part) for link, part in whole.bodies.items()})))

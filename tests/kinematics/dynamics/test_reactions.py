@@ -7,8 +7,8 @@ import math
 import numpy as np
 import pytest
 
-from kinematics.dynamics import Machine, Places, body, reactions
-from kinematics.dynamics.loads import JointForce, constant
+from kinematics.dynamics import Machine, Places, compute_reactions, make_body
+from kinematics.dynamics.loads import JointForce, make_constant
 from kinematics.linkage.planar import catalogue
 from kinematics.linkage.planar.drive import drive
 from kinematics.linkage.planar.mechanism import GROUND, Mechanism
@@ -50,7 +50,7 @@ def test_forces_at_a_pin_add_up_and_every_link_is_in_equilibrium(name: str) -> N
     mechanism = EVERY[name](rng, 4)
     whole = machine(rng, mechanism)
     now, _ = moved(mechanism)
-    found = reactions(whole, now)
+    found = compute_reactions(whole, now)
     for joint, on in found.joints.items():
         given = sum(
             (e.force for load in whole.loads for e in load.efforts(now) if e.joint == joint),
@@ -70,8 +70,8 @@ def test_physical_pendulum() -> None:
     crank = Mechanism({"O": 0.0, "P": 2.0}, {GROUND: ("O",), "input": ("O", "P")}, "input")
     m, r, inertia, g, speed, alpha = 3.0, 0.7, 0.4, 9.81, 2.0, -5.0
     at = np.linspace(0.0, 6.0, 13)
-    pendulum = Machine(crank, {"input": body(m, r + 0j, inertia)}, gravity=-1j * g)
-    found = reactions(pendulum, Places(crank, drive(crank, at, speed=speed, acceleration=alpha, order=2)))
+    pendulum = Machine(crank, {"input": make_body(m, r + 0j, inertia)}, gravity=-1j * g)
+    found = compute_reactions(pendulum, Places(crank, drive(crank, at, speed=speed, acceleration=alpha, order=2)))
     np.testing.assert_allclose(found.drive, (inertia + m * r * r) * alpha + m * g * r * np.cos(at), rtol=1e-13)
     acceleration = r * np.exp(1j * at) * (1j * alpha - speed**2)
     np.testing.assert_allclose(found.joints["O"]["input"], m * (acceleration + 1j * g), rtol=1e-12)
@@ -81,9 +81,9 @@ def test_slider_crank_by_the_closed_form() -> None:
     """Massless rod: a force F on the piston gives the torque F x tan φ, its inertia likewise (Norton 13.6, 13.15)."""
     r, length, force, mass, speed = 1.0, 3.2, -250.0, 1.3, 20.0
     theta = np.radians(np.arange(1.0, 360.0, 7.0))
-    engine = catalogue.slider_crank(0j, 0j, 0.0, r, length, 0.5, 1)
-    piston = Machine(engine, {}, {"B": np.asarray(mass)}, loads=(JointForce("B", constant(force)),))
-    found = reactions(piston, Places(engine, drive(engine, theta, speed=speed, order=2)))
+    engine = catalogue.make_slider_crank(0j, 0j, 0.0, r, length, 0.5, 1)
+    piston = Machine(engine, {}, {"B": np.asarray(mass)}, loads=(JointForce("B", make_constant(force)),))
+    found = compute_reactions(piston, Places(engine, drive(engine, theta, speed=speed, order=2)))
     tangent = r * np.sin(theta) / np.sqrt(length**2 - (r * np.sin(theta)) ** 2)
     x = r * np.cos(theta) + np.sqrt(length**2 - (r * np.sin(theta)) ** 2)
     root = np.sqrt(length**2 - (r * np.sin(theta)) ** 2)
@@ -118,7 +118,7 @@ def test_drive_is_lagranges_from_the_energy_alone() -> None:
         inertia += b.inertia[:, None] * derivative(places.spins[link][0]) ** 2
     expected = inertia[:, 2] * q2 + 0.5 * derivative(inertia)[:, 0] * q1**2 + derivative(potential)[:, 2]
     now = Places(mechanism, drive(mechanism, at[:, 4:5], speed=q1, acceleration=q2, order=2))
-    found = reactions(whole, now)
+    found = compute_reactions(whole, now)
     posed = motion.smooth.all(axis=-1) & (found.condition[:, 0] < 300.0)
     assert posed.sum() > 15
     np.testing.assert_allclose(
@@ -137,8 +137,8 @@ def test_forces_go_with_the_square_of_the_speed_and_with_the_mass() -> None:
         {joint: 3.0 * mass for joint, mass in whole.pin_masses.items()},
         about=whole.about,
     )
-    once, twice = (reactions(free, moved(mechanism, speed=s, acceleration=s * s)[0]) for s in (1.0, 2.0))
-    thrice = reactions(heavy, moved(mechanism, speed=1.0, acceleration=1.0)[0])
+    once, twice = (compute_reactions(free, moved(mechanism, speed=s, acceleration=s * s)[0]) for s in (1.0, 2.0))
+    thrice = compute_reactions(heavy, moved(mechanism, speed=1.0, acceleration=1.0)[0])
     for values, others, factor in (
         (twice.drive, once.drive, 4.0),
         (twice.shaking_moment, once.shaking_moment, 4.0),
@@ -149,10 +149,10 @@ def test_forces_go_with_the_square_of_the_speed_and_with_the_mass() -> None:
 
 def test_dead_centre_has_no_forces() -> None:
     """A slider cannot push a crank through its dead centre: nothing there is a number."""
-    engine = catalogue.slider_crank(0j, 0j, 0.0, 1.0, 3.0, 0.5, 1)
+    engine = catalogue.make_slider_crank(0j, 0j, 0.0, 1.0, 3.0, 0.5, 1)
     driven = Mechanism(engine.joints, engine.links, "B", engine.slides)
-    pushed = Machine(driven, {}, {}, loads=(JointForce("A", constant(1 + 1j)),))
-    found = reactions(pushed, Places(driven, drive(driven, [4.0 - 1e-16, 3.5], order=2)))
+    pushed = Machine(driven, {}, {}, loads=(JointForce("A", make_constant(1 + 1j)),))
+    found = compute_reactions(pushed, Places(driven, drive(driven, [4.0 - 1e-16, 3.5], order=2)))
     assert found.solved.tolist() == [False, True]
     assert math.isnan(found.drive[0])
     assert math.isnan(found.joints["A"]["coupler" if "coupler" in driven.links else driven.input].real[0])

@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from kinematics.dynamics import JointForce, Machine, Places, balance, constant, reactions
+from kinematics.dynamics import JointForce, Machine, Places, compute_balance, compute_reactions, make_constant
 from kinematics.dynamics.friction import Friction
 from kinematics.linkage.planar.drive import drive
 from kinematics.linkage.planar.mechanism import Mechanism, Slide, TopologyError
@@ -30,7 +30,7 @@ def with_rod() -> Mechanism:
 def test_drive_and_shaking_are_those_of_energy_and_momentum(mechanism: Mechanism, minimum_norm: bool) -> None:
     whole = machine(np.random.default_rng(3), mechanism)
     now, paced = moved(mechanism, reach=np.pi, count=36)
-    found, check = reactions(whole, now, minimum_norm=minimum_norm), balance(whole, now, paced)
+    found, check = compute_reactions(whole, now, minimum_norm=minimum_norm), compute_balance(whole, now, paced)
     assert found.solved.all()
     assert found.indeterminate.all()
     for values, others in (
@@ -65,8 +65,8 @@ def test_link_that_is_there_twice_changes_no_motion_and_no_unique_force(name: st
         at = np.asarray(once.reference_input) + np.linspace(-np.pi, np.pi, 25)
         plain, more = (drive(each, at, speed=2.0, acceleration=3.0, order=2) for each in (once, twice))
         np.testing.assert_array_equal(plain.smooth, more.smooth)
-        found = reactions(whole, Places(once, plain))
-        doubled = reactions(replace(whole, mechanism=twice), Places(twice, more))
+        found = compute_reactions(whole, Places(once, plain))
+        doubled = compute_reactions(replace(whole, mechanism=twice), Places(twice, more))
         posed = found.solved & doubled.solved & (found.condition < 1e5)
         if not posed.any():
             continue
@@ -96,7 +96,7 @@ def test_forces_that_redundancy_does_not_reach_stay() -> None:
     )
     whole = machine(np.random.default_rng(4), free)
     more = replace(whole, mechanism=mechanism)
-    found, without = (reactions(each, moved(each.mechanism, reach=0.5)[0]) for each in (more, whole))
+    found, without = (compute_reactions(each, moved(each.mechanism, reach=0.5)[0]) for each in (more, whole))
     for joint, on in found.joints.items():
         for link, force in on.items():
             if joint in ("P", "D"):
@@ -110,8 +110,10 @@ def test_forces_that_redundancy_does_not_reach_stay() -> None:
 def test_least_forces_share_a_load_evenly() -> None:
     """Three upright cranks in line under a bar that is loaded in the middle: each carries a third."""
     mechanism = Mechanism({"O2": 0j, "O4": 2.0, "O6": 4.0, "A": 1j, "B": 2.0 + 1j, "C": 4.0 + 1j}, LINKS, "input")
-    loaded = Machine(mechanism, loads=(JointForce("B", constant(-9j)),))
-    found = reactions(loaded, Places(mechanism, drive(mechanism, [np.pi / 2.0], speed=0.0, order=2)), minimum_norm=True)
+    loaded = Machine(mechanism, loads=(JointForce("B", make_constant(-9j)),))
+    found = compute_reactions(
+        loaded, Places(mechanism, drive(mechanism, [np.pi / 2.0], speed=0.0, order=2)), minimum_norm=True
+    )
     for pivot, link in (("O2", "input"), ("O4", "rocker"), ("O6", "third")):
         assert found.joints[pivot][link][0] == pytest.approx(3j, abs=1e-12)
     assert found.drive[0] == pytest.approx(0.0, abs=1e-12)
@@ -121,7 +123,7 @@ def test_least_forces_share_a_load_evenly() -> None:
 def test_dead_centre_has_no_forces() -> None:
     mechanism = parallelogram(5.0 + 0j)
     now = Places(mechanism, drive(mechanism, [0.0, 1e-3], order=2))
-    found = reactions(machine(np.random.default_rng(5), mechanism), now)
+    found = compute_reactions(machine(np.random.default_rng(5), mechanism), now)
     assert found.solved.tolist() == [False, True]
     assert found.indeterminate.tolist() == [False, True]
     assert np.isnan(found.drive[0])
@@ -130,4 +132,4 @@ def test_dead_centre_has_no_forces() -> None:
 def test_friction_is_not_determined() -> None:
     whole = replace(machine(np.random.default_rng(6), parallelogram(5.0 + 1j)), friction=Friction({"A": (0.1, 0.05)}))
     with pytest.raises(TopologyError, match="friction"):
-        reactions(whole, moved(whole.mechanism)[0])
+        compute_reactions(whole, moved(whole.mechanism)[0])

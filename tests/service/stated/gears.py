@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from synthesis.kinds.train_series.stated_units import OF_A_POWER, OF_THE_SERIES
+from synthesis.kinds.train_series.units import POWER_FIELDS, SERIES_FIELDS
 from tests.service.stated.row import Row
 
 TRAIN: dict[str, Any] = {
@@ -194,11 +194,11 @@ def unit_rows(model: str) -> dict[str, Any]:
     place, rows = UNITS[model]
     found: dict[str, Any] = {f"units[]<{model}>.type": Row("wheel", at=f"units[{place}].type")}
     for name, stated in rows.items():
-        if name.split(".")[0] not in OF_THE_SERIES | OF_A_POWER.get(UNIT_KINDS[model], set()):
+        if name.split(".")[0] not in SERIES_FIELDS | POWER_FIELDS.get(UNIT_KINDS[model], set()):
             row = stated if isinstance(stated, Row) else Row(stated)
             if name.removeprefix("stages[].") in OF_CROSSING:
                 row = Row(row.value, {"max_stages": None, "stages": [{"type": "external"}]})
-            base = {f"units[{place}].{field}": value for field, value in row.base.items() if field not in OF_THE_SERIES}
+            base = {f"units[{place}].{field}": value for field, value in row.base.items() if field not in SERIES_FIELDS}
             found[f"units[]<{model}>.{name}"] = Row(row.value, base, at=f"units[{place}].{row.at or name}")
     return found
 

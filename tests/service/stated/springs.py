@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from typing import Any
 
-from synthesis.registry import examples
+from synthesis.registry import list_examples
 from tests.service.stated.row import Row
 
-SPRINGS: dict[str, Any] = examples("spring_balancing")[1]
-LEVER, _, BOTH, SOUGHT = examples("spring_balancing")
+SPRINGS: dict[str, Any] = list_examples("spring_balancing")[1]
+LEVER, _, BOTH, SOUGHT = list_examples("spring_balancing")
 PUSHED = {
     **{name: LEVER[name] for name in ("mechanism", "dynamics")},
     "motion": {"from": -20.0, "to": 60.0},

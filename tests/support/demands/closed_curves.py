@@ -11,10 +11,10 @@ from typing import Any
 
 import numpy as np
 
-from kinematics.linkage.fourbar import OPEN, positions
+from kinematics.linkage.fourbar import OPEN_ASSEMBLY, positions
 from synthesis.kinds.path.problem import PathProblem
-from synthesis.kinds.path.verification import verify_path
-from synthesis.model.linkages import FourbarConfiguration, fourbar_mechanism
+from synthesis.kinds.path.verification.fourbar import verify_path
+from synthesis.model.linkage.conversion import FourbarConfiguration, build_fourbar
 from synthesis.registry import parse_problem
 from tests.support.demands.planted import box, crank_rocker, curve, extent, least_transmission, listed
 from tests.support.demands.task import Task
@@ -52,11 +52,11 @@ def tasks(count: int, seed: int) -> Iterator[Task]:
                 "fixed_pivot_region": box([o2, o4], ZONE * size),
             },
         }
-        stands = positions(planted, 0.0, OPEN)
+        stands = positions(planted, 0.0, OPEN_ASSEMBLY)
         joints = FourbarConfiguration(o2, complex(stands.a), complex(stands.b), o4, complex(stands.p))
         problem = parse_problem(statement)
         assert isinstance(problem, PathProblem)
-        own = verify_path(problem, fourbar_mechanism(joints))
+        own = verify_path(problem, build_fourbar(joints))
         assert own is not None
         assert own.verification.passed, own.verification
 

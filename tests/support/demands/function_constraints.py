@@ -11,22 +11,19 @@ from collections.abc import Iterator
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from kinematics.linkage.fourbar import (
-    CROSSED,
-    OPEN,
+    CROSSED_ASSEMBLY,
+    OPEN_ASSEMBLY,
     Fourbar,
     barker_class,
     can_assemble,
+    find_transmission_extremes,
     positions,
     stays_on_branch,
-    transmission_extremes,
 )
 from tests.support.demands.planted import SIZE, looser
 from tests.support.demands.task import Task
-
-Real = NDArray[np.float64]
 
 PAIRS = (2, 3, 4, 5, 6, 12)
 """Pairs, one number after the other; the last are fitted."""
@@ -66,14 +63,14 @@ class _Planted:
             self.o2 = SIZE * complex(*rng.normal(size=2))
             self.o4 = self.o2 + size * np.exp(1j * rng.uniform(0.0, math.tau))
             self.linkage = Fourbar(self.o2, complex(self.o4), size * a, size * b, size * c)
-            side = OPEN if rng.random() < 0.5 else CROSSED
+            side = OPEN_ASSEMBLY if rng.random() < 0.5 else CROSSED_ASSEMBLY
             first, turned = rng.uniform(0.0, math.tau), math.radians(rng.uniform(*TURNED))
             gaps = np.concatenate([[0.0], CLOSEST + rng.exponential(size=count - 1)])
             inputs = first + turned * np.cumsum(gaps) / gaps.sum()
             if not can_assemble(self.linkage) or not stays_on_branch(self.linkage, first, first + turned):
                 continue
             at = positions(self.linkage, inputs, side)
-            self.least = math.degrees(float(transmission_extremes(self.linkage, first, first + turned)[0]))
+            self.least = math.degrees(float(find_transmission_extremes(self.linkage, first, first + turned)[0]))
             self.inputs, self.outputs = np.degrees(inputs), np.degrees(np.unwrap(at.output_angle))
             if np.all(at.valid) and self.least >= TRANSMISSION and np.ptp(self.outputs) >= MOVED:
                 break

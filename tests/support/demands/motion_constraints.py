@@ -10,7 +10,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from kinematics.linkage.fourbar import OPEN, positions
+from kinematics.linkage.fourbar import OPEN_ASSEMBLY, positions
 from tests.support.demands.planted import around, crank_rocker, least_transmission, lengths, looser, pivots
 from tests.support.demands.task import Task, passed
 
@@ -28,7 +28,7 @@ def tasks(count: int, seed: int) -> Iterator[Task]:
         planted = crank_rocker(rng, TRANSMISSION)
         number = COUNTS[n % len(COUNTS)]
         inputs = around(rng, number)
-        carried = positions(planted, inputs, OPEN)
+        carried = positions(planted, inputs, OPEN_ASSEMBLY)
         statement = {
             "kind": "motion",
             "positions": [

@@ -13,7 +13,7 @@ from typing import Any
 
 import numpy as np
 
-from synthesis.outcome.front import error_of
+from synthesis.results.pareto import measure_error
 from tests.support.demands.planted import crank_rocker, curve, listed
 from tests.support.demands.task import Task
 
@@ -40,13 +40,13 @@ def _buildable(result: Any) -> bool:
         return True
     if _sound(result.designs[0]):
         return True
-    first, error = result.designs[0], FAR * error_of(result.designs[0])
+    first, error = result.designs[0], FAR * measure_error(result.designs[0])
     told = (
         (first.metrics.min_transmission_angle >= TRANSMISSION or f"{TRANSMISSION:.0f}°" in result.summary)
         and (first.metrics.link_ratio <= RATIO or "ratio" in result.summary)
         and (not _even(first) or "task's size" in result.summary)
     )
-    near = [design for design in result.designs if error_of(design) <= error]
+    near = [design for design in result.designs if measure_error(design) <= error]
     return told and not any(map(_sound, near)) and (_even(first) or not any(map(_even, near)))
 
 

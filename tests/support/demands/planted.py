@@ -6,12 +6,9 @@ import math
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
-from kinematics.linkage.fourbar import OPEN, Fourbar, positions, transmission_extremes
-
-Real = NDArray[np.float64]
-Complex = NDArray[np.complex128]
+from kinematics.arrays import Complex, Real
+from kinematics.linkage.fourbar import OPEN_ASSEMBLY, Fourbar, find_transmission_extremes, positions
 
 SIZE = 100.0
 """Length of the crank, times a random factor of 0.2 to 1."""
@@ -46,12 +43,12 @@ def around(rng: np.random.Generator, number: int) -> Real:
 
 def least_transmission(linkage: Fourbar) -> float:
     """The least transmission angle over a whole turn, degrees."""
-    return math.degrees(float(transmission_extremes(linkage, 0.0, math.tau)[0]))
+    return math.degrees(float(find_transmission_extremes(linkage, 0.0, math.tau)[0]))
 
 
 def pivots(linkage: Fourbar, angle: float) -> tuple[list[complex], list[complex]]:
     """Fixed pivots, and moving pivots at an input angle, radians, in the open assembly."""
-    stands = positions(linkage, angle, OPEN)
+    stands = positions(linkage, angle, OPEN_ASSEMBLY)
     return [complex(linkage.input_pivot), complex(linkage.output_pivot)], [complex(stands.a), complex(stands.b)]
 
 
@@ -98,7 +95,7 @@ def around_pivots(pivots: list[complex], margin: float) -> dict[str, list[float]
 
 def curve(linkage: Fourbar, inputs: Real) -> Complex:
     """The places of P at input angles, radians."""
-    return np.asarray(positions(linkage, inputs, OPEN).p)
+    return np.asarray(positions(linkage, inputs, OPEN_ASSEMBLY).p)
 
 
 def extent(places: Complex) -> float:

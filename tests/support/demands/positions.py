@@ -12,7 +12,7 @@ from typing import Any
 
 import numpy as np
 
-from kinematics.linkage.fourbar import OPEN, positions
+from kinematics.linkage.fourbar import OPEN_ASSEMBLY, positions
 from tests.support.demands.planted import around_pivots, crank_rocker, extent, pivots
 from tests.support.demands.task import Task, passed
 
@@ -39,7 +39,7 @@ def tasks(count: int, seed: int) -> Iterator[Task]:
         planted = crank_rocker(rng, TRANSMISSION)
         number = COUNTS[n % len(COUNTS)]
         inputs = rng.uniform(0.0, math.tau) + np.cumsum(rng.uniform(0.3, 1.0, number))
-        carried = positions(planted, inputs, OPEN)
+        carried = positions(planted, inputs, OPEN_ASSEMBLY)
         fixed, moving = pivots(planted, float(inputs[0]))
         size = extent(np.asarray(carried.p))
         exact = rng.uniform(size=number) < EXACT

@@ -6,10 +6,8 @@ import math
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
-Real = NDArray[np.float64]
-Complex = NDArray[np.complex128]
+from kinematics.arrays import Complex, Real
 
 SIZE = 100.0, 350.0
 """Millimetres between which the unit of length of a linkage lies."""

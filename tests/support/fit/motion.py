@@ -10,13 +10,11 @@ from collections.abc import Iterator, Mapping
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
-from tests.support.fit.linkage import LEAST_ANGLE, Complex, PlantedFourbar, planted_fourbar
+from kinematics.arrays import Complex
+from tests.support.fit.linkage import LEAST_ANGLE, PlantedFourbar, planted_fourbar
 from tests.support.fit.room import SweptLinkage, room_around, zones_around
 from tests.support.fit.task import Statement, Task, generator
-
-Real = NDArray[np.float64]
 
 GROUPS = ((2, False), (3, False), (4, False), (5, False), (2, True), (3, True), (4, True), (5, True), (7, True))
 """Positions, and whether all but the first have tolerances."""

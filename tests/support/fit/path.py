@@ -11,13 +11,11 @@ from collections.abc import Iterator
 from typing import Any, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
-from tests.support.fit.linkage import LINKS, Complex, PlantedFourbar, planted_fourbar
+from kinematics.arrays import Complex, Real
+from tests.support.fit.linkage import LINKS, PlantedFourbar, planted_fourbar
 from tests.support.fit.room import SweptLinkage, room_around, zones_around
 from tests.support.fit.task import Statement, Task, generator
-
-Real = NDArray[np.float64]
 
 
 class _Group(NamedTuple):

@@ -11,8 +11,8 @@ import shapely
 from numpy.typing import NDArray
 from shapely import affinity
 
-Real = NDArray[np.float64]
-Complex = NDArray[np.complex128]
+from kinematics.arrays import Complex
+
 Statement = dict[str, Any]
 
 FITS = 2.0

@@ -7,14 +7,12 @@ from collections.abc import Iterator
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
-from tests.support.fit.linkage import GREATEST_RANGE, LEAST_ANGLE, LEAST_RANGE, SIZE, Complex
+from kinematics.arrays import Complex, Real
+from tests.support.fit.linkage import GREATEST_RANGE, LEAST_ANGLE, LEAST_RANGE, SIZE
 from tests.support.fit.motion import LEAST_TURN, STEP, carried, outline
 from tests.support.fit.room import SweptLinkage, room_around, zones_around
 from tests.support.fit.task import Statement, Task, generator
-
-Real = NDArray[np.float64]
 
 GROUPS = 2, 3, 4
 """Positions. Five have a slider by chance only."""

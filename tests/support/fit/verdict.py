@@ -12,8 +12,9 @@ from typing import Any
 import numpy as np
 import shapely
 
+from kinematics.arrays import Complex, Real
 from tests.support.fit.room import hulls, polygons
-from tests.support.independent.drive import Complex, Drive, Real
+from tests.support.independent.drive import Drive
 from tests.support.independent.room import shape_of
 
 STEP = 0.05

@@ -9,13 +9,10 @@ import math
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from kinematics.arrays import Complex, Real
 from tests.support.independent.cam_motion import Move, motion_at
 from tests.support.independent.comparison import Beside
-
-Real = NDArray[np.float64]
-Complex = NDArray[np.complex128]
 
 CURVES = ("profile", "outer_wall", "lower_wall", "upper_wall", "pitch_curve")
 

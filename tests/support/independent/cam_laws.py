@@ -11,7 +11,8 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-Real = NDArray[np.float64]
+from kinematics.arrays import Real
+
 Motion = tuple[Real, Real, Real, Real]
 
 POLYNOMIALS: dict[str, tuple[float, ...]] = {

@@ -6,8 +6,8 @@ import math
 from typing import Any, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
+from kinematics.arrays import Complex, Real
 from tests.support.independent.cam_curves import compare_curves
 from tests.support.independent.cam_motion import Move, greatest, least, mean, motion_at, turned
 from tests.support.independent.cam_pairs import compare_pair, compare_pushing
@@ -15,9 +15,6 @@ from tests.support.independent.cam_springs import Moved, compare_springs
 from tests.support.independent.cam_verdicts import compare_roller, compare_smallest, compare_verdicts, sound_radius
 from tests.support.independent.comparison import AGREE, Beside
 from tests.support.independent.quantities import stated_by
-
-Real = NDArray[np.float64]
-Complex = NDArray[np.complex128]
 
 RATES = ("velocity", "acceleration", "jerk")
 

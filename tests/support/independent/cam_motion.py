@@ -16,11 +16,9 @@ from fractions import Fraction
 from typing import Any, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
+from kinematics.arrays import Real
 from tests.support.independent.cam_laws import law
-
-Real = NDArray[np.float64]
 
 POINTS = 41
 """Angles of each piece, its ends among them."""

@@ -9,9 +9,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from kinematics.arrays import Real
 from tests.support.independent.comparison import Beside
-
-Real = NDArray[np.float64]
 
 Shape = Callable[[Any], dict[str, float]]
 """The metrics of a cam that follow from its shape, of the motion upside down."""

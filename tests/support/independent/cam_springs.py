@@ -7,12 +7,10 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from kinematics.arrays import Real
 from tests.support.independent.cam_motion import greatest, least
 from tests.support.independent.comparison import Beside
-
-Real = NDArray[np.float64]
 
 SPEEDS = 129
 """Speeds of a grid from 0 to the greatest."""

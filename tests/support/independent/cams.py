@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 
 from synthesis.dispatch import solve
-from synthesis.model.statement import ContradictionError
+from synthesis.model.problem import ContradictionError
 from synthesis.registry import parse_problem
 from tests.support.independent import cam_demands, cam_laws
 from tests.support.independent.cam_measures import RATES, compare_cam, criterion, sound_anywhere

@@ -12,14 +12,12 @@ import math
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from kinematics.arrays import Complex, Real
 from tests.support.independent.comparison import Beside
-from tests.support.independent.drive import Complex, Drive
+from tests.support.independent.drive import Drive
 from tests.support.independent.mobility import class_of
 from tests.support.independent.transmission import least_angles
-
-Real = NDArray[np.float64]
 
 STEPS = 1921, 61_441
 """Places along the way of the design, and where the coupler turns too fast between them."""

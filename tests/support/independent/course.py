@@ -5,10 +5,8 @@ from __future__ import annotations
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import NDArray
 
-Real = NDArray[np.float64]
-Complex = NDArray[np.complex128]
+from kinematics.arrays import Complex, Real
 
 BULGE = 0.25
 """What a curve may bulge between two points, as a share of their distance."""

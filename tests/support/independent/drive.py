@@ -15,10 +15,8 @@ from itertools import combinations
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
-Real = NDArray[np.float64]
-Complex = NDArray[np.complex128]
+from kinematics.arrays import Complex, Real
 
 NEWTON = 10
 """Iterations at most: quadratic convergence from a good prediction needs four."""

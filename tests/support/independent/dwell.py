@@ -8,13 +8,12 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from kinematics.arrays import Real
 from tests.support.independent.comparison import Beside
 from tests.support.independent.drive import Drive
 from tests.support.independent.extremes import greatest, least
 from tests.support.independent.linkage import Used, compare_linkage
 from tests.support.independent.output import Output
-
-Real = NDArray[np.float64]
 
 SAMPLES = 11_520
 """Places of a turn at which the output is known; between them lies the polynomial through the eight nearest."""

@@ -6,9 +6,9 @@ from collections.abc import Callable
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
-Real = NDArray[np.float64]
+from kinematics.arrays import Real
+
 Function = Callable[[Real], Real]
 
 GRID = 1441

@@ -14,10 +14,9 @@ from random import Random
 from typing import Any, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.optimize import brentq
 
-Floats = NDArray[np.float64]
+from kinematics.arrays import Real
 
 SPLITS, ROUNDS = 401, 9
 """Splits of a sum in one round, and rounds, each about the best of the one before."""
@@ -41,7 +40,7 @@ def _involute(angle: Any) -> Any:
     return np.tan(angle) - angle
 
 
-def _margins(z: tuple[int, int], x: Floats, total: float, distance: float, task: dict[str, Any]) -> Floats:
+def _margins(z: tuple[int, int], x: Real, total: float, distance: float, task: dict[str, Any]) -> Real:
     """The least margin of each split, in modules."""
     phi = math.radians(task["pressure_angle"])
     rounding = min(0.38, (math.pi / 4.0 - 1.25 * math.tan(phi)) / math.tan(math.pi / 4.0 - phi / 2.0))
@@ -121,7 +120,7 @@ def span(z: tuple[int, int], low: float, high: float, task: dict[str, Any]) -> t
     return _edge(z, tried, sound[0], -1, task), _edge(z, tried, sound[-1], 1, task)
 
 
-def _edge(z: tuple[int, int], tried: Floats, at: int, way: int, task: dict[str, Any]) -> float:
+def _edge(z: tuple[int, int], tried: Real, at: int, way: int, task: dict[str, Any]) -> float:
     if not 0 <= at + way < len(tried):
         return float(tried[at])
     good, bad = float(tried[at]), float(tried[at + way])

@@ -7,15 +7,13 @@ from collections.abc import Callable
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from kinematics.arrays import Real
 from tests.support.independent.comparison import Beside
 from tests.support.independent.drive import Drive
 from tests.support.independent.extremes import GRID, greatest, least
 from tests.support.independent.linkage import Used, compare_linkage
 from tests.support.independent.output import Output
-
-Real = NDArray[np.float64]
 
 FUNCTIONS: dict[str, Callable[[Real, dict[str, Any]], Real]] = {
     "linear": lambda x, stated: x,

@@ -8,17 +8,15 @@ from collections.abc import Callable
 from typing import Any, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
+from kinematics.arrays import Complex, Real
 from tests.support.independent.cognates import compare_cognates
 from tests.support.independent.comparison import Beside
 from tests.support.independent.course import Course
-from tests.support.independent.drive import Complex, Drive
+from tests.support.independent.drive import Drive
 from tests.support.independent.extremes import GRID, greatest, least, root
 from tests.support.independent.linkage import DRIVERS, Used, compare_linkage, outside, turns_of_gears
 from tests.support.independent.sides import compare_sides
-
-Real = NDArray[np.float64]
 
 PANELS, NODES = 256, 12
 """Panels of Gauss's quadrature along the way at first, and nodes of each."""

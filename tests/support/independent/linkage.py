@@ -8,8 +8,9 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from kinematics.arrays import Complex
 from tests.support.independent.comparison import Beside
-from tests.support.independent.drive import Complex, Drive
+from tests.support.independent.drive import Drive
 from tests.support.independent.mobility import class_of
 from tests.support.independent.room import compare_room
 from tests.support.independent.transmission import least_angles

@@ -3,11 +3,9 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
+from kinematics.arrays import Real
 from tests.support.independent.drive import Drive
-
-Real = NDArray[np.float64]
 
 SWINGS = {
     "fourbar": ("O4", "B"),

@@ -7,15 +7,13 @@ import math
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from kinematics.arrays import Real
 from tests.support.independent.comparison import Beside
 from tests.support.independent.drive import Drive
 from tests.support.independent.extremes import greatest, least, root
 from tests.support.independent.linkage import Used, compare_linkage
 from tests.support.independent.output import Output
-
-Real = NDArray[np.float64]
 
 BESIDE = 0.02
 """Radians to either side of an extreme between which the rate goes through nothing."""

@@ -6,13 +6,11 @@ from typing import Any
 
 import numpy as np
 import shapely
-from numpy.typing import NDArray
 
+from kinematics.arrays import Complex, Real
 from tests.support.independent.comparison import Beside
-from tests.support.independent.drive import Complex, Drive
+from tests.support.independent.drive import Drive
 from tests.support.independent.extremes import greatest, least
-
-Real = NDArray[np.float64]
 
 
 def compare_room(beside: Beside, stated: dict[str, Any], drive: Drive, way: tuple[float, float]) -> None:

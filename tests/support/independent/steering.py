@@ -7,14 +7,12 @@ from collections.abc import Callable
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from kinematics.arrays import Real
 from tests.support.independent.comparison import Beside
 from tests.support.independent.drive import Drive
 from tests.support.independent.extremes import GRID, greatest, root
 from tests.support.independent.linkage import Used, compare_linkage
-
-Real = NDArray[np.float64]
 
 HALVINGS = 60
 """Steps of the bisection for the input at the lock."""

@@ -14,12 +14,11 @@ from collections.abc import Callable
 from itertools import combinations
 
 import numpy as np
-from numpy.typing import NDArray
 
-from tests.support.independent.drive import Complex, Drive
+from kinematics.arrays import Complex, Real
+from tests.support.independent.drive import Drive
 from tests.support.independent.extremes import least
 
-Real = NDArray[np.float64]
 Angle = Callable[[Complex], Real]
 
 

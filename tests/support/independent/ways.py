@@ -7,17 +7,14 @@ import math
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from kinematics.arrays import Complex, Real
 from tests.support.independent.comparison import Beside
 from tests.support.independent.drive import Drive
 from tests.support.independent.extremes import greatest, least
 from tests.support.independent.guided import compare_demands_of_path
 from tests.support.independent.linkage import Used, box, compare_linkage
 from tests.support.independent.transmission import least_angles
-
-Real = NDArray[np.float64]
-Complex = NDArray[np.complex128]
 
 
 def compare_line(beside: Beside, stated: dict[str, Any]) -> None:

@@ -7,10 +7,10 @@ from itertools import pairwise
 import numpy as np
 
 from kinematics.errors import MechanismError
-from kinematics.linkage.planar.branches import Branch, cycle
+from kinematics.linkage.planar.branches import Branch, compute_cycle
 from kinematics.linkage.planar.closures import decompose
 from kinematics.linkage.planar.drive import drive
-from kinematics.linkage.planar.limits import branches, toggles
+from kinematics.linkage.planar.limits import find_branches, list_toggles
 from kinematics.linkage.planar.mechanism import Mechanism, Slide
 from tests.kinematics.mechanism_sampling import DYADIC, EVERY, take
 from tests.oracles.constraints import SAME, Constraints, Trace
@@ -21,7 +21,7 @@ TURN = 2.0 * np.pi
 
 def period_of(mechanism: Mechanism) -> float:
     """Input's way after which all joints are back: as many turns as make every geared link turn whole times."""
-    if mechanism.driven_by_slide:
+    if mechanism.has_slide_input:
         return 1e9
     ratios = [gear.ratio for gear in mechanism.gears]
     turns = next(n for n in range(1, 10) if all(abs(n * ratio - round(n * ratio)) < 1e-9 for ratio in ratios))
@@ -32,7 +32,7 @@ class Followed:
     """The circuits of one design as its constraints alone show them, through all configurations at some inputs."""
 
     def __init__(self, mechanism: Mechanism, ways: list[float], rng: np.random.Generator) -> None:
-        self.slide = mechanism.driven_by_slide
+        self.slide = mechanism.has_slide_input
         self.period = period_of(mechanism)
         self.constraints = Constraints.of(mechanism)
         self.reference = float(mechanism.reference_input)
@@ -71,11 +71,11 @@ class Followed:
 
 def holding(found: list[Branch], mechanism: Mechanism, constraints: Constraints, x: np.ndarray, period: float) -> int:
     """The branch whose own assembly, driven to the configuration's input, is the configuration."""
-    unit = float(constraints.size[0]) if mechanism.driven_by_slide else 1.0
+    unit = float(constraints.size[0]) if mechanism.has_slide_input else 1.0
     at = float(mechanism.reference_input) + x[-1] * unit
     held = []
     for n, branch in enumerate(found):
-        offset = at - branch.low if mechanism.driven_by_slide else float(np.mod(at - branch.low, period))
+        offset = at - branch.low if mechanism.has_slide_input else float(np.mod(at - branch.low, period))
         if not (branch.full or offset <= branch.high - branch.low):
             continue
         motion = drive(mechanism, [at], signs=tuple(np.array(s) for s in _every_sign(mechanism, branch)), order=0)
@@ -98,18 +98,18 @@ def same_partition(one: list[object], other: list[object]) -> bool:
 
 def check(mechanism: Mechanism, rng: np.random.Generator, inputs: int = 3) -> tuple[int, int]:
     """One design: branches against the traced circuits; number of circuits and branches."""
-    found = branches(mechanism)
+    found = find_branches(mechanism)
     period = period_of(mechanism)
     constraints = Constraints.of(mechanism)
-    unit = float(constraints.size[0]) if mechanism.driven_by_slide else 1.0
+    unit = float(constraints.size[0]) if mechanism.has_slide_input else 1.0
     reference = float(mechanism.reference_input)
     middles = [((b.low + b.high) / 2.0 - reference) / unit for b in found]
-    spread = 0.5 if mechanism.driven_by_slide else period / 2.0
+    spread = 0.5 if mechanism.has_slide_input else period / 2.0
     ways = [0.0, *rng.uniform(-spread, spread, inputs)]
     ways += [w for w in middles if not any(abs(w - other) < 1e-3 for other in ways)]
     followed = Followed(mechanism, [float(w) for w in dict.fromkeys(ways)], rng)
     assert len(followed.traces) == 1 + max(b.circuit for b in found)
-    if mechanism.driven_by_slide or not found[0].signs:
+    if mechanism.has_slide_input or not found[0].signs:
         count = sum(max(1, len(trace.toggles)) for trace in followed.traces)
         assert len(found) == count
     else:
@@ -117,7 +117,7 @@ def check(mechanism: Mechanism, rng: np.random.Generator, inputs: int = 3) -> tu
         assert same_partition([found[n].circuit for n in held], [place[0] for place in followed.places])
         assert same_partition(list(held), list(followed.places))
         assert set(held) == set(range(len(found)))
-    mine = toggles(mechanism, found)
+    mine = list_toggles(mechanism, found)
     theirs = followed.toggles()
     each = np.array([x for n, x in enumerate(theirs) if n == 0 or x - theirs[n - 1] > 1e-8 * unit])
     assert len(mine) == len(each)
@@ -137,7 +137,7 @@ ELIMINATED = [name for name in DYADIC if name not in ("Peaucellier", "geared fiv
 
 def same_branches(mechanism: Mechanism, turns: int = 1) -> int:
     """Branches, whose ends and number must be those by elimination; how many there are."""
-    found = branches(mechanism)
+    found = find_branches(mechanism)
     mine = sorted((b.low, b.high, b.full) for b in found)
     theirs = Elimination.of(mechanism, turns).branches()
     assert [b[2] for b in mine] == [b[2] for b in theirs]
@@ -203,12 +203,12 @@ def right_or_refused(mechanism: Mechanism) -> bool:
             length = np.abs(mechanism.joints[one] - mechanism.joints[other])
             off = np.abs(np.abs(found.joints[one][0] - found.joints[other][0]) - length)
             assert off[found.valid].max(initial=0.0) < 1e-11, link
-    listed = branches(mechanism)
-    if mechanism.driven_by_slide or decompose(mechanism).left:
+    listed = find_branches(mechanism)
+    if mechanism.has_slide_input or decompose(mechanism).left:
         return True
     steps = decompose(mechanism).steps
     position = [n for n, step in enumerate(steps) if step.has_two_solutions]
-    period = cycle(mechanism)
+    period = compute_cycle(mechanism)
     inputs = np.linspace(0.0, period, 97) + 0.0123
     for choice in np.ndindex(*(2,) * len(position)):
         signs = [np.ones((), np.int64)] * len(steps)

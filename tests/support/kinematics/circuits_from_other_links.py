@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from kinematics.linkage.planar.branches import Branch
-from kinematics.linkage.planar.limits import branches
+from kinematics.linkage.planar.limits import find_branches
 from kinematics.linkage.planar.mechanism import Mechanism
 from tests.kinematics.mechanism_sampling import CLASS_THREE
 from tests.oracles.elimination import Elimination
@@ -91,15 +91,15 @@ def same_circuit(own: list[Branch], other: list[Between], unit: float, slide: bo
 
 def same_circuits(name: str, mechanism: Mechanism) -> int:
     """Branches, whose circuits must be those by elimination from another link; how many there are."""
-    found = branches(mechanism)
+    found = find_branches(mechanism)
     turning = turning_of(name, mechanism)
     theirs = turning.circuits()
-    unit = turning.elimination.size if mechanism.driven_by_slide else 1.0
+    unit = turning.elimination.size if mechanism.has_slide_input else 1.0
     count = 1 + max(branch.circuit for branch in found)
     assert count == len(theirs)
     for circuit in range(count):
         own = [branch for branch in found if branch.circuit == circuit]
-        same = [k for k, other in enumerate(theirs) if same_circuit(own, other, unit, mechanism.driven_by_slide)]
+        same = [k for k, other in enumerate(theirs) if same_circuit(own, other, unit, mechanism.has_slide_input)]
         assert same, (circuit, own)
         assert circuit or same[0] == 0, "the first circuit is the reference's"
         theirs[same[0]] = []

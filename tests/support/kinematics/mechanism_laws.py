@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from kinematics.linkage.planar.drive import MechanismMotion, drive, followed_to
+from kinematics.linkage.planar.drive import MechanismMotion, drive, is_reachable
 from kinematics.linkage.planar.mechanism import Mechanism
 from tests.kinematics.mechanism_sampling import CLASS_THREE, EVERY, take
 from tests.oracles.constraints import Constraints
@@ -39,7 +39,7 @@ def misfits(mechanism: Mechanism, found: MechanismMotion, way: np.ndarray) -> np
     """Largest misfit of a rigid length, a slide or a gear, as a share of the size, designs × inputs."""
     m = way.shape[1]
     every = Constraints.of(mechanism).take(np.repeat(np.arange(mechanism.shape[0]), m))
-    unit = every.size if mechanism.driven_by_slide else 1.0
+    unit = every.size if mechanism.has_slide_input else 1.0
     joints = {name: z[0].ravel() for name, z in found.joints.items()}
     return every.misfit(joints, way.ravel() / unit).reshape(way.shape)
 
@@ -65,7 +65,7 @@ def orders(name: str, seed: int, n: int) -> int:
     The number of designs on which this was measured: those that have a configuration there and are not near a limit.
     """
     rng, mechanism = batch(name, seed, n)
-    unit = Constraints.of(mechanism).size if mechanism.driven_by_slide else np.ones(mechanism.shape[0])
+    unit = Constraints.of(mechanism).size if mechanism.has_slide_input else np.ones(mechanism.shape[0])
     way = rng.uniform(-1.0, 1.0, mechanism.shape[0]) * 0.5 * unit
     at = (mechanism.reference_input + way)[:, None]
     w, alpha, jerk = 0.8, -0.6, 0.9
@@ -83,10 +83,10 @@ def orders(name: str, seed: int, n: int) -> int:
     if name in CLASS_THREE:
         # Beyond a toggle a branch of more than a turn has the input elsewhere: no difference leads over from there.
         ends = at + w * times[[0, -1]]
-        use = use[[bool(followed_to(take(mechanism, k), ends[k]).all()) for k in use]]
+        use = use[[bool(is_reachable(take(mechanism, k), ends[k]).all()) for k in use]]
     assert len(use) > mechanism.shape[0] // 8
     mechanism, at, unit = take(mechanism, use), at[use], unit[use]
-    scale = unit[:, None] if mechanism.driven_by_slide else 1.0
+    scale = unit[:, None] if mechanism.has_slide_input else 1.0
     every = drive(
         mechanism,
         at + scale * (w * times + alpha * times**2 / 2 + jerk * times**3 / 6),

@@ -6,7 +6,7 @@ from itertools import pairwise
 
 import numpy as np
 
-from kinematics.linkage.planar.limits import branches
+from kinematics.linkage.planar.limits import find_branches
 from kinematics.linkage.planar.mechanism import Mechanism
 
 TURN = 2.0 * np.pi
@@ -48,7 +48,7 @@ def pieces(mechanism: Mechanism) -> list[list[Piece]]:
 
 def same_cell(mechanism: Mechanism) -> int:
     """Branches, whose ends, number and circuits must be those of the closed form; how many there are."""
-    found = branches(mechanism)
+    found = find_branches(mechanism)
     expected = pieces(mechanism)
     assert len(found) == 4 * sum(len(run) for run in expected)
     circuits: set[int] = set()

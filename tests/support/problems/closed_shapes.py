@@ -7,7 +7,7 @@ from collections.abc import Callable
 import numpy as np
 from numpy.typing import NDArray
 
-Complex = NDArray[np.complex128]
+from kinematics.arrays import Complex
 
 COUNT, FINE = 96, 4096
 """Points of a curve, and places along it from which they are laid out."""

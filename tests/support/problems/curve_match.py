@@ -8,14 +8,12 @@ import re
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from kinematics.arrays import Complex
 from synthesis.dispatch import solve
 from synthesis.kinds.path.design import PathResult
 from synthesis.registry import parse_problem
 from tests.cases import HERE
-
-Complex = NDArray[np.complex128]
 
 STROKES = ("wu3_partial", "recover_c-shape", "recover_sharp")
 """Curves that a crank does not draw in one turn: they are listed from crank angle 0, with a gap where the crank turns

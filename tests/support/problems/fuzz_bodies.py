@@ -13,8 +13,8 @@ from collections.abc import Iterator
 from random import Random
 from typing import Any
 
-from synthesis.analyses import families, family
-from synthesis.registry import KINDS, example
+from synthesis.analyses import get_family, list_families
+from synthesis.registry import KINDS, get_first_example
 from tests.support.problems.given_mechanisms import STATED
 
 Json = Any
@@ -59,7 +59,7 @@ BLOCKS: tuple[dict[str, Any], ...] = (
 
 def analysis_corpus(solved: list[dict[str, Any]]) -> list[dict[str, Any]]:
     """Sound requests: the example of each family, a mechanism of every type, and those of ``solved`` designs."""
-    examples = [family.request.model_json_schema()["examples"] for family in families()]
+    examples = [family.request.model_json_schema()["examples"] for family in list_families()]
     stated = STATED.values() if isinstance(STATED, dict) else STATED
     mechanisms = [*(one[1] if isinstance(one, tuple) else one for one in stated), *solved]
     return [*(one for each in examples for one in each), *({"mechanism": one} for one in mechanisms)]
@@ -67,7 +67,7 @@ def analysis_corpus(solved: list[dict[str, Any]]) -> list[dict[str, Any]]:
 
 def job_corpus() -> list[dict[str, Any]]:
     """The example of every kind of problem, as the body of a job."""
-    return [{"problem": example(kind)} for kind in KINDS]
+    return [{"problem": get_first_example(kind)} for kind in KINDS]
 
 
 def spoil(corpus: list[dict[str, Any]], number: int, seed: int, blocks: bool = True) -> bytes:
@@ -76,7 +76,7 @@ def spoil(corpus: list[dict[str, Any]], number: int, seed: int, blocks: bool = T
     body = copy.deepcopy(corpus[rng.randrange(len(corpus))])
     if blocks and rng.random() < 0.6:
         # Mostly such as the family has, so that they get past the schema.
-        fields = family(body.get("mechanism")).request.model_fields
+        fields = get_family(body.get("mechanism")).request.model_fields
         known = [block for block in BLOCKS if fields.keys() >= block.keys()] if rng.random() < 0.85 else BLOCKS
         for block in rng.sample(known, min(rng.choice((1, 1, 2, 2, 3)), len(known))):
             body.update(copy.deepcopy(block))

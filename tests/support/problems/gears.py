@@ -72,10 +72,10 @@ def drawn_pair(rng: Random, internal: bool) -> dict[str, Any]:
 def analysed(pair: dict[str, Any]) -> dict[str, Any] | None:
     """What the analysis says; None where there is no such pair."""
     request = parse_request({"mechanism": pair})
-    if request.faults():
+    if request.find_errors():
         return None
     try:
-        return request.answer()
+        return request.build_answer()
     except MechanismError:
         return None
 

@@ -7,7 +7,7 @@ import random
 from collections.abc import Callable, Iterator
 from typing import Any
 
-from synthesis.registry import KINDS, examples
+from synthesis.registry import KINDS, list_examples
 
 ANGLES = frozenset(
     {
@@ -25,7 +25,7 @@ EXTREMES = (0.0, -0.0, 1e-300, 1e-30, 1e-12, 1e-6, 1.0, 89.999999, 90.0, 180.0, 
 def case(kind: str, number: int) -> dict[str, Any]:
     """Case ``number`` of a kind: about a third sound variations, the rest with one to four absurdities."""
     rng = random.Random(f"{kind} {number}")
-    problem = copy.deepcopy(rng.choice(examples(kind)))
+    problem = copy.deepcopy(rng.choice(list_examples(kind)))
     if kind == "path":
         problem["rounds"] = 1
     _varied(problem, rng)

@@ -86,7 +86,7 @@ def _way(kind: str, number: int) -> Outcome:
         problem = parse_problem(case(kind, number))
     except ValidationError as error:
         return Outcome("refused", _field(error.errors()[0]["loc"]))
-    faults = problem.contradictions()
+    faults = problem.find_contradictions()
     if faults:
         return Outcome("refused", re.sub("/[0-9]+", "", faults[0].path))
     result = solve(problem, lambda fraction, message: None)
@@ -131,11 +131,11 @@ def _not_finite(value: Any, path: str = "") -> str:
 def _drawn(design: Any, problem: Any, animated: bool) -> str:
     from service import render
 
-    for form in render.forms(design.mechanism.type):
+    for form in render.list_forms(design.mechanism.type):
         if form == "gif" and not animated:
             continue
         try:
-            drawn = render.exported(design, problem, "fuzz", form)
+            drawn = render.export_design(design, problem, "fuzz", form)
         except render.NotBuilt:
             continue
         if isinstance(drawn, str) and form != "dxf" and any(word in drawn for word in ('"nan', ",nan", ">nan", "inf,")):

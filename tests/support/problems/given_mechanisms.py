@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from kinematics.linkage.fourbar.closed_form import Fourbar
-from kinematics.linkage.planar.catalogue import fourbar, hart, pantograph, peaucellier, sixbar
+from kinematics.linkage.planar.catalogue import make_fourbar, make_hart, make_pantograph, make_peaucellier, make_sixbar
 from kinematics.linkage.planar.mechanism import Mechanism, Slide
 
 
@@ -71,7 +71,7 @@ def behind(
     **joints: complex,
 ) -> Mechanism:
     """A fourbar (input, coupler, output, ground, and P on the coupler's line) that drives further links or a slide."""
-    first = fourbar(Fourbar.from_lengths(*lengths), angle)
+    first = make_fourbar(Fourbar.from_lengths(*lengths), angle)
     every = {**first.links, "rocker": first.links["output"]}
     every |= {"ground": (*first.links["ground"], *(name for name in joints if name[0] == "O"))} | links
     if "output" not in links:
@@ -84,7 +84,7 @@ def ram(joint: str, place: complex, angle: float, link: str = "ground") -> tuple
 
 
 def dwell_in_a_slot() -> Mechanism:
-    first = fourbar(Fourbar.from_lengths(*HOEKEN[0]), HOEKEN[1])
+    first = make_fourbar(Fourbar.from_lengths(*HOEKEN[0]), HOEKEN[1])
     p = complex(first.joints["P"])
     slot = ram("P", p, 0.2, "output")
     return behind(*HOEKEN, {"output": ("O6", "C")}, slot, O6=p - 6.0, C=p - 5.0 + 1j)
@@ -114,7 +114,7 @@ STATED: dict[str, dict[str, Any]] = {
     "geared fivebar, 1 turn": on_pivots("geared_fivebar", [6.0, 0.0], links=FIVEBAR, gear_ratio=2.0, phase=60.0),
     "geared fivebar, 7 turns": on_pivots("geared_fivebar", [6.0, 0.0], links=FIVEBAR, gear_ratio=2 / 7, phase=60.0),
     **{
-        f"{kind}, driven by its {link}": by_skeleton(sixbar(kind, joints, link))
+        f"{kind}, driven by its {link}": by_skeleton(make_sixbar(kind, joints, link))
         for kind, (joints, inputs) in SIXBARS.items()
         for link in inputs
     },
@@ -127,7 +127,7 @@ STATED: dict[str, dict[str, Any]] = {
     ),
     "dwell, slider": by_skeleton(behind(*HOEKEN, {"link_5": ("P", "D")}, ram("D", 9.0 + 4j, 0.0), D=9.0 + 4j)),
     "dwell, slot": by_skeleton(dwell_in_a_slot()),
-    "Peaucellier's eightbar": by_skeleton(peaucellier(0.0, -1j, 1.0, 3.5, 2.0, 1.0)),
-    "Hart's inversor": by_skeleton(hart(0.0, -1.0, 1.0, 5.0, 3.0, 0.4, 0.7)),
-    "pantograph": by_skeleton(pantograph(0.0, 4.0, 0.5, 3.0, 6.0, 2.5, 0.7)),
+    "Peaucellier's eightbar": by_skeleton(make_peaucellier(0.0, -1j, 1.0, 3.5, 2.0, 1.0)),
+    "Hart's inversor": by_skeleton(make_hart(0.0, -1.0, 1.0, 5.0, 3.0, 0.4, 0.7)),
+    "pantograph": by_skeleton(make_pantograph(0.0, 4.0, 0.5, 3.0, 6.0, 2.5, 0.7)),
 }  # fmt: skip

@@ -13,13 +13,11 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from kinematics.linkage.layout import Layout, laid_out
+from kinematics.arrays import Complex, Real
+from kinematics.linkage.layout import Layout, arrange_planes
 from kinematics.linkage.planar.mechanism import GROUND, Mechanism
 from tests.kinematics.mechanism_sampling import EVERY, geared_fivebar, take
 from tests.support.independent.drive import Drive
-
-Real = NDArray[np.float64]
-Complex = NDArray[np.complex128]
 
 STEP = math.radians(0.25)
 """Of the input; that of a slide moves the quarter of a hundredth of the size."""
@@ -47,7 +45,7 @@ class Task(NamedTuple):
     def answer(self) -> Layout:
         """The layout under test."""
         at = float(self.mechanism.reference_input)
-        return laid_out(
+        return arrange_planes(
             self.mechanism,
             at + self.low,
             at + self.high,
@@ -93,7 +91,7 @@ def tasks(count: int, seed: int) -> Iterator[tuple[Task, Drive]]:
             mechanism = take(geared_fivebar(rng, 1, -1.5 if "against" in kind else 2.0), 0)
         drive = drive_of(mechanism)
         size = drive.size
-        full = not mechanism.driven_by_slide and not mechanism.gears and drive.follow(-math.pi, math.pi)
+        full = not mechanism.has_slide_input and not mechanism.gears and drive.follow(-math.pi, math.pi)
         full = full and bool(np.abs(np.diff(drive.at(np.array([-math.pi, math.pi])), axis=0)).max() < 1e-9 * size)
         low, high = -math.pi, math.pi
         if not full or rng.random() < 0.4:

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from kinematics.linkage.planar.mechanism import GROUND, Mechanism, Slide
-from synthesis.model.linkages import FOURBAR_LINKS
+from synthesis.model.linkage.conversion import FOURBAR_LINKS
 
 SPEED_RPM = 60.0
 PLATE = {"density": 7800.0, "thickness": 10.0, "width": 20.0, "holes": {"A": 8.0, "B": 8.0}}

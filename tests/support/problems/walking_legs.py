@@ -5,12 +5,10 @@ from __future__ import annotations
 from collections.abc import Callable
 
 import numpy as np
-from numpy.typing import NDArray
 
+from kinematics.arrays import Complex
 from kinematics.linkage.planar.drive import drive
 from kinematics.linkage.planar.mechanism import Mechanism
-
-Complex = NDArray[np.complex128]
 
 STEPS = 96
 """Crank angles at equal steps at which the foot is told."""

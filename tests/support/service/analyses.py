@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from synthesis.analyses.linkage import LinkageAnalysis, LinkageAnalysisRequest
+from synthesis.analyses.linkages.linkage import LinkageAnalysis, LinkageAnalysisRequest
 
 EXAMPLE = LinkageAnalysisRequest.model_config["json_schema_extra"]["examples"][0]
 

@@ -6,7 +6,7 @@ from typing import Any
 
 import httpx
 
-from synthesis.analyses.linkage import LinkageAnalysis
+from synthesis.analyses.linkages.linkage import LinkageAnalysis
 from tests.support.service.analyses import SIXBAR
 
 Statement = dict[str, Any]

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from typing import Any
 
-from service.api.idempotency import repeatable
-from service.api.schemas import JobRequest
+from service.api.http.idempotency import repeatable
+from service.api.http.schemas import JobRequest
 
 
 def hashed(statement: dict[str, Any]) -> str:

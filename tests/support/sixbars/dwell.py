@@ -15,12 +15,20 @@ from typing import Any
 import numpy as np
 
 from synthesis.dispatch import solve
-from synthesis.kinds.dwell import triad_starts, triads
-from synthesis.kinds.dwell.outputs import CYCLE, Carrier, Kind, output, pin_distances, points
+from synthesis.kinds.dwell.motion.outputs import (
+    CYCLE_SAMPLE_COUNT,
+    Carrier,
+    Kind,
+    compute_output,
+    compute_pin_distances,
+    locate_points,
+)
 from synthesis.kinds.dwell.problem import DwellProblem, Turning
+from synthesis.kinds.dwell.refine import stephenson_2
 from synthesis.kinds.dwell.solver import solve_dwell
+from synthesis.kinds.dwell.starts import stephenson_2_starts
 from synthesis.kinds.dwell.verification import verify_dwell
-from synthesis.model.stated_types import UNCLASSED
+from synthesis.model.linkage.type_choice import UNCLASSED_SIXBAR
 from synthesis.registry import parse_problem
 
 TASKS = 10
@@ -84,14 +92,14 @@ def planted(
         cosine = np.max([np.abs((b * b + c * c - (d + k) ** 2) / (2.0 * b * c)) for k in (-1.0, 1.0)], axis=0)
         shapes = shapes[grashof & (cosine < math.cos(math.radians(SOUND)))]
         sign = int(rng.choice([-1, 1]))
-        out, sine = output(kind, sign, shapes, points(shapes, turn, carrier))
+        out, sine = compute_output(kind, sign, shapes, locate_points(shapes, turn, carrier))
         least = sine.min(axis=1)
         kept = np.isfinite(out).all(axis=1) & (least > math.sin(math.radians(SOUND)))
         for shape, course, transmission in zip(shapes[kept], out[kept], least[kept], strict=True):
             b, c, d = shape[:3]
             cosines = [(b * b + c * c - (d + k) ** 2) / (2.0 * b * c) for k in (-1.0, 1.0)]
             angle = min(math.asin(transmission), *(math.acos(abs(cosine)) for cosine in cosines))
-            lengths = [1.0, *(float(length[0]) for length in pin_distances(shape[None], kind, carrier))]
+            lengths = [1.0, *(float(length[0]) for length in compute_pin_distances(shape[None], kind, carrier))]
             statement = _task(name, kind, turning, max(lengths) / min(lengths), course, math.degrees(angle))
             if statement is not None:
                 found.append(statement)
@@ -101,16 +109,18 @@ def planted(
 def planted_triads(tasks: int, rng: np.random.Generator) -> list[dict[str, Any]]:
     """Statements of what random Stephenson II sixbars do."""
     found: list[dict[str, Any]] = []
-    nowhere = np.empty((triad_starts.DRAWN, 0))
+    nowhere = np.empty((stephenson_2_starts.DRAW_COUNT, 0))
     while len(found) < tasks:
-        shapes = triad_starts.at_random(rng, triad_starts.DRAWN, 1)
-        pins = triads.pin_distances(shapes)
+        shapes = stephenson_2_starts.draw_general(rng, stephenson_2_starts.DRAW_COUNT, 1)
+        pins = stephenson_2.compute_pin_distances(shapes)
         ratios = pins.max(axis=1) / pins.min(axis=1)
-        least = triads.over_a_turn(shapes, nowhere, CYCLE).sines.min(axis=(1, 2))
+        least = stephenson_2.drive_shapes(shapes, nowhere, CYCLE_SAMPLE_COUNT).sines.min(axis=(1, 2))
         kept = (least > math.sin(math.radians(SOUND))) & (ratios <= RATIO)
-        driven = triads.over_a_turn(shapes[kept], nowhere[kept], STEPS)
+        driven = stephenson_2.drive_shapes(shapes[kept], nowhere[kept], STEPS)
         for ratio, course, sines in zip(ratios[kept], driven.course, driven.sines, strict=True):
-            statement = _task(UNCLASSED, "triad", None, float(ratio), course, math.degrees(math.asin(sines.min())))
+            statement = _task(
+                UNCLASSED_SIXBAR, "triad", None, float(ratio), course, math.degrees(math.asin(sines.min()))
+            )
             if statement is not None:
                 found.append(statement)
     return found[:tasks]
@@ -205,10 +215,10 @@ def table(tasks: int, seed: int) -> None:
     print(f"{'dwell':>6} " + " ".join(f"{column:>14}" for column in columns))
     for wide in REACH:
         found = [_stillest(wide, shape, least) for shape in SHAPES for least in LEASTS]
-        found += [_stillest(wide, SHAPES[0], least, UNCLASSED) for least in LEASTS]
+        found += [_stillest(wide, SHAPES[0], least, UNCLASSED_SIXBAR) for least in LEASTS]
         print(f"{wide:5d}° " + " ".join(found))
     print(f"\nOne of {LONG}° by the least transmission angle, with link ratios up to {WIDE_RATIO:g}")
-    searched = [*((shape, "auto") for shape in SHAPES), (SHAPES[0], UNCLASSED)]
+    searched = [*((shape, "auto") for shape in SHAPES), (SHAPES[0], UNCLASSED_SIXBAR)]
     print(f"{'angle':>6} " + " ".join(f"{name:>14}" for name in ("rocker", "slider", "triad")))
     for least in FLAT:
         found = [_stillest(LONG, shape, least, name, max_link_ratio=WIDE_RATIO) for shape, name in searched]

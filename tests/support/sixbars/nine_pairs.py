@@ -13,7 +13,7 @@ import numpy as np
 from kinematics.linkage.planar import catalogue
 from kinematics.linkage.planar.drive import drive
 from synthesis.dispatch import solve
-from synthesis.kinds.function.nine_pairs import all_watts
+from synthesis.kinds.function.nine_pairs.continuation import find_all_watts
 from synthesis.registry import parse_problem
 from tests.support.sixbars.planted_functions import drawn
 
@@ -38,7 +38,7 @@ def planted(rng: np.random.Generator) -> tuple[np.ndarray, np.ndarray, np.ndarra
     """Crank and rocker, input link and output of a random sixbar, with grounds of 1; inputs and outputs, radians."""
     while True:
         joints = drawn("watt_2", rng)
-        mechanism = catalogue.sixbar("watt_2", joints)
+        mechanism = catalogue.make_sixbar("watt_2", joints)
         turned = np.radians(rng.uniform(50.0, 120.0)) * np.linspace(0.0, 1.0, DENSE)
         motion = drive(mechanism, float(mechanism.reference_input) + turned, order=0)
         if not motion.valid.all() or min(np.abs(s).min() for s in motion.sines.values()) < np.sin(np.radians(LEAST)):
@@ -59,7 +59,7 @@ def table(tasks: int, seed: int) -> None:
     for n in range(tasks):
         vectors, inputs, outputs = planted(rng)
         wall, processor = time.perf_counter(), time.process_time()
-        watts = all_watts(inputs, outputs, np.random.default_rng(n), lambda share: None)
+        watts = find_all_watts(inputs, outputs, np.random.default_rng(n), lambda share: None)
         processor, wall = time.process_time() - processor, time.perf_counter() - wall
         own = float(np.abs(watts.real - vectors).max(axis=1).min(initial=np.inf))
         print(

@@ -19,16 +19,15 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from kinematics.arrays import Complex
 from kinematics.linkage.planar.drive import drive
 from kinematics.linkage.planar.mechanism import Mechanism
 from synthesis.dispatch import solve
-from synthesis.proof.rebuilt import rebuilt
 from synthesis.registry import parse_problem
+from synthesis.verification.reconstruction import rebuild_mechanism
 from tests.support.problems.closed_shapes import SHAPES, outline
 from tests.support.problems.walking_legs import LEGS, foot
 from tests.support.sixbars.spread import each
-
-Complex = NDArray[np.complex128]
 
 TASKS = 30
 TURN = np.linspace(0.0, 2.0 * np.pi, 2881)
@@ -87,7 +86,7 @@ def solved(points: Complex, **more: Any) -> tuple[Any, float, float]:
 def least(result: Any, points: Complex, angle: float = 0.0) -> Any:
     """The error and the design of the nearest that transmits with an angle; infinity where there is none."""
     passed = [d for d in result.designs if d.verification.passed and d.metrics.min_transmission_angle >= angle]
-    errors = [(both_ways(rebuilt(design.mechanism), points), design) for design in passed]
+    errors = [(both_ways(rebuild_mechanism(design.mechanism), points), design) for design in passed]
     return min(errors, key=lambda one: one[0], default=(math.inf, None))
 
 

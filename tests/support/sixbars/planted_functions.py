@@ -50,7 +50,7 @@ def planted(kind: str, rng: np.random.Generator) -> tuple[dict[str, Any], dict[s
         ratio = ratio_of(joints, kind)
         if ratio > 10.0:
             continue
-        mechanism = catalogue.sixbar(kind, joints)
+        mechanism = catalogue.make_sixbar(kind, joints)
         start, turned = float(mechanism.reference_input), math.radians(rng.uniform(50.0, 120.0))
         dense = drive(mechanism, start + turned * np.linspace(0.0, 1.0, DENSE), order=0)
         if not dense.valid.all():

@@ -14,10 +14,10 @@ import statistics
 
 import numpy as np
 
-from synthesis.kinds.motion import branch_rows as rows
-from synthesis.kinds.motion.chain_kernels import O4, Q1, Q2, A, B, J, signed_sine
-from synthesis.kinds.motion.nearness import error_of
-from synthesis.kinds.motion.sixbar_makes import MAKES
+from synthesis.kinds.motion.sixbar import residuals as rows
+from synthesis.kinds.motion.sixbar.chain_kernels import O4, Q1, Q2, A, B, J, compute_signed_sine
+from synthesis.kinds.motion.sixbar.topologies import TOPOLOGIES
+from synthesis.kinds.motion.task.ranking import get_rms_error
 from tests.support.sixbars.motion import REACH, SIXBARS, SOUND, Task, false_claim, solved, sound, stated
 from tests.support.sixbars.spread import each
 
@@ -33,17 +33,20 @@ def planted(rng: np.random.Generator, make: int, count: int) -> Task:
     at, turns = np.empty(6, complex), np.ones(4, complex)
     while True:
         z = rng.normal(size=7) + 1j * rng.normal(size=7)
-        setting = np.zeros(rows.SETTINGS)
-        sides = math.copysign(1.0, signed_sine(z[A], z[O4], z[B])), math.copysign(1.0, signed_sine(z[Q1], z[Q2], z[J]))
-        setting[[rows.MAKE, rows.FIRST_SIDE, rows.SECOND_SIDE]] = make, *sides
+        setting = np.zeros(rows.SETTING_SIZE)
+        sides = (
+            math.copysign(1.0, compute_signed_sine(z[A], z[O4], z[B])),
+            math.copysign(1.0, compute_signed_sine(z[Q1], z[Q2], z[J])),
+        )
+        setting[[rows.TOPOLOGY, rows.FIRST_SIDE, rows.SECOND_SIDE]] = make, *sides
         lengths, inverses = np.empty(4), np.empty(4, complex)
-        rows.dimensions(z, lengths, inverses)
+        rows.compute_dimensions(z, lengths, inverses)
         steps = rng.uniform(0.2, 1.0, count - 1) if count == FEW else np.ones(count - 1)
         inputs = np.concatenate([[0.0], np.cumsum(steps)])
         inputs *= rng.uniform(math.radians(40.0), math.radians(300.0)) / inputs[-1]
         points, angles, most = [], [], 0.0
         for angle in [*np.linspace(0.0, inputs[-1], 80), *inputs]:
-            most = max(most, *map(abs, rows.driven(z, lengths, inverses, setting, angle, at, turns)))
+            most = max(most, *map(abs, rows.drive_linkage(z, lengths, inverses, setting, angle, at, turns)))
             if most > math.cos(math.radians(SOUND)):
                 break
             points.append(at[5])
@@ -60,7 +63,7 @@ def tried(kind: str, task: Task) -> tuple[bool, float, list[str]]:
     """Whether a task has a sound sixbar of a type, what that took, and what is not confirmed of each."""
     result, processor, _ = solved(task, mechanisms=[kind], max_designs=3 if len(task) == FEW else 1)
     designs = sound(result)
-    found = [design for design in designs if len(task) == FEW or error_of(design) <= FOUND]
+    found = [design for design in designs if len(task) == FEW or get_rms_error(design) <= FOUND]
     return bool(found), processor, [false_claim(design, task) for design in designs]
 
 
@@ -68,7 +71,7 @@ def table(tasks: int, seed: int) -> None:
     print(f"{'planted':<16}{'positions':>10}{'tasks':>6}{'found %':>9}{'CPU s':>8}{'most':>7}{'false':>8}")
     for count, kind in itertools.product((FEW, MANY), SIXBARS):
         rng = np.random.default_rng(seed)
-        of_kind = [n for n, make in enumerate(MAKES) if make.type == kind]
+        of_kind = [n for n, make in enumerate(TOPOLOGIES) if make.type == kind]
         drawn = [(kind, planted(rng, of_kind[n % len(of_kind)], count)) for n in range(tasks)]
         found, times, faults = zip(*each(tried, drawn), strict=True)
         listed = [fault for of_task in faults for fault in of_task]

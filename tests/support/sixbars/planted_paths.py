@@ -15,11 +15,11 @@ import math
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from kinematics.arrays import Complex
 from kinematics.linkage.planar import catalogue
 from kinematics.linkage.planar.drive import drive
-from synthesis.proof.rebuilt import rebuilt
+from synthesis.verification.reconstruction import rebuild_mechanism
 from tests.oracles.loops import Loops
 from tests.support.sixbars.driven import transmits
 from tests.support.sixbars.path import both_ways, off, solved
@@ -33,8 +33,6 @@ LEAST, WIDEST = 15.0, 10.0
 NEAR = 1e-3
 TYPES = ["watt_1", "stephenson_1", "stephenson_3", "stephenson_2"]
 
-Complex = NDArray[np.complex128]
-
 
 def planted(kind: str, rng: np.random.Generator) -> tuple[Complex, float, dict[str, float]]:
     """Points of a random sixbar's curve, its distance from them both ways, and what it keeps."""
@@ -46,7 +44,7 @@ def planted(kind: str, rng: np.random.Generator) -> tuple[Complex, float, dict[s
         ratio = ratio_of(joints, kind)
         if ratio > WIDEST:
             continue
-        mechanism = catalogue.sixbar(kind, joints)
+        mechanism = catalogue.make_sixbar(kind, joints)
         motion = drive(mechanism, float(mechanism.reference_input) + turn, order=0)
         if not motion.valid.all():
             continue
@@ -64,7 +62,7 @@ def planted(kind: str, rng: np.random.Generator) -> tuple[Complex, float, dict[s
 
 def distance(design: Any, points: Complex) -> float:
     """The root mean square of the distances of points from the curve of a design, in diagonals of their box."""
-    mechanism = rebuilt(design.mechanism)
+    mechanism = rebuild_mechanism(design.mechanism)
     turn = np.linspace(0.0, 2.0 * math.pi, FINE, endpoint=False)
     curve = drive(mechanism, float(mechanism.reference_input) + turn, order=0).joints["P"][0]
     size = math.hypot(float(np.ptp(points.real)), float(np.ptp(points.imag)))
@@ -73,7 +71,7 @@ def distance(design: Any, points: Complex) -> float:
 
 def false_claim(design: Any) -> str:
     """What another formulation does not confirm of a design over a turn; empty where it confirms all."""
-    mechanism = rebuilt(design.mechanism)
+    mechanism = rebuild_mechanism(design.mechanism)
     turn = np.linspace(0.0, 2.0 * math.pi, DRIVEN)
     try:
         loops = Loops(design.mechanism.skeleton.model_dump(mode="json"))
@@ -95,7 +93,7 @@ def tried(kind: str, points: Complex, own: float, constraints: dict[str, float])
     what is not confirmed of each."""
     result, processor, _ = solved(points, mechanisms=[kind], constraints=constraints, max_designs=3)
     passed = [design for design in result.designs if design.verification.passed]
-    both = min((both_ways(rebuilt(design.mechanism), points) for design in passed), default=math.inf)
+    both = min((both_ways(rebuild_mechanism(design.mechanism), points) for design in passed), default=math.inf)
     near = min((distance(design, points) for design in passed), default=math.inf)
     return both / own, near, processor, [false_claim(design) for design in passed]
 

@@ -66,12 +66,12 @@ def assert_measured(problem: DwellProblem, design: DwellDesign) -> None:
     periodic = np.concatenate([out[:-1], out[:-1]])
     for rest in design.targets:
         first = round(((rest.input_angle - start) % 360.0) * per)
-        demanded = problem.wanted[rest.index].angle
+        demanded = problem.dwell_requests[rest.index].angle
         held = periodic[first : first + round(demanded * per) + 1]
-        assert np.ptp(held) <= problem.allowed
+        assert np.ptp(held) <= problem.max_movement
         assert np.isclose(np.ptp(held), rest.jitter, rtol=0.02, atol=1e-9 * problem.way)
         assert rest.width >= demanded - 0.2
-        place = problem.wanted[rest.index].place
+        place = problem.dwell_requests[rest.index].place
         if place is None:
             assert rest.off_end <= 0.05
         else:

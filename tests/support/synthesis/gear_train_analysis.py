@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 from synthesis.analyses import parse_request
-from synthesis.analyses.gear_train import GearTrainAnalysis, GearTrainAnalysisRequest
+from synthesis.analyses.gears.gear_train import GearTrainAnalysis, GearTrainAnalysisRequest
 
 
 def analysed(
@@ -14,5 +14,5 @@ def analysed(
     mechanism = {"type": "gear_train", "stages": stages, "idlers": idlers or [], **fields.pop("given", {})}
     request = parse_request({"mechanism": mechanism, **fields})
     assert isinstance(request, GearTrainAnalysisRequest)
-    assert request.faults() == []
-    return GearTrainAnalysis.model_validate(request.answer())
+    assert request.find_errors() == []
+    return GearTrainAnalysis.model_validate(request.build_answer())

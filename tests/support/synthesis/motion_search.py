@@ -8,7 +8,7 @@ from typing import Any
 
 from synthesis.dispatch import solve
 from synthesis.kinds.motion.design import MotionResult
-from synthesis.model.linkage_answer import LinkageDesign
+from synthesis.model.linkage.answer import LinkageDesign
 from synthesis.registry import parse_problem
 from tests.oracles.continuation import drive
 

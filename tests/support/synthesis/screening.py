@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from itertools import pairwise
 
-from synthesis.model.linkage_answer import LinkageDesign
+from synthesis.model.linkage.answer import LinkageDesign
 
 
 def excess_of(design: LinkageDesign, stated: list[dict[str, float]], size: float) -> float:

@@ -5,12 +5,12 @@ from __future__ import annotations
 import numpy as np
 
 from kinematics.linkage.planar.mechanism import Mechanism
-from synthesis.kinds.dwell import triads
-from synthesis.kinds.dwell.shaped import STEPHENSON_2
+from synthesis.kinds.dwell.refine import stephenson_2
+from synthesis.kinds.dwell.refine.refinement import STEPHENSON_2_LINKS
 
 
 def built(shape: np.ndarray) -> Mechanism:
-    return Mechanism(triads.joints(shape), dict(STEPHENSON_2), "input")
+    return Mechanism(stephenson_2.name_joints(shape), dict(STEPHENSON_2_LINKS), "input")
 
 
 ELSEWHERE = [2.2396606322535577, -0.334575861525666, 0.24544745321698264, 0.7194190943844678, -0.6621867552800142]

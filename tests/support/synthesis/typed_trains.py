@@ -24,7 +24,7 @@ def stated(*stages: Statement, **fields: Any) -> GearTrainProblem:
 
 def solved(*stages: Statement, **fields: Any) -> GearTrainResult:
     problem = stated(*stages, **fields)
-    assert problem.contradictions() == []
+    assert problem.find_contradictions() == []
     result = solve(problem, lambda fraction, message: None)
     assert isinstance(result, GearTrainResult)
     assert all(design.verification.passed for design in result.designs)
@@ -32,4 +32,4 @@ def solved(*stages: Statement, **fields: Any) -> GearTrainResult:
 
 
 def faults(*stages: Statement, **fields: Any) -> list[str]:
-    return [fault.path for fault in stated(*stages, **fields).contradictions()]
+    return [fault.path for fault in stated(*stages, **fields).find_contradictions()]

@@ -5,7 +5,7 @@ import math
 import numpy as np
 import pytest
 
-from synthesis.numerics.placing import Boxes, placed
+from synthesis.numerics.box_placement import Boxes, place_in_boxes
 
 
 def boxes_around(places, margin):
@@ -34,7 +34,7 @@ def test_a_planted_place_is_found_however_narrow(margin):
         joints, size = random_joints(rng), rng.uniform(5.0, 200.0)
         places = 100.0 * complex(*rng.normal(size=2)) + size * np.exp(1j * rng.uniform(0.0, math.tau)) * joints
         boxes = boxes_around(places, margin * size)
-        found = placed(joints, boxes, 0.99 * size, 1.01 * size, 100.0 + 0j)
+        found = place_in_boxes(joints, boxes, 0.99 * size, 1.01 * size, 100.0 + 0j)
         assert found.fits
         assert outside(boxes, found.origin + found.along * joints) <= 1e-10 * size
         assert 0.99 * size * (1.0 - 1e-12) <= abs(found.along) <= 1.01 * size * (1.0 + 1e-12)
@@ -46,7 +46,7 @@ def test_what_does_not_fit_is_as_little_outside_as_can_be():
     sizes, turns = np.meshgrid(np.linspace(30.0, 40.0, 21), np.linspace(0.0, math.tau, 721))
     for _ in range(10):
         joints = random_joints(rng)
-        found = placed(joints, boxes, 30.0, 40.0, 100.0 + 0j)
+        found = place_in_boxes(joints, boxes, 30.0, 40.0, 100.0 + 0j)
         assert not found.fits
         moved = (sizes * np.exp(1j * turns))[..., None] * joints
         # Half of what the joints are farther apart than their boxes allow, in the direction in which that is more.
@@ -59,18 +59,18 @@ def test_what_does_not_fit_is_as_little_outside_as_can_be():
 def test_preferences_are_kept_where_they_fit():
     joints = np.array([0.0, 1.0, 0.3 + 0.8j, 1.2 + 0.9j])
     free = Boxes(*(np.full(4, sign * np.inf) for sign in (-1, 1, -1, 1)))
-    assert placed(joints, free, 0.0, math.inf, 100.0 + 0j) == (0j, 100.0 + 0j, True)
+    assert place_in_boxes(joints, free, 0.0, math.inf, 100.0 + 0j) == (0j, 100.0 + 0j, True)
     wide = Boxes(*(np.full(4, sign * 500.0) for sign in (-1, 1, -1, 1)))
-    assert placed(joints, wide, 0.0, math.inf, 100.0 + 0j).along == 100.0
+    assert place_in_boxes(joints, wide, 0.0, math.inf, 100.0 + 0j).along == 100.0
     flat = Boxes(*(np.array([limit] * 2 + [np.sign(limit) * np.inf] * 2) for limit in (-1.0, 1.0, -60.0, 60.0)))
-    upright = placed(joints, flat, 90.0, 110.0, 100.0 + 0j)
+    upright = place_in_boxes(joints, flat, 90.0, 110.0, 100.0 + 0j)
     assert upright.fits
     assert abs(upright.along.real) <= 2.0
-    assert not placed(joints, flat, 90.0, 110.0, 100.0 + 0j, turned=False).fits
+    assert not place_in_boxes(joints, flat, 90.0, 110.0, 100.0 + 0j, turned=False).fits
 
 
 def test_sizes_that_exclude_one_another_fit_nowhere():
-    found = placed(
+    found = place_in_boxes(
         np.array([0j, 1.0 + 0j]), Boxes(*(np.full(2, sign * 500.0) for sign in (-1, 1, -1, 1))), 20.0, 5.0, 1j
     )
     assert not found.fits

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from synthesis.numerics.quadrics import common_points
+from synthesis.numerics.quadrics import find_common_points
 
 Real = np.ndarray
 
@@ -32,7 +32,7 @@ def test_pairs_of_planes_meet_in_all_their_points(m: int) -> None:
         for choice in np.ndindex(*([2] * (m - 1))):
             _, _, vh = np.linalg.svd(np.array([planes[k, side] for k, side in enumerate(choice)]))
             expected.append(vh[-1])
-        found = common_points(np.array([product(*pair) for pair in planes]))
+        found = find_common_points(np.array([product(*pair) for pair in planes]))
         assert found.finite
         assert len(found.unproved) == 0
         assert not found.double.any()
@@ -46,7 +46,7 @@ def test_quadrics_without_real_points(m: int) -> None:
     forms = rng.normal(size=(m - 1, m, m))
     forms[0] = np.diag(rng.uniform(0.5, 2.0, m))
     forms = forms + forms.transpose(0, 2, 1)
-    found = common_points(forms / np.linalg.norm(forms, axis=(1, 2))[:, None, None])
+    found = find_common_points(forms / np.linalg.norm(forms, axis=(1, 2))[:, None, None])
     assert found.finite
     assert len(found.real) == 0
     assert len(found.unproved) == 0
@@ -56,7 +56,7 @@ def test_a_double_point_is_said() -> None:
     """The unit circle and the parabola y = x² − 1 touch at (0, −1) and cross at (±1, 0)."""
     circle = np.diag([1.0, 1.0, -1.0]) / np.sqrt(3.0)
     parabola = np.array([[1.0, 0.0, 0.0], [0.0, 0.0, -0.5], [0.0, -0.5, -1.0]])
-    found = common_points(np.array([circle, parabola / np.linalg.norm(parabola)]))
+    found = find_common_points(np.array([circle, parabola / np.linalg.norm(parabola)]))
     assert len(found.unproved) == 2
     points = found.real[:, :2] / found.real[:, 2:]
     order = np.lexsort((points[:, 0],))
@@ -67,4 +67,4 @@ def test_a_double_point_is_said() -> None:
 def test_a_common_line_is_said() -> None:
     rng = np.random.default_rng(5)
     line, one, other = rng.normal(size=(3, 3))
-    assert not common_points(np.array([product(line, one), product(line, other)])).finite
+    assert not find_common_points(np.array([product(line, one), product(line, other)])).finite

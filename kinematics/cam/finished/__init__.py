@@ -1,0 +1,1 @@
+"""Finished cams measured from the points of their profiles alone: contact, curvature, extreme values."""

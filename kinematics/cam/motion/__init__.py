@@ -1,0 +1,1 @@
+"""Motion programs of cams: laws, segments, piecewise functions and their exact extremes."""

@@ -1,0 +1,114 @@
+"""Who is let in: what every operation under ``/v1`` asks before it does anything, even before it reads a body."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Coroutine
+from ipaddress import ip_address
+from typing import Annotated, Any
+from urllib.parse import urlsplit
+
+import structlog
+from fastapi import Depends, Request, Response
+from fastapi.routing import APIRoute
+
+from service.access.gate import ANYBODY, Gate, NoKey, TooOften
+from service.api.http.problem_details import Refusal
+from service.observability import telemetry
+
+SCHEME = "bearer"
+"""The name of the security scheme in the OpenAPI document."""
+
+Handler = Callable[[Request], Coroutine[Any, Any, Response]]
+
+
+class GuardedRoute(APIRoute):
+    """A route that lets in by API key where there are keys."""
+
+    def get_route_handler(self) -> Handler:
+        """What is behind the gate, and the gate."""
+        handle = self.handler_inside()
+
+        async def admit_first(request: Request) -> Response:
+            request.state.tenant = await _admitted(request)
+            return await handle(request)
+
+        return admit_first
+
+    def handler_inside(self) -> Handler:
+        """The framework's handler."""
+        return super().get_route_handler()
+
+
+async def _admitted(request: Request) -> str:
+    gate = request.app.state.gate
+    assert isinstance(gate, Gate)
+    try:
+        tenant, allowance = await gate.admit(_key(request))
+    except NoKey as refusal:
+        raise Refusal(
+            401, "unauthorized", "Unauthorized",
+            "This key is not in force." if refusal.given else "A key is needed: `Authorization: Bearer mechsynth_...`.",
+            headers={"WWW-Authenticate": 'Bearer error="invalid_token"' if refusal.given else "Bearer"},
+        ) from None  # fmt: skip
+    except TooOften as refusal:
+        allowance = refusal.allowance
+        telemetry.answer_with(allowance.headers())
+        raise Refusal(
+            429, "rate-limited", "Rate limited",
+            f"A key may ask {allowance.limit} times in {allowance.window_s} seconds; this one has.",
+            headers={"Retry-After": str(allowance.reset_s)},
+        ) from None  # fmt: skip
+    if tenant == ANYBODY and not _meant_for_this_machine(request):
+        raise Refusal(
+            403, "foreign-host", "Foreign host",
+            "Without keys the service is open to this machine only, not by names that are known elsewhere; "
+            "`mechsynth keys create NAME` makes a key.",
+        )  # fmt: skip
+    if allowance is not None:
+        telemetry.answer_with(allowance.headers())
+        structlog.contextvars.bind_contextvars(tenant=tenant)
+    return tenant
+
+
+NOBODYS = ("localhost", "local", "internal", "test", "example", "invalid")
+"""Endings of names that nobody can register (RFC 2606, 6761, 6762)."""
+
+
+def _meant_for_this_machine(request: Request) -> bool:
+    """Whether the host that a client believes to speak to can be this machine.
+
+    A page from anywhere may give its own host the address 127.0.0.1, and would then be let in by the browser as if it
+    came from here (DNS rebinding); only the name tells: one that somebody elsewhere can have registered. Addresses,
+    names without a dot and names that are nobody's are none of those. Clients without a name are no browsers.
+    """
+    given = request.headers.get("host", "localhost")
+    try:
+        name = urlsplit(f"//{given}").hostname or ""
+        if not name.strip("."):
+            return False
+        *registered, last = name.rstrip(".").split(".")
+        return not registered or last in NOBODYS or _is_address(name)
+    except ValueError:
+        return False
+
+
+def _is_address(name: str) -> bool:
+    try:
+        ip_address(name)
+    except ValueError:
+        return False
+    return True
+
+
+def _key(request: Request) -> str | None:
+    scheme, _, key = request.headers.get("authorization", "").partition(" ")
+    return key.strip() if scheme.lower() == "bearer" else None
+
+
+async def _tenant(request: Request) -> str:
+    tenant = request.state.tenant
+    assert isinstance(tenant, str)
+    return tenant
+
+
+Tenant = Annotated[str, Depends(_tenant)]

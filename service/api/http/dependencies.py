@@ -1,0 +1,39 @@
+"""The parts of the application that endpoints work with, as dependencies."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Coroutine
+from typing import Annotated, Any, TypeVar
+
+from fastapi import Depends, Request
+
+from service.answers.desk import AnswerDesk
+from service.imports.desk import ImportDesk
+from service.jobs.batches.desk import BatchDesk
+from service.jobs.batches.rows import BatchSummary
+from service.jobs.desk import JobDesk
+from service.jobs.events.poller import JobPoller
+from service.jobs.store.schema import JobSummary
+from service.parts.export.worker import Workshop
+
+T = TypeVar("T")
+
+
+def _part(name: str, of_type: type[T]) -> Callable[[Request], Coroutine[Any, Any, T]]:
+    """The dependency on the part that the start of the application has put under this name."""
+
+    async def part(request: Request) -> T:
+        value = getattr(request.app.state, name)
+        assert isinstance(value, of_type)
+        return value
+
+    return part
+
+
+Desk = Annotated[JobDesk, Depends(_part("desk", JobDesk))]
+Batches = Annotated[BatchDesk, Depends(_part("batches", BatchDesk))]
+Poller = Annotated[JobPoller[JobSummary], Depends(_part("poller", JobPoller))]
+BatchPoller = Annotated[JobPoller[BatchSummary], Depends(_part("batch_poller", JobPoller))]
+Answers = Annotated[AnswerDesk, Depends(_part("answers", AnswerDesk))]
+Readers = Annotated[ImportDesk, Depends(_part("readers", ImportDesk))]
+Bench = Annotated[Workshop, Depends(_part("workshop", Workshop))]

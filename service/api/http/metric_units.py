@@ -1,0 +1,49 @@
+"""What the numbers of a design measure, by their names: so that a client can put a unit beside each."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import Any, get_args
+
+from pydantic import BaseModel
+
+from synthesis.model.dimension import Dimension, collect_dimensions
+
+PARTS = ("metrics", "mechanism", "springs")
+"""What of a design has numbers that people read; springs where a kind looks for them."""
+
+
+def measures(result: type[BaseModel]) -> dict[str, Dimension]:
+    """The dimension of each named number in the designs of an answer.
+
+    A name that measures one thing here and another there is left out.
+
+    Parameters
+    ----------
+    result : type of pydantic model
+        Of a kind of problem, with its ``designs``.
+    """
+    found: dict[str, set[Dimension]] = {}
+    for design in _models(result.model_fields["designs"].annotation):
+        for part in filter(design.model_fields.__contains__, PARTS):
+            for model in _reached(design.model_fields[part].annotation, set()):
+                for name, dimension in collect_dimensions(model).items():
+                    found.setdefault(name, set()).add(dimension)
+    return {name: next(iter(of)) for name, of in sorted(found.items()) if len(of) == 1}
+
+
+def _reached(annotation: Any, seen: set[type[BaseModel]]) -> set[type[BaseModel]]:
+    """All models that a value may hold, however deep."""
+    for model in _models(annotation):
+        if model not in seen:
+            seen.add(model)
+            for field in model.model_fields.values():
+                _reached(field.annotation, seen)
+    return seen
+
+
+def _models(annotation: Any) -> Iterator[type[BaseModel]]:
+    if isinstance(annotation, type) and issubclass(annotation, BaseModel):
+        yield annotation
+    for part in get_args(annotation):
+        yield from _models(part)

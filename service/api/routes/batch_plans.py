@@ -1,0 +1,288 @@
+"""From what a client has stated of a batch to its plan, or to what is wrong with it and where."""
+
+from __future__ import annotations
+
+import json
+import math
+import time
+from collections.abc import Iterable, Iterator, Sequence
+from itertools import islice
+from typing import Any
+
+from service.api.http.problem_details import Refusal, invalid_problem, invalid_request
+from service.api.routes.batch_schemas import MOST_SAMPLES, BatchRequest, Vary
+from service.error_messages import MAX_FAULTS, pointer
+from service.jobs.batches.plan import NoSuchPlace, Plan, steps
+from service.jobs.batches.sampling import Span, evenly, latin_hypercube
+from service.jobs.batches.values import Picked, Values
+from service.jobs.store.states import Cost
+from service.requests import Faults, consistent, well_formed
+from synthesis.model.linkage.answer import ERROR_FIELDS
+from synthesis.registry import KINDS
+
+LOOKED_AT = 100
+"""Samples, evenly spread, one of which at least has to state a problem."""
+
+TRIED_BYTES = 4_000_000
+"""Statements that are tried, in bytes of JSON: a second of work. All values of a plan, where its problem is of a usual
+size; of a larger one as many, evenly spread, and :data:`LOOKED_AT` at least."""
+
+CHECKED_S = 1.0
+"""Seconds of processor after which no further value is tried and no further sample looked at: statements with very many
+faults take longer than their size tells."""
+
+TABLE_BYTES = 16 << 20
+"""What the values of all samples may take together, since the table shows them in each row."""
+
+RATIO_ERRORS = ("max_error", "relative_error", "error")
+"""Errors of gears, of which a kind shows the first that it has."""
+
+MORE_IS_BETTER = ("min_transmission_angle",)
+
+SIZES = ("size", "total_teeth", "tooth_sum")
+"""Sizes, of which a kind shows the first that it has."""
+
+
+def plan_of(body: BatchRequest) -> tuple[str, Plan, Cost]:
+    """The kind of the problems, the plan, and what one of them is taken to cost.
+
+    A value that its field cannot have is a fault of the batch. Values that contradict one another are one of the sample
+    alone, unless all of :data:`LOOKED_AT` samples have such.
+
+    Raises
+    ------
+    Refusal
+        422, with the place of each fault.
+    """
+    kind = body.problem.get("kind")
+    if not isinstance(kind, str) or kind not in KINDS:
+        detail = f"Kind must be given and be one of: {', '.join(KINDS)}."
+        raise invalid_problem([("/problem/kind", detail)])
+    faults = [*islice(_not_finite(body), MAX_FAULTS)]
+    if faults:
+        raise invalid_request(faults)
+    faults = [*_faults_of_fields(body), *_faults_of_sampling(body), *_faults_of_metrics(body, kind)]
+    if faults:
+        raise invalid_request(faults)
+    plan = Plan(
+        body.problem,
+        [varied.field for varied in body.vary],
+        _values(body),
+        body.sampling == "grid",
+        by_default(KINDS[kind].metrics) if body.metrics is None else body.metrics,
+        body.reuse,
+    )
+    _require_places(plan)
+    until = time.thread_time() + CHECKED_S
+    faults = _faults_of_the_problem(kind, plan)
+    if faults:
+        raise invalid_problem(faults)
+    faults = _faults_of_values(body, kind, plan, until)
+    if faults:
+        raise invalid_request(faults)
+    return kind, plan, _cost(kind, plan, until)
+
+
+def by_default(metrics: Sequence[str]) -> list[str]:
+    """Of the metrics of a kind, what its front weighs up: an error, what is to be large, what is to be small."""
+    error = [name for name in (*ERROR_FIELDS, *RATIO_ERRORS) if name in metrics][:1]
+    size = [name for name in SIZES if name in metrics][:1]
+    return [*error, *(name for name in MORE_IS_BETTER if name in metrics), *size]
+
+
+def _not_finite(body: BatchRequest) -> Iterator[tuple[str, str]]:
+    """The numbers, wherever they stand, that are infinite or none."""
+    pending: list[tuple[tuple[str | int, ...], Any]] = [
+        (("vary", k, "values"), varied.values) for k, varied in reversed([*enumerate(body.vary)])
+    ]
+    pending.append((("problem",), body.problem))
+    while pending:
+        place, value = pending.pop()
+        if isinstance(value, float) and not math.isfinite(value):
+            yield pointer(place), "This must be a finite number."
+        elif isinstance(value, dict | list):
+            inside = value.items() if isinstance(value, dict) else enumerate(value)
+            pending += [((*place, step), member) for step, member in reversed([*inside])]
+
+
+def _faults_of_the_problem(kind: str, plan: Plan) -> list[tuple[str, str]]:
+    """What is wrong with the problem whatever the varied fields are, by the first sample and the last."""
+    found: Faults = []
+    for number in (0, plan.total - 1):
+        before = found
+        _, faults = well_formed(kind, plan.statement(number))
+        found = [(path, detail) for path, detail in faults if _apart(path, plan.fields)]
+        if not found:
+            return []
+    agreed = set(before)
+    return [(f"/problem{path}", detail) for path, detail in found if (path, detail) in agreed]
+
+
+def _apart(path: str, fields: Sequence[str]) -> bool:
+    """Whether what is wrong at this place of a problem is so whatever the varied fields are.
+
+    It may not be where it lies in one of them or on the way to it, or in an object of which a field varies: what that
+    object may have can go by it.
+    """
+    for field in fields:
+        object_, _, _ = field.rpartition("/")
+        if f"{path}/".startswith(f"{object_ or field}/") or field.startswith(f"{path}/"):
+            return False
+    return True
+
+
+def _faults_of_fields(body: BatchRequest) -> Iterator[tuple[str, str]]:
+    ways = [steps(varied.field) for varied in body.vary]
+    for k, way in enumerate(ways):
+        if way == ["kind"]:
+            yield f"/vary/{k}/field", "The problems of a batch are of one kind."
+        for other in ways[:k]:
+            if way[: len(other)] == other or other[: len(way)] == way:
+                yield f"/vary/{k}/field", "This field is varied already, as a whole or in part."
+
+
+def _faults_of_sampling(body: BatchRequest) -> Iterator[tuple[str, str]]:
+    drawn = body.sampling == "latin_hypercube"
+    if drawn and body.samples is None:
+        yield "/samples", "A Latin hypercube needs the number of its samples."
+    if not drawn and body.samples is not None:
+        yield "/samples", f"A {body.sampling} has as many as its values make; leave this out."
+    if not drawn and body.seed != 0:
+        yield "/seed", f"Nothing is drawn in a {body.sampling}; leave this out."
+    counts = []
+    for k, varied in enumerate(body.vary):
+        if drawn and varied.count is not None:
+            yield f"/vary/{k}/count", "A Latin hypercube has as many as there are samples; leave this out."
+        if not drawn and varied.values is None and varied.count is None:
+            yield f"/vary/{k}", "Say how many, by a count."
+        counts.append(len(varied.values) if varied.values is not None else varied.count or 1)
+    if body.sampling == "zip":
+        for k, count in enumerate(counts):
+            if count != counts[0]:
+                yield f"/vary/{k}", f"In a zip all fields have as many values; the first one has {counts[0]}."
+    total = math.prod(counts) if body.sampling == "grid" else body.samples or counts[0]
+    if total > MOST_SAMPLES:
+        yield "/vary", f"These make {total} problems; a batch has {MOST_SAMPLES} at most."
+    elif total * sum(map(_bytes_of_a_value, body.vary)) > TABLE_BYTES:
+        yield "/vary", f"The values of {total} problems take more than {TABLE_BYTES >> 20} MiB together."
+
+
+def _bytes_of_a_value(varied: Vary) -> float:
+    return 8.0 if varied.values is None else len(json.dumps(varied.values)) / len(varied.values)
+
+
+def _faults_of_metrics(body: BatchRequest, kind: str) -> Iterator[tuple[str, str]]:
+    known = KINDS[kind].metrics
+    for k, name in enumerate(body.metrics or ()):
+        if name not in known:
+            yield f"/metrics/{k}", f"Designs of this kind have no such metric; they have {', '.join(known)}."
+        elif name in (body.metrics or ())[:k]:
+            yield f"/metrics/{k}", "This is given twice; give it once."
+
+
+def _values(body: BatchRequest) -> list[Sequence[Any]]:
+    if body.sampling == "latin_hypercube":
+        assert body.samples is not None
+        given = [v.values if v.values is not None else Span(v.from_ or 0, v.to or 0) for v in body.vary]
+        return [*latin_hypercube(given, body.samples, body.seed)]
+    return [
+        v.values if v.values is not None else evenly(v.from_ or 0, v.to or 0, v.count or 1) for v in body.vary
+    ]  # fmt: skip
+
+
+def _require_places(plan: Plan) -> None:
+    try:
+        plan.statement(0)
+    except NoSuchPlace:
+        pass
+    else:
+        return
+    for k, (field, value) in enumerate(zip(plan.fields, plan.sample(0), strict=True)):
+        alone = Plan(plan.problem, [field], [[value]], True, [], True)
+        try:
+            alone.statement(0)
+        except NoSuchPlace as nowhere:
+            raise invalid_request([(f"/vary/{k}/field", str(nowhere))]) from None
+
+
+def _faults_of_values(body: BatchRequest, kind: str, plan: Plan, until: float) -> list[tuple[str, str]]:
+    """What is wrong with values by themselves: each is tried once, as long as there is time."""
+    found: dict[tuple[str, str], None] = {}
+    most = max(LOOKED_AT, TRIED_BYTES // len(json.dumps(plan.statement(0))))
+    every = sum(map(len, plan.values)) if plan.grid else plan.total
+    step = -(-every // most)
+    for places, values in islice(_tried(plan), 0, None, step):
+        if time.thread_time() > until:
+            break
+        _, faults = well_formed(kind, plan.stated(values))
+        for path, detail in faults:
+            if len(found) > MAX_FAULTS:
+                break
+            for k, field in enumerate(plan.fields):
+                if k in places and (path == field or path.startswith(f"{field}/")):
+                    given = body.vary[k].values is not None
+                    unknown = detail.startswith("There is no such field")
+                    inside = f"/values/{places[k]}{path[len(field) :]}" if given else ""
+                    place = "/field" if unknown and path == field else inside
+                    shown = "" if given or unknown else f" This is of the value {values[k]}."
+                    found[f"/vary/{k}{place}", f"{detail}{shown}"] = None
+        if len(found) > MAX_FAULTS:
+            break
+    return list(found)
+
+
+def _tried(plan: Plan) -> Iterable[tuple[dict[int, int], list[Any]]]:
+    """Samples in which each value occurs: the places of those that are new in it, by field, and all its values."""
+    if not plan.grid:
+        for number in range(plan.total):
+            yield {k: _place(values, number) for k, values in enumerate(plan.values)}, plan.sample(number)
+        return
+    first = plan.sample(0)
+    for k, values in enumerate(plan.values):
+        for place, value in enumerate(values):
+            yield {k: place}, [*first[:k], value, *first[k + 1 :]]
+
+
+def _place(values: Values, number: int) -> int:
+    """Where the value of a sample stands among those that are stated."""
+    return values.places[number] if isinstance(values, Picked) else number
+
+
+def _cost(kind: str, plan: Plan, until: float) -> Cost:
+    """What a problem of the batch costs, the longest of those that are looked at: one at least, others while there is
+    time.
+    """
+    refused: Faults | None = None
+    brief: list[bool] = []
+    for number in _spread(plan.total, LOOKED_AT):
+        if time.thread_time() > until and (brief or refused):
+            break
+        problem, faults = well_formed(kind, plan.statement(number))
+        faults = faults or consistent(problem)
+        if faults:
+            refused = refused or faults
+        else:
+            brief.append(KINDS[kind].brief(problem))
+    if not brief and refused is not None:
+        raise _none_states_a_problem(plan, refused)
+    return Cost.SHORT if all(brief) else Cost.LONG
+
+
+def _spread(total: int, most: int) -> Iterator[int]:
+    """So many numbers below the total, evenly spread; the first ones of them too, as well as may be."""
+    count = min(total, most)
+    step = next(step for step in range(max(1, round(count * 0.618)), count + 1) if math.gcd(step, count) == 1)
+    for n in range(count):
+        yield n * step % count * total // count
+
+
+def _none_states_a_problem(plan: Plan, faults: Faults) -> Refusal:
+    placed = [(_place_of(plan, path), detail) for path, detail in faults]
+    return (invalid_problem if all(path.startswith("/problem") for path, _ in placed) else invalid_request)(placed)
+
+
+def _place_of(plan: Plan, path: str) -> str:
+    """Where a fault of all samples lies: at the varied field that it is on the way to, else in the problem."""
+    on_the_way = (k for k, field in enumerate(plan.fields) if path and field.startswith(f"{path}/"))
+    k = next(on_the_way, None)
+    return f"/problem{path}" if k is None else f"/vary/{k}/field"

@@ -1,0 +1,121 @@
+"""The interactive API reference, served with nothing from elsewhere, and the OpenAPI document behind it."""
+
+from __future__ import annotations
+
+from functools import cache
+from importlib.resources import files
+from threading import Lock
+from typing import Any
+
+from fastapi import FastAPI, Request, Response
+from fastapi.openapi.docs import get_swagger_ui_html
+from fastapi.responses import HTMLResponse
+from pydantic_core import to_json
+from starlette.concurrency import run_in_threadpool
+from starlette.staticfiles import StaticFiles
+
+from service.api.http import problem_details
+from service.api.http.auth import SCHEME
+from service.api.http.cached_representation import Representation
+from service.api.http.problem_details import ProblemDetails
+from service.api.routes import analyses
+
+_ASSETS = "/docs/assets"
+
+
+_REFUSED_TO_TENANTS = problem_details.responses(
+    e401="A key is needed, and there is none or none in force.",
+    e403="There are no keys, and the request is meant for another host than this machine.",
+    e429="The key has asked too often.",
+    e503="The job store does not answer.",
+)
+_REFUSED_TO_ALL = problem_details.responses(
+    e408="The request did not come to its end in time.", e431="The address and the headers are too large."
+)
+"""What the connection answers before any operation sees the request."""
+
+
+def install(app: FastAPI) -> None:
+    """Serve ``/docs``, and complete ``/openapi.json``."""
+    generate = app.openapi
+    lock = Lock()
+
+    def openapi() -> dict[str, Any]:
+        with lock:
+            if app.openapi_schema is None:
+                _complete(generate())
+            return generate()
+
+    app.openapi = openapi  # type: ignore[method-assign]  # the framework's documented way to change the document
+
+    @cache
+    def document(keys: bool) -> Representation:
+        whole = app.openapi()
+        return Representation(to_json(whole if keys else _without_keys(whole)), "application/json")
+
+    @app.get("/openapi.json", include_in_schema=False)
+    async def openapi_document(request: Request) -> Response:
+        # In a thread, because the first document waits for the models of the analyses.
+        shown = await run_in_threadpool(document, not await request.app.state.gate.is_open())
+        return shown.answer(request, {"Cache-Control": "no-cache"})
+
+    @app.get("/docs", include_in_schema=False)
+    async def docs() -> HTMLResponse:
+        return get_swagger_ui_html(
+            openapi_url="/openapi.json",
+            title=f"{app.title}: API reference",
+            swagger_js_url=f"{_ASSETS}/swagger-ui-bundle.js",
+            swagger_css_url=f"{_ASSETS}/swagger-ui.css",
+            swagger_favicon_url=f"{_ASSETS}/favicon.png",
+        )
+
+    app.mount(_ASSETS, StaticFiles(directory=str(files("fastapi_offline") / "static")), name="docs-assets")
+
+
+def _complete(document: dict[str, Any]) -> None:
+    schemas = document.setdefault("components", {}).setdefault("schemas", {})
+    # The error responses refer to these by name, because their media type is not the framework's.
+    problem = ProblemDetails.model_json_schema(ref_template="#/components/schemas/{model}")
+    schemas.update(problem.pop("$defs", {}), ProblemDetails=problem)
+    analyses.complete(document)
+    document["components"]["securitySchemes"] = {
+        SCHEME: {
+            "type": "http",
+            "scheme": "bearer",
+            "description": "An API key, where the service has keys; without any it is open to its own machine.",
+        }
+    }
+    for path, methods in document["paths"].items():
+        for operation in methods.values():
+            if path.startswith("/v1/"):
+                operation["security"] = [{SCHEME: []}]
+                _add(operation, _REFUSED_TO_TENANTS)
+            _add(operation, _REFUSED_TO_ALL)
+    # The framework assumes that every parameter can be refused with its own kind of 422, which does not exist here.
+    for methods in document["paths"].values():
+        for operation in methods.values():
+            if "HTTPValidationError" in str(operation["responses"].get("422")):
+                del operation["responses"]["422"]
+    for name in ("HTTPValidationError", "ValidationError"):
+        schemas.pop(name, None)
+
+
+def _without_keys(document: dict[str, Any]) -> dict[str, Any]:
+    """The document of a service that has no keys: nothing in it asks for one."""
+    paths = {
+        path: {
+            method: {name: value for name, value in operation.items() if name != "security"}
+            for method, operation in methods.items()
+        }
+        for path, methods in document["paths"].items()
+    }
+    components = {name: value for name, value in document["components"].items() if name != "securitySchemes"}
+    return {**document, "paths": paths, "components": components}
+
+
+def _add(operation: dict[str, Any], responses: dict[int | str, dict[str, Any]]) -> None:
+    """Add responses to those of an operation; one of the same status is one more reason for it."""
+    for status, response in responses.items():
+        own = operation["responses"].get(str(status))
+        also = response if own is None else {**own, "description": f"{own['description']} {response['description']}"}
+        operation["responses"][str(status)] = also

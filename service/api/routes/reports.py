@@ -1,0 +1,83 @@
+"""``/v1/jobs/{id}/report.html``: a job as one page for paper."""
+
+from __future__ import annotations
+
+from typing import Annotated
+
+from fastapi import APIRouter, Query, Request, Response
+from pydantic import BaseModel, ConfigDict, Field
+
+from service.answers.reports import report_job as write_report
+from service.api.http import problem_details
+from service.api.http.auth import GuardedRoute, Tenant
+from service.api.http.computation import draw_in_turn
+from service.api.http.dependencies import Answers, Bench, Desk
+from service.api.routes.designs import solved_job
+from service.api.routes.jobs import NO_JOB, TAG
+from service.api.routes.parts import assemblies_of
+from service.observability.telemetry import span
+
+_TEXT = {"type": "string"}
+
+router = APIRouter(prefix="/v1/jobs", tags=[TAG["name"]], route_class=GuardedRoute)
+
+
+class ReportScope(BaseModel):
+    """How much of a job is reported."""
+
+    model_config = ConfigDict(extra="forbid")
+
+    designs: int = Field(
+        default=5, ge=0, le=20, description="Designs shown in full, the best first; all of them are listed."
+    )
+    assemblies: bool = Field(
+        default=False,
+        description="Whether each of them is shown as an assembly of parts too, or why there is none is told.",
+    )
+
+
+@router.get(
+    "/{job_id}/report.html",
+    operation_id="report_job",
+    summary="Report a job",
+    response_class=Response,
+    responses={
+        200: {
+            "description": "The page.",
+            "content": {"text/html; charset=utf-8": {"schema": _TEXT}},
+            "headers": {
+                "Content-Security-Policy": {
+                    "description": "Nothing but the page's own style sheet, by its hash.",
+                    "schema": _TEXT,
+                }
+            },
+        },
+        **problem_details.responses(
+            e404=NO_JOB,
+            e409="The job has no result (yet).",
+            e422="A parameter is not valid; `errors` says which.",
+            e503="Other drawings or parts have kept this one from being begun.",
+        ),
+    },
+)
+async def report_job(
+    request: Request, desk: Desk, answers: Answers, bench: Bench, tenant: Tenant, job_id: str,
+    query: Annotated[ReportScope, Query()],
+) -> Response:  # fmt: skip
+    """The job as one self-contained page for paper.
+
+    The problem, what was searched and what is proven; the designs with drawings, checks, and dimensions with units.
+    """
+    job = await solved_job(desk, tenant, job_id)
+    with span("report"):
+        built = {}
+        if query.assemblies:
+            built = await assemblies_of(request, bench, tenant, job, query.designs)
+        page, policy = await draw_in_turn(request, answers, tenant, write_report, job, query.designs, built)
+    headers = {
+        "Content-Security-Policy": policy,
+        "X-Content-Type-Options": "nosniff",
+        "Referrer-Policy": "no-referrer",
+        "Content-Disposition": f'inline; filename="{job.kind}-{job.id}.html"',
+    }
+    return Response(page, media_type="text/html", headers=headers)

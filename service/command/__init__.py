@@ -1,0 +1,1 @@
+"""The command line: serve, solve, analyze, draw, demo."""

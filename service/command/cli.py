@@ -1,0 +1,213 @@
+"""The command ``mechsynth``.
+
+Only what is needed to read the command line is imported here: the worker processes import this module again when they
+start, and ``mechsynth --help`` should not take a second.
+"""
+
+from __future__ import annotations
+
+import argparse
+import os
+import sys
+from collections.abc import Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from service.jobs.processes.parent_death import die_with_parent_from_the_start
+
+if TYPE_CHECKING:
+    from service.settings import Settings
+
+die_with_parent_from_the_start()
+
+EXIT_FAILURE = 1
+EXIT_USAGE = 2
+
+
+def main(arguments: Sequence[str] | None = None) -> int:
+    """Run a command; returns the exit status: 0 success, 1 failure, 2 wrong arguments or settings."""
+    command = _parser().parse_args(arguments)
+    if command.name == "serve":
+        return _serve()
+    if command.name == "worker":
+        return _worker()
+    if command.name == "demo":
+        from service.command.demo import DemoFailure, demo
+
+        try:
+            demo(command.output)
+        except (DemoFailure, OSError) as failure:
+            print(f"mechsynth demo: {failure}", file=sys.stderr)
+            return EXIT_FAILURE
+        return 0
+    if command.name == "solve":
+        from service.command.solve import SolveFailure, solve
+
+        try:
+            key = os.environ.get("MECHSYNTH_API_KEY")
+            solve(command.problem, command.url, key, command.output, command.forms, as_json=command.json)
+        except (SolveFailure, OSError) as failure:
+            print(f"mechsynth solve: {failure}", file=sys.stderr)
+            return EXIT_FAILURE
+        return 0
+    if command.name in ("analyze", "draw"):
+        return _of_file(command)
+    if command.name == "openapi":
+        from service.server.app import api_document
+
+        command.output.write_text(api_document(), encoding="utf-8")
+        return 0
+    if command.name == "keys":
+        return _keys(command)
+    from service.server.precompile import WarmingFailure, warm
+
+    try:
+        warm()
+    except WarmingFailure as failure:
+        print(f"mechsynth warm: {failure}", file=sys.stderr)
+        return EXIT_FAILURE
+    return 0
+
+
+def _of_file(command: argparse.Namespace) -> int:
+    from service.client import ClientError
+    from service.command.inputs import SourceError
+
+    try:
+        if command.name == "draw":
+            from service.command.draw import draw
+
+            draw(command.answer, command.design, command.output)
+        else:
+            from service.command.analyze import analyze
+
+            analyze(command.mechanism, command.url, os.environ.get("MECHSYNTH_API_KEY"), command.output)
+    except (SourceError, ClientError, OSError) as failure:
+        print(f"mechsynth {command.name}: {failure}", file=sys.stderr)
+        return EXIT_FAILURE
+    return 0
+
+
+def _at_service(command: argparse.ArgumentParser) -> None:
+    command.add_argument(
+        "--url",
+        default=os.environ.get("MECHSYNTH_URL", "http://127.0.0.1:8000"),
+        help="the service (MECHSYNTH_URL; the API key comes from MECHSYNTH_API_KEY)",
+    )
+
+
+def _settings() -> Settings | None:
+    """The settings; None, and the reason is printed, where they cannot be used."""
+    from service.settings import SettingsError, read_settings
+
+    try:
+        return read_settings()
+    except SettingsError as error:
+        print(f"mechsynth: {error}", file=sys.stderr)
+        return None
+
+
+def _keys(command: argparse.Namespace) -> int:
+    settings = _settings()
+    if settings is None:
+        return EXIT_USAGE
+    from service.access import command as keys
+
+    try:
+        if command.act == "create":
+            keys.create(settings, command.tenant, further=command.further)
+        elif command.act == "list":
+            keys.show(settings)
+        else:
+            keys.revoke(settings, command.id)
+    except keys.KeysFailure as failure:
+        print(f"mechsynth keys: {failure}", file=sys.stderr)
+        return EXIT_FAILURE
+    return 0
+
+
+def _serve() -> int:
+    settings = _settings()
+    if settings is None:
+        return EXIT_USAGE
+    from service.server.run import ServeError, serve
+
+    try:
+        serve(settings)
+    except ServeError as error:
+        print(f"mechsynth: {error}", file=sys.stderr)
+        return EXIT_FAILURE
+    return 0
+
+
+def _worker() -> int:
+    settings = _settings()
+    if settings is None:
+        return EXIT_USAGE
+    if settings.executor != "celery":
+        print("mechsynth worker: a worker host needs a broker; set MECHSYNTH_EXECUTOR=celery", file=sys.stderr)
+        return EXIT_USAGE
+    from sqlalchemy.exc import SQLAlchemyError
+
+    from service.jobs.cluster.worker_host import HostError, run_host
+    from service.server.precompile import Compilation, every_part
+
+    compilation = Compilation(every_part, settings.log_level, settings.log_format, ahead=settings.compile_ahead)
+    try:
+        run_host(settings, compilation)
+    except HostError as error:
+        print(f"mechsynth worker: {error}", file=sys.stderr)
+        return EXIT_FAILURE
+    except (SQLAlchemyError, OSError) as error:
+        # Not the URL itself, which may hold a password.
+        print(f"mechsynth worker: cannot use the database ({type(error).__name__})", file=sys.stderr)
+        return EXIT_FAILURE
+    return 0
+
+
+def _parser() -> argparse.ArgumentParser:
+    parser = argparse.ArgumentParser(prog="mechsynth", description="A service that designs mechanisms.")
+    commands = parser.add_subparsers(dest="name", required=True, metavar="command")
+    commands.add_parser("serve", help="run the service; the environment variables MECHSYNTH_... set it up")
+    commands.add_parser("worker", help="run a worker host, which takes jobs from a broker; set up like the service")
+    demo = commands.add_parser("demo", help="solve a problem through a service of its own, and draw the answer")
+    demo.add_argument("--output", type=Path, default=Path("var/demo.svg"), help="where the drawing goes (SVG)")
+    solve = commands.add_parser("solve", help="solve the problem in a file: print the answer, write the drawings")
+    solve.add_argument(
+        "problem",
+        help="a JSON file with a problem, or the body of a request; - for standard input; "
+        "or a .csv with columns x, y, angle (motion), x, y (path), or input, output (function)",
+    )
+    _at_service(solve)
+    solve.add_argument("--json", action="store_true", help="print the job with its answer as JSON, instead of tables")
+    solve.add_argument("--output", type=Path, help="folder of the drawings; named after the file when left out")
+    solve.add_argument(
+        "--forms", default="svg,dxf,csv", type=lambda text: [form for form in text.split(",") if form],
+        help="which files to write for each design, separated by commas; '' for none",
+    )  # fmt: skip
+    analyze = commands.add_parser("analyze", help="tell what is known of the mechanism in a file: angles, joints, ...")
+    analyze.add_argument(
+        "mechanism", help="a JSON file with a mechanism, or the body of a request; - for standard input"
+    )
+    _at_service(analyze)
+    analyze.add_argument("-o", "--output", type=Path, help="a file, .json or .csv; left out, JSON is printed")
+    draw = commands.add_parser("draw", help="draw a design of an answer; this needs no service")
+    draw.add_argument("answer", help="what mechsynth solve --json has printed; - for standard input")
+    draw.add_argument("-o", "--output", type=Path, required=True, help="the file: .svg, .gif, .dxf or .csv")
+    draw.add_argument("--design", type=int, default=1, help="which of the designs, counted from 1")
+    openapi = commands.add_parser("openapi", help="write the OpenAPI document to a file")
+    openapi.add_argument("output", type=Path)
+    keys = commands.add_parser("keys", help="make, list and revoke API keys").add_subparsers(
+        dest="act", required=True, metavar="act"
+    )
+    create = keys.add_parser("create", help="make a key for a new tenant, and print it")
+    create.add_argument("tenant", help="the name of the tenant, who sees only its own jobs")
+    create.add_argument("--further", action="store_true", help="one more key for a tenant that there is")
+    keys.add_parser("list", help="show all keys by their ids; not the keys themselves")
+    keys.add_parser("revoke", help="make a key useless").add_argument("id", help="the id of the key")
+    commands.add_parser("warm", help="compile the numeric kernels, so that the first start need not")
+    return parser
+
+
+if __name__ == "__main__":
+    sys.exit(main())

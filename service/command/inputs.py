@@ -1,0 +1,83 @@
+"""What the command line reads: problems as JSON or as tables, requests, and answers that it has written."""
+
+from __future__ import annotations
+
+import csv
+import io
+import json
+import sys
+from pathlib import Path
+from typing import Any
+
+from synthesis.registry import KINDS
+
+STANDARD_INPUT = "-"
+
+
+class SourceError(Exception):
+    """A file cannot be used; the message says why."""
+
+
+_TABLES = {name: kind.columns for name, kind in KINDS.items() if kind.columns is not None}
+"""Columns of tables by kind. A table states a problem of the first kind whose columns it has."""
+
+_SEPARATORS = ",;\t"
+
+
+def problem_of(source: str) -> tuple[dict[str, Any], str | None]:
+    """The problem in a file and its label: a problem, the body of a request, or a table whose name ends in ``.csv``."""
+    label = None if source == STANDARD_INPUT else Path(source).stem
+    if Path(source).suffix.lower() == ".csv":
+        return _tabled(source, text_of(source)), label
+    stated = object_of(source)
+    inner = stated.get("problem")
+    if isinstance(inner, dict):  # the body of a request
+        return inner, stated.get("label")
+    return stated, label
+
+
+def object_of(source: str) -> dict[str, Any]:
+    """The JSON object in a file."""
+    try:
+        stated = json.loads(text_of(source))
+    except ValueError as error:
+        raise SourceError(f"{source} is not JSON: {error}") from None
+    if not isinstance(stated, dict):
+        raise SourceError(f"{source} holds no JSON object")
+    return stated
+
+
+def text_of(source: str) -> str:
+    """The text of a file, or of the standard input."""
+    try:
+        return sys.stdin.read() if source == STANDARD_INPUT else Path(source).read_text(encoding="utf-8-sig")
+    except (OSError, UnicodeDecodeError) as error:
+        told = error.strerror if isinstance(error, OSError) else "it is not UTF-8"
+        raise SourceError(f"cannot read {source} ({told})") from None
+
+
+def _tabled(source: str, text: str) -> dict[str, Any]:
+    head = text.partition("\n")[0]
+    rows = csv.DictReader(io.StringIO(text), delimiter=max(_SEPARATORS, key=head.count), skipinitialspace=True)
+    names = {(name or "").strip() for name in rows.fieldnames or ()}
+    kind = next((kind for kind, columns in _TABLES.items() if names >= set(columns.required)), None)
+    if kind is None:
+        known = "; ".join(f"{', '.join(columns.required)} ({kind})" for kind, columns in _TABLES.items())
+        raise SourceError(f"{source}: the first line must name the columns: {known}")
+    listed = []
+    for row in rows:
+        if None in row:
+            raise SourceError(f"{source}, line {rows.line_num}: there are more cells than columns")
+        cells = ((name.strip(), (cell or "").strip()) for name, cell in row.items())
+        listed.append({name: _value(source, rows.line_num, name, cell) for name, cell in cells if cell})
+    return {"kind": kind, _TABLES[kind].field: [cells for cells in listed if cells]}
+
+
+def _value(source: str, line: int, name: str, cell: str) -> Any:
+    try:
+        value = json.loads(cell, parse_constant=float)
+    except ValueError:
+        value = None
+    if not isinstance(value, bool | int | float) or value != value or abs(value) == float("inf"):
+        raise SourceError(f"{source}, line {line}: {name} is no number: {cell}")
+    return value

@@ -1,0 +1,167 @@
+"""The broker: Celery over RabbitMQ or Redis wakes a worker host when a server has stored a job.
+
+A message is the id of a job and decides nothing, so that losing one, or getting it twice or late, is no harm: a host
+that is woken asks the store for the job whose turn it is (:mod:`service.jobs.workers.scheduler`), which need not be
+that one.
+"""
+
+from __future__ import annotations
+
+import threading
+import time
+from collections.abc import Callable
+from contextlib import suppress
+from typing import Any
+
+import structlog
+from celery import Celery
+from kombu import Exchange, Queue
+from kombu.exceptions import KombuError, OperationalError
+
+from service.settings import Settings
+
+TASK = "mechsynth.run"
+
+CONNECT_TIMEOUT_S = 4.0
+CONFIRM_TIMEOUT_S = 5.0
+"""How long RabbitMQ may take to say that it has a message."""
+
+PAUSE_S = 1.0
+"""A broker that was out of reach is not tried again before this, so that nobody waits for it in vain."""
+
+BROKER_HEARTBEAT_S = 10.0
+"""A host whose machine has vanished loses its messages to others after twice this."""
+
+log = structlog.get_logger(__name__)
+
+
+class BrokerUnreachable(Exception):
+    """The broker does not take the message; it may or may not have got it."""
+
+
+def celery_app(settings: Settings, *, publisher: bool) -> Celery:
+    """Celery as servers and worker hosts have it: one queue, no results, no control messages."""
+    url = settings.broker_url.get_secret_value() if settings.broker_url else ""
+    amqp = url.startswith("amqp")
+    options: dict[str, Any]
+    if amqp:
+        options = {"confirm_publish": True}
+        if publisher:
+            options |= {"read_timeout": CONFIRM_TIMEOUT_S, "write_timeout": CONFIRM_TIMEOUT_S}
+    else:
+        options = {
+            "socket_connect_timeout": CONNECT_TIMEOUT_S,
+            "socket_keepalive": True,
+            "health_check_interval": BROKER_HEARTBEAT_S,
+            **({"socket_timeout": CONFIRM_TIMEOUT_S} if publisher else {}),
+        }
+    queue = Queue(
+        settings.queue,
+        Exchange(settings.queue, type="direct"),
+        routing_key=settings.queue,
+        # Quorum queues survive the loss of a node of RabbitMQ, and write each message to the disk.
+        queue_arguments={"x-queue-type": "quorum"} if amqp else None,
+    )
+    app = Celery("mechsynth", broker=url, set_as_current=not publisher)
+    app.conf.update(
+        broker_transport_options=options,
+        broker_connection_timeout=CONNECT_TIMEOUT_S,
+        broker_connection_retry_on_startup=True,
+        broker_connection_max_retries=None,
+        # The publisher looks after its connection itself.
+        broker_heartbeat=0 if publisher else BROKER_HEARTBEAT_S,
+        task_queues=[queue],
+        task_default_queue=settings.queue,
+        task_ignore_result=True,
+        task_acks_late=True,
+        task_reject_on_worker_lost=True,
+        task_serializer="json",
+        accept_content=["json"],
+        worker_prefetch_multiplier=1,
+        # A prefetch count for the whole channel is what quorum queues do not have.
+        worker_detect_quorum_queues=True,
+        worker_enable_remote_control=False,
+        worker_hijack_root_logger=False,
+        worker_cancel_long_running_tasks_on_connection_loss=False,
+    )
+    return app
+
+
+class Publisher:
+    """Sends the ids of jobs, one after the other over one connection. Safe to use from many threads."""
+
+    def __init__(self, settings: Settings) -> None:
+        self._app = celery_app(settings, publisher=True)
+        self._lock = threading.Lock()
+        self._connection: Any = None
+        self._producer: Any = None
+        self._not_before = float("-inf")
+        self.reachable = True
+        """Whether the broker answered when it was last asked."""
+
+    def send(self, job_id: str) -> None:
+        """Have a worker host look for the job. When this returns, the broker has the message.
+
+        Raises
+        ------
+        BrokerUnreachable
+            When it may not have it.
+        """
+        self._asked(lambda: self._publish(job_id))
+
+    def probe(self) -> None:
+        """See whether the broker answers; ``reachable`` says so afterwards. Makes the queue where it is missing."""
+        with suppress(BrokerUnreachable):
+            self._asked(self._declare)
+
+    def close(self) -> None:
+        """Give the connection back."""
+        with self._lock:
+            self._disconnect()
+
+    def _asked(self, act: Callable[[], None]) -> None:
+        with self._lock:
+            if time.monotonic() < self._not_before:
+                raise BrokerUnreachable("the broker was out of reach a moment ago")
+            try:
+                self._connect()
+                act()
+            except Exception as error:  # every transport has errors of its own, and some raise others
+                if not isinstance(error, (OSError, KombuError, OperationalError, *self._errors())):
+                    log.exception("the broker could not be asked")
+                self._disconnect()
+                self._not_before = time.monotonic() + PAUSE_S
+                if self.reachable:
+                    log.warning("the broker is out of reach", error=type(error).__name__)
+                self.reachable = False
+                raise BrokerUnreachable(type(error).__name__) from None
+            if not self.reachable:
+                log.info("the broker is there again")
+            self.reachable = True
+
+    def _errors(self) -> tuple[type[BaseException], ...]:
+        return () if self._connection is None else self._connection.connection_errors + self._connection.channel_errors
+
+    def _connect(self) -> None:
+        if self._connection is None:
+            self._connection = self._app.connection_for_write()
+            self._connection.ensure_connection(max_retries=1, timeout=CONNECT_TIMEOUT_S)
+            self._producer = self._app.amqp.Producer(self._connection, auto_declare=False)
+            self._declare()
+
+    def _declare(self) -> None:
+        for queue in self._app.amqp.queues.values():
+            queue(self._producer.channel).declare()
+
+    def _publish(self, job_id: str) -> None:
+        self._app.send_task(
+            TASK, args=(job_id,), producer=self._producer, retry=False, confirm_timeout=CONFIRM_TIMEOUT_S, declare=[]
+        )
+
+    def _disconnect(self) -> None:
+        connection, self._connection, self._producer = self._connection, None, None
+        if connection is not None:
+            try:
+                connection.collect(socket_timeout=0.5)
+            except Exception:  # it is broken, which is why it is given up
+                log.debug("a connection to the broker could not be closed", exc_info=True)

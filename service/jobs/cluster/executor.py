@@ -1,0 +1,97 @@
+"""The executor for several machines: jobs go through a broker to worker hosts (``mechsynth worker``).
+
+This side only sends ids and hears what has become of the jobs; :mod:`service.jobs.cluster.worker_host` is the other
+side.
+"""
+
+from __future__ import annotations
+
+import threading
+from queue import SimpleQueue
+
+import structlog
+
+from service.jobs.cluster.broker import BrokerUnreachable, Publisher
+from service.jobs.cluster.leases import LeaseStore
+from service.jobs.cluster.listener import CHANGES, StoreListener
+from service.jobs.cluster.recovery import Recovery
+from service.jobs.executor import Changed
+from service.jobs.job_store import JobStore
+from service.jobs.store.database import connect
+from service.settings import Settings
+
+STOP_TIMEOUT_S = 2.0
+
+log = structlog.get_logger(__name__)
+
+
+class CeleryExecutor:
+    """Has jobs run by whatever worker hosts there are.
+
+    Raises
+    ------
+    SQLAlchemyError, OSError, ImportError
+        When the store cannot be reached.
+    """
+
+    def __init__(self, settings: Settings) -> None:
+        self._settings = settings
+        self._engine = connect(settings.store_url, durable=False)
+        JobStore(self._engine).ping()
+        self._leases = LeaseStore(self._engine)
+        self._publisher = Publisher(settings)
+        self._queue: SimpleQueue[str | None] = SimpleQueue()
+        self._sender = threading.Thread(target=self._send, name="sender", daemon=True)
+        self._recovery = Recovery(self._leases, self._publisher, self._count_workers)
+        self._listener: StoreListener | None = None
+        self._workers = 0
+
+    def start(self) -> None:
+        """Begin to send jobs."""
+        if not self._sender.is_alive():
+            self._sender.start()
+
+    def resume(self) -> None:
+        """Begin to recover the jobs of all servers, and to listen for their changes."""
+        self._count_workers()
+        self._recovery.start()
+        if self._listener is not None:
+            self._listener.start()
+
+    def subscribe(self, changed: Changed) -> None:
+        """Call ``changed`` from now on with each job whose state changes."""
+        self._listener = StoreListener(self._settings.store_url, CHANGES, changed)
+
+    def submit(self, job_id: str) -> None:
+        """Have a worker host that is free look for the job."""
+        self._queue.put(job_id)
+
+    def cancel(self, job_id: str) -> None:
+        """Nothing: the host that runs the job sees within half a second that its claim is of no use any more."""
+
+    def ready(self) -> int:
+        """How many workers there are on all hosts; none while the broker does not answer."""
+        return self._workers if self._publisher.reachable else 0
+
+    def stop(self) -> None:
+        """Stop sending. Of what is not sent yet the worker hosts hear from the store."""
+        self._queue.put(None)
+        threads = [self._sender, self._recovery, *([] if self._listener is None else [self._listener])]
+        self._recovery.stop()
+        if self._listener is not None:
+            self._listener.stop()
+        for thread in threads:
+            if thread.is_alive():
+                thread.join(STOP_TIMEOUT_S)
+        self._publisher.close()
+        self._engine.dispose()
+
+    def _count_workers(self) -> None:
+        self._workers = self._leases.workers()
+
+    def _send(self) -> None:
+        while (job_id := self._queue.get()) is not None:
+            try:
+                self._publisher.send(job_id)
+            except BrokerUnreachable:
+                log.warning("job not sent", job=job_id, next="worker hosts see it in the store")

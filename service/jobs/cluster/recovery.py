@@ -1,0 +1,65 @@
+"""Recovers the jobs of several servers: requeues those whose worker host is gone.
+
+Every server and every worker host runs this thread, so that jobs are recovered as long as any of them lives; the store
+sees to it that each job is taken up by one of them only.
+"""
+
+from __future__ import annotations
+
+import threading
+import time
+from collections.abc import Callable
+
+import structlog
+from sqlalchemy.exc import SQLAlchemyError
+
+from service.jobs.cluster.broker import Publisher
+from service.jobs.cluster.leases import LeaseStore
+from service.jobs.store.database import unreachable
+from service.jobs.store.statements import LEASE_S
+from service.jobs.store.states import Status
+
+PERIOD_S = 1.0
+
+log = structlog.get_logger(__name__)
+
+
+class Recovery(threading.Thread):
+    """Recovers jobs and looks after the broker once a second until it is stopped; calls ``each_round`` as often."""
+
+    def __init__(self, leases: LeaseStore, publisher: Publisher, each_round: Callable[[], None]) -> None:
+        super().__init__(name="recovery", daemon=True)
+        self._leases = leases
+        self._publisher = publisher
+        self._each_round = each_round
+        self._stopping = threading.Event()
+        self._trusted_from = float("-inf")
+
+    def stop(self) -> None:
+        """Make the thread end soon; join it after."""
+        self._stopping.set()
+
+    def run(self) -> None:
+        """Recover jobs until :meth:`stop`."""
+        while not self._stopping.wait(PERIOD_S):
+            try:
+                self._publisher.probe()
+                self._each_round()
+                self._take_up_abandoned()
+            except SQLAlchemyError as error:
+                if not unreachable(error):
+                    log.exception("jobs could not be recovered")
+                # Nobody could renew a lease meanwhile, so an expired one proves nothing until all have had time to.
+                self._trusted_from = time.monotonic() + LEASE_S
+            except Exception:  # whatever it is, the next round must come
+                log.exception("jobs could not be recovered")
+
+    def _take_up_abandoned(self) -> None:
+        # Asked even where the answer is not to be trusted yet: the question shows that the store is there again.
+        expired = self._leases.expired()
+        if time.monotonic() < self._trusted_from:
+            return
+        for job_id, status in self._leases.take_back(expired):
+            log.warning("job abandoned by its worker host", job=job_id, job_is_now=status)
+            if status == Status.FAILED:
+                log.warning("job failed", job=job_id, reason="its workers died too often")

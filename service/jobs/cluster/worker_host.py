@@ -1,0 +1,189 @@
+"""A worker host: takes jobs from the store and runs them in workers of its own (``mechsynth worker``).
+
+The lanes and workers are those of the local executor (:mod:`service.jobs.workers.lane`), which handle turns,
+cancelling, timeouts, memory and death. A message of the broker says that there is work and not which: a host that has a
+free lane asks the store whose turn it is. So it does when PostgreSQL notifies it of a queued job, and once a second.
+While a job runs the host renews its lease in the store, which tells it in return which claims no longer count: their
+jobs are dropped.
+"""
+
+from __future__ import annotations
+
+import os
+import signal
+import threading
+import time
+from types import FrameType
+
+import structlog
+from celery.concurrency.thread import TaskPool
+from celery.exceptions import WorkerShutdown
+from prometheus_client import start_http_server
+from sqlalchemy.exc import SQLAlchemyError
+from ulid import ULID
+
+from service.jobs.cluster.broker import TASK, Publisher, celery_app
+from service.jobs.cluster.leases import LeaseStore
+from service.jobs.cluster.listener import WORK, StoreListener
+from service.jobs.cluster.recovery import Recovery
+from service.jobs.store.database import LaterTables, connect, unreachable, upgrade
+from service.jobs.workers.local_executor import LocalExecutor
+from service.kernels import Compiling
+from service.observability import logs
+from service.observability.metrics import HostMetrics
+from service.settings import Settings
+
+BEAT_PERIOD_S = 0.5
+"""Period at which a host renews its leases and looks for cancelled jobs, which must stop within two seconds."""
+
+log = structlog.get_logger(__name__)
+
+
+class HostError(Exception):
+    """The worker host cannot run here; the message is a sentence for the operator."""
+
+
+class Host:
+    """The lanes of a host, and what tells them of work."""
+
+    def __init__(self, settings: Settings, metrics: HostMetrics, compilation: Compiling) -> None:
+        self.id = str(ULID())
+        self.lanes = LocalExecutor(settings, metrics)
+        self._compilation = compilation
+        self._engine = connect(settings.store_url, durable=False)
+        self._leases = LeaseStore(self._engine)
+        self._publisher = Publisher(settings)
+        self._recovery = Recovery(self._leases, self._publisher, lambda: None)
+        self._beating = threading.Thread(target=self._beat, name="beat", daemon=True)
+        self._listener = StoreListener(settings.store_url, WORK, lambda _: self.lanes.wake())
+        self._stopping = threading.Event()
+        metrics.watch(self.lanes.ready, lambda: len(self.lanes.claims()))
+
+    def start(self) -> None:
+        """Make the tables where they are missing, and start the lanes."""
+        upgrade(self._engine)
+        self.lanes.start()
+        self.lanes.open()
+        self._compilation.start(after=lambda: self.lanes.ready() > 0)
+        self._beating.start()
+        self._recovery.start()
+        self._listener.start()
+
+    def work(self, job_id: str) -> None:
+        """What Celery calls for a message: there is work, this job or another whose turn comes before it."""
+        self.lanes.submit(job_id)
+
+    def stop(self) -> None:
+        """Put the running jobs back into the queue and end the workers. May be called again."""
+        if self._stopping.is_set():
+            return
+        self._stopping.set()
+        self._compilation.stop()
+        self._recovery.stop()
+        self._listener.stop()
+        self.lanes.stop()
+        try:
+            self._leases.host_is_gone(self.id)
+        except SQLAlchemyError as error:  # then its last sign of life expires
+            log.warning("the store does not answer", error=type(error).__name__)
+        self._publisher.close()
+
+    def _beat(self) -> None:
+        while not self._stopping.wait(BEAT_PERIOD_S):
+            try:
+                for claim in self._leases.renew(self.lanes.claims()):
+                    self.lanes.drop(claim)
+                self._leases.host_is_there(self.id, self.lanes.ready())
+            except SQLAlchemyError as error:
+                if not unreachable(error):
+                    log.exception("the leases could not be renewed")
+            except Exception:  # whatever it is, the next beat must come
+                log.exception("the leases could not be renewed")
+
+
+def run_host(settings: Settings, compilation: Compiling) -> None:
+    """Run a worker host until SIGINT or SIGTERM.
+
+    Raises
+    ------
+    HostError
+        When the port of its metrics cannot be had, or the store is of a later version.
+    SQLAlchemyError, OSError
+        When the store cannot be reached.
+    """
+    logs.configure(settings.log_level, settings.log_format)
+    metrics = HostMetrics()
+    host = Host(settings, metrics, compilation)
+    show(metrics, settings)
+    signal.signal(signal.SIGTERM, _end)
+    signal.signal(signal.SIGINT, _end)
+    try:
+        _start(host)
+        app = celery_app(settings, publisher=False)
+        app.task(host.work, name=TASK)
+        announcement = threading.Thread(target=_announce, args=(host,), name="announcement", daemon=True)
+        announcement.start()
+        app.WorkController(
+            hostname=f"{host.id}@{os.uname().nodename}",
+            pool_cls=_pool_of(host),
+            concurrency=1,
+            without_mingle=True,
+            without_gossip=True,
+            without_heartbeat=True,
+        ).start()
+    except WorkerShutdown:
+        pass
+    finally:
+        signal.signal(signal.SIGTERM, signal.SIG_IGN)
+        signal.signal(signal.SIGINT, signal.SIG_IGN)
+        host.stop()
+
+
+def _start(host: Host) -> None:
+    try:
+        host.start()
+    except LaterTables as error:
+        raise HostError(str(error)) from None
+
+
+def show(metrics: HostMetrics, settings: Settings) -> None:
+    """Serve the metrics to Prometheus where the settings say so, in a thread that ends with the process.
+
+    Raises
+    ------
+    HostError
+        When the port cannot be had.
+    """
+    address, port = settings.worker_metrics_host, settings.worker_metrics_port
+    if port is None:
+        return
+    try:
+        start_http_server(port, address, metrics.registry)
+    except OSError as error:
+        raise HostError(
+            f"cannot show metrics on {address} port {port} ({error.strerror}); set MECHSYNTH_WORKER_METRICS_PORT"
+        ) from None
+    log.info("metrics", host=address, port=port)
+
+
+def _end(_signal: int, _frame: FrameType | None) -> None:
+    raise WorkerShutdown(0)
+
+
+def _announce(host: Host) -> None:
+    while host.lanes.ready() == 0:
+        time.sleep(BEAT_PERIOD_S / 10)  # lanes announce nothing when they are ready; this polls at the start only
+    print(f"mechsynth worker {host.id} is ready", flush=True)
+
+
+def _pool_of(host: Host) -> type[TaskPool]:
+    """A pool of Celery's in whose threads its tasks wake the lanes of a host."""
+
+    class LanePool(TaskPool):
+        """Ends the lanes when it is stopped."""
+
+        def on_stop(self) -> None:
+            host.stop()
+            super().on_stop()
+
+    return LanePool

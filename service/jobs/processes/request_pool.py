@@ -1,0 +1,157 @@
+"""Work that a request waits for, done by processes of the server's with limits of time and memory.
+
+Requests for the same wait for one call. Tenants have their turns, and a call that turns out to be long cannot keep
+short ones waiting (:mod:`service.jobs.processes.request_queue`).
+
+Words: a *pool* has *hands*, which are threads; a hand has a *process* that does *calls*.
+"""
+
+from __future__ import annotations
+
+import asyncio
+import hashlib
+import threading
+import time
+from collections.abc import Awaitable, Callable
+from typing import Any, Protocol
+
+from service.jobs.processes.request_queue import Call, RequestQueue
+from service.jobs.processes.request_worker import GivenUp, Gone, Hand, Limits, Lost, ProcessStart
+
+__all__ = ["Busy", "GivenUp", "Gone", "Limits", "Lost", "PoolMetrics", "RequestPool", "digest"]
+
+MAX_WAIT_S = 20.0
+"""How long a call waits for its turn, where its pool says nothing else."""
+
+_GONE_PERIOD_S, _STOP_S = 0.25, 5.0
+"""How often it is looked whether a client is gone; how long the end of a thread may take."""
+
+
+class Busy(Exception):
+    """Others have kept this call from being begun in time."""
+
+
+class PoolMetrics(Protocol):
+    """Who counts what becomes of calls."""
+
+    def call_given_up(self, pool: str, reason: str) -> None:
+        """A call has ended without an answer."""
+        ...
+
+
+def digest(work: Callable[..., Any], args: tuple[Any, ...]) -> bytes:
+    """What tells calls apart."""
+    return hashlib.sha256(repr((work.__module__, work.__qualname__, args)).encode()).digest()
+
+
+class RequestPool:
+    """Has calls done. To be used on one event loop only.
+
+    Parameters
+    ----------
+    name : str
+        Of threads and processes, and in the metrics.
+    prepare : callable
+        Called first of all in a process, with ``settings``; it confines the process and limits its memory.
+    hands : int
+        Calls that are done at once, and of these ``max_long`` long ones; all of them where left out.
+    wait_s : float
+        How long a call waits for its turn.
+    forks : callable
+        See :class:`~service.jobs.processes.request_worker.ProcessStart`; by default processes are started anew.
+    """
+
+    def __init__(
+        self,
+        name: str,
+        prepare: Callable[..., Any],
+        settings: tuple[Any, ...],
+        limits: Limits,
+        *,
+        hands: int = 1,
+        max_long: int | None = None,
+        wait_s: float = MAX_WAIT_S,
+        forks: Callable[[], bool] = lambda: False,
+        metrics: PoolMetrics | None = None,
+    ) -> None:
+        self.name = name
+        self._metrics, self._wait_s = metrics, wait_s
+        self._beginning = threading.Lock()
+        self._queue = RequestQueue(hands if max_long is None else max_long)
+        self._asked: dict[bytes, tuple[Call, asyncio.Future[Any]]] = {}
+        start = ProcessStart(prepare, settings, forks)
+        self.hands = [Hand(f"{name}-{n}", self._queue, start, limits) for n in range(hands)]
+
+    def begin(self) -> None:
+        """Start the threads, if that has not been done. Callable from any thread."""
+        with self._beginning:
+            for hand in self.hands:
+                hand.begin()
+
+    def counts(self) -> dict[str, int]:
+        """Calls by their state."""
+        return self._queue.counts()
+
+    async def call(self, gone: Callable[[], Awaitable[bool]], tenant: str, work: Callable[..., Any], *args: Any) -> Any:
+        """Call a function of a module in a process, and have its answer.
+
+        Parameters
+        ----------
+        gone : callable
+            Whether the client waits no more.
+        tenant : str
+            Whose turn it takes.
+
+        Raises
+        ------
+        Busy, GivenUp, Gone, Lost
+            And what the function raises.
+        """
+        try:
+            return await self._wait_for(gone, tenant, work, args)
+        except GivenUp as error:
+            self._count(error.of)
+            raise
+        except (Busy, Gone, Lost) as error:
+            self._count(type(error).__name__.lower())
+            raise
+
+    def stop(self) -> None:
+        """End the processes and the threads, within a second."""
+        for hand in self.hands:
+            hand.stopping.set()
+        self._queue.close()
+        for hand in self.hands:
+            if hand.is_alive():
+                hand.join(_STOP_S)
+
+    def _count(self, reason: str) -> None:
+        if self._metrics is not None:
+            self._metrics.call_given_up(self.name, reason)
+
+    async def _wait_for(
+        self, gone: Callable[[], Awaitable[bool]], tenant: str, work: Callable[..., Any], args: tuple[Any, ...]
+    ) -> Any:
+        self.begin()
+        key = digest(work, args)
+        if key not in self._asked:
+            call = Call(work, args, tenant)
+            self._asked[key] = call, asyncio.wrap_future(call.future)
+            self._queue.put(call)
+        call, answer = self._asked[key]
+        call.waiting += 1
+        latest = time.monotonic() + self._wait_s
+        try:
+            while not answer.done():
+                await asyncio.wait([answer], timeout=_GONE_PERIOD_S)
+                if not answer.done() and await gone():
+                    raise Gone
+                if not answer.done() and not call.running and time.monotonic() > latest:
+                    raise Busy
+            return answer.result()
+        finally:
+            call.waiting -= 1
+            if call.waiting == 0:
+                call.abandoned.set()
+                answer.cancel()
+                del self._asked[key]

@@ -1,0 +1,325 @@
+"""The threads of a pool, each with a process that does one call after the other within limits.
+
+A process is killed where its call takes too long or too much memory, or nobody waits for the call any more: native code
+cannot be stopped otherwise. The next call gets another process.
+"""
+
+from __future__ import annotations
+
+import os
+import threading
+import time
+from collections.abc import Callable
+from concurrent.futures import Future
+from contextlib import suppress
+from dataclasses import dataclass
+from multiprocessing import get_context
+from multiprocessing.connection import Connection, wait
+from multiprocessing.process import BaseProcess
+from typing import Any, Literal
+
+import structlog
+
+from service.jobs.processes.parent_death import tell_children
+from service.jobs.processes.request_process import serve_calls, spent_seconds
+from service.jobs.processes.request_queue import Call, RequestQueue
+
+START_S = 300.0
+"""How long a process may take to start: where nothing is compiled yet, that is a minute."""
+
+COMPILE_S = 120.0
+"""What a call may take more, once, where it compiles kernels that nobody has needed before."""
+
+IDLE_S = 600.0
+"""After how long without a call a process ends that was not forked: it shares no memory with others."""
+
+LONG_PRIORITY = 5
+"""By how much a process is nicer while it does a long call: short ones have the processors first."""
+
+_PERIOD_S, _STOP_S = 0.02, 5.0
+"""How often it is looked whether a call is over its limits or abandoned; how long the end of a process may take."""
+
+Limit = Literal["time", "memory"]
+
+log = structlog.get_logger(__name__)
+
+
+class Lost(Exception):
+    """There is no process to do it, for a reason that is not its own."""
+
+
+class Gone(Exception):
+    """The client has gone away."""
+
+
+class GivenUp(Exception):
+    """The call took more ``of`` something than it may."""
+
+    def __init__(self, of: Limit) -> None:
+        super().__init__(f"it takes more {of} than it may")
+        self.of = of
+
+
+class _Outstayed(Exception):
+    """The call is long, and as many long ones run as may."""
+
+
+@dataclass(frozen=True)
+class Limits:
+    """What a call may take.
+
+    ``wall_s`` bounds it by the clock, ``cpu_s`` by the processor time of its process, which tells the same on a busy
+    machine. A call that has taken more than ``short_s`` of processor time is long; None: all calls are alike.
+    """
+
+    wall_s: float
+    cpu_s: float | None = None
+    short_s: float | None = None
+
+
+@dataclass(frozen=True)
+class ProcessStart:
+    """How the processes of a pool are started.
+
+    ``forks`` tells whether they are forked from a process that has the libraries already
+    (:mod:`multiprocessing.forkserver`), which takes some hundredths of a second; else they are started anew.
+    """
+
+    prepare: Callable[..., Any]
+    settings: tuple[Any, ...]
+    forks: Callable[[], bool]
+
+    def start_process(self, name: str) -> tuple[BaseProcess, Connection]:
+        """A process that has begun to prepare itself, and the pipe to it."""
+        tell_children()
+        # A child that is forked from the server itself would inherit its threads' locks and open connections.
+        context: Any = get_context("forkserver" if self.forks() else "spawn")
+        ours, theirs = context.Pipe()
+        process = context.Process(
+            target=serve_calls, args=(theirs, self.prepare, self.settings), name=name, daemon=True
+        )
+        process.start()
+        theirs.close()
+        return process, ours
+
+
+class _Clock:
+    """What a call has taken of its limits."""
+
+    def __init__(self, pid: int, limits: Limits) -> None:
+        self._pid, self._limits = pid, limits
+        self._began, self._spent = time.monotonic(), spent_seconds(pid)
+        self._granted = 0.0
+
+    def grant_compilation(self) -> None:
+        """Allow more, once."""
+        self._granted = COMPILE_S
+
+    @property
+    def compiles(self) -> bool:
+        """Whether the call has begun to compile something."""
+        return self._granted > 0.0
+
+    @property
+    def over(self) -> bool:
+        """Whether the limits are passed."""
+        if time.monotonic() - self._began > self._limits.wall_s + self._granted:
+            return True
+        return self._limits.cpu_s is not None and self.seconds > self._limits.cpu_s + self._granted
+
+    @property
+    def long(self) -> bool:
+        """Whether the call is no short one."""
+        return self._limits.short_s is not None and self.seconds > self._limits.short_s
+
+    @property
+    def seconds(self) -> float:
+        """Processor time so far."""
+        return spent_seconds(self._pid) - self._spent
+
+
+class Hand(threading.Thread):
+    """A thread that has a process, which dies with it (:func:`service.jobs.processes.parent_death.die_with`)."""
+
+    def __init__(self, name: str, queue: RequestQueue, start: ProcessStart, limits: Limits) -> None:
+        super().__init__(name=name, daemon=True)
+        self.stopping = threading.Event()
+        self.process: BaseProcess | None = None
+        self._pipe: Connection | None = None
+        self._queue, self._process_start, self._limits = queue, start, limits
+
+    def begin(self) -> None:
+        """Start the thread, if that has not been done."""
+        if self.ident is None:
+            self.start()
+
+    def run(self) -> None:
+        """Do calls until told to stop."""
+        while not self.stopping.is_set():
+            self._start_ahead()
+            call = self._queue.take(IDLE_S)
+            if call is None:
+                if not self._process_start.forks():
+                    self._end_process()
+            elif self._begin_call(call):
+                self._do(call)
+            else:
+                self._queue.finish(call)
+        self._end_process()
+
+    def _begin_call(self, call: Call) -> bool:
+        """Whether somebody waits for the call, so that it is to be done; the future of one begun again runs already."""
+        if call.abandoned.is_set():
+            return False
+        call.running = call.future.running() or call.future.set_running_or_notify_cancel()
+        return call.running
+
+    def _do(self, call: Call) -> None:
+        try:
+            answer = self._answer(call)
+        except _Outstayed:
+            self._queue.put_back(call)
+            return
+        except Exception as error:  # whatever it is: the future raises it in the request, and the thread goes on
+            self._queue.finish(call)
+            _settle(call.future, error=error)
+            return
+        self._queue.finish(call)
+        _settle(call.future, answer=answer)
+
+    def _answer(self, call: Call) -> Any:
+        pipe = self._give(call) or self._give(call)
+        if pipe is None or self.process is None or self.process.pid is None:
+            raise Lost(f"the process {self.name} takes no call")
+        clock = _Clock(self.process.pid, self._limits)
+        slowed = False
+        try:
+            if call.long:
+                slowed = self._slow_down()
+            while True:
+                slowed = self._wait(pipe, call, clock) or slowed
+                kind, answer = _receive(pipe)
+                if kind == "compiling":
+                    clock.grant_compilation()
+                    continue
+                if kind == "bytes":
+                    answer = pipe.recv_bytes()
+                break
+        except (EOFError, OSError):
+            # Native code that gets no memory ends its process.
+            kind, answer = "raised", MemoryError()
+        except (Gone, GivenUp, _Outstayed):
+            self._end_process()
+            raise
+        if isinstance(answer, MemoryError):
+            self._end_process()
+            log.warning("a call was given up", of="memory", work=call.work.__name__)
+            raise GivenUp("memory")
+        if slowed:
+            # Only a privileged server could make it as quick again.
+            self._end_process()
+        if kind == "raised":
+            raise answer
+        return answer
+
+    def _wait(self, pipe: Connection, call: Call, clock: _Clock) -> bool:
+        """Wait for a message of a call within its limits; whether the call was found to be long and slowed down."""
+        slowed = False
+        while not wait([pipe], timeout=_PERIOD_S):
+            self._require_wanted(call)
+            if clock.over:
+                log.warning("a call was given up", of="time", work=call.work.__name__)
+                raise GivenUp("time")
+            if not call.long and clock.long:
+                if not self._queue.admit_as_long(call):
+                    raise _Outstayed
+                # Whoever compiles holds a process that others want, the longer the slower it is.
+                slowed = not clock.compiles and self._slow_down()
+        return slowed
+
+    def _slow_down(self) -> bool:
+        """Let processes with short calls go first."""
+        assert self.process is not None
+        assert self.process.pid is not None
+        with suppress(OSError):  # it has ended just now
+            os.setpriority(os.PRIO_PROCESS, self.process.pid, os.getpriority(os.PRIO_PROCESS, 0) + LONG_PRIORITY)
+        return True
+
+    def _require_wanted(self, call: Call | None) -> None:
+        if self.stopping.is_set() or (call is not None and call.abandoned.is_set()):
+            raise Gone
+
+    def _start_ahead(self) -> None:
+        """Have a forked process wait for the next call: it costs little, and the call need not wait for it."""
+        if not self._process_start.forks():
+            return
+        try:
+            self._ready_pipe(None)
+        except Gone:  # the pool stops
+            pass
+        except (Lost, OSError):
+            log.exception("a process could not be started ahead", process=self.name)
+
+    def _give(self, call: Call) -> Connection | None:
+        """The pipe to the process that has taken the call; None where it has died idle, just now."""
+        pipe = self._ready_pipe(call)
+        try:
+            pipe.send((call.work, call.args))
+            self._expect(pipe, call, self._limits.wall_s)
+        except (EOFError, OSError):
+            self._end_process()
+            return None
+        except (Gone, GivenUp):
+            self._end_process()
+            raise
+        return pipe
+
+    def _expect(self, pipe: Connection, call: Call | None, limit_s: float) -> None:
+        """Wait for the message that a process is ready, or has taken the call; ``EOFError`` where it has ended."""
+        latest = time.monotonic() + limit_s
+        while not wait([pipe], timeout=_PERIOD_S):
+            self._require_wanted(call)
+            if time.monotonic() > latest:
+                raise GivenUp("time")
+        _receive(pipe)
+
+    def _ready_pipe(self, call: Call | None) -> Connection:
+        """The pipe to a process that waits for calls; a new one where there is none, or where it has died idle."""
+        if self.process is not None and not self.process.is_alive():
+            self._end_process()
+        if self._pipe is not None:
+            return self._pipe
+        self.process, self._pipe = self._process_start.start_process(self.name)
+        try:
+            self._expect(self._pipe, call, START_S)
+        except Gone:
+            self._end_process()
+            raise
+        except (EOFError, GivenUp) as error:
+            self._end_process()
+            raise Lost(f"the process {self.name} did not start") from error
+        return self._pipe
+
+    def _end_process(self) -> None:
+        process, pipe = self.process, self._pipe
+        self.process = self._pipe = None
+        if pipe is not None:
+            pipe.close()
+        if process is not None:
+            process.kill()
+            process.join(_STOP_S)
+
+
+def _receive(pipe: Connection) -> Any:
+    try:
+        return pipe.recv()
+    except OSError as error:
+        raise EOFError from error
+
+
+def _settle(future: Future[Any], *, answer: Any = None, error: Exception | None = None) -> None:
+    """Put an end to a future that the last client may have cancelled."""
+    if error is not None:
+        future.set_exception(error)
+    else:
+        future.set_result(answer)

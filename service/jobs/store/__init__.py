@@ -1,0 +1,1 @@
+"""Tables of jobs: schema, states, statements, admission and the cache of finished jobs."""

@@ -1,0 +1,1 @@
+"""Workers that solve jobs: scheduling, worker processes and their progress."""

@@ -1,0 +1,397 @@
+"""A lane: a thread of the server or worker host that has one worker process and gives it one job after the other.
+
+Each lane has a pebble pool of a single worker, not a share in a pool of many, for two reasons. The workers of a pool
+share a pipe under a lock, and a worker that is killed while it holds the lock blocks the others for a minute. And a
+worker that is killed while it is idle makes pebble declare the whole pool broken, with the jobs of the other workers.
+With a pool for each worker both failures stay within a lane, and the remedy is the same for all of them (cancel,
+timeout, memory, death): stop the pool, which kills the worker, and start another.
+
+A job that is cancelled is first left to stop by itself (:mod:`service.jobs.processes.stop_flag`), since a new worker
+takes seconds to start.
+
+Words: a *lane* runs *jobs*; its *worker* is a process; a lane is *ready* when its worker has finished starting.
+"""
+
+from __future__ import annotations
+
+import signal
+import threading
+import time
+from collections import deque
+from collections.abc import Sequence
+from concurrent.futures import CancelledError
+from concurrent.futures.process import BrokenProcessPool
+from multiprocessing import get_context
+from typing import Any, Literal
+
+import pebble
+import structlog
+from sqlalchemy.exc import SQLAlchemyError
+
+from service.jobs import faults
+from service.jobs.batches.store import BatchStore
+from service.jobs.executor import Changed
+from service.jobs.faults import Fault
+from service.jobs.job_store import JobStore
+from service.jobs.processes.parent_death import tell_children
+from service.jobs.processes.stop_flag import Solving
+from service.jobs.store.database import unreachable
+from service.jobs.store.schema import Claim
+from service.jobs.store.states import Cost, Status
+from service.jobs.workers import worker
+from service.jobs.workers.scheduler import SHORT_S, Turns
+from service.observability.metrics import WorkerMetrics
+
+CHECK_PERIOD_S = 1.0
+"""Period at which a lane checks that its worker is alive: while idle, so that a job seldom meets a dead worker, and
+while it waits for a result, because pebble drops a call that arrives while it detects that the worker is dead."""
+
+START_TIMEOUT_S = 300.0
+"""A worker may compile all kernels when it starts for the first time; that takes a minute, not five."""
+
+MAX_CANCELLED = 1000
+"""Cancelled jobs that a lane remembers; one that it has just been given is among the last few."""
+
+GRACE_S = 0.5
+"""How long a cancelled job may take to stop by itself before its worker is killed."""
+
+RETRY_PERIOD_S = 1.0
+"""Pause before a failed start of a worker, or a failed write to the store, is tried again."""
+
+# Seconds from pebble's request that a worker end to its kill. Workers end at once when asked, unless they are
+# suspended, and waiting does not help a suspended worker.
+pebble.CONSTS.term_timeout = 0.3
+
+Reason = Literal["cancelled", "outstayed", "the service stops"]
+"""Why a job is stopped before its end; ``outstayed``: it takes too long for a lane that is kept for short jobs."""
+
+log = structlog.get_logger(__name__)
+
+
+class WorkerLost(Exception):
+    """The worker died or could not be started; ``killed`` from outside, which need not be the job's fault."""
+
+    def __init__(self, reason: str, *, killed: bool = False) -> None:
+        self.killed = killed
+        super().__init__(reason)
+
+
+class Lane(threading.Thread):
+    """Runs the jobs that it is given by turns, one at a time, in a worker process of its own.
+
+    The thread lives as long as the lane. The thread starts the worker, so the worker dies with it
+    (:func:`service.jobs.processes.parent_death.die_with`).
+    """
+
+    def __init__(
+        self,
+        name: str,
+        turns: Turns,
+        store: JobStore,
+        batches: BatchStore,
+        settings: worker.WorkerSettings,
+        timeout_s: float,
+        changed: Changed,
+        metrics: WorkerMetrics,
+        after: Sequence[Lane],
+    ) -> None:
+        super().__init__(name=name, daemon=True)
+        self._turns = turns
+        self._store = store
+        self._batches = batches
+        self._settings = settings
+        self._timeout_s = timeout_s
+        self._changed = changed
+        self._metrics = metrics
+        self._after = after
+        self._lock = threading.Lock()
+        self._stopping = threading.Event()
+        self._pool: Any = None
+        self._future: Any = None
+        self._stirred = threading.Event()
+        self._job: Claim | None = None
+        # A job may be cancelled when it has been claimed already and the lane does not know of it yet.
+        self._cancelled: deque[str] = deque(maxlen=MAX_CANCELLED)
+        self._why: Reason | None = None
+        self._kill_at = float("inf")
+        self._solving = Solving()
+        self._free_since = time.monotonic()
+        self.ready = False
+        """Whether the worker has finished starting."""
+        self.settled = threading.Event()
+        """Set when the first worker has started, or has failed to."""
+
+    @property
+    def begun(self) -> bool:
+        """Whether the first worker has started, or has failed to."""
+        return self.settled.is_set()
+
+    def cancel(self, job_id: str) -> None:
+        """Stop the job if this lane is running it. Callable from any thread; the worker is killed where it must be."""
+        with self._lock:
+            if self._job is not None and self._job.job_id == job_id:
+                self._stop_job("cancelled")
+            else:
+                self._cancelled.append(job_id)
+
+    @property
+    def held(self) -> tuple[str, str] | None:
+        """The mark and the job of the current claim, until the last change of the job is stored."""
+        with self._lock:
+            return None if self._job is None else (self._job.mark, self._job.job_id)
+
+    def drop(self, mark: str) -> None:
+        """Stop the job if this lane is running it under this claim."""
+        with self._lock:
+            if self._job is not None and self._job.mark == mark:
+                self._stop_job("cancelled")
+
+    def stop(self) -> None:
+        """Make the lane end soon. A job under way goes back into the queue of the store. Join the thread after."""
+        with self._lock:
+            self._stopping.set()
+            self.settled.set()
+            self._why, self._kill_at = "the service stops", float("-inf")
+            self._stirred.set()
+
+    def _stop_job(self, why: Reason) -> None:
+        if self._why is None:
+            self._why, self._kill_at = why, time.monotonic() + GRACE_S
+            self._solving.stop()
+            self._stirred.set()
+
+    def run(self) -> None:
+        """Take jobs until told to stop."""
+        for lane in self._after:
+            lane.settled.wait()
+        while not self._stopping.is_set():
+            try:
+                self._ensure_worker()
+                self.settled.set()
+                job = self._turns.take(self, self._free_since)
+            except WorkerLost as loss:
+                self._could_not_start(str(loss))
+                continue
+            except Exception as error:  # whatever it is, later jobs need the lane
+                log.exception("the lane failed", lane=self.name)
+                self._could_not_start(f"{type(error).__name__} in the server")
+                continue
+            if job is not None:
+                self._serve(job)
+        self._discard_worker()
+
+    def _could_not_start(self, reason: str) -> None:
+        log.error("worker could not be started", lane=self.name, reason=reason)
+        self._replace_worker("start_failed")
+        self.settled.set()
+        self._stopping.wait(RETRY_PERIOD_S)
+
+    def _serve(self, job: Claim) -> None:
+        """Run a job and announce its change. A defect of the lane fails the job; it does not end the lane."""
+        with self._lock:
+            self._job = job
+            if job.job_id in self._cancelled:
+                self._stop_job("cancelled")
+        try:
+            self._run_job(job)
+        except Exception:  # a defect of the lane's own fails this job, and none of the later ones
+            log.exception("the lane failed", lane=self.name, job=job.job_id)
+            self._replace_worker("defect")
+            try:
+                self._give_up(job, faults.INTERNAL_ERROR)
+            except Exception:  # then the next start of the service requeues the job
+                log.exception("a job could not be failed", lane=self.name, job=job.job_id)
+        with self._lock:
+            self._job = None
+            if not self._stopping.is_set():
+                self._why, self._kill_at = None, float("inf")
+        self._turns.done(self)
+        self._free_since = time.monotonic()
+        try:
+            self._changed(job.batch or job.job_id)
+        except Exception:  # the store has the new state, which subscribers read when their wait ends
+            log.exception("a change could not be announced", lane=self.name, job=job.job_id)
+
+    def _ensure_worker(self) -> None:
+        if self._pool is not None and self._pool.active:
+            return
+        if self._pool is not None:
+            self._replace_worker("died_idle")
+        tell_children()
+        # spawn: a forked child would inherit the server's threads' locks and open connections.
+        self._pool = pebble.ProcessPool(
+            max_workers=1,
+            initializer=worker.start,
+            initargs=(self._settings, self._solving),
+            context=get_context("spawn"),
+        )
+        try:
+            pid = self._call(worker.hello)
+        except TimeoutError:
+            self._discard_worker()
+            raise WorkerLost(f"it did not start within {START_TIMEOUT_S:g} s") from None
+        except CancelledError:  # the lane stops
+            return
+        except WorkerLost:
+            self._discard_worker()
+            raise
+        self.ready = True
+        log.info("worker ready", lane=self.name, pid=pid)
+
+    def _replace_worker(self, reason: str) -> None:
+        """End the worker; the next check starts another."""
+        self._metrics.worker_restart(reason)
+        self._discard_worker()
+
+    def _discard_worker(self) -> None:
+        self.ready = False
+        pool, self._pool = self._pool, None
+        if pool is None:
+            return
+        try:
+            pool.stop()
+            pool.join()
+        except Exception:  # a worker that cannot be killed must not end the lane
+            log.exception("the worker could not be stopped", lane=self.name)
+
+    def _run_job(self, job: Claim) -> None:
+        try:
+            ran: worker.Ran = self._call(worker.run, job, job=job)
+        except TimeoutError:
+            self._metrics.attempt("timeout")
+            self._replace_worker("timeout")
+            if self._give_up(job, faults.timeout(self._timeout_s)):
+                log.warning("job failed", job=job.job_id, reason="timeout")
+        except CancelledError:
+            if self._stopping.is_set():
+                self._discard_worker()
+            else:
+                self._replace_worker(self._why or "cancelled")
+            self._was_stopped(job)
+        except WorkerLost as loss:
+            self._metrics.attempt("worker lost")
+            self._replace_worker("lost")
+            status = self._crashed(job, killed=loss.killed)
+            log.warning("worker lost", lane=self.name, job=job.job_id, reason=str(loss), job_is_now=status)
+            if status == Status.QUEUED:
+                self._turns.wake()
+        else:
+            if ran.outcome == "stopped":
+                self._was_stopped(job)
+                return
+            if job.batch is None:
+                self._metrics.attempt(ran.outcome, ran.kind, ran.seconds)
+            else:
+                self._metrics.attempt(ran.outcome)
+            if ran.outcome == "out of memory":
+                # A library that was refused memory in the middle of a call may be left in any state.
+                self._replace_worker("out_of_memory")
+
+    def _give_up(self, job: Claim, fault: Fault) -> bool:
+        """Fail the job, or of a share of a batch the sample that its worker was at; whether the claim still counts."""
+        if job.batch is None:
+            return bool(self._stored(self._store.give_up, job.job_id, job.mark, fault.as_json(job.job_id)))
+        at = self._solving.sample
+        if self._stored(self._batches.give_up, job.job_id, job.mark, at, fault.as_json) is None:
+            return False
+        self._turns.wake()
+        return True
+
+    def _crashed(self, job: Claim, *, killed: bool) -> Status | None:
+        status: Status | None
+        if job.batch is None:
+            status = self._stored(self._store.crashed, job.job_id, job.mark, killed=killed)
+        else:
+            at = self._solving.sample
+            status = self._stored(self._batches.crashed, job.job_id, job.mark, at, killed=killed)
+        return status
+
+    def _was_stopped(self, job: Claim) -> None:
+        if self._stopping.is_set():
+            if self._stored(self._store.requeue, job.job_id, job.mark):
+                log.info("job requeued", job=job.job_id, reason="the service stops")
+            return
+        self._metrics.attempt(self._why or "cancelled")
+        if self._why == "outstayed" and self._stored(self._store.requeue_as_long, job.job_id, job.mark):
+            log.info("job requeued", job=job.job_id, reason="it is longer than expected")
+            self._turns.wake()
+
+    def _call(self, function: Any, *args: Any, job: Claim | None = None) -> Any:
+        """Call a function in the worker.
+
+        Raises
+        ------
+        TimeoutError
+            The solver has been at work on the job for longer than it may, or the worker, where there is no job yet, has
+            not started in time; it is still running.
+        CancelledError
+            The job was to stop and has not by itself, or the lane stops; it is still running.
+        WorkerLost
+            The worker died, or the function raised.
+        """
+        with self._lock:
+            if self._stopping.is_set():
+                raise CancelledError
+            self._solving.reset()
+            try:
+                self._future = self._pool.schedule(function, args=args)
+            except (RuntimeError, OSError) as error:  # the idle worker has died, or no process or pipe can be had
+                raise WorkerLost(str(error), killed=True) from None
+            if self._why is not None:  # cancelled before it was given to the worker
+                self._solving.stop()
+        try:
+            self._future.add_done_callback(lambda _: self._stirred.set())
+            return self._answer(job)
+        except (CancelledError, TimeoutError, WorkerLost):
+            raise
+        except pebble.ProcessExpired as error:
+            killed = error.exitcode == -signal.SIGKILL
+            raise WorkerLost(f"{error}; exit code {error.exitcode}", killed=killed) from None
+        except BrokenProcessPool as error:  # it had not started the job
+            raise WorkerLost(str(error), killed=True) from None
+        except Exception as error:  # the worker could neither store nor handle it: its state is unknown
+            log.exception("the worker raised", lane=self.name, job=None if job is None else job.job_id)
+            raise WorkerLost(f"{type(error).__name__} in the worker") from None
+        finally:
+            self._future = None
+
+    def _answer(self, job: Claim | None) -> Any:
+        # Not pebble's own timeout, which counts the worker's waits for the store too, and by the wall clock.
+        began = time.monotonic()
+        limit_s = START_TIMEOUT_S if job is None else self._timeout_s
+        short = job is not None and job.cost == Cost.SHORT
+        while not self._future.done():
+            now = time.monotonic()
+            if now >= self._kill_at:
+                raise CancelledError
+            spent = now - began if job is None else self._solving.seconds
+            if spent >= limit_s:
+                raise TimeoutError
+            if short and spent >= SHORT_S:
+                short = False
+                self._check_stay()
+            if not self._pool.active and not self._future.done():
+                raise WorkerLost("the worker had died before", killed=True)
+            self._stirred.wait(max(0.0, min(limit_s - spent, self._kill_at - time.monotonic(), CHECK_PERIOD_S)))
+            self._stirred.clear()
+        try:
+            return self._future.result()
+        except TimeoutError:
+            raise WorkerLost("unexpected TimeoutError in the worker") from None
+
+    def _check_stay(self) -> None:
+        if self._turns.outstayed(self):
+            with self._lock:
+                self._stop_job("outstayed")
+
+    def _stored(self, write: Any, *args: Any, **options: Any) -> Any:
+        """Write to the store, retrying while it cannot be reached: else the job would be lost until a restart."""
+        while True:
+            try:
+                return write(*args, **options)
+            except SQLAlchemyError as error:
+                if not unreachable(error):  # it would be refused each time, and the lane be lost
+                    raise
+                log.exception("the store is out of reach", lane=self.name)
+                if self._stopping.wait(RETRY_PERIOD_S):
+                    return None

@@ -1,0 +1,152 @@
+"""What runs in a worker process: solve a job, store the answer.
+
+This module is imported before the worker has set its number of threads, so it must not import numpy, directly or
+through the solvers; :func:`start` does that when everything is in place.
+"""
+
+from __future__ import annotations
+
+import importlib
+import os
+import threading
+import time
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Literal
+
+import structlog
+
+from service.jobs import faults
+from service.jobs.batches.identity import digest
+from service.jobs.batches.slices import Slices
+from service.jobs.batches.store import BatchStore
+from service.jobs.job_store import JobStore
+from service.jobs.processes.limits import confine, limit_memory
+from service.jobs.processes.stop_flag import Solving, Stopped
+from service.jobs.store.database import connect, patiently
+from service.jobs.store.schema import Claim
+from service.jobs.workers.progress_writer import ProgressWriter
+from service.observability import logs
+
+if TYPE_CHECKING:
+    from service.jobs.workers.compile_watch import FirstUse
+
+Outcome = Literal["succeeded", "failed", "out of memory", "superseded", "stopped", "slice"]
+"""What became of a job as its worker knows it; ``superseded``: it has its answer, and was cancelled or given to another
+attempt meanwhile; ``stopped``: it has none, because the lane has said so; ``slice``: of a share of a batch, which is in
+the queue again or at its end."""
+
+LIBRARIES_MB = 400
+"""What solvers load after the worker has started, beside what a job is allowed: convex optimization, kernels."""
+
+log = structlog.get_logger(__name__)
+
+
+@dataclass(frozen=True, slots=True)
+class Ran:
+    """An attempt that the worker has ended: what became of it, the kind of its problem, and how long it took."""
+
+    outcome: Outcome
+    kind: str
+    seconds: float
+
+
+@dataclass(frozen=True, slots=True)
+class WorkerSettings:
+    """What a worker has to know; passed to it when it starts."""
+
+    store_url: str
+    server_pid: int
+    memory_mb: int
+    log_level: str
+    log_format: logs.Format
+
+
+@dataclass(frozen=True, slots=True)
+class _Post:
+    store: JobStore
+    progress: ProgressWriter
+    settings: WorkerSettings
+    solving: Solving
+    slices: Slices
+    first_use: FirstUse
+
+
+_post: _Post | None = None
+
+
+def start(settings: WorkerSettings, solving: Solving) -> None:
+    """Prepare this process for its jobs: its end, its limits, the solvers. Called once, first of all."""
+    global _post
+    confine(settings.server_pid, settings.log_level, settings.log_format)
+    dispatch = importlib.import_module("synthesis.dispatch")
+    dispatch.warm_up()
+    engine = connect(settings.store_url, durable=False)
+    store = JobStore(engine)
+    progress = ProgressWriter(store)
+    limit_memory(settings.memory_mb + LIBRARIES_MB)
+    first_use: FirstUse = importlib.import_module("service.jobs.workers.compile_watch").FirstUse(solving)
+    slices = Slices(BatchStore(engine), solving, faults.out_of_memory(settings.memory_mb))
+    _post = _Post(store, progress, settings, solving, slices, first_use)
+    store.ping()
+    # Beside the first jobs: they find what is not loaded yet a little slower, but the service is ready seconds sooner.
+    threading.Thread(target=dispatch.warm_up_rest, name="warm-up", daemon=True).start()
+
+
+def hello() -> int:
+    """The process id of the worker; the answer shows that the worker has finished starting."""
+    return os.getpid()
+
+
+def run(job: Claim) -> Ran:
+    """Run a claimed job to its end. The store has the answer when this returns.
+
+    While the store is out of reach this waits for it. What else the store raises is raised: the executor then treats
+    the worker as dead and the job is tried again.
+    """
+    assert _post is not None, "start() comes first"
+    if job.batch is not None:
+        return _run_slice(_post, job, job.batch)
+    bound = log.bind(job=job.job_id, attempt=job.attempt)
+    bound.info("job running")
+    began = time.perf_counter()
+    outcome = _attempt(_post, job)
+    seconds = time.perf_counter() - began
+    bound.info(f"job {outcome}", seconds=round(seconds, 4))
+    return Ran(outcome, job.kind, seconds)
+
+
+def _run_slice(post: _Post, share: Claim, batch_id: str) -> Ran:
+    began = time.perf_counter()
+    with post.first_use.told(lambda fraction, message: None):
+        outcome = post.slices.run(share, batch_id)
+    seconds = time.perf_counter() - began
+    log.debug(f"batch {outcome}", batch=batch_id, share=share.job_id, seconds=round(seconds, 4))
+    return Ran(outcome, share.kind, seconds)
+
+
+def _attempt(post: _Post, job: Claim) -> Outcome:
+    try:
+        with post.solving.at_work():
+            result, known_by = _solve(post, job)
+    except Stopped:
+        return "stopped"
+    except MemoryError:
+        fault = faults.out_of_memory(post.settings.memory_mb)
+        stored = patiently(post.store.fail, job.job_id, job.attempt, fault.as_json(job.job_id))
+        return "out of memory" if stored else "superseded"
+    except Exception:  # the boundary of the solvers: whatever defect they have ends this job only
+        log.exception("the solver raised", job=job.job_id, attempt=job.attempt)
+        stored = patiently(post.store.fail, job.job_id, job.attempt, faults.INTERNAL_ERROR.as_json(job.job_id))
+        return "failed" if stored else "superseded"
+    return "succeeded" if patiently(post.store.succeed, job.job_id, job.attempt, result, known_by) else "superseded"
+
+
+def _solve(post: _Post, job: Claim) -> tuple[str, str]:
+    """The answer in JSON, and the digest that equal problems know it by."""
+    from service.requests import read
+    from synthesis import dispatch
+
+    problem = read(job.kind, job.problem)
+    with post.progress.attempt(job.job_id, job.attempt) as progress, post.first_use.told(progress) as told:
+        result = dispatch.solve(problem, post.solving.stoppable(told)).model_dump_json()
+    return result, digest(problem)

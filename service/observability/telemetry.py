@@ -1,0 +1,141 @@
+"""What is told about each request: a line in the log, its metrics, its id, and where its time went.
+
+One record a request, in a context variable; whatever has a hand in the answer adds to it. The middleware is outermost,
+so that the answer to a defect has all this as well.
+"""
+
+from __future__ import annotations
+
+import re
+import time
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
+from contextvars import ContextVar
+from dataclasses import dataclass, field
+
+import structlog
+from starlette.datastructures import Headers, MutableHeaders
+from starlette.types import ASGIApp, Message, Receive, Scope, Send
+from ulid import ULID
+
+from service.observability.head import asked_for_head
+from service.observability.metrics import Metrics
+
+CUT_SHORT = "mechsynth.cut_short"
+"""Where the state of a request says with which status and problem its connection has answered in place of the
+operation, which was still waiting for the rest of it."""
+
+_CLIENTS_ID = re.compile("[A-Za-z0-9._:/+=@-]{1,100}")
+
+log = structlog.get_logger(__name__)
+
+
+@dataclass(slots=True)
+class _Record:
+    spans: dict[str, float] = field(default_factory=dict)
+    headers: dict[str, str] = field(default_factory=dict)
+    refused: str | None = None
+    defect: str | None = None
+    status: int = 0
+
+
+_record: ContextVar[_Record | None] = ContextVar("record", default=None)
+
+
+@contextmanager
+def span(name: str) -> Iterator[None]:
+    """Time a part of the present request for its ``Server-Timing``; equal names add up."""
+    began = time.perf_counter()
+    try:
+        yield
+    finally:
+        record = _record.get()
+        if record is not None:
+            record.spans[name] = record.spans.get(name, 0.0) + time.perf_counter() - began
+
+
+def refused(type_: str) -> None:
+    """Note the type of the problem that the present request is answered with."""
+    record = _record.get()
+    if record is not None:
+        record.refused = type_
+
+
+def note_defect(error: str) -> None:
+    """Note that the present request has met a defect of the service's own, by the type of the error."""
+    record = _record.get()
+    if record is not None:
+        record.defect = error
+
+
+def answer_with(headers: Mapping[str, str]) -> None:
+    """Add headers to the answer to the present request, whatever that will be."""
+    record = _record.get()
+    if record is not None:
+        record.headers.update(headers)
+
+
+class Telemetry:
+    """Watches every request from outside of the application."""
+
+    def __init__(self, app: ASGIApp, metrics: Metrics) -> None:
+        self._app = app
+        self._metrics = metrics
+
+    async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
+        """Pass the request on, and add its id and timing to the answer."""
+        if scope["type"] != "http":
+            await self._app(scope, receive, send)
+            return
+        began = time.perf_counter()
+        record = _Record()
+        _record.set(record)
+        request_id = _request_id(scope)
+        structlog.contextvars.clear_contextvars()
+        structlog.contextvars.bind_contextvars(request=request_id)
+
+        async def sent(message: Message) -> None:
+            if message["type"] == "http.response.start":
+                record.status = message["status"]
+                headers = MutableHeaders(raw=message["headers"])
+                headers.update(record.headers)
+                headers["X-Request-ID"] = request_id
+                headers["Server-Timing"] = _server_timing(record.spans, time.perf_counter() - began)
+            await send(message)
+
+        try:
+            await self._app(scope, receive, sent)
+        finally:
+            self._tell(scope, record, time.perf_counter() - began)
+
+    def _tell(self, scope: Scope, record: _Record, seconds: float) -> None:
+        if CUT_SHORT in scope.get("state", ()):
+            record.status, record.refused = scope["state"][CUT_SHORT]
+        route = scope.get("route")
+        operation = getattr(route, "operation_id", None) or getattr(route, "name", None) or "none"
+        method = "HEAD" if asked_for_head(scope) else scope["method"]
+        self._metrics.request(operation, method, record.status, seconds)
+        if record.refused is not None:
+            self._metrics.rejection(record.refused)
+        if record.defect is not None:
+            self._metrics.defect(operation)
+        # The path holds nothing secret, but a query might; and a path may be long.
+        log.info(
+            "request",
+            method=method[:20],
+            path=scope["path"][:200],
+            status=record.status or "none",
+            ms=round(1e3 * seconds, 2),
+            **({} if record.refused is None else {"problem": record.refused}),
+            **({} if record.defect is None else {"defect": record.defect}),
+        )
+
+
+def _request_id(scope: Scope) -> str:
+    # A proxy or client in front may have named the request already; then both logs speak of it by one name.
+    given = Headers(scope=scope).get("x-request-id", "")
+    return given if _CLIENTS_ID.fullmatch(given) else str(ULID())
+
+
+def _server_timing(spans: dict[str, float], total: float) -> str:
+    return ", ".join(f"{name};dur={1e3 * seconds:.2f}" for name, seconds in [*spans.items(), ("total", total)])

@@ -1,0 +1,1 @@
+"""Assemblies: items, plates, fasteners, bill of materials, interference."""

@@ -1,0 +1,1 @@
+"""Parts of cam mechanisms: radial cams, barrel cams and their followers."""

@@ -1,0 +1,1 @@
+"""Drawings of parts and assemblies: sheets, DXF, isometric and rendered pictures."""

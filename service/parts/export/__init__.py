@@ -1,0 +1,1 @@
+"""Files of parts: CAD formats, packages and the model of the viewer."""

@@ -1,0 +1,1 @@
+"""Geometry of parts: plane regions, arcs, splines, solids and their triangulation."""

@@ -1,0 +1,1 @@
+"""Parts of Geneva drives and ratchets."""

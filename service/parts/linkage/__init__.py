@@ -1,0 +1,1 @@
+"""Parts of linkages: links, pins, gears and their motion."""

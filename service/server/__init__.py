@@ -1,0 +1,1 @@
+"""The server process: application, connections, precompilation of kernels."""

@@ -1,0 +1,169 @@
+"""The application: everything put together, started and stopped."""
+
+from __future__ import annotations
+
+import asyncio
+import json
+from collections.abc import AsyncIterator
+from contextlib import asynccontextmanager
+from importlib.metadata import version
+from typing import Any
+
+from fastapi import FastAPI
+from starlette.concurrency import run_in_threadpool
+from starlette.types import Lifespan
+
+from service.access.gate import Gate
+from service.access.keys import KeyStore
+from service.answers.desk import AnswerDesk
+from service.api.http import problem_details
+from service.api.routes import (
+    analyses,
+    batches,
+    designs,
+    docs,
+    events,
+    forces,
+    health,
+    imports,
+    jobs,
+    metrics,
+    outlines,
+    parts,
+    problems,
+    reports,
+    simulations,
+    studio_page,
+)
+from service.imports.desk import ImportDesk
+from service.jobs.batches.desk import BatchDesk
+from service.jobs.batches.store import BatchStore
+from service.jobs.desk import JobDesk
+from service.jobs.events.notifier import ChangeNotifier
+from service.jobs.events.poller import JobPoller
+from service.jobs.executor import Executor
+from service.jobs.job_store import JobStore
+from service.jobs.retention import keep_tidy
+from service.jobs.store.database import connect, sqlite_file, upgrade
+from service.jobs.store.finished_cache import CAPACITY_BYTES, FinishedJobs
+from service.kernels import ANALYSIS, KernelsState
+from service.observability.metrics import Metrics
+from service.parts.export.worker import Workshop
+from service.settings import Settings
+
+_DESCRIPTION = """Designs mechanisms and verifies every answer by driving it.
+
+State a problem in a job (`POST /v1/jobs`), wait for it or come back for it, and read the designs from its result.
+Many problems at once are a batch (`POST /v1/batches`).
+`GET /v1/problems` lists what can be asked, each with an example that runs as it is. A mechanism that exists already is
+analysed at once (`POST /v1/analyses`). The outlines in a drawing are read (`POST /v1/outlines`), and so are the curves
+in a drawing, a table or a picture (`POST /v1/imports`).
+
+Angles are degrees, counter-clockwise from +x; lengths are plain numbers in the problem's `length_unit`. Unknown fields
+are refused. Errors are `application/problem+json` (RFC 9457); validation errors name each field by its JSON pointer."""
+
+
+def create_app(settings: Settings, executor: Executor, measured: Metrics, kernels: KernelsState) -> FastAPI:
+    """The service as an ASGI application. Its start upgrades the store and takes unfinished jobs up again."""
+
+    @asynccontextmanager
+    async def lifespan(app: FastAPI) -> AsyncIterator[None]:
+        engine = connect(settings.store_url, durable=True)
+        store = JobStore(engine)
+        notifier = ChangeNotifier(asyncio.get_running_loop())
+        log_as = settings.log_level, settings.log_format
+        app.state.answers = answers = AnswerDesk(*log_as, metrics=measured)
+        answers.start(after=lambda: kernels.has(ANALYSIS) or (kernels.ended and answers.is_awaited))
+        app.state.readers = readers = ImportDesk(*log_as, metrics=measured)
+        app.state.workshop = workshop = Workshop(
+            settings.job_memory_mb, settings.job_timeout_s, *log_as, metrics=measured
+        )
+        try:
+            executor.subscribe(notifier.publish)
+            executor.start()
+            await run_in_threadpool(upgrade, engine)
+            await run_in_threadpool(executor.resume)
+            # A SQLite store has one server; of any other, another server may remove a job.
+            finished = FinishedJobs(CAPACITY_BYTES if sqlite_file(settings.store_url) else 0)
+            app.state.desk = JobDesk(store, executor, notifier, measured, settings.max_queued, finished)
+            app.state.gate = Gate(KeyStore(engine), settings.rate_limit_rule)
+            batch_store = BatchStore(engine)
+            app.state.batches = BatchDesk(batch_store, executor, notifier, measured, settings.max_queued, finished)
+            pollers: list[JobPoller[Any]] = [JobPoller(store, notifier), JobPoller(batch_store, notifier)]
+            app.state.poller, app.state.batch_poller = pollers
+            measured.watch_calls(
+                lambda: {**answers.counts(), **{pool.name: pool.counts() for pool in (readers.pool, workshop.pool)}}
+            )
+            measured.watch(lambda: sum(each.listeners for each in pollers), executor.ready, store.unfinished)
+            polling = [asyncio.create_task(poller.run()) for poller in pollers]
+            tidying = asyncio.create_task(keep_tidy(store, batch_store, finished, settings.retention_days))
+            yield
+            tidying.cancel()
+            notifier.close()
+            await asyncio.gather(*polling)
+        finally:
+            notifier.close()
+            await run_in_threadpool(answers.stop)
+            readers.stop()
+            await run_in_threadpool(workshop.stop)
+            await run_in_threadpool(executor.stop)
+            engine.dispose()
+
+    app = application(lifespan)
+    app.state.settings = settings
+    app.state.metrics = measured
+    app.state.kernels = kernels
+    return app
+
+
+def api_document() -> str:
+    """The OpenAPI document of the service as it is kept with the source, without any service running."""
+
+    @asynccontextmanager
+    async def lifespan(app: FastAPI) -> AsyncIterator[None]:
+        yield
+
+    return json.dumps(application(lifespan).openapi(), indent=1, ensure_ascii=False) + "\n"
+
+
+def application(lifespan: Lifespan[FastAPI]) -> FastAPI:
+    """All routes and errors of the service, around whatever its life brings."""
+    app = FastAPI(
+        title="mechsynth",
+        summary="A REST service that designs mechanisms.",
+        description=_DESCRIPTION,
+        version=version("mechsynth"),
+        lifespan=lifespan,
+        openapi_url=None,
+        docs_url=None,
+        redoc_url=None,
+        redirect_slashes=False,
+        # Problems and designs have one schema each, whether they come or go.
+        separate_input_output_schemas=False,
+        openapi_tags=[jobs.TAG, batches.TAG, analyses.TAG, outlines.TAG, imports.TAG, problems.TAG, health.TAG],
+    )
+    problem_details.install(app)
+    docs.install(app)
+    routers = (
+        jobs.router,
+        designs.router,
+        reports.router,
+        forces.reading,
+        forces.stating,
+        parts.router,
+        simulations.router,
+        events.router,
+        batches.router,
+        batches.following,
+        analyses.router,
+        outlines.router,
+        imports.router,
+        problems.router,
+        health.router,
+        metrics.router,
+        studio_page.router,
+    )
+    for router in routers:
+        app.include_router(router)
+    app.state.routes = [*app.routes, *(route for router in routers for route in router.routes)]
+    return app

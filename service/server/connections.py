@@ -1,0 +1,264 @@
+"""How long a connection may keep the server waiting, and how much of it the server keeps in memory.
+
+The web server itself closes idle connections only. A client that sends part of a request, or does not read its answer,
+would keep its connection for ever; nine hundred such clients would lock out all others. The web server also accepts
+heads of any length, and any number of pipelined requests: a few seconds of either fill the memory.
+
+A request that is refused here reaches no operation. It is answered with a problem, like any refusal, and is counted.
+
+An idle connection is closed late and with care. A client that reuses it while it is being closed sees a reset, and
+cannot know whether its request was processed. The usual clients drop a connection after 5 to 60 idle seconds, so the
+server waits longer; and before it closes it checks whether a request has arrived that the event loop has not read yet,
+since the loop runs timers before it reads.
+"""
+
+from __future__ import annotations
+
+import asyncio
+import json
+import resource
+import select
+from dataclasses import dataclass
+from http import HTTPStatus
+from typing import Any, ClassVar, cast
+
+import structlog
+from uvicorn.protocols.http.httptools_impl import HttpToolsProtocol
+
+from service.observability.metrics import Metrics
+from service.observability.telemetry import CUT_SHORT
+
+REQUEST_S = 8.0
+"""From the first byte of a request, or the opening of the connection, to the last byte of its body. A connection may
+take ten seconds at most, and a busy event loop runs its timers late."""
+
+READING_S = 10.0
+"""How long a client may leave an answer unread that no longer fits into the buffers."""
+
+IDLE_S = 75
+"""How long a connection may wait for its next request."""
+
+MOST_HEAD_BYTES = 64 << 10
+"""Greatest size of the address and headers of a request together, and of any other data that is not its body."""
+
+MOST_AHEAD = 500
+"""Requests that a client may pipeline before the first is answered. Hardly any client sends a second."""
+
+_MORE_S = 1.0
+_SPARE_FILES = 128
+
+log = structlog.get_logger(__name__)
+
+
+@dataclass(frozen=True, slots=True)
+class Fault:
+    """What is wrong with a connection: the status and type of the problem that answers it."""
+
+    status: int
+    type: str
+    title: str
+    detail: str
+
+    def answer(self) -> bytes:
+        """The whole answer, after which the connection is closed."""
+        problem = {"type": self.type, "title": self.title, "status": self.status, "detail": self.detail, "instance": ""}
+        body = json.dumps(problem).encode()
+        return (
+            b"HTTP/1.1 %d %b\r\ncontent-type: application/problem+json\r\nconnection: close\r\n"
+            b"content-length: %d\r\n\r\n%b" % (self.status, HTTPStatus(self.status).phrase.encode(), len(body), body)
+        )
+
+
+TOO_SLOW = Fault(
+    408, "/problems/request-timeout", "Request timeout",
+    f"The request was not complete within {REQUEST_S:g} seconds.",
+)  # fmt: skip
+NOT_HTTP = Fault(400, "/problems/malformed-request", "Malformed request", "What came is not HTTP.")
+HOST_UNCLEAR = Fault(
+    400, "/problems/malformed-request", "Malformed request", "A request names its host once, in one `Host` header."
+)
+HEAD_TOO_LARGE = Fault(
+    431, "/problems/head-too-large", "Head too large",
+    f"The address and the headers of a request may have {MOST_HEAD_BYTES} bytes together.",
+)  # fmt: skip
+
+
+class Unacceptable(Exception):
+    """Ends the parsing of a connection; its fault has been noted."""
+
+
+def raise_file_limit() -> int:
+    """Raise the limit on open files as far as the system allows; gives the number of connections that it admits."""
+    soft, hard = resource.getrlimit(resource.RLIMIT_NOFILE)
+    if soft < hard:
+        resource.setrlimit(resource.RLIMIT_NOFILE, (hard, hard))
+    return max(hard - _SPARE_FILES, hard // 2) if hard != resource.RLIM_INFINITY else 1 << 20
+
+
+class ImpatientProtocol(HttpToolsProtocol):
+    """HTTP/1.1 with a limit on every wait for the client and on all that it may send."""
+
+    most: ClassVar[int] = 1 << 20
+    """Open connections at most; a further one is closed at once, since the store needs open files too."""
+
+    metrics: ClassVar[Metrics | None] = None
+    """Counts the requests that are refused before they reach an operation."""
+
+    def __init__(self, *args: Any, **kwargs: Any) -> None:
+        super().__init__(*args, **kwargs)
+        self._request_due: asyncio.TimerHandle | None = None
+        self._reading_due: asyncio.TimerHandle | None = None
+        self._fault = NOT_HTTP
+        self._head = 0
+        self._hosts = 0
+        self._unread = 0
+
+    def connection_made(self, transport: asyncio.BaseTransport) -> None:
+        """Begin to wait for the first request."""
+        super().connection_made(cast(asyncio.Transport, transport))  # the base class promises less than the loop does
+        if len(self.connections) > self.most:
+            self.transport.abort()
+            return
+        self._await_request(REQUEST_S)
+
+    def connection_lost(self, exc: Exception | None) -> None:
+        """End all waits."""
+        self._cancel(self._request_due)
+        self._cancel(self._reading_due)
+        super().connection_lost(exc)
+
+    def data_received(self, data: bytes) -> None:
+        """Bytes have arrived. The parser buffers them until they complete a part of a request."""
+        self._unread += len(data)
+        super().data_received(data)
+        if self._unread > MOST_HEAD_BYTES:
+            self._refuse(HEAD_TOO_LARGE)
+
+    def on_message_begin(self) -> None:
+        """A request begins."""
+        if self._request_due is None:
+            self._await_request(REQUEST_S)
+        self._head = self._hosts = self._unread = 0
+        super().on_message_begin()
+
+    def on_url(self, url: bytes) -> None:
+        """A part of the address."""
+        self._add_to_head(len(url))
+        super().on_url(url)
+
+    def on_header(self, name: bytes, value: bytes) -> None:
+        """A header, or a trailer behind the body."""
+        self._add_to_head(len(name) + len(value))
+        self._hosts += name.lower() == b"host"
+        if self._hosts > 1:  # whoever stands before us may have gone by the other one (RFC 9112, 3.2)
+            self._fault = HOST_UNCLEAR
+            raise Unacceptable
+        super().on_header(name, value)
+
+    def on_headers_complete(self) -> None:
+        """The head of a request is complete."""
+        if len(self.pipeline) >= MOST_AHEAD:
+            self.transport.abort()
+            raise Unacceptable
+        super().on_headers_complete()
+
+    def on_body(self, body: bytes) -> None:
+        """A part of the body, which the application bounds."""
+        self._unread = 0
+        super().on_body(body)
+
+    def on_message_complete(self) -> None:
+        """A request is complete."""
+        self._unread = 0
+        self._cancel(self._request_due)
+        self._request_due = None
+        super().on_message_complete()
+
+    def on_response_complete(self) -> None:
+        """An answer is complete. Reading pauses while further requests wait for theirs."""
+        super().on_response_complete()
+        if self.pipeline:
+            self.flow.pause_reading()
+
+    def send_400_response(self, msg: str) -> None:
+        """The parser has given up."""
+        self._refuse(self._fault)
+
+    def pause_writing(self) -> None:
+        """The client does not read as fast as it is answered."""
+        self._reading_due = self.loop.call_later(READING_S, self.transport.abort)
+        super().pause_writing()
+
+    def resume_writing(self) -> None:
+        """The client has read."""
+        self._cancel(self._reading_due)
+        super().resume_writing()
+
+    def timeout_keep_alive_handler(self) -> None:
+        """Close an idle connection, unless its next request has arrived already."""
+        if _has_arrived(self.transport):
+            self.timeout_keep_alive_task = self.loop.call_later(_MORE_S, self.timeout_keep_alive_handler)
+            return
+        super().timeout_keep_alive_handler()
+
+    def _await_request(self, seconds: float) -> None:
+        self._request_due = self.loop.call_later(seconds, self._too_slow)
+
+    def _too_slow(self) -> None:
+        if self.transport.is_closing():
+            return
+        cycle = self.cycle
+        of_an_earlier_request = cycle is not None and cycle.scope is not self.scope
+        if (
+            self.flow.read_paused
+            or _has_arrived(self.transport)
+            or (of_an_earlier_request and not cycle.response_complete)
+        ):
+            # The delay is the server's own.
+            self._await_request(_MORE_S)
+            return
+        if self.scope is None:  # a connection without a request is just closed
+            self.transport.close()
+        else:
+            self._refuse(TOO_SLOW)
+
+    def _add_to_head(self, size: int) -> None:
+        self._unread = 0
+        self._head += size
+        if self._head > MOST_HEAD_BYTES:
+            self._fault = HEAD_TOO_LARGE
+            raise Unacceptable
+
+    def _refuse(self, fault: Fault) -> None:
+        """Answer the incoming request, unless its answer has begun, and close the connection."""
+        if self.transport.is_closing():
+            return
+        cycle = self.cycle
+        seen = cycle is not None and cycle.scope is self.scope and self._request_due is not None
+        if seen and not cycle.response_started:
+            self.transport.write(fault.answer())
+            # The operation stops waiting for the rest of the body; telemetry records this status as its answer.
+            cycle.scope["state"][CUT_SHORT] = (fault.status, fault.type)
+            cycle.disconnected = True
+            cycle.message_event.set()
+        elif not seen and (cycle is None or cycle.response_complete):
+            self.transport.write(fault.answer())
+            log.info("request refused", status=fault.status, problem=fault.type)
+            if self.metrics is not None:
+                self.metrics.refused_unread(fault.status, fault.type)
+        self.transport.close()
+
+    @staticmethod
+    def _cancel(timer: asyncio.TimerHandle | None) -> None:
+        if timer is not None:
+            timer.cancel()
+
+
+def _has_arrived(transport: asyncio.Transport) -> bool:
+    """Whether the socket has data that the event loop has not read yet."""
+    connection = transport.get_extra_info("socket")
+    if connection is None or connection.fileno() < 0:
+        return False
+    waiting = select.poll()
+    waiting.register(connection.fileno(), select.POLLIN)
+    return bool(waiting.poll(0))

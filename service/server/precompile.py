@@ -1,0 +1,212 @@
+"""Compilation ahead of time: all kernels of the project, part by part, on all processors, in processes of their own.
+
+``mechsynth warm`` does it before a service starts. A service that finds kernels missing does it beside its jobs, when
+its first worker is ready: most of them at low priority, and a job that comes before its kernels compiles them itself
+(:mod:`service.jobs.workers.compile_watch`). Which parts are compiled stands on disk (:mod:`kinematics.kernel_marks`),
+so that what was interrupted goes on at the next start, and processes that share a cache share the parts out.
+
+The compiler holds the interpreter, so threads would only take turns. Where two processes compile the same function at
+once, both keep a sound copy.
+"""
+
+from __future__ import annotations
+
+import importlib
+import os
+import threading
+import time
+from collections.abc import Callable, Sequence
+from multiprocessing import get_context
+from multiprocessing.process import BaseProcess
+
+import structlog
+
+from service.jobs.processes.parent_death import die_with, tell_children
+from service.kernels import ANALYSIS, KernelsState
+from service.loading import IMPORTS
+from service.observability import logs
+
+DEMANDS = "demands"
+"""The part of the kernels that no example of a kind calls."""
+
+PRIORITY = 10
+"""By how much processes that compile beside jobs are nicer than these."""
+
+MAX_START_DELAY_S = 10.0
+"""The service looks for missing kernels after its first worker has started, but not later than this."""
+
+_PERIOD_S = 0.1
+"""Period at which it is looked what has been compiled: by marks on disk, which tell nobody."""
+
+log = structlog.get_logger(__name__)
+
+
+class WarmingFailure(Exception):
+    """Kernels could not be compiled; the message says which parts are missing."""
+
+
+def every_part() -> list[str]:
+    """All parts of the kernels, first those that most of the others call."""
+    from kinematics.kernel_marks import LINKAGES_PART
+    from synthesis.registry import KINDS
+
+    return [LINKAGES_PART, ANALYSIS, *KINDS, DEMANDS]
+
+
+def analysis_alone() -> list[str]:
+    """The part of a server whose jobs run elsewhere."""
+    return [ANALYSIS]
+
+
+def warm() -> None:
+    """Compile all kernels that have not been compiled; returns when they are there.
+
+    Raises
+    ------
+    WarmingFailure
+        When a solver raised or a process died, for want of memory for instance.
+    """
+    from synthesis import dispatch
+
+    logs.configure("warning", "text")
+    compilation = Compilation(every_part, "warning", "text", priority=0, ahead=True)
+    if not compilation.missing:
+        return
+    dispatch.warm_up()  # what most parts need is compiled once, before it is needed everywhere
+    compilation.run()
+    if missing := compilation.missing:
+        raise WarmingFailure(f"not compiled: {', '.join(missing)}; the log has the reasons")
+
+
+class Compilation:
+    """Compiles parts of the kernels in processes, and knows how far that is.
+
+    Where it is not to compile ``ahead`` it only knows: then whoever needs kernels compiles them.
+    """
+
+    def __init__(
+        self, wanted: Callable[[], list[str]], level: str, form: logs.Format, priority: int = PRIORITY, *, ahead: bool
+    ) -> None:
+        self.state = KernelsState()
+        self._wanted = wanted
+        self._level, self._form = level, form
+        self._priority = priority
+        self._ahead = ahead
+        self._stopping = threading.Event()
+        self._thread: threading.Thread | None = None
+
+    def start(self, after: Callable[[], bool]) -> None:
+        """Compile in the background once ``after`` says so, at the latest :data:`MAX_START_DELAY_S` from now."""
+        self._thread = threading.Thread(target=self._begin, args=(after,), name="compilation", daemon=True)
+        self._thread.start()
+
+    def stop(self) -> None:
+        """End the processes and wait for that. What they have compiled is kept."""
+        self._stopping.set()
+        if self._thread is not None:
+            self._thread.join()
+
+    @property
+    def missing(self) -> list[str]:
+        """The parts that have not been compiled."""
+        from kinematics.kernel_marks import is_compiled
+
+        return [part for part in self._wanted() if not is_compiled(part)]
+
+    def run(self) -> None:
+        """Compile what is missing; returns when that is done, cannot be done, or is to stop."""
+        missing = self.missing
+        self.state.look(len(self._wanted()), missing)
+        if not missing or not self._ahead:
+            return
+        log.info("compiling kernels in the background; jobs compile their own meanwhile", parts=missing)
+        began = time.monotonic()
+        tell_children()
+        context = get_context("spawn")
+        arguments = (missing, os.getpid(), self._priority, self._level, self._form)
+        processes = [
+            context.Process(target=_compile, args=arguments, name=f"compiler-{n}", daemon=True)
+            for n in range(min(os.cpu_count() or 1, len(missing)))
+        ]
+        for process in processes:
+            process.start()
+        try:
+            self._watch(processes)
+        finally:
+            for process in processes:
+                process.kill()
+                process.join()
+        if self.state.waiting and not self._stopping.is_set():
+            log.error("kernels could not be compiled; jobs that need them will try", parts=self.state.waiting)
+        elif not self.state.waiting:
+            log.info("all kernels are compiled", seconds=round(time.monotonic() - began, 1))
+
+    def _begin(self, after: Callable[[], bool]) -> None:
+        try:
+            latest = time.monotonic() + MAX_START_DELAY_S
+            while not after() and time.monotonic() < latest and not self._stopping.is_set():
+                self._stopping.wait(_PERIOD_S)
+            with IMPORTS:
+                importlib.import_module("kinematics.kernel_marks")  # it takes half a second
+            self.run()
+        except Exception:  # the service can do without: jobs compile what they need
+            log.exception("kernels could not be compiled in the background")
+        finally:
+            self.state.end()
+
+    def _watch(self, processes: Sequence[BaseProcess]) -> None:
+        from kinematics.kernel_marks import is_compiled
+
+        alive = True
+        while alive and not self._stopping.is_set():
+            alive = any(process.is_alive() for process in processes)
+            for part in self.state.waiting:
+                if is_compiled(part):
+                    self.state.compiled(part)
+                    log.info("kernels compiled", part=part, left=len(self.state.waiting))
+            if not self.state.waiting:
+                return
+            if alive:
+                self._stopping.wait(_PERIOD_S)
+
+
+def _compile(missing: list[str], parent: int, priority: int, level: str, form: logs.Format) -> None:
+    """What a process does: compile the parts that no other process is at, one after the other."""
+    die_with(parent)
+    logs.configure(level, form)
+    from kinematics.kernel_marks import LINKAGES_PART, claim_part, is_compiled, mark_compiled
+
+    waiting = missing
+    while waiting:
+        elsewhere = []
+        for part in waiting:
+            with claim_part(part) as ours:
+                if not ours:
+                    elsewhere.append(part)
+                elif not is_compiled(part):
+                    if part not in (LINKAGES_PART, ANALYSIS):  # without these no mechanism can be looked at
+                        os.nice(priority - os.nice(0))
+                    try:
+                        _compile_part(part)
+                    except Exception:  # of a solver: the other parts can be compiled all the same
+                        log.exception("kernels could not be compiled", part=part)
+                    else:
+                        mark_compiled(part)
+        waiting = elsewhere
+        if waiting:
+            time.sleep(_PERIOD_S)
+
+
+def _compile_part(part: str) -> None:
+    from kinematics.kernel_marks import LINKAGES_PART
+    from service import warm_analysis
+    from synthesis import dispatch
+
+    if part == LINKAGES_PART:
+        dispatch.load_linkages()
+    elif part == ANALYSIS:
+        warm_analysis.warm_up()
+    elif part == DEMANDS:
+        dispatch.compile_constraints()
+    else:
+        dispatch.compile_kind(part)

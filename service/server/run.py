@@ -1,0 +1,188 @@
+"""Runs the service: takes the port, says when it is ready, and stops in good order."""
+
+from __future__ import annotations
+
+import fcntl
+import signal
+import socket
+from collections.abc import Iterator
+from contextlib import contextmanager
+from ipaddress import ip_address
+from types import FrameType
+from typing import IO
+
+import structlog
+from sqlalchemy.exc import SQLAlchemyError
+
+from service.access.keys import KeyStore
+from service.jobs.executor import Executor
+from service.jobs.store.database import connect, sqlite_file
+from service.jobs.workers.local_executor import LocalExecutor
+from service.observability import logs
+from service.observability.metrics import Metrics
+from service.server.precompile import Compilation, analysis_alone, every_part
+from service.settings import Settings
+
+log = structlog.get_logger(__name__)
+
+
+class ServeError(Exception):
+    """The service cannot run here; the message is a sentence for the operator."""
+
+
+def serve(settings: Settings) -> None:
+    """Run the service until SIGINT or SIGTERM.
+
+    Raises
+    ------
+    ServeError
+        When the port or the data folder cannot be had, or the start fails.
+    """
+    signal.signal(signal.SIGTERM, _end)
+    signal.signal(signal.SIGINT, _end)
+    logs.configure(settings.log_level, settings.log_format)
+    with _data_folder(settings), _store(settings), _listener(settings, _open(settings)) as listener:
+        metrics = Metrics()
+        executor = _executor(settings, metrics)
+        compilation = _compilation(settings)
+        try:
+            # A worker takes as long to start as the web framework to import: side by side, the service is ready in
+            # half the time. The tables are made in between, long before any worker is given a job.
+            executor.start()
+            from service.server.web import WebServer
+
+            compilation.start(after=lambda: executor.ready() > 0)
+            WebServer(settings, executor, metrics, compilation.state).run(sockets=[listener])
+        except _Ended:
+            pass
+        except SystemExit:  # uvicorn's way to say that the application did not start
+            raise ServeError("the service could not start; the log above has the reason") from None
+        finally:
+            compilation.stop()
+            executor.stop()
+
+
+class _Ended(BaseException):
+    """Leaves the program by SIGINT or SIGTERM; like KeyboardInterrupt, nothing that handles errors may catch it."""
+
+
+def _end(_signal: int, _frame: FrameType | None) -> None:
+    # Before the server runs this ends the start. While it runs it has handlers of its own, and it raises the signal
+    # again when it has stopped.
+    raise _Ended
+
+
+def _executor(settings: Settings, metrics: Metrics) -> Executor:
+    try:
+        if settings.executor == "celery":
+            # Celery's import takes half a second, which a server with workers of its own has no use for.
+            from service.jobs.cluster.executor import CeleryExecutor
+
+            return CeleryExecutor(settings)
+        return LocalExecutor(settings, metrics)
+    except (SQLAlchemyError, ImportError, OSError) as error:
+        raise _no_database(error) from None
+
+
+def _compilation(settings: Settings) -> Compilation:
+    """What the server compiles beside its start: all kernels, or its own where worker hosts run the jobs."""
+    wanted = every_part if settings.executor == "local" else analysis_alone
+    return Compilation(wanted, settings.log_level, settings.log_format, ahead=settings.compile_ahead)
+
+
+def _no_database(error: Exception) -> ServeError:
+    # Not the URL itself, which may hold a password.
+    return ServeError(f"cannot use the database ({type(error).__name__}); set MECHSYNTH_DATABASE_URL")
+
+
+def _open(settings: Settings) -> bool:
+    """Whether the service is open because it has no keys; then it is for this machine only."""
+    try:
+        engine = connect(settings.store_url, durable=False)
+        try:
+            return not KeyStore(engine).any()
+        finally:
+            engine.dispose()
+    except (SQLAlchemyError, ImportError, OSError) as error:
+        raise _no_database(error) from None
+
+
+@contextmanager
+def _listener(settings: Settings, only_here: bool) -> Iterator[socket.socket]:
+    try:
+        family, kind, protocol, _, address = socket.getaddrinfo(
+            settings.host, settings.port, type=socket.SOCK_STREAM, flags=socket.AI_PASSIVE
+        )[0]
+    except OSError:
+        raise ServeError(f"there is no address for the host {settings.host!r}; set MECHSYNTH_HOST") from None
+    if only_here:
+        if "*" in settings.cors_origins:
+            log.warning(
+                "there are no API keys, and MECHSYNTH_CORS_ORIGINS lets every web page in: whatever page a browser on "
+                "this machine shows can read and cancel all jobs; name the origins, or make a key",
+            )
+        if not ip_address(str(address[0]).partition("%")[0]).is_loopback:
+            log.warning(
+                "there are no API keys, so the service listens on 127.0.0.1 and not where it was told to; "
+                "`mechsynth keys create NAME` makes a key",
+                told=settings.host,
+            )
+            family, address = socket.AF_INET, ("127.0.0.1", settings.port)
+        else:
+            log.info("there are no API keys: the service is open, to this machine only")
+    with socket.socket(family, kind, protocol) as listener:
+        listener.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
+        try:
+            listener.bind(address)
+        except OSError as error:
+            raise ServeError(
+                f"cannot listen on {settings.host} port {settings.port} ({error.strerror}); "
+                "stop what uses the port, or set MECHSYNTH_PORT"
+            ) from None
+        yield listener
+
+
+@contextmanager
+def _data_folder(settings: Settings) -> Iterator[None]:
+    """Keep other servers away from the data folder: each would take up the jobs that the other one runs.
+
+    Servers that share their jobs through a broker have nothing in it.
+    """
+    if settings.executor == "celery":
+        yield
+        return
+    try:
+        settings.data_dir.mkdir(parents=True, exist_ok=True)
+        lock = open(settings.data_dir / "server.lock", "w")  # noqa: SIM115 (closed below)
+    except OSError as error:
+        raise ServeError(
+            f"cannot write to the data folder {settings.data_dir} ({error.strerror}); set MECHSYNTH_DATA_DIR"
+        ) from None
+    with lock:
+        _take(lock, f"another server uses the data folder {settings.data_dir}; stop it, or set MECHSYNTH_DATA_DIR")
+        yield
+
+
+@contextmanager
+def _store(settings: Settings) -> Iterator[None]:
+    """Keep other servers away from the store as well, which may lie outside of the data folder."""
+    try:
+        file = sqlite_file(settings.store_url)
+        if file is not None:
+            file.parent.mkdir(parents=True, exist_ok=True)
+            lock = open(f"{file}.lock", "w")  # noqa: SIM115 (closed below)
+    except (SQLAlchemyError, OSError) as error:
+        raise _no_database(error) from None
+    if file is None:
+        yield
+        return
+    with lock:
+        _take(lock, "another server uses the same database; stop it, or set MECHSYNTH_DATABASE_URL")
+        yield
+
+
+def _take(lock: IO[str], taken: str) -> None:
+    try:
+        fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
+    except OSError:
+        raise ServeError(taken) from None

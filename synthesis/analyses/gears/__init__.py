@@ -1,0 +1,1 @@
+"""Analyses of gear pairs, trains and gearboxes."""

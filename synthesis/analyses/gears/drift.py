@@ -1,0 +1,55 @@
+"""Drift of a train from its required ratio, as of a clock: seconds per day."""
+
+from __future__ import annotations
+
+from fractions import Fraction
+from typing import Any
+
+from pydantic import Field
+
+from synthesis.model.answer import Answer, optional_field
+from synthesis.model.gears.ratio_target import parse_target
+
+SECONDS_PER_DAY = 86_400.0
+
+ENCLOSURE_BITS = 256
+"""Number of bits of the required ratio's enclosure: errors are correct to all digits of a float."""
+
+WANTED_DESCRIPTION = (
+    "The ratio that the train ought to have, a number or an exact expression such as `354375/12000`: the answer then "
+    "has `drift`, of the sizes of both where they differ in sign."
+)
+
+
+class Drift(Answer):
+    """Gain or loss of a train's output against a train with exactly the required ratio and the same input."""
+
+    relative_error: float = Field(description="Relative error of the ratio, with its sign.")
+    seconds_per_day: float = Field(description="Seconds per day; positive if the output is fast.")
+    days_per_second: float | None = Field(description="Days until the error is one second; null if it never is.")
+    opposite: bool | None = optional_field(
+        "True where ratio and wanted ratio differ in sign: the train turns the other way, or about axes that are not "
+        "parallel. The rest is then that of their sizes."
+    )
+
+
+def describe_drift(ratio: Fraction | None, wanted: float | str | None) -> dict[str, Any]:
+    """Return the field ``drift`` for a train of exactly this ratio; empty without a required ratio."""
+    if ratio is None or wanted is None:
+        return {}
+    sign, target = parse_target(wanted)
+    if ratio == 0:
+        return {}
+    low, high = target.enclose(ENCLOSURE_BITS)
+    exact = target.rational or (low + high) / 2
+    # The output turns by 1/ratio of the input: of a ratio that is too small it has turned too far.
+    gained = exact / abs(ratio) - 1
+    seconds = float(gained * Fraction(SECONDS_PER_DAY))
+    told: dict[str, Any] = {
+        "relative_error": float(abs(ratio) / exact - 1),
+        "seconds_per_day": seconds,
+        "days_per_second": None if seconds == 0.0 else 1.0 / abs(seconds),
+    }
+    if sign * ratio < 0:
+        told["opposite"] = True
+    return {"drift": told}

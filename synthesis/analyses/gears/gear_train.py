@@ -1,0 +1,362 @@
+"""The analysis of an ordinary gear train: speeds, torques, mesh geometry, forces and losses.
+
+Speeds are exact fractions of the input's. The torque on a shaft is the power that reaches it over its speed; each mesh
+passes on a stated share of the power, or 1 − μ H with the friction coefficient μ and the loss factor H of its teeth. A
+torque against the speed of the input takes power out there: the output drives, and has to bring the losses too. A worm
+passes on what its own friction lets it, whatever is stated for the other meshes: its forces follow from that friction,
+and so must the torques that they carry.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+from typing import Annotated, Any, Literal
+
+import numpy as np
+from numpy.typing import NDArray
+from pydantic import ConfigDict, Field
+
+from kinematics.arrays import Real
+from kinematics.errors import DimensionError
+from kinematics.gear.teeth import FULL_DEPTH_ADDENDUM, FULL_DEPTH_DEDENDUM, Gear, Mesh
+from kinematics.gear.train import USUAL_FRICTION, OrdinaryTrain, TrainStage
+from kinematics.gear.worm import WormDrive
+from synthesis.analyses.base import DrivenAnalysis, DrivenRequest, Family, TurningPart
+from synthesis.analyses.gears.drift import WANTED_DESCRIPTION, Drift, describe_drift
+from synthesis.analyses.gears.given_train import GivenGearTrain
+from synthesis.analyses.gears.loaded_meshes import Flow, LoadedMesh, list_loaded_meshes
+from synthesis.model.answer import Answer, optional_field
+from synthesis.model.dynamics.request import METRES_PER_UNIT
+from synthesis.model.gears.answer import Helix, Ratio, find_undercut
+from synthesis.model.gears.request import ExactRatio
+from synthesis.model.gears.stages import build_train_stage
+from synthesis.model.gears.strength import RATED_STAGE_TYPES, StrengthMethod
+from synthesis.model.problem import Number
+
+DISTANCE_TOLERANCE = 1e-6
+"""Relative tolerance of a given centre distance against that of the teeth."""
+
+
+class GearTrainAnalysisRequest(DrivenRequest[GivenGearTrain]):
+    """A gear train, how its input turns, and what it carries."""
+
+    model_config = ConfigDict(
+        title="Gear train: speeds and torques",
+        json_schema_extra={
+            "examples": [
+                {
+                    "mechanism": {
+                        "type": "gear_train",
+                        "stages": [
+                            {"driver": 25, "driven": 51, "module": 2.0},
+                            {"driver": 50, "driven": 77, "module": 2.0},
+                        ],
+                    },
+                    "motion": {"at": 0.0, "speed_rpm": 1500.0},
+                    "input_torque": 20.0,
+                    "mesh_efficiency": 0.98,
+                }
+            ]
+        },
+    )
+
+    length_unit: Literal["mm", "cm", "m", "in"] = "mm"
+    input_torque: Number = Field(
+        default=1.0,
+        description="Torque on the input shaft, N·m; if opposite to its speed at the first position, output drives.",
+    )
+    mesh_efficiency: Annotated[float, Field(strict=True, gt=0.0, le=1.0)] | None = Field(
+        default=None,
+        description="Share of the power that every mesh passes on, but those of worms, whose loss is always that of "
+        "their own friction; from the friction where left out.",
+    )
+    friction: Annotated[float, Field(strict=True, ge=0.0, le=1.0)] = Field(
+        default=USUAL_FRICTION,
+        description="Friction coefficient between the teeth; a worm has its own, given by the stage.",
+    )
+    wanted_ratio: ExactRatio | None = Field(default=None, description=WANTED_DESCRIPTION)
+    strength: StrengthMethod | None = Field(
+        default=None,
+        description="Stresses of every mesh under the torque at the first position, over the stage's face width or "
+        "over the least that keeps the allowable stresses; pairs are of the driving gear and the driven one.",
+    )
+
+    def find_errors(self) -> list[tuple[str, str]]:
+        """What no single field shows."""
+        faults = super().find_errors()
+        for number, idler in enumerate(self.mechanism.idlers):
+            if idler.stage > len(self.mechanism.stages):
+                faults.append((f"/mechanism/idlers/{number}/stage", "there is no such stage"))
+        for number, stage in enumerate(self.mechanism.stages):
+            faults += [(f"/mechanism/stages/{number}{path}", detail) for path, detail in stage.find_type_errors()]
+            if stage.type != "external" and any(idler.stage == number + 1 for idler in self.mechanism.idlers):
+                faults.append((f"/mechanism/stages/{number}/type", "only an external stage has idlers"))
+            if stage.shift is not None and any(idler.stage == number + 1 for idler in self.mechanism.idlers):
+                faults.append((f"/mechanism/stages/{number}/shift", "a stage with an idler has no shift"))
+        faults += self._find_strength_errors()
+        if not faults:
+            faults += self._find_distance_errors() + self._find_face_errors()
+        if not faults and self.mechanism.ratio is not None:
+            faults += self.mechanism.ratio.find_errors(self.mechanism.build_train().ratio)
+        if not faults:
+            faults += self._find_locking_errors()
+        if self.mesh_efficiency is not None and all(stage.type == "worm" for stage in self.mechanism.stages):
+            faults.append(("/mesh_efficiency", "the loss of a worm follows from its own friction; leave it out"))
+        return faults
+
+    @property
+    def list_locked_worms(self) -> list[int]:
+        """Which stages, from 0, are worms that pass on no power, whether they drive or their gears."""
+        shares = list_power_shares(self)
+        return [k for k, stage in enumerate(self.mechanism.stages) if stage.type == "worm" and 0.0 in shares[k]]
+
+    def _find_locking_errors(self) -> list[tuple[str, str]]:
+        """Where friction lets no power through although there is a torque."""
+        if self.input_torque == 0.0:
+            return []
+        worms, back = self.list_locked_worms, self.has_backward_flow
+        detail = "the gear cannot drive the worm" if back else "the worm cannot drive its gear, whatever the torque"
+        faults = [(f"/mechanism/stages/{k}/friction", f"with so much of it {detail}") for k in worms]
+        if back and not worms and any(0.0 in stage for stage in list_power_shares(self)):
+            detail = "with this friction a mesh loses all power, so that the output cannot drive"
+            faults.append(("/friction", detail))
+        return faults
+
+    @classmethod
+    def analyze_cycle(cls, mechanism: dict[str, Any], steps: int) -> dict[str, Any]:
+        """As that of every mechanism, and without a load where friction holds a worm."""
+        request = cls.model_validate({"mechanism": mechanism, "motion": {"steps": steps}})
+        return request.model_copy(update={"input_torque": 0.0} if request.list_locked_worms else {}).build_answer()
+
+    @property
+    def has_backward_flow(self) -> bool:
+        """Whether power leaves at the input, at the first position: the output drives."""
+        return self.input_torque * float(self.motion.list_inputs()[1][0]) < 0.0
+
+    def _find_strength_errors(self) -> list[tuple[str, str]]:
+        stated = self.strength
+        if stated is None:
+            return []
+        wrong = stated.find_errors()
+        if any(stage.type == "internal" for stage in self.mechanism.stages):
+            wrong += stated.find_ring_errors()
+        if any(stage.type == "helical" for stage in self.mechanism.stages):
+            wrong += stated.find_helix_errors()
+        faults = [(f"/strength{path}", detail) for path, detail in wrong]
+        faults += [
+            (f"/mechanism/stages/{number}/type", f"the strength of a stage that is {stage.type} is not estimated")
+            for number, stage in enumerate(self.mechanism.stages)
+            if stage.type not in RATED_STAGE_TYPES
+        ]
+        if self.input_torque == 0.0 or float(self.motion.list_inputs()[1][0]) == 0.0:
+            faults.append(("/strength", "give a torque and a speed; without them no power is transmitted"))
+        if stated.allowable_bending is None and stated.allowable_contact is None:
+            faults += [
+                (
+                    f"/mechanism/stages/{number}/face_width",
+                    "give it, or the allowable stresses from which it is computed",
+                )
+                for number, stage in enumerate(self.mechanism.stages)
+                if stage.face_width is None
+            ]
+        return faults
+
+    def _find_distance_errors(self) -> list[tuple[str, str]]:
+        try:
+            distances = self.mechanism.build_train().centre_distances
+        except DimensionError:
+            return []
+        return [
+            (f"/mechanism/stages/{number}/centre_distance", f"the teeth have the distance {has:.9g}; leave it out")
+            for number, (stage, has) in enumerate(zip(self.mechanism.stages, distances, strict=True))
+            if stage.centre_distance is not None and abs(stage.centre_distance - has) > DISTANCE_TOLERANCE * has
+        ]
+
+    def _find_face_errors(self) -> list[tuple[str, str]]:
+        """Faces of bevel gears that would reach over the apex of their cones."""
+        angle = math.radians(self.mechanism.pressure_angle)
+        faults = []
+        for number, stage in enumerate(self.mechanism.stages):
+            if stage.type == "bevel" and stage.face_width is not None:
+                far = build_train_stage(stage, angle).cones(angle).cone_distance
+                if not stage.face_width < far:
+                    detail = f"expected less than the cone distance of these gears, {far:.6g}"
+                    faults.append((f"/mechanism/stages/{number}/face_width", detail))
+        return faults
+
+    def build_answer(self) -> dict[str, Any]:
+        """Everything about the train, in the shape of :class:`GearTrainAnalysis`."""
+        return _analyze_train(self)
+
+
+class TurningGear(TurningPart):
+    """A gear and its motion; gears of one shaft turn alike."""
+
+    stage: int
+    role: Literal["driver", "idler", "driven"]
+    teeth: int
+    module: float
+    pitch_diameter: float
+    outside_diameter: float
+    root_diameter: float
+    base_diameter: float | None = Field(description="Null of bevel gears and of a worm.")
+    tooth_thickness: float = Field(description="Value on the pitch circle.")
+    undercut: bool = Field(description="Whether a rack that cuts the gear undercuts it.")
+
+
+class Shaft(Answer):
+    """A shaft that passes torque on, from the input shaft to the output shaft."""
+
+    speed_ratio: float
+    torque: float = Field(description="N m, with the losses between the input and it.")
+    axis: tuple[float, float, float] | None = optional_field(
+        "About which the speed is counted, the input's along z; left out where all shafts are parallel."
+    )
+
+
+class GearTrainAnalysis(DrivenAnalysis):
+    """Analysis of a gear train; degrees, rad/s, length units."""
+
+    valid: list[bool]
+    ratio: Ratio
+    efficiency: float | None = Field(description="Output power over input power.")
+    shafts: list[Shaft]
+    gears: list[TurningGear]
+    meshes: list[LoadedMesh]
+    centre_distances: list[float] = Field(description="Distance of the shafts of each stage, with idlers in line.")
+    drift: Drift | None = optional_field("Given if a required ratio is given.")
+
+
+def _analyze_train(request: GearTrainAnalysisRequest) -> dict[str, Any]:
+    """Speeds, torques, gears and meshes of a train over the motion."""
+    at, speed, time = request.motion.list_inputs()
+    train = request.mechanism.build_train()
+    shares = list_power_shares(request)
+    passed = tuple(tuple(1.0 if share is None else share for share in stage) for stage in shares)
+    known = all(share is not None for stage in shares for share in stage)
+    gained = tuple(tuple(1.0 / share for share in stage) for stage in passed) if request.has_backward_flow else passed
+    torques = train.torques(request.input_torque, gained)
+    flow = Flow(
+        train, shares, torques, float(speed[0]), request.has_backward_flow, METRES_PER_UNIT[request.length_unit]
+    )
+    speeds = [1.0, *(float(stage[-1]) for stage in train.speeds)]
+    return {
+        "input_angle": at.tolist(),
+        "time": None if time is None else time.tolist(),
+        "valid": [True] * len(at),
+        "ratio": Ratio.from_fraction(train.ratio).model_dump(),
+        "efficiency": math.prod(share for stage in passed for share in stage) if known else None,
+        "shafts": [
+            {"speed_ratio": w, "torque": t, **({} if train.is_parallel else {"axis": _clean_axis(axis)})}
+            for w, t, axis in zip(speeds, torques, train.axes, strict=True)
+        ],
+        "gears": _describe_gears(request, train, at, speed),
+        "meshes": list_loaded_meshes(flow, request.strength, [stage.face_width for stage in request.mechanism.stages]),
+        "centre_distances": list(train.centre_distances),
+        **describe_drift(train.ratio, request.wanted_ratio),
+    }
+
+
+def _clean_axis(axis: Real) -> tuple[float, ...]:
+    """An axis without what is left of a right angle in rounding."""
+    return tuple(round(float(part), 15) + 0.0 for part in axis)
+
+
+def list_power_shares(request: GearTrainAnalysisRequest) -> tuple[tuple[float | None, ...], ...]:
+    """Share of the power that each mesh of each stage passes on; None of one that cannot run."""
+    train = request.mechanism.build_train()
+    return tuple(
+        (_compute_worm_share(request, stage, train),)
+        if stage.kind == "worm"
+        else tuple(_compute_share(request, mesh) for mesh in meshes)
+        for stage, meshes in zip(train.stages, train.meshes, strict=True)
+    )
+
+
+def _compute_worm_share(request: GearTrainAnalysisRequest, stage: TrainStage, train: OrdinaryTrain) -> float:
+    """Share of the power that a worm passes on, or its gear where that drives; 0 where friction holds it."""
+    worm = stage.worm(train.pressure_angle)
+    return worm.back_efficiency(stage.friction) if request.has_backward_flow else worm.efficiency(stage.friction)
+
+
+def _compute_share(request: GearTrainAnalysisRequest, mesh: Mesh) -> float | None:
+    """Share of the power that a mesh passes on; None where it cannot run."""
+    if mesh.contact_ratio < 1.0:
+        return None
+    if request.mesh_efficiency is not None:
+        return request.mesh_efficiency
+    return max(0.0, 1.0 - request.friction * mesh.loss_factor)
+
+
+def _describe_gears(
+    request: GearTrainAnalysisRequest, train: OrdinaryTrain, at: NDArray[np.float64], speed: NDArray[np.float64]
+) -> list[dict[str, Any]]:
+    """Every gear with its dimensions and its motion, from the input to the output."""
+    gears = []
+    for number, (stage, speeds) in enumerate(zip(train.stages, train.speeds, strict=True), 1):
+        roles = ["driver", *("idler" for _ in stage.idlers), "driven"]
+        for role, teeth, gear, share in zip(
+            roles, stage.gears, _describe_stage_gears(stage, train), speeds, strict=True
+        ):
+            turns = float(share)
+            placed = {"stage": number, "role": role, "teeth": teeth}
+            gears.append(placed | gear | {"speed_ratio": turns, **request.motion.drive_geared(turns, at, speed)})
+    return gears
+
+
+def _describe_stage_gears(stage: TrainStage, train: OrdinaryTrain) -> list[dict[str, Any]]:
+    """Dimensions of the gears of a stage, in the order in which they mesh."""
+    cut, meshes = stage.cut_gears(train.pressure_angle), stage.meshes(train.pressure_angle)
+    if stage.kind == "worm":
+        return _describe_worm_stage(stage.worm(train.pressure_angle))
+    if stage.kind == "bevel":
+        pair = stage.cones(train.pressure_angle)
+        virtual = sorted((meshes[0].pinion, meshes[0].gear), key=lambda gear: gear.teeth)
+        ordered = virtual if stage.driver <= stage.driven else virtual[::-1]
+        return [
+            _describe_dimensions(gear, back.is_undercut, math.cos(cone)) | {"base_diameter": None}
+            for gear, back, cone in zip(cut, ordered, pair.cones, strict=True)
+        ]
+    if stage.shifts != (0.0, 0.0):
+        # As the mesh tells it: a shifted stage has one.
+        helix = Helix(train.pressure_angle, stage.helix_angle) if stage.kind == "helical" else None
+        undercut = list(find_undercut(meshes[0], helix))[:: 1 if stage.driver <= stage.driven else -1]
+    elif stage.kind == "helical":
+        undercut = [gear.is_undercut for gear in cut]
+    else:
+        undercut = [replace(gear, addendum=FULL_DEPTH_ADDENDUM).is_undercut for gear in cut]
+    return [_describe_dimensions(gear, taken) for gear, taken in zip(cut, undercut, strict=True)]
+
+
+def _describe_dimensions(gear: Gear, undercut: bool, slope: float = 1.0) -> dict[str, Any]:
+    """Of a gear; the teeth of bevel gears rise from the axis by ``slope``, the cosine of the cone, of their height."""
+    radii = gear.pitch_radius, gear.tip_radius, gear.root_radius
+    tip, root = (radii[0] + slope * (radius - radii[0]) for radius in radii[1:])
+    return {
+        "module": gear.module,
+        "pitch_diameter": 2.0 * gear.pitch_radius,
+        "outside_diameter": 2.0 * (gear.tip_radius if slope == 1.0 else tip),
+        "root_diameter": 2.0 * (gear.root_radius if slope == 1.0 else root),
+        "base_diameter": 2.0 * gear.base_radius,
+        "tooth_thickness": gear.tooth_thickness,
+        "undercut": undercut,
+    }
+
+
+def _describe_worm_stage(worm: WormDrive) -> list[dict[str, Any]]:
+    """The worm, as thick along its axis, and its gear in the middle plane."""
+    diameter, module = worm.dimensions.worm_diameter, worm.module
+    threads = {
+        "module": module,
+        "pitch_diameter": diameter,
+        "outside_diameter": diameter + 2.0 * FULL_DEPTH_ADDENDUM * module,
+        "root_diameter": diameter - 2.0 * FULL_DEPTH_DEDENDUM * module,
+        "base_diameter": None,
+        "tooth_thickness": 0.5 * math.pi * module,
+        "undercut": False,
+    }
+    return [threads, _describe_dimensions(worm.gear, worm.gear.is_undercut)]
+
+
+FAMILY = Family(GearTrainAnalysisRequest, GearTrainAnalysis)

@@ -1,0 +1,212 @@
+"""The meshes of an ordinary gear train under load: contact, forces and stresses, at one speed of the input."""
+
+from __future__ import annotations
+
+import itertools
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+from pydantic import Field
+
+from kinematics.gear.teeth import FULL_DEPTH_ADDENDUM, FULL_DEPTH_DEDENDUM
+from kinematics.gear.train import OrdinaryTrain, TrainStage
+from synthesis.model.answer import optional_field
+from synthesis.model.gears.answer import GearNumbers, MeshGeometry, describe_meshes
+from synthesis.model.gears.strength import (
+    LoadedPair,
+    PairStrength,
+    StrengthMethod,
+    build_stage_contact,
+    describe_strength,
+    mark_idlers,
+)
+
+
+@dataclass(frozen=True)
+class Flow:
+    """Power on its way through a train.
+
+    Parameters
+    ----------
+    train : OrdinaryTrain
+    shares : tuple of tuple of float or None
+        Share of the power that each mesh of each stage passes on; None of one that cannot run.
+    torques : tuple of float
+        On the input shaft and on the shaft behind each stage, N m.
+    speed : float
+        Of the input, rad/s.
+    flows_back : bool
+        Whether the output drives.
+    unit : float
+        Of the lengths of the train, metres.
+    """
+
+    train: OrdinaryTrain
+    shares: tuple[tuple[float | None, ...], ...]
+    torques: tuple[float, ...]
+    speed: float
+    flows_back: bool
+    unit: float
+
+
+class LoadedMesh(MeshGeometry):
+    """A mesh with its contact and its load."""
+
+    path_of_contact: float
+    approach: float = Field(description="Part of the contact path before the pitch point, with the driver driving.")
+    recess: float
+    clearance: float
+    efficiency: float | None = Field(description="Null if fewer than one pair of teeth is in contact.")
+    pitch_line_velocity: float = Field(
+        description="At the first position, length units per second; of a worm that of its own threads."
+    )
+    tangential_force: float = Field(description="N; of a worm that on the gear, which is axial on the worm.")
+    radial_force: float = Field(
+        description="Radial force that separates the gears, N; for bevel gears the one on the driver."
+    )
+    radial_forces: GearNumbers | None = optional_field(
+        "N, of bevel gears: on the driver and on the driven gear, each towards its axis. Of all others both are "
+        "`radial_force`."
+    )
+    axial_force: GearNumbers | None = optional_field(
+        "N, of helical, bevel and worm gears: on the driver and on the driven gear. Of helical gears positive where "
+        "it points along the axis about which the speed of their shafts is counted (of a train with bevel or worm "
+        "stages the `axis` in `shafts`, otherwise the input's) while the input's speed is positive, and against it "
+        "while that is negative; of bevel gears positive away from the apex; of a worm its size."
+    )
+    strength: PairStrength | None = optional_field("Stresses, if a method is given.")
+
+
+def list_loaded_meshes(
+    flow: Flow, strength: StrengthMethod | None, widths: Sequence[float | None]
+) -> list[dict[str, Any]]:
+    """Every mesh with its contact, its forces and its stresses, in the shape of :class:`LoadedMesh`.
+
+    Parameters
+    ----------
+    flow : Flow
+    strength : StrengthMethod or None
+        How stresses are estimated; they are left out without.
+    widths : sequence of float or None
+        Of the face of each stage, where it is stated; length units.
+    """
+    train = flow.train
+    geometries = iter(describe_meshes(train))
+    loaded: list[dict[str, Any]] = []
+    for number, (stage, meshes, efficiencies, turns, torque) in enumerate(
+        zip(train.stages, train.meshes, flow.shares, train.speeds, flow.torques[:-1], strict=True)
+    ):
+        begin = len(loaded)
+        if stage.kind == "worm":
+            told = _describe_loaded_worm(flow, stage, torque, float(turns[0]) * flow.speed)
+            loaded.append({**next(geometries).model_dump(), **told, "efficiency": efficiencies[0]})
+            continue
+        # The tangential force passes through an idler; each mesh takes its losses from it. It is that of the gear that
+        # drives: where the output does, a mesh has lost its share before its force reaches the driver.
+        radius = _compute_force_radius(stage, train)
+        if stage.shifts != (0.0, 0.0):
+            radius *= meshes[0].centre_distance / meshes[0].standard_distance
+        force = abs(torque) / (radius * flow.unit)
+        for (driver, driven), mesh, share, turn in zip(
+            itertools.pairwise(stage.gears), meshes, efficiencies, turns[:-1], strict=True
+        ):
+            passed = 1.0 if share is None else share
+            if flow.flows_back:
+                force /= passed
+            parts = mesh.approach, mesh.recess
+            approach, recess = parts if driver <= driven else parts[::-1]
+            loaded.append(
+                {
+                    **next(geometries).model_dump(),
+                    "path_of_contact": mesh.path_of_contact,
+                    "approach": approach,
+                    "recess": recess,
+                    "clearance": mesh.clearance,
+                    "efficiency": share,
+                    "pitch_line_velocity": abs(float(turn) * flow.speed)
+                    * (
+                        radius
+                        if stage.shifts != (0.0, 0.0) or stage.kind != "external"
+                        else 0.5 * stage.module * driver
+                    ),
+                    "tangential_force": force,
+                    "radial_force": force * math.tan(mesh.pressure_angle),
+                    **_compute_side_forces(stage, train, force, 1.0 if (turn > 0) != flow.flows_back else -1.0),
+                }
+            )
+            if strength is not None:
+                place = len(loaded) - begin - 1
+                power = force * abs(float(turn) * flow.speed) * flow.unit * 0.5 * stage.module * driver
+                if stage.shifts != (0.0, 0.0):
+                    power *= mesh.centre_distance / mesh.standard_distance
+                power /= math.cos(stage.helix_angle)
+                turning = abs(float(turn) * flow.speed)
+                loaded[-1]["strength"] = _describe_strength(
+                    flow, strength, stage, place, widths[number], power, turning
+                )
+            if not flow.flows_back:
+                force *= passed
+    return loaded
+
+
+def _compute_force_radius(stage: TrainStage, train: OrdinaryTrain) -> float:
+    """Radius of the driver at which the force of an unshifted stage stands."""
+    if stage.kind == "helical":
+        return 0.5 * stage.module * stage.driver / math.cos(stage.helix_angle)
+    radius = 0.5 * stage.module * stage.driver
+    if stage.kind == "bevel" and stage.face_width is not None:
+        radius -= 0.5 * stage.face_width * math.sin(stage.cones(train.pressure_angle).cones[0])
+    return radius
+
+
+def _compute_side_forces(stage: TrainStage, train: OrdinaryTrain, force: float, way: float) -> dict[str, Any]:
+    """Axial forces of helical and bevel gears, and the radial ones of the latter, at a tangential force."""
+    if stage.kind == "helical":
+        axial = force * math.tan(stage.helix_angle) * way
+        return {"axial_force": {"driver": axial, "driven": -axial}}
+    if stage.kind == "bevel":
+        apart, (one, two) = force * math.tan(train.pressure_angle), stage.cones(train.pressure_angle).cones
+        return {
+            "radial_force": apart * math.cos(one),
+            "radial_forces": {"driver": apart * math.cos(one), "driven": apart * math.cos(two)},
+            "axial_force": {"driver": apart * math.sin(one), "driven": apart * math.sin(two)},
+        }
+    return {}
+
+
+def _describe_loaded_worm(flow: Flow, stage: TrainStage, torque: float, turning: float) -> dict[str, Any]:
+    """Contact in the middle plane and forces of a worm and its gear."""
+    worm, friction = stage.worm(flow.train.pressure_angle), stage.friction
+    # Where the gear drives, friction is against its way.
+    sign = -1.0 if flow.flows_back else 1.0
+    forces = worm.forces(abs(torque) / flow.unit, sign * friction)
+    return {
+        "path_of_contact": worm.approach + worm.recess,
+        "approach": worm.approach,
+        "recess": worm.recess,
+        "clearance": (FULL_DEPTH_DEDENDUM - FULL_DEPTH_ADDENDUM) * worm.module,
+        "pitch_line_velocity": abs(turning) * 0.5 * worm.dimensions.worm_diameter,
+        "tangential_force": forces.gear,
+        "radial_force": forces.radial,
+        "axial_force": {"driver": forces.gear, "driven": forces.worm},
+    }
+
+
+def _describe_strength(
+    flow: Flow,
+    method: StrengthMethod,
+    stage: TrainStage,
+    place: int,
+    width: float | None,
+    power: float,
+    turning: float,
+) -> dict[str, Any]:
+    """Stresses of one mesh of a stage, its gears as they stand in the order of the power, in millimetres."""
+    unit = 1000.0 * flow.unit
+    contact = build_stage_contact(stage, place, flow.train.pressure_angle, unit)
+    ways = mark_idlers(stage, place)
+    return describe_strength(
+        LoadedPair(contact, power, turning, ways, helix_angle=stage.helix_angle), method, width, unit
+    )

@@ -1,0 +1,106 @@
+"""The strength of a given planetary train: what of the design it needs, and the load of every mesh as it turns."""
+
+from __future__ import annotations
+
+import math
+from fractions import Fraction
+from typing import Annotated, Any
+
+from pydantic import Field, ValidationError
+
+from kinematics.gear.arrangements import ARRANGEMENTS, Arrangement
+from kinematics.gear.assembly import is_coaxial
+from kinematics.gear.planetary import Train
+from kinematics.gear.power import PowerFlow
+from kinematics.gear.teeth import FULL_DEPTH_ADDENDUM, Gear
+from synthesis.model.dynamics.request import METRES_PER_UNIT
+from synthesis.model.gears.planet_strength import MeshLoad, PlanetStrength, count_planes, describe_strengths
+from synthesis.model.gears.request import CommonPressureAngle, Module
+from synthesis.model.problem import Count, Statement
+
+Share = Annotated[float, Field(strict=True, gt=0.0, le=1.5)]
+
+
+class StrengthTrain(Statement):
+    """Fields of a design besides its teeth that the strength needs."""
+
+    planets: Annotated[Count, Field(ge=1, le=12)]
+    module: Module
+    pressure_angle: CommonPressureAngle = 20.0
+    addendum: dict[str, Share] = Field(default={})
+
+    def build_gears(self, arrangement: Arrangement, teeth: dict[str, int]) -> dict[str, Gear]:
+        """The gears by name, in the module's unit."""
+        return {
+            name: Gear(
+                count,
+                self.module,
+                math.radians(self.pressure_angle),
+                self.addendum.get(name, FULL_DEPTH_ADDENDUM),
+                internal=arrangement.places[name].internal,
+            )
+            for name, count in teeth.items()
+        }
+
+
+def parse_strength_train(mechanism: Any) -> StrengthTrain:
+    """What strength needs of the mechanism of a request; raises pydantic's ValidationError where it lacks some."""
+    stated = {name: getattr(mechanism, name) for name in StrengthTrain.model_fields}
+    return StrengthTrain.model_validate({name: value for name, value in stated.items() if value is not None})
+
+
+def find_strength_errors(mechanism: Any, method: PlanetStrength) -> list[tuple[str, str]]:
+    """Return errors of a valid mechanism whose strength is requested."""
+    faults = [(f"/strength{path}", detail) for path, detail in method.find_errors()]
+    arrangement = ARRANGEMENTS.get(mechanism.arrangement)
+    if arrangement is None:
+        return [*faults, ("/strength", "give an arrangement; meshes alone do not define the gears")]
+    if arrangement.bevel:
+        return [
+            *faults,
+            ("/strength", "the strength of a bevel differential is not estimated, only that of spur teeth"),
+        ]
+    if not is_coaxial(arrangement, mechanism.teeth):
+        faults.append(
+            (
+                "/mechanism/teeth",
+                "unshifted gears with these teeth are not coaxial; strength is estimated for unshifted gears only",
+            )
+        )
+    faces, planes = mechanism.face_widths, count_planes(arrangement)
+    if faces is not None and len(faces) != planes:
+        faults.append(("/mechanism/face_widths", f"expected {planes}, one for each plane"))
+    if faces is None and not method.required_safeties:
+        faults.append(("/mechanism/face_widths", "give it, or the allowable stresses from which it is computed"))
+    try:
+        whole = parse_strength_train(mechanism)
+    except ValidationError as error:
+        wrong = [("/".join(["/mechanism", *map(str, one["loc"])]), one["msg"]) for one in error.errors()]
+        return [*faults, *wrong]
+    unknown = [name for name in whole.addendum if name not in arrangement.places]
+    faults += [(f"/mechanism/addendum/{name}", f"expected one of {', '.join(arrangement.places)}") for name in unknown]
+    return [*faults, *((f"/strength{path}", detail) for path, detail in method.find_planet_errors(whole.planets))]
+
+
+def describe_mesh_strengths(
+    mechanism: Any,
+    method: PlanetStrength,
+    train: Train,
+    rates: dict[str, Fraction | None],
+    flow: PowerFlow,
+    speed: float,
+    length_unit: str,
+) -> list[dict[str, Any] | None]:
+    """The strength of every mesh in the shape of ``PairStrength``; None of one that carries nothing.
+
+    ``rates`` are speeds over the input's, ``speed`` is the input's, rad/s.
+    """
+    arrangement = ARRANGEMENTS[mechanism.arrangement]
+    loads = []
+    for mesh, load in zip(train.meshes, flow.meshes, strict=True):
+        past = (rates[mesh.first] or Fraction(0)) - (rates[mesh.carrier] or Fraction(0))
+        loads.append(MeshLoad((float(load.first_torque), float(load.second_torque)), float(past) * abs(speed)))
+    whole = parse_strength_train(mechanism)
+    gears = whole.build_gears(arrangement, mechanism.teeth)
+    unit = 1000.0 * METRES_PER_UNIT[length_unit]
+    return describe_strengths(arrangement, gears, loads, whole.planets, method, mechanism.face_widths, unit)

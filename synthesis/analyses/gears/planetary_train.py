@@ -1,0 +1,441 @@
+"""The analysis of a planetary train: speeds, freedoms, torques, powers, efficiency, for any arrangement.
+
+A train is a known arrangement with its teeth, as in a design, or a list of meshes of the client's own: rows of gears on
+bodies with the carriers of their axes. Speeds are exact; what contradicts the train or stays open is told.
+"""
+
+from __future__ import annotations
+
+from fractions import Fraction
+from typing import Annotated, Any, Literal
+
+from pydantic import ConfigDict, Field
+
+from kinematics.gear.arrangements import ARRANGEMENTS
+from kinematics.gear.planetary import EXTERNAL, GROUND, INTERNAL, Mesh, Speeds, Train, compute_speed_ratio, solve_speeds
+from kinematics.gear.power import PowerFlow, solve_power_flow
+from synthesis.analyses.base import DrivenAnalysis, DrivenRequest, Family
+from synthesis.analyses.gears.drift import WANTED_DESCRIPTION, Drift, describe_drift
+from synthesis.analyses.gears.given_train import GivenRatio
+from synthesis.analyses.gears.planet_strength import describe_mesh_strengths, find_strength_errors
+from synthesis.analyses.gears.shift_table import (
+    MAX_STATES,
+    GivenElement,
+    ShiftState,
+    build_shift_table,
+    count_states,
+    find_element_errors,
+    list_default_elements,
+)
+from synthesis.model.answer import Answer, optional_field
+from synthesis.model.gears.planet_strength import PAIRS_NOTE, PlanetStrength
+from synthesis.model.gears.ratio_target import parse_decimal
+from synthesis.model.gears.request import ExactRatio
+from synthesis.model.gears.strength import PairStrength
+from synthesis.model.problem import Flag, Number, PositiveNumber, Statement
+
+MAX_MESHES = 8
+"""The directions of power are tried mesh by mesh, 2^8 ways at worst: half a second."""
+
+ToothCount = Annotated[int, Field(strict=True, ge=1, le=10_000)]
+Body = Annotated[str, Field(min_length=1, max_length=40)]
+
+
+class GivenMesh(Statement):
+    """Two gears in mesh: their bodies, the carrier of their axes (``ground`` where it stands still), their teeth."""
+
+    first: Body
+    second: Body
+    carrier: Body
+    first_teeth: ToothCount
+    second_teeth: ToothCount
+    internal: Flag = Field(
+        default=False,
+        description="Whether one gear has internal teeth or is the far side gear of a bevel differential.",
+    )
+
+
+class GivenPlanetaryTrain(Statement):
+    """An arrangement with teeth, or custom meshes. Other fields of a design are accepted, too."""
+
+    type: Literal["planetary_train"]
+    arrangement: str | None = None
+    teeth: dict[str, ToothCount] | None = None
+    meshes: list[GivenMesh] | None = Field(default=None, min_length=1, max_length=MAX_MESHES)
+    planet_bodies: list[Body] = Field(
+        default=[], max_length=24, description="Bodies that rotate freely; only with `meshes`."
+    )
+    input: Body | None = None
+    output: Body | None = None
+    fixed: Body | None = None
+    planets: Any = None
+    places: Any = None
+    module: Any = None
+    pressure_angle: Any = None
+    addendum: Any = None
+    face_widths: list[PositiveNumber | None] | None = Field(
+        default=None, max_length=8, description="Face width of each plane, as in a design, for `strength`."
+    )
+    ratio: GivenRatio | None = Field(
+        default=None, description="As in a design; compared with the teeth if all three members are given."
+    )
+
+    def build_train(self) -> Train:
+        """The speed equations; for a statement without faults."""
+        if self.meshes is None:
+            assert self.arrangement is not None
+            assert self.teeth is not None
+            return ARRANGEMENTS[self.arrangement].build_train(self.teeth)
+        rows = [
+            Mesh(
+                row.first,
+                row.second,
+                row.carrier,
+                row.first_teeth,
+                row.second_teeth,
+                INTERNAL if row.internal else EXTERNAL,
+            )
+            for row in self.meshes
+        ]
+        return Train(tuple(rows), frozenset(self.planet_bodies))
+
+    def compute_ratio(self) -> Fraction | None:
+        """Input over output speed with the fixed member held; None where one of them is not stated, or none follows."""
+        if self.input is None or self.output is None or self.fixed is None:
+            return None
+        return compute_speed_ratio(self.build_train(), self.input, self.output, [self.fixed])
+
+    def find_errors(self) -> list[tuple[str, str]]:
+        """What no single field shows."""
+        if self.meshes is not None:
+            if self.arrangement is not None or self.teeth is not None:
+                return [("/mechanism/meshes", "give an arrangement with teeth, or meshes, not both")]
+            return [
+                (f"/mechanism/meshes/{k}", "its two gears and their carrier must be three different bodies")
+                for k, row in enumerate(self.meshes)
+                if len({row.first, row.second, row.carrier}) < 3
+            ]
+        if self.arrangement not in ARRANGEMENTS:
+            return [("/mechanism/arrangement", f"expected one of {', '.join(ARRANGEMENTS)}, or meshes")]
+        names = ARRANGEMENTS[self.arrangement].gear_names
+        if set(self.teeth or {}) != set(names):
+            return [("/mechanism/teeth", f"expected teeth for {', '.join(names)}")]
+        return []
+
+
+class PlanetaryAnalysisRequest(DrivenRequest[GivenPlanetaryTrain]):
+    """A planetary train, the speeds that are known, and what it carries."""
+
+    model_config = ConfigDict(
+        title="Planetary train: speeds and torques",
+        json_schema_extra={
+            "examples": [
+                {
+                    "mechanism": {
+                        "type": "planetary_train",
+                        "arrangement": "simple",
+                        "teeth": {"sun": 40, "planet": 20, "ring": 80},
+                        "input": "sun",
+                        "output": "carrier",
+                        "fixed": "ring",
+                    },
+                    "motion": {"at": 0.0, "speed_rpm": 1500.0},
+                    "torques": {"sun": 20.0},
+                    "mesh_efficiency": 0.99,
+                }
+            ]
+        },
+    )
+
+    speeds: dict[Body, Number] | None = Field(
+        default=None,
+        max_length=24,
+        description="Known speeds by body, in any one unit, 0 for a body that is held; in place of the input and fixed "
+        "member turning by `motion`.",
+    )
+    locked: list[tuple[Body, Body]] = Field(
+        default=[], max_length=24, description="Pairs of bodies that a clutch connects."
+    )
+    torques: dict[Body, Number] | None = Field(
+        default=None, max_length=24, description="Known torques from outside by member; null: 1 on the input."
+    )
+    loads: list[Body] | None = Field(
+        default=None,
+        max_length=24,
+        description="Members that something outside drives, brakes or holds; null: those with known speeds or torques, "
+        "and the output.",
+    )
+    mesh_efficiency: Annotated[float, Field(strict=True, gt=0.5, le=1.0)] = Field(
+        default=0.99, description="Efficiency of every mesh as an ordinary pair."
+    )
+    include: list[Literal["shift_table"]] = Field(
+        default=[],
+        max_length=1,
+        description="`shift_table`: which clutches and brakes give which ratio between input and output.",
+    )
+    elements: list[GivenElement] | None = Field(
+        default=None,
+        min_length=1,
+        max_length=40,
+        description="The clutches and brakes of the shift table. Left out: a brake on every member but input and "
+        "output, and a clutch between any two. Without the mechanism's `input`, clutches to `input` put the input "
+        "shaft on a member.",
+    )
+    wanted_ratio: ExactRatio | None = Field(default=None, description=WANTED_DESCRIPTION)
+    length_unit: Literal["mm", "cm", "m", "in"] = Field(default="mm", description="Unit of the module, for `strength`.")
+    strength: PlanetStrength | None = Field(
+        default=None,
+        description="Stresses of every mesh of an arrangement with its `module` and `planets`, under the `torques` "
+        "stated, N m, and the speed of the motion at its first position; over `face_widths` or over the least that "
+        f"keeps the allowable stresses. {PAIRS_NOTE}",
+    )
+
+    def find_errors(self) -> list[tuple[str, str]]:
+        """What no single field shows."""
+        faults = [*self.mechanism.find_errors(), *super().find_errors()]
+        return faults or self._find_unknown_bodies()
+
+    def _find_unknown_bodies(self) -> list[tuple[str, str]]:
+        """Names in speeds, clutches, torques and loads that the train does not have."""
+        train = self.mechanism.build_train()
+        named = [
+            *((f"/speeds/{body}", body) for body in self.speeds or ()),
+            *((f"/locked/{k}", body) for k, pair in enumerate(self.locked) for body in pair),
+            *((f"/mechanism/{part}", getattr(self.mechanism, part)) for part in ("input", "output", "fixed")),
+        ]
+        known = {*train.bodies, GROUND, None}
+        faults = [(path, f"expected one of {', '.join(train.bodies)}") for path, body in named if body not in known]
+        loaded = [
+            *((f"/torques/{body}", body) for body in self.torques or ()),
+            *((f"/loads/{k}", body) for k, body in enumerate(self.loads or ())),
+        ]
+        faults += [
+            (path, f"expected one of the members {', '.join(train.members)}")
+            for path, body in loaded
+            if body not in train.members
+        ]
+        if self.speeds is None and self.mechanism.input is None and not self.include:
+            faults.append(("/speeds", "give known speeds, or the mechanism's input and fixed member"))
+        return faults or [*self._find_table_errors(), *self._find_ratio_errors(), *self._find_strength_errors()]
+
+    def _find_strength_errors(self) -> list[tuple[str, str]]:
+        """Return missing fields if the strength is requested."""
+        if self.strength is None:
+            return []
+        faults = find_strength_errors(self.mechanism, self.strength)
+        if self.mechanism.input is None:
+            faults.append(("/mechanism/input", "give it; it turns with the speed of the motion"))
+        if self.speeds is not None:
+            faults.append(("/speeds", "strength needs the speed of the motion; give input and fixed member instead"))
+        if self.locked:
+            faults.append(
+                ("/locked", "the torque of a clutch is unknown, so that no strength can be computed; leave one out")
+            )
+        if not any((self.torques or {}).values()) or float(self.motion.list_inputs()[1][0]) == 0.0:
+            faults.append(("/strength", "give a torque and a speed; without them no power is transmitted"))
+        return faults
+
+    def _find_ratio_errors(self) -> list[tuple[str, str]]:
+        stated, ratio = self.mechanism.ratio, self.mechanism.compute_ratio()
+        if stated is not None and ratio is not None and (faults := stated.find_errors(ratio)):
+            return faults
+        if self.wanted_ratio is None or (self.mechanism.input is not None and self.mechanism.output is not None):
+            return []
+        return [("/wanted_ratio", "give the mechanism's input and output, too")]
+
+    def _find_table_errors(self) -> list[tuple[str, str]]:
+        """Return errors of a requested shift table."""
+        if not self.include:
+            return [] if self.elements is None else [("/elements", 'ask for the table too: "include": ["shift_table"]')]
+        train, driving, driven = self.mechanism.build_train(), self.mechanism.input, self.mechanism.output
+        ends = [(part, body) for part, body in (("input", driving), ("output", driven)) if body is not None]
+        faults = [
+            (f"/mechanism/{part}", f"expected one of the members {', '.join(train.members)}")
+            for part, body in ends
+            if body not in train.members
+        ]
+        if driven is None:
+            faults.append(("/mechanism/output", "give the mechanism's output for the shift table"))
+        elif driven == driving:
+            faults.append(("/mechanism/output", f"{driven} is the input"))
+        if driving is None and self.elements is None:
+            faults.append(("/elements", "give the mechanism's input, or clutches from the input shaft to members"))
+        faults += find_element_errors(train, driving, self.elements or [])
+        if not faults and (states := count_states(train, driving, self._list_elements())) > MAX_STATES:
+            faults.append(("/elements", f"{states} choices of engaged elements are more than {MAX_STATES}"))
+        return faults
+
+    def _list_elements(self) -> list[GivenElement]:
+        """The elements of the shift table, of a request without faults."""
+        if self.elements is not None:
+            return self.elements
+        return list_default_elements(
+            self.mechanism.build_train(), str(self.mechanism.input), str(self.mechanism.output)
+        )
+
+    def build_table(self) -> list[dict[str, Any]]:
+        """The shift table."""
+        mechanism = self.mechanism
+        train = mechanism.build_train()
+        return build_shift_table(
+            train, mechanism.input, str(mechanism.output), self._list_elements(), self.mesh_efficiency
+        )
+
+    def build_answer(self) -> dict[str, Any]:
+        """Everything about the train, in the shape of :class:`PlanetaryAnalysis`."""
+        return _analyze_train(self)
+
+
+class TurningBody(Answer):
+    """A body and its motion; series are given if the input moves by the requested motion."""
+
+    name: str
+    planet: bool
+    speed: float | None = Field(
+        description="Speed in the unit of the known speeds; null if it does not follow from them."
+    )
+    exact_speed: str | None = Field(description="Speed as a fraction, e.g. -5/2.")
+    torque: float | None = Field(description="External torque, positive in the direction of positive speeds.")
+    power: float | None = Field(description="Torque times speed; positive if power enters.")
+    angle: list[float] | None = Field(description="Angle from the position at input angle 0, degrees.")
+    omega: list[float] | None = Field(description="rad/s")
+    alpha: list[float] | None = Field(description="rad/s²")
+
+
+class LoadedPlanetaryMesh(Answer):
+    """A mesh and what it carries; power is relative to its carrier, positive where the first gear drives."""
+
+    first: str
+    second: str
+    carrier: str
+    first_torque: float | None
+    second_torque: float | None
+    rolling_power: float | None
+    loss: float | None
+    strength: PairStrength | None = optional_field(
+        "Stresses of one copy of the mesh, if a method is given; left out for an unloaded mesh."
+    )
+
+
+class PlanetaryAnalysis(DrivenAnalysis):
+    """Analysis of a planetary train."""
+
+    valid: list[bool] = Field(description="Whether the known speeds agree with the train and determine all others.")
+    freedom: int = Field(description="Number of speeds that can be chosen freely.")
+    open_speeds: int = Field(description="Speeds that the known ones do not determine.")
+    contradiction: str | None = Field(description="The first known speed that the train does not allow.")
+    ratio: float | None = Field(description="Input speed over output speed.")
+    exact_ratio: str | None
+    efficiency: float | None = Field(description="Output power over input power.")
+    self_locking: bool | None
+    rolling_power: float | None = Field(description="Largest power of a mesh over the input power, without losses.")
+    branch_power: float | None = Field(description="Largest power between a row and a member, over the input power.")
+    circulating_power: bool | None = Field(description="A warning: a member carries more power than is put in.")
+    bodies: list[TurningBody]
+    meshes: list[LoadedPlanetaryMesh]
+    shift_table: list[ShiftState] | None = optional_field(
+        "Shift table, largest ratio first, if requested by `include`."
+    )
+    drift: Drift | None = optional_field("Given if a required ratio is given.")
+
+
+def _analyze_train(request: PlanetaryAnalysisRequest) -> dict[str, Any]:
+    """Speeds of all bodies; torques and powers too where the speeds are complete."""
+    at, speed, time = request.motion.list_inputs()
+    mechanism, train = request.mechanism, request.mechanism.build_train()
+    turning = request.speeds is None and mechanism.input is not None
+    known = {body: parse_decimal(value) for body, value in (request.speeds or {}).items()}
+    if turning:
+        held = {} if mechanism.fixed is None else {mechanism.fixed: Fraction(0)}
+        known = {**held, str(mechanism.input): Fraction(1)}
+    solution = solve_speeds(train, known, request.locked)
+    complete = solution.open == 0 and solution.contradiction is None
+    # Which way power flows follows from the torques and the speeds as the motion has them at its first position.
+    backwards = turning and float(speed[0]) < 0.0
+    flow = _compute_flow(request, train, solution, known, -1 if backwards else 1) if complete else None
+    unit = abs(float(speed[0])) if turning else 1.0
+    ratio = _compute_ratio(request, solution) if complete else None
+    bodies = []
+    for body in train.bodies:
+        rate = solution.values[body]
+        share = None if rate is None else float(rate)
+        bodies.append(
+            {
+                "name": body,
+                "planet": body in train.planets,
+                "speed": None if share is None else share * (float(speed[0]) if turning else 1.0),
+                "exact_speed": None if rate is None else str(rate),
+                "torque": None if flow is None or body in train.planets else float(flow.torques[body]),
+                "power": None if flow is None or body in train.planets else float(flow.powers[body]) * unit,
+                **(
+                    request.motion.drive_geared(share, at, speed)
+                    if turning and share is not None
+                    else dict.fromkeys(("angle", "omega", "alpha"))
+                ),
+            }
+        )
+    asked: dict[str, Any] = {"shift_table": request.build_table()} if request.include else {}
+    strong: list[dict[str, Any] | None] = [None] * len(train.meshes)
+    if request.strength is not None and flow is not None:
+        drive = request.mechanism, request.strength, train, solution.values, flow, float(speed[0])
+        strong = describe_mesh_strengths(*drive, request.length_unit)
+    return {
+        "input_angle": at.tolist(),
+        "time": None if time is None else time.tolist(),
+        "valid": [complete] * len(at),
+        "freedom": solution.freedom,
+        "open_speeds": solution.open,
+        "contradiction": solution.contradiction,
+        "ratio": None if ratio is None else float(ratio),
+        "exact_ratio": None if ratio is None else str(ratio),
+        "efficiency": None if flow is None or flow.efficiency is None else float(flow.efficiency),
+        "self_locking": None if flow is None else flow.self_locking,
+        "rolling_power": None if flow is None else float(flow.largest_rolling_power),
+        "branch_power": None if flow is None else float(flow.largest_branch_power),
+        "circulating_power": None if flow is None else flow.circulates,
+        "bodies": bodies,
+        "meshes": [
+            {
+                "first": mesh.first,
+                "second": mesh.second,
+                "carrier": mesh.carrier,
+                "first_torque": None if flow is None else float(flow.meshes[k].first_torque),
+                "second_torque": None if flow is None else float(flow.meshes[k].second_torque),
+                "rolling_power": None if flow is None else float(flow.meshes[k].rolling_power) * unit,
+                "loss": None if flow is None else float(flow.meshes[k].loss) * unit,
+                **({} if strong[k] is None else {"strength": strong[k]}),
+            }
+            for k, mesh in enumerate(train.meshes)
+        ],
+        **asked,
+        **describe_drift(ratio, request.wanted_ratio),
+    }
+
+
+def _compute_ratio(request: PlanetaryAnalysisRequest, solution: Speeds) -> Fraction | None:
+    """Input over output speed, where both are named and turn."""
+    one, other = request.mechanism.input, request.mechanism.output
+    if one is None or other is None or not solution.values[other]:
+        return None
+    rates = solution.values[one], solution.values[other]
+    return None if rates[0] is None or not rates[1] else rates[0] / rates[1]
+
+
+def _compute_flow(
+    request: PlanetaryAnalysisRequest, train: Train, solution: Speeds, known: dict[str, Fraction], sense: int
+) -> PowerFlow | None:
+    """Torques and powers, where the known torques determine them; none with clutches, whose torque no mesh tells."""
+    if request.locked:
+        return None
+    torques = {body: parse_decimal(value) for body, value in (request.torques or {}).items()}
+    if request.torques is None and request.mechanism.input is not None:
+        torques = {request.mechanism.input: Fraction(1)}
+    loads = request.loads
+    if loads is None:
+        stated = [*known, *torques, request.mechanism.input, request.mechanism.output, request.mechanism.fixed]
+        loads = [body for body in dict.fromkeys(stated) if body is not None and body in train.members]
+    rates = {body: sense * rate for body, rate in solution.values.items() if rate is not None}
+    return solve_power_flow(train, rates, loads, torques, parse_decimal(request.mesh_efficiency))
+
+
+FAMILY = Family(PlanetaryAnalysisRequest, PlanetaryAnalysis)

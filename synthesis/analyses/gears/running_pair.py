@@ -1,0 +1,392 @@
+"""The analysis of two cylindrical gears as they run: shifted, helical or spur, with an external gear or a ring.
+
+Everything is told in the plane of rotation. External gears are cut by the rack of full-depth teeth, a ring is shaped by
+a cutter; both decide where an involute begins, and so whether contact reaches into a fillet. Lengths are in the unit of
+the module.
+"""
+
+from __future__ import annotations
+
+import cmath
+import math
+from dataclasses import dataclass, replace
+from typing import Annotated, Any, Literal
+
+import numpy as np
+from pydantic import ConfigDict, Field
+
+from kinematics.errors import DimensionError
+from kinematics.gear.flanks import (
+    Contact,
+    ShapedRing,
+    compute_rack_form,
+    compute_straight_depth,
+    compute_tip_shortening,
+)
+from kinematics.gear.helical import HelicalGear
+from kinematics.gear.profile import draw_half_space
+from kinematics.gear.teeth import FULL_DEPTH_ADDENDUM, FULL_DEPTH_DEDENDUM, Gear, Mesh
+from synthesis.analyses.base import AnalysisRequest, Family
+from synthesis.analyses.gears.gear_pair import MILLIMETRE, RAD_PER_S_PER_RPM
+from synthesis.mechanisms.base import MechanismError
+from synthesis.model.answer import Answer, optional_field
+from synthesis.model.gears.answer import LIMIT_TOLERANCE, apply_tool_contact
+from synthesis.model.gears.mesh_limits import DEFAULT_CUTTER_TEETH, choose_cutter_teeth
+from synthesis.model.gears.request import Addendum, PressureAngle, ShiftCoefficient, ToothNumber
+from synthesis.model.gears.strength import LoadedPair, PairStrength, StrengthSpec, describe_strength
+from synthesis.model.problem import Flag, Number, PositiveNumber, Statement
+
+
+@dataclass(frozen=True)
+class RunningPair:
+    """Two gears in the plane of rotation, where their involutes begin, and the cutter of a ring.
+
+    ``undercut``: whether the rack takes away from the flanks above the base circles; a ring is shaped.
+    """
+
+    contact: Contact
+    tight: Mesh
+    shortening: float
+    ring: ShapedRing | None
+    undercut: tuple[bool, bool]
+
+    @property
+    def cut_gears(self) -> tuple[Gear, Gear]:
+        """Both gears as they are cut."""
+        return self.contact.mesh.pinion, self.contact.mesh.gear
+
+    @property
+    def compute_root_radii(self) -> tuple[float, float]:
+        """Radii of the circles that the tools reach."""
+        one, two = self.cut_gears
+        return one.root_radius, two.root_radius if self.ring is None else self.ring.root_radius
+
+    @property
+    def compute_form_radii(self) -> tuple[float, float]:
+        """Radii at which the involutes begin; of a ring: end."""
+        one, two = (
+            math.hypot(gear.base_radius, form) for gear, form in zip(self.cut_gears, self.contact.forms, strict=True)
+        )
+        return one, two
+
+    @property
+    def compute_clearance(self) -> float:
+        """The smaller clearance between a tip and the mate's root."""
+        distance, (one, two), roots = self.contact.mesh.centre_distance, self.cut_gears, self.compute_root_radii
+        if two.internal:
+            return min(roots[1] - distance - one.tip_radius, two.tip_radius - distance - roots[0])
+        return min(distance - one.tip_radius - roots[1], distance - two.tip_radius - roots[0])
+
+
+class GivenGearPair(Statement):
+    """Two gears on parallel shafts, the second of them external or a ring."""
+
+    type: Literal["gear_pair"]
+    teeth: tuple[ToothNumber, ToothNumber]
+    module: PositiveNumber = Field(default=1.0, description="Module; of helical teeth in the normal plane.")
+    shift: tuple[ShiftCoefficient, ShiftCoefficient] = Field(
+        default=(0.0, 0.0), description="Profile shifts in modules, positive outwards, for a ring, too."
+    )
+    addendum: tuple[Addendum, Addendum] = Field(
+        default=(FULL_DEPTH_ADDENDUM, FULL_DEPTH_ADDENDUM),
+        description="Of both gears, modules. Full-depth teeth of a ring reach below the involute that a rack leaves on "
+        "the pinion; rings are made with less.",
+    )
+    internal: Flag = Field(default=False, description="Whether the second gear is a ring.")
+    helix_angle: Annotated[float, Field(strict=True, gt=-60.0, lt=60.0)] = Field(default=0.0, description="Degrees.")
+    pressure_angle: PressureAngle = Field(default=20.0, description="Pressure angle in the normal plane, degrees.")
+    centre_distance: PositiveNumber | None = Field(
+        default=None, description="Centre distance; by default the distance without play."
+    )
+    face_width: PositiveNumber | None = None
+    cutter_teeth: ToothNumber | None = Field(
+        default=None,
+        description=f"Of the cutter that shapes a ring; {DEFAULT_CUTTER_TEETH}, or half of the ring's where that is "
+        "less, "
+        "where left out. It has no shift, an addendum of 1.25 modules and sharp corners.",
+    )
+
+    def build_pair(self) -> RunningPair:
+        """The gears in mesh.
+
+        Raises
+        ------
+        MechanismError
+            For teeth that do not make a pair.
+        """
+        try:
+            return self._build_pair()
+        except DimensionError as error:
+            raise MechanismError(self._locate_error(error), str(error)) from error
+
+    def _locate_error(self, error: DimensionError) -> str:
+        named = {"centre distance": "/centre_distance", "dedendum": "/pressure_angle"}
+        return named.get(error.name, "/teeth")
+
+    def _build_pair(self) -> RunningPair:
+        angle, phi = math.radians(self.helix_angle), math.radians(self.pressure_angle)
+        full = self._build_gear(0, angle, phi), self._build_gear(1, angle, phi)
+        tight = Mesh(full[0], full[1])
+        shortening = compute_tip_shortening(Mesh(full[0], full[1], self.centre_distance))
+        one, two = (replace(gear, addendum=gear.addendum - shortening) for gear in full)
+        for gear, name in ((one, "first"), (two, "second")):
+            if not gear.internal and gear.tip_radius <= gear.base_radius:
+                raise MechanismError("/shift", f"leaves the {name} gear no tooth above its base circle")
+        depth = compute_straight_depth(phi, FULL_DEPTH_DEDENDUM) * math.cos(angle)
+        ring = ShapedRing(two, self._choose_cutter_teeth) if self.internal else None
+        contact = apply_tool_contact(Mesh(one, two, self.centre_distance), ring, angle)
+        cut, other = (compute_rack_form(gear, depth) < -LIMIT_TOLERANCE * one.module for gear in (one, two))
+        return RunningPair(contact, tight, shortening, ring, (cut, other and ring is None))
+
+    def _build_gear(self, place: int, angle: float, phi: float) -> Gear:
+        plain = HelicalGear(self.teeth[place], self.module, angle, phi).transverse_gear
+        shift, ring = self.shift[place] * math.cos(angle), self.internal and place == 1
+        addendum = self.addendum[place] * math.cos(angle)
+        return replace(plain, addendum=addendum, shift=shift, internal=ring)
+
+    @property
+    def _choose_cutter_teeth(self) -> int:
+        return int(choose_cutter_teeth(self.teeth[1])) if self.cutter_teeth is None else self.cutter_teeth
+
+
+class RunningGear(Answer):
+    """One gear of a pair; lengths in the module's unit, thicknesses in the plane of rotation."""
+
+    teeth: int
+    shift: float = Field(description="Modules.")
+    speed: float = Field(description="Speed, rad/s; the second of two external gears turns the other way.")
+    pitch_diameter: float
+    working_pitch_diameter: float
+    base_diameter: float
+    tip_diameter: float
+    root_diameter: float = Field(description="Radius left by the rack, or by the cutter of a ring.")
+    form_diameter: float = Field(
+        description="Radius at which the involute ends; for an undercut gear where its fillet crosses the flank."
+    )
+    tooth_thickness: float = Field(description="Value on the pitch circle.")
+    tip_thickness: float | None = Field(description="Null if a ring's tips lie below its base circle.")
+    least_shift: float | None = Field(description="Profile shift below which the rack undercuts; null for a ring.")
+    undercut: bool
+    involute_left: float = Field(
+        description="Length of the line of action between the deepest contact and the fillet; negative: contact in it."
+    )
+    fillet_interference: bool = Field(description="Whether the mate's tip reaches below the involute of this gear.")
+    specific_sliding: float | None = Field(
+        description="Ratio of sliding to rolling at the deepest contact; null at or below the base circle."
+    )
+
+
+class ToothSpace(Answer):
+    """The outline from the middle of one tooth to that of the next, in the plane of rotation, about the gear's centre.
+
+    A gear has it at every pitch of 360°/z. The teeth are in mesh with the first gear at the origin and the centre of
+    the second at (centre distance, 0); that of a ring at (−centre distance, 0).
+    """
+
+    x: list[float]
+    y: list[float]
+
+
+class RunningPairAnalysis(Answer):
+    """Analysis of two gears in mesh; degrees, lengths in the module's unit."""
+
+    ratio: float = Field(description="Speed of the first gear over the second, without sign.")
+    centre_distance: float
+    standard_distance: float = Field(description="Centre distance of the pitch circles.")
+    tight_distance: float = Field(description="Centre distance without play.")
+    working_pressure_angle: float = Field(description="In the plane of rotation.")
+    backlash: float = Field(description="Play on the working pitch circles; negative: the teeth would overlap.")
+    contact_ratio: float = Field(description="Contact ratio in the plane of rotation, limited by the tips.")
+    overlap_ratio: float | None = Field(description="Face width over axial pitch of helical teeth.")
+    tip_shortening: float = Field(
+        description="Shortening of the tips of shifted external gears that keeps the clearance."
+    )
+    clearance: float = Field(description="The smaller clearance between a tip and the mate's root.")
+    interference: bool = Field(description="Whether a tip touches the mate where it has no involute.")
+    tips_foul: bool = Field(description="Whether the tips of an internal pair collide off the line of action.")
+    cutter_teeth: int | None = Field(description="Teeth of the cutter that shapes a ring.")
+    ring_trimmed: bool | None = Field(description="Whether that cutter trims the tips of the ring.")
+    sound: bool = Field(
+        description="No undercut, no contact in a fillet, no fouling or pointed tips, no overlap, and at least one "
+        "pair of teeth in contact."
+    )
+    gears: list[RunningGear]
+    strength: PairStrength | None = optional_field("Stresses under the given power.")
+    profiles: list[ToothSpace | None] | None = optional_field(
+        "Where `include` asks for it: involutes and the fillets that the rack of the normal plane leaves, a ring "
+        "without those of its cutter; null where the rack's tooth would come to a point."
+    )
+
+
+class RunningPairRequest(AnalysisRequest):
+    """Two gears, and how fast the first one turns."""
+
+    model_config = ConfigDict(
+        title="Running pair of gears",
+        json_schema_extra={
+            "examples": [
+                {
+                    "mechanism": {
+                        "type": "gear_pair", "teeth": [20, 50], "module": 2.0, "shift": [0.4, 0.1], "face_width": 20.0
+                    },
+                    "speed_rpm": 1450.0,
+                    "strength": {
+                        "method": "agma", "power_kw": 3.0, "allowable_bending": [200.0, 180.0],
+                        "allowable_contact": [800.0, 750.0]
+                    },
+                }
+            ]
+        },
+    )  # fmt: skip
+
+    mechanism: GivenGearPair
+    speed_rpm: Number = Field(default=1.0, description="Speed of the first gear, revolutions per minute.")
+    length_unit: Literal["mm", "cm", "m", "in"] = Field(default="mm", description="Unit of the module, for `strength`.")
+    strength: StrengthSpec | None = Field(
+        default=None,
+        description="Power that the gears carry; stresses are for the face width, or for the minimum that carries it.",
+    )
+    include: list[Literal["profiles"]] = Field(
+        default=[], max_length=1, description="`profiles`: the true outlines of the teeth of both gears."
+    )
+
+    @classmethod
+    def analyze_cycle(cls, mechanism: dict[str, Any], steps: int) -> dict[str, Any]:
+        """The same at any input; such a pair is no design that a job returns."""
+        return cls.model_validate({"mechanism": mechanism}).build_answer()
+
+    def find_errors(self) -> list[tuple[str, str]]:
+        """What no single field shows."""
+        given, faults = self.mechanism, []
+        if given.internal and given.teeth[1] <= given.teeth[0]:
+            faults.append(("/mechanism/teeth", "a ring has more teeth than its pinion; give the ring second"))
+        if given.cutter_teeth is not None and not given.internal:
+            faults.append(("/mechanism/cutter_teeth", "only a ring is shaped by a cutter; leave it out"))
+        if given.cutter_teeth is not None and given.cutter_teeth >= given.teeth[1]:
+            faults.append(("/mechanism/cutter_teeth", "a cutter has fewer teeth than the ring that it shapes"))
+        return [*faults, *self._find_strength_errors()]
+
+    def _find_strength_errors(self) -> list[tuple[str, str]]:
+        given, stated = self.mechanism, self.strength
+        if stated is None:
+            return []
+        wrong = stated.find_errors() + (stated.find_ring_errors() if given.internal else [])
+        if given.helix_angle != 0.0 and not given.internal:
+            wrong += stated.find_helix_errors()
+        faults = [(f"/strength{path}", detail) for path, detail in wrong]
+        if given.helix_angle != 0.0 and given.internal:
+            faults.append(("/strength", "the strength of helical rings is not estimated; leave the helix angle out"))
+        if self.speed_rpm == 0.0:
+            faults.append(("/speed_rpm", "no power is transmitted at rest"))
+        if given.face_width is None and stated.allowable_bending is None and stated.allowable_contact is None:
+            faults.append(("/mechanism/face_width", "give it, or the allowable stresses from which it is computed"))
+        return faults
+
+    def build_answer(self) -> dict[str, Any]:
+        """Everything about the pair, in the shape of :class:`RunningPairAnalysis`."""
+        given, pair = self.mechanism, self.mechanism.build_pair()
+        mesh, angle = pair.contact.mesh, math.radians(given.helix_angle)
+        slack = LIMIT_TOLERANCE * mesh.pinion.module
+        gears = _describe_gears(given, pair, self.speed_rpm * RAD_PER_S_PER_RPM)
+        deepest = pair.contact.reaches
+        interferes = deepest[0] < -slack or (deepest[1] < -slack and not given.internal)
+        if given.internal:
+            interferes = interferes or mesh.gear.tip_radius < mesh.gear.base_radius
+        thin = any(gear["tip_thickness"] is None or gear["tip_thickness"] <= 0.0 for gear in gears)
+        faulty = any(gear["undercut"] or gear["fillet_interference"] for gear in gears)
+        trimmed = None if pair.ring is None else pair.ring.is_trimmed
+        backlash = pair.contact.backlash
+        bad = interferes or thin or faulty or mesh.tips_foul or bool(trimmed) or pair.compute_clearance < -slack
+        answer: dict[str, Any] = {
+            "ratio": given.teeth[1] / given.teeth[0],
+            "centre_distance": mesh.centre_distance,
+            "standard_distance": mesh.standard_distance,
+            "tight_distance": pair.tight.centre_distance,
+            "working_pressure_angle": math.degrees(mesh.pressure_angle),
+            "backlash": backlash,
+            "contact_ratio": mesh.contact_ratio,
+            "overlap_ratio": _compute_overlap(given, angle),
+            "tip_shortening": pair.shortening * mesh.pinion.module,
+            "clearance": pair.compute_clearance,
+            "interference": interferes,
+            "tips_foul": mesh.tips_foul,
+            "cutter_teeth": None if pair.ring is None else pair.ring.cutter_teeth,
+            "ring_trimmed": trimmed,
+            "sound": not bad and backlash >= -slack and mesh.contact_ratio >= 1.0,
+            "gears": gears,
+        }
+        if self.strength is not None:
+            answer["strength"] = self._describe_strength(self.strength)
+        if self.include:
+            answer["profiles"] = [_describe_space(pair, place, angle) for place in range(2)]
+        return answer
+
+    def _describe_strength(self, method: StrengthSpec) -> dict[str, Any]:
+        """Stresses of the pair in millimetres, whatever its unit."""
+        unit = 1.0 / MILLIMETRE[self.length_unit]
+        given = self.mechanism
+        distance = None if given.centre_distance is None else given.centre_distance * unit
+        large = given.model_copy(update={"module": given.module * unit, "centre_distance": distance})
+        helix = math.radians(given.helix_angle)
+        loaded = LoadedPair(
+            large.build_pair().contact,
+            1000.0 * method.power_kw,
+            abs(self.speed_rpm) * RAD_PER_S_PER_RPM,
+            helix_angle=helix,
+        )
+        return describe_strength(loaded, method, given.face_width, unit)
+
+
+def _describe_space(pair: RunningPair, place: int, helix_angle: float) -> dict[str, list[float]] | None:
+    """A space as :class:`ToothSpace`: the first gear's beside a tooth on the line of centres, the second's upon it."""
+    gear = pair.cut_gears[place]
+    try:
+        half = draw_half_space(gear, helix_angle)
+    except DimensionError:
+        return None
+    toward = math.pi / gear.teeth if place == 0 else 0.0 if gear.internal else math.pi
+    points = np.concatenate([half[::-1].conj(), half[1:]]) * cmath.exp(1j * toward)
+    return {"x": points.real.tolist(), "y": points.imag.tolist()}
+
+
+def _compute_overlap(given: GivenGearPair, angle: float) -> float | None:
+    if given.face_width is None or angle == 0.0:
+        return None
+    return given.face_width * math.sin(abs(angle)) / (math.pi * given.module)
+
+
+def _describe_gears(given: GivenGearPair, pair: RunningPair, speed: float) -> list[dict[str, Any]]:
+    contact, mesh = pair.contact, pair.contact.mesh
+    wide = math.cos(mesh.pinion.pressure_angle) / math.cos(mesh.pressure_angle)
+    turns = speed, speed * given.teeth[0] / given.teeth[1] * (1.0 if given.internal else -1.0)
+    depth = compute_straight_depth(math.radians(given.pressure_angle), FULL_DEPTH_DEDENDUM)
+    gears = []
+    for place, gear in enumerate(pair.cut_gears):
+        left, sliding = contact.margins[place], contact.specific_sliding[place]
+        tip, form = gear.thickness_at(gear.tip_radius), pair.compute_form_radii[place]
+        sine = math.sin(gear.pressure_angle)
+        least = depth - gear.pitch_radius * sine**2 / given.module
+        gears.append(
+            {
+                "teeth": given.teeth[place],
+                "shift": given.shift[place],
+                "speed": turns[place],
+                "pitch_diameter": 2.0 * gear.pitch_radius,
+                "working_pitch_diameter": 2.0 * gear.pitch_radius * wide,
+                "base_diameter": 2.0 * gear.base_radius,
+                "tip_diameter": 2.0 * gear.tip_radius,
+                "root_diameter": 2.0 * pair.compute_root_radii[place],
+                "form_diameter": 2.0 * form,
+                "tooth_thickness": gear.tooth_thickness,
+                "tip_thickness": None if math.isnan(tip) else tip,
+                "least_shift": None if gear.internal else least,
+                "undercut": pair.undercut[place],
+                "involute_left": left,
+                "fillet_interference": left < -LIMIT_TOLERANCE * gear.module,
+                "specific_sliding": sliding if math.isfinite(sliding) else None,
+            }
+        )
+    return gears
+
+
+FAMILY = Family(RunningPairRequest, RunningPairAnalysis)

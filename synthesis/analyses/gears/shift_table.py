@@ -1,0 +1,163 @@
+"""The shift table of a planetary train: which clutches and brakes give which ratio, and how fast all its bodies turn.
+
+A brake holds a member. A clutch joins two members, or the input shaft to a member. With a freedom of f as many elements
+are engaged at a time as leave every speed determined: f − 1 where the input sits on a member, f where clutches put it
+on one. Each such choice is a state; states that hold the output, or whose elements contradict one another, are none.
+"""
+
+from __future__ import annotations
+
+import itertools
+import math
+from collections.abc import Iterator, Sequence
+from fractions import Fraction
+from typing import Annotated, Any
+
+from pydantic import Field
+
+from kinematics.gear.planetary import Train, solve_speeds
+from kinematics.gear.power import solve_power_flow
+from synthesis.model.answer import Answer
+from synthesis.model.gears.ratio_target import parse_decimal
+from synthesis.model.problem import Statement
+
+INPUT_NAME = "input"
+"""The name of the input shaft in a clutch, where the input does not sit on a member."""
+
+MAX_STATES = 5000
+"""Maximum number of choices of engaged elements."""
+
+Name = Annotated[str, Field(min_length=1, max_length=40)]
+
+
+class GivenElement(Statement):
+    """A brake or a clutch; exactly one of `brake` and `clutch`."""
+
+    name: Name
+    brake: Name | None = Field(default=None, description="Member that the brake holds.")
+    clutch: tuple[Name, Name] | None = Field(
+        default=None, description="The two members that the clutch connects; `input` for the input shaft."
+    )
+
+    @property
+    def list_bodies(self) -> tuple[str, ...]:
+        """The members that it acts on."""
+        return self.clutch or (str(self.brake),)
+
+    def find_driven_member(self, driving: str | None) -> str | None:
+        """The member that it puts on the input shaft; None where the input sits on a member, whatever that is named."""
+        if driving is not None or self.clutch is None or INPUT_NAME not in self.clutch:
+            return None
+        return next((body for body in self.clutch if body != INPUT_NAME), INPUT_NAME)
+
+
+class ShiftState(Answer):
+    """Elements that are engaged together, and the resulting ratio and speeds."""
+
+    engaged: list[str]
+    ratio: float = Field(description="Input speed over output speed.")
+    exact_ratio: str
+    speeds: dict[str, float] = Field(description="Speeds of all bodies over the speed of the input.")
+    efficiency: float | None = Field(
+        description="Efficiency if one member receives the power; null with clutches between members (unknown torque)."
+    )
+
+
+def list_default_elements(train: Train, driving: str, driven: str) -> list[GivenElement]:
+    """A brake on every member but input and output, and a clutch between any two members."""
+    brakes = [GivenElement(name=f"brake {body}", brake=body) for body in train.members if body not in (driving, driven)]
+    clutches = [
+        GivenElement(name=f"clutch {one}-{other}", clutch=(one, other))
+        for one, other in itertools.combinations(train.members, 2)
+    ]
+    return [*brakes, *clutches]
+
+
+def find_element_errors(train: Train, driving: str | None, elements: Sequence[GivenElement]) -> list[tuple[str, str]]:
+    """Return errors of the given elements, by their index in the request."""
+    faults = []
+    known = [*train.members, *([INPUT_NAME] if driving is None and INPUT_NAME not in train.members else [])]
+    for k, element in enumerate(elements):
+        path = f"/elements/{k}"
+        if (element.brake is None) == (element.clutch is None):
+            faults.append((path, "give either the member that a brake holds or the two members that a clutch connects"))
+            continue
+        if element.name in [other.name for other in elements[:k]]:
+            faults.append((f"{path}/name", "another element has this name"))
+        unknown = [body for body in element.list_bodies if body not in known]
+        part = "brake" if element.clutch is None else "clutch"
+        if unknown or (element.brake == INPUT_NAME and INPUT_NAME not in train.members):
+            faults.append((f"{path}/{part}", f"expected members of {', '.join(known)}"))
+        elif len(set(element.list_bodies)) < len(element.list_bodies):
+            faults.append((f"{path}/clutch", "a clutch must connect two different members"))
+        elif (
+            driving is None
+            and element.clutch is not None
+            and INPUT_NAME in element.clutch
+            and INPUT_NAME in train.members
+        ):
+            told = "a member is named input: give it another name, or give the mechanism's input"
+            faults.append((f"{path}/clutch", told))
+    return faults
+
+
+def count_states(train: Train, driving: str | None, elements: Sequence[GivenElement]) -> int:
+    """How many choices of engaged elements there are."""
+    return math.comb(len(elements), _count_engaged(train, driving))
+
+
+def _count_engaged(train: Train, driving: str | None) -> int:
+    return max(0, solve_speeds(train, {}).freedom - (driving is not None))
+
+
+def build_shift_table(
+    train: Train, driving: str | None, driven: str, elements: Sequence[GivenElement], efficiency: float
+) -> list[dict[str, Any]]:
+    """The states of a train as :class:`ShiftState`, the largest ratio first, backward ones last.
+
+    Parameters
+    ----------
+    train : Train
+    driving : str or None
+        The member that the input sits on; None where clutches put it on one.
+    driven : str
+        The member of the output.
+    elements : sequence of GivenElement
+        Without faults.
+    efficiency : float
+        Of every mesh as an ordinary pair.
+    """
+    found = list(_iterate_states(train, driving, driven, elements, efficiency))
+    return sorted(found, key=lambda state: (state["ratio"] < 0.0, -abs(state["ratio"]), state["engaged"]))
+
+
+def _iterate_states(
+    train: Train, driving: str | None, driven: str, elements: Sequence[GivenElement], efficiency: float
+) -> Iterator[dict[str, Any]]:
+    for engaged in itertools.combinations(elements, _count_engaged(train, driving)):
+        inputs = [] if driving is None else [driving]
+        inputs += [body for element in engaged if (body := element.find_driven_member(driving)) is not None]
+        held = [str(element.brake) for element in engaged if element.brake is not None]
+        joined = [
+            element.clutch for element in engaged if element.clutch and element.find_driven_member(driving) is None
+        ]
+        if not inputs or set(inputs) & set(held):
+            continue
+        known = {**dict.fromkeys(held, 0), **dict.fromkeys(inputs, 1)}
+        solution = solve_speeds(train, known, joined)
+        output = solution.values[driven]
+        if solution.open or solution.contradiction is not None or not output:
+            continue
+        rates = {body: rate for body, rate in solution.values.items() if rate is not None}
+        flow = None
+        if not joined and len(inputs) == 1:
+            loads = [*inputs, driven, *held]
+            if len(set(loads)) == len(loads):
+                flow = solve_power_flow(train, rates, loads, {inputs[0]: Fraction(1)}, parse_decimal(efficiency))
+        yield {
+            "engaged": [element.name for element in engaged],
+            "ratio": float(1 / output),
+            "exact_ratio": str(1 / output),
+            "speeds": {body: float(rate) for body, rate in rates.items()},
+            "efficiency": None if flow is None or flow.efficiency is None else float(flow.efficiency),
+        }

@@ -1,0 +1,1 @@
+"""Analyses of planar linkages: motion, forces, planes, targets."""

@@ -1,0 +1,69 @@
+"""The cycle of a linkage: the range of inputs that shows all of its motion, and the effort of following it."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from kinematics.linkage.planar.branches import Branch, compute_cycle, compute_cycle_on_branch, count_fastest_turns
+from kinematics.linkage.planar.limits import find_branches, find_reference_branch
+from kinematics.linkage.planar.mechanism import Mechanism, TopologyError
+
+MAX_EFFORT = 200
+"""Greatest effort of an answer that a client waits for: some seconds."""
+
+
+def estimate_effort(mechanism: Mechanism) -> int:
+    """The effort of listing the circuits of a mechanism: closures × assemblies × turns of a cycle.
+
+    A dyad closes two links, or one link and a slide, and has two assemblies. The turns are those of the fastest link
+    that gears tie to the input. An eightbar has an effort of 24.
+    """
+    dyads = max(len(mechanism.links) - 2 + len(mechanism.slides) - len(mechanism.gears), 0) // 2
+    return dyads * (1 << dyads) * round(count_fastest_turns(mechanism))
+
+
+def list_branches(mechanism: Mechanism) -> list[Branch]:
+    """All branches of a mechanism, the reference's circuit first.
+
+    Raises
+    ------
+    TopologyError
+        Where they cannot be listed, or not while a client waits.
+    """
+    if estimate_effort(mechanism) > MAX_EFFORT:
+        raise TopologyError("too many assemblies, or too many turns until the motion repeats, to list all circuits")
+    return find_branches(mechanism)
+
+
+def find_branch(mechanism: Mechanism) -> Branch | None:
+    """The branch of the reference; None where it stands at a toggle of several, or the circuits cannot be listed."""
+    try:
+        return find_reference_branch(mechanism, list_branches(mechanism))
+    except TopologyError:
+        return None
+
+
+def find_cycle(mechanism: Mechanism) -> tuple[float, float]:
+    """First and last input of the cycle, radians, or lengths along the input slide; see :func:`find_cycle_along`."""
+    return find_cycle_along(mechanism, find_branch(mechanism))
+
+
+def find_cycle_along(mechanism: Mechanism, here: Branch | None) -> tuple[float, float]:
+    """First and last input of the cycle on the reference's branch, radians, or lengths along the input slide.
+
+    From the reference through a full turn (or as many as gears or a triad need) where the input is a crank, else from
+    toggle to toggle of the reference's branch. Where the branch is not known a full turn too, and as far as the
+    mechanism is wide where a slider drives it: ``valid`` then tells where the mechanism exists.
+    """
+    at = float(mechanism.reference_input)
+    if (here is None or here.full) and mechanism.has_slide_input:
+        places = np.array([complex(joint) for joint in mechanism.joints.values()])
+        half = 0.5 * float(np.abs(places[:, None] - places).max())
+        return at - half, at + half
+    if here is None or here.full:
+        return at, at + (compute_cycle(mechanism) if here is None else compute_cycle_on_branch(mechanism, here))
+    low = here.low
+    if not mechanism.has_slide_input:
+        # Branches are known to full turns, and the turn counts: the reference lies on it.
+        low = at - float(np.mod(at - here.low, compute_cycle(mechanism)))
+    return low, low + here.high - here.low

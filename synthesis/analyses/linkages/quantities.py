@@ -1,0 +1,216 @@
+"""What the analysis core knows of a linkage over given inputs, as plain lists in degrees."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from types import MappingProxyType
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from kinematics.arrays import Real
+from kinematics.linkage.fourbar import barker_type
+from kinematics.linkage.fourbar.classification import BARKER
+from kinematics.linkage.planar.branches import Branch
+from kinematics.linkage.planar.closures import decompose
+from kinematics.linkage.planar.drive import MechanismMotion, drive, has_given_up
+from kinematics.linkage.planar.instant_centers import find_instant_centers
+from kinematics.linkage.planar.limits import find_limit_positions, find_reference_branch, list_toggles
+from kinematics.linkage.planar.link_points import link_point
+from kinematics.linkage.planar.mechanism import GROUND, Mechanism, TopologyError
+from kinematics.linkage.planar.program import build_program
+from synthesis.analyses.linkages.cycle import list_branches
+from synthesis.analyses.linkages.fourbar import extract_fourbar
+
+BRANCH_SAMPLE_COUNT = 181
+"""Places on a branch at which its joints are listed: enough for a smooth curve on a screen."""
+
+
+def analyze_motion(
+    mechanism: Mechanism,
+    at: Real,
+    speed: Real,
+    acceleration: float,
+    *,
+    tracked: bool = False,
+    points: Mapping[str, tuple[str, complex]] = MappingProxyType({}),
+) -> dict[str, Any]:
+    """Drive a mechanism to inputs (degrees, or lengths along the input slide) and list all that is known of it.
+
+    ``tracked`` adds to each branch where the joints are along it; ``points`` are further points by link and place.
+    """
+    slide = mechanism.has_slide_input
+    inputs = at if slide else np.radians(at)
+    motion = drive(mechanism, inputs, speed=speed, acceleration=acceleration)
+    # Ratios and instant centres are of the position alone, and known also where the input just stands still.
+    paced = motion if np.all(speed) else drive(mechanism, inputs, order=1)
+    sines = {link: np.abs(sine) for link, sine in motion.sines.items()}
+    transmission = {link: _list_values(np.degrees(np.arcsin(np.minimum(sine, 1.0)))) for link, sine in sines.items()}
+    with np.errstate(invalid="ignore"):
+        least = np.degrees(np.arcsin(np.minimum(np.stack(list(sines.values())).min(axis=0), 1.0))) if sines else None
+    return {
+        "input_angle": at.tolist(),
+        "valid": motion.valid.tolist(),
+        "links": {name: _list_series(jet) for name, jet in motion.angles.items()},
+        "joints": {name: _describe_track(jet) for name, jet in motion.joints.items()},
+        "points": {name: _describe_track(link_point(mechanism, motion, *of)) for name, of in points.items()},
+        "slides": {name: _describe_travel(jet) for name, jet in motion.slides.items()},
+        "transmission_angle": [math.nan] * len(at) if least is None else _list_values(least),
+        "transmission_angles": transmission,
+        "torque_ratio": _compute_ratios(paced, paced.angles, _list_grounded_links(mechanism)),
+        "force_ratio": _compute_ratios(paced, paced.slides, _list_output_slides(mechanism)),
+        "instant_centers": _list_instant_centers(mechanism, paced) if len(at) == 1 else {},
+        "classification": _classify_linkage(mechanism),
+        **_describe_circuits(mechanism, tracked, _describe_undefined(mechanism, sines)),
+    }
+
+
+def _list_values(values: Real) -> list[float]:
+    listed: list[float] = values.tolist()
+    return listed
+
+
+def _list_series(jet: Real) -> dict[str, list[float]]:
+    return {
+        "angle": _list_values(np.degrees(_unwrap_angle(jet[0]))),
+        "omega": _list_values(jet[1]),
+        "alpha": _list_values(jet[2]),
+        "jerk": _list_values(jet[3]),
+    }
+
+
+def _unwrap_angle(angle: Real) -> Real:
+    """Angles without jumps of a full turn, the first in (−π, π]; gaps are passed over."""
+    known = np.isfinite(angle)
+    out = angle.copy()
+    if known.any():
+        values = np.unwrap(angle[known])
+        out[known] = values + (np.angle(np.exp(1j * values[0])) - values[0])
+    return out
+
+
+def _describe_track(jet: NDArray[np.complex128]) -> dict[str, list[float]]:
+    names = (("x", "y"), ("vx", "vy"), ("ax", "ay"), ("jx", "jy"))
+    return {
+        name: _list_values(part)
+        for pair, row in zip(names, jet, strict=True)
+        for name, part in zip(pair, (row.real, row.imag), strict=True)
+    }
+
+
+def _describe_travel(jet: Real) -> dict[str, list[float]]:
+    return dict(zip(("position", "velocity", "acceleration", "jerk"), map(_list_values, jet), strict=True))
+
+
+def _compute_ratios(motion: MechanismMotion, moved: dict[str, Real], outputs: list[str]) -> dict[str, list[float]]:
+    """Input speed over that of links or slides: by virtual work the output's torque or force over the input's."""
+    ratios = {}
+    for name in outputs:
+        with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
+            ratio = motion.input[1] / moved[name][1]
+        ratios[name] = _list_values(np.where(np.isfinite(ratio), ratio, np.nan))
+    return ratios
+
+
+def _list_instant_centers(mechanism: Mechanism, motion: MechanismMotion) -> dict[str, dict[str, list[float]]]:
+    return {
+        f"{one}-{other}": {"x": _list_values(center.point.real), "y": _list_values(center.point.imag)}
+        for (one, other), center in find_instant_centers(mechanism, motion).items()
+    }
+
+
+def _list_grounded_links(mechanism: Mechanism) -> list[str]:
+    """Links pinned to the ground, but for the input."""
+    ground = set(mechanism.links[GROUND])
+    return [n for n, listed in mechanism.links.items() if n not in (GROUND, mechanism.input) and ground & set(listed)]
+
+
+def _list_output_slides(mechanism: Mechanism) -> list[str]:
+    """Names of the slides on the ground, but for the input."""
+    named = zip(mechanism.slide_names, mechanism.slides, strict=True)
+    return [name for name, slide in named if slide.link == GROUND and slide.joint != mechanism.input]
+
+
+def _classify_linkage(mechanism: Mechanism) -> dict[str, Any]:
+    kind = 0
+    stated = extract_fourbar(mechanism)
+    if stated is not None:
+        kind = int(barker_type(stated.linkage))
+    row = BARKER[kind - 1] if kind else None
+    return {
+        "grashof": None if row is None else row.motion,
+        "barker": None if row is None else row.type,
+        "barker_code": None if row is None else row.code,
+        "mobility": mechanism.mobility,
+    }
+
+
+def _sample_branch(mechanism: Mechanism, branch: Branch) -> dict[str, dict[str, list[float]]] | None:
+    """Joints along a branch, closest together at its ends; None where no assemblies tell the branches apart."""
+    steps = build_program(mechanism).steps
+    if not steps or len(branch.signs) != sum(step.has_two_solutions for step in steps):
+        return None
+    chosen = iter(branch.signs)
+    signs = tuple(np.array(next(chosen) if step.has_two_solutions else 1) for step in steps)
+    share = np.linspace(0.0, 1.0, BRANCH_SAMPLE_COUNT)
+    if not branch.full:
+        # Joints go with the root of the distance from a toggle.
+        share = 0.5 - 0.5 * np.cos(np.pi * share)
+    motion = drive(mechanism, branch.low + share * (branch.high - branch.low), signs=signs, order=0)
+    return {
+        name: {"x": _list_values(jet[0].real), "y": _list_values(jet[0].imag)} for name, jet in motion.joints.items()
+    }
+
+
+def _describe_undefined(mechanism: Mechanism, sines: dict[str, Real]) -> list[str]:
+    """What is not in the answer of a motion, and why."""
+    notes = []
+    if decompose(mechanism).left and not sines:
+        notes.append(
+            "transmission_angle: no link is held by three legs on the input and the ground, so that no leg pushes on a "
+            "path of its own; torque_ratio and force_ratio say how force is passed on"
+        )
+    elif mechanism.redundant:
+        notes.append("transmission_angle: constraints are redundant, so that the pushing link is not determined")
+    elif not sines:
+        notes.append("transmission_angle: the mechanism has no closure, as gears alone drive every link")
+    if has_given_up(mechanism):
+        notes.append(
+            "valid: links of very different lengths; the motion was followed for a great many steps, and where it was "
+            "left a position is given as not valid though it may exist"
+        )
+    return notes
+
+
+def _describe_circuits(mechanism: Mechanism, tracked: bool, notes: list[str]) -> dict[str, Any]:
+    """Toggles, circuits and limits; empty where the mechanism's circuits cannot be listed, and the note says why."""
+    try:
+        branches = list_branches(mechanism)
+    except TopologyError as error:
+        return {"toggles": [], "circuits": [], "limits": {}, "notes": [*notes, f"circuits, toggles, limits: {error}"]}
+    scale = (lambda x: x) if mechanism.has_slide_input else math.degrees
+    here = find_reference_branch(mechanism, branches)
+    if here is None:
+        notes = [*notes, "limits: the reference lies where several branches meet, or on none"]
+    circuits: dict[int, list[dict[str, Any]]] = {}
+    for branch in branches:
+        listed = circuits.setdefault(branch.circuit, [])
+        one = {"from": scale(branch.low), "to": scale(branch.high), "full": branch.full, "reference": branch is here}
+        listed.append({**one, "joints": _sample_branch(mechanism, branch)} if tracked else one)
+    limits: dict[str, list[float] | None] = {}
+    if here is not None:
+        links = _list_grounded_links(mechanism)
+        slides = _list_output_slides(mechanism)
+        angles, travels = find_limit_positions(mechanism, here, links, slides)
+        for name, span in zip(links, angles, strict=True):
+            limits[name] = None if span is None else [math.degrees(x) for x in span]
+        for name, span in zip(slides, travels, strict=True):
+            limits[name] = None if span is None else list(span)
+    return {
+        "toggles": [scale(x) for x in list_toggles(mechanism, branches)],
+        "circuits": [{"branches": listed} for listed in circuits.values()],
+        "limits": limits,
+        "notes": notes,
+    }

@@ -1,0 +1,70 @@
+"""A machine over the motion that a problem states: its positions, and what is driven along them."""
+
+from __future__ import annotations
+
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from kinematics.arrays import Real
+from kinematics.dynamics.machine import Machine
+from kinematics.dynamics.places import Places
+from kinematics.linkage.planar.drive import drive
+from synthesis.analyses.linkages.cycle import find_cycle
+from synthesis.analyses.linkages.loaded_mechanism import build_loaded_request
+from synthesis.mechanisms.machine import build_machine
+from synthesis.model.dynamics.request import DynamicsBlock, LengthUnit
+from synthesis.model.linkage.input_motion import FULL_TURN, Sweep
+
+CYCLE_TOLERANCE = 1e-9
+"""Share of a turn by which a range may miss whole turns and be closed: rounding."""
+
+
+class Task(NamedTuple):
+    """A machine, and the range of its input (radians, or lengths along the slide) with its speed and acceleration."""
+
+    machine: Machine
+    start: float
+    end: float
+    speed: float
+    acceleration: float
+
+    @property
+    def is_closed(self) -> bool:
+        """Whether the range is whole turns, of which the last position is the first again."""
+        turns = abs(self.end - self.start) / (2.0 * np.pi)
+        return (
+            not self.machine.mechanism.has_slide_input
+            and round(turns) >= 1
+            and abs(turns - round(turns)) < CYCLE_TOLERANCE * turns
+        )
+
+    def list_positions(self, count: int) -> Real:
+        """So many positions of the input, at equal distances."""
+        return np.asarray(np.linspace(self.start, self.end, count, endpoint=not self.is_closed))
+
+
+def build_task(statement: dict[str, Any], dynamics: DynamicsBlock, unit: LengthUnit, motion: Sweep) -> Task:
+    """The machine of a consistent statement, and its motion."""
+    request = build_loaded_request(statement, dynamics, unit)
+    mechanism = request.mechanism.build_mechanism()
+    machine, _ = build_machine(dynamics, mechanism, unit)
+    if mechanism.has_slide_input:
+        first, last = find_cycle(mechanism)
+        start, end = (first if motion.start is None else motion.start), (last if motion.end is None else motion.end)
+    else:
+        ends = motion.start or 0.0, FULL_TURN if motion.end is None else motion.end
+        start, end = (float(np.radians(angle)) for angle in ends)
+    return Task(machine, start, end, motion.rate, motion.acceleration)
+
+
+def place_machine(machine: Machine, at: Real, speed: float = 1.0, acceleration: float = 0.0) -> Places:
+    """A machine at inputs that go with a speed and an acceleration."""
+    mechanism = machine.mechanism
+    motion = drive(mechanism, at, speed=np.full(len(at), speed), acceleration=acceleration, order=2)
+    return Places(mechanism, motion, machine.scale)
+
+
+def pace_machine(machine: Machine, at: Real) -> Places:
+    """A machine at inputs that go with a speed of 1 in the unit of its forces, by which work is told."""
+    return place_machine(machine, at, 1.0 / machine.scale if machine.mechanism.has_slide_input else 1.0)

@@ -1,0 +1,1 @@
+"""Analyses of engines, flywheels, Geneva drives, ratchets, rotors and universal joints."""

@@ -1,0 +1,141 @@
+"""The analysis of a Geneva drive: where its wheel stands while the crank turns, and how it moves."""
+
+from __future__ import annotations
+
+import math
+from typing import Annotated, Any, Literal
+
+import numpy as np
+from pydantic import ConfigDict, Field
+
+from synthesis.analyses.base import DrivenAnalysis, DrivenRequest, Family
+from synthesis.mechanisms.geneva import build_drive
+from synthesis.model.problem import Count, Degrees, PositiveLength, Statement
+
+ENTRY_TOLERANCE = 1e-9
+"""Share by which a crank may be below the radius at which its roller reaches a slot: rounding."""
+
+
+class GivenDragLink(Statement):
+    """A drag link whose output turns the crank; the ground is the shortest link, and all links turn through."""
+
+    ground: PositiveLength
+    input: PositiveLength
+    coupler: PositiveLength
+    output: PositiveLength
+    crank_offset: Degrees = Field(default=0.0, description="Angle from the output to the crank.")
+    input_pivot: Any = None
+    entry_angle: Any = None
+
+
+class GivenGeneva(Statement):
+    """A Geneva drive; of a design's other fields none is needed."""
+
+    type: Literal["geneva_external", "geneva_internal", "geneva_spherical"]
+    stations: Annotated[Count, Field(ge=3, le=1000)]
+    rollers: Annotated[Count, Field(ge=1, le=5)] = 1
+    center_distance: PositiveLength | None = Field(default=None, description="Only for a plane drive.")
+    crank_radius: PositiveLength | None = Field(
+        default=None, description="Only for a plane drive; by default the value for shock-free entry."
+    )
+    cone_angle: Degrees | None = Field(
+        default=None, description="Only for a spherical drive; by default the value for shock-free entry."
+    )
+    drag_link: GivenDragLink | None = None
+    sphere_radius: Any = None
+    roller_diameter: Any = None
+    wheel_radius: Any = None
+    ring_radius: Any = None
+    slot_width: Any = None
+    slot_end_radius: Any = None
+    slot_end_angle: Any = None
+    locking_radius: Any = None
+    locking_arc_radius: Any = None
+    cap_angle: Any = None
+    cap_offset: Any = None
+    locking_arc_angle: Any = None
+    bore: Any = None
+    profile: Any = None
+    disc: Any = None
+
+
+class GenevaAnalysis(DrivenAnalysis):
+    """Analysis of a Geneva drive in motion."""
+
+    valid: list[bool]
+    moves: list[bool] = Field(description="Whether a roller is in a slot.")
+    crank: list[float] = Field(description="Angle of the crank since the roller's entry, degrees.")
+    angle: list[float] = Field(description="Angle of the wheel since the entry of a roller at input angle 0, degrees.")
+    omega: list[float] = Field(description="rad/s")
+    alpha: list[float] = Field(description="rad/s²")
+
+
+class GenevaAnalysisRequest(DrivenRequest[GivenGeneva]):
+    """A Geneva drive and how its crank turns; at input angle 0 the first roller enters a slot."""
+
+    model_config = ConfigDict(
+        title="Geneva drive: motion of its wheel",
+        json_schema_extra={
+            "examples": [
+                {
+                    "mechanism": {"type": "geneva_external", "stations": 4, "center_distance": 100.0},
+                    "motion": {"at": 45.0, "speed_rpm": 60.0},
+                }
+            ]
+        },
+    )
+
+    def find_errors(self) -> list[tuple[str, str]]:
+        """What no single field shows."""
+        faults, given = super().find_errors(), self.mechanism
+        step = math.pi / given.stations
+        if given.type == "geneva_spherical":
+            if (
+                given.cone_angle is not None
+                and not math.degrees(step) * (1.0 - ENTRY_TOLERANCE) <= given.cone_angle < 90.0
+            ):
+                faults.append(("/mechanism/cone_angle", f"must be from {math.degrees(step):.9g} to below 90 degrees"))
+            if given.drag_link is not None:
+                faults.append(("/mechanism/drag_link", "a drag link drives plane Geneva drives only"))
+        elif given.crank_radius is not None:
+            if given.center_distance is None:
+                faults.append(("/mechanism/center_distance", "give it together with the crank's radius"))
+            elif not math.sin(step) * (1.0 - ENTRY_TOLERANCE) <= given.crank_radius / given.center_distance < 1.0:
+                least = given.center_distance * math.sin(step)
+                faults.append(("/mechanism/crank_radius", f"must be from {least:.9g} to below the center distance"))
+        if given.drag_link is not None and not faults:
+            faults += _find_drag_link_errors(given.drag_link)
+        return faults
+
+    def build_answer(self) -> dict[str, Any]:
+        """Everything about the drive, in the shape of :class:`GenevaAnalysis`."""
+        at, speed, time = self.motion.list_inputs()
+        course, rollers = build_drive(self.mechanism), self.mechanism.rollers
+        motion = course.wheel_motion(np.radians(at), rollers)
+        return {
+            "input_angle": at.tolist(),
+            "time": None if time is None else time.tolist(),
+            "valid": [True] * len(at),
+            "moves": course.is_engaged(np.radians(at), rollers).tolist(),
+            "crank": np.degrees(course.from_entry(np.radians(at)).s).tolist(),
+            "angle": np.degrees(motion.s).tolist(),
+            "omega": (motion.v * speed).tolist(),
+            "alpha": (motion.a * speed**2 + motion.v * self.motion.acceleration).tolist(),
+        }
+
+
+def _find_drag_link_errors(link: GivenDragLink) -> list[tuple[str, str]]:
+    lengths = (link.input, link.coupler, link.output)
+    if min(lengths) > link.ground * (1.0 + ENTRY_TOLERANCE) and link.ground + 2.0 * max(lengths) < sum(lengths) * (
+        1.0 - ENTRY_TOLERANCE
+    ):
+        return []
+    return [
+        (
+            "/mechanism/drag_link",
+            "the ground must be the shortest link, and ground plus longest link shorter than the other two together",
+        )
+    ]
+
+
+FAMILY = Family(GenevaAnalysisRequest, GenevaAnalysis)

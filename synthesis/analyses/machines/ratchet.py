@@ -1,0 +1,103 @@
+"""The analysis of a ratchet: how far its pawls are lifted while the wheel turns on."""
+
+from __future__ import annotations
+
+import math
+from typing import Annotated, Any, Literal
+
+import numpy as np
+from pydantic import ConfigDict, Field
+
+from kinematics.indexing.ratchet import Ratchet
+from synthesis.analyses.base import DrivenAnalysis, DrivenRequest, Family
+from synthesis.model.answer import Answer
+from synthesis.model.problem import Count, Degrees, PositiveLength, Statement
+
+
+class GivenPawl(Statement):
+    """A pawl: by how much the wheel is beyond its first stop where this one first holds it, degrees."""
+
+    stop: Degrees = 0.0
+    pivot: Any = None
+    nose: Any = None
+
+
+class GivenRatchet(Statement):
+    """A ratchet wheel with its pawls; of a design's other fields none is needed."""
+
+    type: Literal["ratchet"]
+    teeth: Annotated[Count, Field(ge=4, le=1000)]
+    wheel_radius: PositiveLength = Field(description="Radius at the tips.")
+    tooth_height: PositiveLength
+    face_angle: Annotated[float, Field(strict=True, ge=0.0, le=60.0, allow_inf_nan=False)] = 0.0
+    pawl_length: PositiveLength = Field(description="Distance from the middle of the held face to the pawl's pivot.")
+    pawls: list[GivenPawl] = Field(default_factory=lambda: [GivenPawl()], min_length=1, max_length=64)
+    stations: Any = None
+    overlap: Any = None
+    bore: Any = None
+    profile: Any = None
+
+
+class PawlMotion(Answer):
+    """A pawl over the positions."""
+
+    lift: list[float] = Field(description="Angle from the position in which the pawl holds the wheel, degrees.")
+
+
+class RatchetAnalysis(DrivenAnalysis):
+    """Analysis of a ratchet in motion."""
+
+    valid: list[bool]
+    pawls: list[PawlMotion]
+
+
+class RatchetAnalysisRequest(DrivenRequest[GivenRatchet]):
+    """A ratchet and how its wheel turns, on from where the first pawl holds it."""
+
+    model_config = ConfigDict(
+        title="Ratchet: motion of its pawls",
+        json_schema_extra={
+            "examples": [
+                {
+                    "mechanism": {
+                        "type": "ratchet",
+                        "teeth": 24,
+                        "wheel_radius": 50.0,
+                        "tooth_height": 4.0,
+                        "face_angle": 15.0,
+                        "pawl_length": 40.0,
+                    },
+                    "motion": {"from": 0.0, "to": 30.0, "steps": 30},
+                }
+            ]
+        },
+    )
+
+    def find_errors(self) -> list[tuple[str, str]]:
+        """What no single field shows."""
+        faults, given = super().find_errors(), self.mechanism
+        if given.tooth_height >= 0.9 * given.wheel_radius:
+            faults.append(("/mechanism/tooth_height", "must be below nine tenths of the wheel's radius"))
+        elif not self._build_ratchet().reach < given.pawl_length:
+            faults.append(("/mechanism/pawl_length", "must be above half the length of a tooth's face"))
+        return faults
+
+    def build_answer(self) -> dict[str, Any]:
+        """Everything about the ratchet, in the shape of :class:`RatchetAnalysis`."""
+        at, _, time = self.motion.list_inputs()
+        ratchet = self._build_ratchet()
+        lifts = [np.degrees(ratchet.pawl_lift(np.radians(at - pawl.stop))) for pawl in self.mechanism.pawls]
+        return {
+            "input_angle": at.tolist(),
+            "time": None if time is None else time.tolist(),
+            "valid": [True] * len(at),
+            "pawls": [{"lift": lift.tolist()} for lift in lifts],
+        }
+
+    def _build_ratchet(self) -> Ratchet:
+        given = self.mechanism
+        face = math.radians(given.face_angle)
+        return Ratchet(given.teeth, given.wheel_radius, given.tooth_height, face, given.pawl_length)
+
+
+FAMILY = Family(RatchetAnalysisRequest, RatchetAnalysis)

@@ -1,0 +1,255 @@
+"""A room as numbers for compiled fits: what a linkage must keep clear of, stay within, and have its pivots in.
+
+The block ``space`` of a statement becomes one vector in task coordinates, :func:`pack_workspace`. Of a linkage's joints
+along its motion :mod:`synthesis.fit.workspace_margins` makes margins of it, in this order:
+
+============ ======================================= ==========================================================
+demand       margins                                 value, in task sizes
+============ ======================================= ==========================================================
+pivot zones  one for each pivot that has zones       how far it lies within the nearest of them
+box          four for each window of the motion      how far the parts lie within a side
+obstacles    one for each window, part and obstacle  distance of the outlines, less the clearance; less than
+                                                     nothing by the depth of the overlap
+forces       one for each window and limit           :mod:`synthesis.fit.fourbar_forces`, of fourbars alone
+============ ======================================= ==========================================================
+
+The motion is taken in :data:`WINDOW_COUNT` windows of :data:`STEP_COUNT` steps each, and within a window the nearest
+place counts, looked for between the steps too. So rows are few, and what counts may move along the motion while a fit
+descends. Obstacles and the body are convex pieces (:mod:`synthesis.fit.convex_pieces`).
+
+Everything is aimed at a little more narrowly than it is checked (:data:`AIM_SHARE`), so that the sweep of the finished
+linkage (:mod:`synthesis.verification.workspace`), which shares nothing with this, finds it kept.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from kinematics.arrays import Complex, Real
+from synthesis.fit.convex_pieces import decompose_convex
+from synthesis.fit.fourbar_forces import NO_FORCE_LIMITS as NO_LIMITS
+from synthesis.fit.fourbar_forces import count_force_margins
+from synthesis.model.linkage.workspace import Space
+from synthesis.model.linkage.zones import MovingZone, Zone
+
+WINDOW_COUNT, STEP_COUNT = 12, 4
+"""Windows of the motion, and steps in each."""
+
+AIM_SHARE = 1e-4
+"""Extra margin of all fits beyond the checked limits, as a share of the task's size."""
+
+NARROW_SHARE = 0.2
+"""Of a zone that is small beside that: the share of its half width by which it is drawn in at most."""
+
+O2, A, B, O4, P, TURN = range(6)
+"""The joints, in the order in which margins take their places, and behind them the turn e^{iα} of a carried body."""
+
+PLACES = 6
+
+FOURBAR_PARTS = ((O2, A), (O4, B), (A, B, P))
+"""Parts of a fourbar with a coupler point; with an outline of the body the coupler is A, B alone."""
+
+MAX_PIECES = 120
+"""Of all obstacles, and of the body: a step of a fit looks at each. Outlines of more are simplified for it, but are as
+they are where a design is verified."""
+
+MAX_GROUPS = 24
+"""Pieces of obstacles, and of the body, that have margins of their own; of more, those of an outline share them."""
+
+(
+    COUNT_INDEX, HALF_WIDTH_INDEX, CLEARANCE_INDEX, LEFT_INDEX, RIGHT_INDEX, LOW_INDEX, HIGH_INDEX, HAS_BOX_INDEX,
+    FIRST_X_INDEX, FIRST_Y_INDEX, CYCLE_INDEX, PART_COUNT_INDEX, BODY_COUNT_INDEX, GROUP_COUNT_INDEX, PIECE_COUNT_INDEX,
+    ZONE_COUNT_INDEX, ZONES_START_INDEX, PARTS_START_INDEX, BODY_START_INDEX, PIECES_START_INDEX, EASED_INDEX,
+    FORCE_COUNT_INDEX, FORCES_START_INDEX,
+) = range(23)  # fmt: skip
+"""Places of a room's numbers: how many margins it has; half of a link's width; the distance to be kept; the box, and
+whether there is one; P of the body as it is drawn; whether the whole cycle counts; how many parts, groups of the body's
+pieces, groups of the obstacles' pieces, these pieces, and pivots with zones there are; where each of these tables
+begins; by how much less narrowly than other parts the body is aimed at in the first window and the last; and how many
+margins limits on forces have, and where these (:mod:`synthesis.fit.fourbar_forces`) begin."""
+
+HEADER_SIZE = 23
+
+NO_WORKSPACE = np.zeros(0)
+"""No room."""
+
+
+def pack_workspace(
+    space: Space | None,
+    origin: complex,
+    size: float,
+    *,
+    parts: Sequence[Sequence[int]] = FOURBAR_PARTS,
+    first: complex | None = None,
+    pivots: Sequence[int] = (O2, O4, A, B),
+    aim: float = AIM_SHARE,
+    spare: float = np.inf,
+    forces: Real = NO_LIMITS,
+) -> Real:
+    """Pack a workspace in task coordinates, with ``origin`` at 0 and ``size`` at 1; empty without constraints.
+
+    Parameters
+    ----------
+    space : Space or None
+        What is stated.
+    origin, size : complex and float
+        Of the task.
+    parts : sequence of joints
+        The moving links by their joints, one to three each. With an outline of the body, and ``first``, P belongs to
+        none.
+    first : complex, optional
+        P of the body as it is drawn, in the problem's coordinates, of a linkage that carries one.
+    pivots : four joints
+        The fixed pivots of the input and the output and the moving ones, −1 for one that the linkage does not have.
+    aim : float
+        Share of the task's size by which everything is kept more narrowly than it is checked.
+    spare : float
+        By how much more than is checked the body keeps clear where it has to be at the ends of the motion: it cannot be
+        aimed at more narrowly there.
+    forces : float
+        Limits on forces, of :func:`synthesis.fit.fourbar_forces.pack_forces`.
+    """
+    if space is None:
+        return _append_forces(np.zeros(HEADER_SIZE), [[], [], [], []], forces) if len(forces) else NO_WORKSPACE
+    zones = _pack_zones(space, origin, size, pivots, first is not None, aim)
+    moves = space.has_swept_constraints
+    carries = space.body is not None and first is not None
+    links = [[joint for joint in part if not (carries and joint == P)] for part in parts] if moves else []
+    body: list[list[float]] = []
+    if moves and space.body is not None and carries:
+        outline = np.array([complex(*corner) for corner in space.body.outline])
+        body = _pack_pieces([((outline - origin) / size, 0.0)])
+    obstacles = (
+        [] if not moves else [((points - origin) / size, radius / size) for points, radius in _list_outlines(space)]
+    )
+    pieces = _pack_pieces(obstacles)
+    if not zones and not moves and not len(forces):
+        return NO_WORKSPACE
+    groups = len({piece[0] for piece in pieces})
+    bodies = len({piece[0] for piece in body})
+    windows = WINDOW_COUNT * (4 if space.box is not None else 0) + WINDOW_COUNT * (len(links) + bodies) * groups
+    header = np.zeros(HEADER_SIZE)
+    header[COUNT_INDEX] = len(zones) + windows
+    header[HALF_WIDTH_INDEX], header[CLEARANCE_INDEX] = 0.5 * space.link_width / size, space.clearance / size + aim
+    header[LEFT_INDEX : HIGH_INDEX + 1] = -np.inf, np.inf, -np.inf, np.inf
+    if space.box is not None:
+        (left, low), (right, high) = space.box
+        header[LEFT_INDEX : HIGH_INDEX + 1] = (
+            (left - origin.real) / size + aim, (right - origin.real) / size - aim,
+            (low - origin.imag) / size + aim, (high - origin.imag) / size - aim,
+        )  # fmt: skip
+    header[HAS_BOX_INDEX], header[CYCLE_INDEX] = space.box is not None, space.over == "cycle"
+    if first is not None:
+        header[FIRST_X_INDEX], header[FIRST_Y_INDEX] = (
+            (first.real - origin.real) / size,
+            (first.imag - origin.imag) / size,
+        )
+    header[PART_COUNT_INDEX], header[BODY_COUNT_INDEX], header[GROUP_COUNT_INDEX] = len(links), bodies, groups
+    header[PIECE_COUNT_INDEX], header[ZONE_COUNT_INDEX], header[EASED_INDEX] = (
+        len(pieces),
+        len(zones),
+        aim - min(aim, max(spare / size, 0.0)),
+    )
+    tables: list[list[list[float]]] = [
+        [one for listed in zones for one in listed],
+        [[float(len(link)), *map(float, link), *[-1.0] * (3 - len(link))] for link in links],
+        body,
+        pieces,
+    ]
+    return _append_forces(header, tables, forces)
+
+
+def _append_forces(header: Real, tables: Sequence[list[list[float]]], forces: Real) -> Real:
+    """The numbers of a room, table after table, and the limits on forces behind them."""
+    numbers = [header]
+    at = HEADER_SIZE
+    for place, table in zip(
+        (ZONES_START_INDEX, PARTS_START_INDEX, BODY_START_INDEX, PIECES_START_INDEX), tables, strict=True
+    ):
+        header[place] = at
+        # Each table ends with the mark of no further record.
+        numbers.append(np.array([value for record in table for value in record] + [-1.0]))
+        at += len(numbers[-1])
+    header[FORCE_COUNT_INDEX], header[FORCES_START_INDEX] = count_force_margins(forces), at
+    header[COUNT_INDEX] += header[FORCE_COUNT_INDEX]
+    return np.concatenate([*numbers, forces])
+
+
+def select_zones(room: Real) -> Real:
+    """A packed room as far as pivots' zones go, which cost no motion; empty where there are none."""
+    if not len(room) or room[ZONE_COUNT_INDEX] == 0.0:
+        return NO_WORKSPACE
+    zones = room.copy()
+    zones[COUNT_INDEX], zones[HAS_BOX_INDEX], zones[GROUP_COUNT_INDEX], zones[FORCE_COUNT_INDEX] = (
+        room[ZONE_COUNT_INDEX],
+        0.0,
+        0.0,
+        0.0,
+    )
+    return zones
+
+
+def _list_outlines(space: Space) -> list[tuple[Complex, float]]:
+    return [zone.outline for zone in space.obstacles]
+
+
+def _pack_pieces(outlines: Sequence[tuple[Complex, float]]) -> list[list[float]]:
+    """Records of convex pieces: group, radius, middle, reach about it, number of corners, corners."""
+    found = [decompose_convex(corners, 1.0, MAX_PIECES) for corners, _ in outlines]
+    if sum(len(pieces) for pieces, _ in found) > MAX_PIECES:
+        share = max(MAX_PIECES // len(outlines), 1)
+        found = [decompose_convex(corners, 1.0, share) for corners, _ in outlines]
+    listed = [
+        (number, piece, outlines[number][1] + beyond)
+        for number, (pieces, beyond) in enumerate(found)
+        for piece in pieces
+    ]
+    alone = len(listed) <= MAX_GROUPS
+    records = []
+    for n, (number, piece, radius) in enumerate(listed):
+        middle = complex(piece.mean())
+        reach = float(np.abs(piece - middle).max())
+        group = float(n if alone else number)
+        head = [group, radius, middle.real, middle.imag, reach, float(len(piece))]
+        records.append([*head, *np.ascontiguousarray(piece).view(np.float64).tolist()])
+    return records
+
+
+def _pack_zones(
+    space: Space, origin: complex, size: float, pivots: Sequence[int], carries: bool, aim: float
+) -> list[list[list[float]]]:
+    """Of each pivot that has zones the records: joint, on the body or not, radius, margin, count of corners, these."""
+    fixed, moving = space.fixed_pivots, space.moving_pivots
+    demanded = (
+        fixed.input if fixed else None,
+        fixed.output if fixed else None,
+        moving.input if moving else None,
+        moving.output if moving else None,
+    )
+    tables = []
+    for zones, joint in zip(demanded, pivots, strict=True):
+        if zones is None or joint < 0:
+            continue
+        records = []
+        for zone in [zones] if isinstance(zones, Zone) else zones:
+            corners, radius = zone.outline
+            corners = _orient_anticlockwise((corners - origin) / size)
+            half = radius / size if len(corners) == 1 else _estimate_half_width(zone) / size
+            on_body = carries and isinstance(zone, MovingZone) and zone.frame == "body"
+            head = [float(joint), float(on_body), radius / size, min(aim, NARROW_SHARE * half), float(len(corners))]
+            records.append([*head, *corners.view(np.float64).tolist()])
+        tables.append(records)
+    return tables
+
+
+def _estimate_half_width(zone: Zone) -> float:
+    """About half of how wide a polygon is where it is widest."""
+    left, right, low, high = zone.bounds
+    return zone.size / (2.0 * max(right - left, high - low))
+
+
+def _orient_anticlockwise(corners: Complex) -> Complex:
+    area = float((corners.conj() * np.roll(corners, -1)).imag.sum())
+    return np.ascontiguousarray(corners if area >= 0.0 else corners[::-1])

@@ -1,0 +1,1 @@
+"""Counterweights of linkages: exact force and moment balance, and the convex minimum."""

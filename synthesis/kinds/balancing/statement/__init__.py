@@ -1,0 +1,1 @@
+"""Requests for balancing: rotors, counterweights and their contradictions."""

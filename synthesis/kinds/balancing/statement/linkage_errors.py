@@ -1,0 +1,47 @@
+"""Errors of a linkage to be balanced: those of an analysis, and the additional requirements of balancing."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from typing import Any
+
+from kinematics.linkage.planar.mechanism import GROUND
+from synthesis.analyses.linkages.loaded_mechanism import find_driven_errors
+from synthesis.kinds.balancing.statement.counterweights import Counterweights
+from synthesis.mechanisms.link_bodies import escape_pointer
+from synthesis.mechanisms.machine import build_machine
+from synthesis.model.dynamics.request import DynamicsBlock, LengthUnit
+from synthesis.model.linkage.input_motion import Sweep
+
+
+def find_linkage_errors(
+    requested: dict[str, Any],
+    dynamics: DynamicsBlock,
+    unit: LengthUnit,
+    motion: Sweep,
+    weights: Counterweights,
+    joints: Mapping[str, Iterable[str]],
+) -> list[tuple[str, str]]:
+    """Return errors of a mechanism, its masses, its motion and its counterweights, by their fields.
+
+    ``joints`` are names of joints by the fields that have them.
+    """
+    mechanism, faults = find_driven_errors(requested, dynamics, unit, motion)
+    if mechanism is None:
+        return faults
+    machine, _ = build_machine(dynamics, mechanism, unit)
+    masses = [*(float(part.mass) for part in machine.bodies.values()), *map(float, machine.pin_masses.values())]
+    if not any(masses):
+        faults.append(("/dynamics/bodies", "without mass nothing shakes; give the masses of the links"))
+    moving = [link for link in mechanism.links if link != GROUND]
+    for n, link in enumerate(weights.links or []):
+        if link not in moving:
+            faults.append((f"/counterweights/links/{n}", f"not a moving link; these are {', '.join(moving)}"))
+    known = [joint for joint in mechanism.joints if sum(joint in listed for listed in mechanism.links.values()) > 1]
+    for path, named in joints.items():
+        for joint in named:
+            if joint not in known:
+                faults.append(
+                    (f"{path}/{escape_pointer(joint)}", f"not a joint of two links; these are {', '.join(known)}")
+                )
+    return faults

@@ -1,0 +1,298 @@
+"""Requested rotors: their unbalance, the planes, and the masses or holes that may correct it."""
+
+from __future__ import annotations
+
+import cmath
+import math
+from typing import Annotated, Any, Literal, Self
+
+from pydantic import Discriminator, Field, Tag, model_validator
+
+from synthesis.model.dimension import ANGLE, FORCE, GRADE, MASS, ROTATIONAL_SPEED
+from synthesis.model.problem import (
+    Contradiction,
+    Coordinate,
+    Count,
+    Degrees,
+    NonNegative,
+    PositiveLength,
+    PositiveNumber,
+    ProblemBase,
+    Statement,
+)
+
+MIN_SEPARATION = 1e-3
+"""Minimum distance of two planes or bearings, as a share of the unbalances' distance from them: nearer ones would carry
+thousands of times the unbalance, with the loss of that many digits."""
+
+MAX_LEVELS = 200
+"""Maximum number of steps of a hole, or of weights in stock."""
+
+INDEPENDENCE_TOLERANCE = 1e-6
+"""Share of the largest response below which that of another plane is rounding: the runs do not distinguish planes."""
+
+
+class RotorMass(Statement):
+    """A mass of the rotor that is off its axis."""
+
+    mass: Annotated[NonNegative, MASS]
+    radius: PositiveLength = Field(description="Distance of its centre from the axis.")
+    angle: Degrees = Field(description="Angle in the rotor.")
+    z: Coordinate = Field(default=0.0, description="Place along the axis.")
+
+    @property
+    def moment(self) -> complex:
+        """Unbalance m R e^{jθ}, masses times length units."""
+        return cmath.rect(self.mass * self.radius, math.radians(self.angle))
+
+
+class BearingReading(Statement):
+    """A measured force of the turning rotor on a bearing."""
+
+    force: Annotated[NonNegative, FORCE]
+    angle: Degrees = Field(description="Angle in the rotor.")
+    z: Coordinate = Field(description="Place of the bearing along the axis.")
+
+    @property
+    def vector(self) -> complex:
+        """The force in the rotor's frame."""
+        return cmath.rect(self.force, math.radians(self.angle))
+
+
+class Reading(Statement):
+    """A vibration in phase with the rotor: amplitude in any unit, and phase measured like the angles of the rotor."""
+
+    amplitude: NonNegative
+    angle: Degrees
+
+    @property
+    def vector(self) -> complex:
+        """Amplitude and phase as a complex number."""
+        return cmath.rect(self.amplitude, math.radians(self.angle))
+
+
+Readings = Annotated[list[Reading], Field(min_length=1, max_length=8)]
+
+
+class TrialRun(Statement):
+    """A run with a trial weight in one of the planes only."""
+
+    mass: Annotated[PositiveNumber, MASS]
+    radius: PositiveLength
+    angle: Degrees
+    readings: Readings
+
+    @property
+    def moment(self) -> complex:
+        """Unbalance m R e^{jθ} of the trial weight."""
+        return cmath.rect(self.mass * self.radius, math.radians(self.angle))
+
+
+class Influence(Statement):
+    """Readings of the initial rotor, and of a run with a trial weight in each plane, in the order of the planes."""
+
+    initial: Readings
+    trials: list[TrialRun] = Field(min_length=1, max_length=2)
+
+
+def _get_places_tag(value: Any) -> str:
+    return "<angles>" if isinstance(value, list | tuple) else "<count>"
+
+
+Places = Annotated[
+    Annotated[Annotated[Count, Field(ge=1, le=72)], Tag("<count>")]
+    | Annotated[Annotated[list[Degrees], Field(min_length=1, max_length=72)], Tag("<angles>")],
+    Discriminator(_get_places_tag),
+]
+"""Angles in the rotor: the number of equally spaced ones from 0° on, or a list."""
+
+
+class _PlaceChoice(Statement):
+    angles: Annotated[Places, ANGLE] = Field(
+        description="Number of places at equal angles from 0° on; or their angles, degrees."
+    )
+    radius: PositiveLength
+    max_places: Annotated[Count, Field(ge=1, le=72)] | None = Field(
+        default=None, description="Maximum number of places used in a plane."
+    )
+
+    @property
+    def directions(self) -> list[float]:
+        """The distinct angles, degrees."""
+        if isinstance(self.angles, int):
+            return [360.0 * k / self.angles for k in range(self.angles)]
+        return sorted({angle % 360.0 for angle in self.angles})
+
+
+class Holes(_PlaceChoice):
+    """Holes that may be drilled at some angles, each in steps up to a maximum."""
+
+    step: Annotated[PositiveNumber, MASS] = Field(description="Mass removed by one step of drilling.")
+    max_per_hole: Annotated[PositiveNumber, MASS] = Field(description="Maximum mass removed by a hole.")
+
+    @property
+    def steps(self) -> int:
+        """Maximum number of steps of a hole."""
+        return math.floor(self.max_per_hole / self.step * (1.0 + 1e-12))
+
+    @model_validator(mode="after")
+    def _validate_steps(self) -> Self:
+        if not 1 <= self.max_per_hole / self.step * (1.0 + 1e-12) < MAX_LEVELS + 1:
+            raise ValueError(f"max_per_hole must be 1 to {MAX_LEVELS} steps")
+        return self
+
+
+class Stock(_PlaceChoice):
+    """Weights in stock, one of which may be fixed at each of some angles."""
+
+    masses: list[Annotated[PositiveNumber, MASS]] = Field(min_length=1, max_length=MAX_LEVELS)
+
+
+class Correction(Statement):
+    """The correction of the rotor: one mass per plane, of given radius or given mass; holes; or stock weights."""
+
+    radius: PositiveLength | None = Field(default=None, description="Radius of the masses, which follow from it.")
+    mass: Annotated[PositiveNumber, MASS] | None = Field(
+        default=None, description="Mass of each correction; the radii follow from it."
+    )
+    holes: Holes | None = None
+    stock: Stock | None = None
+    removed: bool = Field(
+        default=False, strict=True, description="Whether the masses are removed from the rotor; for holes always."
+    )
+
+    @model_validator(mode="after")
+    def _validate_choice(self) -> Self:
+        if sum(stated is not None for stated in (self.radius, self.mass, self.holes, self.stock)) != 1:
+            raise ValueError("give exactly one of radius, mass, holes and stock")
+        if self.stock is not None and self.removed:
+            raise ValueError("weights in stock are added")
+        return self
+
+    @property
+    def place_choice(self) -> Holes | Stock | None:
+        """The places, if the correction is a choice among some."""
+        return self.holes or self.stock
+
+
+class RotorBase(ProblemBase):
+    """The fields of a rotor."""
+
+    units: Literal["si", "consistent"] = Field(
+        default="si",
+        description="Units of a rotor. `si`: kg and N, unbalances in g·mm. `consistent`: no conversion. A linkage has "
+        "the units of its `dynamics`.",
+    )
+    masses: list[RotorMass] = Field(default=[], max_length=200, description="Masses of a rotor that are off its axis.")
+    bearing_readings: list[BearingReading] = Field(
+        default=[], max_length=2, description="Forces on the bearings of a rotor at `rpm`."
+    )
+    influence: Influence | None = Field(default=None, description="Runs of a rotor without and with trial weights.")
+    rpm: Annotated[PositiveNumber, ROTATIONAL_SPEED] | None = Field(
+        default=None, description="Speed of the rotor, revolutions per minute."
+    )
+    planes: list[Coordinate] = Field(
+        default=[0.0],
+        min_length=1,
+        max_length=2,
+        description="Places of a rotor's correction planes along the axis. A single plane balances the force only.",
+    )
+    bearings: tuple[Coordinate, Coordinate] | None = Field(
+        default=None, description="Places of the bearings; by default those of the readings, else the two planes."
+    )
+    rotor_mass: Annotated[PositiveNumber, MASS] | None = Field(
+        default=None, description="Mass of the rotor, for the balance grade."
+    )
+    max_grade: Annotated[PositiveNumber, GRADE] | None = Field(
+        default=None, description="Maximum balance quality grade G of ISO 21940, mm/s."
+    )
+    correction: Correction | None = Field(
+        default=None, description="Correction of the rotor; by default only the unbalances are reported."
+    )
+    rank_by: Literal["residual", "places"] = Field(
+        default="residual",
+        description="Ranking for a rotor. residual: the smallest first. places: the fewest masses or holes first.",
+    )
+
+    @property
+    def used_planes(self) -> list[float]:
+        """The planes; two at one place count as one."""
+        return self.planes[:1] if self.planes[0] == self.planes[-1] else self.planes
+
+    @property
+    def supports(self) -> list[float] | None:
+        """Places of both bearings; None if they are unknown."""
+        if self.bearings is not None:
+            return list(self.bearings)
+        if len(self.bearing_readings) == 2:
+            return [reading.z for reading in self.bearing_readings]
+        return self.planes if len(self.used_planes) == 2 else None
+
+    @property
+    def places(self) -> list[float]:
+        """Places of the unbalances along the axis."""
+        stated = [entry.z for entry in self.masses] + [entry.z for entry in self.bearing_readings]
+        return stated or self.used_planes
+
+    def find_rotor_errors(self) -> list[Contradiction]:
+        """Return errors: several unbalances or none, planes too close, a grade without speed, uninformative runs."""
+        found = []
+        stated = [bool(self.masses), bool(self.bearing_readings), self.influence is not None]
+        if sum(stated) != 1:
+            detail = "give the unbalance exactly once: by masses, by bearing_readings, or by influence"
+            found.append(Contradiction("/masses", detail))
+        if self.bearing_readings and self.rpm is None:
+            found.append(Contradiction("/rpm", "bearing forces determine an unbalance only at a known speed; give it"))
+        found += self._find_plane_errors()
+        if self.influence is not None:
+            found += self._find_influence_errors(self.influence)
+        if self.max_grade is not None:
+            found += [
+                Contradiction(f"/{name}", "the balance grade needs it: e ω = U/m ω")
+                for name in ("rpm", "rotor_mass")
+                if getattr(self, name) is None
+            ]
+            if self.supports is None and any(z != self.planes[0] for z in self.places):
+                detail = "unbalances off the single plane make a couple, which counts at the bearings; give them"
+                found.append(Contradiction("/bearings", detail))
+        return found
+
+    def _find_plane_errors(self) -> list[Contradiction]:
+        reach = max(abs(z - self.planes[0]) for z in [*self.places, *self.planes])
+        apart = abs(self.planes[-1] - self.planes[0])
+        if len(self.used_planes) == 2 and apart < MIN_SEPARATION * reach:
+            detail = "the two planes are too close; for a single plane give one place"
+            return [Contradiction("/planes", detail)]
+        supports = self.supports
+        if supports is not None:
+            reach = max(abs(z - supports[0]) for z in [*self.places, *self.planes, supports[1]])
+            if abs(supports[1] - supports[0]) <= MIN_SEPARATION * reach:
+                path = "/bearings" if self.bearings is not None else "/bearing_readings/1/z"
+                return [Contradiction(path, "the two bearings are too close")]
+        return []
+
+    def _find_influence_errors(self, influence: Influence) -> list[Contradiction]:
+        planes, sensors = len(self.used_planes), len(influence.initial)
+        if len(influence.trials) != planes:
+            return [Contradiction("/influence/trials", f"expected {planes} runs with a trial weight, one per plane")]
+        for n, run in enumerate(influence.trials):
+            if len(run.readings) != sensors:
+                return [Contradiction(f"/influence/trials/{n}/readings", f"the initial run has {sensors} readings")]
+        if sensors < planes:
+            return [Contradiction("/influence/initial", f"expected at least {planes} readings, one per plane")]
+        initial = [reading.vector for reading in influence.initial]
+        columns = [
+            [(reading.vector - at) / run.moment for reading, at in zip(run.readings, initial, strict=True)]
+            for run in influence.trials
+        ]
+        # Magnitude of the response to each plane's trial weight.
+        norms = [math.sqrt(sum(abs(entry) ** 2 for entry in column)) for column in columns]
+        unlike = min(norms) / max(norms) if max(norms) > 0.0 else 0.0
+        if planes == 2 and unlike > 0.0:
+            # The sine of the angle between the two columns: zero if the planes respond alike.
+            product = sum(one.conjugate() * other for one, other in zip(*columns, strict=True))
+            unlike *= math.sqrt(max(0.0, 1.0 - (abs(product) / (norms[0] * norms[1])) ** 2))
+        if not unlike > INDEPENDENCE_TOLERANCE:
+            detail = "the trial weights change the readings equally or not at all; the planes cannot be distinguished"
+            return [Contradiction("/influence/trials", detail)]
+        return []

@@ -1,0 +1,1 @@
+"""Verification of balanced rotors and linkages by the forces that they exert."""

@@ -1,0 +1,1 @@
+"""Dynamics of cams: overturning of the follower and vibration of its train."""

@@ -1,0 +1,1 @@
+"""Motion programs: composition of segments, optimal programs by convex programming, dual bounds."""

@@ -1,0 +1,56 @@
+"""The cost of a criterion: derivatives of an optimal motion whose peaks are many times a plain law's.
+
+The motion of minimum peak acceleration jumps from one acceleration to another, so that its jerk is bounded only by the
+grid on which it was found; the motion of minimum peak velocity has jumps of that kind in its velocity. Each move
+between rests is compared with the cycloidal one of equal lift and angle (Norton, *Cam Design and Manufacturing
+Handbook*, Table 2-2), which has no jump in its acceleration.
+"""
+
+from __future__ import annotations
+
+from kinematics.cam.motion.laws import LAWS
+from kinematics.cam.motion.segments import build_law_segment
+from synthesis.kinds.cam.problem import CamProblem
+from synthesis.kinds.cam.program.composition import Composition
+from synthesis.kinds.cam.statement.segments import Move
+
+PLAIN_LAW = "cycloidal"
+
+MAX_PEAK_RATIO = 10.0
+"""Multiple of a plain law's peak from which a peak is warned about: common laws stay below six."""
+
+REST_TOLERANCE = 1e-9
+"""Velocity at an end, as a share of the peak, up to which a move begins or ends at rest."""
+
+DERIVATIVES = ((1, "velocity"), (2, "acceleration"), (3, "jerk"))
+
+
+def find_excesses(problem: CamProblem, composed: Composition) -> dict[str, float]:
+    """Return excessive peaks as multiples of a plain law's, by name, for moves whose law the criterion chose."""
+    found: dict[str, float] = {}
+    for stated, segment in zip(problem.segments, composed.program.segments, strict=True):
+        if not isinstance(stated, Move) or not stated.follows_criterion:
+            continue
+        first, last = segment.pieces.motion(0.0), segment.pieces.motion(segment.angle, before=True)
+        moving = max(abs(float(first.v)), abs(float(last.v)))
+        # A plain law starts and ends at rest: other moves have nothing to compare with.
+        if moving > REST_TOLERANCE * segment.extremes(1).largest:
+            continue
+        plain = build_law_segment(LAWS[PLAIN_LAW], segment.angle, float(first.s), float(last.s))
+        for order, name in DERIVATIVES:
+            times = segment.extremes(order).largest / plain.extremes(order).largest
+            if times >= MAX_PEAK_RATIO:
+                found[name] = max(times, found.get(name, 0.0))
+    return found
+
+
+def describe_excesses(problem: CamProblem, composed: Composition) -> str | None:
+    """Describe the excessive peaks in a sentence; None if there are none."""
+    found = find_excesses(problem, composed)
+    if not found:
+        return None
+    told = " and ".join(f"the peak {name} is {times:.3g} times" for name, times in found.items())
+    # A limit is the remedy only if none is given yet.
+    unlimited = [name for name in found if getattr(problem.limits, name) is None]
+    advice = f"; set a limit on {' or '.join(unlimited)}" if unlimited else ""
+    return f"{told.capitalize()} that of a {PLAIN_LAW} motion of the same lift and angle{advice}."

@@ -1,0 +1,1 @@
+"""Requests for cams: program, segments, followers, limits."""

@@ -1,0 +1,248 @@
+"""The requested motion program: start and end of each segment, and contradictions there.
+
+Written without numpy, because requests are checked before the numerical libraries are loaded.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from synthesis.kinds.cam.statement.segment_ends import (
+    MIRROR_LAWS,
+    Conditions,
+    State,
+    compute_law_ends,
+    compute_polynomial_ends,
+    compute_polynomial_range,
+)
+from synthesis.kinds.cam.statement.segments import ConstantVelocity, DisplacementBand, Dwell, Move, Polynomial, Segment
+from synthesis.model.problem import Contradiction
+
+TURN_TOLERANCE = 1e-7
+"""Degrees by which the segments may miss a full turn: rounding of angles like 360/7."""
+
+JUMP_TOLERANCE = 1e-6
+"""Jump at a joint, relative to the segments' own rates, up to which it counts as continuous."""
+
+
+@dataclass(frozen=True)
+class ProgramStatement:
+    """Segments that follow one another, with the unit of their displacements.
+
+    ``displacement_unit`` times a requested displacement is the solver's: radians of an arm, or lengths.
+    """
+
+    segments: Sequence[Segment]
+    displacement_unit: float
+
+    def convert_conditions(self, segment: Polynomial | Move) -> Conditions:
+        """Return a segment's conditions in radians and the solver's displacements."""
+        unit = self.displacement_unit
+        return [
+            (math.radians(condition.angle), order, value * (unit if order == 0 else 1.0))
+            for condition in segment.conditions
+            for order, value in condition.values()
+        ]
+
+    def heights(self) -> list[tuple[float, float]]:
+        """Return the displacement at start and end of each segment, in the solver's unit; the first begins at zero.
+
+        A polynomial begins and ends at the values that its conditions determine.
+        """
+        heights = []
+        at = 0.0
+        for segment in self.segments:
+            end = at
+            if isinstance(segment, Polynomial):
+                ends = compute_polynomial_ends(math.radians(segment.angle), self.convert_conditions(segment))
+                at, end = (at, at) if ends is None else (ends[0][0], ends[1][0])
+            elif isinstance(segment, ConstantVelocity):
+                end = at + segment.lift * self.displacement_unit
+            elif isinstance(segment, Move):
+                lift = at if segment.lift is None else segment.lift * self.displacement_unit
+                end = at + lift if segment.motion == "rise" else at - lift
+            heights.append((at, end))
+            at = end
+        return heights
+
+    def _compute_ranges(self) -> list[tuple[float, float]]:
+        """Return the displacement range of each segment; a polynomial may rise and fall between two equal ends."""
+        ranges = [(min(pair), max(pair)) for pair in self.heights()]
+        for k, segment in enumerate(self.segments):
+            if isinstance(segment, Polynomial):
+                conditions = self.convert_conditions(segment)
+                ranges[k] = compute_polynomial_range(math.radians(segment.angle), conditions) or ranges[k]
+        return ranges
+
+    @property
+    def travel(self) -> float:
+        """Distance from the lowest to the highest displacement, in the solver's unit."""
+        ranges = self._compute_ranges()
+        return max(high for _, high in ranges) - min(low for low, _ in ranges)
+
+    def list_laws(self) -> list[str]:
+        """Return the law of each segment, or its motion if it has no law.
+
+        In the books the fall that mirrors a rise has the rise's name. So a fall with such a name is the mirrored law,
+        unless its neighbours only join the other one, which begins without acceleration.
+        """
+        stated = [segment.law if isinstance(segment, Move) else segment.motion for segment in self.segments]
+        laws = [
+            MIRROR_LAWS.get(law, law) if segment.motion in ("fall", "return") else law
+            for segment, law in zip(self.segments, stated, strict=True)
+        ]
+        for k, law in enumerate(stated):
+            if laws[k] != law and not self._is_smooth_at(k, laws):
+                other = [*laws[:k], law, *laws[k + 1 :]]
+                # Keep the mirrored law unless only the other one joins both neighbours.
+                laws = other if self._is_smooth_at(k, other) else laws
+        return laws
+
+    def compute_ends(self) -> list[tuple[State, State] | None]:
+        """Return s, v, a at both ends of each segment; None for automatic and optimal motions, which adapt."""
+        return self._compute_ends_by_laws(self.list_laws())
+
+    def _compute_ends_by_laws(self, laws: Sequence[str]) -> list[tuple[State, State] | None]:
+        ends: list[tuple[State, State] | None] = []
+        for segment, law, (start, end) in zip(self.segments, laws, self.heights(), strict=True):
+            angle = math.radians(segment.angle)
+            if isinstance(segment, Polynomial):
+                ends.append(compute_polynomial_ends(angle, self.convert_conditions(segment)))
+            elif isinstance(segment, ConstantVelocity):
+                ends.append(compute_law_ends("constant_velocity", angle, start, end))
+            elif isinstance(segment, Dwell):
+                ends.append(((start, 0.0, 0.0), (end, 0.0, 0.0)))
+            elif segment.follows_criterion:
+                ends.append(None)
+            else:
+                ends.append(compute_law_ends(law, angle, start, end))
+        return ends
+
+    def find_segment_contradictions(self) -> list[Contradiction]:
+        """Return the errors within a segment."""
+        contradictions = []
+        heights = self.heights()
+        for k, segment in enumerate(self.segments):
+            where = f"/segments/{k}"
+            if isinstance(segment, Move):
+                if segment.lift is None and segment.motion != "return":
+                    contradictions.append(Contradiction(f"{where}/lift", f"a {segment.motion} needs a lift"))
+                elif segment.lift is None and heights[k][0] <= 0.0:
+                    contradictions.append(
+                        Contradiction(f"{where}/lift", "the follower is already at zero; give a lift")
+                    )
+                for name in ("conditions", "bands"):
+                    if getattr(segment, name) and segment.law != "optimal":
+                        contradictions.append(Contradiction(f"{where}/{name}", "only an optimal motion can have them"))
+                for n, band in enumerate(segment.bands):
+                    contradictions += _find_band_errors(f"{where}/bands/{n}", band, segment.angle)
+            if isinstance(segment, Move | Polynomial):
+                for n, condition in enumerate(segment.conditions):
+                    # At the ends of a move the neighbours fix the state; a condition there would be redundant or
+                    # contradictory.
+                    inner = isinstance(segment, Move)
+                    if condition.angle > segment.angle or (inner and condition.angle in (0.0, segment.angle)):
+                        detail = f"must lie within the segment's {segment.angle:g} degrees"
+                        contradictions.append(Contradiction(f"{where}/conditions/{n}/angle", detail))
+                    if not condition.values():
+                        contradictions.append(Contradiction(f"{where}/conditions/{n}", "is empty; give s, v, a or j"))
+            if isinstance(segment, Polynomial) and not contradictions:
+                conditions = self.convert_conditions(segment)
+                if compute_polynomial_ends(math.radians(segment.angle), conditions) is None:
+                    contradictions.append(Contradiction(f"{where}/conditions", "do not determine one polynomial"))
+        if not contradictions and not any(_has_motion(segment) for segment in self.segments):
+            contradictions.append(Contradiction("/segments", "the follower never moves; add a rise"))
+        return contradictions
+
+    def find_joint_contradictions(self, accept_discontinuity: bool, grooved: bool) -> list[Contradiction]:
+        """Return the errors of segments that do not make one turn, or do not join as a cam's program must."""
+        return [*self._check_turn(), *self._check_joints(accept_discontinuity, grooved)]
+
+    def _check_turn(self) -> list[Contradiction]:
+        total = math.fsum(segment.angle for segment in self.segments)
+        if abs(total - 360.0) > TURN_TOLERANCE:
+            return [Contradiction("/segments", f"the angles add up to {total:.12g} degrees; they must make one turn")]
+        return []
+
+    def _compute_scale(self) -> float:
+        """Return the size of displacements, the scale for jumps."""
+        longest = max(high - low for low, high in self._compute_ranges())
+        return longest or max(abs(a) for a, _ in self.heights()) or 1.0
+
+    def _compute_jumps(self, joint: int, ends: Sequence[tuple[State, State] | None]) -> tuple[float, float]:
+        """Return the steps of v and a at a joint; 0 if they are rounding, or if one segment adapts to the other."""
+        before, after = ends[joint], ends[(joint + 1) % len(ends)]
+        if before is None or after is None:
+            return 0.0, 0.0
+        travel, least = self._compute_scale(), min(math.radians(segment.angle) for segment in self.segments)
+        steps = [after[0][order] - before[1][order] for order in (1, 2)]
+        velocity, acceleration = (
+            step if abs(step) > JUMP_TOLERANCE * travel / least**order else 0.0 for order, step in enumerate(steps, 1)
+        )
+        return velocity, acceleration
+
+    def _is_smooth_at(self, k: int, laws: Sequence[str]) -> bool:
+        """Return whether v and a of a segment are continuous with both neighbours."""
+        ends = self._compute_ends_by_laws(laws)
+        return not any((*self._compute_jumps(k - 1, ends), *self._compute_jumps(k, ends)))
+
+    def _check_joints(self, accept_discontinuity: bool, grooved: bool) -> list[Contradiction]:
+        """Return the joints with a jump of s, an impossible jump of v, or a jump of v or a that is not accepted."""
+        heights, ends = self.heights(), self.compute_ends()
+        contradictions = []
+        for k, segment in enumerate(self.segments):
+            n = (k + 1) % len(self.segments)
+            following = self.segments[n]
+            joint = f"where segment {n} ({following.motion}) follows segment {k} ({segment.motion})"
+            gap = heights[n][0] - heights[k][1]
+            if abs(gap) > JUMP_TOLERANCE * self._compute_scale():
+                hint = "; the program must end where it began" if n == 0 else ""
+                gap /= self.displacement_unit
+                contradictions.append(Contradiction(f"/segments/{n}", f"displacement jumps by {gap:.6g} {joint}{hint}"))
+                continue
+            velocity, acceleration = self._compute_jumps(k, ends)
+            reason = "which breaks the fundamental law of cam design; choose other laws or accept_discontinuity"
+            # Downward, or in a groove, the roller would have to turn an edge at once: no contact can be kept there.
+            if velocity < 0.0 or (velocity and grooved):
+                reason = "for which the cam would need an edge that no follower can track; choose laws that join"
+            elif accept_discontinuity:
+                continue
+            for name, jump in (("velocity", velocity), ("acceleration", acceleration)):
+                if jump:
+                    detail = f"{name} jumps by {jump:.6g} {joint}, {reason}"
+                    contradictions.append(Contradiction(f"/segments/{n}", detail))
+                    break
+        if not contradictions and not accept_discontinuity:
+            contradictions += self._find_inner_jumps()
+        return contradictions
+
+    def _find_inner_jumps(self) -> list[Contradiction]:
+        """Return the laws whose acceleration jumps in their middle."""
+        return [
+            Contradiction(
+                f"/segments/{k}/law",
+                f"the acceleration of {segment.law} jumps; choose another law or set accept_discontinuity",
+            )
+            for k, segment in enumerate(self.segments)
+            if isinstance(segment, Move) and segment.law == "constant_acceleration"
+        ]
+
+
+def _find_band_errors(where: str, band: DisplacementBand, angle: float) -> list[Contradiction]:
+    if band.lower is None and band.upper is None:
+        return [Contradiction(where, "has no bound; give lower or upper")]
+    if not band.start < band.end <= angle:
+        return [Contradiction(f"{where}/end", f"must be after start and within the segment's {angle:g} degrees")]
+    if band.lower is not None and band.upper is not None and band.lower > band.upper:
+        return [Contradiction(f"{where}/upper", "must not be below lower")]
+    return []
+
+
+def _has_motion(segment: Segment) -> bool:
+    """Return whether the follower moves in a segment; the lowest-degree polynomial through one value is constant."""
+    if isinstance(segment, Polynomial):
+        stated = [pair for condition in segment.conditions for pair in condition.values()]
+        return len({value for order, value in stated if order == 0}) > 1 or any(x for order, x in stated if order)
+    return isinstance(segment, Move) or (isinstance(segment, ConstantVelocity) and segment.lift != 0.0)

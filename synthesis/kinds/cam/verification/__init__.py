@@ -1,0 +1,1 @@
+"""Verification of cams: the follower laid against the finished profile."""

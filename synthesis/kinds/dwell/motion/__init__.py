@@ -1,0 +1,1 @@
+"""Output motion of dwell linkages, the intervals of rest, and their score."""

@@ -1,0 +1,1 @@
+"""Refinement of dwell linkages by linear programs."""

@@ -1,0 +1,28 @@
+"""Nearest miss of dwells that no design has: the same dwells, all shortened by one share."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from synthesis.kinds.dwell.problem import DwellProblem
+from synthesis.model.answer import Reachable
+from synthesis.model.kind import TaskEasing
+
+
+def _shorten_dwells(problem: DwellProblem, share: float) -> DwellProblem:
+    return problem.with_shorter_dwells(share)
+
+
+def _list_dwells(problem: DwellProblem) -> dict[str, Any]:
+    """Return the dwells of a problem in degrees of the crank, in the field that the client used."""
+    if problem.dwells is None:
+        return {"dwell_angle": problem.dwell_angle}
+    return {"dwell_angles": [dwell.angle for dwell in problem.dwells]}
+
+
+def _describe_longest_dwells(reachable: Reachable) -> str:
+    longest = reachable.dwell_angles or ([] if reachable.dwell_angle is None else [reachable.dwell_angle])
+    return f" The longest dwells found are {' and '.join(f'{angle:.4g}°' for angle in longest)}." if longest else ""
+
+
+SHORTER_DWELLS = TaskEasing(_shorten_dwells, _list_dwells, _describe_longest_dwells)

@@ -1,0 +1,1 @@
+"""Starting linkages of the search for dwells."""

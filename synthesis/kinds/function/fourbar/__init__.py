@@ -1,0 +1,1 @@
+"""Fourbar function generators: closure equations, precision points, minimax approximation."""

@@ -1,0 +1,1 @@
+"""All Watt II sixbars through nine pairs, by continuation."""

@@ -1,0 +1,1 @@
+"""Sixbar function generators: residuals, starts, descents."""

@@ -1,0 +1,263 @@
+"""Conversion of a candidate sixbar to a mechanism with dials, and its placement.
+
+A function generator works alike in any position, direction and size; for a Watt II also the size and direction of its
+second fourbar relative to the first are free. These are chosen to keep link lengths similar, pivots in their regions,
+and all joints in the box throughout the motion.
+"""
+
+from __future__ import annotations
+
+import cmath
+import math
+from collections.abc import Iterator, Sequence
+from typing import NamedTuple
+
+import numpy as np
+
+from kinematics.arrays import Complex, Real
+from kinematics.linkage.planar.catalogue import SIXBAR_LINKS
+from kinematics.linkage.planar.mechanism import GROUND
+from synthesis.kinds.function.design import Dials
+from synthesis.kinds.function.fourbar.task import DEFAULT_GROUND_LENGTH, FunctionTask, make_dials
+from synthesis.kinds.function.problem import FunctionProblem
+from synthesis.kinds.function.sixbar.descents import TYPE_NUMBERS, SixbarCandidate
+from synthesis.kinds.function.sixbar.followers import follow_sixbar
+from synthesis.kinds.function.sixbar.kernels import ROW_SIZE, START, STEPHENSON_2, STEPHENSON_3, A, B, C, K
+from synthesis.model.linkage.answer import SixbarMechanism
+from synthesis.model.linkage.conversion import to_complex
+from synthesis.model.linkage.sixbars import build_sixbar, list_lengths
+from synthesis.numerics.box_placement import ROUNDING_TOLERANCE, Boxes, Placement, place_in_boxes
+from synthesis.results.placement import convert_regions
+
+SAMPLE_COUNT = 49
+"""Number of samples of the motion at which a sixbar must be within the box."""
+
+SUBSTEP_COUNT = 6
+"""Number of substeps between samples in which a Stephenson II is followed."""
+
+DIRECTION_COUNT, SIZE_FACTORS = 24, (1.0, 0.6, 1.6)
+"""Number of directions, and size factors, tried for the second fourbar of a Watt II. With factor 1 the geometric means
+of longest and shortest link agree in both fourbars."""
+
+HULL_DIRECTIONS = np.exp(1j * np.arange(48) * (math.tau / 48.0))
+"""Directions in which the extreme points of a motion are determined."""
+
+BOX_INSET = 2e-3
+"""Margin of the extreme points from the box, as a share of its size, because points between directions lie farther out.
+"""
+
+PLACEMENT_DIRECTIONS = np.exp(1j * np.arange(72) * (math.tau / 72.0))
+"""Directions tried in the placement of a sixbar."""
+
+SIZE_COUNT, MIN_SIZE_SHARE, PREFERRED_SIZE_SHARE, MAX_SIZE_FACTOR = 10, 0.05, 0.6, 1.5
+"""Placement sizes: number tried; minimum tried and minimum preferred, as shares of the maximum; and maximum relative to
+the size that fills the widest box."""
+
+MIN_LENGTH = 1e-12
+"""Minimum length, in ground lengths, in a ratio."""
+
+SIZE_WEIGHT = 0.1
+"""Weight of the logarithm of the size relative to that of the link ratio."""
+
+LINK_JOINTS = {
+    name: {link: tuple(joint for joint in joints if joint != "P") for link, joints in SIXBAR_LINKS[name].items()}
+    for name in TYPE_NUMBERS
+}
+"""The joints on each link of the types."""
+
+
+class _Frame(NamedTuple):
+    """A sixbar over its motion: joints by name, shape (m,) each, and the reference angle of the output, degrees."""
+
+    joints: dict[str, Complex]
+    output_frame: float
+
+
+def build_function_sixbar(task: FunctionTask, found: SixbarCandidate) -> tuple[SixbarMechanism, Dials]:
+    """Build a candidate sixbar in the problem's coordinates, at the first target, with its dials."""
+    problem = task.problem
+    frame, there = _select_frame(problem, found, list(_list_frames(task, found)))
+    joints = {name: there.origin + there.along * complex(places[0]) for name, places in frame.joints.items()}
+    turned = math.degrees(cmath.phase(there.along))
+    dials = make_dials(task, found.at, turned, turned + frame.output_frame)
+    return build_sixbar(found.type, joints, LINK_JOINTS[found.type]), dials
+
+
+def _select_frame(problem: FunctionProblem, found: SixbarCandidate, frames: list[_Frame]) -> tuple[_Frame, Placement]:
+    """Select the frame with the most even link lengths that can be placed; without one, the most even of all."""
+    frames.sort(key=lambda frame: _measure_unevenness(found, frame.joints))
+    first: tuple[_Frame, Placement] | None = None
+    for frame in frames:
+        there = _place_sixbar(problem, found, frame)
+        if there.fits:
+            return frame, there
+        first = first or (frame, there)
+    assert first is not None
+    return first
+
+
+def _list_frames(task: FunctionTask, found: SixbarCandidate) -> Iterator[_Frame]:
+    """Yield the sixbar in its own frame, O2 at 0 and O4 at 1, in all relative placements of its fourbars.
+
+    The first sample is the first target.
+    """
+    kind, at = TYPE_NUMBERS[found.type], found.at
+    first, last = float(task.inputs[0]), float(task.sample_inputs.max())
+    low = float(task.sample_inputs.min())
+    over = np.linspace(low, last, SAMPLE_COUNT)
+    inputs = np.concatenate([[first], over])
+    pins = at[A] * np.exp(1j * (at[START] + at[K] * inputs))
+    joints: dict[str, Complex] = {"O2": np.zeros_like(pins), "O4": np.ones_like(pins), "A": pins}
+    bits = found.assembly & 1 == 1, found.assembly & 2 == 2
+    if kind == STEPHENSON_2:
+        moving = _drive_stephenson_2(found, first, (low, last))
+        still = {"O2": np.zeros_like(moving["A"]), "O4": np.ones_like(moving["A"])}
+        yield _Frame(still | moving, 0.0)
+        return
+    joints["B"] = _close_dyad(pins, joints["O4"], at[B], at[C], left=bits[0])
+    rocker = joints["B"] - 1.0
+    if kind == STEPHENSON_3:
+        joints["C"] = pins + complex(at[7], at[8]) * (joints["B"] - pins) / at[B]
+        joints["O6"] = np.full_like(pins, complex(at[9], at[10]))
+        joints["D"] = _close_dyad(joints["C"], joints["O6"], at[11], at[12], left=bits[1])
+        yield _Frame(joints, 0.0)
+        return
+    crank = at[7] * np.exp(1j * at[10]) * rocker / at[C]
+    pin = _close_dyad(crank, joints["O4"], at[8], at[9], left=bits[1])
+    lengths = np.array([1.0, *at[:3]]), np.array([1.0, *at[7:10]])
+    agreeing = math.sqrt(math.prod([lengths[0].min() * lengths[0].max(), 1.0 / (lengths[1].min() * lengths[1].max())]))
+    for size in SIZE_FACTORS:
+        for turn in np.arange(DIRECTION_COUNT) * (math.tau / DIRECTION_COUNT):
+            along = agreeing * size * cmath.rect(1.0, turn)
+            second = {"C": 1.0 + along * crank, "D": 1.0 + along * pin, "O6": np.full_like(pins, 1.0 + along)}
+            yield _Frame(joints | second, math.degrees(turn))
+
+
+def _close_dyad(q: Complex, o: Complex, d: float, e: float, *, left: bool) -> Complex:
+    """Return the joint of a dyad from pins q and pivots o, to the left or right of the line from q to o."""
+    across = o - q
+    r = np.abs(across)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        along = (d * d + r * r - e * e) / (2.0 * r)
+    height = np.sqrt(np.maximum(d * d - along * along, 0.0))
+    with np.errstate(divide="ignore", invalid="ignore"):
+        return np.asarray(q + across / r * (along + (1j if left else -1j) * height))
+
+
+def _drive_stephenson_2(found: SixbarCandidate, first: float, ends: tuple[float, float]) -> dict[str, Complex]:
+    """Drive a Stephenson II from the first target to both ends of its range; the kernel follows τ in small steps."""
+    at = found.at.copy()
+    left = found.assembly & 1 == 1
+    begun = follow_sixbar(STEPHENSON_2, found.assembly, at, np.array([first]), np.zeros(1)).tau
+    places = [(first, begun)]
+    for end in ends:
+        tau = begun
+        for n, u in enumerate(np.linspace(first, end, SUBSTEP_COUNT * SAMPLE_COUNT + 1)):
+            at[ROW_SIZE - 1] = tau
+            tau = follow_sixbar(STEPHENSON_2, found.assembly, at, np.array([u]), np.zeros(1)).tau
+            if n % SUBSTEP_COUNT == 0:
+                places.append((float(u), tau))
+    inputs, taus = np.array(places).T
+    turn = np.exp(1j * (at[START] + at[K] * inputs))
+    pin, c = at[A] * turn, complex(at[7], at[8]) * turn
+    b = pin + at[B] * np.exp(1j * taus) * turn
+    d = _close_dyad(c, b, at[10], at[9], left=left)
+    return {"A": pin, "B": b, "C": c, "D": d, "E": b + complex(at[11], at[12]) * (d - b) / at[9]}
+
+
+def _measure_unevenness(found: SixbarCandidate, joints: dict[str, Complex]) -> float:
+    """Return the logarithm of the link ratio, plus a small weight of the logarithm of the size."""
+    there = {name: complex(places[0]) for name, places in joints.items()}
+    lengths = list_lengths(there, LINK_JOINTS[found.type]).values()
+    extent = np.ptp([z.real for z in there.values()]) + np.ptp([z.imag for z in there.values()])
+    return math.log(max(lengths) / max(min(lengths), MIN_LENGTH)) + SIZE_WEIGHT * math.log(float(extent))
+
+
+def _place_sixbar(problem: FunctionProblem, found: SixbarCandidate, frame: _Frame) -> Placement:
+    """Find the similarity that places a sixbar from its own frame into regions and box."""
+    links, joints = LINK_JOINTS[found.type], frame.joints
+    still = links[GROUND]
+    constraints, space = problem.constraints, problem.space
+    moving = [name for name in joints if name not in still]
+    regions = [constraints.fixed_pivot_region] * len(still) + [constraints.moving_pivot_region] * len(moving)
+    points = [np.array([joints[name][0] for name in [*still, *moving]])]
+    tables = [np.stack(convert_regions(regions))]
+    if space is not None and space.box is not None:
+        (left, low), (right, high) = space.box
+        sides = np.array(space.shrink_box_for_joints(BOX_INSET * min(right - left, high - low)))
+        swept = np.concatenate([*(joints[name][:1] for name in still), *(joints[name][1:] for name in moving)])
+        outermost = swept[np.unique((swept[:, None] * HULL_DIRECTIONS.conj()).real.argmax(axis=0))]
+        points.append(outermost)
+        tables.append(np.repeat(sides[:, None], len(outermost), axis=1))
+    least, most = _limit_sizes(problem, found, joints)
+    limits = Boxes(*np.concatenate(tables, axis=1))
+    if problem.fixed_pivots is not None:
+        o2, there = to_complex(problem.fixed_pivots.input), to_complex(problem.fixed_pivots.output)
+        ends = complex(joints[still[0]][0]), complex(joints[still[-1]][0])
+        along = (there - o2) / (ends[1] - ends[0])
+        origin = o2 - along * ends[0]
+        kept = least <= abs(along) <= most and _is_within_boxes(origin + along * np.concatenate(points), limits)
+        return Placement(origin, along, kept)
+    if not np.isfinite(np.concatenate(tables, axis=1)).any() and constraints.link_length is None:
+        return Placement(0j, complex(_get_preferred_size(joints)), True)
+    tried = _try_placements(np.concatenate(points), limits, least, most, _get_preferred_size(joints))
+    if tried.fits or len(points) > 1:
+        return tried
+    return place_in_boxes(points[0], limits, least, most, complex(_get_preferred_size(joints)))
+
+
+def _is_within_boxes(places: Complex, limits: Boxes) -> bool:
+    """Return whether points lie in their boxes, apart from rounding."""
+    margin = ROUNDING_TOLERANCE * float(np.abs(places).max())
+    x, y = places.real, places.imag
+    inside = (limits.left - margin <= x) & (x <= limits.right + margin)
+    return bool(np.all(inside & (limits.low - margin <= y) & (y <= limits.high + margin)))
+
+
+def _try_placements(points: Complex, limits: Boxes, least: float, most: float, preferred: float) -> Placement:
+    """Try many directions and sizes to place points in boxes; return the closest if none fits.
+
+    Among those that fit, select the one with the largest margin whose size is not much below the maximum.
+    """
+    sides = np.concatenate([limits.right - limits.left, limits.high - limits.low])
+    extent = max(float(np.ptp(points.real)), float(np.ptp(points.imag)))
+    finite = sides[np.isfinite(sides)]
+    top = min(most, MAX_SIZE_FACTOR * float(finite.max()) / extent if len(finite) else max(preferred, least))
+    sizes = np.geomspace(max(least, MIN_SIZE_SHARE * top), max(top, least, MIN_SIZE_SHARE * top), SIZE_COUNT)
+    along = (sizes[:, None] * PLACEMENT_DIRECTIONS).ravel()
+    moved = along[:, None] * points
+    left, right = (limits.left - moved.real).max(axis=1), (limits.right - moved.real).min(axis=1)
+    low, high = (limits.low - moved.imag).max(axis=1), (limits.high - moved.imag).min(axis=1)
+    room = np.minimum(right - left, high - low)
+    fitting = room >= 0.0
+    if fitting.any():
+        large = fitting & (np.abs(along) >= PREFERRED_SIZE_SHARE * np.abs(along[fitting]).max())
+        best = int(np.argmax(np.where(large, room, -np.inf)))
+    else:
+        best = int(np.argmax(room))
+    return Placement(
+        _find_middle(left, right, best) + 1j * _find_middle(low, high, best), complex(along[best]), bool(fitting[best])
+    )
+
+
+def _find_middle(low: Real, high: Real, n: int) -> float:
+    """Return the middle of a range, its only finite end, or 0 if it is unbounded."""
+    ends = [float(end) for end in (low[n], high[n]) if math.isfinite(end)]
+    return sum(ends) / len(ends) if ends else 0.0
+
+
+def _get_preferred_size(joints: dict[str, Complex]) -> float:
+    """Return the size at which the longest ground line has the default length."""
+    still: Sequence[complex] = [complex(joints[name][0]) for name in ("O2", "O4", "O6") if name in joints]
+    return DEFAULT_GROUND_LENGTH / max(abs(one - other) for one in still for other in still)
+
+
+def _limit_sizes(problem: FunctionProblem, found: SixbarCandidate, joints: dict[str, Complex]) -> tuple[float, float]:
+    """Return the minimum and maximum size at which all lengths satisfy their limits."""
+    limits = problem.constraints.link_length
+    if limits is None:
+        return 0.0, math.inf
+    lengths = list_lengths(
+        {name: complex(places[0]) for name, places in joints.items()}, LINK_JOINTS[found.type]
+    ).values()
+    return limits.min / min(lengths), math.inf if limits.max is None else limits.max / max(lengths)

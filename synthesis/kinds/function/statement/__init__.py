@@ -1,0 +1,1 @@
+"""Requests for functions: the function and the mechanism types."""

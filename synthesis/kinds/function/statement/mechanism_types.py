@@ -1,0 +1,49 @@
+"""Requested types of linkage, and contradictions between sixbars and other fields."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import Annotated, Any, Literal, get_args
+
+from pydantic import Field
+
+from synthesis.model.linkage.type_choice import (
+    UNCLASSED_SIXBAR,
+    Auto,
+    find_sixbar_contradictions,
+    find_unsupported_by_sixbars,
+    refuse_class,
+)
+from synthesis.model.problem import Contradiction
+
+Sixbar = Literal["watt_2", "stephenson_2", "stephenson_3"]
+"""Sixbar types whose output differs from a fourbar's: in Watt I and Stephenson I sixbars, a fourbar drives the output.
+"""
+
+SIXBARS: tuple[Sixbar, ...] = get_args(Sixbar)
+
+Mechanisms = Auto | Annotated[list[Literal["fourbar", "slider_crank"] | Sixbar], Field(min_length=1, max_length=5)]
+"""A list of types by name, or ``auto`` for the simplest type that is good enough."""
+
+
+def list_unsupported(problem: Any) -> Iterator[Contradiction]:
+    """Yield the given fields that sixbars do not support."""
+    if problem.slides:
+        yield Contradiction("/mechanism", "the output of sixbars rotates; remove them from mechanisms")
+    if problem.has_given_zeros:
+        yield Contradiction("/zeros", "are measured from the ground line of a fourbar; leave them open for sixbars")
+    yield from find_unsupported_by_sixbars(problem)
+
+
+def check_types(problem: Any) -> list[Contradiction]:
+    """Return contradictions between the requested types and the other fields."""
+    stated = problem.mechanisms
+    if stated is None or isinstance(stated, str):
+        return []
+    if ("slider_crank" in stated) != problem.slides or (problem.slides and set(stated) != {"slider_crank"}):
+        detail = (
+            "slider_crank has a length as output, all other types an angle: list it alone, and set mechanism to it too"
+        )
+        return [Contradiction("/mechanisms", detail)]
+    unclassed = refuse_class(problem.constraints) if set(stated) == {UNCLASSED_SIXBAR} else []
+    return [*unclassed, *find_sixbar_contradictions(stated, problem.sixbars, list_unsupported(problem))]

@@ -1,0 +1,1 @@
+"""Verification of function generators by driving them."""

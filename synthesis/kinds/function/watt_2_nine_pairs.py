@@ -1,0 +1,166 @@
+"""Watt II sixbars for nine pairs or precision points: compute all of them and verify each.
+
+Most real solutions (:mod:`synthesis.kinds.function.nine_pairs.continuation`) have a branch defect: their dyads are
+assembled differently at different pairs, so no motion of the linkage connects these. The solutions that keep their
+assembly at the pairs and between them are driven by the analysis core.
+"""
+
+from __future__ import annotations
+
+import math
+from functools import partial
+from typing import NamedTuple
+
+import numpy as np
+
+from kinematics.arrays import Complex
+from synthesis.kinds.function.design import FunctionDesign, FunctionResult
+from synthesis.kinds.function.fourbar.task import FunctionTask, make_function_task
+from synthesis.kinds.function.nine_pairs.continuation import find_all_watts
+from synthesis.kinds.function.nine_pairs.system import SOLUTION_COUNT
+from synthesis.kinds.function.problem import FunctionProblem
+from synthesis.kinds.function.ranking import rank_by_error
+from synthesis.kinds.function.sixbar.descents import Descents, SixbarCandidate
+from synthesis.kinds.function.sixbar.followers import follow_sixbar
+from synthesis.kinds.function.sixbar.kernels import WATT_2, A, B, C
+from synthesis.kinds.function.sixbar.mechanism import build_function_sixbar
+from synthesis.kinds.function.sixbar.nine_pair_starts import make_sixbar
+from synthesis.kinds.function.sixbar.solver import EXACT_TOLERANCE, MAX_EXACT_STEPS, make_sample_points
+from synthesis.kinds.function.verification.verify import verify_function
+from synthesis.model.counting import choose_word, format_integer
+from synthesis.model.kind import Progress
+from synthesis.results.candidate_log import CandidateLog, report_candidates
+
+CONTINUATION_SHARE = 0.9
+"""Share of the progress assigned to the continuation."""
+
+MIN_LENGTH_SHARE = 1e-9
+"""Minimum length of a link, relative to its ground."""
+
+PAIR_TOLERANCE = 1e-6
+"""Maximum error at a pair, radians, of a solution that meets it in the assembly of the first pair."""
+
+SAMPLE_COUNT = 181
+"""Number of inputs over the range at which linkages are screened before they are driven."""
+
+LIMIT_MARGIN = 1e-3
+"""Excess of a transmission cosine, or relative excess of a link ratio, beyond which a limit is certainly violated."""
+
+PROVING_REASONS = {"branch_defect", "circuit_defect", "order_defect", "transmission_angle"}
+"""Rejection reasons of driven linkages that do not depend on the placement or size of the fourbars."""
+
+
+class _ScreeningResult(NamedTuple):
+    """Screening of the solutions for one pair of scales: linkages to be driven, and rejection reasons of the others."""
+
+    kept: list[SixbarCandidate]
+    reasons: list[str]
+
+
+def solve_nine_pairs(problem: FunctionProblem, reasons: dict[str, str], progress: Progress) -> FunctionResult:
+    """Solve for all Watt II sixbars through nine pairs.
+
+    Parameters
+    ----------
+    problem : FunctionProblem
+        A problem with open zeros and given scales.
+    reasons : dict
+        Rejection reasons by failed check.
+    progress : callable
+        Progress callback.
+    """
+    task = make_function_task(problem)
+    rng = np.random.default_rng(problem.seed)
+    sifting = CandidateLog[FunctionDesign](problem, reasons)
+    choices = [(k, l_) for k, _ in task.scales[0] for l_, _ in task.scales[1]]
+    complete, computed, real = True, 0, 0
+    kept: list[SixbarCandidate] = []
+    reasons_before: list[str] = []
+    for n, (k, l_) in enumerate(choices):
+
+        def report_share(share: float, n: int = n) -> None:
+            done = round(share * SOLUTION_COUNT)
+            progress(
+                CONTINUATION_SHARE * (n + share) / len(choices),
+                f"{format_integer(done)} of {format_integer(SOLUTION_COUNT)} paths followed",
+            )
+
+        watts = find_all_watts(k * task.inputs, l_ * task.outputs, rng, report_share)
+        complete, computed, real = complete and watts.complete, computed + watts.found, real + len(watts.real)
+        judged = _screen_solutions(task, watts.real, k, l_)
+        kept += judged.kept
+        reasons_before += judged.reasons
+    # Order by transmission at the pairs, so that the order of equal designs is reproducible.
+    kept.sort(key=lambda one: _compute_max_cosine(task, one))
+
+    def verify_sixbar(one: SixbarCandidate) -> FunctionDesign | None:
+        try:
+            return verify_function(problem, *build_function_sixbar(task, one))
+        except (ValueError, ZeroDivisionError, OverflowError):
+            return None  # at a toggle no position can be computed
+
+    sifting.verify_candidates(
+        report_candidates(kept, progress, (CONTINUATION_SHARE, 1.0), "verifying {next} of {all} sixbars"), verify_sixbar
+    )
+    progress(1.0, "verified")
+    complete = complete and sifting.rejected.keys() <= PROVING_REASONS
+    for reason in reasons_before:
+        sifting.reject(reason)
+    counts = f"{format_integer(computed)} of {format_integer(SOLUTION_COUNT * len(choices))}"
+    text = (
+        f"{counts} Watt II solutions for the nine pairs were computed, real and complex; {format_integer(real)} "
+        f"{choose_word(real, 'is', 'are')} real, and {format_integer(sifting.accepted)} of these "
+        f"{choose_word(sifting.accepted, 'satisfies', 'satisfy')} all constraints.{sifting.describe_reasons()}"
+    )
+    if not sifting.passed:
+        text += " These are all, so no design of this type exists." if complete else " Others may exist."
+    return FunctionResult(
+        designs=sifting.select_designs(partial(rank_by_error, problem)),
+        search=sifting.build_search("nine_pair_continuation", complete=complete),
+        summary=text,
+    )
+
+
+def _screen_solutions(task: FunctionTask, real: Complex, k: float, l_: float) -> _ScreeningResult:
+    """Select the solutions that keep their assembly and satisfy simple limits, and refine them to rounding."""
+    constraints, places = task.problem.constraints, make_sample_points(task)
+    descents = Descents(places.points, 0.0, None)
+    low, high = places.dense[0].min(), places.dense[0].max()
+    dense = np.union1d(np.linspace(low, high, SAMPLE_COUNT), places.dense[0])
+    demanded = constraints.min_transmission_angle
+    greatest = 1.0 if demanded is None else math.cos(math.radians(demanded)) + LIMIT_MARGIN
+    widest = constraints.max_link_ratio or math.inf
+    kept, reasons = [], []
+    for vectors in real:
+        one = make_sixbar(vectors, k, l_, float(task.inputs[0]), float(task.outputs[0]))
+        if one.at[[A, B, C, 7, 8, 9]].min() < MIN_LENGTH_SHARE:
+            reasons.append("degenerate_link")
+            continue
+        if _compute_link_ratio(one) > widest * (1.0 + LIMIT_MARGIN):
+            reasons.append("link_ratio")
+            continue
+        errors = follow_sixbar(WATT_2, one.assembly, one.at, *places.dense).errors
+        # Written as "not <", so that NaN (not assembled at some pair) is rejected too.
+        if not np.abs(errors).max() < PAIR_TOLERANCE:
+            reasons.append("branch_defect")
+            continue
+        one = descents.descend_one(one, 0.0, MAX_EXACT_STEPS, EXACT_TOLERANCE)
+        between = follow_sixbar(WATT_2, one.assembly, one.at, dense, np.zeros_like(dense))
+        if not np.isfinite(between.errors).all():
+            reasons.append("branch_defect")
+        elif np.abs(between.cosines).max() > greatest:
+            reasons.append("transmission_angle")
+        else:
+            kept.append(one)
+    return _ScreeningResult(kept, reasons)
+
+
+def _compute_link_ratio(one: SixbarCandidate) -> float:
+    """Return the larger link ratio of the two fourbars, which does not depend on their free relative size."""
+    fourbars = np.array([[1.0, *one.at[[A, B, C]]], [1.0, *one.at[[7, 8, 9]]]])
+    return float((fourbars.max(axis=1) / fourbars.min(axis=1)).max())
+
+
+def _compute_max_cosine(task: FunctionTask, one: SixbarCandidate) -> float:
+    """Return the largest cosine of the transmission angles at the pairs."""
+    return float(np.abs(follow_sixbar(WATT_2, one.assembly, one.at, *make_sample_points(task).dense).cosines).max())

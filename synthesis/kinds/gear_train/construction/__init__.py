@@ -1,0 +1,1 @@
+"""Gear trains as answers: gears, meshes and the power that they carry."""

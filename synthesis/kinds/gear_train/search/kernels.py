@@ -1,0 +1,428 @@
+"""Compiled loops of the search for tooth numbers.
+
+A train of k stages has drivers a₁...a_k and driven gears b₁...b_k; its ratio is N/D with integers N = Πb and D = Πa.
+
+The error against the target T = T_hi + T_lo (two floats) is e = |N − T D| / (T D). N and D are below 2⁵³, the product
+T_hi·D is split without rounding (Dekker), and N minus its head is exact if the two are near each other; so e is
+accurate to a few units of its own last place, down to about 2⁻¹⁰⁰.
+
+The results are collected in a :class:`~synthesis.kinds.gear_train.search.shortlist.Shortlist`: the best trains in
+order, up to its capacity, and the minimum error of each size, from which the Pareto set follows. A train is decoded
+only if it could enter one of the two.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from kinematics.arrays import Integers, Real
+from kinematics.compiling import njit
+from synthesis.kinds.gear_train.search.pairing_rules import (
+    MAX_STAGES,
+    Rule,
+    arrange_pairs,
+    is_foremost,
+    is_within_limits,
+)
+from synthesis.kinds.gear_train.search.shortlist import TIE_TOLERANCE, Shortlist, enter, is_improvement
+
+Gears = NDArray[np.int16]
+
+SPLITTER = 134217729.0
+"""2²⁷ + 1: splits a float of 53 bits into two of 26 bits, whose products are exact (Veltkamp, Dekker)."""
+
+DISTANCE_TOLERANCE = 1e-13
+"""Share of a distance by which the intervals of coaxial meshes may miss one another by rounding."""
+
+WINDOW_MARGIN = 1e-12
+"""Share by which the window of errors is widened: rounding must not lose a train, and the order is exact later."""
+
+
+@njit(cache=True, nogil=True, inline="always")
+def compute_error(n: int, d: int, target: float, rest: float) -> float:
+    """Return the relative error of the ratio n/d."""
+    x, y = float(d), target
+    p = x * y
+    # Dekker's product: x·y = p + low exactly, from the halves of both factors.
+    c = SPLITTER * x
+    xh = c - (c - x)
+    c = SPLITTER * y
+    yh = c - (c - y)
+    xl, yl = x - xh, y - yh
+    low = ((xh * yh - p) + xh * yl + xl * yh) + xl * yl
+    return abs(((float(n) - p) - low) - rest * x) / p
+
+
+@njit(cache=True, nogil=True)
+def compute_divisor(a: int, b: int) -> int:
+    """Return the greatest common divisor."""
+    while b:
+        a, b = b, a % b
+    return a
+
+
+@njit(cache=True, nogil=True, inline="always")
+def _compute_window(ranked: float, front: float, tolerance: float) -> float:
+    """Return the error up to which hits matter, slightly widened: rounding must not lose one."""
+    return min(max(ranked, front), tolerance) * (1.0 + WINDOW_MARGIN) + TIE_TOLERANCE
+
+
+@njit(cache=True, nogil=True)
+def match(
+    k: int,
+    drivers: Gears,
+    driver_products: Integers,
+    driver_starts: Integers,
+    driven: Gears,
+    driven_products: Integers,
+    driven_starts: Integers,
+    from_size: int,
+    to_size: int,
+    rule: Rule,
+    shortlist: Shortlist,
+) -> None:
+    """Meet in the middle: all drivers × all driven gears, for sizes from ``from_size`` up to and without ``to_size``.
+
+    The rows of ``drivers`` of size u are ``driver_starts[u]`` to ``driver_starts[u + 1]``, sorted by product;
+    ``driven`` likewise. For each pair of sizes one pass over both lists finds every pair whose error could matter.
+    """
+    teeth = np.zeros(3 * MAX_STAGES, np.int64)
+    most_drivers, most_driven = len(driver_starts) - 2, len(driven_starts) - 2
+    # The Pareto front so far: a train must be nearer than all smaller ones to enter it.
+    front = np.inf
+    for s in range(min(from_size, len(shortlist.least_error))):
+        front = min(front, shortlist.least_error[s])
+    for size in range(from_size, to_size):
+        for step in range(2 * size + 1 if rule.largest else size + 1):
+            # All pairs (u, v) with u + v = size, or with max(u, v) = size if the largest gear counts.
+            u = min(step, size)
+            v = (2 * size - step if step > size else size) if rule.largest else size - step
+            if (
+                u > most_drivers
+                or v > most_driven
+                or driver_starts[u] == driver_starts[u + 1]
+                or driven_starts[v] == driven_starts[v + 1]
+            ):
+                continue
+            start, end = driven_starts[v], driven_starts[v + 1]
+            middle = start
+            for i in range(driver_starts[u], driver_starts[u + 1]):
+                d = driver_products[i]
+                wanted = rule.target * d
+                # Both lists rise, so that the nearest driven product only moves upward.
+                while middle < end and driven_products[middle] < wanted:
+                    middle += 1
+                capacity = len(shortlist.error)
+                # From the nearest product outward, first downward, until the error leaves the window.
+                for upward in range(2):
+                    j = middle if upward else middle - 1
+                    while start <= j < end:
+                        full = shortlist.kept[0] == capacity
+                        if rule.by_size:
+                            ranked = 0.0 if full and size > shortlist.size[capacity - 1] else np.inf
+                        else:
+                            ranked = shortlist.error[capacity - 1] if full else np.inf
+                        near = abs(driven_products[j] - wanted)
+                        if (
+                            near
+                            > _compute_window(ranked, min(front, shortlist.least_error[size]), rule.tolerance) * wanted
+                        ):
+                            break
+                        e = compute_error(driven_products[j], d, rule.target, rule.target_rest)
+                        if e <= rule.tolerance and is_improvement(e, size, shortlist, rule.by_size):
+                            for stage in range(k):
+                                teeth[stage] = drivers[i, stage]
+                                teeth[MAX_STAGES + stage] = driven[j, stage]
+                            if is_within_limits(teeth, k, rule) and arrange_pairs(teeth, k, rule):
+                                enter(e, size, teeth, shortlist, rule.by_size)
+                        j += 1 if upward else -1
+        front = min(front, shortlist.least_error[size])
+
+
+@njit(cache=True, nogil=True)
+def match_all(
+    k: int,
+    drivers: Gears,
+    driver_products: Integers,
+    driver_sizes: Integers,
+    driver_order: Integers,
+    driven: Gears,
+    driven_products: Integers,
+    driven_sizes: Integers,
+    driven_order: Integers,
+    from_size: int,
+    rule: Rule,
+    shortlist: Shortlist,
+) -> None:
+    """Match like :func:`match`, for all sizes from ``from_size`` up in one pass over both lists sorted by product.
+
+    It meets every train near enough for the smallest of these sizes, so it is only efficient if those are few.
+    """
+    teeth = np.zeros(3 * MAX_STAGES, np.int64)
+    capacity, middle = len(shortlist.error), 0
+    front = np.inf
+    for s in range(min(from_size, len(shortlist.least_error))):
+        front = min(front, shortlist.least_error[s])
+    for place in range(len(driver_order)):
+        i = driver_order[place]
+        d = driver_products[i]
+        wanted = rule.target * d
+        while middle < len(driven_order) and driven_products[driven_order[middle]] < wanted:
+            middle += 1
+        for upward in range(2):
+            at = middle if upward else middle - 1
+            while 0 <= at < len(driven_order):
+                j = driven_order[at]
+                at += 1 if upward else -1
+                if rule.by_size:
+                    # By size, larger trains cannot enter a full shortlist.
+                    full = shortlist.kept[0] == capacity and from_size > shortlist.size[capacity - 1]
+                    ranked = 0.0 if full else np.inf
+                else:
+                    ranked = shortlist.error[capacity - 1] if shortlist.kept[0] == capacity else np.inf
+                if abs(driven_products[j] - wanted) > _compute_window(ranked, front, rule.tolerance) * wanted:
+                    break
+                one, other = driver_sizes[i], driven_sizes[j]
+                size = max(one, other) if rule.largest else one + other
+                if size < from_size or size >= len(shortlist.least_error):
+                    continue
+                e = compute_error(driven_products[j], d, rule.target, rule.target_rest)
+                if e <= rule.tolerance and is_improvement(e, size, shortlist, rule.by_size):
+                    for stage in range(k):
+                        teeth[stage] = drivers[i, stage]
+                        teeth[MAX_STAGES + stage] = driven[j, stage]
+                    if is_within_limits(teeth, k, rule) and arrange_pairs(teeth, k, rule):
+                        enter(e, size, teeth, shortlist, rule.by_size)
+
+
+@njit(cache=True, nogil=True)
+def count_products(
+    k: int,
+    drivers: Gears,
+    driver_products: Integers,
+    driven: Gears,
+    driven_products: Integers,
+    over: int,
+    under: int,
+    rule: Rule,
+) -> int:
+    """Count the trains with exactly the ratio over/under, a reduced fraction; ``driven`` is sorted by product."""
+    teeth = np.zeros(3 * MAX_STAGES, np.int64)
+    count = 0
+    # Without rules for meshes every pairing is allowed, which saves millions of calls.
+    any_pairing = not rule.ordered and not rule.by_mesh
+    for i in range(len(driver_products)):
+        # N/D = over/under needs D divisible by the reduced denominator.
+        if driver_products[i] % under != 0:
+            continue
+        wanted = driver_products[i] // under * over
+        j = np.searchsorted(driven_products, wanted)
+        while j < len(driven_products) and driven_products[j] == wanted:
+            for stage in range(k):
+                teeth[stage] = drivers[i, stage]
+                teeth[MAX_STAGES + stage] = driven[j, stage]
+            count += is_within_limits(teeth, k, rule) and (any_pairing or arrange_pairs(teeth, k, rule))
+            j += 1
+    return count
+
+
+@njit(cache=True, nogil=True)
+def enumerate_tuples(values: Integers, starts: Integers, counts: Integers, ordered: bool, rows: Gears) -> int:
+    """Enumerate all choices of one value for each stage; return their number, and write as many as ``rows`` can hold.
+
+    Stage i chooses from ``values[starts[i]:starts[i + 1]]``. Without ``ordered`` the choices rise, each multiset once.
+    If ``counts`` is not empty a value t occurs at most ``counts[t]`` times.
+    """
+    k = len(starts) - 1
+    place = np.zeros(k, np.int64)
+    stage, number = 0, 0
+    place[0] = starts[0]
+    # Depth-first search with an explicit stack: ``place[stage]`` is the current choice of each stage.
+    while stage >= 0:
+        if place[stage] >= starts[stage + 1]:
+            stage -= 1
+            if stage >= 0:
+                place[stage] += 1
+            continue
+        if len(counts) > 0:
+            same = 0
+            for i in range(stage + 1):
+                same += values[place[i]] == values[place[stage]]
+            if same > counts[values[place[stage]]]:
+                place[stage] += 1
+                continue
+        if stage < k - 1:
+            stage += 1
+            place[stage] = starts[stage] if ordered else starts[stage] + place[stage - 1] - starts[stage - 1]
+            continue
+        if number < len(rows):
+            for i in range(k):
+                rows[number, i] = values[place[i]]
+        number += 1
+        place[stage] += 1
+    return number
+
+
+@njit(cache=True, nogil=True)
+def has_common_distance(distances: Real, place: Integers, k: int) -> bool:
+    """Return whether k meshes have a common distance: if so, an interval of one of them begins at such a distance."""
+    for i in range(k):
+        for p in range(distances.shape[1]):
+            distance, agreed = distances[place[i], p, 0], 0
+            for m in range(k):
+                for q in range(distances.shape[1]):
+                    near, far = distances[place[m], q, 0], distances[place[m], q, 1]
+                    if near <= distance <= far * (1.0 + DISTANCE_TOLERANCE):
+                        agreed += 1
+                        break
+            if agreed == k:
+                return True
+    return False
+
+
+@njit(cache=True, nogil=True)
+def combine(
+    k: int,
+    a: Integers,
+    b: Integers,
+    mark: Integers,
+    ratio: Real,
+    groups: Integers,
+    least_size: Integers,
+    distances: Real,
+    first: int,
+    last: int,
+    coaxial: bool,
+    rule: Rule,
+    shortlist: Shortlist,
+    tied: Integers,
+) -> None:
+    """Combine trains of one mesh a:b from each stage's list, for the groups from ``first`` up to and without ``last``.
+
+    In a group the stages' lists are ``groups[g, i]`` to ``groups[g, i + 1]``, sorted by the ratio b/a; without
+    ``rule.ordered`` they are one list, and every multiset occurs once. All stages but one are enumerated and the
+    fitting meshes of the last are found by bisection. ``least_size`` of the groups must not decrease. The meshes of a
+    train agree on a distance within one of the intervals ``distances[row]`` of each. With ``coaxial`` the
+    pairing is fixed, and of the places of the meshes one choice counts; otherwise only the pairing that ``pair_up``
+    would choose counts, so that gears occur once.
+
+    With fractions in the rows of ``tied`` nothing is entered; the trains of exactly these ratios are counted.
+    """
+    teeth, canonical = np.zeros(3 * MAX_STAGES, np.int64), np.zeros(3 * MAX_STAGES, np.int64)
+    place = np.zeros(MAX_STAGES + 1, np.int64)
+    capacity = len(shortlist.error)
+    for g in range(first, last):
+        front = np.inf
+        for s in range(least_size[g] + 1):
+            front = min(front, shortlist.least_error[s])
+        begin = groups[g, k - 1] if rule.ordered else groups[g, 0]
+        end = groups[g, k] if rule.ordered else groups[g, 1]
+        stage = 0
+        place[0] = groups[g, 0]
+        while stage >= 0:
+            if stage < k - 1:
+                stop = groups[g, stage + 1] if rule.ordered else end
+                if place[stage] >= stop:
+                    stage -= 1
+                    if stage >= 0:
+                        place[stage] += 1
+                    continue
+                stage += 1
+                place[stage] = groups[g, stage] if rule.ordered else place[stage - 1]
+                continue
+            up, down, so_far, gears, widest = 1, 1, 1.0, 0, 0
+            for i in range(k - 1):
+                up *= b[place[i]]
+                down *= a[place[i]]
+                so_far *= ratio[place[i]]
+                gears += a[place[i]] + b[place[i]]
+                widest = max(widest, a[place[i]], b[place[i]])
+            # The last stage must supply the rest of the ratio: bisect for it, then search outward on both sides.
+            wanted = rule.target / so_far
+            low = begin if rule.ordered or k == 1 else place[k - 2]
+            middle, top = low, end
+            while middle < top:
+                half = (middle + top) // 2
+                if ratio[half] < wanted:
+                    middle = half + 1
+                else:
+                    top = half
+            for upward in range(2):
+                j = middle if upward else middle - 1
+                while low <= j < end:
+                    full = shortlist.kept[0] == capacity
+                    if rule.by_size:
+                        ranked = 0.0 if full and least_size[g] > shortlist.size[capacity - 1] else np.inf
+                    else:
+                        ranked = shortlist.error[capacity - 1] if full else np.inf
+                    if len(tied) > 0:
+                        # Counting ties: exactly the error of the best train is of interest.
+                        ranked = front = shortlist.error[0]
+                    if abs(ratio[j] - wanted) > _compute_window(ranked, front, rule.tolerance) * wanted:
+                        break
+                    e = compute_error(up * b[j], down * a[j], rule.target, rule.target_rest)
+                    size = max(widest, a[j], b[j]) if rule.largest else gears + a[j] + b[j]
+                    wanted_tie = False
+                    for t in range(len(tied)):
+                        common = compute_divisor(up * b[j], down * a[j])
+                        if up * b[j] // common == tied[t, 0] and down * a[j] // common == tied[t, 1]:
+                            wanted_tie = True
+                    few = size < len(shortlist.least_error)
+                    if wanted_tie or (
+                        len(tied) == 0
+                        and few
+                        and e <= rule.tolerance
+                        and is_improvement(e, size, shortlist, rule.by_size)
+                    ):
+                        place[k - 1] = j
+                        for i in range(k):
+                            teeth[i], teeth[MAX_STAGES + i] = a[place[i]], b[place[i]]
+                            teeth[2 * MAX_STAGES + i] = mark[place[i]]
+                        sound = has_common_distance(distances, place, k) and is_within_limits(teeth, k, rule)
+                        if sound and not coaxial and not rule.ordered:
+                            # The canonical train has drivers and driven gears sorted: its best pairing must be the
+                            # present one.
+                            for i in range(2 * MAX_STAGES):
+                                canonical[i] = teeth[i]
+                            sort(canonical, 0, k)
+                            sort(canonical, MAX_STAGES, k)
+                            sound = arrange_pairs(canonical, k, rule) and has_same_meshes(teeth, canonical, k)
+                        elif sound and rule.ordered:
+                            sound = is_foremost(teeth, k, rule, coaxial)
+                        if sound and wanted_tie:
+                            shortlist.ties[0] += 1
+                        elif sound:
+                            enter(e, size, teeth, shortlist, rule.by_size)
+                            if size <= least_size[g]:
+                                front = min(front, e)
+                    j += 1 if upward else -1
+            stage -= 1
+            if stage >= 0:
+                place[stage] += 1
+
+
+@njit(cache=True, nogil=True)
+def sort(teeth: Integers, start: int, count: int) -> None:
+    """Sort some of the numbers in place, in rising order."""
+    # Insertion sort: there are at most four numbers.
+    for i in range(start + 1, start + count):
+        value, j = teeth[i], i
+        while j > start and teeth[j - 1] > value:
+            teeth[j] = teeth[j - 1]
+            j -= 1
+        teeth[j] = value
+
+
+@njit(cache=True, nogil=True)
+def has_same_meshes(one: Integers, other: Integers, k: int) -> bool:
+    """Return whether two trains have the same meshes in any order."""
+    used = np.zeros(MAX_STAGES, np.bool_)
+    for i in range(k):
+        met = False
+        for j in range(k):
+            if not used[j] and not met and one[i] == other[j] and one[MAX_STAGES + i] == other[MAX_STAGES + j]:
+                used[j] = met = True
+        if not met:
+            return False
+    return True

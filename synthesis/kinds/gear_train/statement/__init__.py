@@ -1,0 +1,1 @@
+"""Requests for gear trains: stages, ranges of teeth, contradictions."""

@@ -1,0 +1,1 @@
+"""Verification of Geneva drives and ratchets."""

@@ -1,0 +1,1 @@
+"""Constrained fits: tolerances are used to satisfy all constraints at once."""

@@ -1,0 +1,262 @@
+"""Residuals and constraints of a fourbar that carries a body through poses, each within its tolerance.
+
+The unknowns are the pivots O2, O4, A and B (A and B with the body in the first target pose, task coordinates) and, for
+each coordinate of a pose with a tolerance, its deviation in units of the tolerance. The constraints are inequalities
+(g ≥ 0) and equations (h = 0) of :mod:`synthesis.numerics.augmented_lagrangian`:
+
+=================== ==== ============================================================
+constraint          g, h margin
+=================== ==== ============================================================
+workspace           g    of :mod:`synthesis.fit.workspace_margins`, if there is one
+tolerance           g    1 ∓ deviation
+pivot regions       g    distance from each side of a box; moving pivots in the first pose
+link lengths        g    ln(l / l_min), ln(l_max / l)
+link ratio          g    ln(ratio · lᵢ / lₖ)
+transmission angle  g    cos γ_min ∓ cos γ, at the ends of the used range and on the ground line if it is passed
+Grashof             g    P + Q − L − S for each L; the shortest link S is that of the start
+one circuit         g    sin γ in each pose, in the assembly of the start
+order               g    input rotation from each pose to the next, and the rest of a full turn
+the links' lengths  h    |A_k − O2| − |A − O2|, |B_k − O4| − |B − O4|
+given coordinates   h    distance along each axis; of fixed pivots from the ground line
+=================== ==== ============================================================
+
+The minimised residuals keep the linkage usable: cosines of transmission angles, lengths of links, and deviations. A
+weighted term can keep it near its start, so that many starts lead to different linkages. Derivatives are central
+differences: a fourbar has few unknowns, and the functions are smooth. The derivatives of workspace margins come from
+:mod:`synthesis.kinds.motion.constrained.clearance_residuals`.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from kinematics.arrays import Real
+from kinematics.compiling import njit
+from synthesis.fit.workspace_margins import count_margins
+from synthesis.kinds.motion.constrained.clearance_residuals import append_room_rows
+from synthesis.numerics.augmented_lagrangian import append_limit_rows
+from synthesis.numerics.levenberg import ROWS
+
+(
+    DIRECTION, ASSEMBLY, SHORTEST, COSINE, LINKS, RATIO, BOXES, GIVEN_COORDINATES, LINE, HOME_PIVOTS, HOME_WEIGHT_INDEX,
+    STEPS,
+) = (0, 1, 2, 3, 4, 6, 7, 23, 31, 34, 42, 43)  # fmt: skip
+"""Indices into a setting: direction of the input (±1); sign of the assembly; required shortest link (0 to 3 for d, a,
+b, c; −1 if open); cosine of the minimum transmission angle; minimum and maximum length (0, infinite if open); maximum
+link ratio (infinite if open); boxes (x min, x max, y min, y max) of O2, O4, A and B; given coordinates of the same (NaN
+if open); ground line (unit normal and offset; NaN if open); pivots to stay near, and the weight of that term; from
+there on the input's rotation from each pose to the next, known to half a turn. The workspace parameters
+(:mod:`synthesis.fit.workspace`), if any, come last."""
+
+FIXED_RESIDUAL_COUNT = 14 + 8
+"""Number of residuals other than those of deviations."""
+
+PIVOT_COORDINATE_COUNT = 8
+"""Number of unknowns that are coordinates of pivots."""
+
+LIMIT_TIGHTENING = 1e-7
+"""Amount by which limits are tightened relative to their verification, in shares of a tolerance, transmission cosines
+and logarithms of lengths."""
+
+MIN_INPUT_STEP = 1e-3
+"""Minimum rotation of the input from one pose to the next, radians."""
+
+MIN_SINE = 1e-3
+"""Minimum sine of the transmission angle in each pose, so that the linkage stays in its assembly."""
+
+MIN_LENGTH = 1e-6
+"""Minimum length of a link, task sizes; below it the linkage is degenerate."""
+
+DIFFERENCE_STEP = 1e-5
+"""Step of the unknowns for finite differences."""
+
+COSINE_WEIGHT, RATIO_WEIGHT, LENGTH_WEIGHT, ARM_WEIGHT, DEVIATION_WEIGHT = 0.3, 0.15, 0.05, 0.05, 0.05
+"""Weights of the minimised residuals: cosines of transmission angles, logarithms of links over their geometric mean,
+lengths of links and distances of moving pivots from P in task sizes, and deviations in tolerances."""
+
+
+@njit(cache=True, nogil=True)
+def count_equations(poses: int) -> int:
+    """Return the number of equations: the last margins, which must be zero."""
+    return 2 * (poses - 1) + PIVOT_COORDINATE_COUNT + 2
+
+
+@njit(cache=True, nogil=True)
+def count_pose_margins(poses: int) -> int:
+    """Return the number of all margins."""
+    # Deviations, boxes, lengths, ratios, transmission, Grashof, circuit, order, equations.
+    return 6 * poses + 16 + 8 + 12 + 8 + 3 + poses + poses + count_equations(poses)
+
+
+@njit(cache=True, nogil=True)
+def _cross(u: complex, v: complex) -> float:
+    return u.real * v.imag - u.imag * v.real
+
+
+@njit(cache=True, nogil=True)
+def _evaluate_margins(x: Real, points: Real, setting: Real, residuals: Real, margins: Real) -> int:
+    """Write residuals and margins at x; return the number of residuals, or −1 if a link has no length."""
+    n = len(points)
+    o2, o4 = complex(x[0], x[1]), complex(x[2], x[3])
+    arm_a, arm_b = complex(x[4] - points[0, 0], x[5] - points[0, 1]), complex(x[6] - points[0, 0], x[7] - points[0, 1])
+    margins[:] = np.inf
+    a, b = np.empty(n, np.complex128), np.empty(n, np.complex128)
+    at, m, rows = PIVOT_COORDINATE_COUNT, 0, 0
+    pose = np.empty(3)
+    for k in range(n):
+        for c in range(3):
+            pose[c] = points[k, c]
+            if points[k, 3 + c] > 0.0:
+                pose[c] += points[k, 3 + c] * x[at]
+                margins[m], margins[m + 1] = 1.0 - LIMIT_TIGHTENING - x[at], 1.0 - LIMIT_TIGHTENING + x[at]
+                residuals[rows] = DEVIATION_WEIGHT * x[at]
+                at += 1
+                rows += 1
+            m += 2
+        spin, place = complex(math.cos(pose[2]), math.sin(pose[2])), complex(pose[0], pose[1])
+        a[k], b[k] = place + spin * arm_a, place + spin * arm_b
+    lengths = np.array([abs(o4 - o2), abs(a[0] - o2), abs(b[0] - a[0]), abs(b[0] - o4)])
+    if not lengths.min() > MIN_LENGTH:
+        return -1
+    for pivot in range(4):
+        z = (o2, o4, a[0], b[0])[pivot]
+        box = BOXES + 4 * pivot
+        margins[m], margins[m + 1] = z.real - setting[box], setting[box + 1] - z.real
+        margins[m + 2], margins[m + 3] = z.imag - setting[box + 2], setting[box + 3] - z.imag
+        m += 4
+    m = _evaluate_length_margins(lengths, setting, margins, m)
+    d, crank, coupler, output = lengths[0], lengths[1], lengths[2], lengths[3]
+    ground = o4 - o2
+    turned = 0.0
+    order = m + 8 + 3 + n
+    for k in range(n - 1):
+        step = (a[k + 1] - o2) * (a[k] - o2).conjugate()
+        # Unwrap the rotation towards its value at the start, so that it changes continuously during the fit.
+        off = math.atan2(step.imag, step.real) - setting[STEPS + k]
+        step_turned = setting[STEPS + k] + off - 2.0 * math.pi * round(off / (2.0 * math.pi))
+        margins[order + k] = setting[DIRECTION] * step_turned - MIN_INPUT_STEP
+        turned += step_turned
+    margins[order + n - 1] = 2.0 * math.pi - MIN_INPUT_STEP - abs(turned)
+    first = (a[0] - o2) * ground.conjugate()
+    start = math.atan2(first.imag, first.real)
+    low, high = min(start, start + turned), max(start, start + turned)
+    for k in range(4):
+        if k < 2:
+            # Find the multiple of π (even for k = 0, odd for k = 1) that lies in the used range.
+            passed = 2.0 * math.pi * math.ceil((low - k * math.pi) / (2.0 * math.pi)) + k * math.pi
+            used = passed <= high
+            diagonal = d - crank if k == 0 else d + crank
+        else:
+            used = True
+            diagonal = abs(o4 - a[0 if k == 2 else n - 1])
+        cosine = (coupler * coupler + output * output - diagonal * diagonal) / (2.0 * coupler * output)
+        residuals[rows] = 0.0
+        if used:
+            residuals[rows] = COSINE_WEIGHT * cosine
+            margins[m], margins[m + 1] = (
+                setting[COSINE] - LIMIT_TIGHTENING - cosine,
+                setting[COSINE] - LIMIT_TIGHTENING + cosine,
+            )
+        rows += 1
+        m += 2
+    shortest = int(setting[SHORTEST])
+    if shortest >= 0:
+        around = lengths.sum()
+        place_of = m
+        for k in range(4):
+            if k != shortest:
+                margins[place_of] = around - 2.0 * (lengths[k] + lengths[shortest]) - MIN_LENGTH * around
+                place_of += 1
+    m += 3
+    for k in range(n):
+        margins[m + k] = setting[ASSEMBLY] * _cross(b[k] - a[k], b[k] - o4) / (coupler * output) - MIN_SINE
+    m += 2 * n
+    for k in range(n - 1):
+        margins[m], margins[m + 1] = abs(a[k + 1] - o2) - crank, abs(b[k + 1] - o4) - output
+        m += 2
+    for k in range(PIVOT_COORDINATE_COUNT):
+        if not math.isnan(setting[GIVEN_COORDINATES + k]):
+            margins[m + k] = x[k] - setting[GIVEN_COORDINATES + k]
+    m += PIVOT_COORDINATE_COUNT
+    if not math.isnan(setting[LINE]):
+        for k in range(2):
+            margins[m + k] = setting[LINE] * x[2 * k] + setting[LINE + 1] * x[2 * k + 1] - setting[LINE + 2]
+    mean = np.log(lengths).mean()
+    for k in range(4):
+        residuals[rows + 2 * k] = RATIO_WEIGHT * (math.log(lengths[k]) - mean)
+        residuals[rows + 2 * k + 1] = LENGTH_WEIGHT * lengths[k]
+    residuals[rows + 8], residuals[rows + 9] = ARM_WEIGHT * abs(arm_a), ARM_WEIGHT * abs(arm_b)
+    rows += 10
+    for k in range(PIVOT_COORDINATE_COUNT):
+        residuals[rows + k] = setting[HOME_WEIGHT_INDEX] * (x[k] - setting[HOME_PIVOTS + k])
+    return rows + PIVOT_COORDINATE_COUNT
+
+
+@njit(cache=True, nogil=True)
+def _evaluate_length_margins(lengths: Real, setting: Real, margins: Real, m: int) -> int:
+    """Write the logarithmic margins of link lengths and link ratios from index m on; return the next index."""
+    for i in range(4):
+        if setting[LINKS] > 0.0:
+            margins[m] = math.log(lengths[i] / setting[LINKS]) - LIMIT_TIGHTENING
+        if setting[LINKS + 1] < np.inf:
+            margins[m + 1] = math.log(setting[LINKS + 1] / lengths[i]) - LIMIT_TIGHTENING
+        m += 2
+    for i in range(4):
+        for k in range(4):
+            if i != k:
+                if setting[RATIO] < np.inf:
+                    margins[m] = math.log(setting[RATIO] * lengths[i] / lengths[k]) - LIMIT_TIGHTENING
+                m += 1
+    return m
+
+
+@njit(ROWS, cache=True, nogil=True)
+def evaluate_rows(
+    x: Real, points: Real, setting: Real, multipliers: Real, state: Real, residuals: Real, jacobian: Real
+) -> int:
+    """Evaluate residuals and limits with their Jacobian; see :data:`synthesis.numerics.levenberg.ROWS`.
+
+    ``points`` are rows (x, y, angle, and the tolerance of each; 0 if exact) in task units and radians; ``state`` holds
+    only the margins, those of the workspace first.
+    """
+    n, unknowns = len(points), x.size
+    count = count_pose_margins(n)
+    steps, room = setting[STEPS : STEPS + n - 1], setting[STEPS + n - 1 :]
+    roomy = count_margins(room)
+    own = state[roomy:]
+    rows = _evaluate_margins(x, points, setting, residuals, own)
+    if rows < 0:
+        return -1
+    gradients = np.zeros((count, unknowns))
+    changed = x.copy()
+    ahead, behind = np.empty(rows), np.empty(rows)
+    further, back = np.empty(count), np.empty(count)
+    for i in range(unknowns):
+        changed[i] = x[i] + DIFFERENCE_STEP
+        if _evaluate_margins(changed, points, setting, ahead, further) < 0:
+            return -1
+        changed[i] = x[i] - DIFFERENCE_STEP
+        if _evaluate_margins(changed, points, setting, behind, back) < 0:
+            return -1
+        changed[i] = x[i]
+        for k in range(rows):
+            jacobian[k, i] = (ahead[k] - behind[k]) / (2.0 * DIFFERENCE_STEP)
+        for k in range(count):
+            # A margin at the ground line exists only while the line is passed: use a one-sided difference there.
+            if own[k] == np.inf or (further[k] == np.inf and back[k] == np.inf):
+                continue
+            if back[k] == np.inf:
+                gradients[k, i] = (further[k] - own[k]) / DIFFERENCE_STEP
+            elif further[k] == np.inf:
+                gradients[k, i] = (own[k] - back[k]) / DIFFERENCE_STEP
+            else:
+                gradients[k, i] = (further[k] - back[k]) / (2.0 * DIFFERENCE_STEP)
+    if roomy > 0:
+        rows = append_room_rows(
+            x, points, setting[ASSEMBLY], steps, room, multipliers, state[:roomy], residuals, jacobian, rows
+        )
+        if rows < 0:
+            return -1
+    return int(append_limit_rows(own, gradients, count_equations(n), multipliers[roomy:], residuals, jacobian, rows))

@@ -1,0 +1,1 @@
+"""Dyads through positions: equations, Burmester curves, finite sets and sliders."""

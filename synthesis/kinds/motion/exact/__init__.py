@@ -1,0 +1,1 @@
+"""Linkages through exact positions: pairs of dyads, screening, workspace and force filters."""

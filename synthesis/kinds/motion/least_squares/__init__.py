@@ -1,0 +1,1 @@
+"""Linkages fitted to many positions by least squares."""

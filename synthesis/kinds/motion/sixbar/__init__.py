@@ -1,0 +1,1 @@
+"""Sixbars that carry a body through positions."""

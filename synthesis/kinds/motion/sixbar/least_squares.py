@@ -1,0 +1,188 @@
+"""Least-squares fit of sixbars to more positions than they can meet, from the pool of branch-preserving descents.
+
+Eight positions determine a sixbar. If more are fitted, or if the constraints exclude exact solutions, the linkages with
+the lowest cost (:class:`branch_walk.Pool`) are descended until their least squares converge, with the first pose among
+the unknowns. Exact positions have a larger weight there and are finally met by minimum-norm steps.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from numpy.typing import NDArray
+
+from kinematics.arrays import Real
+from kinematics.compiling import njit
+from synthesis.kinds.motion.sixbar.basin_hopping import CONVERGED_COST, DescentBuffers, Pool, descend, select_first_pose
+from synthesis.kinds.motion.sixbar.quality import Poses, evaluate_sixbar
+from synthesis.kinds.motion.sixbar.residuals import (
+    COSINE,
+    FIRST_X,
+    FIRST_Y,
+    FIXED_BOX,
+    FREE_POSE_SIZE,
+    INPUT_DIRECTION,
+    JOINT_COORDINATE_COUNT,
+    LONGEST,
+    POSE_SIZE,
+    RATIO,
+    REACH,
+    SETTING_SIZE,
+    SHORTEST,
+    TARGET_X,
+    TARGET_Y,
+    compute_dimensions,
+    count_max_rows,
+    drive_linkage,
+)
+from synthesis.kinds.motion.sixbar.topologies import SixbarCandidates
+
+FIT_WEIGHT, EXACT_WEIGHT = 0.1, 10.0
+"""Weights relative to the limits, small so that these take precedence: of a fitted pose, and the additional factor of
+an exact pose."""
+
+MAX_COST_RATIO, MAX_DESCENTS, MAX_STEPS = 0.99, 4, 500
+"""Maximum share of the cost left after ten steps; maximum number of consecutive descents; maximum number of steps of
+each."""
+
+EXACT_FIT_COST = 1e-14
+"""Sum of squares below which a fit counts as meeting all positions."""
+
+IGNORED_TOLERANCE = 1e6
+"""Tolerance that disables a coordinate."""
+
+ERROR_PENALTY = 100.0
+"""Penalty of the error in a fit's value: an error of a hundredth of the task's size halves the bonus for accuracy."""
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def compute_fit_value(error: float) -> float:
+    """Return the value of a feasible fit: 2 if it meets all positions, decreasing towards 1 with the error."""
+    return 1.0 + 1.0 / (1.0 + ERROR_PENALTY * error)
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def _compute_rms_error(x: Real, points: Real, setting: Real, free: int) -> float:
+    """Return the RMS over the positions of P's distance, in task sizes, and the body's angle, radians, together."""
+    z, at, turns = np.empty(7, np.complex128), np.empty(6, np.complex128), np.empty(4, np.complex128)
+    lengths, inverses = np.empty(4), np.empty(4, np.complex128)
+    for j in range(7):
+        z[j] = complex(x[2 * j], x[2 * j + 1])
+    compute_dimensions(z, lengths, inverses)
+    stands = x[free + 2] if free > 0 else 0.0
+    total = (setting[FIRST_X] - setting[TARGET_X]) ** 2 + (setting[FIRST_Y] - setting[TARGET_Y]) ** 2 + stands**2
+    angle = 0.0
+    for k in range(len(points)):
+        angle += math.exp(x[JOINT_COORDINATE_COUNT + k])
+        drive_linkage(z, lengths, inverses, setting, setting[INPUT_DIRECTION] * angle, at, turns)
+        back = turns[3] * complex(math.cos(points[k, 2]), -math.sin(points[k, 2]))
+        total += (at[5].real - points[k, 0]) ** 2 + (at[5].imag - points[k, 1]) ** 2
+        total += (math.atan2(back.imag, back.real) + stands) ** 2
+    return math.sqrt(total / (len(points) + 1))
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def _project_on_exact(x: Real, points: Real, setting: Real, held: NDArray[np.bool_], room: DescentBuffers) -> bool:
+    """Move a linkage onto the exact positions, ignoring its limits; return whether that succeeds."""
+    only, free = points.copy(), setting.copy()
+    for k in range(len(points)):
+        only[k, 6], only[k, 7] = 1.0, 1.0
+        if not held[k + 1]:
+            only[k, 3:6] = IGNORED_TOLERANCE
+    free[COSINE], free[REACH], free[RATIO], free[SHORTEST], free[LONGEST] = 1.0, np.inf, np.inf, 0.0, np.inf
+    for n in range(FIXED_BOX, TARGET_X):
+        free[n] = np.inf if (n - FIXED_BOX) % 2 else -np.inf
+    counts = np.zeros(3, np.int64)
+    return bool(descend(x, only, free, room, counts, MAX_COST_RATIO) < CONVERGED_COST)
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def _minimize_cost(x: Real, points: Real, setting: Real, room: DescentBuffers) -> float:
+    """Minimize the least squares in place until convergence; return the sum of squares."""
+    counts, before = np.zeros(3, np.int64), np.inf
+    cost = before
+    for _ in range(MAX_DESCENTS):
+        cost = descend(x, points, setting, room, counts, MAX_COST_RATIO, MAX_STEPS)
+        if not cost < MAX_COST_RATIO * before:
+            break
+        before = cost
+    return cost
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def _retry_at_bare_limits(x: Real, points: Real, setting: Real, bare: Real, poses: Poses, room: DescentBuffers) -> None:
+    """Retry, in place, without the margins, in case the positions can be met within the limits themselves."""
+    if setting[COSINE] > bare[COSINE]:
+        return  # a relaxed start has wider aims than the limits already
+    further, limits, joints = x.copy(), setting.copy(), np.empty(7, np.complex128)
+    for k in range(COSINE, FIRST_X):
+        limits[k] = bare[k]
+    met = _minimize_cost(further, points, limits, room) < EXACT_FIT_COST
+    if met and evaluate_sixbar(further, points, limits, poses, joints) >= 1.0:
+        for k in range(len(x)):
+            x[k] = further[k]
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def fit_pool(poses: Poses, held: NDArray[np.bool_], pool: Pool, bare: Real, found: SixbarCandidates) -> int:
+    """Fit all linkages of a pool until convergence.
+
+    Parameters
+    ----------
+    poses : Poses
+        Target poses.
+    held : bool, shape (n,)
+        Mask of the exact positions.
+    pool : Pool
+        Starting points.
+    bare : float, shape (SETTINGS,)
+        The limits without the margins of the starts' aims.
+    found : Found
+        Output.
+
+    Returns
+    -------
+    int
+        Number of linkages written.
+    """
+    later = len(poses.later)
+    unknowns = JOINT_COORDINATE_COUNT + later + (0 if held[0] else FREE_POSE_SIZE)
+    free = -1 if held[0] else JOINT_COORDINATE_COUNT + later
+    x, setting, points = np.empty(unknowns), np.empty(SETTING_SIZE), np.empty((later, POSE_SIZE))
+    most = count_max_rows(later + 1)
+    room = DescentBuffers(
+        np.empty(most), np.empty(most), np.empty((most, unknowns)), np.empty((most, most)), np.empty(most)
+    )
+    joints = np.empty(7, np.complex128)
+    n = 0
+    for row in range(len(pool.costs)):
+        if not pool.costs[row] < np.inf:
+            continue
+        for k in range(SETTING_SIZE):
+            setting[k] = pool.settings[row, k]
+        select_first_pose(poses, pool.starts[row], setting, points)
+        setting[TARGET_X], setting[TARGET_Y] = setting[FIRST_X], setting[FIRST_Y]
+        for k in range(later):
+            points[k, 6] = points[k, 7] = FIT_WEIGHT * (EXACT_WEIGHT if held[k + 1] else 1.0)
+        for k in range(JOINT_COORDINATE_COUNT + later):
+            x[k] = pool.x[row, k]
+        if free > 0:
+            x[free], x[free + 1], x[free + 2] = setting[FIRST_X], setting[FIRST_Y], 0.0
+        if _minimize_cost(x, points, setting, room) > EXACT_FIT_COST:
+            _retry_at_bare_limits(x, points, setting, bare, poses, room)
+        # A weight alone leaves a small error at exact positions; these steps remove it.
+        if held.any() and not _project_on_exact(x, points, setting, held, room):
+            continue
+        if free > 0:
+            setting[FIRST_X], setting[FIRST_Y] = x[free], x[free + 1]
+        value = evaluate_sixbar(x, points, setting, poses, joints)
+        error = _compute_rms_error(x, points, setting, free)
+        found.makes[n] = int(setting[0])
+        for k in range(7):
+            found.joints[n, k] = joints[k]
+        found.bodies[n] = complex(setting[FIRST_X], setting[FIRST_Y])
+        found.stands[n] = x[free + 2] if free > 0 else 0.0
+        found.values[n] = compute_fit_value(error) if value >= 1.0 else value
+        n += 1
+    return n

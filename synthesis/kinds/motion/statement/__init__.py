@@ -1,0 +1,1 @@
+"""Requests for motions: positions, dyad choices, mechanism types, contradictions."""

@@ -1,0 +1,139 @@
+"""Requested types of mechanism, and given dimensions of the three-link chain in a sixbar."""
+
+from __future__ import annotations
+
+import cmath
+from collections.abc import Iterator
+from typing import Annotated, Any, Literal, get_args
+
+from pydantic import Field
+
+from synthesis.kinds.motion.statement.dyad_choices import to_complete_point
+from synthesis.kinds.motion.statement.positions import MAX_EXACT_POSITIONS, MAX_SIXBAR_POSITIONS
+from synthesis.model.linkage.type_choice import (
+    UNCLASSED_SIXBAR,
+    Auto,
+    find_sixbar_contradictions,
+    find_unsupported_by_sixbars,
+    refuse_class,
+    select_requested_types,
+)
+from synthesis.model.problem import Contradiction, PartialPoint, PositiveLength, Statement
+
+Sixbar = Literal["watt_1", "stephenson_1", "stephenson_2", "stephenson_3"]
+"""Sixbar types in which the body's link is no link of a fourbar within the sixbar."""
+
+SIXBARS: tuple[Sixbar, ...] = get_args(Sixbar)
+
+Mechanisms = Auto | Annotated[list[Literal["fourbar", "slider_crank"] | Sixbar], Field(min_length=1, max_length=6)]
+"""A list of types by name, or ``auto`` for the simplest type that is feasible."""
+
+
+class Chain(Statement):
+    """The chain G–H₁–H₂ that carries the body at H₂; values that are left out are sampled by the search."""
+
+    links: tuple[PositiveLength | None, PositiveLength | None] | None = Field(
+        default=None, description="Lengths G–H₁ and H₁–H₂; one may be left open."
+    )
+    fixed_pivot: PartialPoint | None = Field(default=None, description="G; a coordinate may be left open.")
+    moving_pivot: PartialPoint | None = Field(
+        default=None, description="H₂ in the first position; a coordinate may be left open."
+    )
+    elbow: Literal["any", "left", "right"] = Field(
+        default="any", description="Side of the line from G to H₂ on which joint H₁ lies in all positions."
+    )
+
+    def size_from(self, point: complex) -> float:
+        """Return the longest of the given lengths and of the distances from a point to given pivots; 0 without either.
+
+        An open coordinate of a pivot counts as that of the point.
+        """
+        ways = [length or 0.0 for length in self.links or ()]
+        for pivot in (self.fixed_pivot, self.moving_pivot):
+            x, y = pivot or (None, None)
+            ways.append(abs(complex(0.0 if x is None else x - point.real, 0.0 if y is None else y - point.imag)))
+        return max(ways)
+
+
+def find_motion_sixbar_contradictions(problem: Any) -> list[Contradiction]:
+    """Return contradictions between the requested types and the other fields."""
+    listed: list[Contradiction] = []
+    stated = problem.mechanisms
+    if problem.chain is not None and not (isinstance(stated, list) and set(stated) <= set(SIXBARS)):
+        detail = "applies only to sixbars; list only sixbar types in mechanisms"
+        listed.append(Contradiction("/chain", detail))
+    elif problem.chain is not None and (len(problem.positions) > MAX_EXACT_POSITIONS or problem.fitted):
+        detail = (
+            f"applies only to at most {MAX_EXACT_POSITIONS} positions that are met exactly or within tolerances; omit "
+            "it"
+        )
+        listed.append(Contradiction("/chain", detail))
+    if not (isinstance(stated, list) and select_requested_types(stated, SIXBARS)):
+        return [*listed, *_check_types(problem)]
+    listed += find_sixbar_contradictions(stated, SIXBARS, list_unsupported(problem))
+    if select_requested_types(stated, SIXBARS) == (UNCLASSED_SIXBAR,):
+        listed += list_unsupported_stephenson_2(problem)
+    return [*listed, *_check_chain_reach(problem)]
+
+
+def list_unsupported(problem: Any) -> Iterator[Contradiction]:
+    """Yield the given fields that sixbars do not support."""
+    if not problem.sixbars_possible:
+        detail = f"sixbars support at most {MAX_SIXBAR_POSITIONS} positions; request fourbars for more"
+        yield Contradiction("/mechanisms", detail)
+    for name, of_fourbars in (
+        ("input_side", problem.input_side != type(problem.input_side)()),
+        ("output_side", problem.output_side != type(problem.output_side)()),
+        ("ground_line", problem.ground_line is not None),
+        ("driver_dyad", problem.driver is not None),
+    ):
+        if of_fourbars:
+            detail = "applies only to fourbars; omit it, or remove the sixbars from mechanisms"
+            yield Contradiction(f"/{name}", detail)
+    yield from find_unsupported_by_sixbars(problem)
+
+
+def list_unsupported_stephenson_2(problem: Any) -> Iterator[Contradiction]:
+    """Yield the given fields that Stephenson II sixbars, or their search, do not support."""
+    yield from refuse_class(problem.constraints)
+    if problem.constraints.full_rotation:
+        yield Contradiction(
+            "/constraints/full_rotation", "is not supported for Stephenson II sixbars; omit it, or request other types"
+        )
+    if problem.chain is not None:
+        detail = "applies only to Watt I, Stephenson I and Stephenson III sixbars; request one of these, or omit it"
+        yield Contradiction("/chain", detail)
+
+
+def _check_types(problem: Any) -> list[Contradiction]:
+    """Return contradictions between the listed types and the dyads of the sides."""
+    stated = problem.mechanisms
+    if stated is None or isinstance(stated, str):
+        return []
+    slider = problem.slider is not None
+    if slider and "slider_crank" not in stated:
+        return [Contradiction("/mechanisms", "a side has a slider; add slider_crank to mechanisms")]
+    if problem.slider == "RP":
+        detail = "an RP dyad makes an inverted slider-crank, which no list can name; omit mechanisms"
+        return [Contradiction("/mechanisms", detail)]
+    if "fourbar" not in stated and not slider and problem.output_side.dyad == "RR":
+        return [Contradiction("/mechanisms", "both sides have pins; add fourbar to mechanisms")]
+    return []
+
+
+def _check_chain_reach(problem: Any) -> list[Contradiction]:
+    """Return the contradiction of a fully given chain that cannot reach one of the positions."""
+    chain = problem.chain
+    if chain is None or chain.links is None or None in chain.links or problem.positions[0].tolerance is not None:
+        return []  # H₂ is given at the first position as the mechanism meets it, which a tolerance leaves open
+    pivot, pin = to_complete_point(chain.fixed_pivot), to_complete_point(chain.moving_pivot)
+    if pivot is None or pin is None:
+        return []
+    first, second = (length or 0.0 for length in chain.links)
+    start = problem.positions[0].point
+    for k, (position, turn) in enumerate(zip(problem.positions, problem.turns, strict=True)):
+        reach = abs(position.point + cmath.exp(1j * turn) * (pin - start) - pivot)
+        if position.tolerance is None and not abs(first - second) < reach < first + second:
+            detail = f"cannot span G to H₂ at position {k}: the distance is {reach:.6g} {problem.length_unit}"
+            return [Contradiction("/chain/links", detail)]
+    return []

@@ -1,0 +1,1 @@
+"""Verification of linkages at the requested positions."""

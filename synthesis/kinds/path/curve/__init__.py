@@ -1,0 +1,1 @@
+"""Linkages matched to a whole curve."""

@@ -1,0 +1,1 @@
+"""Linkages exactly through three to nine points."""

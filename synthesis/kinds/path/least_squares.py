@@ -1,0 +1,158 @@
+"""Fit points: linkages by least squares, each driven over its used range, the nearest first.
+
+Least squares evaluates the points alone, and a linkage that is nearest there may go anywhere between them. If the
+nearest ones do (:mod:`synthesis.kinds.path.task.ranking`), linkages whose whole curves have the shape of the points'
+course are fitted too (:mod:`synthesis.kinds.path.curve.solver`). If a start is given, the fit descends from it alone.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from synthesis.kinds.path.curve.solver import fit_by_shape, fit_stance_from_points
+from synthesis.kinds.path.design import PathDesign, PathResult
+from synthesis.kinds.path.points.fit import Candidate, build_mechanism, build_point_task, descend_from, find_minima
+from synthesis.kinds.path.problem import PathProblem
+from synthesis.kinds.path.results import PathCandidateLog
+from synthesis.kinds.path.task.ranking import (
+    ACCURATE_ERROR_RATIO,
+    ERROR_TOLERANCE,
+    FAR_REASON,
+    compute_error,
+    drop_straying,
+    find_min_error,
+)
+from synthesis.kinds.path.verification.fourbar import verify_path
+from synthesis.model.counting import choose_word, format_count, format_integer
+from synthesis.model.kind import Progress, scale_progress
+from synthesis.model.linkage.conversion import FourbarConfiguration, build_fourbar
+from synthesis.results.candidate_log import report_candidates
+from synthesis.results.ranking import rank_designs
+
+MIN_DRIVEN = 12
+"""Minimum number of linkages that are verified, even if fewer designs are requested."""
+
+STRAY_RATIO = 1.5
+"""The nearest designs stray if the minimum error over the used range exceeds that at the points alone by this
+factor."""
+
+POINT_FIT_PROGRESS_SHARE = 0.6
+"""Share of the progress assigned to fits of the points alone."""
+
+FIT_DUPLICATE_TOLERANCE = 1e-3
+"""Fits whose joints agree to this share of the task's size are duplicates: a flat minimum is known to no more
+digits."""
+
+
+def fit_points(problem: PathProblem, progress: Progress) -> PathResult:
+    """Fit fourbars to the points of a problem."""
+    task = build_point_task(problem)
+
+    def verify_candidate(candidate: Candidate) -> PathDesign | None:
+        mechanism = build_mechanism(candidate, task)
+        return None if mechanism is None else verify_path(problem, mechanism)
+
+    def verify_linkage(linkage: FourbarConfiguration) -> PathDesign | str | None:
+        return verify_path(problem, build_fourbar(linkage))
+
+    fits = _PointFits(problem, apart=FIT_DUPLICATE_TOLERANCE)
+    first, second = (
+        scale_progress(progress, 0.0, POINT_FIT_PROGRESS_SHARE),
+        scale_progress(progress, POINT_FIT_PROGRESS_SHARE, 1.0),
+    )
+    if problem.start is not None:
+        minima = descend_from(FourbarConfiguration(*problem.start.joints), problem, task)
+    else:
+        minima = find_minima(problem, task, np.random.default_rng(problem.seed), first)
+    fits.verify_candidates(
+        report_candidates(minima, first, (0.9, 1.0), "driving linkage {next} of {all}"),
+        verify_candidate,
+        # Twice the requested number, because some of the nearest will be dropped for straying between the points.
+        enough=max(2 * problem.max_designs, MIN_DRIVEN),
+    )
+    if problem.stance is not None:
+        fits.verify_candidates(fit_stance_from_points(problem, minima, task), verify_linkage)
+    # Prescribed crank angles leave no freedom for a curve of another shape.
+    if problem.start is None and not problem.prescribed and fits.is_astray():
+        linkages = fit_by_shape(problem, second)
+        fits.verify_candidates(
+            report_candidates(linkages, second, (0.8, 1.0), "driving linkage {next} of {all}"), verify_linkage
+        )
+    kept = drop_straying(fits.passed, problem)
+    # For an open curve the points alone may be what the client means.
+    if fits.passed and not problem.closed and (nearest := _find_nearest(fits.passed)) not in kept:
+        kept.append(nearest)
+    fits.withdraw(kept, FAR_REASON)
+    progress(1.0, "verified")
+    return fits.build_result("least_squares", complete=False, summary=fits.describe_result())
+
+
+class _PointFits(PathCandidateLog):
+    """The verified fits, their selection, order and summary."""
+
+    def is_astray(self) -> bool:
+        """Return whether no passed design comes as near over its used range as the nearest does at the points."""
+        least = min((design.metrics.rms_distance for design in self.passed), default=0.0)
+        nearest = max(least, ERROR_TOLERANCE * self.problem.task_size)
+        return find_min_error(self.passed, self.problem) > STRAY_RATIO * nearest
+
+    def select_distinct(self, designs: list[PathDesign]) -> list[PathDesign]:
+        """Return distinct designs, nearest first unless another order is requested or points have tolerances (then by
+        quality).
+
+        The design nearest at the points alone is always among those returned, last if it strays between them: distant
+        points say little about the curve between them.
+        """
+        # Within tolerances all designs are near enough.
+        if self.problem.tolerances is not None:
+            return rank_designs(super().select_distinct(designs), self.problem.rank_by)
+
+        def get_error(design: PathDesign) -> float:
+            return compute_error(design, self.problem)
+
+        order = rank_designs(
+            super().select_distinct(designs), self.problem.rank_by, {"quality": get_error, "accuracy": get_error}
+        )
+        shown = order[: self.problem.max_designs]
+        passed = [design for design in designs if design.verification.passed]
+        if len(shown) > 1 and passed:
+            nearest, limit = _find_nearest(passed), ACCURATE_ERROR_RATIO * ERROR_TOLERANCE * self.problem.task_size
+            if _find_nearest(shown).metrics.rms_distance > max(
+                ACCURATE_ERROR_RATIO * nearest.metrics.rms_distance, limit
+            ):
+                # The last of the shown designs makes room for the nearest.
+                shown = [*shown[: self.problem.max_designs - 1], nearest]
+        return [*shown, *(design for design in order if design not in shown)]
+
+    def describe_result(self) -> str:
+        """Describe the result in words."""
+        n, unit = len(self.problem.points), self.problem.length_unit
+        timing = "at their crank angles" if self.problem.prescribed else "in order"
+        if self.passed:
+            best = min(self.passed, key=lambda design: compute_error(design, self.problem)).metrics
+            passed, of = len(self.passed), format_count(self.candidates, "fitted linkage")
+            text = (
+                f"{format_integer(passed)} of {of} {choose_word(passed, 'satisfies', 'satisfy')} all constraints. The "
+                "best "
+                f"passes the {n} points {timing} with a root-mean-square distance of {best.rms_distance:.4g} {unit} "
+                f"and a maximum of {best.max_distance:.4g} {unit} (sum of squares {best.sum_of_squares:.6g} {unit}²)."
+            )
+            if best.excursion:
+                text += f" Between the given points the curve strays by up to {best.excursion:.4g} {unit}."
+            if self.rejected[FAR_REASON]:
+                others = format_count(self.rejected[FAR_REASON], "other is", "others are")
+                text += f" {others} near the points, but far from their course between them."
+        else:
+            rejected = self.format_reasons() or "none"
+            text = (
+                f"None of {format_count(self.candidates, 'fitted linkage')} satisfies all constraints "
+                f"(rejected: {rejected})."
+            )
+        if self.problem.start is not None:
+            return text + " Least squares descended from the given start; a nearer linkage may exist elsewhere."
+        return text + " Least squares descended from many starts; a nearer linkage may exist that none of them reaches."
+
+
+def _find_nearest(designs: list[PathDesign]) -> PathDesign:
+    """Return the design nearest at the points."""
+    return min(designs, key=lambda design: design.metrics.sum_of_squares)

@@ -1,0 +1,1 @@
+"""Linkages fitted to many points by least squares."""

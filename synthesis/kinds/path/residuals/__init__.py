@@ -1,0 +1,1 @@
+"""Residuals and constraints of path fits."""

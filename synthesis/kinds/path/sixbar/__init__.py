@@ -1,0 +1,1 @@
+"""Sixbars that draw a path."""

@@ -1,0 +1,1 @@
+"""Requests for paths: mechanism types, stance, start."""

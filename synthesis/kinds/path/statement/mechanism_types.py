@@ -1,0 +1,85 @@
+"""Types of mechanism that may guide the point, and requests that some of them do not support."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import Annotated, Any, Literal, get_args
+
+from pydantic import Field
+
+from synthesis.model.linkage.type_choice import (
+    UNCLASSED_SIXBAR,
+    Auto,
+    find_sixbar_contradictions,
+    find_unsupported_by_sixbars,
+    refuse_class,
+    select_requested_types,
+)
+from synthesis.model.problem import Contradiction
+
+Simple = Literal["fourbar", "slider_crank", "geared_fivebar"]
+"""Linkages with one closure."""
+
+SIMPLE_TYPES: tuple[Simple, ...] = get_args(Simple)
+
+Sixbar = Literal["watt_1", "stephenson_1", "stephenson_2", "stephenson_3"]
+"""Sixbars with a point on a link that is neither joined to the ground nor moved by a fourbar alone."""
+
+SIXBAR_TYPES: tuple[Sixbar, ...] = get_args(Sixbar)
+
+Mechanisms = Auto | Annotated[list[Simple | Sixbar], Field(min_length=1, max_length=7)]
+"""Types by their names, or ``auto`` for the simplest suitable one."""
+
+TYPE_NAMES = {
+    "fourbar": "fourbar",
+    "slider_crank": "slider-crank",
+    "geared_fivebar": "geared fivebar",
+    "sixbar": "sixbar",
+}
+"""Names of the types in messages; sixbars share one."""
+
+TURNING_CLASSES = ("any", "crank_rocker", "double_crank")
+"""Classes of fourbars within sixbars: their crank turns through."""
+
+
+def list_simple_types(requested: Any) -> tuple[Simple, ...]:
+    """Return the requested types with one closure, the simplest first; under ``auto`` fourbars alone."""
+    return ("fourbar",) if requested == "auto" else select_requested_types(requested, SIMPLE_TYPES)
+
+
+def find_mechanism_contradictions(problem: Any) -> list[Contradiction]:
+    """Return requests that contradict ``mechanisms``, or the types that it names."""
+    stated, listed = problem.mechanisms, []
+    if stated is None:
+        return []
+    if problem.mechanism != "fourbar":
+        listed.append(Contradiction("/mechanism", "mechanisms already names all types; leave this out"))
+    if problem.gear_ratio is not None and "geared_fivebar" not in list_simple_types(stated):
+        listed.append(Contradiction("/gear_ratio", "none of the requested mechanisms has gears"))
+    listed += find_sixbar_contradictions(stated, SIXBAR_TYPES, find_unsupported(problem))
+    return listed + (
+        list(find_unsupported_unclassed(problem))
+        if select_requested_types(stated, SIXBAR_TYPES) == (UNCLASSED_SIXBAR,)
+        else []
+    )
+
+
+def find_unsupported(problem: Any) -> Iterator[Contradiction]:
+    """Yield requests that sixbars do not support: those for fourbars alone, and others not implemented for them."""
+    limits = problem.constraints
+    for path, of_fourbars in (
+        ("/timing", problem.prescribed),
+        ("/placement_free", bool(problem.placement_free)),
+        ("/constraints/coupler_point", limits.coupler_point is not None),
+    ):
+        if of_fourbars:
+            yield Contradiction(path, "is not for sixbars; leave it out, or take the sixbars out of mechanisms")
+    yield from limits.find_class_contradictions(TURNING_CLASSES, "only sixbars whose crank turns through are searched")
+    yield from find_unsupported_by_sixbars(problem)
+
+
+def find_unsupported_unclassed(problem: Any) -> Iterator[Contradiction]:
+    """Yield requests that a Stephenson II sixbar cannot satisfy, or that its search does not support."""
+    yield from refuse_class(problem.constraints)
+    if problem.stance is not None:
+        yield Contradiction("/stance", "is not supported for Stephenson II sixbars; name others, or leave it out")

@@ -1,0 +1,53 @@
+"""The fourbar from which a fit starts, and requests that contradict it."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from pydantic import Field
+
+from synthesis.model.problem import Contradiction, Point, Statement
+
+MIN_LINK_SHARE = 1e-6
+"""A link shorter than this share of the longest has no length."""
+
+
+class StartFourbar(Statement):
+    """A fourbar by its joints in one of its positions, as in the skeleton of an answer, in length units."""
+
+    O2: Point = Field(description="Fixed pivot of the input.")
+    A: Point = Field(description="Pin of input and coupler.")
+    B: Point = Field(description="Pin of coupler and output.")
+    O4: Point = Field(description="Fixed pivot of the output.")
+    P: Point = Field(description="The point of the coupler that is guided.")
+
+    @property
+    def joints(self) -> tuple[complex, complex, complex, complex, complex]:
+        """O2, A, B, O4 and P as complex numbers."""
+        o2, a, b, o4, p = (complex(*joint) for joint in (self.O2, self.A, self.B, self.O4, self.P))
+        return o2, a, b, o4, p
+
+    @property
+    def is_linkage(self) -> bool:
+        """Whether every link has a length."""
+        o2, a, b, o4, _ = self.joints
+        lengths = abs(a - o2), abs(b - a), abs(o4 - b), abs(o4 - o2)
+        return min(lengths) > MIN_LINK_SHARE * max(lengths)
+
+
+def find_start_errors(problem: Any) -> list[Contradiction]:
+    """Return requests that contradict a start, and a start that is no linkage."""
+    start = problem.start
+    if start is None:
+        return []
+    for path, excluded, detail in (
+        ("/method", problem.method != "least_squares", "a start is for least_squares only; choose that method"),
+        ("/timing", problem.prescribed, "a start is for points of free timing"),
+        ("/mechanism", problem.mechanism != "fourbar" or problem.mechanisms is not None, "a start must be a fourbar"),
+        ("/stance", problem.stance is not None, "a start is for fits of points alone; leave one of the two out"),
+    ):
+        if excluded:
+            return [Contradiction(path, detail)]
+    if not start.is_linkage:
+        return [Contradiction("/start", "a link has no length; its two joints must differ")]
+    return []

@@ -1,0 +1,153 @@
+"""Measure how near a fitted linkage is to its target, at the points and between them, and rank linkages by it."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+
+from synthesis.kinds.path.design import PathDesign
+from synthesis.kinds.path.problem import PathProblem
+from synthesis.results.ranking import rank_designs
+
+EQUAL_ERROR_RATIO, ACCURATE_ERROR_RATIO, ERROR_TOLERANCE = 1.1, 1.001, 1e-9
+"""Errors within these factors count as equal, and quality decides: for the best design, and for the most accurate one.
+Errors below the last value, a share of the points' size, are rounding."""
+
+MIN_NEAREST_SHARE = 0.4
+"""A linkage stays a candidate while its error is at most the minimum error over this; constraints may choose among
+them."""
+
+FAR_REASON = "far_from_the_curve"
+"""Reason for rejecting sound linkages that are dropped because nearer ones exist."""
+
+TRADE_ERROR_RATIO = 2.0
+"""Designs whose error is within this factor of the minimum may be ranked by other criteria."""
+
+SOUND_ANGLE, USABLE_ANGLE, MAX_LINK_RATIO = 30.0, 20.0, 10.0
+"""Transmission angles, degrees, of a sound linkage and of a usable one, and the maximum link ratio of either: without
+such limits in the problem, linkages that satisfy them come first."""
+
+STEP_ROUNDING = 1e-6
+"""Share of a step of nearness that is rounding."""
+
+
+def compute_error(design: PathDesign, problem: PathProblem) -> float:
+    """Return a design's error: its rms distance from the points combined with its excursion between them, length
+    units."""
+    return max(
+        ERROR_TOLERANCE * problem.task_size, math.hypot(design.metrics.rms_distance, design.metrics.excursion or 0.0)
+    )
+
+
+def find_min_error(designs: list[PathDesign], problem: PathProblem) -> float:
+    """Return the minimum error of the designs; infinite if there are none."""
+    return min((compute_error(design, problem) for design in designs), default=math.inf)
+
+
+def select_near(designs: list[PathDesign], problem: PathProblem) -> list[PathDesign]:
+    """Return the designs whose error is at most the minimum over :data:`MIN_NEAREST_SHARE`."""
+    least = find_min_error(designs, problem)
+    return [design for design in designs if compute_error(design, problem) <= least / MIN_NEAREST_SHARE]
+
+
+def drop_straying(designs: list[PathDesign], problem: PathProblem) -> list[PathDesign]:
+    """Drop the designs that are far from the nearest because of an excursion: those good at the points alone."""
+    least = find_min_error(designs, problem)
+    return [
+        design
+        for design in designs
+        if compute_error(design, problem) <= least / MIN_NEAREST_SHARE
+        or (design.metrics.excursion or 0.0) <= design.metrics.rms_distance
+    ]
+
+
+def rank_by_nearness(designs: list[PathDesign], problem: PathProblem) -> list[PathDesign]:
+    """Rank designs in the requested order: the nearest first, and by quality among those equally near.
+
+    For whole curves without a required transmission angle, sound linkages come before others if their error is within
+    twice the minimum, and usable ones before the rest. If size or transmission angle is requested, it decides among
+    designs within twice the minimum. Within tolerances all are near enough, and the requested criterion decides alone.
+    """
+    # Within tolerances the error does not matter unless it is requested.
+    if problem.tolerances is not None and problem.rank_by != "accuracy":
+        return rank_designs(designs, problem.rank_by)
+    # Errors are sorted into logarithmic classes; within a class the other criteria decide.
+    factor = math.log(ACCURATE_ERROR_RATIO if problem.rank_by == "accuracy" else EQUAL_ERROR_RATIO)
+    least = find_min_error(designs, problem)
+
+    def classify_error(design: PathDesign) -> int:
+        return math.floor(math.log(compute_error(design, problem) / least) / factor + STEP_ROUNDING)
+
+    def is_far(design: PathDesign) -> bool:
+        return compute_error(design, problem) > TRADE_ERROR_RATIO * least
+
+    if problem.rank_by in ("size", "transmission_angle"):
+        return rank_designs(designs, problem.rank_by, group=is_far)
+
+    def rank_usability(design: PathDesign) -> int:
+        return _GRADE_COUNT if is_far(design) else classify_usability(design)
+
+    # Ranking is stable: equal grades and classes stay in the order of their errors.
+    nearest_first = sorted(designs, key=lambda design: compute_error(design, problem))
+    own = {"quality": classify_error, "accuracy": classify_error}
+    return rank_designs(
+        nearest_first, problem.rank_by, own, group=rank_usability if is_usable_preferred(problem) else None
+    )
+
+
+def is_exact(design: PathDesign) -> bool:
+    """Return whether a design was meant to meet its points exactly: such a design is measured at the points alone."""
+    return design.metrics.curve_distance is None
+
+
+def build_ordering(problem: PathProblem) -> Callable[[list[PathDesign]], list[PathDesign]]:
+    """Return the ordering of designs: exact designs first, ranked like those of all kinds, then fits by nearness.
+
+    Both kinds are in one result if several types of linkages are searched: some can meet more points than others.
+    Designs that fail a check come last.
+    """
+
+    def sort_designs(designs: list[PathDesign]) -> list[PathDesign]:
+        exact = rank_designs([design for design in designs if is_exact(design)], problem.rank_by)
+        fits = rank_by_nearness([design for design in designs if not is_exact(design)], problem)
+        return sorted([*exact, *fits], key=lambda design: not design.verification.passed)
+
+    return sort_designs
+
+
+_GRADE_COUNT = 2
+
+
+def is_usable_preferred(problem: PathProblem) -> bool:
+    """Return whether usable linkages come before nearer ones that are not usable."""
+    free = problem.constraints.min_transmission_angle is None
+    return problem.is_matched and problem.rank_by == "quality" and free
+
+
+def classify_usability(design: PathDesign) -> int:
+    """Return 0 for a sound linkage, 1 for a usable one, 2 for others."""
+    metrics = design.metrics
+    if metrics.link_ratio > MAX_LINK_RATIO * (1.0 + STEP_ROUNDING) or metrics.min_transmission_angle < USABLE_ANGLE * (
+        1.0 - STEP_ROUNDING
+    ):
+        return _GRADE_COUNT
+    return 0 if metrics.min_transmission_angle >= SOUND_ANGLE * (1.0 - STEP_ROUNDING) else 1
+
+
+def explain_choice(designs: list[PathDesign], problem: PathProblem) -> str:
+    """Explain in a sentence what the first of the ordered designs gives up; empty if nothing.
+
+    Its defects are described for all kinds alike: see :mod:`synthesis.results.practicality`.
+    """
+    if not designs or not is_usable_preferred(problem):
+        return ""
+    first, nearest = designs[0], min(designs, key=lambda design: compute_error(design, problem))
+    # The first is practically the nearest: there is nothing to explain.
+    if compute_error(first, problem) <= EQUAL_ERROR_RATIO * compute_error(nearest, problem):
+        return ""
+    chosen, other, unit = first.metrics, nearest.metrics, problem.length_unit
+    return (
+        f" It comes first because of its transmission angle of {chosen.min_transmission_angle:.1f}°. The nearest "
+        f"design, with an rms distance of {other.rms_distance:.3g} {unit}, has only "
+        f"{other.min_transmission_angle:.1f}° and a link ratio of {other.link_ratio:.3g}."
+    )

@@ -1,0 +1,125 @@
+"""Choose the type of linkage that guides the point: the simplest one that is sound and near, and better ones after it.
+
+Simpler types are searched first: fourbars, slider-cranks, geared fivebars, then all sixbars together. A linkage that
+satisfies all constraints is the only answer if it transmits force well enough
+(:func:`~synthesis.results.simplest_type.has_good_transmission`) and is near: its error is at most
+:data:`MAX_NEAR_ERROR` of the task's size, or within the given tolerances. Otherwise the next types are searched. They
+are listed next to it if their error is at most :data:`ERROR_RATIO` of its minimum error, or if only they are sound.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Literal
+
+from synthesis.kinds.path.design import PathDesign, PathResult
+from synthesis.kinds.path.problem import PathProblem
+from synthesis.kinds.path.sixbar.solver import describe_best_sixbar, solve_sixbars
+from synthesis.kinds.path.statement.mechanism_types import (
+    SIXBAR_TYPES,
+    TYPE_NAMES,
+    Simple,
+    find_unsupported,
+    find_unsupported_unclassed,
+    list_simple_types,
+)
+from synthesis.kinds.path.task.ranking import build_ordering, compute_error, find_min_error, is_exact
+from synthesis.model.kind import Progress, scale_progress
+from synthesis.model.linkage.type_choice import describe_skipped_sixbars, describe_unclassed, select_searched_sixbars
+from synthesis.results.simplest_type import (
+    ERROR_RATIO,
+    describe_alternatives,
+    has_good_transmission,
+    merge_alternatives,
+    merge_results,
+    select_passing,
+)
+
+Solve = Callable[[PathProblem, Progress], PathResult]
+
+MAX_NEAR_ERROR = 1e-3
+"""Error, as a share of the task's size, below which no more complex type is searched."""
+
+
+def solve_types(problem: PathProblem, of_one: Solve, progress: Progress) -> PathResult:
+    """Solve a problem for each of the types that it names, simplest first, and combine the results.
+
+    Parameters
+    ----------
+    problem : PathProblem
+        With :attr:`PathProblem.mechanisms`.
+    of_one : callable
+        Solves for one of the types with one closure, as without that field.
+    progress : callable
+        Receives the share of the work done.
+    """
+    stages: list[Simple | Literal["sixbar"]] = [*list_simple_types(problem.mechanisms)]
+    if problem.sixbars:
+        stages.append("sixbar")
+    result: PathResult | None = None
+    before: list[str] = []
+    for n, name in enumerate(stages):
+        part = scale_progress(progress, n / len(stages), (n + 1) / len(stages))
+        found = solve_sixbars(problem, part) if name == "sixbar" else of_one(problem.select_type(name), part)
+        result = found if result is None else combine_results(problem, result, found, before, name)
+        before.append(name)
+        # A sound and accurate simple linkage ends the search: designers prefer fewer links.
+        if any(_is_sufficient(problem, design) for design in select_passing(result.designs)):
+            break
+    assert result is not None
+    text = "" if problem.is_listed_later else describe_best_sixbar(problem, result.designs)
+    if problem.mechanisms == "auto" and not problem.sixbars:
+        text = f" {describe_skipped_sixbars(find_unsupported(problem))}"
+    elif problem.mechanisms != "auto":
+        named = select_searched_sixbars(problem.mechanisms, SIXBAR_TYPES, find_unsupported(problem))
+        text += f" {describe_unclassed(named, find_unsupported_unclassed(problem))}".rstrip()
+    return result.model_copy(update={"summary": f"{result.summary}{text}"})
+
+
+def _is_sufficient(problem: PathProblem, design: PathDesign) -> bool:
+    """Return whether a linkage that satisfies all constraints is sound and near enough to end the search."""
+    near = problem.tolerances is not None or compute_error(design, problem) <= MAX_NEAR_ERROR * problem.task_size
+    return near and has_good_transmission(problem, design)
+
+
+def combine_results(
+    problem: PathProblem, simple: PathResult, found: PathResult, before: list[str], name: str
+) -> PathResult:
+    """Combine the results of simpler linkages and of another type; passed designs that are not listed count as
+    outranked.
+
+    Parameters
+    ----------
+    problem : PathProblem
+        The problem as requested.
+    simple, found : PathResult
+        The answers.
+    before, name : list of str and str
+        The types of the first, and that of the second.
+    """
+    plain, better = select_passing(simple.designs), select_passing(found.designs)
+    sound = [design for design in plain if has_good_transmission(problem, design)]
+    first, other = " or ".join(TYPE_NAMES[one] for one in before), TYPE_NAMES[name]
+    if not plain:
+        text = f"No {first} was found that satisfies all constraints; "
+        text += f"{other}s do." if better else f"nor was a {other}."
+    elif not sound and (alone := [design for design in better if has_good_transmission(problem, design)]):
+        # Only the complex type has sound designs: list these alone.
+        better = alone
+        text = f"No {first} that was found is sound; sound {other}s were found"
+    elif not sound and all(map(is_exact, plain)):
+        # Exact designs have no error to halve, so that a more complex type without force transmission gains nothing.
+        better = []
+        text = f"No {first} that was found is sound, and no {other} is."
+    else:
+        least = find_min_error(sound or plain, problem)
+        # More links must pay off by at least half the error.
+        better = [design for design in better if compute_error(design, problem) <= ERROR_RATIO * least]
+        text = f"The error of the best {first} is {least:.3g} {problem.length_unit}"
+        text += f"; {other}s have at most half of it" if better else f", and no {other} that was found has half of it."
+    order = build_ordering(problem)
+    offered = merge_alternatives(problem.max_designs, (sound or plain) if better else plain, better, order)
+    of_second = [design for design in offered if any(design is one for one in better)]
+    if plain and better:
+        text += describe_alternatives(problem, len(offered), len(of_second))
+    return merge_results(problem.max_designs, (simple, found), offered, len(of_second), text, order)

@@ -1,0 +1,1 @@
+"""Verification of paths: passages of points, excursion, cognates, stance."""

@@ -1,0 +1,135 @@
+"""The widest tolerances with which a linkage still has the yield that is demanded, cheapest first.
+
+To make a dimension within a tolerance t costs in proportion to 1/t (Chase and Greenwood, Design issues in mechanical
+tolerance analysis, Manufacturing Review 1 (1988) 50). To the first order the squares of all errors add up to Σ s t²,
+with s from the exact derivatives; the cheapest tolerances of a given sum have t ∝ s^(−1/3) for each dimension by
+itself, and t ∝ (n/s)^(1/3) for n dimensions that share one. That is the shape; how wide it may be is found with
+samples, driven as those of the yield are, by bisection: what is answered has been sampled in full, and keeps what is
+demanded.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from numpy.typing import NDArray
+
+from kinematics.arrays import Real
+from synthesis.manufacture.linkage import ManufacturedLinkage
+from synthesis.manufacture.yield_sampling import compute_interval, count_good, sample_errors
+from synthesis.model.manufacture.answer import Allocation, Yield
+from synthesis.model.manufacture.request import Exactness
+
+MAX_WIDENING = 10.0
+"""Maximum widening of a given tolerance: a larger one would be unrealistic for that shop."""
+
+MAX_ROUGH_SAMPLES = 10_000
+"""Maximum number of samples in the search of the width."""
+
+BISECTION_COUNT = 9
+"""Bisections of a factor of two: to a seventh of a per cent."""
+
+MAX_DOUBLINGS = 8
+"""Maximum number of doublings or halvings in the search of the width."""
+
+NARROWING_FACTOR, MAX_TRIES = 0.98, 25
+"""What a width is lessened by where all samples show less than the rough ones did, and how often."""
+
+
+def find_widest_tolerances(
+    made: ManufacturedLinkage, block: Exactness, seed: int, squares: Real, off: Real
+) -> list[Allocation]:
+    """Tolerances as wide as the demanded yield lets them be, the cheapest first; empty where there are none.
+
+    Parameters
+    ----------
+    made : Product
+        The linkage with its task.
+    stated : Exactness
+        With a quality and a yield in it.
+    seed : int
+        Of the samples.
+    squares : float, shape (n,)
+        What each dimension adds to the squares of all errors, by the square of its tolerance.
+    off : float, shape (n,)
+        Stated tolerances; those of 0 stay so.
+    """
+    assert block.quality is not None
+    demanded = block.quality.yield_
+    open_ones = off > 0.0
+    if demanded is None or not open_ones.any():
+        return []
+    pivots = made.linkage.mark_pivots(guides=made.task.guides)
+    found = []
+    for by, shape in (
+        ("dimension", _allocate_by_dimension(squares, open_ones)),
+        ("sort", _allocate_by_sort(squares, open_ones, pivots)),
+        ("scale", off),
+    ):
+        told = _scale_tolerances(made, block, seed, demanded, shape, off)
+        if told is None:
+            continue
+        tolerances, share = told
+        cost = float(np.mean(off[open_ones] / tolerances[open_ones]))
+        named = {name: float(t) for name, t in zip(made.list_names, tolerances, strict=True)}
+        found.append(Allocation(by=by, tolerances=named, cost=cost, yield_=share))
+    return sorted(found, key=lambda one: one.cost)
+
+
+def _allocate_by_dimension(squares: Real, open_ones: NDArray[np.bool_]) -> Real:
+    known = np.where(squares > 0.0, squares, np.nan)
+    least = float(np.nanmin(known)) if np.isfinite(known).any() else 1.0
+    return np.where(open_ones, np.where(squares > 0.0, squares, least) ** (-1.0 / 3.0), 0.0)
+
+
+def _allocate_by_sort(squares: Real, open_ones: NDArray[np.bool_], pivots: NDArray[np.bool_]) -> Real:
+    shape = np.zeros(len(squares))
+    for sort in (open_ones & pivots, open_ones & ~pivots):
+        if sort.any():
+            shape[sort] = (np.count_nonzero(sort) / max(float(squares[sort].sum()), 1e-300)) ** (1.0 / 3.0)
+    return shape
+
+
+def _scale_tolerances(
+    made: ManufacturedLinkage, block: Exactness, seed: int, demanded: float, shape: Real, off: Real
+) -> tuple[Real, Yield] | None:
+    """Find the widest tolerances of a given proportion, and their yield; None if none is small enough."""
+    rough = min(block.samples, MAX_ROUGH_SAMPLES)
+    unit = shape * float(np.median(off[off > 0.0] / shape[off > 0.0]))
+
+    def compute_tolerances(width: float) -> Real:
+        return np.minimum(width * unit, MAX_WIDENING * off)
+
+    def count(width: float, samples: int) -> int:
+        share = sample_errors(block.distribution, seed, samples, len(off))
+        return count_good(made, made.nominal_dimensions + share * compute_tolerances(width))
+
+    def has_required_yield(width: float) -> bool:
+        return count(width, rough) >= demanded * rough
+
+    low = high = 1.0
+    if has_required_yield(low):
+        for _ in range(MAX_DOUBLINGS):
+            high *= 2.0
+            if not has_required_yield(high):
+                break
+            low = high
+    else:
+        for _ in range(MAX_DOUBLINGS):
+            high, low = low, 0.5 * low
+            if has_required_yield(low):
+                break
+        else:
+            return None
+    for _ in range(BISECTION_COUNT):
+        middle = math.sqrt(low * high)
+        low, high = (middle, high) if has_required_yield(middle) else (low, middle)
+    for _ in range(MAX_TRIES):
+        kept = count(low, block.samples)
+        ends = compute_interval(kept, block.samples)
+        if ends[0] >= demanded:
+            value = kept / block.samples
+            return compute_tolerances(low), Yield(value=value, low=ends[0], high=ends[1], samples=block.samples)
+        low *= NARROWING_FACTOR
+    return None

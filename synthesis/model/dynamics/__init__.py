@@ -1,0 +1,1 @@
+"""Masses, loads, springs and forces in requests and answers."""

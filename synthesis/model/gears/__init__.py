@@ -1,0 +1,1 @@
+"""Gears in requests and answers: ratios, stages, limits of meshes, strength."""

@@ -1,0 +1,1 @@
+"""Linkages in requests and answers: constraints, workspace, zones, targets."""

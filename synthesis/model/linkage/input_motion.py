@@ -1,0 +1,76 @@
+"""Requested motion of an input in equal steps."""
+
+from __future__ import annotations
+
+import math
+from typing import Annotated
+
+import numpy as np
+from pydantic import ConfigDict, Field
+
+from kinematics.arrays import Real
+from synthesis.model.dimension import ROTATIONAL_SPEED
+from synthesis.model.problem import Count, Number, Statement
+
+MAX_POSITIONS = 10_000
+"""Maximum number of positions of one analysis; a finer motion has to be requested in parts."""
+
+FULL_TURN = 360.0
+
+RAD_PER_S = math.pi / 30.0
+"""One revolution per minute in rad/s."""
+
+
+class DriveSpeed(Statement):
+    """Speed and acceleration of an input."""
+
+    speed: Number | None = Field(default=None, description="Input speed, rad/s (length unit/s for a driven slider).")
+    speed_rpm: Annotated[Number, ROTATIONAL_SPEED] | None = Field(
+        default=None, description="Input speed, revolutions per minute."
+    )
+    acceleration: Number = Field(default=0.0, description="Input acceleration, rad/s².")
+
+    @property
+    def rate(self) -> float:
+        """Input speed, rad/s; 1 by default, so that rates are per radian."""
+        if self.speed is not None:
+            return self.speed
+        return 1.0 if self.speed_rpm is None else self.speed_rpm * RAD_PER_S
+
+    def drive_geared(self, ratio: float, angle: Real, speed: Real) -> dict[str, list[float]]:
+        """Return angles (degrees), speeds and accelerations of a shaft that turns ``ratio`` times as fast."""
+        return {
+            "angle": (ratio * angle).tolist(),
+            "omega": (ratio * speed).tolist(),
+            "alpha": [ratio * self.acceleration] * len(angle),
+        }
+
+    def find_errors(self) -> list[tuple[str, str]]:
+        """Return errors that no single field shows: (JSON pointer in the request, detail)."""
+        if self.speed is not None and self.speed_rpm is not None:
+            return [("/motion/speed_rpm", "give the speed in rad/s or in revolutions per minute, not both")]
+        return []
+
+
+class Sweep(DriveSpeed):
+    """Equal steps of the input from one angle to another, both included; a full turn by default."""
+
+    model_config = ConfigDict(populate_by_name=True, serialize_by_alias=True)
+
+    start: Number | None = Field(
+        default=None,
+        alias="from",
+        description="First input angle, degrees; by default 0, or the first toggle of a slider.",
+    )
+    end: Number | None = Field(
+        default=None,
+        alias="to",
+        description="Last input angle, degrees; by default 360, or the last toggle of a slider.",
+    )
+    steps: Annotated[Count, Field(ge=1, le=MAX_POSITIONS - 1)] = 360
+
+    def list_inputs(self, *, slide: bool = False) -> tuple[Real, Real, Real | None]:
+        """Return inputs, speeds and None, as the times are unknown."""
+        start, end = self.start or 0.0, FULL_TURN if self.end is None else self.end
+        at = np.asarray(np.linspace(start, end, self.steps + 1), np.float64)
+        return at, np.full(len(at), self.rate), None

@@ -1,0 +1,83 @@
+"""Field ``mechanisms`` of kinds that support sixbars: ``auto``, or a list of the types to search.
+
+A kind defines its types by a literal, and lists the constraints that its sixbars do not support. Without the field
+nothing changes. ``auto`` accepts every statement and searches sixbars only if they support it. A list of types
+is refused, with a message at each field that its sixbars do not support.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Sequence
+from typing import Literal, TypeVar
+
+from synthesis.model.linkage.problem import Constraints, LinkageProblem
+from synthesis.model.problem import Contradiction
+
+Name = TypeVar("Name", bound=str)
+
+Auto = Literal["auto"]
+"""The simplest type that satisfies the constraints, and other types if they are clearly better."""
+
+
+UNCLASSED_SIXBAR: Literal["stephenson_2"] = "stephenson_2"
+"""The sixbar that contains no fourbar O2 A B O4, so that it has no Grashof class; its input drives a triad."""
+
+
+def select_requested_types(requested: Auto | Sequence[str] | None, every: Sequence[Name]) -> tuple[Name, ...]:
+    """Return the requested ones of all types: all for ``auto``, none if the field is left out."""
+    if requested is None:
+        return ()
+    return tuple(name for name in every if requested == "auto" or name in requested)
+
+
+def select_searched_sixbars(
+    requested: Auto | Sequence[str] | None, every: Sequence[Name], unsupported: Iterable[Contradiction]
+) -> tuple[Name, ...]:
+    """Return the sixbars to search: the requested ones, and for ``auto`` all or none, if something is unsupported."""
+    return () if requested == "auto" and any(True for _ in unsupported) else select_requested_types(requested, every)
+
+
+def find_sixbar_contradictions(
+    requested: Auto | Sequence[str] | None, every: Sequence[str], unsupported: Iterable[Contradiction]
+) -> list[Contradiction]:
+    """Return the fields that contradict an explicit list with sixbars."""
+    return list(unsupported) if isinstance(requested, list) and select_requested_types(requested, every) else []
+
+
+def describe_skipped_sixbars(unsupported: Iterable[Contradiction]) -> str:
+    """Describe why ``auto`` searched no sixbars, by the fields that they do not support."""
+    return f"Sixbars were not searched: they do not support {_list_fields(unsupported)}."
+
+
+def remove_unclassed(named: Sequence[Name], beyond: Iterable[Contradiction]) -> tuple[Name, ...]:
+    """Return the sixbars to search, without :data:`UNCLASSED_SIXBAR` if it does not support some fields."""
+    left_out = any(True for _ in beyond)
+    return tuple(name for name in named if not (left_out and name == UNCLASSED_SIXBAR))
+
+
+def describe_unclassed(named: Sequence[Name], beyond: Iterable[Contradiction]) -> str:
+    """Describe why :data:`UNCLASSED_SIXBAR` was requested but not searched, by the fields; empty if it was searched."""
+    fields = _list_fields(beyond) if UNCLASSED_SIXBAR in named else ""
+    return f"Stephenson II sixbars were not searched: they do not support {fields}." if fields else ""
+
+
+def refuse_class(limits: Constraints) -> list[Contradiction]:
+    """Return the contradiction of a Grashof class requested of :data:`UNCLASSED_SIXBAR`, if there is one."""
+    return limits.find_class_contradictions(
+        (), "classifies the fourbar O2 A B O4, which a Stephenson II sixbar does not have"
+    )
+
+
+def _list_fields(faults: Iterable[Contradiction]) -> str:
+    return ", ".join(dict.fromkeys(fault.path.strip("/").replace("/", ".") for fault in faults))
+
+
+def find_unsupported_by_sixbars(problem: LinkageProblem) -> Iterator[Contradiction]:
+    """Yield the fields that no sixbar supports, for all kinds of problems."""
+    if problem.manufacture is not None:
+        yield Contradiction("/manufacture", "sixbars do not support `manufacture`; leave it or the sixbars out")
+    for name in ("fixed_pivots", "moving_pivots"):
+        if problem.space is not None and getattr(problem.space, name) is not None:
+            kind = name.removesuffix("s")
+            detail = f"these zones are for the sides of a fourbar; for sixbars give constraints.{kind}_region instead"
+            yield Contradiction(f"/space/{name}", detail)

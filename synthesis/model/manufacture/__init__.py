@@ -1,0 +1,1 @@
+"""Manufacture in requests and answers: grids, tolerances, yield."""

@@ -1,0 +1,490 @@
+"""Nearest miss of a problem without designs: the design that violates the constraints least, and reachable values.
+
+The workspace is relaxed first: the clearance before box and obstacles, and these before the zones of pivots, so that
+the nearest design avoids as many obstacles as possible and has its pivots in their zones. Then the constraints are
+dropped one after another, and the problem is solved again. The value of the dropped constraint in those designs is what
+can be reached with all others. If that gives no design, all constraints are dropped together.
+
+A single limit that cannot be reached is then approached by bisection between the reached and the required value: by
+continuation from known designs if the kind supports it, otherwise by a whole search. A design found without a
+constraint that nevertheless satisfies it is a regular answer. Kinds that declare a ``ratio_check`` (gears) are solved
+without their tolerance, and kinds that declare an ``easing`` (dwells) with an easier task. All other problems have
+their nearest miss among the designs that were driven and failed.
+
+:mod:`synthesis.results.time_budget` limits the time of all of this; whatever was found by then is reported.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Mapping, Sequence
+from typing import Any, NamedTuple
+
+from synthesis.model.answer import Check, Gap, NearestMiss, Reachable, Verification
+from synthesis.model.dimension import LENGTH
+from synthesis.model.kind import Kind, Progress, RatioCheck, scale_progress
+from synthesis.model.linkage.problem import FORCE_NAMES, Constraints, Region
+from synthesis.model.problem import ProblemBase
+from synthesis.results.forces import add_force_checks, add_forces
+from synthesis.results.time_budget import MeteredSearch, SearchBudget
+from synthesis.verification.constraints import check_constraints, check_zone
+from synthesis.verification.measures import Measures, list_link_lengths
+from synthesis.verification.shared_constraints import check_workspace_of_design
+from synthesis.verification.workspace import WORKSPACE_CHECKS
+
+Continue = Callable[[Any, Sequence[Any], Progress], Sequence[Any] | None]
+
+MAX_DESIGNS = 20
+"""Maximum number of designs of each relaxed problem, the likely nearest ones first."""
+
+MAX_DRIVEN = 10
+"""The same maximum for linkages with a driver, which take several times as long to find and to verify."""
+
+UNMEASURED_GAP = 1.0
+"""Relative gap of a violated constraint without a measure, such as a class of linkage: as large as a whole limit."""
+
+RANK_BY = {"min_transmission_angle": "transmission_angle", "link_length": "size"}
+"""Order of designs if a constraint is dropped, so that those close to it come first; by quality for all others."""
+
+MAX_APPROACHES = 4
+"""Maximum number of bisection steps: they reduce a gap to a sixteenth."""
+
+LIMIT_ACCURACY = 0.005
+"""Sufficient accuracy of a reachable value, as a share of its limit, or of the task's size for a zone."""
+
+NEAR_GAP = 0.05
+"""Relative violation of a single constraint up to which it is the only obstacle, so that no other is dropped."""
+
+MAX_SINGLE_CONSTRAINTS = 2
+"""Maximum number of constraints of which each is dropped in turn in any case."""
+
+REACHABLE_MEASURES: Mapping[str, tuple[str, Callable[[Sequence[float]], float]]] = {
+    "min_transmission_angle": ("min_transmission_angle", max),
+    "max_link_ratio": ("link_ratio", min),
+}
+"""Reported measures by constraint, and the function that selects the best value reachable with all others."""
+
+DRIVER_PIVOT_REGION = "driver_pivot_region"
+"""Name of the zone of a driver's pivot among the constraints."""
+
+CHECKED_CONSTRAINTS: dict[str, str] = {
+    "transmission_angle": "min_transmission_angle",
+    "grashof": "grashof",
+    "full_rotation": "full_rotation",
+    "shortest_link": "link_length",
+    "longest_link": "link_length",
+    "link_ratio": "max_link_ratio",
+    "fixed_pivot_region": "fixed_pivot_region",
+    "moving_pivot_region": "moving_pivot_region",
+    "driver_pivot_region": DRIVER_PIVOT_REGION,
+} | {name: f"max_{name}" for name in FORCE_NAMES}
+"""Constraint by name of its check; the zone of a driver's pivot counts as one."""
+
+DRIVER_JOINTS = "O6", "C", "D"
+"""Joints of a driver dyad, to which the zones of the linkage's pivots do not apply."""
+
+
+class _Miss(NamedTuple):
+    """A design, its failed checks, and the size of the task, by which distances from zones are measured."""
+
+    design: Any
+    broken: list[Check]
+    size: float = 1.0
+
+    @property
+    def distance(self) -> float:
+        """Sum of the relative gaps, by which misses are compared."""
+        return math.fsum(_compute_relative_gap(check, self.size) for check in self.broken)
+
+
+class Relaxation(NamedTuple):
+    """Result of relaxing a problem: designs that satisfy all constraints after all, or the nearest miss."""
+
+    sound: list[Any]
+    nearest_miss: NearestMiss[Any] | None
+
+
+def find_nearest_miss(
+    problem: ProblemBase, kind: Kind[Any, Any], progress: Progress, allowance: SearchBudget | None = None
+) -> Relaxation:
+    """Find the nearest miss of a problem for which no design was found.
+
+    Parameters
+    ----------
+    problem : StatedProblem
+        A consistent problem.
+    kind : Kind
+        Its kind, whose solver found no design; it declares by which strategies the task can be relaxed.
+    progress : callable
+        Progress callback.
+    allowance : Allowance, optional
+        Time budget.
+
+    Returns
+    -------
+    Relaxation
+        Designs that satisfy all constraints although they were found without one. If there are none, the nearest miss,
+        or None if no design is found without the constraints either.
+    """
+    reachable: dict[str, Any] = {}
+    purse = SearchBudget() if allowance is None else allowance
+    search = purse.meter_search(kind.solve)
+    onward = purse.meter_search(_continue_nothing if kind.nearer is None else kind.nearer)
+    sound, misses = _relax_workspace(problem, search, scale_progress(progress, 0.0, 0.4))
+    if not sound and not misses:
+        sound, misses = _relax_constraints(problem, search, onward, scale_progress(progress, 0.0, 0.8), reachable)
+    if sound:
+        return Relaxation(sound, None)
+    span = scale_progress(progress, 0.0, 0.8)
+    span = scale_progress(progress, 0.0, 0.8)
+    misses = misses or _relax_tolerance(problem, kind.ratio_check, search, span, reachable)
+    if not misses:
+        sound, misses = _ease_task(problem, kind, search, span, reachable)
+        if sound:
+            return Relaxation(sound, None)
+    misses = misses or _list_failed(problem, search, scale_progress(progress, 0.8, 1.0))
+    progress(1.0, "verified")
+    if not misses:
+        return Relaxation([], None)
+    nearest = min(misses, key=lambda miss: miss.distance)
+    gaps = [
+        Gap(check=check.name, value=check.value, limit=check.limit, dimension=check.dimension)
+        for check in nearest.broken
+    ]
+    return Relaxation([], NearestMiss(design=nearest.design, gaps=gaps, reachable=Reachable(**reachable)))
+
+
+def _continue_nothing(_problem: Any, _designs: Sequence[Any], _progress: Progress) -> None:
+    """Return None: the continuation of kinds that support none."""
+
+
+def _relax_workspace(problem: Any, solve: MeteredSearch, progress: Progress) -> tuple[list[Any], list[_Miss]]:
+    """Solve the problem with a relaxed workspace; return designs that fit into the workspace anyway, and the others.
+
+    More of the workspace is dropped only if dropping less gives no design.
+    """
+    space = getattr(problem, "space", None)
+    if space is None:
+        return [], []
+    touching = space.model_copy(update={"clearance": 0.0})
+    zoned = space.model_copy(update={"box": None, "obstacles": []})
+    looser = [touching] if space.obstacles and space.clearance > 0.0 else []
+    looser += [zoned] if space.swept and zoned.has_constraints else []
+    sound: list[Any] = []
+    misses: list[_Miss] = []
+    for n, less in enumerate([*looser, None]):
+        update = {"space": less, "include_failed": False, "max_designs": _limit_designs(problem)}
+        span = scale_progress(progress, n / (len(looser) + 1), (n + 1) / (len(looser) + 1))
+        found = solve(problem.model_copy(update=update), span).designs
+        judged = [check_workspace_of_design(problem, design) for design in map(_drop_workspace_checks, found)]
+        verdicts = [design for design in judged if design is not None]
+        broken = [[check for check in design.verification.checks if not check.passed] for design in verdicts]
+        sound = [design for design, lacks in zip(verdicts, broken, strict=True) if not lacks]
+        size = _measure_task(problem)
+        misses = [_Miss(design, lacks, size) for design, lacks in zip(verdicts, broken, strict=True) if lacks]
+        if sound or misses:
+            break
+    return sound, misses
+
+
+def _drop_workspace_checks(design: Any) -> Any:
+    """Remove the workspace checks of a design, so that it can be checked against another workspace."""
+    checks = [check for check in design.verification.checks if check.name not in WORKSPACE_CHECKS]
+    return design.model_copy(update={"verification": Verification.from_checks(checks)})
+
+
+def _relax_constraints(
+    problem: Any, solve: MeteredSearch, nearer: MeteredSearch, progress: Progress, reachable: dict[str, float]
+) -> tuple[list[Any], list[_Miss]]:
+    """Solve the problem without one of its constraints, or without all if that gives no design.
+
+    Return the designs that satisfy all constraints anyway, and those that do not. ``reachable`` is filled.
+    """
+    stated = _list_constraints(problem)
+    free: list[_Miss] = []
+    if len(stated) > MAX_SINGLE_CONSTRAINTS:
+        # With many constraints drop only those one by one that the best design without any of them violates.
+        relaxed = _solve_relaxed(problem, stated, solve, progress)
+        if relaxed.sound or not relaxed.misses:
+            return relaxed.sound, []
+        free = relaxed.misses
+        stated = _list_broken_constraints(min(free, key=lambda miss: miss.distance))
+    misses: list[_Miss] = []
+    exhaustive = searched = True
+    for n, name in enumerate(stated):
+        if n and not (solve.fits and all(miss.distance > NEAR_GAP for miss in misses)):
+            break
+        span = scale_progress(progress, n / (len(stated) + 1), (n + 1) / (len(stated) + 1))
+        relaxed = _solve_relaxed(problem, [name], solve, span)
+        if relaxed.sound:
+            return relaxed.sound, []
+        exhaustive &= relaxed.complete
+        continued = _approach_limit(problem, relaxed.misses, nearer, nearer)
+        searched = searched and continued is None
+        reached = continued or []
+        if reached and not reached[0].broken:
+            return [miss.design for miss in reached], []
+        misses += [*relaxed.misses, *reached]
+        if name in REACHABLE_MEASURES and relaxed.designs:
+            measure, best = REACHABLE_MEASURES[name]
+            designs = [*relaxed.designs, *(miss.design for miss in reached)]
+            reachable[name] = best([getattr(design.metrics, measure) for design in designs])
+    if not misses and not free and len(stated) > 1:
+        relaxed = _solve_relaxed(problem, stated, solve, progress)
+        return relaxed.sound, relaxed.misses
+    if searched and not exhaustive:  # if all designs are known, none is nearer
+        reached = _approach_limit(problem, misses, lambda eased, _, told: solve(eased, told).designs, solve) or []
+        if reached and not reached[0].broken:
+            return [miss.design for miss in reached], []
+        for miss in reached:
+            name = CHECKED_CONSTRAINTS[miss.broken[0].name]
+            if name in REACHABLE_MEASURES:
+                measure, best = REACHABLE_MEASURES[name]
+                reachable[name] = best([reachable[name], getattr(miss.design.metrics, measure)])
+        misses += reached
+    return [], misses or free
+
+
+def _relax_tolerance(
+    problem: Any, ratio: RatioCheck | None, solve: MeteredSearch, progress: Progress, reachable: dict[str, float]
+) -> list[_Miss]:
+    """Find the most accurate gears if none are within the tolerance."""
+    if ratio is None or problem.tolerance is None:
+        return []
+    update = {"tolerance": None, "rank_by": "error", "include_failed": False, "max_designs": 1}
+    misses = []
+    for design in solve(problem.model_copy(update=update), progress).designs:
+        error = abs(float(getattr(design.metrics, ratio.metric)))
+        if error <= problem.tolerance:
+            continue
+        broken = Check(name=ratio.check, passed=False, value=error, limit=problem.tolerance)
+        others = [check for check in design.verification.checks if check.name != ratio.check]
+        verification = Verification.from_checks([*others, broken])
+        misses.append(_Miss(design.model_copy(update={"verification": verification}), [broken]))
+        reachable["tolerance"] = error
+    return misses
+
+
+def _ease_task(
+    problem: Any, kind: Kind[Any, Any], solve: MeteredSearch, progress: Progress, reachable: dict[str, Any]
+) -> tuple[list[Any], list[_Miss]]:
+    """Find the largest possible share of the task by bisection, for kinds whose task can be eased.
+
+    Return designs that satisfy all constraints anyway, and those that do not. ``reachable`` is filled.
+    """
+    if kind.easing is None or kind.verify is None:
+        return [], []
+    reached, unreached = 0.0, 1.0
+    misses: list[_Miss] = []
+    for n in range(MAX_APPROACHES):
+        if misses and not solve.fits:
+            break
+        tried = 0.5 * (reached + unreached)
+        update = {"include_failed": False, "max_designs": _limit_designs(problem)}
+        span = scale_progress(progress, n / MAX_APPROACHES, (n + 1) / MAX_APPROACHES)
+        eased = kind.easing.ease(problem, tried)
+        found = solve(eased.model_copy(update=update), span).designs
+        if not found:
+            unreached = tried
+            continue
+        reached = tried
+        reachable.update(kind.easing.list_reached(eased))
+        verified = [design for one in found if (design := kind.verify(problem, one.mechanism)) is not None]
+        sound = [design for design in verified if design.verification.passed]
+        if sound:
+            return sound, []
+        misses = [_Miss(one, [check for check in one.verification.checks if not check.passed]) for one in verified]
+    return [], misses
+
+
+def _list_failed(problem: ProblemBase, solve: MeteredSearch, progress: Progress) -> list[_Miss]:
+    """Return the designs that were driven and fail a check."""
+    asked = problem.model_copy(update={"include_failed": True, "max_designs": _limit_designs(problem)})
+    return [
+        _Miss(design, [check for check in design.verification.checks if not check.passed])
+        for design in solve(asked, progress).designs
+    ]
+
+
+def _list_constraints(problem: ProblemBase) -> list[str]:
+    """Return the constraints beyond a sound motion that differ from their defaults."""
+    constraints = getattr(problem, "constraints", None)
+    if not isinstance(constraints, Constraints):
+        return []
+    plain = type(constraints)()
+    stated = [
+        name
+        for name in Constraints.model_fields
+        if name not in ("same_branch", "in_order") and getattr(constraints, name) != getattr(plain, name)
+    ]
+    return stated if _get_driver_zone(problem) is None else [*stated, DRIVER_PIVOT_REGION]
+
+
+def _get_driver_zone(problem: Any) -> Region | None:
+    """Return the zone of a driver's pivot, if one is given."""
+    return problem.driver.pivot_region if _has_driver(problem) else None
+
+
+def _drop_constraints(problem: Any, names: Sequence[str]) -> dict[str, Any]:
+    """Return the changed fields of a problem without these constraints."""
+    plain = type(problem.constraints)()
+    left_out = {name: getattr(plain, name) for name in names if name != DRIVER_PIVOT_REGION}
+    fields: dict[str, Any] = {"constraints": problem.constraints.model_copy(update=left_out)}
+    if DRIVER_PIVOT_REGION in names:
+        fields["driver_dyad"] = problem.driver.model_copy(update={"pivot_region": None})
+    return fields
+
+
+class _RelaxedResult(NamedTuple):
+    """Designs of a problem without some of its constraints."""
+
+    designs: list[Any]
+    sound: list[Any]
+    misses: list[_Miss]
+    complete: bool
+
+
+def _solve_relaxed(problem: Any, left_out: Sequence[str], solve: MeteredSearch, progress: Progress) -> _RelaxedResult:
+    """Solve the task without these constraints."""
+    rank_by = RANK_BY.get(left_out[0], "quality") if len(left_out) == 1 else problem.rank_by
+    update = _drop_constraints(problem, left_out) | {
+        "rank_by": rank_by,
+        "include_failed": False,
+        "max_designs": _limit_designs(problem),
+    }
+    result = solve(problem.model_copy(update=update), progress)
+    verdicts = [check_constraints_of_design(problem, design) for design in result.designs]
+    sound = [verdict.design for verdict in verdicts if verdict.design.verification.passed]
+    return _RelaxedResult(
+        result.designs, sound, [verdict for verdict in verdicts if verdict.broken], result.search.complete
+    )
+
+
+def _list_broken_constraints(miss: _Miss) -> list[str]:
+    """Return the constraints that a design violates, in the order of their declaration."""
+    broken = {CHECKED_CONSTRAINTS[check.name] for check in miss.broken}
+    return [name for name in (*Constraints.model_fields, DRIVER_PIVOT_REGION) if name in broken]
+
+
+def _approach_limit(
+    problem: Any, misses: Sequence[_Miss], further: Continue, spent: MeteredSearch
+) -> list[_Miss] | None:
+    """Bring the nearest miss of one limit closer to it, as long as designs are found and another step fits the budget.
+
+    Designs that violate nothing are returned, best first, if any are found. None if there is no such miss, or if
+    ``further`` does not support the problem.
+    """
+    single = sorted((miss for miss in misses if len(miss.broken) == 1), key=lambda miss: miss.distance)
+    if not single or single[0].broken[0].value is None or single[0].broken[0].limit is None:
+        return None
+    check = single[0].broken[0]
+    at_hand = [miss for miss in single if miss.broken[0].name == check.name]
+    reached, unreached = float(check.value or 0.0), float(check.limit or 0.0)
+    for step in range(MAX_APPROACHES):
+        tried = 0.5 * (reached + unreached)
+        eased = _replace_limit(problem, check.name, tried)
+        near = abs(reached - unreached) <= LIMIT_ACCURACY * _choose_unit(check, at_hand[0].size)
+        if eased is None or near or not spent.fits:
+            break
+        update = eased | {"include_failed": False, "max_designs": _limit_designs(problem)}
+        found = further(problem.model_copy(update=update), [miss.design for miss in at_hand], _ignore_progress)
+        if found is None and not step:
+            return None
+        verdicts = [check_constraints_of_design(problem, design) for design in found or ()]
+        nearer = [miss for miss in verdicts if len(miss.broken) <= 1 and miss.distance < at_hand[0].distance]
+        if nearer:
+            at_hand = sorted(nearer, key=lambda miss: miss.distance)
+            if not at_hand[0].broken:
+                return [miss for miss in at_hand if not miss.broken]
+            reached = at_hand[0].broken[0].value or 0.0
+        else:
+            unreached = tried
+    return at_hand[:1]
+
+
+def _ignore_progress(_fraction: float, _message: str) -> None:
+    pass
+
+
+def _replace_limit(problem: Any, check: str, limit: float) -> dict[str, Any] | None:
+    """Return the changed fields of a problem with another limit for a check; None if the check has no limit."""
+    constraints: Constraints = problem.constraints
+    lengths = constraints.link_length
+    update: dict[str, Any]
+    match check:
+        case "transmission_angle":
+            update = {"min_transmission_angle": limit}
+        case "link_ratio":
+            update = {"max_link_ratio": limit}
+        case "shortest_link" if lengths is not None:
+            update = {"link_length": lengths.model_copy(update={"min": limit})}
+        case "longest_link" if lengths is not None:
+            update = {"link_length": lengths.model_copy(update={"max": limit})}
+        case "fixed_pivot_region" | "moving_pivot_region":
+            update = {check: getattr(constraints, check).widen(limit)}
+        case name if name in FORCE_NAMES:
+            update = {f"max_{name}": limit}
+        case "driver_pivot_region":
+            wider = problem.driver.pivot_region.widen(limit)
+            return {"driver_dyad": problem.driver.model_copy(update={"pivot_region": wider})}
+        case _:
+            return None
+    return {"constraints": constraints.model_copy(update=update)}
+
+
+def check_constraints_of_design(problem: Any, design: Any) -> _Miss:
+    """Check a design of a relaxed problem against the original constraints, measured on the answer."""
+    joints, ground = design.mechanism.skeleton.joints, _list_ground_joints(design)
+    apart = {"P", *(DRIVER_JOINTS if _has_driver(problem) else ())}
+    fixed = [complex(*joints[name]) for name in ground if name not in apart]
+    moving = [complex(*place) for name, place in joints.items() if name not in {*ground, *apart}]
+    measures: dict[str, Any] = {name: getattr(design.metrics, name, None) for name in Measures._fields}
+    measures["lengths"] = list_link_lengths(design.mechanism)
+    stated = problem.constraints.model_copy(update={"same_branch": False, "in_order": False})
+    judged = check_constraints(stated, Measures(**measures), fixed, moving)
+    zone = _get_driver_zone(problem)
+    if zone is not None:
+        judged.append(check_zone("driver_pivot_region", zone, [complex(*joints["O6"])]))
+    names = {check.name for check in judged}
+    checks = [check for check in design.verification.checks if check.name not in names] + judged
+    verified = design.model_copy(update={"verification": Verification.from_checks(checks)})
+    if problem.constraints.force_limits:
+        verified = add_force_checks(problem.constraints, add_forces(problem, verified))
+        judged += [check for check in verified.verification.checks if check.name in problem.constraints.force_limits]
+    return _Miss(verified, [check for check in judged if not check.passed], _measure_task(problem))
+
+
+def _list_ground_joints(design: Any) -> list[str]:
+    return next(link.joints for link in design.mechanism.skeleton.links if link.name == "ground")
+
+
+def _compute_relative_gap(check: Check, size: float) -> float:
+    """Return a gap as a share of its unit of measure."""
+    if check.value is None or check.limit is None:
+        return UNMEASURED_GAP
+    return abs(check.value - check.limit) / _choose_unit(check, size)
+
+
+def _choose_unit(check: Check, size: float) -> float:
+    """Return the unit of a gap: its limit, or the size of the task if the limit is 0, as for zones."""
+    return abs(check.limit or 0.0) or (size if check.dimension == LENGTH else 1.0)
+
+
+def _measure_task(problem: Any) -> float:
+    """Return the size of a task in length units; for a task without size, that of its zones."""
+    size = getattr(problem, "task_size", None)
+    if size is not None:
+        return float(size)
+    zones = problem.constraints.fixed_pivot_region, problem.constraints.moving_pivot_region
+    spans = [math.hypot(zone.x[1] - zone.x[0], zone.y[1] - zone.y[0]) for zone in zones if zone is not None]
+    return max(spans, default=0.0) or 1.0
+
+
+def _has_driver(problem: Any) -> bool:
+    """Return whether a driver dyad is requested."""
+    return getattr(problem, "driver", None) is not None
+
+
+def _limit_designs(problem: Any) -> int:
+    """Return the maximum number of designs of a relaxed problem."""
+    return MAX_DRIVEN if _has_driver(problem) else MAX_DESIGNS

@@ -1,0 +1,226 @@
+"""Log of the candidates of a search: each is verified once and either accepted or counted by its reason of rejection.
+
+All searches report ``candidates = accepted + all rejected``. Here this holds by construction, since a candidate is
+counted only when it is accepted or rejected.
+"""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from typing import Generic, Protocol, TypeVar
+
+from synthesis.model.answer import Search, Verification
+from synthesis.model.counting import format_integer
+from synthesis.model.kind import Progress
+from synthesis.model.problem import ProblemBase
+from synthesis.results.constraints import verify_all_constraints
+from synthesis.verification.shared_constraints import check_workspace_of_design
+
+DEFECT_REASONS = {
+    "reaches_targets": "residual",
+    "same_circuit": "circuit_defect",
+    "same_branch": "branch_defect",
+    "visits_in_order": "order_defect",
+}
+"""Reasons of rejection by the failed check of the motion."""
+
+LENGTH_REASONS = {"shortest_link": "link_length", "longest_link": "link_length"}
+"""Reasons of rejection by the failed check of lengths."""
+
+NUMERICAL_REASONS = {"degenerate", "residual", "cannot_be_driven"}
+"""Reasons of numerical failure: a search that rejects candidates for one of them proves nothing."""
+
+OUTRANKED_REASON = "outranked"
+"""Reason of sound candidates that are not driven or not listed because better ones are."""
+
+
+class VerifiedDesign(Protocol):
+    """A design with its checks."""
+
+    @property
+    def verification(self) -> Verification:
+        """Checks of the design."""
+
+
+Candidate = TypeVar("Candidate")
+Design = TypeVar("Design", bound=VerifiedDesign)
+
+
+class CandidateLog(Generic[Design]):
+    """Log of the candidates of a search.
+
+    Parameters
+    ----------
+    problem : StatedProblem
+        The problem, with the number of designs, whether to include failed ones, and the seed.
+    reasons : mapping, optional
+        Reasons of rejection by the first failed check; the reason of other checks is their own name.
+    undriven : str
+        Reason of a candidate that cannot be driven at all.
+
+    Attributes
+    ----------
+    passed, failed : list
+        Verified designs, in the order in which they were found.
+    accepted : int
+        Number of accepted candidates. A candidate that can be driven in several ways may become several designs.
+    rejected : Counter
+        Number of other candidates by reason.
+    """
+
+    def __init__(
+        self, problem: ProblemBase, reasons: Mapping[str, str] | None = None, undriven: str = "cannot_be_driven"
+    ) -> None:
+        self.stated = problem
+        self.passed: list[Design] = []
+        self.failed: list[Design] = []
+        self.accepted = 0
+        self.rejected: Counter[str] = Counter()
+        self._reasons = reasons or {}
+        self._undriven = undriven
+
+    @property
+    def candidates(self) -> int:
+        """Number of candidates of the search."""
+        return self.accepted + self.rejected.total()
+
+    def reject(self, reason: str, count: int = 1) -> None:
+        """Count candidates that are rejected for ``reason`` without verification; a count of 0 adds no entry."""
+        if count:
+            self.rejected[reason] += count
+
+    def verify_candidates(
+        self,
+        candidates: Iterable[Candidate],
+        verify: Callable[[Candidate], Design | str | None],
+        enough: int | None = None,
+    ) -> int:
+        """Verify candidates in order until ``enough`` designs have passed; return the number of verified candidates.
+
+        ``verify`` returns a verdict as described at :meth:`insert_design`.
+        """
+        verified = 0
+        for candidate in candidates:
+            self.record_candidate(verify(candidate))
+            verified += 1
+            if enough is not None and len(self.passed) >= enough:
+                break
+        return verified
+
+    def verify_best(
+        self, best: Sequence[Candidate], covered: int, verify: Callable[[Candidate], Design | str | None]
+    ) -> None:
+        """Verify the best of the ``covered`` candidates of an exhaustive search; they outrank the others."""
+        self.reject(OUTRANKED_REASON, covered - len(best))
+        self.verify_candidates(best, verify)
+
+    def record_candidate(self, verdict: Design | str | None) -> None:
+        """Store and count one candidate."""
+        self.count(self.insert_design(verdict))
+
+    def insert_design(self, verdict: Design | str | None) -> str:
+        """Store a design with those that passed or failed, without counting it.
+
+        Parameters
+        ----------
+        verdict : Design, str or None
+            The verified design, or the reason of rejection, or None if the candidate cannot be driven.
+
+        Returns
+        -------
+        str
+            Reason of rejection; empty if the design passed.
+        """
+        if verdict is None:
+            return self._undriven
+        if isinstance(verdict, str):
+            return verdict
+        # Common constraints are expensive (forces, planes, yield): only designs that passed everything else pay.
+        if verdict.verification.passed:
+            judged = verify_all_constraints(self.stated, verdict)
+            if judged is None:
+                return self._undriven
+            verdict = judged
+        if verdict.verification.passed:
+            self.passed.append(verdict)
+            return ""
+        self.failed.append(verdict)
+        return self.find_reason([check.name for check in verdict.verification.checks if not check.passed])
+
+    def count(self, reason: str) -> None:
+        """Count a candidate by its reason of rejection; an empty reason counts it as accepted."""
+        if reason:
+            self.rejected[reason] += 1
+        else:
+            self.accepted += 1
+
+    def find_reason(self, broken: Sequence[str]) -> str:
+        """Return the reason of rejection of a design with these failed checks."""
+        return self._reasons.get(broken[0], broken[0])
+
+    def withdraw(self, kept: list[Design], reason: str) -> None:
+        """Keep only ``kept`` of the passed designs; count the others as rejected for ``reason``."""
+        withdrawn = len(self.passed) - len(kept)
+        self.passed = kept
+        self.accepted -= withdrawn
+        self.reject(reason, withdrawn)
+
+    def merge_search(self, search: Search) -> None:
+        """Add the counts of another search."""
+        self.accepted += search.accepted
+        self.rejected.update(search.rejected)
+
+    def format_reasons(self, *left_out: str) -> str:
+        """Format the reasons of rejection with their counts, except ``left_out``; empty if there are none."""
+        return ", ".join(
+            f"{name.replace('_', ' ')} {format_integer(n)}" for name, n in self.rejected.items() if name not in left_out
+        )
+
+    def describe_reasons(self) -> str:
+        """Describe the reasons of rejection in a sentence for a summary."""
+        return f" Rejected: {self.format_reasons()}." if self.rejected else ""
+
+    def select_designs(
+        self,
+        ordered: Callable[[list[Design]], list[Design]],
+        different: Callable[[list[Design]], list[Design]] | None = None,
+    ) -> list[Design]:
+        """Return the requested number of designs in order; failed designs come last, and only if requested.
+
+        ``different`` drops designs that are nearly equal to an earlier one.
+        """
+        shown = ordered(self.passed)
+        if self.stated.include_failed:
+            shown = [*shown, *ordered(list(map(self._complete_failed, self.failed)))]
+        return (different(shown) if different else shown)[: self.stated.max_designs]
+
+    def _complete_failed(self, failed: Design) -> Design:
+        """Return a failed design with the checks of its workspace, too."""
+        return check_workspace_of_design(self.stated, failed) or failed
+
+    def build_search(self, method: str, *, complete: bool = False) -> Search:
+        """Return the counts in the form of the answer."""
+        return Search(
+            method=method,
+            complete=complete,
+            candidates=self.candidates,
+            accepted=self.accepted,
+            rejected=dict(+self.rejected),
+            seed=self.stated.seed,
+        )
+
+
+def report_candidates(
+    candidates: Sequence[Candidate], progress: Progress, span: tuple[float, float], message: str
+) -> Iterator[Candidate]:
+    """Yield candidates one by one and report progress between the shares of ``span`` before each.
+
+    ``message`` may contain ``{done}``, ``{next}`` and ``{all}``: the number of candidates before this one, including
+    it, and in total.
+    """
+    begin, end = span
+    count = len(candidates)
+    for n, candidate in enumerate(candidates):
+        progress(begin + (end - begin) * n / count, message.format(done=n, next=n + 1, all=count))
+        yield candidate

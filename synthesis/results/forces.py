@@ -1,0 +1,268 @@
+"""Forces of designs, for the block ``dynamics`` of a statement: results and checks."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from typing import Any, NamedTuple, TypeVar
+
+import numpy as np
+from numpy.typing import NDArray
+
+from kinematics.linkage.planar.mechanism import GROUND, Mechanism
+from synthesis.model.answer import Check, Result, Verification
+from synthesis.model.dimension import FORCE, POWER, TORQUE, Dimension
+from synthesis.model.dynamics.bodies import BodySpec, Shape
+from synthesis.model.dynamics.peak_forces import DesignForces, ForcePeak, JointForcePeak, PowerPeak, TorquePeak
+from synthesis.model.dynamics.request import DesignDynamics, LengthUnit, LoadedLinkage
+from synthesis.model.linkage.problem import Constraints, Force, LinkageProblem
+from synthesis.model.problem import ProblemBase
+from synthesis.verification.checks import check_maximum
+from synthesis.verification.reconstruction import rebuild_mechanism
+
+Design = TypeVar("Design", bound=Any)
+
+STEP_COUNT = 72
+"""Number of steps of a motion, between which peaks are refined."""
+
+DIMENSIONS: Mapping[Force, Dimension | None] = {
+    "drive_torque": TORQUE,
+    "joint_force": FORCE,
+    "shaking_force": FORCE,
+    "shaking_moment": TORQUE,
+    "power": POWER,
+    "joint_force_index": None,
+}
+"""Dimension of each limit on forces."""
+
+
+def verify_forces(problem: ProblemBase, design: Design) -> Design:
+    """Return a design with its forces and their checks, if it passed all other checks and forces are limited."""
+    if not isinstance(problem, LinkageProblem) or not problem.constraints.force_limits or problem.dynamics is None:
+        return design
+    if not design.verification.passed:
+        return design
+    return add_force_checks(problem.constraints, add_forces(problem, design))
+
+
+def add_force_checks(constraints: Constraints, design: Design) -> Design:
+    """Replace the force checks of a design with known forces by checks of the given limits."""
+    limits = constraints.force_limits
+    if not limits:
+        return design
+    checks = [check for check in design.verification.checks if check.name not in limits]
+    for name, limit in limits.items():
+        value = get_peak(design, name)
+        checks.append(
+            Check(name=name, passed=False, limit=limit, dimension=DIMENSIONS[name])
+            if value is None
+            else check_maximum(name, value, limit, DIMENSIONS[name])
+        )
+    checked: Design = design.model_copy(update={"verification": Verification.from_checks(checks)})
+    return checked
+
+
+def get_peak(design: Any, name: str) -> float | None:
+    """Return the peak that the limit on ``name`` refers to; None if unknown."""
+    found = None if design.forces is None else getattr(design.forces, name)
+    return found if found is None or isinstance(found, float) else float(found.max)
+
+
+def add_forces_to_designs(problem: LinkageProblem, result: Result[Any]) -> Result[Any]:
+    """Return an answer with the forces of all its designs and of the nearest miss; unchanged without `dynamics`."""
+    if problem.dynamics is None:
+        return result
+    miss = result.nearest_miss
+    if miss is not None:
+        miss = miss.model_copy(update={"design": add_forces(problem, miss.design)})
+    designs = [add_forces(problem, design) for design in result.designs]
+    return result.model_copy(update={"designs": designs, "nearest_miss": miss})
+
+
+def report_unknown_forces(problem: LinkageProblem, result: Result[Any]) -> Result[Any]:
+    """Add the reason why the nearest miss has no forces to the summary, if forces are limited."""
+    miss = result.nearest_miss
+    forces = None if miss is None else miss.design.forces
+    if not problem.constraints.force_limits or forces is None or forces.remark is None:
+        return result
+    return result.model_copy(update={"summary": f"{result.summary} Its forces are not known: {forces.remark}."})
+
+
+def add_forces(problem: LinkageProblem, design: Design) -> Design:
+    """Return a design with its forces; unchanged if it already has them."""
+    if problem.dynamics is None or design.forces is not None:
+        return design
+    measured: Design = design.model_copy(update={"forces": _compute_forces(problem, problem.dynamics, design)})
+    return measured
+
+
+class ForcesUnknownError(ValueError):
+    """Raised if the forces of a design are unknown; carries the responsible field below the problem, if any."""
+
+    def __init__(self, path: str, detail: str) -> None:
+        self.path = path
+        self.detail = detail
+        super().__init__(f"{path}: {detail}" if path else detail)
+
+
+class DriveSetup(NamedTuple):
+    """Drive of a design: its masses and loads, its inputs (degrees or length units) and their speed.
+
+    The speed is in rad/s, or length units a second.
+    """
+
+    mechanism: Mechanism
+    block: DesignDynamics
+    at: NDArray[np.float64]
+    speed: float
+
+
+def prepare_drive(dynamics: DesignDynamics, design: Any, steps: int = STEP_COUNT) -> DriveSetup:
+    """Prepare a design for a whole cycle if its input rotates fully, otherwise for its verified range.
+
+    Parameters
+    ----------
+    stated : DesignDynamics
+        What every design weighs and carries.
+    design : a design of linkages
+        With its mechanism and metrics.
+    steps : int
+        Of each turn, or of the range.
+
+    Raises
+    ------
+    NoForces
+        Where the block does not fit the design.
+    """
+    from synthesis.mechanisms.machine import find_weight_errors
+
+    if dynamics.links is not None and dynamics.plate is None:
+        raise ForcesUnknownError("/dynamics/links", dynamics.fill_from_layout(None) or "")
+    mechanism = rebuild_mechanism(design.mechanism, from_skeleton=True)
+    if mechanism is None:
+        raise ForcesUnknownError("", "no mechanism can be built from these dimensions")
+    block = apply_link_shape(dynamics, mechanism.links)
+    for path, detail in find_weight_errors(block, mechanism):
+        raise ForcesUnknownError(map_error_path(dynamics, path), detail)
+    slides = mechanism.has_slide_input
+    speed = dynamics.speed if slides else dynamics.speed_rpm
+    if speed is None:
+        missing, moves = ("speed", "slides") if slides else ("speed_rpm", "turns")
+        raise ForcesUnknownError(f"/dynamics/{missing}", f"the input of this linkage {moves}; state it")
+    at = _list_inputs(block, mechanism, design.metrics, steps)
+    if at is None:
+        raise ForcesUnknownError("", "the design has no verified motion")
+    return DriveSetup(mechanism, block, at, speed if slides else speed * math.tau / 60.0)
+
+
+def _compute_forces(problem: LinkageProblem, dynamics: DesignDynamics, design: Any) -> DesignForces:
+    # Only who states the block waits for the import.
+    from synthesis.analyses.linkages.dynamics import UndeterminedForcesError, find_force_peaks
+
+    try:
+        run = prepare_drive(dynamics, design)
+        closed, peaks = find_force_peaks(run.mechanism, run.block, problem.length_unit, run.at, run.speed)
+    except (ForcesUnknownError, UndeterminedForcesError) as error:
+        return DesignForces(units=dynamics.units, remark=str(error))
+    joint = max((name for name in peaks if name.startswith("joint ")), key=lambda name: peaks[name].value)
+    slides = run.mechanism.has_slide_input
+
+    def collect_peak(name: str) -> dict[str, float]:
+        return {"max": peaks[name].value, "at_place" if slides else "at": peaks[name].at}
+
+    drive = (
+        {"drive_force": ForcePeak(**collect_peak("drive"))}
+        if slides
+        else {"drive_torque": TorquePeak(**collect_peak("drive"))}
+    )
+    return DesignForces(
+        units=dynamics.units,
+        over="cycle" if closed else "used",
+        **drive,
+        joint_force=JointForcePeak(joint=joint.removeprefix("joint "), **collect_peak(joint)),
+        shaking_force=ForcePeak(**collect_peak("shaking force")),
+        shaking_moment=TorquePeak(**collect_peak("shaking moment")),
+        power=PowerPeak(**collect_peak("power")),
+        joint_force_index=peaks["index"].value if "index" in peaks else None,
+    )
+
+
+def compute_forces_over_motion(dynamics: DesignDynamics, design: Any, unit: LengthUnit, steps: int) -> dict[str, Any]:
+    """Analyze a design's motion with all forces, in the form of
+    :class:`synthesis.analyses.linkages.linkage.LinkageAnalysis`.
+
+    Parameters
+    ----------
+    stated : DesignDynamics
+        What it weighs and carries; with the wishes of a :class:`DynamicsBlock`, where it has them.
+    design : a design of linkages
+        As it was answered.
+    unit : str
+        Its length unit.
+    steps : int
+        Of each turn, or of the range.
+
+    Raises
+    ------
+    NoForces
+        Where the block does not fit the design.
+    """
+    from synthesis.analyses.linkages.linkage import LinkageAnalysisRequest
+
+    run = prepare_drive(dynamics, design, steps)
+    own = {name for name in DesignDynamics.model_fields if name not in LoadedLinkage.model_fields}
+    block = run.block.model_dump(mode="json", by_alias=True, exclude_unset=True, exclude=own)
+    request = LinkageAnalysisRequest.model_validate(
+        {
+            "mechanism": design.mechanism.model_dump(mode="json", by_alias=True, exclude_none=True),
+            "motion": {"from": run.at[0], "to": run.at[-1], "steps": len(run.at) - 1, "speed": run.speed},
+            "length_unit": unit,
+            "dynamics": block,
+        }
+    )
+    for path, detail in request.find_errors():
+        raise ForcesUnknownError(map_error_path(dynamics, path), detail)
+    return request.build_answer()
+
+
+def map_error_path(dynamics: DesignDynamics, path: str) -> str:
+    """Map the path of an error in a link's generated body to the shape of all links, which the client wrote."""
+    parts = path.split("/")
+    if parts[1:3] != ["dynamics", "bodies"] or dynamics.links is None or "shape" not in parts[4:5]:
+        return path
+    unescaped = parts[3].replace("~1", "/").replace("~0", "~")
+    return path if unescaped in dynamics.bodies else "/".join(["/dynamics/links", *parts[5:]])
+
+
+def apply_link_shape(dynamics: DesignDynamics, links: Mapping[str, Sequence[str]]) -> DesignDynamics:
+    """Return the block with the shape of all links assigned to the links of a mechanism that it does not name."""
+    if dynamics.plate is None:
+        return dynamics
+    bodies = dict(dynamics.bodies)
+    for link, joints in links.items():
+        if link != GROUND and link not in bodies:
+            bodies[link] = BodySpec(shape=_fit_shape_to_link(dynamics.plate, joints))
+    return dynamics.model_copy(update={"bodies": bodies, "links": None})
+
+
+def _fit_shape_to_link(shape: Shape, joints: Sequence[str]) -> Shape:
+    """Fit the shape of all links to one link: keep the holes of its own joints, and the ends only for a bar."""
+    holes = {joint: diameter for joint, diameter in shape.holes.items() if joint in joints}
+    update: dict[str, Any] = {"holes": holes}
+    if len(joints) != 2:
+        update |= {"ends": "round", "overhang": 0.0}
+    return shape.model_copy(update=update)
+
+
+def _list_inputs(block: DesignDynamics, mechanism: Mechanism, metrics: Any, steps: int) -> NDArray[np.float64] | None:
+    """Return the inputs of a whole cycle of mechanism and loads if the input rotates fully, else as verified."""
+    from synthesis.mechanisms.courses import find_period_turns
+
+    turns_through = getattr(metrics, "full_rotation", False)  # a steering linkage is not asked to
+    if turns_through and not mechanism.has_slide_input:
+        turns = find_period_turns(block, mechanism)
+        if turns:
+            start = math.degrees(mechanism.reference_input)
+            return start + np.linspace(0.0, 360.0 * turns, steps * turns + 1)
+    ends = metrics.used_stroke if mechanism.has_slide_input else metrics.used_range
+    return None if ends is None else np.linspace(float(ends[0]), float(ends[1]), steps + 1)

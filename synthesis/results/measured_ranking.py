@@ -1,0 +1,146 @@
+"""Orders by quantities that are too expensive to measure on every candidate: planes, yield, and forces.
+
+The search uses the default order of its kind and finds more designs than requested; these are measured and sorted.
+"""
+
+from __future__ import annotations
+
+import math
+import time
+from collections.abc import Callable, Mapping, Sequence
+from functools import partial
+from typing import Any, TypeVar
+
+from synthesis.model.answer import Result, Verification
+from synthesis.model.counting import format_count
+from synthesis.model.linkage.problem import FORCE_NAMES, LinkageProblem
+from synthesis.model.problem import ProblemBase
+from synthesis.results.forces import add_force_checks, get_peak
+
+Problem = TypeVar("Problem", bound=ProblemBase)
+
+MAX_SEARCHES, LIMIT_FACTOR, MAX_SEARCH_TIME_S = 4, 0.8, 4.0
+"""For orders by a force: maximum number of further searches, limit of each as a share of the smallest force so far, and
+processor time (seconds) after which none is started."""
+
+MAX_EXAMINED: Mapping[str, int] = {"planes": 40, "yield": 40} | dict.fromkeys(FORCE_NAMES, 100)
+"""Minimum number of designs to measure for each such order: the first ones in the default order."""
+
+
+MAX_ROUNDED = 12
+"""Minimum number of designs to search if they are then rounded to a grid, as some have no neighbour on it."""
+
+
+def widen_search(problem: Problem) -> Problem:
+    """Return the statement to search: with the default order of its kind and :data:`MAX_EXAMINED` designs.
+
+    If designs are rounded to a grid, the order is kept and the number of designs is at least :data:`MAX_ROUNDED`.
+    """
+    if not isinstance(problem, LinkageProblem):
+        return problem
+    if problem.rank_by not in MAX_EXAMINED:
+        gridded = problem.manufacture is not None and problem.manufacture.is_gridded
+        return problem.list_later(problem.rank_by, MAX_ROUNDED) if gridded else problem
+    return problem.list_later(type(problem).model_fields["rank_by"].default, MAX_EXAMINED[problem.rank_by])
+
+
+def search_below_limits(
+    problem: LinkageProblem, result: Result[Any], solve: Callable[[Any], Result[Any]]
+) -> Result[Any]:
+    """Add designs with smaller forces to an answer that is ordered by a force, by further searches.
+
+    Each search limits the force to a share of the smallest one so far, because a limit guides a search and an order
+    does not. The searches end if one finds nothing, after :data:`MAX_SEARCHES` searches, or when the time is up.
+
+    Parameters
+    ----------
+    problem : LinkageProblem
+        The original problem.
+    result : Result
+        Answer to :func:`widen_search`, with forces.
+    solve : callable
+        Solves another statement and returns designs with their forces.
+    """
+    if problem.rank_by not in FORCE_NAMES:
+        return result
+    limit, found = f"max_{problem.rank_by}", result
+    begun = time.process_time()
+    for _ in range(MAX_SEARCHES):
+        known = [get_peak(design, problem.rank_by) for design in found.designs if design.verification.passed]
+        least = min((value for value in known if value is not None), default=0.0)
+        # Nothing can be smaller than 0, and NaN ends the search as well.
+        if not least > 0.0 or time.process_time() - begun > MAX_SEARCH_TIME_S:
+            break
+        narrowed = problem.constraints.model_copy(update={limit: LIMIT_FACTOR * least})
+        asked = widen_search(problem).model_copy(update={"constraints": narrowed, "include_failed": False})
+        further = [_restore_checks(problem, design) for design in solve(asked).designs]
+        if not further:
+            break
+        found = found.model_copy(update={"designs": [*further, *found.designs]})
+    return found
+
+
+def _restore_checks(problem: LinkageProblem, design: Any) -> Any:
+    """Replace the force checks of a design by those of the original limits."""
+    checks = [check for check in design.verification.checks if check.name not in FORCE_NAMES]
+    bare = design.model_copy(update={"verification": Verification.from_checks(checks)})
+    return add_force_checks(problem.constraints, bare)
+
+
+def rank_by_measure(problem: LinkageProblem, result: Result[Any]) -> Result[Any]:
+    """Sort the measured designs of an answer to :func:`widen_search`, and keep the requested number.
+
+    Designs are sorted by increasing value, but by decreasing yield; equal ones keep their order. Designs without a
+    value follow, and designs that fail a check come last.
+    """
+    designs = sort_by_measure(problem, result.designs)[: problem.max_designs]
+    told = _describe_order(problem.rank_by, result.designs, _select_measure(problem)) if result.designs else ""
+    return result.model_copy(update={"designs": designs, "summary": result.summary + told})
+
+
+def sort_by_measure(problem: LinkageProblem, designs: Sequence[Any]) -> list[Any]:
+    """Return measured designs in the order of :func:`rank_by_measure`."""
+    measure = _select_measure(problem)
+    sense = -1.0 if problem.rank_by == "yield" else 1.0
+
+    def compute_sort_key(design: Any) -> tuple[bool, float]:
+        measured = measure(design)
+        return not design.verification.passed, math.inf if measured is None else sense * measured
+
+    return sorted(designs, key=compute_sort_key)
+
+
+def _select_measure(problem: LinkageProblem) -> Callable[[Any], float | None]:
+    return _MEASURES.get(problem.rank_by) or partial(get_peak, name=problem.rank_by)
+
+
+def _get_planes(design: Any) -> float | None:
+    return float(design.layout.count) if design.layout.buildable else None
+
+
+def _get_yield(design: Any) -> float | None:
+    return None if design.metrics.yield_ is None else float(design.metrics.yield_.value)
+
+
+_MEASURES: Mapping[str, Callable[[Any], float | None]] = {"planes": _get_planes, "yield": _get_yield}
+"""Measures of the orders that are not forces."""
+
+
+def _describe_order(order: str, designs: list[Any], measure: Callable[[Any], float | None]) -> str:
+    """Describe the order and the range of its values in a sentence."""
+    known = sorted({value for design in designs if (value := measure(design)) is not None})
+    what = order.replace("_", " ")
+    if order == "planes":
+        missing, done = "none of them can be built", "arranged in planes"
+    else:
+        missing, done = f"none of them has a known {what}", "measured"
+    match known:
+        case []:
+            found = missing
+        case [only]:
+            found = f"every buildable one needs {only:.0f}" if order == "planes" else f"{only:.4g}"
+        case _:
+            found = "they need" if order == "planes" else "from"
+            found += f" {known[0]:.4g} to {known[-1]:.4g}"
+    count = len(designs)
+    return f" Ranked by {what} ({format_count(count, 'design')} {done}): {found}."

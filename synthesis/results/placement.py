@@ -1,0 +1,156 @@
+"""Placement of a linkage with free position: its pivots in their regions and its links within their limits."""
+
+from __future__ import annotations
+
+import cmath
+import math
+from collections.abc import Callable, Collection, Sequence
+from typing import Any, Protocol, Self, TypeVar
+
+import numpy as np
+
+from synthesis.model.linkage.answer import Skeleton
+from synthesis.model.linkage.problem import Constraints, Region
+from synthesis.model.linkage.zones import EDGE_TOLERANCE
+from synthesis.numerics.box_placement import Boxes, Placement, place_in_boxes
+
+
+class LinkageMechanism(Protocol):
+    """Required interface of a linkage mechanism in an answer, a model of its dimensions."""
+
+    @property
+    def skeleton(self) -> Skeleton:
+        """Joints and links at the first target."""
+        ...
+
+    def model_dump(self) -> dict[str, Any]:
+        """Return the fields by name."""
+        ...
+
+    @classmethod
+    def model_validate(cls, obj: Any) -> Self:
+        """Build a mechanism of this type from its fields."""
+        ...
+
+
+Mechanism = TypeVar("Mechanism", bound=LinkageMechanism)
+
+
+def find_placement(
+    constraints: Constraints,
+    fixed: Sequence[complex],
+    moving: Sequence[complex],
+    lengths: Sequence[float] | None,
+    preferred: complex,
+    *,
+    turned: bool = True,
+) -> Placement:
+    """Find the similarity that maps a linkage from its own frame to its position.
+
+    Parameters
+    ----------
+    constraints : Constraints
+        Whose regions and limits of length are to be kept.
+    fixed, moving : sequence of complex
+        Fixed pivots, and moving pivots in the first position.
+    lengths : sequence of float or None
+        Of the links; None where the size is given, which is then that of ``preferred``.
+    preferred : complex
+        Size and direction that are taken where they fit.
+    turned : bool
+        Whether the direction may be another one.
+    """
+    limits = constraints.link_length
+    if limits is None and constraints.fixed_pivot_region is None and constraints.moving_pivot_region is None:
+        return Placement(0j, preferred, True)
+    least, most = 0.0, math.inf
+    if lengths is None:
+        least = most = abs(preferred)
+    elif limits is not None:
+        least = limits.min / min(lengths)
+        most = math.inf if limits.max is None else limits.max / max(lengths)
+    regions = [constraints.fixed_pivot_region] * len(fixed) + [constraints.moving_pivot_region] * len(moving)
+    points = np.array([*fixed, *moving], np.complex128)
+    return place_in_boxes(points, convert_regions(regions), least, most, preferred, turned=turned)
+
+
+def convert_regions(regions: Sequence[Region | None]) -> Boxes:
+    """Convert the regions of joints to boxes; infinite for joints without a region."""
+    table = np.array(
+        [(-math.inf, math.inf) * 2 if region is None else (*region.x, *region.y) for region in regions]
+    ).reshape(-1, 4)
+    return Boxes(*table.T)
+
+
+def place_mechanism(
+    constraints: Constraints, mechanism: Mechanism, lengths: Sequence[float], *, sized: bool, turned: bool
+) -> Mechanism:
+    """Place a finished mechanism so that its pivots lie in their regions and its links within their limits.
+
+    Parameters
+    ----------
+    constraints : Constraints
+        Whose regions and limits of length are to be kept.
+    mechanism : a mechanism of an answer
+        It stays where it is if it fits there.
+    lengths : sequence of float
+        Of its links.
+    sized, turned : bool
+        Whether its size, and its direction, may be others.
+    """
+    skeleton = mechanism.skeleton
+    still = next(link.joints for link in skeleton.links if link.name == "ground")
+    places = {name: complex(*place) for name, place in skeleton.joints.items() if name != "P"}
+    fixed = [place for name, place in places.items() if name in still]
+    moving = [place for name, place in places.items() if name not in still]
+    if _is_placed(constraints, fixed, moving, lengths):
+        return mechanism
+    there = find_placement(constraints, fixed, moving, lengths if sized else None, 1.0 + 0j, turned=turned)
+    return transform_mechanism(mechanism, there.origin, there.along)
+
+
+def _is_placed(
+    constraints: Constraints, fixed: Collection[complex], moving: Collection[complex], lengths: Sequence[float]
+) -> bool:
+    """Return whether the linkage already satisfies all regions and limits."""
+    limits = constraints.link_length
+    if limits is not None and min(lengths) < limits.min * (1.0 - EDGE_TOLERANCE):
+        return False
+    if limits is not None and limits.max is not None and max(lengths) > limits.max * (1.0 + EDGE_TOLERANCE):
+        return False
+    regions = (constraints.fixed_pivot_region, fixed), (constraints.moving_pivot_region, moving)
+    return all(region is None or all(map(region.contains, places)) for region, places in regions)
+
+
+def transform_mechanism(mechanism: Mechanism, origin: complex, along: complex) -> Mechanism:
+    """Transform positions, lengths and directions of a mechanism by the similarity z → origin + along · z."""
+    size, turn = abs(along), math.degrees(cmath.phase(along))
+
+    def transform_point(point: Sequence[float]) -> tuple[float, float]:
+        there = origin + along * complex(*point)
+        return there.real, there.imag
+
+    def transform_line(of: dict[str, Any]) -> dict[str, Any]:
+        # A slide of an inverted linkage is told in its link's own frame, without a point.
+        return {**of, "point": transform_point(of["point"]), "angle": of["angle"] + turn} if "point" in of else of
+
+    changed: dict[str, Callable[[Any], Any]] = {
+        "fixed_pivot": transform_point,
+        "fixed_pivots": lambda pivots: {name: transform_point(point) for name, point in pivots.items()},
+        "links": lambda links: {name: size * length for name, length in links.items()},
+        "coupler_point": lambda point: {**point, "distance": size * point["distance"]},
+        "offset": lambda offset: size * offset,
+        "slide": transform_line,
+        "reference_input_angle": lambda angle: angle + turn,
+        "reference_body_angle": lambda angle: angle + turn,
+        "skeleton": lambda skeleton: {
+            **skeleton,
+            "joints": {name: transform_point(point) for name, point in skeleton["joints"].items()},
+            "slides": [transform_line(slide) for slide in skeleton["slides"]],
+        },
+    }
+    stated = {
+        name: changed[name](value) if name in changed and value is not None else value
+        for name, value in mechanism.model_dump().items()
+    }
+    return type(mechanism).model_validate(stated)

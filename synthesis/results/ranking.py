@@ -1,0 +1,127 @@
+"""Ranking of sound designs, and removal of designs that are nearly equal.
+
+docs/ranking.md explains the orders.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from typing import Any, TypeVar
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from kinematics.compiling import njit
+from synthesis.results.candidate_log import VerifiedDesign
+
+Ranked = TypeVar("Ranked", bound=VerifiedDesign)
+
+
+def select_distinct(joints: ArrayLike, count: int, apart: float) -> list[int]:
+    """Choose different candidates greedily: each has some joint at least ``apart`` from every earlier one's.
+
+    Parameters
+    ----------
+    joints : complex, shape (candidates, joints)
+        Joints in the first position, best candidate first; there may be no candidates.
+    count : int
+        Maximum number of candidates to choose.
+    apart : float
+        Minimum distance, in the unit of ``joints``.
+
+    Returns
+    -------
+    list of int
+        Chosen rows, best first.
+    """
+    table = np.ascontiguousarray(joints, np.complex128)
+    return [int(k) for k in _select_distinct(table, count, apart)] if len(table) else []
+
+
+def select_most_distinct(joints: NDArray[np.complex128], count: int, aparts: Iterable[float]) -> list[int]:
+    """Choose as :func:`select_distinct` with the first distance of ``aparts`` that gives ``count``, else with the
+    last."""
+    chosen: list[int] = []
+    for apart in aparts:
+        chosen = select_distinct(joints, count, float(apart))
+        if len(chosen) >= min(count, len(joints)):
+            break
+    return chosen
+
+
+@njit(cache=True, nogil=True)
+def _select_distinct(joints: NDArray[np.complex128], count: int, apart: float) -> NDArray[np.int64]:
+    chosen = np.empty(min(count, len(joints)), np.int64)
+    taken = 0
+    for i in range(len(joints)):
+        if taken == len(chosen):
+            break
+        differs = True
+        for j in chosen[:taken]:
+            gap = 0.0
+            for k in range(joints.shape[1]):
+                gap = max(gap, abs(joints[i, k] - joints[j, k]))
+            if gap < apart:
+                differs = False
+                break
+        if differs:
+            chosen[taken] = i
+            taken += 1
+    return chosen[:taken]
+
+
+RESIDUAL_ROUNDING = 1e-12
+"""Residual, in task sizes, below which it is rounding."""
+
+
+def _compute_decade(residual: float) -> float:
+    """Return the order of magnitude of a residual; residuals of one decade, or at rounding level, count as equal."""
+    return math.floor(math.log10(max(residual, RESIDUAL_ROUNDING)))
+
+
+def get_quality_key(design: Any) -> float:
+    """Return the sort key that puts designs of higher quality first."""
+    return -float(design.metrics.quality)
+
+
+Key = Callable[[Any], float]
+
+SORT_KEYS: Mapping[str, Key] = {
+    "quality": get_quality_key,
+    "accuracy": lambda design: _compute_decade(max(target.residual for target in design.targets)),
+    "size": lambda design: design.metrics.size,
+    "transmission_angle": lambda design: -design.metrics.min_transmission_angle,
+}
+"""Sort keys for each value of ``rank_by``, smallest first; a kind has keys of its own if it measures differently."""
+
+
+def rank_designs(
+    designs: Sequence[Ranked],
+    rank_by: str,
+    own: Mapping[str, Callable[[Ranked], float]] | None = None,
+    *,
+    group: Callable[[Ranked], float] | None = None,
+    ties: Callable[[Ranked], float] = get_quality_key,
+) -> list[Ranked]:
+    """Sort designs in the requested order, with designs that fail a check after all others.
+
+    Parameters
+    ----------
+    designs : sequence
+        Verified designs.
+    rank_by : str
+        Name of the key.
+    own : mapping, optional
+        Keys of the kind that replace those in :data:`SORT_KEYS`.
+    group : callable, optional
+        Key that precedes every order: designs with a lower value always come first.
+    ties : callable
+        Key that decides between equal designs; by default the quality.
+    """
+    key = {**SORT_KEYS, **(own or {})}[rank_by]
+
+    def compute_sort_key(design: Ranked) -> tuple[bool, float, float, float]:
+        return not design.verification.passed, group(design) if group else 0.0, key(design), ties(design)
+
+    return sorted(designs, key=compute_sort_key)

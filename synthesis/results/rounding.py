@@ -1,0 +1,197 @@
+"""Rounding of designs to the grid of a shop, or to links in stock: the best linkage near each design, fully verified.
+
+A search finds exact designs. For each of them the neighbouring linkages on the grid are driven, the most accurate one
+first, until one satisfies every constraint. Targets that should be met exactly are then met approximately, within the
+quality if one is given.
+"""
+
+from __future__ import annotations
+
+import math
+from collections import Counter
+from collections.abc import Callable
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from synthesis.model.answer import Check, Gap, NearestMiss, Reachable, Result, Verification
+from synthesis.model.dimension import ANGLE, LENGTH
+from synthesis.model.linkage.answer import ExactDesign
+from synthesis.model.linkage.problem import LinkageProblem
+from synthesis.model.manufacture.request import RequiredTargets
+from synthesis.results.constraints import verify_all_constraints
+from synthesis.results.manufacture import describe_exact_design, find_branch_range, measure_target_errors
+from synthesis.verification.checks import check_maximum
+
+Nearly = Callable[[Any, Any, Any], Any]
+
+ON_GRID = "on_grid"
+"""Reason of rejection if no linkage on the grid near a design can be driven."""
+
+MAX_DRIVEN, MAX_VERIFIED = 100, 40
+"""Maximum number of linkages near a design that are driven, and that are then checked for all other constraints."""
+
+LARGE_ERROR = 0.05
+"""Permitted error at a target without a quality: share of the task's size, and radians."""
+
+MAX_ERROR_GROWTH = 2.0
+"""Permitted error growth by rounding, as a multiple of the exact design's error, if that gives more than
+:data:`LARGE_ERROR`.
+"""
+
+
+class _RoundedDesign(NamedTuple):
+    """Best linkage on the grid near a design, and its reason of rejection; empty if it passed."""
+
+    design: Any
+    reason: str
+
+
+def round_designs(problem: LinkageProblem, result: Result[Any], verify_with_tolerance: Nearly | None) -> Result[Any]:
+    """Return an answer with designs on the requested grid, each with its exact design.
+
+    Parameters
+    ----------
+    problem : LinkageProblem
+        The problem with the requested number of designs.
+    result : Result
+        Exact designs; those that fail a check are kept unchanged, after the others.
+    nearly : callable
+        The kind's :attr:`synthesis.model.kind.Kind.nearly`.
+    """
+    stated = problem.manufacture
+    if stated is None or not stated.is_gridded or verify_with_tolerance is None:
+        return result
+    passed = [design for design in result.designs if design.verification.passed]
+    failed = [design for design in result.designs if not design.verification.passed]
+    if not passed:
+        return result
+    found: list[Any] = []
+    missed: list[_RoundedDesign] = []
+    for design in passed:
+        if len(found) >= problem.max_designs:
+            break
+        rounded = _round_design(problem, design, verify_with_tolerance)
+        if rounded.reason:
+            missed.append(rounded)
+        else:
+            found.append(rounded.design)
+    lost = Counter(rounded.reason for rounded in missed)
+    search = result.search
+    account = {
+        "complete": False,
+        "accepted": search.accepted - len(missed),
+        "rejected": dict(Counter(search.rejected) + lost),
+    }
+    told = f" Rounded to the grid: {len(found)} of {len(found) + len(missed)} designs"
+    told += " still satisfy every constraint."
+    if problem.include_failed:
+        failed = [rounded.design for rounded in missed if rounded.design is not None] + failed
+    return result.model_copy(
+        update={
+            "designs": [*found, *(failed if problem.include_failed else [])][: problem.max_designs],
+            "search": search.model_copy(update=account),
+            "summary": result.summary + told,
+            "nearest_miss": result.nearest_miss if found else _find_nearest_miss(missed),
+        }
+    )
+
+
+def _round_design(problem: LinkageProblem, design: Any, verify_with_tolerance: Nearly) -> _RoundedDesign:
+    """Find the best linkage on the grid near a design."""
+    # A local import: only problems with this block need the module.
+    from synthesis.manufacture.grid import build_mechanism, find_nearest_on_grid, replace_dimensions
+    from synthesis.manufacture.linkage import extract_linkage
+
+    linkage = extract_linkage(design.mechanism)
+    if linkage is None or problem.manufacture is None:
+        return _RoundedDesign(None, ON_GRID)
+    exact, held = describe_exact_design(problem, design), problem.build_required_targets(design)
+    limits = _set_error_limits(problem, held, exact)
+    near = find_nearest_on_grid(linkage, held, problem.manufacture, find_branch_range(problem, design), limits)
+    if isinstance(near, str):
+        return _RoundedDesign(None, ON_GRID)
+    first, judged = _RoundedDesign(None, ON_GRID), 0
+    for n in range(min(len(near.rows), MAX_DRIVEN)):
+        mechanism = build_mechanism(linkage, near, n)
+        driven = None if mechanism is None else verify_with_tolerance(problem, design, mechanism)
+        if driven is None:
+            continue
+        checks = [*_check_quality(problem, driven, exact), *driven.verification.checks]
+        rounded = driven.model_copy(
+            update={
+                "mechanism": replace_dimensions(driven.mechanism, near.rows[n]),
+                "exact": exact,
+                "verification": Verification.from_checks(checks),
+            }
+        )
+        if rounded.verification.passed:
+            judged += 1
+            rounded = verify_all_constraints(problem, rounded)
+            if rounded is None:
+                continue
+        broken = [check.name for check in rounded.verification.checks if not check.passed]
+        if not broken:
+            return _RoundedDesign(rounded, "")
+        if first.design is None:
+            first = _RoundedDesign(rounded, broken[0])
+        if judged >= MAX_VERIFIED:
+            break
+    return first
+
+
+def _check_quality(problem: LinkageProblem, design: Any, exact: ExactDesign) -> list[Check]:
+    """Check the errors at targets without a tolerance of their own against the permitted errors."""
+    error, angle = measure_target_errors(problem, design)
+    held = problem.build_required_targets(design)
+    own = _mark_own_tolerances(held)
+    if own is not None:
+        free = [target for target, has in zip(design.targets, own, strict=True) if not has]
+        error = max((target.point_residual for target in free), default=None)
+        angle = max((target.angle_residual for target in free if target.angle_residual is not None), default=None)
+    distance, turn = _set_error_limits(problem, held, exact)
+    checks = []
+    if error is not None:
+        checks.append(check_maximum("max_error", error, distance, LENGTH))
+    if angle is not None:
+        checks.append(check_maximum("max_angle_error", angle, math.degrees(turn), ANGLE))
+    return checks
+
+
+def _set_error_limits(problem: LinkageProblem, held: RequiredTargets, exact: ExactDesign) -> tuple[float, float]:
+    """Return the permitted distance and angle (radians) at targets: the quality if given, otherwise the defaults."""
+    quality = None if problem.manufacture is None else problem.manufacture.quality
+    distance = max(LARGE_ERROR * held.size, MAX_ERROR_GROWTH * (exact.max_error or 0.0))
+    angle = max(LARGE_ERROR, MAX_ERROR_GROWTH * math.radians(exact.max_angle_error or 0.0))
+    if quality is not None and quality.max_error is not None:
+        distance = quality.max_error
+    if quality is not None and quality.max_angle_error is not None:
+        angle = math.radians(quality.max_angle_error)
+    return distance, angle
+
+
+def _mark_own_tolerances(held: RequiredTargets) -> NDArray[np.bool_] | None:
+    """Return a mask of the targets with a tolerance of their own; None if there are none."""
+    limits = held.limits
+    if limits is None:
+        return None
+    own = np.asarray(((limits > 0.0) & np.isfinite(limits)).any(axis=1))
+    return own if own.any() else None
+
+
+def _find_nearest_miss(missed: list[_RoundedDesign]) -> NearestMiss[Any] | None:
+    """Return the linkage on the grid that fails the fewest checks; among equals the one with the smallest error."""
+    known = [rounded.design for rounded in missed if rounded.design is not None]
+    if not known:
+        return None
+
+    def list_broken_checks(design: Any) -> list[Check]:
+        return [check for check in design.verification.checks if not check.passed]
+
+    best = min(known, key=lambda design: (len(list_broken_checks(design)), design.metrics.rms_residual))
+    gaps = [
+        Gap(check=check.name, value=check.value, limit=check.limit, dimension=check.dimension)
+        for check in list_broken_checks(best)
+    ]
+    return NearestMiss[Any](design=best, gaps=gaps, reachable=Reachable())

@@ -1,0 +1,69 @@
+"""Time budget of the nearest-miss search: start another run only if one as long as the longest so far still fits.
+
+The duration of a run is known only afterwards, so that the longest run of the same kind estimates the next one. The
+budget is exceeded at most by one run that is longer than all before, and by the first run, which always happens. The
+budget is processor time, so that answers do not become poorer while the machine is busy.
+"""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable
+from typing import Any
+
+MAX_SEARCH_SHARE = 4.0
+"""Budget in seconds of processor time. Most searches take less than one second; one longer run may raise the total to
+about five seconds."""
+
+
+class SearchBudget:
+    """Budget of processor time that several kinds of searches share.
+
+    Parameters
+    ----------
+    most : float
+        Budget, seconds.
+    clock : callable, optional
+        Returns the processor time used so far, seconds.
+    """
+
+    def __init__(self, most: float = MAX_SEARCH_SHARE, clock: Callable[[], float] = time.process_time) -> None:
+        self._most, self._clock = most, clock
+        self._spent = 0.0
+
+    def meter_search(self, search: Callable[..., Any]) -> MeteredSearch:
+        """Return a search that charges its time to this budget."""
+        return MeteredSearch(self, search)
+
+    def run_metered(self, search: Callable[..., Any], arguments: tuple[Any, ...]) -> tuple[Any, float]:
+        """Run a search, charge its time to the budget, and return its result and its time in seconds."""
+        begun = self._clock()
+        try:
+            found = search(*arguments)
+        finally:
+            taken = self._clock() - begun
+            self._spent += taken
+        return found, taken
+
+    def has_left(self, seconds: float) -> bool:
+        """Return whether this many seconds are left."""
+        return self._spent + seconds <= self._most
+
+
+class MeteredSearch:
+    """A search that charges its time to a budget; called like the search itself."""
+
+    def __init__(self, allowance: SearchBudget, search: Callable[..., Any]) -> None:
+        self._allowance, self._search = allowance, search
+        self._longest = 0.0
+
+    def __call__(self, *arguments: Any) -> Any:
+        """Run the search even if the budget is used up."""
+        found, taken = self._allowance.run_metered(self._search, arguments)
+        self._longest = max(self._longest, taken)
+        return found
+
+    @property
+    def fits(self) -> bool:
+        """Whether another run, as long as the longest so far, fits into the budget."""
+        return self._allowance.has_left(self._longest)

@@ -1,0 +1,145 @@
+"""Path length and rotation of a carried body between its positions, compared with the minimum: measured when driven.
+
+The minimum is the straight distance of P from each position to the next, and the shorter rotation. Excess motion is
+seldom useful: the body swings out or turns back and forth, and sweeps space that may be needed otherwise.
+
+The length of P's path is extrapolated from chords over finer and finer grids (Richardson). The rotation of the body is
+summed between its reversals, which are located by parabolas through three samples. Both are refined until two grids
+agree.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from typing import NamedTuple
+
+import numpy as np
+
+from kinematics.arrays import Complex, Real
+from kinematics.compiling import njit
+
+Pose = Callable[[Real], tuple[Complex, Real]]
+"""P and the body's angle, radians, at inputs of shape (n,)."""
+
+FIRST_STEP_COUNT, MAX_STEPS = 480, 15360
+"""Number of steps of the first grid over the used range, and of the finest."""
+
+PATH_TOLERANCE = 1e-8
+"""Relative change from one grid to the next at which a measured length has converged."""
+
+MIN_EXTENT = 1e-9
+"""Minimum required travel (task sizes) and rotation (radians) for which ratios are defined."""
+
+LONG_INPUT_TURN = math.pi
+"""Rotation of the input, radians, that halves the quality."""
+
+SMALL_BODY_TURN = math.radians(15.0)
+"""Minimum reference, radians, for the excess rotation of a body if the required rotation is smaller."""
+
+
+class BodyMotion(NamedTuple):
+    """Motion of a body that is carried over the used range.
+
+    Attributes
+    ----------
+    input_turn : float
+        Rotation of the input, radians; 0 if it slides.
+    travel_ratio, turn_ratio : float or None
+        Length of P's path over the sum of the straight distances between its positions, and total rotation of the body
+        over the sum of the required rotations; None if nothing is required or no motion passes through the positions.
+    excess : float
+        Larger of two excesses: travel beyond the required travel, as a share of it, and rotation beyond the required
+        rotation, as a share of it or of :data:`SMALL_BODY_TURN`.
+    """
+
+    input_turn: float = 0.0
+    travel_ratio: float | None = None
+    turn_ratio: float | None = None
+    excess: float = 0.0
+
+
+@njit(cache=True, nogil=True)
+def compute_ease(input_turn: float, excess: float) -> float:
+    """Compute the factor of the quality, between 0 and 1, that penalizes a long input turn and excess body motion.
+
+    Parameters
+    ----------
+    input_turn : float
+        Radians.
+    excess : float
+        As in :class:`BodyMotion`.
+    """
+    return 1.0 / ((1.0 + (input_turn / LONG_INPUT_TURN) ** 2) * (1.0 + excess * excess))
+
+
+def measure_body_motion(
+    pose: Pose, span: tuple[float, float], places: Complex, turns: Real, size: float, *, slides: bool
+) -> BodyMotion:
+    """Measure how a body is carried through its positions.
+
+    Parameters
+    ----------
+    pose : callable
+        Drives the linkage.
+    span : pair of float
+        First and last input of the used range.
+    places, turns : complex and float, shape (positions,)
+        P and the body's rotation, radians, at the positions.
+    size : float
+        The size of the task, in length units.
+    slides : bool
+        Whether the input slides.
+    """
+    input_turn = 0.0 if slides else abs(span[1] - span[0])
+    travelled, turned = _measure_path_and_turn(pose, *span)
+    steps = np.diff(turns)
+    needed_turn = float(np.abs(steps - 2.0 * np.pi * np.round(steps / (2.0 * np.pi))).sum())
+    needed = float(np.abs(np.diff(places)).sum())
+    travel_ratio = turn_ratio = None
+    excess = 0.0
+    if not math.isfinite(travelled + turned):
+        return BodyMotion(input_turn)
+    if needed > MIN_EXTENT * size:
+        travel_ratio = travelled / needed
+        # Small required motions are compared with the size of the task, so that they do not exaggerate the excess.
+        excess = max(excess, (travelled - needed) / max(needed, size))
+    if needed_turn > MIN_EXTENT:
+        turn_ratio = turned / needed_turn
+    excess = max(excess, (turned - needed_turn) / max(needed_turn, SMALL_BODY_TURN))
+    return BodyMotion(input_turn, travel_ratio, turn_ratio, excess)
+
+
+def _measure_path_and_turn(pose: Pose, start: float, end: float) -> tuple[float, float]:
+    """Measure the length of P's path and the total rotation of the body; NaN if the linkage does not close."""
+    before = math.nan, math.nan
+    count = FIRST_STEP_COUNT
+    while True:
+        places, angles = pose(np.linspace(start, end, count + 1))
+        if not np.all(np.isfinite(places)):
+            return math.nan, math.nan
+        angles = np.unwrap(angles)
+        ways = _measure_path(places), _sum_turning(angles)
+        # Every other point of the first grid serves as the coarser grid for the first comparison.
+        if count == FIRST_STEP_COUNT:
+            before = _measure_path(places[::2]), _sum_turning(angles[::2])
+        settled = all(abs(now - then) <= PATH_TOLERANCE * now for now, then in zip(ways, before, strict=True))
+        if settled or count >= MAX_STEPS:
+            return ways
+        before = ways
+        count *= 2
+
+
+def _measure_path(places: Complex) -> float:
+    """Extrapolate the length of a path from its chords over one and over two steps (Richardson)."""
+    fine, coarse = float(np.abs(np.diff(places)).sum()), float(np.abs(np.diff(places[::2])).sum())
+    # The error of chords is of second order in the step.
+    return fine + (fine - coarse) / 3.0
+
+
+def _sum_turning(angles: Real) -> float:
+    """Sum the rotation of a body in both directions."""
+    steps = np.diff(angles)
+    back = np.flatnonzero(steps[1:] * steps[:-1] < 0.0)
+    slope, bend = 0.5 * (steps[back + 1] + steps[back]), steps[back + 1] - steps[back]
+    return float(np.abs(steps).sum() + (slope * slope / np.abs(bend)).sum())

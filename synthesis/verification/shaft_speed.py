@@ -1,0 +1,113 @@
+"""The speed of a shaft under a torque, integrated over two cycles: I ω dω/dθ = T̄ − T(θ), by Runge and Kutta's method.
+
+Time is integrated along with it. The initial speed is found such that the mean over time is the required one.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+from scipy.optimize import brentq
+
+from kinematics.arrays import Real
+
+CYCLE_COUNT = 2
+"""Number of integrated cycles: after the first one the speed has to repeat."""
+
+MIN_START_SPEED, MAX_START_SPEED = 1e-6, 4.0
+"""Minimum and maximum initial speed over mean speed in the search: coefficients of fluctuation are at most 1."""
+
+
+class SpeedHistory(NamedTuple):
+    """Angle (radians), torque and speed (rad/s) over the cycles, and the refined extremes of the speed."""
+
+    angle: Real
+    demand: Real
+    speed: Real
+    least: float
+    greatest: float
+    cycle: float
+
+
+def integrate_speed(angle: Real, middle: Real, ends: Real, inertia: float, mean_speed: float) -> SpeedHistory | None:
+    """Integrate the speed over the cycles with the required mean over time; None if the shaft comes to rest.
+
+    Parameters
+    ----------
+    angle, ends : float, shape (N + 1,)
+        Angles over one cycle (radians) and what is taken from the shaft there; corners of the torque are among them.
+    middle : float, shape (N,)
+        The torque in the middle between them.
+    """
+    step = np.diff(angle)
+    cycle = float(angle[-1] - angle[0])
+    mean = float((step * (ends[:-1] + 4.0 * middle + ends[1:])).sum() / 6.0) / cycle
+    first = np.tile((mean - ends[:-1]) / inertia, CYCLE_COUNT).tolist()
+    half = np.tile((mean - middle) / inertia, CYCLE_COUNT).tolist()
+    last = np.tile((mean - ends[1:]) / inertia, CYCLE_COUNT).tolist()
+    steps = np.tile(step, CYCLE_COUNT).tolist()
+
+    def compute_mean_error(start: float) -> float:
+        """Return the excess of the mean over time over the required one, for an initial speed."""
+        speed = _integrate_cycle(start, steps, first, half, last)
+        if not speed:
+            return -mean_speed
+        w = np.array(speed)
+        slope = np.array(first) / w[:-1], np.array(last) / w[1:]
+        between = 0.5 * (w[1:] + w[:-1]) + np.array(steps) * (slope[0] - slope[1]) / 8.0
+        time = float((np.array(steps) * (1.0 / w[:-1] + 4.0 / between + 1.0 / w[1:])).sum()) / 6.0
+        return CYCLE_COUNT * cycle / time - mean_speed
+
+    if not compute_mean_error(MAX_START_SPEED * mean_speed) > 0.0:
+        return None
+    start = float(
+        brentq(compute_mean_error, MIN_START_SPEED * mean_speed, MAX_START_SPEED * mean_speed, xtol=1e-14 * mean_speed)
+    )
+    speed = _integrate_cycle(start, steps, first, half, last)
+    if not speed:
+        return None
+    w, h = np.array(speed), np.array(steps)
+    tops = _interpolate_extremes(w, np.array(first) / w[:-1], np.array(last) / w[1:], h)
+    return SpeedHistory(
+        np.concatenate([angle[:-1], angle[:-1] + cycle, [angle[-1] + cycle]]),
+        np.concatenate([ends[:-1], ends[:-1], ends[-1:]]),
+        w,
+        float(tops.min()),
+        float(tops.max()),
+        cycle,
+    )
+
+
+def _integrate_cycle(
+    start: float, h: list[float], first: list[float], half: list[float], last: list[float]
+) -> list[float]:
+    """Integrate dω/dθ = a/ω with a at three points of each step; return the speeds at the ends, empty at rest."""
+    w, speed = start, [start]
+    for step, a, b, c in zip(h, first, half, last, strict=True):
+        one = a / w
+        two = w + 0.5 * step * one
+        if two <= 0.0:
+            return []
+        two = b / two
+        three = w + 0.5 * step * two
+        if three <= 0.0:
+            return []
+        three = b / three
+        four = w + step * three
+        if four <= 0.0:
+            return []
+        w += step * (one + 2.0 * two + 2.0 * three + c / four) / 6.0
+        if w <= 0.0:
+            return []
+        speed.append(w)
+    return speed
+
+
+def _interpolate_extremes(w: Real, before: Real, after: Real, h: Real) -> Real:
+    """Return the speeds at the steps' ends and at the extremes of the cubic Hermite interpolant within the steps."""
+    turns = before * after < 0.0
+    share = np.where(turns, before / np.where(turns, before - after, 1.0), 0.0)
+    lead = (1.0 + 2.0 * share) * (1.0 - share) ** 2 * w[:-1] + share**2 * (3.0 - 2.0 * share) * w[1:]
+    bend = share * (1.0 - share) ** 2 * h * before - share**2 * (1.0 - share) * h * after
+    return np.concatenate([w, lead + bend])

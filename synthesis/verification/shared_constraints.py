@@ -1,0 +1,46 @@
+"""Checks of the workspace on a finished linkage, common to all kinds and made after the kind's own checks."""
+
+from __future__ import annotations
+
+from typing import Any, TypeVar
+
+from synthesis.model.answer import Verification
+from synthesis.model.linkage.conversion import compute_body_shift
+from synthesis.model.linkage.problem import LinkageProblem
+from synthesis.model.problem import ProblemBase
+from synthesis.verification.reconstruction import rebuild_mechanism
+from synthesis.verification.workspace import BODY_POINT, WORKSPACE_CHECKS, FirstPosition, check_space
+
+Design = TypeVar("Design")
+
+
+def check_workspace_of_design(problem: ProblemBase, design: Design) -> Design | None:
+    """Return a verified design with the checks of its workspace; unchanged without a workspace or if it has them.
+
+    Parameters
+    ----------
+    problem : StatedProblem
+        The problem.
+    design : a design
+        Design with its mechanism, metrics and verification.
+
+    Returns
+    -------
+    The design, or None if no mechanism can be built from its dimensions.
+    """
+    if not isinstance(problem, LinkageProblem) or problem.space is None or problem.space.is_empty:
+        return design
+    verified: Any = design
+    if any(check.name in WORKSPACE_CHECKS for check in verified.verification.checks):
+        return design
+    mechanism = rebuild_mechanism(verified.mechanism, from_skeleton=True)
+    if mechanism is None:
+        return None
+    first = None
+    if problem.first_pose is not None:
+        point, angle = problem.first_pose
+        met = complex(mechanism.joints[BODY_POINT])
+        first = FirstPosition(point, met, compute_body_shift(verified.mechanism, angle))
+    checks = [*verified.verification.checks, *check_space(problem.space, mechanism, verified.metrics, first)]
+    judged: Design = verified.model_copy(update={"verification": Verification.from_checks(checks)})
+    return judged
