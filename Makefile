@@ -59,9 +59,11 @@ suite: $(STAMP)
 
 # The tests of the service on PostgreSQL and Celery: the real servers, on free ports. Each file runs beside one of the
 # two brokers; what the broker decides (deployments, restarts, faults) runs beside both.
-BY_BROKER := tests/cluster/test_deployment.py tests/cluster/test_restarts.py tests/service/test_faults.py
-ON_RABBITMQ := $(addprefix tests/service/test_,jobs_api.py turns.py store.py upgrade.py idempotency.py) tests/cluster/test_schema.py
-ON_REDIS := $(addprefix tests/service/test_,batches.py batch_store.py events.py limits.py access.py)
+BY_BROKER := tests/cluster/test_deployment.py tests/cluster/test_restarts.py tests/service/jobs/test_faults.py
+ON_RABBITMQ := $(addprefix tests/service/jobs/test_,jobs_api.py turns.py store.py upgrade.py) \
+    tests/service/api/test_idempotency.py tests/cluster/test_schema.py
+ON_REDIS := $(addprefix tests/service/jobs/test_,batches.py batch_store.py events.py) \
+    $(addprefix tests/service/api/test_,limits.py access.py)
 
 test-cluster: $(STAMP) engines
 	@$(MAKE) --no-print-directory -j2 --output-sync=target cluster-rabbitmq cluster-redis
@@ -95,7 +97,7 @@ test-cad:
 
 # Tests of one design, and of one file where it says nothing of designs, go to one process: solids are made once.
 cad-suite: $(VENV)/.cad-tests $(NODE)
-	$(BIN)/pytest -m "cad or not slow" -q -n 2 --dist loadgroup tests/cad tests/service/test_parts.py
+	$(BIN)/pytest -m "cad or not slow" -q -n 2 --dist loadgroup tests/cad tests/service/parts/test_parts.py
 
 $(VENV)/.cad-tests: requirements-dev.lock requirements-cad.lock tests/cad/mesh.lock pyproject.toml
 	@echo "installing the locked packages and the extra cad (once; a minute or two)"

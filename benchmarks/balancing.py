@@ -26,7 +26,7 @@ from synthesis.kinds.balancing.linkage.minimize import Minimum, Setting, build_s
 from synthesis.kinds.balancing.linkage.motion import build_balancing_task
 from synthesis.kinds.balancing.problem import BalancingProblem
 from synthesis.kinds.balancing.verification.linkage import build_answer_machine
-from tests.synthesis.balanced_linkages import crank_rocker, fourbar, sixbar, stated, turning_sixbar
+from tests.support.synthesis.balanced_linkages import crank_rocker, fourbar, sixbar, stated, turning_sixbar
 
 FINER = 2880
 """Positions of the second measurement."""

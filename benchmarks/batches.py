@@ -34,7 +34,7 @@ from service.jobs.processes.stop_flag import Solving
 from service.jobs.store.database import connect, upgrade
 from service.jobs.store.states import Cost
 from synthesis import dispatch
-from tests.service.running import RunningServer, until
+from tests.support.service.running import RunningServer, until
 
 TARGET_PER_S = 300.0
 PROCESSORS = 2

@@ -31,7 +31,7 @@ from synthesis.kinds.cam.program.optimal import (
 from synthesis.kinds.cam.sizing.sizing import RollerLimits, size_oscillating_roller, size_translating_roller
 from synthesis.numerics.convex import import_cvxpy
 from synthesis.registry import KINDS, parse_problem
-from tests.synthesis.cam_sampling import first_sound, oscillating, random_program, translating
+from tests.support.synthesis.cam_sampling import first_sound, oscillating, random_program, translating
 
 ENDS = ((0.0, 0.0), (1.0, 1.0))
 

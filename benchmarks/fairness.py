@@ -30,7 +30,7 @@ import httpx
 from benchmarks.service import until_settled
 from synthesis.registry import list_examples
 from tests.cluster import backend
-from tests.service.running import REAL, RunningServer, environment, until
+from tests.support.service.running import REAL, RunningServer, environment, until
 
 TARGET_S = 0.5
 """99 of 100 short jobs are to be done within this, on two processors."""

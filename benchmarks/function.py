@@ -22,7 +22,15 @@ from synthesis.kinds.function.design import FunctionResult
 from synthesis.kinds.function.solver import warm_up
 from synthesis.registry import parse_problem
 from tests.support.synthesis.function_optimality import CLASSICAL, RANGES
-from tests.synthesis.function_tasks import CASES, holds, measured, pairs_of, planted_fourbar, scaled_pairs, task_of
+from tests.support.synthesis.function_tasks import (
+    CASES,
+    holds,
+    measured,
+    pairs_of,
+    planted_fourbar,
+    scaled_pairs,
+    task_of,
+)
 
 CRITERIA = ("precision", "least_squares", "minimax")
 

@@ -16,7 +16,7 @@ from synthesis.dispatch import compile_kind, solve
 from synthesis.kinds.motion.verification.verify import verify
 from synthesis.model.linkage.conversion import FourbarConfiguration, build_fourbar
 from synthesis.registry import parse_problem
-from tests.synthesis.planted import Planted, plant_many
+from tests.support.synthesis.planted import Planted, plant_many
 
 
 def row(n: int, noise: float, tasks: int) -> None:

@@ -17,8 +17,8 @@ from pathlib import Path
 from playwright.sync_api import sync_playwright
 
 from tests.browser.conftest import CHROMIUM
-from tests.service.running import RunningServer
 from tests.support.browser.opening import MOVES
+from tests.support.service.running import RunningServer
 
 SIZES = {"desktop": (1440, 900), "phone": (390, 844)}
 

@@ -27,8 +27,8 @@ from typing import Any
 import httpx
 
 from synthesis.registry import get_first_example
-from tests.service.running import RunningServer
 from tests.support.problems.fuzz_bodies import BLOCKS, analysis_corpus, job_corpus, spoil
+from tests.support.service.running import RunningServer
 
 SLOW_S = 5.0
 """An answer that takes longer is an offence."""

@@ -38,11 +38,11 @@ from benchmarks import http_load
 from benchmarks.http_load import Load
 from synthesis.analyses import list_families
 from synthesis.registry import KINDS
-from tests.service import hostile
-from tests.service.running import START_S, RunningServer, alive, until
 from tests.support.problems.given_mechanisms import STATED
+from tests.support.service import hostile
 from tests.support.service.hostile_bodies import ENORMOUS, INVALID, MALFORMED
 from tests.support.service.limits import HALVES
+from tests.support.service.running import START_S, RunningServer, alive, until
 
 PROBLEM_5_26 = {
     "kind": "motion",

@@ -26,7 +26,7 @@ from synthesis.kinds.spring_balancing.problem import SpringBalancingProblem
 from synthesis.kinds.spring_balancing.program import compute_norm
 from synthesis.kinds.spring_balancing.requested_springs import SoughtSpring
 from synthesis.kinds.spring_balancing.verification import build_answer_machine
-from tests.synthesis.sprung_linkages import both_open, fourbar, lever, missed, slider_crank
+from tests.support.synthesis.sprung_linkages import both_open, fourbar, lever, missed, slider_crank
 
 FINER = 7200
 """Positions of the second measurement."""

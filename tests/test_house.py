@@ -45,7 +45,7 @@ def imports(path: Path) -> set[str]:
 @pytest.mark.parametrize("folder", FOLDERS, ids=lambda folder: folder.name)
 def test_every_kind_has_its_statement_answer_solver_proof_and_declaration(folder: Path) -> None:
     assert {"problem.py", "design.py", "solver.py"} <= {path.name for path in folder.glob("*.py")}
-    assert [*folder.glob("verification*.py"), *folder.glob("verify_*.py")]
+    assert [*folder.glob("verification.py"), *folder.glob("verification/[!_]*.py")]
     kind = KINDS[folder.name]
     assert isinstance(kind, Kind)
     assert kind.name == folder.name
@@ -98,6 +98,67 @@ def test_kinds_are_known_by_name_where_they_are_listed_drawn_built_and_simulated
         and any(name.startswith("synthesis.kinds") for name in imports(path))
     }
     assert knowing == set()
+
+
+NAMED_IN = (
+    "synthesis/*.py",
+    "synthesis/results/**/*.py",
+    "synthesis/model/**/*.py",
+    "synthesis/verification/**/*.py",
+    "synthesis/manufacture/**/*.py",
+    "synthesis/fit/**/*.py",
+    "synthesis/numerics/**/*.py",
+    "service/**/*.py",
+)
+"""Code that asks :class:`Kind` for all that it needs of a kind."""
+
+HOMONYMS = {
+    # A block of a request for an analysis.
+    "motion": {
+        "synthesis/results/forces.py",
+        "service/answers/forces.py",
+        "service/client/synchronous.py",
+        "service/simulation/course.py",
+        "service/warm_analysis.py",
+        # The example of the documentation.
+        "service/api/routes/batch_schemas.py",
+        "service/api/routes/batches.py",
+    },
+    # The place of an error in a body, the address of a request, or an element of SVG.
+    "path": {
+        "service/api/http/problem_details.py",
+        "service/client/values.py",
+        "service/jobs/faults.py",
+        "service/observability/telemetry.py",
+        "service/outlines/answer.py",
+        "service/outlines/svg.py",
+    },
+    # A result of an analysis of forces.
+    "flywheel": {"synthesis/model/dynamics/request.py"},
+    # Types of mechanisms that can be simulated.
+    "gear_train": {"service/simulation/query.py"},
+    "planetary_train": {"service/simulation/query.py"},
+    "train_series": {"service/simulation/query.py"},
+    "gearbox": {"service/simulation/query.py"},
+    "layshaft_gearbox": {"service/simulation/query.py"},
+}
+"""Files in which the name of a kind stands as a string that means something else."""
+
+
+def test_what_goes_over_all_kinds_names_none_in_a_string() -> None:
+    """What is known of a kind stands in its folder, as a field of its :class:`Kind`."""
+    drawn_and_built = ("service/render/", "service/parts/", "service/simulation/trains.py")
+    files = {path for pattern in NAMED_IN for path in ROOT.glob(pattern)}
+    named: dict[str, set[str]] = {}
+    for path in files:
+        place = path.relative_to(ROOT).as_posix()
+        if place.startswith(drawn_and_built):
+            continue
+        for node in ast.walk(ast.parse(path.read_text("utf-8"))):
+            if isinstance(node, ast.Constant) and isinstance(node.value, str) and node.value in KINDS:
+                named.setdefault(node.value, set()).add(place)
+    assert len(files) > 200
+    assert named == HOMONYMS
 
 
 def test_the_page_names_no_more_files_that_a_kind_edits_than_it_may_take() -> None:

@@ -11,7 +11,7 @@ import httpx
 import pytest
 
 from service.client import Client
-from tests.service.running import until
+from tests.support.service.running import until
 
 ROOT = Path(__file__).parents[1]
 PROJECT = ("kinematics", "synthesis", "service", "mechsynth", "pyproject.toml", "README.md", "LICENSE")

@@ -5,7 +5,7 @@ from pathlib import Path
 import pytest
 from playwright.sync_api import sync_playwright
 
-from tests.service.running import ROOT, RunningServer, until
+from tests.support.service.running import ROOT, RunningServer, until
 
 CHROMIUM = "/usr/bin/chromium"
 SCREENS = ROOT / "var" / "screens"

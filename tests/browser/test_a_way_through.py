@@ -10,9 +10,9 @@ from ezdxf import recover
 
 from service.parts.export.cad_available import is_installed
 from tests.browser.conftest import DESKTOP, Studio
-from tests.service.running import until
 from tests.support.browser.studio import stated
 from tests.support.browser.taking_home import taken
+from tests.support.service.running import until
 
 pytestmark = [pytest.mark.browser, pytest.mark.timeout(400)]
 

@@ -4,10 +4,10 @@ import pytest
 
 from synthesis.registry import KINDS, list_examples
 from tests.campaign import further
-from tests.service.running import until
 from tests.support.browser.accessibility import violations
 from tests.support.browser.form import OPEN_ALL
 from tests.support.browser.studio import PLAIN, drawn, state, unfold
+from tests.support.service.running import until
 
 pytestmark = [pytest.mark.browser, pytest.mark.timeout(300)]
 

@@ -9,12 +9,12 @@ from PIL import Image, ImageChops
 
 from service.parts.export.cad_available import is_installed
 from tests.browser.conftest import SCREENS
-from tests.service.running import until
 from tests.support.browser.accessibility import violations
 from tests.support.browser.studio import state
 from tests.support.browser.taking_home import taken as taken_of_design
 from tests.support.service.parts import MOTION
 from tests.support.service.parts_of_gearboxes import BOX
+from tests.support.service.running import until
 
 pytestmark = [pytest.mark.browser, pytest.mark.timeout(400)]
 

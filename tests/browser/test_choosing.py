@@ -5,9 +5,9 @@ import pytest
 
 from synthesis.registry import list_examples
 from tests.browser.conftest import ANSWERED, PUT
-from tests.service.running import until
 from tests.support.browser.accessibility import violations
 from tests.support.browser.studio import state
+from tests.support.service.running import until
 
 pytestmark = [pytest.mark.browser, pytest.mark.timeout(300)]
 

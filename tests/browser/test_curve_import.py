@@ -5,10 +5,10 @@ import math
 import numpy as np
 import pytest
 
-from tests.service.drawn_files import dxf
-from tests.service.drawn_files import page as svg
 from tests.support.browser.accessibility import violations
 from tests.support.browser.studio import PLAIN, state, stated
+from tests.support.service.drawn_files import dxf
+from tests.support.service.drawn_files import page as svg
 from tests.support.service.imports import blob, picture
 
 pytestmark = [pytest.mark.browser, pytest.mark.timeout(300)]

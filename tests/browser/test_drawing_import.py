@@ -4,11 +4,11 @@ import numpy as np
 import pytest
 import shapely
 
-from tests.service.drawn_files import dxf
-from tests.service.drawn_files import page as svg
 from tests.support.browser.accessibility import violations
 from tests.support.browser.room import field
 from tests.support.browser.studio import PLAIN, state, stated
+from tests.support.service.drawn_files import dxf
+from tests.support.service.drawn_files import page as svg
 from tests.support.synthesis.space import LID
 
 pytestmark = [pytest.mark.browser, pytest.mark.timeout(300)]

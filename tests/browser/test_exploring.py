@@ -6,9 +6,9 @@ import re
 import pytest
 
 from synthesis.registry import list_examples
-from tests.service.running import until
 from tests.support.browser.motion_view import number, solved
 from tests.support.browser.studio import drag, stated
+from tests.support.service.running import until
 
 pytestmark = pytest.mark.browser
 

@@ -8,10 +8,10 @@ import numpy as np
 import pytest
 
 from tests.browser.conftest import PUT
-from tests.service.running import until
 from tests.support.browser import studio as studio_steps
 from tests.support.browser.accessibility import violations
 from tests.support.browser.studio import PLAIN
+from tests.support.service.running import until
 
 pytestmark = pytest.mark.browser
 

@@ -5,9 +5,9 @@ import re
 import pytest
 
 from synthesis.registry import KINDS, get_first_example, list_examples
-from tests.service.running import until
 from tests.support.browser.form import OPEN_ALL
 from tests.support.browser.studio import PLAIN, state, stated
+from tests.support.service.running import until
 
 pytestmark = pytest.mark.browser
 

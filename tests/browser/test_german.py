@@ -11,10 +11,10 @@ import pytest
 
 from synthesis.registry import list_examples
 from tests.browser.conftest import DESKTOP, Studio
-from tests.service.running import until
 from tests.support.browser.accessibility import violations
 from tests.support.browser.form import OPEN_ALL
 from tests.support.browser.studio import drawn, state
+from tests.support.service.running import until
 from tools.studio.messages import messages, spoken
 
 pytestmark = [pytest.mark.browser, pytest.mark.timeout(400)]

@@ -3,9 +3,9 @@
 import pytest
 
 from tests.browser.conftest import ANSWERED
-from tests.service.running import until
 from tests.support.browser.accessibility import violations
 from tests.support.browser.studio import stated
+from tests.support.service.running import until
 
 pytestmark = [pytest.mark.browser, pytest.mark.timeout(300)]
 

@@ -3,9 +3,9 @@
 import pytest
 
 from tests.browser.conftest import Studio
-from tests.service.running import RunningServer, until
 from tests.support.browser.studio import PLAIN, drawn, state
 from tests.support.service.access import made
+from tests.support.service.running import RunningServer, until
 
 pytestmark = pytest.mark.browser
 

@@ -5,9 +5,9 @@ import pytest
 from synthesis.registry import KINDS, list_examples
 from tests.browser.conftest import ANSWERED
 from tests.campaign import further
-from tests.service.running import until
 from tests.support.browser.studio import PLAIN, state
 from tests.support.browser.taking_home import EXAMPLES
+from tests.support.service.running import until
 
 pytestmark = [pytest.mark.browser, pytest.mark.timeout(300)]
 

@@ -6,10 +6,10 @@ import re
 import pytest
 
 from synthesis.registry import list_examples
-from tests.service.running import until
 from tests.support.browser import studio as studio_steps
 from tests.support.browser.motion_view import motion_of, number, solved
 from tests.support.browser.studio import PLAIN
+from tests.support.service.running import until
 
 pytestmark = pytest.mark.browser
 

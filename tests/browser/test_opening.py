@@ -7,10 +7,10 @@ import pytest
 from synthesis.registry import KINDS, list_examples
 from tests.browser.conftest import ANSWERED
 from tests.campaign import further
-from tests.service.running import until
 from tests.support.browser.accessibility import violations
 from tests.support.browser.opening import FIRST_S, MOVES
 from tests.support.browser.studio import PLAIN, drag, state, stated
+from tests.support.service.running import until
 
 pytestmark = [pytest.mark.browser, pytest.mark.timeout(300)]
 

@@ -6,9 +6,9 @@ from itertools import pairwise
 import pytest
 
 from synthesis.registry import get_first_example, list_examples
-from tests.service.running import until
 from tests.support.browser.opening import FIRST_S, MOVES
 from tests.support.browser.studio import PLAIN, state
+from tests.support.service.running import until
 
 pytestmark = [pytest.mark.browser, pytest.mark.timeout(300)]
 

@@ -6,8 +6,8 @@ import re
 import pytest
 
 from synthesis.registry import KINDS, list_examples
-from tests.service.running import until
 from tests.support.browser.studio import PLAIN, drag, drawn, solved, state, stated, unfold, written
+from tests.support.service.running import until
 
 pytestmark = pytest.mark.browser
 

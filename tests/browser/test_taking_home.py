@@ -16,9 +16,9 @@ from PIL import Image, ImageChops
 from service.parts.export.cad_available import is_installed
 from synthesis.registry import KINDS
 from tests.browser.numbers import told_as_answered
-from tests.service.running import until
 from tests.support.browser.studio import drawn, stated, unfold, written
 from tests.support.browser.taking_home import EXAMPLES, taken
+from tests.support.service.running import until
 
 pytestmark = pytest.mark.browser
 

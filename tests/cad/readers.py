@@ -6,7 +6,7 @@ import json
 import subprocess
 from pathlib import Path
 
-from tests.service.running import ROOT
+from tests.support.service.running import ROOT
 
 VALIDATED = """
 const {validateBytes} = require("gltf-validator");

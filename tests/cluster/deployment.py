@@ -12,7 +12,7 @@ from prometheus_client.parser import text_string_to_metric_families
 
 from tests.cluster.backend import CHOSEN
 from tests.cluster.engines import free_port
-from tests.service.running import SCRIPTED, STACKS, START_S, STOP_S, environment, until, workers_of
+from tests.support.service.running import SCRIPTED, STACKS, START_S, STOP_S, environment, until, workers_of
 
 OF_A_STACK = "Current thread 0x"
 """Stands once in what a process writes of its stacks."""

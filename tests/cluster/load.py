@@ -6,8 +6,8 @@ import time
 
 import httpx
 
-from tests.service.running import PROBLEM
-from tests.service.scripted_server import BRIEF
+from tests.support.service.running import PROBLEM
+from tests.support.service.scripted_server import BRIEF
 
 
 class Load:

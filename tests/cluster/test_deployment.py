@@ -11,8 +11,8 @@ import pytest
 
 from tests.cluster.backend import CHOSEN
 from tests.cluster.deployment import Deployment, alive_now
-from tests.service.running import PROBLEM, STOP_S, until
-from tests.service.scripted_server import GATED, INSTANT, NATIVE
+from tests.support.service.running import PROBLEM, STOP_S, until
+from tests.support.service.scripted_server import GATED, INSTANT, NATIVE
 
 pytestmark = [pytest.mark.cluster, pytest.mark.timeout(600)]
 

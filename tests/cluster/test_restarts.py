@@ -13,7 +13,7 @@ import pytest
 from tests.cluster.backend import CHOSEN
 from tests.cluster.deployment import Deployment
 from tests.cluster.load import WELL, Load, verdict
-from tests.service.running import until
+from tests.support.service.running import until
 
 STORE_RESTARTS, BROKER_RESTARTS = map(int, os.environ.get("MECHSYNTH_RESTARTS", "4,2").split(","))
 SEED = 7

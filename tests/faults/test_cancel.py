@@ -8,8 +8,8 @@ import time
 
 import pytest
 
-from tests.service.running import REACHED_S, SCRIPTED, RunningServer, until
-from tests.service.scripted_server import CONVEX, INSTANT, LAPACK, NATIVE, NUMBA, PYTHON
+from tests.support.service.running import REACHED_S, SCRIPTED, RunningServer, until
+from tests.support.service.scripted_server import CONVEX, INSTANT, LAPACK, NATIVE, NUMBA, PYTHON
 
 RUNS = int(os.environ.get("MECHSYNTH_FAULT_RUNS", "20"))
 CANCELLED_S = 2.0

@@ -12,7 +12,7 @@ import pytest
 from tests.cluster.backend import CHOSEN
 from tests.cluster.deployment import Deployment, alive_now, signal_quietly
 from tests.cluster.load import WELL, Load, verdict
-from tests.service.running import START_S, until
+from tests.support.service.running import START_S, until
 
 KILLS = int(os.environ.get("MECHSYNTH_FAULT_KILLS", "100"))
 JOBS = int(os.environ.get("MECHSYNTH_FAULT_JOBS", "300"))

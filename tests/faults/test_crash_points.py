@@ -10,8 +10,8 @@ import signal
 import httpx
 import pytest
 
-from tests.service.running import PROBLEM, REACHED_S, SCRIPTED, SOON_S, RunningServer, until
-from tests.service.scripted_server import BRIEF, BROKEN, DIES_ONCE, GATED, INSTANT, NATIVE, TOLD
+from tests.support.service.running import PROBLEM, REACHED_S, SCRIPTED, SOON_S, RunningServer, until
+from tests.support.service.scripted_server import BRIEF, BROKEN, DIES_ONCE, GATED, INSTANT, NATIVE, TOLD
 
 RUNS = int(os.environ.get("MECHSYNTH_FAULT_RUNS", "20"))
 WORKER_POINTS = {"progress": TOLD, "succeed": BRIEF, "fail": BROKEN}

@@ -15,8 +15,8 @@ import time
 import httpx
 import pytest
 
-from tests.service.running import PROBLEM, SCRIPTED, RunningServer, alive, until
-from tests.service.scripted_server import BRIEF, INSTANT
+from tests.support.service.running import PROBLEM, SCRIPTED, RunningServer, alive, until
+from tests.support.service.scripted_server import BRIEF, INSTANT
 
 KILLS = int(os.environ.get("MECHSYNTH_FAULT_KILLS", "100"))
 JOBS = int(os.environ.get("MECHSYNTH_FAULT_JOBS", "300"))

@@ -4,7 +4,7 @@ import time
 
 import pytest
 
-from tests.service.upgrades import dies_everywhere, is_whole, killed_at, older
+from tests.support.service.upgrades import dies_everywhere, is_whole, killed_at, older
 
 REVISIONS = (None, "0001", "0002", "0003", "0004")
 """What there may be before: nothing at all, or the tables of an older version."""

@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from synthesis.registry import KINDS, list_examples
-from tests.service.running import ROOT, RunningServer
+from tests.support.service.running import ROOT, RunningServer
 
 HERE = Path(__file__).parent
 MODULES = HERE / "node_modules"

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from tests.service.running import ROOT
+from tests.support.service.running import ROOT
 
 MODULES = Path(__file__).parent / "node_modules"
 STUDIO = ROOT / "service" / "studio"

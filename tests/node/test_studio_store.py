@@ -8,7 +8,7 @@ import pytest
 
 from service.requests import filled_in
 from synthesis.registry import KINDS, list_examples
-from tests.service.running import ROOT
+from tests.support.service.running import ROOT
 
 STUDIO = ROOT / "service" / "studio"
 

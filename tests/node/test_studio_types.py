@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from tests.service.running import ROOT
+from tests.support.service.running import ROOT
 from tools.studio.types import DOCUMENT, TYPES, written
 
 HERE = Path(__file__).parent

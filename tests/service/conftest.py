@@ -3,9 +3,9 @@ import pytest
 from service.jobs.store.database import connect, upgrade
 from service.jobs.store.schema import metadata
 from tests.cluster.backend import CHOSEN
-from tests.service.running import SCRIPTED, RunningServer
 from tests.support import cpu_time
 from tests.support.service.analyses import analyse as analyse  # a fixture
+from tests.support.service.running import SCRIPTED, RunningServer
 
 
 @pytest.fixture(scope="session")

@@ -1,6 +1,6 @@
 """Code that several tests share: accessibility."""
 
-from tests.service.running import ROOT
+from tests.support.service.running import ROOT
 
 AXE = ROOT / "tests" / "node" / "node_modules" / "axe-core" / "axe.min.js"
 

@@ -5,8 +5,8 @@ import sys
 
 import httpx
 
-from tests.service.running import PROBLEM, REAL, environment
-from tests.service.scripted_server import INSTANT
+from tests.support.service.running import PROBLEM, REAL, environment
+from tests.support.service.scripted_server import INSTANT
 
 
 def keys(folder, *arguments, **settings):

@@ -6,8 +6,8 @@ from typing import Any
 
 import httpx
 
-from tests.service.answers import finished
 from tests.service.stated.cams import CAM
+from tests.support.service.answers import finished
 
 Answer = dict[str, Any]
 Statement = dict[str, Any]

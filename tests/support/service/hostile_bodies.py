@@ -3,7 +3,7 @@
 import copy
 import json
 
-from tests.service.running import PROBLEM
+from tests.support.service.running import PROBLEM
 
 MIB = 1 << 20
 

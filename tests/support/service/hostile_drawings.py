@@ -2,7 +2,7 @@
 
 import re
 
-from tests.service.drawn_files import PLAIN, dxf, page
+from tests.support.service.drawn_files import PLAIN, dxf, page
 
 
 def laughs():

@@ -2,8 +2,8 @@
 
 import json
 
-from tests.service.running import PROBLEM
-from tests.service.scripted_server import INSTANT
+from tests.support.service.running import PROBLEM
+from tests.support.service.scripted_server import INSTANT
 
 BODY = json.dumps({"problem": {**PROBLEM, "seed": INSTANT}}).encode()
 HEAD = b"POST /v1/jobs HTTP/1.1\r\nHost: localhost\r\nContent-Type: application/json\r\n"

@@ -18,7 +18,7 @@ from synthesis.kinds.function.design import FunctionDesign, FunctionResult
 from synthesis.registry import parse_problem
 from tests.oracles.loops import Loops
 from tests.support.sixbars.driven import transmits
-from tests.synthesis.function_tasks import CASES, measured_function, task_of
+from tests.support.synthesis.function_tasks import CASES, measured_function, task_of
 
 TASKS = len(CASES)
 
