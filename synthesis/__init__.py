@@ -1,7 +1,7 @@
 """Synthesis of mechanisms: solvers, verification and ranking.
 
 The entry points are :func:`parse_problem`, which parses a JSON-like statement into a problem, and :func:`solve`;
-docs/python.md has examples. Both are imported on first use, so that ``import synthesis`` costs nothing. The kinds of
+docs/reference/python.md has examples. Both are imported on first use, so that ``import synthesis`` costs nothing. The kinds of
 problems are folders of :mod:`synthesis.kinds`.
 """
 

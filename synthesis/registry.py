@@ -1,6 +1,6 @@
 """Registry of all kinds of problems, collected from their folders, and the union of their statements.
 
-A new kind is one import and one entry here; see docs/adding-a-kind.md.
+A new kind is one import and one entry here; see docs/development/adding-a-kind.md.
 """
 
 from __future__ import annotations

@@ -18,7 +18,7 @@ from synthesis.verification.checks import REACHES_TARGETS
 from synthesis.verification.workspace import WORKSPACE_CHECKS
 
 ROOT = Path(__file__).parents[1]
-PAGE = (ROOT / "docs" / "checks.md").read_text("utf-8")
+PAGE = (ROOT / "docs" / "reference" / "checks.md").read_text("utf-8")
 
 MAKERS = {"Check", "at_least", "at_most", "tolerated", "within_zone", "check"}
 """What makes a check: its name is the first argument, or is called so."""

@@ -33,7 +33,7 @@ LAST = re.compile(r"(?<![,\[{])\n(?=\")")
 """Where a field ends and the next begins without a comma between them, in a part of a statement."""
 
 
-@pytest.mark.parametrize(("page", "least"), [("python.md", 10), ("start.md", 8)])
+@pytest.mark.parametrize(("page", "least"), [("reference/python.md", 10), ("start/first-answer.md", 8)])
 def test_examples_run(page: str, least: int) -> None:
     outcome = doctest.testfile(str(ROOT / "docs" / page), module_relative=False)
     assert outcome.attempted >= least

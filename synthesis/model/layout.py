@@ -1,4 +1,4 @@
-"""Block ``layout`` of a statement: sizes of links and pins, and their arrangement in planes (docs/layout.md)."""
+"""Block ``layout`` of a statement: sizes of links and pins, and their arrangement in planes (docs/mechanisms/layout.md)."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ MAX_PLANES = 20
 
 
 class LayoutSizes(Statement):
-    """Sizes of links and pins, and their arrangement in planes (docs/layout.md)."""
+    """Sizes of links and pins, and their arrangement in planes (docs/mechanisms/layout.md)."""
 
     link_width: PositiveLength = Field(
         description="Width of the links: a link is the hull of its joints, widened by half of this."

@@ -31,6 +31,10 @@ class Busy(Exception):
     """Others have kept this call from being begun in time."""
 
 
+_REASONS: dict[type[Exception], str] = {Busy: "busy", Gone: "gone", Lost: "lost"}
+"""Values of the metric's label `reason`; they stay the same when a class is renamed."""
+
+
 class PoolMetrics(Protocol):
     """Who counts what becomes of calls."""
 
@@ -113,7 +117,7 @@ class RequestPool:
             self._count(error.of)
             raise
         except (Busy, Gone, Lost) as error:
-            self._count(type(error).__name__.lower())
+            self._count(_REASONS[type(error)])
             raise
 
     def stop(self) -> None:

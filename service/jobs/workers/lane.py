@@ -122,7 +122,7 @@ class Lane(threading.Thread):
         """Set when the first worker has started, or has failed to."""
 
     @property
-    def begun(self) -> bool:
+    def is_settled(self) -> bool:
         """Whether the first worker has started, or has failed to."""
         return self.settled.is_set()
 

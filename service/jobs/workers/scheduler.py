@@ -48,7 +48,7 @@ class Seat(Protocol):
         ...
 
     @property
-    def begun(self) -> bool:
+    def is_settled(self) -> bool:
         """Whether its first worker has started, or has failed to. A lane that has not begun soon will be ready."""
         ...
 
@@ -183,4 +183,4 @@ class Turns:
             return False
         if not self._kept or time.monotonic() > free_since + PATIENCE_S:
             return True
-        return any(other.ready or not other.begun for other in free)
+        return any(other.ready or not other.is_settled for other in free)

@@ -361,12 +361,7 @@ def _analyze_train(request: PlanetaryAnalysisRequest) -> dict[str, Any]:
         share = None if rate is None else float(rate)
         bodies.append(
             {
-                "name": body,
-                "planet": body in train.planets,
-                "speed": None if share is None else share * (float(speed[0]) if turning else 1.0),
-                "exact_speed": None if rate is None else str(rate),
-                "torque": None if flow is None or body in train.planets else float(flow.torques[body]),
-                "power": None if flow is None or body in train.planets else float(flow.powers[body]) * unit,
+                **_describe_body(train, flow, body, rate, float(speed[0]) if turning else 1.0),
                 **(
                     request.motion.drive_geared(share, at, speed)
                     if turning and share is not None
@@ -396,19 +391,43 @@ def _analyze_train(request: PlanetaryAnalysisRequest) -> dict[str, Any]:
         "bodies": bodies,
         "meshes": [
             {
-                "first": mesh.first,
-                "second": mesh.second,
-                "carrier": mesh.carrier,
-                "first_torque": None if flow is None else float(flow.meshes[k].first_torque),
-                "second_torque": None if flow is None else float(flow.meshes[k].second_torque),
-                "rolling_power": None if flow is None else float(flow.meshes[k].rolling_power) * unit,
-                "loss": None if flow is None else float(flow.meshes[k].loss) * unit,
+                **_describe_mesh(train, flow, k, unit),
                 **({} if strong[k] is None else {"strength": strong[k]}),
             }
-            for k, mesh in enumerate(train.meshes)
+            for k in range(len(train.meshes))
         ],
         **asked,
         **describe_drift(ratio, request.wanted_ratio),
+    }
+
+
+def _describe_body(
+    train: Train, flow: PowerFlow | None, body: str, rate: Fraction | None, input_speed: float
+) -> dict[str, Any]:
+    """Return speed, torque and power of a body; ``rate`` is its speed over the input's."""
+    loaded = flow is not None and body not in train.planets
+    return {
+        "name": body,
+        "planet": body in train.planets,
+        "speed": None if rate is None else float(rate) * input_speed,
+        "exact_speed": None if rate is None else str(rate),
+        "torque": float(flow.torques[body]) if flow is not None and loaded else None,
+        "power": float(flow.powers[body]) * abs(input_speed) if flow is not None and loaded else None,
+    }
+
+
+def _describe_mesh(train: Train, flow: PowerFlow | None, number: int, input_speed: float) -> dict[str, Any]:
+    """Return torques and powers of a mesh; ``input_speed`` is positive."""
+    mesh = train.meshes[number]
+    loads = None if flow is None else flow.meshes[number]
+    return {
+        "first": mesh.first,
+        "second": mesh.second,
+        "carrier": mesh.carrier,
+        "first_torque": None if loads is None else float(loads.first_torque),
+        "second_torque": None if loads is None else float(loads.second_torque),
+        "rolling_power": None if loads is None else float(loads.rolling_power) * input_speed,
+        "loss": None if loads is None else float(loads.loss) * input_speed,
     }
 
 

@@ -34,10 +34,11 @@ from synthesis.kinds.motion.task.target_poses import make_target_poses
 from synthesis.kinds.motion.type_selection import solve_types
 from synthesis.model.answer import Search
 from synthesis.model.counting import choose_word, format_count, format_integer
-from synthesis.model.kind import Progress, scale_progress
+from synthesis.model.kind import Progress, return_true, scale_progress
 from synthesis.model.linkage.answer import LinkageDesign
 from synthesis.model.linkage.conversion import to_point
 from synthesis.model.linkage.problem import Constraints
+from synthesis.model.method_table import Method, solve_by_first
 from synthesis.results.candidate_log import (
     DEFECT_REASONS,
     LENGTH_REASONS,
@@ -72,25 +73,6 @@ def solve_motion(problem: MotionProblem, progress: Progress) -> MotionResult:
     return _solve_two_dyads(problem, progress)
 
 
-def _solve_two_dyads(problem: MotionProblem, progress: Progress) -> MotionResult:
-    """Solve for fourbars, slider-cranks, and fourbars with a driver dyad."""
-    if problem.driver is not None:
-        # A driver dyad is added to finished fourbars, so these are solved first, without it.
-        bare = _solve_two_dyads(remove_driver(problem), scale_progress(progress, 0.0, 0.8))
-        return add_driver_dyads(problem, bare, progress)
-    if problem.is_workspace_fit:
-        return _solve_in_workspace(problem, progress)
-    if problem.approximate:
-        return solve_least_squares(problem, progress)
-    if problem.is_constrained_fit:
-        # Designs that meet all positions exactly also satisfy any tolerance: they are cheap, so find them first.
-        exact = _solve_exact(problem, scale_progress(progress, 0.0, 0.3))
-        return solve_with_tolerances(problem, exact, scale_progress(progress, 0.3, 1.0))
-    if problem.has_few_tolerances:
-        return solve_sampled_poses(problem, _solve_exact, progress)
-    return _solve_exact(problem, progress)
-
-
 def continue_from_designs(
     problem: MotionProblem, designs: Sequence[LinkageDesign], progress: Progress
 ) -> list[LinkageDesign] | None:
@@ -106,6 +88,19 @@ def continue_from_designs(
     return list(add_driver_dyads(problem, result, progress).designs)
 
 
+def _solve_with_driver(problem: MotionProblem, progress: Progress) -> MotionResult:
+    """Solve without the driver dyad, which is then added to the finished fourbars."""
+    bare = _solve_two_dyads(remove_driver(problem), scale_progress(progress, 0.0, 0.8))
+    return add_driver_dyads(problem, bare, progress)
+
+
+def _solve_toleranced(problem: MotionProblem, progress: Progress) -> MotionResult:
+    """Solve for positions with tolerances by constrained fits, next to exact designs."""
+    # Designs that meet all positions exactly also satisfy any tolerance: they are cheap, so find them first.
+    exact = _solve_exact(problem, scale_progress(progress, 0.0, 0.3))
+    return solve_with_tolerances(problem, exact, scale_progress(progress, 0.3, 1.0))
+
+
 def _solve_in_workspace(problem: MotionProblem, progress: Progress) -> MotionResult:
     """Solve for positions with tolerances in a workspace; fall back to a fit that ignores it if no design passes."""
     exact = None if problem.approximate else _solve_exact(problem, scale_progress(progress, 0.0, 0.3))
@@ -113,6 +108,11 @@ def _solve_in_workspace(problem: MotionProblem, progress: Progress) -> MotionRes
     if any(design.verification.passed for design in found.designs) or not problem.approximate:
         return found
     return solve_least_squares(problem, scale_progress(progress, 0.8, 1.0))
+
+
+def _solve_some_toleranced(problem: MotionProblem, progress: Progress) -> MotionResult:
+    """Solve for few positions with tolerances: exactly, for sampled poses within them."""
+    return solve_sampled_poses(problem, _solve_exact, progress)
 
 
 def _solve_exact(problem: MotionProblem, progress: Progress) -> MotionResult:
@@ -136,6 +136,22 @@ def _solve_exact(problem: MotionProblem, progress: Progress) -> MotionResult:
             end = f"All are enumerated, so no {noun} exists." if result.search.complete else UNPROVEN_REMARK
             result = result.model_copy(update={"summary": f"{result.summary} {end}"})
     return result if result.designs else try_sliders(problem, result, progress)
+
+
+_METHODS: tuple[Method[MotionProblem, MotionResult], ...] = (
+    Method(lambda problem: problem.driver is not None, _solve_with_driver),
+    Method(lambda problem: problem.is_workspace_fit, _solve_in_workspace),
+    Method(lambda problem: problem.approximate, solve_least_squares),
+    Method(lambda problem: problem.is_constrained_fit, _solve_toleranced),
+    Method(lambda problem: problem.has_few_tolerances, _solve_some_toleranced),
+    Method(return_true, _solve_exact),
+)
+"""Methods for fourbars, slider-cranks, and fourbars with a driver dyad."""
+
+
+def _solve_two_dyads(problem: MotionProblem, progress: Progress) -> MotionResult:
+    """Solve for fourbars, slider-cranks, and fourbars with a driver dyad."""
+    return solve_by_first(_METHODS, problem, progress)
 
 
 def _report_missing_dyads(pairs: DyadPairs, side: str, cloud: Cloud) -> MotionResult:

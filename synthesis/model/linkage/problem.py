@@ -28,12 +28,12 @@ from synthesis.model.problem import (
 )
 
 Force = Literal["drive_torque", "joint_force", "shaking_force", "shaking_moment", "power", "joint_force_index"]
-"""Quantities of a linkage's forces that can be limited (docs/dynamics.md)."""
+"""Quantities of a linkage's forces that can be limited (docs/mechanisms/dynamics.md)."""
 
 FORCE_NAMES: tuple[Force, ...] = get_args(Force)
 
 RankBy = Literal["quality", "accuracy", "size", "transmission_angle", "planes", "yield"] | Force
-"""Criteria by which designs of linkages can be ordered (docs/ranking.md)."""
+"""Criteria by which designs of linkages can be ordered (docs/methods/ranking.md)."""
 
 
 class Region(Statement):

@@ -102,8 +102,8 @@ def test_a_contradiction_that_only_the_solver_sees_fails_its_sample(bench):
 
 def test_whatever_is_raised_ends_one_sample_only(bench, solver, monkeypatch):
     solver.raises = {1: ContradictionError(Contradiction("/seed", "no")), 2: ValueError(), 3: RecursionError()}
-    broken_for(monkeypatch, "digest", lambda problem: problem.seed == 5)
-    broken_for(monkeypatch, "_figures", lambda result: json.loads(result)["search"]["seed"] == 6)
+    broken_for(monkeypatch, slices.digest, lambda problem: problem.seed == 5)
+    broken_for(monkeypatch, slices._figures, lambda result: json.loads(result)["search"]["seed"] == 6)
     batch = bench.batch(*range(7))
     assert set(bench.run()) == {"slice"}
     now, errors = bench.ended(batch)
@@ -111,16 +111,14 @@ def test_whatever_is_raised_ends_one_sample_only(bench, solver, monkeypatch):
     assert (now.status.value, now.succeeded, now.failed) == ("succeeded", 2, 5)
 
 
-def broken_for(monkeypatch, name, which):
+def broken_for(monkeypatch, sound, which):
     """A function of the slices has a defect where its first argument is such."""
-    sound = getattr(slices, name)
-
     def broken(first, *others):
         if which(first):
             raise TypeError("a defect")
         return sound(first, *others)
 
-    monkeypatch.setattr(slices, name, broken)
+    monkeypatch.setattr(slices, sound.__name__, broken)
 
 
 def test_a_plan_that_takes_too_much_memory_fails_its_batch(bench, solver, monkeypatch):

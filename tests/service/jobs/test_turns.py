@@ -23,7 +23,7 @@ LONG = {**PROBLEM, "positions": [{"x": 10.0 * n, "y": 1.0 * n * n, "angle": 9.0 
 @dataclass(eq=False)
 class Seat:
     ready: bool = True
-    begun: bool = True
+    is_settled: bool = True
 
 
 @pytest.fixture
@@ -119,7 +119,7 @@ def test_the_last_worker_that_is_ready_is_not_given_to_a_long_job(store):
 
 def test_long_jobs_need_not_wait_for_the_first_start_of_the_others(store):
     made(store, Cost.LONG)
-    seats = [Seat(), Seat(ready=False, begun=False)]
+    seats = [Seat(), Seat(ready=False, is_settled=False)]
     assert cost_for(opened(store, seats, 1), seats[0]) == Cost.LONG
 
 

@@ -68,6 +68,22 @@ class _DialTargets(NamedTuple):
     places: Real
 
 
+def _list_targets(targets: _DialTargets, errors: Real, residuals: Real, unit: float) -> list[FunctionTarget]:
+    """Return the targets as reported; ``unit`` converts the output's positions, as 180/π does radians to degrees."""
+    return [
+        FunctionTarget(
+            index=k,
+            input=float(targets.values[k]),
+            output=float(targets.outputs[k]),
+            input_angle=math.degrees(targets.angles[k]),
+            output_place=float(targets.places[k] + errors[k]) * unit,
+            error=float(errors[k]) * unit,
+            residual=float(residuals[k]),
+        )
+        for k in range(len(residuals))
+    ]
+
+
 def verify_function(problem: FunctionProblem, mechanism: FunctionMechanism, dials: Dials) -> FunctionDesign | None:
     """Drive a linkage through a problem's range and measure its structural error.
 
@@ -121,7 +137,6 @@ def verify_function(problem: FunctionProblem, mechanism: FunctionMechanism, dial
         full_rotation=drive.full,
         used=(start, end) if same_branch else None,
     )
-    degrees = 1.0 if problem.slides else 180.0 / math.pi
     metrics = FunctionMetrics(
         input_rotation=math.degrees(end - start),
         rms_residual=math.sqrt(float(np.mean(residuals**2))),
@@ -130,31 +145,17 @@ def verify_function(problem: FunctionProblem, mechanism: FunctionMechanism, dial
         rms_structural_error=error.rms,
         output_range=_compute_output_range(problem, dials),
     )
-    checks = []
-    if problem.aim == "precision":
-        checks.append(check_targets_reached(float(residuals.max())))
+    checks = [check_targets_reached(float(residuals.max()))] if problem.aim == "precision" else []
     checks.append(Check(name="same_circuit", passed=on_circuit))
     if problem.function is not None:
         checks.append(Check(name="covers_range", passed=whole and drive.is_on_branch(start, end)))
-    kept = _measure_dial_deviation(problem, dials, drive)
-    checks.append(check_error("dials", kept, DIAL_TOLERANCE))
+    checks.append(check_error("dials", _measure_dial_deviation(problem, dials, drive), DIAL_TOLERANCE))
     first = [complex(z) for z in met.moving[:, 0]]
     checks += check_constraints(problem.constraints, measures, drive.pivots, first)
     return FunctionDesign(
         mechanism=mechanism,
         dials=dials,
-        targets=[
-            FunctionTarget(
-                index=k,
-                input=float(targets.values[k]),
-                output=float(targets.outputs[k]),
-                input_angle=math.degrees(targets.angles[k]),
-                output_place=float(targets.places[k] + errors[k]) * degrees,
-                error=float(errors[k]) * degrees,
-                residual=float(residuals[k]),
-            )
-            for k in range(len(residuals))
-        ],
+        targets=_list_targets(targets, errors, residuals, 1.0 if problem.slides else 180.0 / math.pi),
         verification=Verification.from_checks(checks),
         metrics=metrics,
         structural_error=error,

@@ -62,7 +62,7 @@ def find_motion_sixbar_contradictions(problem: Any) -> list[Contradiction]:
     if problem.chain is not None and not (isinstance(stated, list) and set(stated) <= set(SIXBARS)):
         detail = "applies only to sixbars; list only sixbar types in mechanisms"
         listed.append(Contradiction("/chain", detail))
-    elif problem.chain is not None and (len(problem.positions) > MAX_EXACT_POSITIONS or problem.fitted):
+    elif problem.chain is not None and (len(problem.positions) > MAX_EXACT_POSITIONS or problem.is_least_squares):
         detail = (
             f"applies only to at most {MAX_EXACT_POSITIONS} positions that are met exactly or within tolerances; omit "
             "it"

@@ -211,7 +211,7 @@ def _collect_joints(bodies: list[_Body], met: _TargetStates) -> tuple[dict[str, 
     joints: dict[str, list[complex]] = {}
     turns = []
     for at, row in zip(met.inputs[:, None], met.rows, strict=True):
-        for name, point in bodies[row].at(at).joints.items():
+        for name, point in bodies[row].evaluate_motion(at).joints.items():
             joints.setdefault(name, []).append(complex(point[0, 0]))
         turns.append(float(bodies[row].pose(at)[1][0]))
     return {name: np.array(points) for name, points in joints.items()}, np.array(turns)
