@@ -1,4 +1,4 @@
-"""What a client can do with jobs: the store, the executor and the notifier behind one object."""
+"""The operations on jobs that the API offers: store, executor and notifier behind one object."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ log = structlog.get_logger(__name__)
 
 
 class PartOfBatch(Exception):
-    """The job cannot be removed by itself; carries the id of the batch that it is a sample of."""
+    """The job is a sample of a batch and cannot be removed by itself; carries the id of the batch."""
 
     def __init__(self, batch: str) -> None:
         self.batch = batch
@@ -32,7 +32,7 @@ class PartOfBatch(Exception):
 
 @dataclass(frozen=True, slots=True)
 class JobDesk:
-    """Accepts, shows, cancels and removes jobs. All methods run on the event loop; the store is asked in a thread."""
+    """Accepts, shows, cancels and removes jobs. Runs on the event loop; queries the store in a thread."""
 
     store: JobStore
     executor: Executor
@@ -52,16 +52,16 @@ class JobDesk:
         wait_s: float,
         repeatable: Repeatable | None,
     ) -> JobRow:
-        """Store a job, have it run, and wait up to ``wait_s`` seconds for its end. Returns the job as it then is.
+        """Store a job, submit it, wait up to ``wait_s`` seconds for its end, and return its state after that.
 
-        A request that comes again by its key gets the job that it has made the first time.
+        A repeated request with the same key returns the job it created first.
 
         Raises
         ------
         KeyReused
-            When the key came with another request before.
+            If the key was used with a different request before.
         QueueFull
-            When no more jobs of the tenant are taken for now.
+            If the tenant's queue is full.
         """
         with span("store"):
             job, new = await run_in_threadpool(self._stored, tenant, kind, label, problem, cost, repeatable)
@@ -73,7 +73,7 @@ class JobDesk:
                 self.executor.submit(job.id)
             if wait_s <= 0:
                 return job
-            # It may have ended before it was watched: whoever is free finds it in the store without being told.
+            # A free worker may have found the job in the store and ended it before the watch began.
             job = await self.get(job.tenant, job.id) or job
             with span("job"):
                 return await self._ended(job, changed, wait_s)
@@ -108,9 +108,10 @@ class JobDesk:
         return job
 
     async def get(self, tenant: str, job_id: str) -> JobRow | None:
-        """The job, or None where the tenant has none such. Another tenant's job is none."""
+        """Return the job; None if it does not exist or belongs to another tenant."""
         job = self.finished.get(job_id)
         if job is None:
+            # Noted before the read: a removal during the read must not leave the job in the cache.
             removals = self.finished.removals
             job = await run_in_threadpool(self.store.get, job_id)
             if job is not None:
@@ -120,21 +121,21 @@ class JobDesk:
     async def page(
         self, *, tenant: str, limit: int, status: Status | None, kind: str | None, before: str | None
     ) -> list[JobSummary]:
-        """At most ``limit`` jobs of the tenant, newest first."""
+        """Return at most ``limit`` jobs of the tenant, newest first."""
         return await run_in_threadpool(
             self.store.page, tenant=tenant, limit=limit, status=status, kind=kind, before=before
         )
 
     async def cancel_or_delete(self, tenant: str, job_id: str) -> JobRow | Literal["deleted"] | None:
-        """Cancel the job when it is unfinished (returns it), else remove it; None where the tenant has none such.
+        """Cancel an unfinished job and return it, or remove a finished one; None if the tenant has no such job.
 
-        A job that ends by itself while it is being cancelled is returned and not removed: the client asked when
-        it was unfinished, and must not lose a result that it has never seen.
+        A job that ends by itself while it is being cancelled is returned and not removed: it was unfinished when the
+        client sent the request, and the client must not lose a result that it has never seen.
 
         Raises
         ------
         PartOfBatch
-            When the job is a sample of a batch, which is removed as a whole.
+            If the job is a sample of a batch, which is removed as a whole.
         """
         job = await self.get(tenant, job_id)
         if job is None:
@@ -153,10 +154,10 @@ class JobDesk:
         return await self.get(tenant, job_id)
 
     async def ready(self) -> str | None:
-        """None when jobs can be taken and run; else what is missing, in a sentence."""
+        """Return None if jobs can be accepted and run, else a sentence that names the missing part."""
         try:
             await run_in_threadpool(self.store.ping)
-        except Exception:  # whatever a database driver raises means the same here: no store
+        except Exception:  # any error of the database driver means the same here: no store
             log.exception("the store does not answer")
             return "The job store does not answer."
         return None if self.executor.ready() > 0 else "No worker has finished starting yet."

@@ -1,10 +1,10 @@
-"""The job store: the SQL rows that are the truth about every job.
+"""The job store: SQL rows, the only source of truth about jobs.
 
-Every change is a single ``UPDATE`` whose ``WHERE`` clause holds the states that the change may start from
-(:data:`service.jobs.store.states.MOVES`) and, for what a worker writes, the number of its attempt. A change that comes
-too late matches no row and is refused; there is nothing to read before, and so nothing to go stale in between.
+Every change is a single ``UPDATE`` whose ``WHERE`` clause names the states from which the change is allowed
+(:data:`service.jobs.store.states.MOVES`) and, for writes of a worker, the number of its attempt. A change that comes
+too late matches no row and is refused. No row is read before a change, so no stale value can decide it.
 
-Several servers and worker hosts may share a store; what only they need is in :mod:`service.jobs.cluster.leases`.
+Several servers and worker hosts may share a store; :mod:`service.jobs.cluster.leases` holds the queries only they need.
 """
 
 from __future__ import annotations
@@ -46,11 +46,11 @@ from service.jobs.store.statements import (
 from service.jobs.store.states import FINISHED, MOVES, UNFINISHED, Cost, Status
 
 _FEW = 8
-"""Of a tenant who has more jobs than this in the queue, one is stored after the other, so that each gets a turn of its
-own. Below, jobs that come at once may share one."""
+"""Number of queued jobs above which a tenant's inserts are serialized, so that each job gets its own turn. Below it,
+jobs that arrive at the same time may share a turn."""
 
 _CROWD = 500
-"""More servers' connections than can insert at once: so far from its limit, a queue needs no exact count."""
+"""More than the number of concurrent inserts of all servers: this far below its limit, a queue needs no exact count."""
 
 _NO_END = 1 << 30
 
@@ -64,7 +64,7 @@ class JobStore:
         self._engine = engine
 
     def ping(self) -> None:
-        """Ask the database for a sign of life; raises SQLAlchemy's error when there is none."""
+        """Check that the database answers; SQLAlchemy's error is raised if it does not."""
         with self._engine.connect() as connection:
             connection.execute(text("SELECT 1"))
 
@@ -78,15 +78,15 @@ class JobStore:
         cost: Cost = Cost.LONG,
         max_queued: int | None = None,
     ) -> JobRow:
-        """Store a new job in the queue. When this returns, the job is on the disk.
+        """Store a new job in the queue. On return the job is on disk.
 
-        Where the database breaks off the id makes sure that there is one job in the end
+        If the connection breaks, the job's id ensures that it is stored exactly once
         (:func:`service.jobs.store.admission.surely`).
 
         Raises
         ------
         QueueFull
-            When ``max_queued`` jobs of the tenant are queued already.
+            If ``max_queued`` jobs of the tenant are already queued.
         """
         return self._insert({**new_row(tenant, kind, label, problem, cost), **NO_KEY}, max_queued)
 
@@ -101,7 +101,7 @@ class JobStore:
         cost: Cost = Cost.LONG,
         max_queued: int | None = None,
     ) -> tuple[JobRow, bool]:
-        """Like :meth:`create`, or find the job that the same request has made already.
+        """Store a new job like :meth:`create`, or find the job that the same request created before.
 
         Returns
         -------
@@ -111,9 +111,9 @@ class JobStore:
         Raises
         ------
         KeyReused
-            When another request of the tenant has made a job under this key.
+            If a different request of the tenant has created a job with this key.
         QueueFull
-            When the job would be new, and ``max_queued`` jobs of the tenant are queued already.
+            If the job is new and ``max_queued`` jobs of the tenant are already queued.
         """
         row = {
             **new_row(tenant, kind, label, problem, cost),
@@ -135,20 +135,20 @@ class JobStore:
         return None if row is None else JobRow(*as_values(row))
 
     def get(self, job_id: str) -> JobRow | None:
-        """The job, or None where there is none; a problem of a batch that has ended is one, too."""
+        """Return the job, which may be an ended sample of a batch; None if it does not exist."""
         with self._engine.connect() as connection:
             row = connection.execute(BY_ID, {"job": job_id}).one_or_none()
             return sample_as_job(connection, job_id) if row is None else JobRow(*as_values(row))
 
     def unfinished(self) -> dict[str, int]:
-        """How many jobs are in each of the states that are not final."""
+        """Return the number of queued and of running jobs."""
         query = select(jobs.c.status, func.count()).where(jobs.c.status.in_(UNFINISHED)).group_by(jobs.c.status)
         with self._engine.connect() as connection:
             counts = {row[0]: row[1] for row in connection.execute(query)}
         return {status.value: counts.get(status.value, 0) for status in (Status.QUEUED, Status.RUNNING)}
 
     def summaries(self, job_ids: Sequence[str]) -> dict[str, JobSummary]:
-        """The jobs of these ids that there are, by id."""
+        """Return the existing jobs among these ids, by id, samples of batches included."""
         by_id: dict[str, JobSummary] = {}
         with self._engine.connect() as connection:
             for start in range(0, len(job_ids), MAX_IDS):
@@ -167,7 +167,7 @@ class JobStore:
         kind: str | None = None,
         before: str | None = None,
     ) -> list[JobSummary]:
-        """At most ``limit`` jobs of a tenant, newest first, from those older than the job ``before``."""
+        """Return at most ``limit`` jobs of a tenant older than the job ``before``, newest first."""
         query = select(*SUMMARY).where(jobs.c.tenant == tenant, SINGLE).order_by(jobs.c.id.desc()).limit(limit)
         if status is not None:
             query = query.where(jobs.c.status == status)
@@ -179,28 +179,28 @@ class JobStore:
             return [JobSummary(*as_values(row)) for row in connection.execute(query)]
 
     def take(self, mark: str, costs: Sequence[Cost], passed_over: Collection[str] = ()) -> Claim | None:
-        """Claim the queued job whose turn it is under a mark; None when there is none.
+        """Claim the queued job whose turn it is under a mark; return None if there is none.
 
-        Jobs of the first of ``costs`` come first, those of the others where there are none. The short jobs of the
-        tenants ``passed_over`` are left in the queue. Only one of many who ask gets a job. Who does not know whether it
-        has got one asks :meth:`claimed`.
+        ``costs`` are tried in order. The short jobs of the tenants ``passed_over`` stay in the queue. Of concurrent
+        callers only one gets a given job. A caller whose connection broke uses :meth:`claimed` to learn whether it got
+        one.
         """
         with self._engine.begin() as connection:
             for cost in costs:
                 while (job_id := _next(connection, cost, passed_over if cost == Cost.SHORT else ())) is not None:
                     row = connection.execute(CLAIM, {"job": job_id, "mark": mark, "moment": now()}).one_or_none()
-                    if row is not None:  # it was not cancelled meanwhile
+                    if row is not None:  # else it was cancelled since the query
                         return _claim(row)
         return None
 
     def claimed(self, mark: str) -> Claim | None:
-        """What was claimed under a mark and is running; None where nothing is."""
+        """Return the running job that was claimed under a mark; None if there is none."""
         with self._engine.connect() as connection:
             row = connection.execute(CLAIMED, {"mark": mark}).one_or_none()
         return None if row is None else _claim(row)
 
     def progress(self, job_id: str, attempt: int, fraction: float, message: str) -> bool:
-        """Note how far an attempt is; False when the attempt is no longer the one that counts."""
+        """Store the progress of an attempt; return False if the attempt is no longer current."""
         change = (
             update(jobs)
             .where(jobs.c.id == job_id, jobs.c.attempt == attempt, jobs.c.status == Status.RUNNING)
@@ -213,35 +213,35 @@ class JobStore:
         return self._changed(change)
 
     def succeed(self, job_id: str, attempt: int, result: str, digest: str | None = None) -> bool:
-        """End the attempt with its result (JSON text); False when the attempt is no longer the one that counts.
+        """End the attempt with its result (JSON text); return False if the attempt is no longer current.
 
-        By the ``digest`` of its problem (:mod:`service.jobs.batches.identity`) the result is found for equal ones.
+        Equal problems find the result by the ``digest`` of the problem (:mod:`service.jobs.batches.identity`).
         """
         ended = {"job": job_id, "of": attempt, "answer": result, "moment": now(), "known_by": digest}
         return self._changed(SUCCEED, ended)
 
     def fail(self, job_id: str, attempt: int, error: str) -> bool:
-        """End the attempt with an error (JSON text); False when the attempt is no longer the one that counts."""
+        """End the attempt with an error (JSON text); return False if the attempt is no longer current."""
         return self._changed(FAIL, {"job": job_id, "of": attempt, "answer": error, "moment": now()})
 
     def give_up(self, job_id: str, claim: str, error: str) -> bool:
-        """Fail the job from outside; for the executor that has it run under this claim."""
+        """Fail the job from outside; for the executor that runs it under this claim."""
         change = moved("give_up", job_id, error=error, progress_message="failed", finished_at=now())
         return self._changed(change.where(jobs.c.claim == claim))
 
     def cancel(self, job_id: str) -> bool:
-        """Cancel an unfinished job; False when there is none. No attempt can write to it afterwards."""
+        """Cancel an unfinished job; return False if there is none. No attempt can write to it afterwards."""
         return self._changed(moved("cancel", job_id, progress_message="cancelled", finished_at=now()))
 
     def delete(self, job_id: str) -> bool:
-        """Remove a finished job; False when there is none."""
+        """Remove a finished job; return False if there is none."""
         with self._engine.begin() as connection:
             deletion = connection.execute(delete(jobs).where(jobs.c.id == job_id, jobs.c.status.in_(FINISHED)))
         return deletion.rowcount > 0
 
     def delete_finished(self, before: datetime, at_most: int) -> int:
-        """Remove jobs that finished before a time, oldest first; tells how many."""
-        # Ids begin with the time of creation, which lies before that of the end: the oldest are found without a search.
+        """Remove at most ``at_most`` jobs that finished before a time, oldest first; return the number removed."""
+        # An id begins with the time of creation, which precedes the end: the index on ids bounds the search.
         oldest = (
             select(jobs.c.id)
             .where(
@@ -256,18 +256,18 @@ class JobStore:
             return connection.execute(delete(jobs).where(jobs.c.id.in_(oldest))).rowcount
 
     def requeue(self, job_id: str, claim: str) -> bool:
-        """Put a running job back into the queue because the executor that has it run under this claim stops."""
+        """Requeue a running job because the executor that runs it under this claim stops."""
         return self._changed(moved("requeue", job_id, **BACK_IN_QUEUE).where(jobs.c.claim == claim))
 
     def requeue_as_long(self, job_id: str, claim: str) -> bool:
-        """Put a running job back into the queue because it takes longer than a short one may; it waits its turn."""
+        """Requeue a running job as a long one because it exceeds the time of a short job."""
         values: dict[str, Any] = {**BACK_IN_QUEUE, "cost": Cost.LONG, "turn": turn_as_long()}
         return self._changed(moved("requeue", job_id, **values).where(jobs.c.claim == claim))
 
     def requeue_unfinished(self) -> int:
-        """Put all running jobs back into the queue; tells how many jobs are in it then.
+        """Requeue all running jobs; return the number of queued jobs after that.
 
-        For an executor that starts and knows that nobody else runs any of them.
+        For an executor that starts and knows that no other process runs any of them.
         """
         move = MOVES["requeue"]
         with self._engine.begin() as connection:
@@ -279,14 +279,14 @@ class JobStore:
             return connection.execute(select(func.count()).select_from(jobs).where(QUEUED)).scalar_one()
 
     def crashed(self, job_id: str, claim: str, *, killed: bool) -> Status | None:
-        """Note that the worker of a job died, by itself or ``killed`` from outside.
+        """Record that the worker of a job died, by itself or ``killed`` from outside.
 
         Returns
         -------
         Status or None
-            ``queued``: to be tried again; ``failed``: given up after :data:`MAX_CRASHES` retries (or, where the last
-            death was a kill, :data:`MAX_KILLS`); None: the job was finished (or removed) already, or another attempt
-            has it; nothing changed.
+            ``queued``: to be retried; ``failed``: given up after :data:`MAX_CRASHES` retries (:data:`MAX_KILLS` if the
+            last death was a kill); None, and no change: the job had finished, was removed, or belongs to another
+            attempt.
         """
         change = died(job_id, MAX_KILLS if killed else MAX_CRASHES)
         with self._engine.begin() as connection:
@@ -304,9 +304,10 @@ def _there(connection: Connection, job_id: str) -> bool:
 
 
 def _inserted(connection: Connection, row: Mapping[str, Any], max_queued: int | None) -> bool:
-    """Insert a row unless ``max_queued`` jobs of its tenant are queued already; tells whether."""
+    """Insert a row unless ``max_queued`` jobs of its tenant are already queued; return whether it was inserted."""
     most = _NO_END if max_queued is None else max_queued
     asked = {"of": row["tenant"], "most": most}
+    # SQLite has one writer at a time, so its inserts need no further order.
     postgresql = connection.dialect.name == "postgresql"
     if postgresql and connection.execute(COUNT_QUEUED, asked).scalar_one() > min(_FEW, most - _CROWD):
         one_after_the_other(connection, row["tenant"])
@@ -314,7 +315,7 @@ def _inserted(connection: Connection, row: Mapping[str, Any], max_queued: int | 
 
 
 def _next(connection: Connection, cost: Cost, passed_over: Collection[str]) -> str | None:
-    """The queued job of that cost whose turn it is, but for the tenants that are passed over."""
+    """Return the id of the next queued job of this cost, skipping the tenants ``passed_over``."""
     if not passed_over:
         return connection.execute(NEXT, {"cost": cost}).scalar_one_or_none()
     return connection.execute(NEXT_OF_OTHERS, {"cost": cost, "passed_over": [*passed_over]}).scalar_one_or_none()

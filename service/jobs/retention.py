@@ -1,4 +1,4 @@
-"""Removes finished jobs and batches when their time is over, and ends batches that were lost."""
+"""Removes finished jobs and batches after their retention time, and ends lost batches."""
 
 from __future__ import annotations
 
@@ -14,20 +14,20 @@ from service.jobs.job_store import JobStore
 from service.jobs.store.finished_cache import FinishedJobs
 
 MAX_REMOVED_AT_ONCE = 200
-"""Jobs removed by one statement, so that nobody who writes meanwhile waits for long."""
+"""Maximum number of jobs that one statement removes, so that concurrent writers wait only briefly."""
 
 MAX_PERIOD_S = 600.0
 MIN_PERIOD_S = 0.5
 _PAUSE_S = 0.05
-"""Between two such statements, so that others get to write."""
+"""Pause between two such statements, seconds, in which other writers get their turn."""
 
 log = structlog.get_logger(__name__)
 
 
 async def keep_tidy(store: JobStore, batches: BatchStore, finished: FinishedJobs, days: float | None) -> None:
-    """End what was lost, and remove jobs and batches that finished more than ``days`` ago, now and again and again.
+    """End lost batches and remove jobs and batches that finished more than ``days`` ago, periodically.
 
-    Where ``days`` is None they are kept. What fails is tried again the next time, and stands in nothing else's way.
+    If ``days`` is None they are kept. A step that fails does not affect the others and is repeated the next time.
     """
     kept = None if days is None else timedelta(days=days)
     period_s = MAX_PERIOD_S if kept is None else min(max(kept.total_seconds() / 10, MIN_PERIOD_S), MAX_PERIOD_S)
@@ -42,7 +42,7 @@ async def keep_tidy(store: JobStore, batches: BatchStore, finished: FinishedJobs
 async def _tried(work: Awaitable[None], failure: str) -> None:
     try:
         await work
-    except Exception:  # whatever a database driver raises: what there is to do is still there the next time
+    except Exception:  # any error of the database driver: the next round does the same work
         log.exception(failure)
 
 

@@ -134,6 +134,101 @@ def compute_fourbar_velocity(
 
 
 @njit(**OPTIONS)
+def _write_fourbar_slopes(
+    lengths: Real, chart: Real, crank: complex, second: complex, along: complex, swing: complex, slopes: Complex
+) -> None:
+    """Write P's derivatives by the direction of the ground line and the lengths, and by θ.
+
+    ``swing`` is P's velocity for a unit rotation of the coupler about A.
+    """
+    c = lengths[3]
+    side, arm, bar = (
+        scale_complex(second, lengths[0]),
+        scale_complex(crank, lengths[1]),
+        scale_complex(along, lengths[2]),
+    )
+    f, g, moved = arm + bar - side, rotate_left(bar), rotate_left(arm)
+    per = f.real * g.real + f.imag * g.imag
+    # Turning the ground line moves O4 but, at a fixed absolute θ, not the crank.
+    slopes[2] = scale_complex(swing, _compute_turn_rate(f, -rotate_left(side), per))
+    raw_d = scale_complex(swing, _compute_turn_rate(f, -second, per))
+    raw_a = crank + scale_complex(swing, _compute_turn_rate(f, crank, per))
+    raw_b = scale_complex(swing, _compute_turn_rate(f, along, per))
+    # For the last link |F| itself changes: Re(F̄ dF) = c dc.
+    raw_c = scale_complex(swing, c / per)
+    # Chain rule: from derivatives by lengths to derivatives by the chart's numbers.
+    for k in range(4):
+        slopes[3 + k] = (
+            scale_complex(raw_d, chart[0, k]) + scale_complex(raw_a, chart[1, k])
+            + scale_complex(raw_b, chart[2, k]) + scale_complex(raw_c, chart[3, k])
+        )  # fmt: skip
+    slopes[len(slopes) - 1] = moved + scale_complex(swing, _compute_turn_rate(f, moved, per))
+
+
+@njit(**OPTIONS)
+def _write_fivebar_slopes(
+    x: Real, lengths: Real, chart: Real, ratio: float, crank: complex, second: complex, along: complex, swing: complex,
+    slopes: Complex,
+) -> None:  # fmt: skip
+    """Write P's derivatives by the ground pivots, the lengths and the phase of the gears, and by θ.
+
+    ``swing`` is P's velocity for a unit rotation of the coupler about A.
+    """
+    c = lengths[2]
+    arm, bar, end = (
+        scale_complex(crank, lengths[0]),
+        scale_complex(along, lengths[1]),
+        scale_complex(second, lengths[3]),
+    )
+    f, g = arm + bar - complex(x[2] - x[0], x[3] - x[1]) - end, rotate_left(bar)
+    per = f.real * g.real + f.imag * g.imag
+    # O5 moves the far end, O2 the near one.
+    for k in range(2):
+        one = 1.0 + 0j if k == 0 else 1j
+        slopes[k] = one + scale_complex(swing, _compute_turn_rate(f, one, per))
+        slopes[2 + k] = scale_complex(swing, _compute_turn_rate(f, -one, per))
+    raw_a = crank + scale_complex(swing, _compute_turn_rate(f, crank, per))
+    raw_b = scale_complex(swing, _compute_turn_rate(f, along, per))
+    raw_c = scale_complex(swing, c / per)
+    raw_e = scale_complex(swing, _compute_turn_rate(f, -second, per))
+    for k in range(4):
+        slopes[4 + k] = (
+            scale_complex(raw_a, chart[0, k]) + scale_complex(raw_b, chart[1, k])
+            + scale_complex(raw_c, chart[2, k]) + scale_complex(raw_e, chart[3, k])
+        )  # fmt: skip
+    slopes[8] = scale_complex(swing, _compute_turn_rate(f, -rotate_left(end), per))
+    moved = rotate_left(arm)
+    # The geared output turns by λ dθ, which moves the far end of the loop.
+    slopes[len(slopes) - 1] = moved + scale_complex(
+        swing, _compute_turn_rate(f, moved - scale_complex(rotate_left(end), ratio), per)
+    )
+
+
+@njit(**OPTIONS)
+def _write_slider_slopes(
+    lengths: Real, chart: Real, crank: complex, second: complex, along: complex, swing: complex, slopes: Complex
+) -> None:
+    """Write P's derivatives by the direction of the slide and the lengths, and by θ.
+
+    ``swing`` is P's velocity for a unit rotation of the coupler about A.
+    """
+    # Slider: work in the slide's frame, in which the pin of the coupler keeps its distance c from the line.
+    a, b = lengths[0], lengths[1]
+    local, bent = crank * second.conjugate(), along * second.conjugate()
+    # Rate of that distance per rotation of the coupler.
+    reach = b * bent.real
+    raw_a = crank + scale_complex(swing, -local.imag / reach)
+    raw_b = scale_complex(swing, -bent.imag / reach)
+    raw_c = scale_complex(swing, 1.0 / reach)
+    slopes[2] = scale_complex(swing, 1.0 + a * local.real / reach)
+    for k in range(3):
+        slopes[3 + k] = (
+            scale_complex(raw_a, chart[0, k]) + scale_complex(raw_b, chart[1, k]) + scale_complex(raw_c, chart[2, k])
+        )
+    slopes[len(slopes) - 1] = rotate_left(scale_complex(crank, a)) + scale_complex(swing, -a * local.real / reach)
+
+
+@njit(**OPTIONS)
 def place_with_slopes(
     family: int,
     x: Real,
@@ -156,73 +251,11 @@ def place_with_slopes(
     slopes[0], slopes[1] = 1.0 + 0j, 1j
     slopes[m - 2], slopes[m - 1] = along, rotate_left(along)
     if family <= FOURBAR:
-        c = lengths[3]
-        side, arm, bar = (
-            scale_complex(second, lengths[0]),
-            scale_complex(crank, lengths[1]),
-            scale_complex(along, lengths[2]),
-        )
-        f, g, moved = arm + bar - side, rotate_left(bar), rotate_left(arm)
-        per = f.real * g.real + f.imag * g.imag
-        # Turning the ground line moves O4 but, at a fixed absolute θ, not the crank.
-        slopes[2] = scale_complex(swing, _compute_turn_rate(f, -rotate_left(side), per))
-        raw_d = scale_complex(swing, _compute_turn_rate(f, -second, per))
-        raw_a = crank + scale_complex(swing, _compute_turn_rate(f, crank, per))
-        raw_b = scale_complex(swing, _compute_turn_rate(f, along, per))
-        # For the last link |F| itself changes: Re(F̄ dF) = c dc.
-        raw_c = scale_complex(swing, c / per)
-        # Chain rule: from derivatives by lengths to derivatives by the chart's numbers.
-        for k in range(4):
-            slopes[3 + k] = (
-                scale_complex(raw_d, chart[0, k]) + scale_complex(raw_a, chart[1, k])
-                + scale_complex(raw_b, chart[2, k]) + scale_complex(raw_c, chart[3, k])
-            )  # fmt: skip
-        slopes[m] = moved + scale_complex(swing, _compute_turn_rate(f, moved, per))
-        return True, z
-    if family == GEARED_FIVEBAR:
-        c = lengths[2]
-        arm, bar, end = (
-            scale_complex(crank, lengths[0]),
-            scale_complex(along, lengths[1]),
-            scale_complex(second, lengths[3]),
-        )
-        f, g = arm + bar - complex(x[2] - x[0], x[3] - x[1]) - end, rotate_left(bar)
-        per = f.real * g.real + f.imag * g.imag
-        # O5 moves the far end, O2 the near one.
-        for k in range(2):
-            one = 1.0 + 0j if k == 0 else 1j
-            slopes[k] = one + scale_complex(swing, _compute_turn_rate(f, one, per))
-            slopes[2 + k] = scale_complex(swing, _compute_turn_rate(f, -one, per))
-        raw_a = crank + scale_complex(swing, _compute_turn_rate(f, crank, per))
-        raw_b = scale_complex(swing, _compute_turn_rate(f, along, per))
-        raw_c = scale_complex(swing, c / per)
-        raw_e = scale_complex(swing, _compute_turn_rate(f, -second, per))
-        for k in range(4):
-            slopes[4 + k] = (
-                scale_complex(raw_a, chart[0, k]) + scale_complex(raw_b, chart[1, k])
-                + scale_complex(raw_c, chart[2, k]) + scale_complex(raw_e, chart[3, k])
-            )  # fmt: skip
-        slopes[8] = scale_complex(swing, _compute_turn_rate(f, -rotate_left(end), per))
-        moved = rotate_left(arm)
-        # The geared output turns by λ dθ, which moves the far end of the loop.
-        slopes[m] = moved + scale_complex(
-            swing, _compute_turn_rate(f, moved - scale_complex(rotate_left(end), ratio), per)
-        )
-        return True, z
-    # Slider: work in the slide's frame, in which the pin of the coupler keeps its distance c from the line.
-    a, b = lengths[0], lengths[1]
-    local, bent = crank * second.conjugate(), along * second.conjugate()
-    # Rate of that distance per rotation of the coupler.
-    reach = b * bent.real
-    raw_a = crank + scale_complex(swing, -local.imag / reach)
-    raw_b = scale_complex(swing, -bent.imag / reach)
-    raw_c = scale_complex(swing, 1.0 / reach)
-    slopes[2] = scale_complex(swing, 1.0 + a * local.real / reach)
-    for k in range(3):
-        slopes[3 + k] = (
-            scale_complex(raw_a, chart[0, k]) + scale_complex(raw_b, chart[1, k]) + scale_complex(raw_c, chart[2, k])
-        )
-    slopes[m] = rotate_left(scale_complex(crank, a)) + scale_complex(swing, -a * local.real / reach)
+        _write_fourbar_slopes(lengths, chart, crank, second, along, swing, slopes)
+    elif family == GEARED_FIVEBAR:
+        _write_fivebar_slopes(x, lengths, chart, ratio, crank, second, along, swing, slopes)
+    else:
+        _write_slider_slopes(lengths, chart, crank, second, along, swing, slopes)
     return True, z
 
 

@@ -179,21 +179,9 @@ def compute_workspace_margins(
     **OPTIONS,
 )  # fmt: skip
 def append_workspace_rows(
-    x: Real,
-    lengths: Real,
-    slopes: Real,
-    sign: float,
-    ends: Real,
-    turns: Real,
-    whole: bool,
-    body: int,
-    room: Real,
-    multipliers: Real,
-    values: Real,
-    residuals: Real,
-    jacobian: Real,
-    m: int,
-) -> int:
+    x: Real, lengths: Real, slopes: Real, sign: float, ends: Real, turns: Real, whole: bool, body: int, room: Real,
+    multipliers: Real, values: Real, residuals: Real, jacobian: Real, m: int,
+) -> int:  # fmt: skip
     """Append the rows of those workspace margins that bear a load (:mod:`synthesis.numerics.augmented_lagrangian`).
 
     Parameters
@@ -229,12 +217,11 @@ def append_workspace_rows(
     begin, end, ring, moves = find_crank_interval(lengths, ends, whole, room)
     n = count_steps(ring)
     parts = n if ring else n - 1
-    weight = multipliers[len(multipliers) - 1]
-    root = math.sqrt(weight)
+    weight, forced = multipliers[len(multipliers) - 1], int(room[FORCE_COUNT_INDEX])
+    root, forces = math.sqrt(weight), room[int(room[FORCES_START_INDEX]) :]
     # Derivatives of a step are computed only if a loaded margin refers to it; index n is the first position.
     known = np.zeros(n + 1, np.bool_)
     by = np.empty((n + 1, PLACES, unknowns), np.complex128)
-    forced = int(room[FORCE_COUNT_INDEX])
     weighed, by_forces = False, np.empty((forced, unknowns))
     for k in range(count):
         load = compute_load(values[k], multipliers[k], weight, False)
@@ -245,9 +232,7 @@ def append_workspace_rows(
         if k >= count - forced:
             # Force derivatives cost a dozen evaluations, so compute them once and only if a limit bears a load.
             if not weighed:
-                compute_force_slopes(
-                    x, lengths, slopes, sign, ends, turns, room[int(room[FORCES_START_INDEX]) :], by_forces
-                )
+                compute_force_slopes(x, lengths, slopes, sign, ends, turns, forces, by_forces)
                 weighed = True
             # Minus: the residual grows while the margin falls.
             jacobian[m] = -root * by_forces[k - count + forced]
@@ -273,6 +258,26 @@ def append_workspace_rows(
             add_derivative(row, -root * shares[s], by[step], out)
         m += 1
     return m
+
+
+@njit(**OPTIONS)
+def _compute_change(
+    number: int, d: float, a: float, ground: complex, crank: complex, along: complex
+) -> tuple[complex, complex, complex]:
+    """Return the changes of A, of the bar A → B and of the ground vector by one of γ, d, a, b, c and θ."""
+    pin, bar, base = 0j, 0j, 0j
+    if number == 0:
+        # The crank keeps its angle to the ground line, so everything turns about O2.
+        pin, base = 1j * a * crank, 1j * d * ground
+    elif number == 1:
+        base = ground
+    elif number == 2:
+        pin = crank
+    elif number == 3:
+        bar = along
+    elif number == 5:
+        pin = 1j * a * crank
+    return pin, bar, base
 
 
 @njit(**OPTIONS)
@@ -309,18 +314,7 @@ def _compute_joint_slopes(
         by[j, 0], by[j, 1] = 1.0, 1j
     # Changes of A, of the bar A → B, of the ground vector and of the coupler's turn by γ, d, a, b, c and θ.
     for number in range(6):
-        pin, bar, base, turn = 0j, 0j, 0j, 0.0
-        if number == 0:
-            # The crank keeps its angle to the ground line, so everything turns about O2.
-            pin, base = 1j * a * crank, 1j * d * ground
-        elif number == 1:
-            base = ground
-        elif number == 2:
-            pin = crank
-        elif number == 3:
-            bar = along
-        elif number == 5:
-            pin = 1j * a * crank
+        pin, bar, base = _compute_change(number, d, a, ground, crank, along)
         # The output's length c enters through |f| alone; every other change through f.
         turn = c / per if number == 4 else -(f.conjugate() * (pin + bar - base)).real / per
         at_b, at_p = pin + bar + 1j * b * along * turn, pin + 1j * p * along * turn

@@ -128,6 +128,55 @@ def compute_inverted_velocity(
 
 
 @njit(**OPTIONS)
+def _differentiate_point(
+    carrier: int, point: complex, crank: complex, along: complex, out: complex, turns: Real, by: Complex
+) -> None:
+    """Write the derivatives of the coupler point, which is fixed in the crank, the coupler or the rocker."""
+    direction = crank
+    if carrier == CRANK:
+        by[POINT, UNKNOWNS] = rotate_left(point * crank)
+    elif carrier == COUPLER:
+        direction = along
+        for k in range(3, UNKNOWNS + 1):
+            by[POINT, k] = by[A, k] + scale_complex(rotate_left(point * along), turns[0, k])
+    elif carrier == ROCKER:
+        direction = out
+        for k in range(3, UNKNOWNS + 1):
+            by[POINT, k] = by[B0, k] + scale_complex(rotate_left(point * out), turns[1, k])
+    by[POINT, P], by[POINT, P + 1] = direction, rotate_left(direction)
+
+
+@njit(**OPTIONS)
+def _differentiate_pivot(f: complex, link: complex, second: float, by: Complex, spin: Real) -> None:
+    """Write the derivatives of E and of the ground's angle; F = D → E, ``link`` = C → E, ``second`` = |F|."""
+    g = rotate_left(link)
+    per = dot(f, g)
+    # Derivatives of E: the change of C − D turns and stretches the bar C–E.
+    for k in range(3, UNKNOWNS + 1):
+        apart = by[PIN, k]
+        # D is itself an unknown and moves the other end of the bar.
+        if k == D:
+            apart -= 1.0
+        elif k == D + 1:
+            apart -= 1j
+        rate = compute_turn_rate(f, apart, per)
+        if k == DYAD:
+            rate = compute_turn_rate(f, link, per)
+            by[PIVOT, k] = link
+        elif k == DYAD + 1:
+            # ln r₂ changes |F| itself: dr₂ = r₂.
+            rate = second * second / per
+        by[PIVOT, k] += by[PIN, k] + scale_complex(g, rate)
+        apart = by[PIVOT, k]
+        if k == D:
+            apart -= 1.0
+        elif k == D + 1:
+            apart -= 1j
+        # Rotation of the ground link D → E.
+        spin[k] = cross(f, apart) / (second * second)
+
+
+@njit(**OPTIONS)
 def compute_inverted_slopes(
     x: Real, lengths: Real, chart: Real, sign: float, carrier: int, side: float, theta: float, turns: Real,
     places: Complex, by: Complex,
@@ -159,14 +208,13 @@ def compute_inverted_slopes(
     _, along, out = close_fourbar(here, lengths, sign, crank, 1.0 + 0j)
     by[:] = 0.0
     turns[:, :3] = 0.0
-    turn, swing, spin = turns[0], turns[1], turns[2]
+    turn = turns[0]
     places[A0], places[A], places[B0] = 0j, scale_complex(crank, lengths[1]), complex(lengths[0], 0.0)
     bar, local, point = scale_complex(along, lengths[2]), complex(x[C], x[C + 1]), complex(x[P], x[P + 1])
     places[B], places[PIN] = places[A] + bar, c
     places[POINT] = locate_pin(carrier, point, 0j, lengths, 1.0 + 0j, crank, along, out)
     link = scale_complex(v, first)
-    f, g = link - (d - c), rotate_left(link)
-    per = dot(f, g)
+    f = link - (d - c)
     places[PIVOT] = c + link
     for k in range(4):
         by[A, 3 + k] = scale_complex(crank, chart[1, k])
@@ -180,41 +228,8 @@ def compute_inverted_slopes(
     for k in range(4):
         by[B, 3 + k] += scale_complex(along, chart[2, k])
     by[PIN, C], by[PIN, C + 1] = along, rotate_left(along)
-    direction = crank
-    if carrier == CRANK:
-        by[POINT, UNKNOWNS] = rotate_left(point * crank)
-    elif carrier == COUPLER:
-        direction = along
-        for k in range(3, UNKNOWNS + 1):
-            by[POINT, k] = by[A, k] + scale_complex(rotate_left(point * along), turn[k])
-    elif carrier == ROCKER:
-        direction = out
-        for k in range(3, UNKNOWNS + 1):
-            by[POINT, k] = by[B0, k] + scale_complex(rotate_left(point * out), swing[k])
-    by[POINT, P], by[POINT, P + 1] = direction, rotate_left(direction)
-    # Derivatives of E: the change of C − D turns and stretches the bar C–E.
-    for k in range(3, UNKNOWNS + 1):
-        apart = by[PIN, k]
-        # D is itself an unknown and moves the other end of the bar.
-        if k == D:
-            apart -= 1.0
-        elif k == D + 1:
-            apart -= 1j
-        rate = compute_turn_rate(f, apart, per)
-        if k == DYAD:
-            rate = compute_turn_rate(f, link, per)
-            by[PIVOT, k] = link
-        elif k == DYAD + 1:
-            # ln r₂ changes |F| itself: dr₂ = r₂.
-            rate = second * second / per
-        by[PIVOT, k] += by[PIN, k] + scale_complex(g, rate)
-        apart = by[PIVOT, k]
-        if k == D:
-            apart -= 1.0
-        elif k == D + 1:
-            apart -= 1j
-        # Rotation of the ground link D → E.
-        spin[k] = cross(f, apart) / (second * second)
+    _differentiate_point(carrier, point, crank, along, out, turns, by)
+    _differentiate_pivot(f, link, second, by, turns[2])
     return True
 
 

@@ -69,7 +69,7 @@ def place_in_workspace(
 ) -> Placement | None:
     """Find a placement that satisfies all margins of the workspace, or None.
 
-    A placement that violates limits of size or boxes is not accepted: it would later be rejected for a misleading reason.
+    A placement that violates limits of size or boxes is not accepted, because it would be rejected later in any case.
 
     Parameters
     ----------

@@ -365,22 +365,33 @@ def _bound_displacement(room: Real, part: int, record: int, one: Complex, other:
 
 
 @njit(**OPTIONS)
+def _examine_middle(
+    room: Real, pieces: Integers, core: Complex, radius: float, farthest: float, middle: int, weights: Real,
+    at_middle: Real, nearest: Real,
+) -> None:  # fmt: skip
+    """Write the gaps of a part from all pieces in the middle of a window, and the nearest piece of each group.
+
+    ``farthest`` bounds the part's displacement in the window.
+    """
+    for k in range(len(pieces)):
+        piece = pieces[k]
+        group = int(room[piece])
+        at_middle[k] = _bound_gap(room, core, radius, piece)
+        # Compute the exact gap only if the bound cannot exclude a load in this window.
+        if at_middle[k] - farthest < CONVERGENCE_TOLERANCE:
+            at_middle[k], _ = _measure_gap(room, core, radius, piece, weights)
+        if at_middle[k] - farthest >= CONVERGENCE_TOLERANCE:
+            # Far in the whole window: keep the lower bound, which needs no row.
+            nearest[group, 0] = min(nearest[group, 0], at_middle[k] - farthest)
+        elif at_middle[k] < nearest[group, 0]:
+            nearest[group, 0], nearest[group, 1], nearest[group, 2] = at_middle[k], float(middle), float(piece)
+
+
+@njit(**OPTIONS)
 def _write_part_margins(
-    room: Real,
-    part: int,
-    record: int,
-    pieces: Integers,
-    places: Complex,
-    ring: bool,
-    core: Complex,
-    here: Complex,
-    weights: Real,
-    nearest: Real,
-    fresh: bool,
-    values: Real,
-    rows: Real,
-    first: int,
-) -> None:
+    room: Real, part: int, record: int, pieces: Integers, places: Complex, ring: bool, core: Complex, here: Complex,
+    weights: Real, nearest: Real, fresh: bool, values: Real, rows: Real, first: int,
+) -> None:  # fmt: skip
     """Write the margins of one part from each group of pieces in each window, from number ``first`` on.
 
     If the part shares its margins with others, ``fresh`` is true for the first of them. ``nearest`` is scratch: for
@@ -401,18 +412,7 @@ def _write_part_margins(
             moves[step - begin] = _bound_displacement(room, part, record, places[step], places[middle])
             farthest = max(farthest, moves[step - begin])
         count = _write_core(room, part, record, places[middle], core)
-        for k in range(len(pieces)):
-            piece = pieces[k]
-            group = int(room[piece])
-            at_middle[k] = _bound_gap(room, core[:count], radius, piece)
-            # Compute the exact gap only if the bound cannot exclude a load in this window.
-            if at_middle[k] - farthest < CONVERGENCE_TOLERANCE:
-                at_middle[k], _ = _measure_gap(room, core[:count], radius, piece, weights[:count])
-            if at_middle[k] - farthest >= CONVERGENCE_TOLERANCE:
-                # Far in the whole window: keep the lower bound, which needs no row.
-                nearest[group, 0] = min(nearest[group, 0], at_middle[k] - farthest)
-            elif at_middle[k] < nearest[group, 0]:
-                nearest[group, 0], nearest[group, 1], nearest[group, 2] = at_middle[k], float(middle), float(piece)
+        _examine_middle(room, pieces, core[:count], radius, farthest, middle, weights[:count], at_middle, nearest)
         for step in range(begin, end):
             if step == middle:
                 continue

@@ -127,7 +127,7 @@ def find_nearest_on_grid(
         task,
         adjusted=held.free,
         greatest=False,
-        # A slide lies on its line whatever its offset; a ground line may have to keep a given point or direction.
+        # A slide lies on its line for every offset; a ground line may have to keep a given point or direction.
         on_ground=(False, False) if task.slides else held.on_ground,
         ground_angle=float(np.angle(ground)),
     )

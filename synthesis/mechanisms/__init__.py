@@ -38,7 +38,7 @@ def _choose_model(statement: Any) -> type[GivenByDimensions | GivenSkeleton]:
         return type(statement)
     if not isinstance(statement, dict) or not isinstance(statement.get("type"), str):
         return GivenSkeleton
-    # A skeleton without pivots cannot be complete dimensions, so it is read as a skeleton whatever its type.
+    # A skeleton without pivots cannot be complete dimensions, so it is read as a skeleton for every type.
     if "skeleton" in statement and not {"fixed_pivots", "fixed_pivot"} & statement.keys():
         return GivenSkeleton
     return _BY_TYPE.get(statement["type"], GivenSkeleton)

@@ -36,8 +36,8 @@ def assemble_at_reference(
 ) -> Mechanism:
     """Assemble the mechanism at its reference angle, or at the first suitable angle, in degrees from 30° on.
 
-    ``between`` are angles, radians, from the middle of the range in which the mechanism can be assembled, empty if there
-    is none. That range may be narrower than a degree. The angles are computed only if needed.
+    ``between`` are angles, radians, from the middle of the range in which the mechanism can be assembled, if there is
+    one. That range may be narrower than a degree. The angles are computed only if needed.
     """
     if degrees is not None:
         try:
@@ -76,7 +76,7 @@ def find_reaching_angles(crank: float, o2: complex, o4: complex, least: float, m
 def find_middle_sine(
     centre: float, radius: float, bound: float, least: float = -1.0, most: float = 1.0
 ) -> float | None:
-    """Return the sine, from ``least`` to ``most``, with centre + radius · sine in the middle of its range within ± bound.
+    """Return the sine, ``least`` to ``most``, with centre + radius · sine in the middle of its range within ± bound.
 
     None if it cannot be within the bound.
     """

@@ -1,6 +1,6 @@
 """Flywheel dimensioning: energy of the fluctuation of a torque over a cycle, and the inertia that reduces it.
 
-The driver supplies the mean torque T̄ at all times; the difference from the machine's torque T comes from the flywheel's
+The driver supplies the mean torque T̄ at all times; the difference from the machine's torque T changes the flywheel's
 energy. With W(θ) = ∫ (T − T̄) dθ, its fluctuation is E = max W − min W (Norton, *Design of Machinery*, eq. 11.18-11.20:
 W has its extremes where T crosses T̄, and no single pulse need be as large as E). Then ω² = ω₀² − 2 W / I, and to first
 order in the coefficient k = (ω_max − ω_min)/ω̄ of fluctuation I = E/(k ω̄²) (11.22). Exactly, ω̄ is the mean over

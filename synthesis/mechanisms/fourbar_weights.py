@@ -25,7 +25,7 @@ def build_fourbars(joints: Complex, span: Real, scale: float) -> Fourbars:
     there."""
     o2, a, b, o4, p = (scale * column for column in joints.T)
     line = (b - a) / np.abs(b - a)
-    # Open assembly: B lies to the left of A → O4 (here by the mirrored cross product).
+    # Open assembly, +1: B lies to the left of the line from A to O4.
     sign = np.where((np.conj(o4 - a) * (b - a)).imag >= 0.0, 1.0, -1.0)
     return Fourbars(
         o2, o4, np.abs(a - o2), np.abs(b - a), np.abs(b - o4), (p - a) / line, sign, np.angle(a - o2), np.asarray(span)

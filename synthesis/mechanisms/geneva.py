@@ -29,7 +29,7 @@ def build_drive(mechanism: Any) -> CrankCourse:
     link = getattr(mechanism, "drag_link", None)
     if link is None:
         return CrankCourse(drive)
-    # The crank's dead position points away from the wheel for inner and spherical wheels, towards it for outer ones.
+    # Direction of the crank in the middle of the index: towards an external wheel's axis, away from the others'.
     towards = 0.0 if mechanism.type == "geneva_external" else math.pi
     lengths = DragLink(link.input / link.ground, link.coupler / link.ground, link.output / link.ground)
     return CrankCourse(drive, lengths, towards - math.radians(link.crank_offset))

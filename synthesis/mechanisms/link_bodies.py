@@ -72,7 +72,7 @@ class LinkBodies:
                 )
             else:
                 plate = shapes.make_widened_hull(list(joints.values()), self.scale * (shape.width or 0.0))
-            # A hole is a disc of negative mass, so it may extend into a neighbouring part of the union without harm.
+            # A hole is a disc of negative area.
             for joint, diameter in shape.holes.items():
                 plate = plate.plus(shapes.make_disc(joints[joint], self.scale * diameter / 2.0), -1.0)
             path = f"/dynamics/bodies/{escape_pointer(link)}/shape"

@@ -139,7 +139,6 @@ def _find_spring_errors(path: str, spring: SpringSpec, mechanism: Mechanism) -> 
     else:
         first, second = spring.links or ("", "")
         listed, between = [f"{path}/links/0", f"{path}/links/1"], f"{path}/links"
-    # An unknown link gives an error of its own; two unknown ones of equal name also the one below.
     missing = [place for place, link in zip(listed, (first, second), strict=True) if link not in mechanism.links]
     yield from ((place, no_link) for place in missing)
     if first == second:

@@ -138,7 +138,7 @@ class GivenSkeleton(Statement):
         For an invalid skeleton, and for dimensions that contradict it.
         """
         assembled = assemble_skeleton(self.skeleton, self.reference_input_angle)
-        # Older answers name lengths freely; then any two joints of one link may have that distance.
+        # A name without a link of its own may stand for the distance of two joints of any link.
         for name, stated in self.links.items():
             listed = [assembled.links[name]] if name in assembled.links else list(assembled.links.values())
             distances = [distance for joints in listed for distance in _measure_distances(assembled, joints)]

@@ -1,4 +1,4 @@
-"""Reading request bodies: which are taken, how large they may be, and how their JSON is parsed."""
+"""Reading of request bodies: accepted types, size limits, and JSON parsing."""
 
 from __future__ import annotations
 
@@ -16,19 +16,19 @@ from service.api.http.problem_details import Refusal, invalid_request, malformed
 from service.error_messages import pointer
 
 MAX_VALUES = 20_000
-"""Most values (numbers, strings, lists, objects) in a body. The largest honest problem has a few thousand; a body of a
-million tiny faults would keep the validation busy for a second."""
+"""Maximum number of values (numbers, strings, lists, objects) in a body. The largest real problem has a few thousand;
+validating a million tiny faults would take a second."""
 
 
 MAX_DEPTH = 201
-"""Lists and objects within one another that the parser takes."""
+"""Maximum nesting of lists and objects, set by the parser."""
 
 
 class BoundedRequest(Request):
-    """A request whose body is read up to a limit."""
+    """A request whose body is read up to a size limit."""
 
     async def limited(self, limit: int) -> bytes:
-        """The body, ``limit`` bytes at most, and not compressed.
+        """Read the body, which must be uncompressed and have at most ``limit`` bytes.
 
         Raises
         ------
@@ -40,7 +40,8 @@ class BoundedRequest(Request):
                 415, "unsupported-media-type", "Unsupported media type", "The body must not be compressed.",
                 headers={"Accept-Encoding": "identity"},
             )  # fmt: skip
-        # The header is only a promise, but a body that announces itself as too large need not be read at all.
+        # The header is only a claim, but a body announced as too large need not be read at all. Longer numbers than 18
+        # digits are not converted.
         announced = self.headers.get("content-length", "0")
         if announced.isdecimal() and (len(announced) > 18 or int(announced) > limit):
             raise _too_large(limit)
@@ -51,30 +52,32 @@ class BoundedRequest(Request):
                 if len(body) > limit:
                     raise _too_large(limit)
         except ClientDisconnect:
-            # Nobody reads the answer; it ends the request without the log of a defect.
-            raise Refusal(400, "incomplete-body", "Incomplete body", "The connection ended before the body.") from None
+            # The client is gone and cannot read this answer, which ends the request without logging a defect.
+            raise Refusal(
+                400, "incomplete-body", "Incomplete body", "The connection was closed before the end of the body."
+            ) from None
         return bytes(body)
 
     @property
     def media_type(self) -> str:
-        """The type that the body is announced as, without its parameters; empty where it is not."""
+        """Media type in the ``Content-Type`` header, without parameters; empty if there is none."""
         return self.headers.get("content-type", "").partition(";")[0].strip().lower()
 
 
 def foreign(detail: str, *accepted: str) -> Refusal:
-    """The body is of a type that is not taken; these are."""
+    """Build the refusal of a body of another type than the ``accepted`` ones."""
     return Refusal(
         415, "unsupported-media-type", "Unsupported media type", detail, headers={"Accept": ", ".join(accepted)}
     )
 
 
 class JsonRequest(BoundedRequest):
-    """A request whose body is checked and parsed by the rules of this module."""
+    """A request whose JSON body is checked and parsed by this module."""
 
     _checked: Any
 
     async def read(self, limit: int) -> None:
-        """Read and parse the body, at most ``limit`` bytes.
+        """Read and parse the body of at most ``limit`` bytes.
 
         Raises
         ------
@@ -87,15 +90,15 @@ class JsonRequest(BoundedRequest):
         self._checked = _parsed(self._body)
 
     async def json(self) -> Any:
-        """The parsed body; :meth:`read` comes first."""
+        """Return the parsed body; :meth:`read` must be called first."""
         return self._checked
 
 
 class JsonRoute(GuardedRoute):
-    """A route that lets in by API key and then reads its body through :class:`JsonRequest`."""
+    """A route that checks the API key and then reads its body through :class:`JsonRequest`."""
 
     def handler_inside(self) -> Handler:
-        """The framework's handler, on a request that is read and parsed already."""
+        """Return the framework's handler for a request whose body has been read and parsed."""
         handle = super().handler_inside()
         if self.body_field is None:
             return handle
@@ -111,7 +114,7 @@ class JsonRoute(GuardedRoute):
 def _too_large(limit: int) -> Refusal:
     # The rest of the body stays unread, so the connection cannot serve another request.
     return Refusal(
-        413, "body-too-large", "Body too large", f"The body may have {limit} bytes at most.",
+        413, "body-too-large", "Body too large", f"The body must have at most {limit} bytes.",
         headers={"Connection": "close"},
     )  # fmt: skip
 
@@ -119,19 +122,19 @@ def _too_large(limit: int) -> Refusal:
 def _parsed(body: bytes) -> Any:
     if _surely_has_more_values_than(body, MAX_VALUES):
         raise _too_many(body)
-    # This parser bounds depth and digits by itself, and passes NaN and 1e999 on to the validation, which knows the
-    # field that they are in.
+    # This parser limits depth and digits itself. It passes NaN and 1e999 on to the validation, which names the field.
     try:
         parsed = from_json(body)
     except ValueError as error:
-        # The message is the parser's own, "expected `:` at line 1 column 8"; it holds nothing of the input.
+        # The message is the parser's own, "expected `:` at line 1 column 8", without parts of the input.
         detail = f"The body is not valid JSON: {error}."
         raise malformed_json(detail, _faults_of_depth(body) if "recursion" in str(error) else ()) from None
     values, keys = _counts(parsed)
     if values > MAX_VALUES:
         raise _too_many(body)
     if _keys_written(body) != keys:
-        twice = [(place, "This key is given twice; give it once.") for place in _given_twice(body)]
+        # The parser keeps the last of equal keys silently; only then is the slower search for them necessary.
+        twice = [(place, "This key occurs twice; give it once.") for place in _given_twice(body)]
         if twice:
             raise invalid_request(twice)
     return parsed
@@ -139,24 +142,24 @@ def _parsed(body: bytes) -> Any:
 
 def _too_many(body: bytes) -> Refusal:
     where = locate_excess(body, MAX_VALUES, MAX_DEPTH)
-    detail = f"Here the body comes to hold more than {MAX_VALUES} values; it may have {MAX_VALUES} at most."
+    detail = f"Up to here the body has more than {MAX_VALUES} values; the limit is {MAX_VALUES}."
     return Refusal(
-        422, "invalid-request", "Invalid request", f"The body holds more than {MAX_VALUES} values.",
+        422, "invalid-request", "Invalid request", f"The body has more than {MAX_VALUES} values.",
         errors=[(where, detail)],
     )  # fmt: skip
 
 
 def _faults_of_depth(body: bytes) -> list[tuple[str, str]]:
-    """Where a body that cannot be parsed is nested too deep; nothing where that is not what is wrong."""
+    """Find the place where an unparsable body is nested too deeply; an empty list if the fault is another one."""
     where = locate_excess(body, len(body), MAX_DEPTH)
-    return [(where, f"This is nested more than {MAX_DEPTH} deep.")] if where else []
+    return [(where, f"This is nested more than {MAX_DEPTH} levels deep.")] if where else []
 
 
 def _surely_has_more_values_than(body: bytes, limit: int) -> bool:
-    """Whether the punctuation alone says so: a comma stands between two values, and each list or object is one.
+    """Return whether the punctuation alone shows it: a comma separates two values, and each list or object is a value.
 
-    Half a million lists take a third of a second to make and to collect again; counting their brackets takes a
-    millisecond. What passes has at most twice the limit.
+    Building and freeing half a million lists takes a third of a second; counting their brackets takes a millisecond. A
+    body that passes has at most twice the limit.
     """
     if len(body) <= limit:
         return False
@@ -167,17 +170,17 @@ def _surely_has_more_values_than(body: bytes, limit: int) -> bool:
 
 
 def _punctuation(body: bytes) -> bytes:
-    """What is outside of strings: behind a backslash a quote does not end its string."""
+    """Return the text outside of strings; a quote after a backslash does not end its string."""
     return b"".join(body.replace(rb"\\", b"").replace(rb"\"", b"").split(b'"')[::2])
 
 
 def _keys_written(body: bytes) -> int:
-    """How many keys a valid body has: a colon outside of strings stands behind each."""
+    """Count the keys of a valid body: each is followed by a colon outside of strings."""
     return _punctuation(body).count(b":")
 
 
 def _counts(parsed: Any) -> tuple[int, int]:
-    """How many values objects and lists hold, and how many keys; of those given twice the parser keeps the last."""
+    """Count the values in objects and lists, and the keys; the parser has kept only the last of equal keys."""
     values = keys = 0
     pending = [parsed]
     while pending:
@@ -192,12 +195,12 @@ def _counts(parsed: Any) -> tuple[int, int]:
 
 
 class _Members(list[tuple[str, Any]]):
-    """An object of the body as it is written."""
+    """An object of the body with all its members, equal keys included."""
 
 
 def _given_twice(body: bytes) -> list[str]:
-    """The places of keys that are given more than once, as JSON pointers."""
-    # Numbers are not looked at, and the standard library refuses some that are valid.
+    """Return the places of keys that occur more than once, as JSON pointers."""
+    # Numbers stay texts: they are not needed, and the standard library refuses some valid ones.
     written = json.loads(body, object_pairs_hook=_Members, parse_int=str, parse_float=str)
     found: list[str] = []
     pending: list[tuple[tuple[str | int, ...], Any]] = [((), written)]

@@ -1,4 +1,4 @@
-"""The parts of the application that endpoints work with, as dependencies."""
+"""FastAPI dependencies for the parts of the application that endpoints use."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ T = TypeVar("T")
 
 
 def _part(name: str, of_type: type[T]) -> Callable[[Request], Coroutine[Any, Any, T]]:
-    """The dependency on the part that the start of the application has put under this name."""
+    """Return a dependency that yields the application's state attribute ``name``."""
 
     async def part(request: Request) -> T:
         value = getattr(request.app.state, name)

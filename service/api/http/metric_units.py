@@ -1,4 +1,4 @@
-"""What the numbers of a design measure, by their names: so that a client can put a unit beside each."""
+"""Dimensions of the numbers of a design, by name, from which a client can show units."""
 
 from __future__ import annotations
 
@@ -10,18 +10,18 @@ from pydantic import BaseModel
 from synthesis.model.dimension import Dimension, collect_dimensions
 
 PARTS = ("metrics", "mechanism", "springs")
-"""What of a design has numbers that people read; springs where a kind looks for them."""
+"""Fields of a design with numbers for people; only kinds that design springs have ``springs``."""
 
 
 def measures(result: type[BaseModel]) -> dict[str, Dimension]:
-    """The dimension of each named number in the designs of an answer.
+    """Return the dimension of each named number in the designs of an answer.
 
-    A name that measures one thing here and another there is left out.
+    A name with different dimensions in different places is omitted.
 
     Parameters
     ----------
     result : type of pydantic model
-        Of a kind of problem, with its ``designs``.
+        Result model of a kind of problem, with the field ``designs``.
     """
     found: dict[str, set[Dimension]] = {}
     for design in _models(result.model_fields["designs"].annotation):
@@ -33,7 +33,7 @@ def measures(result: type[BaseModel]) -> dict[str, Dimension]:
 
 
 def _reached(annotation: Any, seen: set[type[BaseModel]]) -> set[type[BaseModel]]:
-    """All models that a value may hold, however deep."""
+    """Collect all models that a value may contain, at any depth."""
     for model in _models(annotation):
         if model not in seen:
             seen.add(model)

@@ -1,4 +1,4 @@
-"""``/v1/analyses``: what the analysis core knows of a given mechanism, at once."""
+"""``/v1/analyses``: immediate analysis of a given mechanism."""
 
 from __future__ import annotations
 
@@ -15,10 +15,10 @@ from service.api.http.body import JsonRoute
 from service.api.http.computation import answer_with_analysis
 from service.api.http.dependencies import Answers
 
-TAG = {"name": "analyses", "description": "Drive a given mechanism."}
+TAG = {"name": "analyses", "description": "Analyse a given mechanism."}
 
-# The models of an analysis bring the analysis core with them, for which the start of the service does not wait. So the
-# body is validated where it is used, and the OpenAPI document gets the models when somebody asks for it.
+# Importing the models of an analysis loads the analysis core, for which the start of the service must not wait. So the
+# body is validated where it is used, and the models are added to the OpenAPI document when it is first requested.
 REQUEST = {"$ref": "#/components/schemas/AnalysisRequest"}
 ANALYSIS = {"$ref": "#/components/schemas/Analysis"}
 
@@ -26,10 +26,10 @@ router = APIRouter(prefix="/v1/analyses", tags=["analyses"], route_class=JsonRou
 
 
 def analysis_responses(description: str, **described: str) -> dict[int | str, dict[str, Any]]:
-    """The responses of an operation that answers with an analysis; errors as for :func:`errors.responses`."""
+    """Return the responses of an operation that answers with an analysis, and its errors as for `responses`."""
     return {
         200: {"description": description, "content": {"application/json": {"schema": ANALYSIS}}},
-        **problem_details.responses(**described, e503="Other analyses have kept this one from being begun."),
+        **problem_details.responses(**described, e503="The service is busy with other analyses."),
     }
 
 
@@ -43,21 +43,21 @@ def analysis_responses(description: str, **described: str) -> dict[int | str, di
         e400="The body is not JSON.",
         e413="The body is too large.",
         e415="The body is not `application/json`.",
-        e422="The body does not state a mechanism and its motion; `errors` says where.",
+        e422="The body is not a valid mechanism with a motion; `errors` has the places.",
     ),
 )
 async def analyse_mechanism(
     request: Request, answers: Answers, tenant: Tenant, body: Annotated[Any, Body()]
 ) -> Response:
-    """Positions, velocities, accelerations and jerks over the motion, toggles, circuits and limits.
+    """Compute positions, velocities, accelerations and jerks over the motion, toggles, circuits and limits.
 
-    Nothing is stored. Where the mechanism cannot be assembled `valid` is false and the numbers are null.
+    Nothing is stored. Where the mechanism cannot be assembled, `valid` is false and the numbers are null.
     """
     return await answer_with_analysis(request, answers, tenant, analyse, body)
 
 
 def complete(document: dict[str, Any]) -> None:
-    """Put the models of an analysis into the OpenAPI document."""
+    """Add the models of an analysis to the OpenAPI document."""
     from pydantic.json_schema import models_json_schema
 
     from synthesis.analyses import list_families

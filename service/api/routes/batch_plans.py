@@ -1,4 +1,4 @@
-"""From what a client has stated of a batch to its plan, or to what is wrong with it and where."""
+"""Conversion of a batch request to its plan, or to the faults of the request with their places."""
 
 from __future__ import annotations
 
@@ -21,33 +21,33 @@ from synthesis.model.linkage.answer import ERROR_FIELDS
 from synthesis.registry import KINDS
 
 LOOKED_AT = 100
-"""Samples, evenly spread, one of which at least has to state a problem."""
+"""Number of evenly spread samples that are checked; at least one of them must be a valid problem."""
 
 TRIED_BYTES = 4_000_000
-"""Statements that are tried, in bytes of JSON: a second of work. All values of a plan, where its problem is of a usual
-size; of a larger one as many, evenly spread, and :data:`LOOKED_AT` at least."""
+"""Total size of the statements tried, bytes of JSON, about a second of work. That covers all values of a plan with a
+problem of usual size; with a larger one, evenly spread values are tried, at least :data:`LOOKED_AT`."""
 
 CHECKED_S = 1.0
-"""Seconds of processor after which no further value is tried and no further sample looked at: statements with very many
-faults take longer than their size tells."""
+"""Processor time after which no further values or samples are checked, seconds: statements with very many faults take
+longer than their size suggests."""
 
 TABLE_BYTES = 16 << 20
-"""What the values of all samples may take together, since the table shows them in each row."""
+"""Maximum total size of the values of all samples, bytes of JSON, since the table repeats them in each row."""
 
 RATIO_ERRORS = ("max_error", "relative_error", "error")
-"""Errors of gears, of which a kind shows the first that it has."""
+"""Error metrics of gears; the first one that a kind has is used."""
 
 MORE_IS_BETTER = ("min_transmission_angle",)
 
 SIZES = ("size", "total_teeth", "tooth_sum")
-"""Sizes, of which a kind shows the first that it has."""
+"""Size metrics; the first one that a kind has is used."""
 
 
 def plan_of(body: BatchRequest) -> tuple[str, Plan, Cost]:
-    """The kind of the problems, the plan, and what one of them is taken to cost.
+    """Return the kind of the problems, the plan, and the estimated cost of a problem.
 
-    A value that its field cannot have is a fault of the batch. Values that contradict one another are one of the sample
-    alone, unless all of :data:`LOOKED_AT` samples have such.
+    A value that is invalid for its field is a fault of the batch. Contradictory values are a fault of their sample
+    only, unless all of :data:`LOOKED_AT` checked samples are contradictory.
 
     Raises
     ------
@@ -56,6 +56,7 @@ def plan_of(body: BatchRequest) -> tuple[str, Plan, Cost]:
     """
     kind = body.problem.get("kind")
     if not isinstance(kind, str) or kind not in KINDS:
+        # The kind selects the model, so nothing else can be checked without it.
         detail = f"Kind must be given and be one of: {', '.join(KINDS)}."
         raise invalid_problem([("/problem/kind", detail)])
     faults = [*islice(_not_finite(body), MAX_FAULTS)]
@@ -84,14 +85,14 @@ def plan_of(body: BatchRequest) -> tuple[str, Plan, Cost]:
 
 
 def by_default(metrics: Sequence[str]) -> list[str]:
-    """Of the metrics of a kind, what its front weighs up: an error, what is to be large, what is to be small."""
+    """Select the default metrics of a front from those of a kind: an error, metrics to maximize, a size."""
     error = [name for name in (*ERROR_FIELDS, *RATIO_ERRORS) if name in metrics][:1]
     size = [name for name in SIZES if name in metrics][:1]
     return [*error, *(name for name in MORE_IS_BETTER if name in metrics), *size]
 
 
 def _not_finite(body: BatchRequest) -> Iterator[tuple[str, str]]:
-    """The numbers, wherever they stand, that are infinite or none."""
+    """Yield the faults of infinite numbers and NaN anywhere in the problem and the values."""
     pending: list[tuple[tuple[str | int, ...], Any]] = [
         (("vary", k, "values"), varied.values) for k, varied in reversed([*enumerate(body.vary)])
     ]
@@ -106,7 +107,8 @@ def _not_finite(body: BatchRequest) -> Iterator[tuple[str, str]]:
 
 
 def _faults_of_the_problem(kind: str, plan: Plan) -> list[tuple[str, str]]:
-    """What is wrong with the problem whatever the varied fields are, by the first sample and the last."""
+    """Return the faults of the problem that do not depend on the varied fields, by the first and the last sample."""
+    # Two samples suffice: a fault that both have outside of the varied fields is taken as one of the problem.
     found: Faults = []
     for number in (0, plan.total - 1):
         before = found
@@ -119,10 +121,10 @@ def _faults_of_the_problem(kind: str, plan: Plan) -> list[tuple[str, str]]:
 
 
 def _apart(path: str, fields: Sequence[str]) -> bool:
-    """Whether what is wrong at this place of a problem is so whatever the varied fields are.
+    """Return whether a fault at this place is independent of the varied fields.
 
-    It may not be where it lies in one of them or on the way to it, or in an object of which a field varies: what that
-    object may have can go by it.
+    It may depend on them if it lies in a varied field, on the path to one, or in an object with a varied field, which
+    may decide on the other fields of the object.
     """
     for field in fields:
         object_, _, _ = field.rpartition("/")
@@ -135,36 +137,36 @@ def _faults_of_fields(body: BatchRequest) -> Iterator[tuple[str, str]]:
     ways = [steps(varied.field) for varied in body.vary]
     for k, way in enumerate(ways):
         if way == ["kind"]:
-            yield f"/vary/{k}/field", "The problems of a batch are of one kind."
+            yield f"/vary/{k}/field", "All problems of a batch have the same kind; `kind` cannot be varied."
         for other in ways[:k]:
             if way[: len(other)] == other or other[: len(way)] == way:
-                yield f"/vary/{k}/field", "This field is varied already, as a whole or in part."
+                yield f"/vary/{k}/field", "This field is already varied, as a whole or in part."
 
 
 def _faults_of_sampling(body: BatchRequest) -> Iterator[tuple[str, str]]:
     drawn = body.sampling == "latin_hypercube"
     if drawn and body.samples is None:
-        yield "/samples", "A Latin hypercube needs the number of its samples."
+        yield "/samples", "A Latin hypercube needs `samples`, the number of problems."
     if not drawn and body.samples is not None:
-        yield "/samples", f"A {body.sampling} has as many as its values make; leave this out."
+        yield "/samples", f"The values determine the number of problems of a {body.sampling}; omit `samples`."
     if not drawn and body.seed != 0:
-        yield "/seed", f"Nothing is drawn in a {body.sampling}; leave this out."
+        yield "/seed", f"A {body.sampling} has no random draws; omit `seed`."
     counts = []
     for k, varied in enumerate(body.vary):
         if drawn and varied.count is not None:
-            yield f"/vary/{k}/count", "A Latin hypercube has as many as there are samples; leave this out."
+            yield f"/vary/{k}/count", "A Latin hypercube has one value for each of its `samples`; omit `count`."
         if not drawn and varied.values is None and varied.count is None:
-            yield f"/vary/{k}", "Say how many, by a count."
+            yield f"/vary/{k}", "Give `count`, the number of values."
         counts.append(len(varied.values) if varied.values is not None else varied.count or 1)
     if body.sampling == "zip":
         for k, count in enumerate(counts):
             if count != counts[0]:
-                yield f"/vary/{k}", f"In a zip all fields have as many values; the first one has {counts[0]}."
+                yield f"/vary/{k}", f"In a zip all fields need the same number of values; the first field has {counts[0]}."
     total = math.prod(counts) if body.sampling == "grid" else body.samples or counts[0]
     if total > MOST_SAMPLES:
-        yield "/vary", f"These make {total} problems; a batch has {MOST_SAMPLES} at most."
+        yield "/vary", f"These values give {total} problems; a batch can have at most {MOST_SAMPLES}."
     elif total * sum(map(_bytes_of_a_value, body.vary)) > TABLE_BYTES:
-        yield "/vary", f"The values of {total} problems take more than {TABLE_BYTES >> 20} MiB together."
+        yield "/vary", f"The values of {total} problems exceed {TABLE_BYTES >> 20} MiB; give fewer or shorter values."
 
 
 def _bytes_of_a_value(varied: Vary) -> float:
@@ -175,9 +177,9 @@ def _faults_of_metrics(body: BatchRequest, kind: str) -> Iterator[tuple[str, str
     known = KINDS[kind].metrics
     for k, name in enumerate(body.metrics or ()):
         if name not in known:
-            yield f"/metrics/{k}", f"Designs of this kind have no such metric; they have {', '.join(known)}."
+            yield f"/metrics/{k}", f"Unknown metric; this kind has {', '.join(known)}."
         elif name in (body.metrics or ())[:k]:
-            yield f"/metrics/{k}", "This is given twice; give it once."
+            yield f"/metrics/{k}", "This metric is given twice; give it once."
 
 
 def _values(body: BatchRequest) -> list[Sequence[Any]]:
@@ -206,7 +208,7 @@ def _require_places(plan: Plan) -> None:
 
 
 def _faults_of_values(body: BatchRequest, kind: str, plan: Plan, until: float) -> list[tuple[str, str]]:
-    """What is wrong with values by themselves: each is tried once, as long as there is time."""
+    """Return the faults of single values: each value is tried once, within the time limit."""
     found: dict[tuple[str, str], None] = {}
     most = max(LOOKED_AT, TRIED_BYTES // len(json.dumps(plan.statement(0))))
     every = sum(map(len, plan.values)) if plan.grid else plan.total
@@ -224,7 +226,8 @@ def _faults_of_values(body: BatchRequest, kind: str, plan: Plan, until: float) -
                     unknown = detail.startswith("There is no such field")
                     inside = f"/values/{places[k]}{path[len(field) :]}" if given else ""
                     place = "/field" if unknown and path == field else inside
-                    shown = "" if given or unknown else f" This is of the value {values[k]}."
+                    # Values computed from a range have no place in the request, so the message names the value.
+                    shown = "" if given or unknown else f" The value is {values[k]}."
                     found[f"/vary/{k}{place}", f"{detail}{shown}"] = None
         if len(found) > MAX_FAULTS:
             break
@@ -232,7 +235,7 @@ def _faults_of_values(body: BatchRequest, kind: str, plan: Plan, until: float) -
 
 
 def _tried(plan: Plan) -> Iterable[tuple[dict[int, int], list[Any]]]:
-    """Samples in which each value occurs: the places of those that are new in it, by field, and all its values."""
+    """Yield samples that cover each value: the places of the values new in it, by field, and all its values."""
     if not plan.grid:
         for number in range(plan.total):
             yield {k: _place(values, number) for k, values in enumerate(plan.values)}, plan.sample(number)
@@ -244,14 +247,12 @@ def _tried(plan: Plan) -> Iterable[tuple[dict[int, int], list[Any]]]:
 
 
 def _place(values: Values, number: int) -> int:
-    """Where the value of a sample stands among those that are stated."""
+    """Return the place of a sample's value among the given ones."""
     return values.places[number] if isinstance(values, Picked) else number
 
 
 def _cost(kind: str, plan: Plan, until: float) -> Cost:
-    """What a problem of the batch costs, the longest of those that are looked at: one at least, others while there is
-    time.
-    """
+    """Estimate the cost of a problem of the batch: the highest of the samples checked within the time, at least one."""
     refused: Faults | None = None
     brief: list[bool] = []
     for number in _spread(plan.total, LOOKED_AT):
@@ -269,8 +270,9 @@ def _cost(kind: str, plan: Plan, until: float) -> Cost:
 
 
 def _spread(total: int, most: int) -> Iterator[int]:
-    """So many numbers below the total, evenly spread; the first ones of them too, as well as may be."""
+    """Yield at most ``most`` numbers below the total, evenly spread, in an order whose beginnings are even, too."""
     count = min(total, most)
+    # Steps near the golden section of the count, and coprime to it, spread every beginning of the order evenly.
     step = next(step for step in range(max(1, round(count * 0.618)), count + 1) if math.gcd(step, count) == 1)
     for n in range(count):
         yield n * step % count * total // count
@@ -282,7 +284,7 @@ def _none_states_a_problem(plan: Plan, faults: Faults) -> Refusal:
 
 
 def _place_of(plan: Plan, path: str) -> str:
-    """Where a fault of all samples lies: at the varied field that it is on the way to, else in the problem."""
+    """Locate a fault of all samples: at the varied field whose path it lies on, else in the problem."""
     on_the_way = (k for k, field in enumerate(plan.fields) if path and field.startswith(f"{path}/"))
     k = next(on_the_way, None)
     return f"/problem{path}" if k is None else f"/vary/{k}/field"

@@ -1,4 +1,4 @@
-"""``/v1/batches``: many problems at once, stated as one whose fields are varied."""
+"""``/v1/batches``: many problems at once, given as one problem whose fields are varied."""
 
 from __future__ import annotations
 
@@ -37,9 +37,9 @@ from service.jobs.batches.rows import BatchRow
 from service.jobs.batches.table import Table
 from service.jobs.store.admission import KeyReused, QueueFull
 
-TAG = {"name": "batches", "description": "Vary the fields of a problem, and read the answers as a table."}
+TAG = {"name": "batches", "description": "Vary the fields of a problem and read the answers as a table."}
 
-NO_BATCH = "There is no batch with this id."
+NO_BATCH = "No batch has this id."
 
 RETRY_AFTER_S = 1
 
@@ -47,15 +47,15 @@ router = APIRouter(prefix="/v1/batches", tags=[TAG["name"]], route_class=JsonRou
 following = APIRouter(prefix="/v1/batches", tags=[TAG["name"]], route_class=GuardedRoute)
 
 _BODY = Body(openapi_examples={"motion": {"summary": "A grid of motion problems", "value": EXAMPLE}})
-_LOCATION = {"Location": {"description": "The path of the batch.", "schema": {"type": "string"}}}
-_RETRY_AFTER = {"Retry-After": {"description": "Look again after so many seconds.", "schema": {"type": "integer"}}}
+_LOCATION = {"Location": {"description": "Path of the batch.", "schema": {"type": "string"}}}
+_RETRY_AFTER = {"Retry-After": {"description": "Seconds to wait before the next request.", "schema": {"type": "integer"}}}
 _ETAG = {"ETag": {"description": "Changes whenever the batch does.", "schema": {"type": "string"}}}
 
 
 @router.post(
     "",
     operation_id="create_batch",
-    summary="State many problems",
+    summary="Submit many problems",
     response_class=Response,
     status_code=202,
     responses={
@@ -67,10 +67,10 @@ _ETAG = {"ETag": {"description": "Changes whenever the batch does.", "schema": {
         },
         **problem_details.responses(
             e400="The body is not JSON.",
-            e409="The `Idempotency-Key` came with another body before.",
+            e409="The `Idempotency-Key` was used with a different body before.",
             e413="The body is too large.",
             e415="The body is not `application/json`.",
-            e422="The body does not state problems; `errors` says where.",
+            e422="The body does not define valid problems; `errors` has the places.",
             e503="The queue is full.",
         ),
     },
@@ -84,13 +84,13 @@ async def create_batch(
         str | None,
         Header(
             pattern=KEY,
-            description="A name for this request, as of a job: sent again with it, the request is answered with the "
-            "first batch.",
+            description="Key of this request, as for a job: the same request sent again with the same key is answered "
+            "with the first batch.",
             examples=["7f9c24e8"],
         ),
     ] = None,
 ) -> Response:
-    """Accept a problem whose fields are varied. Once this is answered the batch is stored, and each problem ends."""
+    """Accept a problem with varied fields. With the answer the batch is stored, and each of its problems will end."""
     keys = request.headers.getlist("idempotency-key")
     kind, plan, cost = await run_in_threadpool(plan_of, body)
     try:
@@ -113,12 +113,12 @@ async def create_batch(
 
 
 class BatchFilter(BaseModel):
-    """Which batches to list."""
+    """Filter of the list of batches."""
 
     model_config = ConfigDict(extra="forbid")
 
-    limit: int = Field(default=20, ge=1, le=100, description="Batches on a page, at most.")
-    cursor: str | None = Field(default=None, max_length=100, description="`next_cursor` of the page before.")
+    limit: int = Field(default=20, ge=1, le=100, description="Maximum number of batches on a page.")
+    cursor: str | None = Field(default=None, max_length=100, description="`next_cursor` of the previous page.")
 
 
 @router.get(
@@ -128,11 +128,11 @@ class BatchFilter(BaseModel):
     response_class=Response,
     responses={
         200: {"model": BatchList},
-        **problem_details.responses(e422="A parameter is not valid; `errors` says which."),
+        **problem_details.responses(e422="A parameter is not valid; `errors` names it."),
     },
 )
 async def list_batches(desk: Batches, tenant: Tenant, filter_: Annotated[BatchFilter, Query()]) -> Response:
-    """The batches, newest first, a page at a time."""
+    """Return a page of the batches, newest first."""
     before = None if filter_.cursor is None else id_of_cursor(filter_.cursor)
     page = await desk.page(tenant=tenant, limit=filter_.limit + 1, before=before)
     shown = page[: filter_.limit]
@@ -147,7 +147,7 @@ async def list_batches(desk: Batches, tenant: Tenant, filter_: Annotated[BatchFi
     response_class=Response,
     responses={
         200: {"model": Batch, "headers": _ETAG},
-        304: {"description": "The batch is as the client knows it.", "headers": _ETAG},
+        304: {"description": "The batch is unchanged since the state that the client has.", "headers": _ETAG},
         **problem_details.responses(e404=NO_BATCH),
     },
 )
@@ -157,10 +157,10 @@ async def get_batch(
     tenant: Tenant,
     batch_id: str,
     if_none_match: Annotated[
-        str | None, Header(description="The `ETag` of the state that the client has.", examples=['"3"'])
+        str | None, Header(description="`ETag` of the state that the client has.", examples=['"3"'])
     ] = None,
 ) -> Response:
-    """The batch as it stands."""
+    """Return the present state of the batch."""
     batch = await _batch_of(desk, tenant, batch_id)
     return unless_known(request, batch.revision, lambda: whole_batch(batch))
 
@@ -172,7 +172,7 @@ async def get_batch(
     response_class=Response,
     status_code=202,
     responses={
-        202: {"model": Batch, "description": "The batch was unfinished and is cancelled; what has ended of it stays."},
+        202: {"model": Batch, "description": "The batch was unfinished and is cancelled; ended problems are kept."},
         204: {"description": "The batch was finished and is removed, with the jobs of its problems."},
         **problem_details.responses(e404=NO_BATCH),
     },
@@ -193,7 +193,7 @@ async def delete_batch(desk: Batches, tenant: Tenant, batch_id: str) -> Response
     responses={200: {"model": BatchTable}, **problem_details.responses(e404=NO_BATCH)},
 )
 async def tabulate_batch(desk: Batches, tenant: Tenant, batch_id: str) -> Response:
-    """A row for each problem, in the order of the samples, ended or not."""
+    """Return a row for each problem, ended or not, in the order of the samples."""
     _, table = await _tabulated(desk, tenant, batch_id)
     return StreamingResponse(table.as_json(), media_type="application/json")
 
@@ -209,21 +209,21 @@ async def tabulate_batch(desk: Batches, tenant: Tenant, batch_id: str) -> Respon
     },
 )
 async def tabulate_batch_as_csv(desk: Batches, tenant: Tenant, batch_id: str) -> Response:
-    """The same as CSV; numbers have all their digits."""
+    """Return the table as CSV; numbers have all their digits."""
     _, table = await _tabulated(desk, tenant, batch_id)
     return StreamingResponse(table.as_csv(), media_type="text/csv; charset=utf-8")
 
 
 class Weighed(BaseModel):
-    """What the rows are weighed up by."""
+    """Metrics that define a front."""
 
     model_config = ConfigDict(extra="forbid")
 
     least: list[str] = Field(
-        default=[], max_length=10, description="Metrics of the batch of which less is better; may be repeated."
+        default=[], max_length=10, description="Metrics of the batch to minimize; may be repeated."
     )
     greatest: list[str] = Field(
-        default=[], max_length=10, description="Metrics of which more is better; may be repeated."
+        default=[], max_length=10, description="Metrics of the batch to maximize; may be repeated."
     )
 
 
@@ -235,17 +235,17 @@ class Weighed(BaseModel):
     responses={
         200: {"model": BatchFront},
         **problem_details.responses(
-            e404=NO_BATCH, e422="A metric is none of the batch, or named twice; `errors` says which."
+            e404=NO_BATCH, e422="A metric does not belong to the batch or is named twice; `errors` names it."
         ),
     },
 )
 async def weigh_up_batch(
     desk: Batches, tenant: Tenant, batch_id: str, weighed: Annotated[Weighed, Query()]
 ) -> Response:
-    """The rows of the table that no other beats (Pareto).
+    """Return the Pareto front of the table: the rows that no other row dominates.
 
-    Without parameters: by error and size (of gears the sum of the teeth), of which less is better, and the least
-    transmission angle, as far as the table has them. Of errors with a sign the size counts.
+    By default error and size (for gears the sum of the teeth) are minimized and the minimum transmission angle is
+    maximized, as far as the table has them. Signed errors count by their absolute values.
     """
     plan, table = await _tabulated(desk, tenant, batch_id)
     least, greatest = _quantities(weighed, plan.metrics)
@@ -260,12 +260,12 @@ async def weigh_up_batch(
     response_class=Response,
     responses={
         200: {
-            "description": "Events until the batch has ended, as of a job: `state` (the batch as in a list) and "
-            "`progress`; `removed` where it is removed before its end was seen.",
+            "description": "Events until the batch has ended, as for a job: `state` (the batch as in a list) and "
+            "`progress`; `removed` if it is removed before its end was sent.",
             "content": {"text/event-stream": {"itemSchema": event_schema("BatchListItem")}},
         },
-        204: {"description": "The client has the event of the final state already; it need not come again."},
-        **problem_details.responses(e404=NO_BATCH, e503="Too many clients of the tenant listen at once."),
+        204: {"description": "The client already has the event of the final state and need not reconnect."},
+        **problem_details.responses(e404=NO_BATCH, e503="Too many clients of the tenant are listening."),
     },
 )
 async def follow_batch(
@@ -275,10 +275,10 @@ async def follow_batch(
     batch_id: str,
     last_event_id: Annotated[
         str | None,
-        Header(description="The `id` of the last event that the client has; browsers send it by themselves."),
+        Header(description="`id` of the last event that the client has; browsers send it automatically."),
     ] = None,
 ) -> Response:
-    """The batch as it goes on, as server-sent events."""
+    """Stream the progress of the batch as server-sent events."""
     return await followed(request, poller, tenant, batch_id, last_event_id, batch_item, NO_BATCH)
 
 
@@ -297,17 +297,17 @@ async def _tabulated(desk: BatchDesk, tenant: str, batch_id: str) -> tuple[Plan,
 
 
 def _quantities(weighed: Weighed, metrics: Sequence[str]) -> tuple[list[str], list[str]]:
-    """What is to be least and what greatest, by their names; raises a refusal for what cannot be meant."""
+    """Return the names of the metrics to minimize and to maximize; raise a refusal if the request is invalid."""
     faults = []
     for k, name in enumerate([*weighed.least, *weighed.greatest]):
         place = "/query/least" if k < len(weighed.least) else "/query/greatest"
         if name not in metrics:
-            faults.append((place, f"The metrics of the batch are {', '.join(metrics) or 'none'}."))
+            faults.append((place, f"Unknown metric; this batch has {', '.join(metrics) or 'none'}."))
         elif name in [*weighed.least, *weighed.greatest][:k]:
-            faults.append((place, f"{name} is named already; it can be weighed up once, one way."))
+            faults.append((place, f"{name} is named twice; minimize or maximize it once."))
     usual = [] if weighed.least or weighed.greatest else by_default(metrics)
     if not (weighed.least or weighed.greatest or usual):
-        faults.append(("/query/least", "Name what is to be least, or greatest."))
+        faults.append(("/query/least", "Name a metric to minimize (`least`) or to maximize (`greatest`)."))
     if faults:
         raise invalid_request(faults)
     if usual:

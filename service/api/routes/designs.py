@@ -1,4 +1,4 @@
-"""``/v1/jobs/{id}/designs/{n}``: the files and the motion of a design."""
+"""``/v1/jobs/{id}/designs/{n}``: files and motion of a design."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ from service.jobs.store.schema import JobRow
 from service.observability.telemetry import span
 from service.render import Form
 
-OTHER_DRAWINGS = "Other drawings have kept this one from being begun."
+OTHER_DRAWINGS = "The service is busy with other drawings."
 
 _TEXT = {"type": "string"}
 
@@ -30,7 +30,7 @@ router = APIRouter(prefix="/v1/jobs", tags=[TAG["name"]], route_class=GuardedRou
 
 
 class Export(NamedTuple):
-    """A form of file that a design can be had in, as the API describes it."""
+    """A file format of designs, with its description in the API."""
 
     media_type: str
     operation_id: str
@@ -41,42 +41,43 @@ class Export(NamedTuple):
 
 _AS_IT_IS_SAID = {"X-Content-Type-Options": "nosniff"}
 HEADERS: dict[Form, dict[str, str]] = {
-    # A drawing is opened as a page of its own, too, and then it may do nothing.
+    # A browser may open a drawing as a page of its own, which must not run or load anything.
     "svg": {**_AS_IT_IS_SAID, "Content-Security-Policy": "default-src 'none'; style-src 'unsafe-inline'; sandbox"},
 }
-"""With what a file of a form goes out, where it is more than its type and :data:`_AS_IT_IS_SAID`."""
+"""Headers of the files of a format; the default is :data:`_AS_IT_IS_SAID`."""
 
 EXPORTS: dict[Form, Export] = {
     "svg": Export(
         "image/svg+xml",
         "draw_design",
         "Draw a design",
-        "A labelled drawing of design ``number`` of the job's result, counted from 0.",
+        "Return a labelled drawing of design ``number`` of the job's result, counted from 0.",
     ),
     "gif": Export(
         "image/gif",
         "animate_design",
         "Animate a design",
-        "Design ``number`` of the job's result going through its cycle, counted from 0: 60 frames, over and over.",
+        "Return an animation of design ``number`` of the job's result, counted from 0: 60 frames of its cycle, in a "
+        "loop.",
         {"type": "string", "format": "binary"},
     ),
     "dxf": Export(
         "image/vnd.dxf",
         "export_design_dxf",
         "Export a design to CAD",
-        "A DXF file of design ``number`` of the job's result, in true dimensions and with units.",
+        "Return a DXF file of design ``number`` of the job's result, in true dimensions and with units.",
     ),
     "csv": Export(
         "text/csv; charset=utf-8",
         "export_design_csv",
         "Export a design as a table",
-        "A table of design ``number`` of the job's result, with units in its header.",
+        "Return a table of design ``number`` of the job's result, with units in its header.",
     ),
 }
 
 
 def _offer(form: Form, export: Export) -> None:
-    """Add the operation that gives the files of one form."""
+    """Add the operation that returns the files of one format."""
 
     async def file(
         request: Request, desk: Desk, answers: Answers, tenant: Tenant, job_id: str, number: str
@@ -96,8 +97,8 @@ def _offer(form: Form, export: Export) -> None:
         responses={
             200: {"description": "The file.", "content": {export.media_type: {"schema": export.schema}}},
             **problem_details.responses(
-                e404="There is no such job or design, or no such file of its type of mechanism.",
-                e409="The job has no result (yet), or the design is of a size that is not drawn.",
+                e404="No such job or design, or its type of mechanism has no such file.",
+                e409="The job has no result (yet), or the size of the design is beyond the range for drawings.",
                 e503=OTHER_DRAWINGS,
             ),
         },
@@ -109,11 +110,11 @@ for _form, _export in EXPORTS.items():
 
 
 class MotionSteps(BaseModel):
-    """How finely a cycle is divided."""
+    """Number of steps of a cycle."""
 
     model_config = ConfigDict(extra="forbid")
 
-    steps: int = Field(default=360, ge=1, le=3600, description="Equal steps of the input, both ends included.")
+    steps: int = Field(default=360, ge=1, le=3600, description="Number of equal steps of the input; both ends are included.")
 
 
 @router.get(
@@ -123,32 +124,32 @@ class MotionSteps(BaseModel):
     response_class=Response,
     responses=analysis_responses(
         "The motion.",
-        e404="There is no such job or design.",
-        e409="The job has no result (yet), or the design is of a size that is not analysed.",
-        e422="A parameter is not valid; `errors` says which.",
+        e404="No such job or design.",
+        e409="The job has no result (yet), or the size of the design is beyond the range for analyses.",
+        e422="A parameter is not valid; `errors` names it.",
     ),
 )
 async def move_design(
     request: Request, desk: Desk, tenant: Tenant, answers: Answers, job_id: str, number: str,
     query: Annotated[MotionSteps, Query()],
 ) -> Response:  # fmt: skip
-    """Design ``number`` of the job's result over its cycle, with the input at 1 rad/s (or 1 length unit/s).
+    """Analyse design ``number`` of the job's result over its cycle, with the input at 1 rad/s (or 1 length unit/s).
 
-    A crank turns from the input angle of the first target through a full turn, or as many as its gears need to come
-    back; any other input goes from toggle to toggle of the branch that the targets lie on. The answer is that of
-    `POST /v1/analyses`.
+    A crank turns from the input angle of the first target through a full turn, or as many turns as its gears need to
+    return; any other input moves from toggle to toggle of the branch that contains the targets. The answer has the form
+    of `POST /v1/analyses`.
     """
     _, result = await solved(desk, tenant, job_id)
     return await answer_with_analysis(request, answers, tenant, compute_motion, result, number, query.steps)
 
 
 async def solved(desk: JobDesk, tenant: str, job_id: str) -> tuple[JobRow, str]:
-    """A job and its result.
+    """Return a job and its result.
 
     Raises
     ------
     Refusal
-        404 where there is no such job, 409 where it has no result.
+        404 if there is no such job, 409 if it has no result.
     """
     job = await job_of(desk, tenant, job_id)
     if job.result is None:
@@ -158,6 +159,6 @@ async def solved(desk: JobDesk, tenant: str, job_id: str) -> tuple[JobRow, str]:
 
 
 async def solved_job(desk: JobDesk, tenant: str, job_id: str) -> SolvedJob:
-    """A job that has a result, as the processes that answer requests take it; errors as of :func:`solved`."""
+    """Return a job with a result for the processes that answer requests; errors as for :func:`solved`."""
     job, result = await solved(desk, tenant, job_id)
     return SolvedJob(job.id, job.kind, job.label, job.created_at, job.finished_at, job.problem, result)

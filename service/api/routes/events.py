@@ -1,7 +1,7 @@
-"""``/v1/jobs/{id}/events``: a job as it goes on, as server-sent events.
+"""``/v1/jobs/{id}/events``: the progress of a job as server-sent events.
 
-An event's id is the job's revision and state, ``7-running``. That is all that a client's resumption needs: the newest
-state is sent where the client does not have it, and what it has missed in between is of no interest any more.
+An event's id consists of the job's revision and state, ``7-running``. To resume, a client needs no more: the newest
+state is sent if the client does not have it, and events missed in between do not matter any more.
 """
 
 from __future__ import annotations
@@ -26,13 +26,13 @@ from service.jobs.store.states import Status
 from service.observability.head import asked_for_head
 
 KEEP_ALIVE_S = 15.0
-"""After so much silence a comment is sent, so that nobody between takes the connection for dead."""
+"""Silence after which a comment is sent, seconds, so that proxies do not take the connection for dead."""
 
 MAX_LISTENERS = 1000
-"""Streams of a tenant at once; each is a connection and a task of the server."""
+"""Maximum number of concurrent streams of a tenant; each is a connection and a task of the server."""
 
 STORE_ANSWERS_S = 10.0
-"""How long a client is kept waiting for the first look into the store."""
+"""Time limit for the first query of the store, seconds."""
 
 _RECONNECT_MS = 1000
 _HEADERS = {"Cache-Control": "no-store", "X-Accel-Buffering": "no"}
@@ -40,7 +40,7 @@ _EVENT_ID = re.compile(f"([0-9]{{1,9}})-({'|'.join(Status)})")
 
 
 def event_schema(item: str) -> dict[str, Any]:
-    """The schema of an event whose state is shown as the component ``item``."""
+    """Return the schema of an event whose state is the component ``item``."""
     return {
         "type": "object",
         "required": ["event", "data"],
@@ -73,13 +73,13 @@ router = APIRouter(prefix="/v1/jobs", tags=[TAG["name"]], route_class=GuardedRou
     response_class=Response,
     responses={
         200: {
-            "description": "Events until the job has ended: `state` (the job as in a list) whenever its state changes, "
-            "first of all the present one, and `progress` in between. The event of the final state is the last one; "
-            "a job that is removed before anybody has seen it end ends with `removed`.",
+            "description": "Events until the job has ended: `state` (the job as in a list) first and at each change of "
+            "its state, and `progress` in between. The event of the final state is the last one, or `removed` if the "
+            "job is removed before its end was sent.",
             "content": {"text/event-stream": {"itemSchema": event_schema("JobListItem")}},
         },
-        204: {"description": "The client has the event of the final state already; it need not come again."},
-        **problem_details.responses(e404=NO_JOB, e503="Too many clients of the tenant listen at once."),
+        204: {"description": "The client already has the event of the final state and need not reconnect."},
+        **problem_details.responses(e404=NO_JOB, e503="Too many clients of the tenant are listening."),
     },
 )
 async def follow_job(
@@ -89,12 +89,12 @@ async def follow_job(
     job_id: str,
     last_event_id: Annotated[
         str | None,
-        Header(description="The `id` of the last event that the client has; browsers send it by themselves."),
+        Header(description="`id` of the last event that the client has; browsers send it automatically."),
     ] = None,
 ) -> Response:
-    """The job as it goes on, as server-sent events.
+    """Stream the progress of the job as server-sent events.
 
-    A stream that breaks can be resumed with `Last-Event-ID`: nothing that the client has seen is repeated.
+    A broken stream can be resumed with `Last-Event-ID`; events that the client has are not repeated.
     """
     return await followed(request, poller, tenant, job_id, last_event_id, list_item, NO_JOB)
 
@@ -108,16 +108,16 @@ async def followed(
     shown: Callable[[F], dict[str, Any]],
     none_such: str,
 ) -> Response:
-    """The stream of what a poller follows, as ``shown``, which has its progress too.
+    """Return the event stream of a job or batch; ``shown`` converts it to JSON-like data with its ``progress``.
 
     Raises
     ------
     Refusal
-        503 where too many of the tenant listen or the store does not answer; 404 where the tenant has none such.
+        503 if too many clients of the tenant listen or the store does not answer; 404 if the tenant has no such job.
     """
     if poller.listeners_of(tenant) >= MAX_LISTENERS:
         raise Refusal(
-            503, "too-many-listeners", "Too many listeners", "Too many of your clients listen at once; ask again.",
+            503, "too-many-listeners", "Too many listeners", "Too many of your clients are listening. Send the request again.",
             headers={"Retry-After": "5"},
         )  # fmt: skip
     job = await _present(poller, id_, tenant) if ULID.fullmatch(id_) else None
@@ -142,8 +142,9 @@ async def _present(poller: JobPoller[F], job_id: str, tenant: str) -> F | None:
 async def _events(
     poller: JobPoller[F], job: F, seen: tuple[int, Status] | None, shown: Callable[[F], dict[str, Any]]
 ) -> AsyncIterator[bytes]:
-    """The stream of a job. It ends with the job, or without an event when the service stops."""
+    """Generate the events of a job. The stream ends with the job, or without an event when the service stops."""
     with poller.follow(job.id, job.tenant) as follower:
+        # The state just read is the first event; the poller must not read it again.
         follower.update(job)
         while not poller.closed:
             if not await follower.changed(KEEP_ALIVE_S):
@@ -160,7 +161,7 @@ async def _events(
 def _event(
     follower: Follower[F], seen: tuple[int, Status] | None, shown: Callable[[F], dict[str, Any]]
 ) -> bytes | None:
-    """What a client that has seen ``seen`` is to be told; None where there is nothing new."""
+    """Return the event for a client that has the state ``seen``; None if nothing is new."""
     job = follower.job
     if job is None:
         return format_sse_event(event="removed", data_str="{}")
@@ -181,6 +182,6 @@ async def _nothing() -> AsyncIterator[bytes]:
 
 
 def _seen(last_event_id: str | None) -> tuple[int, Status] | None:
-    # An id that is none of ours is ignored, as if the client came for the first time.
+    # An unknown id is ignored, as if the client connected for the first time.
     match = _EVENT_ID.fullmatch(last_event_id or "")
     return None if match is None else (int(match[1]), Status(match[2]))

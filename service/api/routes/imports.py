@@ -1,4 +1,4 @@
-"""``/v1/imports``: the curves in a drawing, a table or a picture that another program made, as points."""
+"""``/v1/imports``: the curves in a drawing, table or picture made by another program, as points."""
 
 from __future__ import annotations
 
@@ -35,13 +35,13 @@ router = APIRouter(prefix="/v1/imports", tags=["imports"], route_class=GuardedRo
 
 
 def file_of(types: tuple[str, ...], description: str) -> dict[str, Any]:
-    """The body of an operation that takes a file, for OpenAPI."""
+    """Return the OpenAPI description of a request body that is a file."""
     content = {type_: {"schema": {"type": "string", "format": "binary"}} for type_ in types}
     return {"requestBody": {"required": True, "description": description, "content": content}}
 
 
 async def taken(request: Request, types: tuple[str, ...]) -> tuple[bytes, str]:
-    """The file that a request brings, and the type that it is announced as.
+    """Read the file in a request; return it with its announced media type.
 
     Raises
     ------
@@ -50,19 +50,19 @@ async def taken(request: Request, types: tuple[str, ...]) -> tuple[bytes, str]:
     """
     bounded = BoundedRequest(request.scope, request.receive)
     if bounded.media_type and bounded.media_type not in types:
-        raise foreign(f"The body must be of one of these types: {', '.join(types)}.", *types)
+        raise foreign(f"The body must have one of these types: {', '.join(types)}.", *types)
     return await bounded.limited(request.app.state.settings.max_body_bytes), bounded.media_type
 
 
 async def answered(
     request: Request, desk: ImportDesk, tenant: str, door: Door, types: tuple[str, ...], content: bytes, **asked: Any
 ) -> Response:
-    """What a file gives, as the answer to a request.
+    """Respond with the content read from a file.
 
     Raises
     ------
     Refusal
-        400, 415, 422 or 503: what is wrong with the file, or that its turn has not come; 499 where nobody waits.
+        400, 415 or 422 for a fault of the file, 503 if the service is busy, 499 if the client has disconnected.
     """
     try:
         with span("drawing"):
@@ -87,14 +87,14 @@ async def answered(
     summary="Read the curves in a file",
     response_model=Imports,
     responses=problem_details.responses(
-        e400="The body cannot be read as what it begins as.",
+        e400="The body cannot be read in the format that its first bytes announce.",
         e413="The body is too large.",
-        e415="The body is of another type, or is announced as one.",
-        e422="The file has no curve, or is larger than is read; `errors` names its elements.",
-        e503="Other files have kept this one from being begun.",
+        e415="The body has another type, or is announced as one.",
+        e422="The file has no curve, or exceeds the size limits; `errors` names its elements.",
+        e503="The service is busy with other files.",
     ),
     openapi_extra=file_of(
-        TYPES, "The file as it is. What it is is seen by its beginning; what begins as nothing else is a table."
+        TYPES, "The unchanged file. Its first bytes determine the format; any other beginning means a table."
     ),
 )
 async def import_curves(
@@ -102,16 +102,16 @@ async def import_curves(
     desk: Readers,
     tenant: Tenant,
     length_unit: Annotated[
-        DrawingUnit, Query(description="Unit of the answer, where the file states its own; else it is the file's.")
+        DrawingUnit, Query(description="Unit of the answer if the file has a unit; otherwise the numbers stay as in the file.")
     ] = "mm",
     tolerance: Annotated[
         float | None,
         Query(
             gt=0.0,
             le=MAX_COORDINATE,
-            description="Greatest distance of a drawn curve from the chords between its points, in the unit of the "
-            f"answer. By default {DEFAULT_TOLERANCE:g} of the greater side of the box around each curve, while corners "
-            "and points that the file states stay; of a picture a tenth of a pixel, or half of one where it has steps.",
+            description="Maximum distance of a drawn curve from the chords between its points, in the unit of the "
+            f"answer. By default {DEFAULT_TOLERANCE:g} of the longer side of each curve's bounding box, with corners "
+            "and points of the file kept; for a picture a tenth of a pixel, or half a pixel for stepped edges.",
         ),
     ] = None,
     max_points: Annotated[
@@ -119,7 +119,7 @@ async def import_curves(
         Query(
             ge=FEWEST,
             le=MOST_ASKED,
-            description="Points of a curve at most: where it takes more, the tolerance is greater than asked for.",
+            description="Maximum number of points of a curve; if the tolerance needs more, it is increased.",
         ),
     ] = DEFAULT_POINTS,
     pixel_size: Annotated[
@@ -127,18 +127,18 @@ async def import_curves(
         Query(
             gt=0.0,
             le=MAX_COORDINATE,
-            description="Side of a pixel of a picture in `length_unit`, instead of what the picture states.",
+            description="Side of a pixel of a picture in `length_unit`, instead of the value in the picture.",
         ),
     ] = None,
 ) -> Response:
-    """The curves of an SVG or DXF drawing, a table of points or a PNG picture as points, with y upwards.
+    """Return the curves of an SVG or DXF drawing, a table of points or a PNG picture as points, with y upwards.
 
-    Loose pieces are joined at their ends, points that are there twice are one, and curved pieces have as many points as
-    the tolerance takes. What gives no curve is told with the reason.
+    Loose pieces are joined at their ends, duplicate points are merged, and curved pieces get the number of points that
+    the tolerance requires. Elements without a curve are listed with the reason.
     """
     content, media_type = await taken(request, TYPES)
     if pixel_size is not None and not content.startswith(PNG):
-        raise invalid_request([("/query/pixel_size", "Only a PNG picture has pixels.")])
+        raise invalid_request([("/query/pixel_size", "Only a PNG picture has pixels; omit `pixel_size`.")])
     return await answered(
         request,
         desk,

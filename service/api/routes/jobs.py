@@ -1,4 +1,4 @@
-"""``/v1/jobs``: state a problem, list, read, cancel and remove jobs."""
+"""``/v1/jobs``: submit a problem; list, read, cancel and remove jobs."""
 
 from __future__ import annotations
 
@@ -25,24 +25,24 @@ from service.jobs.store.states import Cost, Status
 from service.requests import consistent, written
 from synthesis.registry import KINDS, get_first_example
 
-TAG = {"name": "jobs", "description": "State a problem, follow the job, read the answer."}
+TAG = {"name": "jobs", "description": "Submit a problem, follow the job, read the answer."}
 
 RETRY_AFTER_S = 1
-"""When a client that does not wait should look again; most jobs are done by then."""
+"""Value of ``Retry-After`` for a client that does not wait, seconds; most jobs have ended by then."""
 
-NO_JOB = "There is no job with this id."
+NO_JOB = "No job has this id."
 
 router = APIRouter(prefix="/v1/jobs", tags=["jobs"], route_class=JsonRoute)
 
 
 def _known_kind(kind: str) -> str:
     if kind not in KINDS:
-        raise ValueError(f"there is no such kind; the kinds are {', '.join(KINDS)}")
+        raise ValueError(f"unknown kind; the kinds are {', '.join(KINDS)}")
     return kind
 
 
 class JobFilter(BaseModel):
-    """Which jobs to list."""
+    """Filter of the list of jobs."""
 
     model_config = ConfigDict(extra="forbid")
 
@@ -52,8 +52,8 @@ class JobFilter(BaseModel):
     kind: Annotated[str, AfterValidator(_known_kind), Field(json_schema_extra={"enum": list(KINDS)})] | None = Field(
         default=None, description="Only jobs of this kind of problem."
     )
-    limit: int = Field(default=20, ge=1, le=100, description="Jobs on a page, at most.")
-    cursor: str | None = Field(default=None, max_length=100, description="`next_cursor` of the page before.")
+    limit: int = Field(default=20, ge=1, le=100, description="Maximum number of jobs on a page.")
+    cursor: str | None = Field(default=None, max_length=100, description="`next_cursor` of the previous page.")
 
 
 _BODY = Body(
@@ -65,22 +65,22 @@ _BODY = Body(
         for name, kind in KINDS.items()
     }
 )
-_LOCATION = {"Location": {"description": "The path of the job.", "schema": {"type": "string"}}}
-_RETRY_AFTER = {"Retry-After": {"description": "Look again after so many seconds.", "schema": {"type": "integer"}}}
+_LOCATION = {"Location": {"description": "Path of the job.", "schema": {"type": "string"}}}
+_RETRY_AFTER = {"Retry-After": {"description": "Seconds to wait before the next request.", "schema": {"type": "integer"}}}
 _ETAG = {"ETag": {"description": "Changes whenever the job does.", "schema": {"type": "string"}}}
-_APPLIED = {"Preference-Applied": {"description": "`wait`: the job was waited for.", "schema": {"type": "string"}}}
+_APPLIED = {"Preference-Applied": {"description": "`wait`: the service waited for the job.", "schema": {"type": "string"}}}
 
 
 @router.post(
     "",
     operation_id="create_job",
-    summary="State a problem",
+    summary="Submit a problem",
     response_class=Response,
     status_code=202,
     responses={
         200: {
             "model": Job,
-            "description": "The finished job: in time for `Prefer: wait`, or the one of an earlier equal request.",
+            "description": "The finished job: within the time of `Prefer: wait`, or that of an earlier equal request.",
             "headers": {**_LOCATION, **_APPLIED},
         },
         202: {
@@ -90,10 +90,10 @@ _APPLIED = {"Preference-Applied": {"description": "`wait`: the job was waited fo
         },
         **problem_details.responses(
             e400="The body is not JSON.",
-            e409="The `Idempotency-Key` came with another body before.",
+            e409="The `Idempotency-Key` was used with a different body before.",
             e413="The body is too large.",
             e415="The body is not `application/json`.",
-            e422="The body does not state a problem; `errors` says where.",
+            e422="The body is not a valid problem; `errors` has the places.",
             e503="The queue is full.",
         ),
     },
@@ -106,24 +106,24 @@ async def create_job(
     prefer: Annotated[
         str | None,
         Header(
-            description="`wait=10` waits up to so many seconds (30 at most) for the job to end.", examples=["wait=10"]
+            description="`wait=10` waits up to 10 seconds (at most 30) for the end of the job.", examples=["wait=10"]
         ),
     ] = None,
     idempotency_key: Annotated[
         str | None,
         Header(
             pattern=KEY,
-            description="A name for this request, 1 to 200 visible ASCII characters. The same request sent again with "
-            "the same key is answered with the first job, as long as that is not removed.",
+            description="Key of this request, 1 to 200 visible ASCII characters. The same request sent again with the "
+            "same key is answered with the first job, until that is removed.",
             examples=["7f9c24e8"],
         ),
     ] = None,
 ) -> Response:
-    """Accept a problem as a job. Once this is answered the job is stored, and it ends, whatever process dies."""
+    """Accept a problem as a job. With the answer the job is stored and will end, even if processes die meanwhile."""
     faults = consistent(body.problem)
     if faults:
         raise invalid_problem([(f"/problem{path}", detail) for path, detail in faults])
-    # All lines of the header; the parameter is there for the documentation and holds only one of them.
+    # Reads all lines of the header; the parameter serves the documentation and holds only one line.
     wait_s = wait_seconds(request.headers.getlist("prefer"), request.app.state.settings.max_wait_s)
     try:
         job = await desk.accept(
@@ -152,11 +152,11 @@ async def create_job(
     response_class=Response,
     responses={
         200: {"model": JobList},
-        **problem_details.responses(e422="A parameter is not valid; `errors` says which."),
+        **problem_details.responses(e422="A parameter is not valid; `errors` names it."),
     },
 )
 async def list_jobs(desk: Desk, tenant: Tenant, filter_: Annotated[JobFilter, Query()]) -> Response:
-    """The jobs, newest first, a page at a time, without their problems and results."""
+    """Return a page of the jobs, newest first, without their problems and results."""
     page = await desk.page(
         tenant=tenant,
         limit=filter_.limit + 1,
@@ -177,7 +177,7 @@ async def list_jobs(desk: Desk, tenant: Tenant, filter_: Annotated[JobFilter, Qu
     response_class=Response,
     responses={
         200: {"model": Job, "headers": _ETAG},
-        304: {"description": "The job is as the client knows it.", "headers": _ETAG},
+        304: {"description": "The job is unchanged since the state that the client has.", "headers": _ETAG},
         **problem_details.responses(e404=NO_JOB),
     },
 )
@@ -187,10 +187,10 @@ async def get_job(
     tenant: Tenant,
     job_id: str,
     if_none_match: Annotated[
-        str | None, Header(description="The `ETag` of the state that the client has.", examples=['"3"'])
+        str | None, Header(description="`ETag` of the state that the client has.", examples=['"3"'])
     ] = None,
 ) -> Response:
-    """The job as it stands."""
+    """Return the present state of the job."""
     job = await job_of(desk, tenant, job_id)
     return unless_known(request, job.revision, lambda: whole_job(job))
 
@@ -207,7 +207,7 @@ async def get_job(
             "description": "The job was unfinished and is cancelled; its computation is being stopped.",
         },
         204: {"description": "The job was finished and is removed."},
-        **problem_details.responses(e404=NO_JOB, e409="The job is one of a batch, which is removed as a whole."),
+        **problem_details.responses(e404=NO_JOB, e409="The job belongs to a batch, which is removed as a whole."),
     },
 )
 async def delete_job(desk: Desk, tenant: Tenant, job_id: str) -> Response:
@@ -216,7 +216,7 @@ async def delete_job(desk: Desk, tenant: Tenant, job_id: str) -> Response:
         job = await desk.cancel_or_delete(tenant, job_id) if ULID.fullmatch(job_id) else None
     except PartOfBatch as part:
         raise Refusal(
-            409, "part-of-batch", "Part of a batch", f"The job is one of a batch; remove /v1/batches/{part.batch}."
+            409, "part-of-batch", "Part of a batch", f"The job belongs to a batch; remove /v1/batches/{part.batch}."
         ) from None
     if job is None:
         raise not_found(NO_JOB)
@@ -224,12 +224,12 @@ async def delete_job(desk: Desk, tenant: Tenant, job_id: str) -> Response:
 
 
 async def job_of(desk: JobDesk, tenant: str, job_id: str) -> JobRow:
-    """The job of a tenant.
+    """Return the job of a tenant.
 
     Raises
     ------
     Refusal
-        404 where the tenant has none such.
+        404 if the tenant has no such job.
     """
     job = await desk.get(tenant, job_id) if ULID.fullmatch(job_id) else None
     if job is None:

@@ -1,7 +1,7 @@
-"""Several modules of the page as one, so that a browser asks once and not once for each.
+"""Bundles of the page's modules, so that a browser needs one request instead of one for each module.
 
-A module becomes a function that is called at once and returns what the module exports; what it imports is taken from
-what the modules before it have returned::
+A module becomes a function that is called at once and returns its exports; its imports are taken from the returned
+values of the modules before it::
 
     import { el } from "./dom.js";                    const $grid = (() => {
     export function grid(view) { ... }       becomes  const { el } = $dom;
@@ -9,10 +9,10 @@ what the modules before it have returned::
                                                       return { grid };
                                                       })();
 
-This is right for modules as the page has them, and anything else is refused: imports and exports stand at the beginning
-of a line and name what they take and give, what is exported is never assigned anew, and no two modules import each
-other. A module that waits for something before it has what it exports becomes a function that is waited for.
-Nothing is made shorter: what a browser says of the bundle can be found in the sources.
+This is correct for modules of the form that the page uses, and any other form is refused: imports and exports begin a
+line and name their bindings, exported bindings are never reassigned, and no modules import each other. A module with a
+top-level ``await`` becomes an async function that is awaited. Nothing is minified, so that positions in browser
+messages can be found in the sources.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ from collections.abc import Mapping
 from graphlib import CycleError, TopologicalSorter
 
 SUFFIX = ".bundle.js"
-"""Of the name of a bundle, in place of ``.js`` of its first module."""
+"""Suffix of a bundle's name, which replaces ``.js`` of its first module."""
 
 _IMPORT = re.compile(
     r'^import (?:\{ (?P<names>[^}]+) \}|\* as (?P<all>\w+)) from "\./(?P<module>[\w./]+)";$', re.MULTILINE
@@ -30,27 +30,27 @@ _IMPORT = re.compile(
 _EXPORT = re.compile(r"^export (?=(?:async )?(?:function|class|const) (\w+))", re.MULTILINE)
 _OTHER = re.compile(r"^(?:import|export)\b.*$", re.MULTILINE)
 _WAITS = re.compile(r"^(?:export )?const \w+ = (?:.* )?await ", re.MULTILINE)
-"""A module that waits at its outermost level."""
+"""A module with a top-level ``await``."""
 _LATER = re.compile(r'import\("\./(\w+)\.js"\)(?=[,;)\]])')
-"""A module that is asked for when it is needed; it begins a bundle of its own. Types in comments look otherwise."""
+"""A dynamic import, which begins a bundle of its own. Types in comments have another form."""
 
 
 class BundleError(Exception):
-    """Modules cannot be put together; the message says why."""
+    """The modules cannot be bundled; the message has the reason."""
 
 
 def bundles(modules: Mapping[str, str], first: str) -> dict[str, str]:
-    """The bundle that begins with the module ``first``, and those that it and they ask for later, by their names.
+    """Return the bundle that begins with the module ``first``, and all bundles imported dynamically, by name.
 
     Parameters
     ----------
     modules
-        The text of each module by its name, as ``dom.js``. Whatever else is imported is left where it is.
+        The text of each module by name, such as ``dom.js``. Imports of other modules are kept as they are.
 
     Raises
     ------
     BundleError
-        Where a module imports or exports in a way that this does not know, or modules import each other.
+        If a module has an unsupported import or export, or modules import each other.
     """
     made: dict[str, str] = {}
     wanted = [first]
@@ -65,7 +65,7 @@ def bundles(modules: Mapping[str, str], first: str) -> dict[str, str]:
 
 
 def name_of(module: str) -> str:
-    """The name of the bundle that begins with a module.
+    """Return the name of the bundle that begins with a module.
 
     >>> name_of("studio.js")
     'studio.bundle.js'
@@ -104,11 +104,11 @@ def _joined(modules: Mapping[str, str], order: list[str]) -> str:
         exported = _EXPORT.findall(modules[name])
         text = _EXPORT.sub("", _IMPORT.sub(taken, modules[name]))
         if other := _OTHER.search(text):
-            raise BundleError(f"{name}: bundles know no such line: {other.group()}")
+            raise BundleError(f"{name}: unsupported import or export: {other.group()}")
         text = _LATER.sub(lambda found: f'import("./{found[1]}{SUFFIX}")', text)
         made = "await (async () =>" if _WAITS.search(text) else "(() =>"
         parts.append(f"const {_variable(name)} = {made} {{\n{text}return {{ {', '.join(exported)} }};\n}})();\n")
-    # The last one is what the bundle begins with, and the bundle exports what that does.
+    # The last module in order is the first one of the bundle; the bundle has the same exports.
     parts.append(f"export const {{ {', '.join(exported)} }} = {_variable(order[-1])};\n")
     return "\n".join([*outside, *parts])
 

@@ -1,4 +1,4 @@
-"""The studio at ``/``: the page's files, its modules as one, and a policy that lets it speak to this service only."""
+"""The studio at ``/``: the files and bundles of the page, and a policy that allows requests to this service only."""
 
 from __future__ import annotations
 
@@ -15,19 +15,19 @@ from service.api.routes.studio_bundle import bundles, name_of
 
 PAGE = "index.html"
 FIRST = "studio.js"
-"""The module that the page begins with."""
+"""The page's main module."""
 
 VENDOR = "vendor/"
-"""Where modules of others are, as they were published; `make vendor` has them."""
+"""Folder of third-party modules, unchanged; `make vendor` downloads them."""
 
 POLICY = (
     "default-src 'none'; script-src 'self'; style-src 'self'; img-src 'self' blob:; connect-src 'self'; "
     "base-uri 'none'; form-action 'none'; frame-ancestors 'none'"
 )
-"""Nothing from elsewhere and nothing inline; ``blob:`` are drawings that the page has fetched with its key."""
+"""No external and no inline resources; ``blob:`` allows drawings that the page has fetched with its key."""
 
 MESSAGES = "messages/"
-"""Where the texts of the page are in other languages, a file for each."""
+"""Folder of the page's translations, a file for each language."""
 
 _HEADERS = {
     "Content-Security-Policy": POLICY,
@@ -36,7 +36,7 @@ _HEADERS = {
 }
 _ASKED_AGAIN = "no-cache"
 _KEPT = "public, max-age=31536000, immutable"
-"""Of what is asked for by its version: its address has never another content."""
+"""Caching of files requested by version, whose content never changes."""
 
 _LINK = re.compile(r'\b(href|src)="/studio/([^"?]+)"')
 
@@ -52,9 +52,9 @@ _TYPES = {
 
 @cache
 def studio_files() -> dict[str, Representation]:
-    """All files of the page by name; they are few, and no request can name another.
+    """Return all files of the page by name; a request cannot name any other file.
 
-    They are read when the page is asked for first, which takes a tenth of a second.
+    They are read at the first request, which takes a tenth of a second.
     """
     texts = {}
     studio = files("service").joinpath("studio")
@@ -73,7 +73,7 @@ def _media_type(name: str) -> str | None:
 
 
 def _dated(page: str, read: Mapping[str, Representation]) -> str:
-    """The page, asking for its bundle and for all of its files by their version."""
+    """Return the page with the versions of its files in their URLs, and its main module replaced by the bundle."""
 
     def versioned(found: re.Match[str]) -> str:
         name = name_of(FIRST) if found[2] == FIRST else found[2]
@@ -87,16 +87,16 @@ router = APIRouter(include_in_schema=False)
 
 @router.get("/")
 async def studio(request: Request) -> Response:
-    """The page."""
+    """Return the page."""
     return studio_files()[PAGE].answer(request, {**_HEADERS, "Cache-Control": _ASKED_AGAIN})
 
 
 @router.get("/studio/{name:path}")
 async def studio_file(request: Request, name: str, v: str = "") -> Response:
-    """A module, the style sheet or the icon of the page."""
+    """Return a module, the style sheet or the icon of the page."""
     file = studio_files().get(name)
     if file is None or name == PAGE:
         raise HTTPException(404)
-    # Another server, of the version before or after, may have sent the page: what it has is sent, and not kept.
+    # A server of another version may have sent the page: the file is sent all the same, but must not be cached.
     kept = _KEPT if v == file.version else _ASKED_AGAIN
     return file.answer(request, {**_HEADERS, "Cache-Control": kept})

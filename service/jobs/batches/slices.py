@@ -1,8 +1,8 @@
-"""What a worker does with a share of a batch: it solves a slice of it and stores that in one go.
+"""The work on a share of a batch: a worker solves a slice of it and stores the slice in one transaction.
 
-A slice ends after :data:`SLICE_S` or :data:`MOST` samples, whichever comes first: soon enough that a worker is free for
-whatever comes next in turn, and seldom enough that claiming and storing, which takes as long as a quick problem, is a
-small part of the work.
+A slice ends after :data:`SLICE_S` seconds or :data:`MOST` samples, the earlier of the two. That is soon enough to free
+the worker for the next job in turn, and late enough to make claiming and storing, which take as long as a quick
+problem, a small part of the work.
 
 This module is imported before the worker has set its number of threads, so it must not import numpy.
 """
@@ -31,17 +31,17 @@ from service.jobs.store.schema import Claim, now
 from service.jobs.store.states import Status
 
 SLICE_S = 0.1
-"""Seconds after which no further sample of a slice is begun."""
+"""Time after which a slice begins no further sample, seconds."""
 
 MOST = 200
-"""Samples of a slice at most."""
+"""Maximum number of samples of a slice."""
 
 LOOKED_UP = 16
-"""Samples whose answers are looked for together among those that are stored."""
+"""Number of samples whose stored answers are queried together."""
 
 PLANS_SIZE = 2 << 20
-"""Characters of the plans that a worker keeps: reading one takes a while, and there are many slices. They take some ten
-times as much memory. The one that is worked at is kept in any case."""
+"""Size of the plans that a worker caches, characters of JSON; in memory they take about ten times as much. Parsing a
+plan for each of many slices would take long. The plan in use is kept whatever its size."""
 
 Outcome = Literal["slice", "superseded", "stopped", "out of memory"]
 
@@ -50,7 +50,7 @@ log = structlog.get_logger(__name__)
 
 @dataclass(frozen=True, slots=True)
 class _Stated:
-    """A sample as it is to be solved: the problem and its digest, or why there is none."""
+    """A sample ready to be solved: the problem and its digest, or the fault that prevents it."""
 
     number: int
     problem: Any = None
@@ -60,7 +60,7 @@ class _Stated:
 
 @dataclass(frozen=True, slots=True)
 class _Kept:
-    """A batch, its plan, and how many characters that is."""
+    """A batch, its plan, and the size of both in characters of JSON."""
 
     batch: BatchRow
     plan: Plan
@@ -68,7 +68,7 @@ class _Kept:
 
 
 class Slices:
-    """Solves slices in a worker process, one after the other."""
+    """Solves slices in a worker process, one at a time."""
 
     def __init__(self, store: BatchStore, solving: Solving, out_of_memory: faults.Fault) -> None:
         self._store = store
@@ -77,9 +77,9 @@ class Slices:
         self._plans: OrderedDict[str, _Kept] = OrderedDict()
 
     def run(self, claim: Claim, batch_id: str) -> Outcome:
-        """Solve a slice of the share that was claimed. The store has it when this returns.
+        """Solve a slice of the claimed share and store it before returning.
 
-        Nothing of it is stored where the lane says that it is to stop; that is soon done again.
+        If the lane requests a stop, nothing of the slice is stored; solving it again takes little time.
         """
         share = Share.read(claim.problem)
         try:
@@ -102,16 +102,18 @@ class Slices:
         except Stopped:
             return "stopped"
         except MemoryError:
+            # The samples before this one are sound and are stored; only the one at work has failed.
             at = todo[len(new)]
             new.append(_failed(batch, at, now(), self._out_of_memory))
             outcome = "out of memory"
+        # After a sample solved by itself the share goes on from its beginning; stored samples are skipped there.
         first = share.first if share.alone is not None else todo[len(new)] if len(new) < len(todo) else end
         left = Share(first, share.end) if first < share.end else None
         stored = patiently(self._store.store, batch, claim.job_id, claim.attempt, left, new)
         return outcome if stored else "superseded"
 
     def _known(self, batch_id: str) -> tuple[BatchRow, Plan] | None:
-        """The batch and its plan; None where it has ended."""
+        """Return the batch and its plan, from the cache if possible; None if the batch has ended."""
         if batch_id not in self._plans:
             batch = patiently(self._store.begun, batch_id)
             if batch is None:
@@ -119,6 +121,7 @@ class Slices:
             try:
                 known = self._read(batch)
             except MemoryError:
+                # The cached plans take most of the memory: try again without them.
                 self._plans.clear()
                 known = self._read(batch)
             if known is None:
@@ -137,7 +140,7 @@ class Slices:
         return _Kept(batch, Plan.read(batch.stated, values), len(batch.stated) + len(values))
 
     def _without_its_plan(self, claim: Claim, batch_id: str, share: Share) -> Outcome:
-        """Fail what is left of a share whose plan takes more memory than a job may: none of it can be solved."""
+        """Fail the rest of a share whose plan exceeds the memory limit of a job, so that no sample can be solved."""
         self._plans.clear()
         batch = patiently(self._store.summaries, [batch_id]).get(batch_id)
         new = []
@@ -149,7 +152,7 @@ class Slices:
         return "out of memory"
 
     def _window(self, batch: BatchRow, share: Share) -> tuple[list[int], int]:
-        """The samples to be solved next, and where those begin that come after them."""
+        """Return the numbers of the samples to solve next, and the number at which the samples after them begin."""
         if share.alone is not None:
             first, end = share.alone, share.alone + 1
         else:
@@ -160,7 +163,7 @@ class Slices:
     def _with_answers(
         self, batch: BatchRow, plan: Plan, todo: Sequence[int], new: Sequence[Ended]
     ) -> Iterator[tuple[_Stated, str | OwnAnswer | None]]:
-        """The samples as they are stated, each with the answer that the slice or the store has of its like."""
+        """Yield the prepared samples, each with the answer to an equal problem from this slice or from the store."""
         own: dict[str, OwnAnswer] = {}
         left = deque(todo)
         while left:
@@ -170,15 +173,16 @@ class Slices:
                 wanted = {stated.digest for stated in group if stated.digest is not None}
                 stored = patiently(self._store.answers, batch, wanted - own.keys())
             for stated in group:
+                # The caller appends to `new` between two yields: the last entry is the sample yielded before.
                 if plan.reuse and new and new[-1].digest is not None:
                     own[new[-1].digest] = OwnAnswer(new[-1].number, new[-1].figures)
                 known_by = stated.digest or ""
                 yield stated, own.get(known_by) or stored.get(known_by)
 
     def _group(self, batch: BatchRow, plan: Plan, left: deque[int]) -> list[_Stated]:
-        """The next samples, taken from those that are ``left``: as many as are looked for together.
+        """Prepare the next samples of ``left`` and remove them from it, as many as are queried together.
 
-        Where one takes too much memory to be stated, those before it; the error is its own when it comes first.
+        If preparing one takes too much memory, return those before it. The error is raised if it is the first.
         """
         group: list[_Stated] = []
         for number in list(left)[: LOOKED_UP if plan.reuse else 1]:
@@ -219,12 +223,12 @@ class Slices:
             )
         except MemoryError:
             raise
-        except Exception:  # the boundary of the solvers: whatever defect they have ends this sample only
+        except Exception:  # the boundary of the solvers: a defect of theirs ends this sample only
             log.exception("the solver raised", batch=batch.id, sample=stated.number)
             return _failed(batch, stated.number, began, faults.INTERNAL_ERROR)
 
     def _solved(self, stated: _Stated) -> str | faults.Fault:
-        """The answer in JSON, or why there is none."""
+        """Return the answer as JSON, or the fault."""
         from service.error_messages import sentence
         from service.requests import consistent
         from synthesis import dispatch
@@ -236,7 +240,7 @@ class Slices:
             with self._solving.at_work(stated.number):
                 return dispatch.solve(stated.problem, self._solving.stoppable(_silent)).model_dump_json()
         except ContradictionError as error:
-            # Some are seen by the solver alone, and stand among those of the statement nowhere.
+            # Some contradictions are found by the solver only and are not among those of the statement.
             path, detail = error.contradiction
             return faults.invalid_problem(consistent(stated.problem) or [(path, sentence(detail))])
 
@@ -251,7 +255,7 @@ class Slices:
                 return _Stated(number, problem, digest(problem))
         except MemoryError:
             raise
-        except Exception:  # a defect of what checks or tells problems apart ends this sample only
+        except Exception:  # a defect in the checks or in the hash ends this sample only
             log.exception("a statement could not be read", batch=batch.id, sample=number)
             return _Stated(number, fault=faults.INTERNAL_ERROR)
 
@@ -266,7 +270,7 @@ def _failed(batch: BatchSummary, number: int, began: str, fault: faults.Fault) -
 
 
 def _figures(result: str, metrics: Sequence[str]) -> str:
-    """What the table has of an answer: the number of designs that passed, and the metrics of the best of them."""
+    """Return the figures of an answer for the table: number of designs that passed, metrics of the best of them."""
     passed = [design for design in from_json(result)["designs"] if design["verification"]["passed"]]
     best = passed[0]["metrics"] if passed else {}
     return json.dumps([len(passed), *(best.get(name) for name in metrics)])

@@ -1,8 +1,8 @@
-"""The batches in the store, their shares among the jobs, and the samples that have ended.
+"""The batches in the store, their shares in the job table, and the samples that have ended.
 
-A slice comes into the store in one transaction: its samples, what is left of its share, which goes back into the queue,
-and the counts of the batch. The transaction holds only where the share is still that of the attempt, so that whatever
-dies or comes late, each sample is there once.
+A slice is stored in one transaction: its samples, the rest of its share, which goes back into the queue, and the counts
+of the batch. The transaction succeeds only if the share still belongs to the attempt. So each sample is stored exactly
+once, even if a process dies or writes late.
 """
 
 from __future__ import annotations
@@ -51,16 +51,16 @@ from service.jobs.store.statements import (
 from service.jobs.store.states import FINISHED, UNFINISHED, Cost, Status
 
 SHARES = 16
-"""Shares of a batch at most: more workers than this do not make it faster."""
+"""Maximum number of shares of a batch; workers beyond this number do not make it faster."""
 
 CLEARED_S = 2.0
-"""How long whoever removes a batch waits for that, seconds; nobody sees it from the beginning."""
+"""Time that a request to remove a batch spends on deleting it, seconds; readers do not see the batch from the start."""
 
 _LOST = (
     batches.c.status.in_(UNFINISHED),
     ~exists().where(jobs.c.batch == batches.c.id, jobs.c.status.in_(UNFINISHED)),
 )
-"""Batches of whose shares none is left, and that are not at their end."""
+"""Conditions for lost batches: not finished, but without an unfinished share."""
 
 _SUMMARY = [batches.c[field.name] for field in fields(BatchSummary)]
 _WHOLE = [batches.c[field.name] for field in fields(BatchRow)]
@@ -83,20 +83,20 @@ class BatchStore:
         max_queued: int,
         repeatable: Repeatable | None,
     ) -> tuple[BatchRow, list[str]]:
-        """Store a new batch with its shares, or find the one that the same request has made already.
+        """Store a new batch with its shares, or find the batch that the same request created before.
 
         Returns
         -------
         tuple
-            The batch, and the ids of its shares where it is new.
+            The batch, and the ids of its shares; no ids if the batch is not new.
 
         Raises
         ------
         KeyReused
-            When another request of the tenant has made a batch under this key.
+            If a different request of the tenant has created a batch with this key.
         QueueFull
-            When it would be new, and with its shares more than ``max_queued`` jobs of the tenant were queued. It has
-            no more shares than that.
+            If the batch is new and its shares would raise the tenant's queued jobs above ``max_queued``. A batch has
+            at most ``max_queued`` shares.
         """
         row: dict[str, Any] = {
             "id": str(ULID()),
@@ -121,7 +121,7 @@ class BatchStore:
         ]
 
         def inserted(connection: Connection) -> bool:
-            # Counted when nobody else inserts any more: in SQLite, whoever has written is alone.
+            # Count only while no other process can insert: in SQLite the first write already takes the only lock.
             one_after_the_other(connection, tenant)
             connection.execute(
                 insert(batches), {**row, "removed": False, "plan": plan.values_as_json(), **NO_KEY, **key}
@@ -148,14 +148,14 @@ class BatchStore:
         return None if row is None else BatchRow(*as_values(row))
 
     def get(self, batch_id: str) -> BatchRow | None:
-        """The batch, or None where there is none."""
+        """Return the batch, or None if it does not exist."""
         self._settle([batch_id])
         with self._engine.connect() as connection:
             row = _row(connection, batch_id)
         return None if row is None else BatchRow(*as_values(row))
 
     def summaries(self, batch_ids: Sequence[str]) -> dict[str, BatchSummary]:
-        """The batches of these ids that there are, by id."""
+        """Return the existing batches among these ids, by id."""
         self._settle(batch_ids)
         found: dict[str, BatchSummary] = {}
         with self._engine.connect() as connection:
@@ -166,7 +166,7 @@ class BatchStore:
         return found
 
     def page(self, *, tenant: str, limit: int, before: str | None) -> list[BatchSummary]:
-        """At most ``limit`` batches of a tenant, newest first, from those older than the batch ``before``."""
+        """Return at most ``limit`` batches of a tenant older than the batch ``before``, newest first."""
         query = select(batches.c.id).where(batches.c.tenant == tenant, removal.THERE)
         if before is not None:
             query = query.where(batches.c.id < before)
@@ -176,7 +176,7 @@ class BatchStore:
         return [found[batch_id] for batch_id in ids if batch_id in found]
 
     def table(self, batch: BatchSummary) -> list[TableRow]:
-        """The samples that have ended, in their order."""
+        """Return the rows of the samples that have ended, by number."""
         query = select(
             samples.c.number, samples.c.status, samples.c.cached, samples.c.figures, samples.c.error
         ).where(samples.c.batch == batch.id).order_by(samples.c.number)  # fmt: skip
@@ -187,19 +187,19 @@ class BatchStore:
             ]
 
     def plan(self, batch: BatchRow) -> Plan | None:
-        """The plan of a batch; None where it has been removed since."""
+        """Return the plan of a batch; None if the batch has been removed."""
         values = self.values(batch)
         return None if values is None else Plan.read(batch.stated, values)
 
     def values(self, batch: BatchRow) -> str | None:
-        """What the plan of a batch has beside what was stated, as it is written; None where it has been removed."""
+        """Return the stored values of a batch's plan as JSON; None if the batch has been removed."""
         query = select(batches.c.plan).where(batches.c.id == batch.id, removal.THERE)
         with self._engine.connect() as connection:
             values: str | None = connection.execute(query).scalar_one_or_none()
         return values
 
     def begun(self, batch_id: str) -> BatchRow | None:
-        """Note that a worker is at the batch; the batch, or None where it is not to be worked at any more."""
+        """Mark a queued batch as running and return it; None if it has ended."""
         change = update(batches).where(batches.c.id == batch_id, batches.c.status == Status.QUEUED)
         with self._engine.begin() as connection:
             connection.execute(change.values(status=Status.RUNNING, started_at=now(), revision=batches.c.revision + 1))
@@ -207,15 +207,15 @@ class BatchStore:
         return None if row is None or row.status not in UNFINISHED else BatchRow(*as_values(row))
 
     def ended(self, batch: BatchSummary, first: int, end: int) -> set[int]:
-        """Which of the samples from ``first`` to before ``end`` are stored."""
+        """Return the numbers of the stored samples from ``first`` to before ``end``."""
         with self._engine.connect() as connection:
             return _ended(connection, batch.id, first, end)
 
     def answers(self, batch: BatchSummary, digests: Collection[str]) -> dict[str, str | OwnAnswer]:
-        """What the tenant has of problems of these digests: an answer of the batch's own, or a result in JSON.
+        """Return the tenant's answers to problems with these digests: a sample of this batch, or a result as JSON.
 
-        What is asked for is found at once, however many have the same digest: of the tenant's one is taken, and of a
-        batch there are not many, since those that are the same as another of it have none.
+        The query is fast however many rows share a digest: one of the tenant's results is taken, and within a batch a
+        sample equal to another one has no digest.
         """
         if not digests:
             return {}
@@ -235,8 +235,9 @@ class BatchStore:
     def store(
         self, batch: BatchSummary | None, share_id: str, attempt: int, left: Share | None, new: Sequence[Ended]
     ) -> bool:
-        """Store a slice; what is left of its share goes back into the queue. False where the attempt counts no more."""
+        """Store a slice and requeue the rest of its share; return False if the attempt is no longer current."""
         change = _done(share_id) if left is None else _back(share_id, left, crashes=0)
+        # The share first, then the batch: cancel() locks them in the same order.
         with self._engine.begin() as connection:
             if connection.execute(change.where(jobs.c.attempt == attempt)).rowcount == 0:
                 return False
@@ -246,20 +247,21 @@ class BatchStore:
         return True
 
     def crashed(self, share_id: str, claim: str, number: int | None, *, killed: bool) -> Status | None:
-        """Note that the worker of a share died, by itself or ``killed`` from outside, at a sample, where that is known.
+        """Record that the worker of a share died, by itself or ``killed`` from outside, at sample ``number`` if known.
 
-        The share goes on with that sample by itself; after as many deaths as a job may cause, the sample has failed.
+        The share is requeued with that sample to be solved by itself. After as many deaths as a job may cause, the
+        sample fails.
 
         Returns
         -------
         Status or None
-            ``queued``; ``succeeded`` where nothing of the share is left to do; or None where it is that of another
-            attempt, or cancelled; nothing changed.
+            ``queued``; ``succeeded`` if the share has no sample left; None, and no change, if the share is cancelled
+            or belongs to another attempt.
         """
         return self._given_back(share_id, claim, number, MAX_KILLS if killed else MAX_CRASHES, WORKER_DIED.as_json)
 
     def give_up(self, share_id: str, claim: str, number: int | None, error: Callable[[str], str]) -> Status | None:
-        """Fail a sample from outside; its share goes on with the others. ``error`` gives the JSON for the job's id."""
+        """Fail a sample from outside and requeue the rest of its share. ``error`` builds the JSON for a job id."""
         return self._given_back(share_id, claim, number, 0, error)
 
     def _given_back(
@@ -281,6 +283,7 @@ class BatchStore:
                 return None
             if at is None:
                 return Status.SUCCEEDED
+            # The failed sample is stored in the transaction that requeues its share, so it cannot run again.
             if over:
                 found = _row(connection, row.batch)
                 failed = Ended(at, Status.FAILED, now(), now(), error=error(sample_id(row.batch, at)))
@@ -290,10 +293,10 @@ class BatchStore:
         return Status.QUEUED
 
     def cancel(self, batch_id: str) -> list[str] | None:
-        """Cancel an unfinished batch: the ids of its shares that were not at their end; None where there is no such."""
+        """Cancel an unfinished batch; return the ids of its unfinished shares, or None if there is no such batch."""
         shares = select(jobs.c.id).where(jobs.c.batch == batch_id, jobs.c.status.in_(UNFINISHED))
         with self._engine.begin() as connection:
-            # The shares before the batch, in the order in which slices are stored.
+            # Lock the shares before the batch, as store() does: the opposite order could deadlock.
             running = list(connection.execute(shares.order_by(jobs.c.id).with_for_update()).scalars())
             for share_id in running:
                 connection.execute(moved("cancel", share_id, progress_message="cancelled", finished_at=now()))
@@ -304,9 +307,9 @@ class BatchStore:
             return running if cancelled.rowcount else None
 
     def delete(self, batch_id: str) -> bool:
-        """Remove a finished batch with all that it has; whether there was one.
+        """Remove a finished batch with all its samples; return whether it existed.
 
-        Of a very large one what takes longer than :data:`CLEARED_S` is left to :meth:`tidy`.
+        The deletion stops after :data:`CLEARED_S` seconds; :meth:`tidy` deletes the rest of a very large batch.
         """
         if not removal.mark(self._engine, batch_id):
             return False
@@ -314,12 +317,12 @@ class BatchStore:
         return True
 
     def tidy(self) -> int:
-        """End the batches that were lost, and remove what is left of those whose removal broke off.
+        """End lost batches, and finish removals that were interrupted.
 
         Returns
         -------
         int
-            How many were lost: none of their shares is left, and what these had still to do was given up.
+            Number of lost batches: all their shares have ended, some of them given up with samples left.
         """
         with self._engine.connect() as connection:
             lost = list(connection.execute(select(batches.c.id).where(*_LOST)).scalars())
@@ -329,7 +332,8 @@ class BatchStore:
         return len(lost)
 
     def delete_finished(self, before: datetime) -> int:
-        """Remove the oldest batch that finished before a time; tells how many."""
+        """Remove the oldest batch that finished before a time; return the number removed, 0 or 1."""
+        # An id begins with the time of creation, which precedes the end: the index on ids bounds the search.
         oldest = (
             select(batches.c.id)
             .where(
@@ -346,10 +350,11 @@ class BatchStore:
         return 0 if batch_id is None else int(self.delete(batch_id))
 
     def _settle(self, batch_ids: Iterable[str]) -> None:
-        """End batches of whose shares none is left: what these had still to do was given up, and has failed."""
+        """End batches without unfinished shares: the samples left in shares that were given up have failed."""
         ids = list(batch_ids)
         for start in range(0, len(ids), MAX_IDS):
             these = batches.c.id.in_(ids[start : start + MAX_IDS])
+            # Read first: almost always there is none, and a read takes no write lock.
             with self._engine.connect() as connection:
                 if connection.execute(select(batches.c.id).where(these, *_LOST)).first() is None:
                     continue
@@ -364,16 +369,16 @@ class BatchStore:
 
 
 def _dealt(total: int, most: int) -> list[Share]:
-    """The shares of a batch, so many at most: as even as can be."""
+    """Split a batch into at most ``most`` shares whose sizes differ by at most one sample."""
     count = min(total, most)
     bounds = [total * n // count for n in range(count + 1)]
     return [Share(first, end) for first, end in pairwise(bounds)]
 
 
 def _to_blame(connection: Connection, batch_id: str, left: Share, number: int | None) -> int | None:
-    """The sample at which a worker is taken to have died: the one that it was at, else the one that it had to begin.
+    """Return the sample to blame for a worker's death: the one at work if known, else the first one not stored.
 
-    None where all of the share are stored.
+    None if all samples of the share are stored.
     """
     stored = _ended(connection, batch_id, left.first, left.end)
     supposed = (n for n in (number, left.alone) if n is not None)
@@ -389,7 +394,7 @@ def _back(share_id: str, left: Share, **values: Any) -> Any:
 
 
 def _stored(connection: Connection, batch: BatchSummary, new: Sequence[Ended]) -> bool:
-    """Store ended samples and count them; False, and to be rolled back, where the batch is finished."""
+    """Store ended samples and count them; return False, for the caller to roll back, if the batch has finished."""
     succeeded = sum(sample.status == Status.SUCCEEDED for sample in new)
     failed, cached = len(new) - succeeded, sum(sample.cached for sample in new)
     done = batches.c.succeeded + batches.c.failed + len(new)
@@ -414,7 +419,7 @@ def _stored(connection: Connection, batch: BatchSummary, new: Sequence[Ended]) -
 
 
 def _one_result_each(tenant: str, digests: Collection[str]) -> Select[Any]:
-    """The digests, each with one result that the tenant has by it, or with None."""
+    """Return a query for each digest with one of the tenant's results for it, or NULL."""
     wanted = values(column("digest", String), name="wanted").data([(digest,) for digest in digests]).cte("wanted")
     results = [
         select(table.c.result)
@@ -427,7 +432,7 @@ def _one_result_each(tenant: str, digests: Collection[str]) -> Select[Any]:
 
 
 def _of(batch_id: str, first: int, end: int) -> Sequence[Any]:
-    """The samples of a batch from ``first`` to before ``end``."""
+    """Return the conditions for the samples of a batch from ``first`` to before ``end``."""
     return samples.c.batch == batch_id, samples.c.number >= first, samples.c.number < end
 
 

@@ -1,4 +1,4 @@
-"""The table of a batch: a row for each sample, and those rows that no other beats."""
+"""The table of a batch, one row for each sample, and its Pareto front."""
 
 from __future__ import annotations
 
@@ -21,30 +21,30 @@ from service.jobs.store.states import Status
 Rows = np.ndarray[Any, np.dtype[np.float64]]
 
 SIGNED = ("relative_error", "error")
-"""Metrics that are errors of ratios, with their signs."""
+"""Metrics that are signed errors of ratios; their absolute values are compared."""
 
 AT_ONCE = 200
-"""Rows that are written in one go."""
+"""Number of rows written in one piece."""
 
 
 @dataclass(frozen=True)
 class Table:
-    """Rows by columns; None where a sample has nothing in a column."""
+    """Columns and rows; None marks an empty cell."""
 
     columns: list[str]
     rows: list[list[Any]]
 
     def as_csv(self) -> Iterator[bytes]:
-        """The table as CSV (RFC 4180), piece by piece.
+        """Yield the table as CSV (RFC 4180) in pieces.
 
-        Numbers have all their digits; what is no number and no text is JSON.
+        Numbers have all their digits; values other than numbers and texts are JSON.
         """
         yield _written([self.columns])
         for rows in self._pages():
             yield _written([[_cell(value) for value in row] for row in rows])
 
     def as_json(self, **more: Any) -> Iterator[bytes]:
-        """An object of the columns, of whatever ``more``, and of the rows, in JSON, piece by piece."""
+        """Yield a JSON object of the columns, the fields ``more`` and the rows, in pieces."""
         yield to_json({"columns": self.columns, **more})[:-1] + b',"rows":['
         comma = b""
         for rows in self._pages():
@@ -57,15 +57,15 @@ class Table:
             yield self.rows[start : start + AT_ONCE]
 
     def front(self, least: Sequence[str], greatest: Sequence[str]) -> Table:
-        """The rows that no other beats: none is as good in all of these columns and better in one.
+        """Return the Pareto front: the rows for which no other row is as good in all columns and better in one.
 
-        Rows that lack a number in one of them are not looked at.
+        Rows without a number in one of these columns are ignored.
 
         Parameters
         ----------
         least, greatest : sequence of str
-            Columns in which less is better, and in which more is. Less of an error with a sign (:data:`SIGNED`) is less
-            of its size.
+            Columns to minimize and columns to maximize. A signed error (:data:`SIGNED`) is minimized by its absolute
+            value.
         """
         signs = {**dict.fromkeys(least, 1.0), **dict.fromkeys(greatest, -1.0)}
         places = [(self.columns.index(name), sign) for name, sign in signs.items()]
@@ -82,11 +82,11 @@ class Table:
 
 
 def table_of(batch: BatchSummary, plan: Plan, ended: Sequence[TableRow]) -> Table:
-    """The table of a batch as it stands: the varied fields, what came of the sample, its best design, its job."""
+    """Build the current table of a batch: varied fields, outcome of each sample, its best design, its job."""
     columns = [*plan.fields, "status", "cached", "designs", *plan.metrics, "job", "failure"]
     by_number = {row.number: row for row in ended}
     nothing = [None] * (1 + len(plan.metrics))
-    # Of a finished batch, what has not ended was cancelled with it, or given up with its share.
+    # In a finished batch, a sample that has not ended was cancelled with the batch or given up with its share.
     other = {Status.CANCELLED: Status.CANCELLED, Status.SUCCEEDED: Status.FAILED, Status.FAILED: Status.FAILED}
     without = other.get(batch.status, Status.QUEUED)
     lost = WORKER_DIED.detail if without == Status.FAILED else None
@@ -105,15 +105,21 @@ def table_of(batch: BatchSummary, plan: Plan, ended: Sequence[TableRow]) -> Tabl
 
 
 def unbeaten(table: Rows) -> list[int]:
-    """The rows of a table, less being better in each column, that no other beats, in their order.
+    """Return the indices of the Pareto-optimal rows of a table, all columns minimized, in ascending order.
 
-    Equal rows do not beat one another. Of the different ones, sorted by the first column, among equals by the second,
-    and so on, one is beaten where another before it is as good in each other column. With two columns the least so far
-    of the second tells; with more, rows are compared with those that are kept so far, many at once.
+    Equal rows do not dominate each other. The distinct rows are sorted lexicographically; a row is dominated if an
+    earlier row is as good in each other column. With two columns, the running minimum of the second decides. With more,
+    a block of rows at a time is compared with the rows kept so far.
+
+    Parameters
+    ----------
+    table : shape (n, m)
+        Values to minimize.
     """
     if len(table) == 0:
         return []
     different, which = np.unique(table + 0.0, axis=0, return_inverse=True)  # -0.0 is 0.0
+    # The first column needs no comparison: the sort has put smaller values first.
     others = different[:, 1:]
     kept = np.zeros(len(different), bool)
     if others.shape[1] < 2:
@@ -124,6 +130,7 @@ def unbeaten(table: Rows) -> list[int]:
         for start in range(0, len(different), _COMPARED):
             block = others[start : start + _COMPARED]
             left = np.flatnonzero(~_as_good(block, others[:start][kept[:start]]).any(axis=1))
+            # Within the block only earlier rows can dominate, hence the lower triangle.
             before = np.tri(len(left), k=-1, dtype=bool)
             left = left[~(_as_good(block[left], block[left]) & before).any(axis=1)]
             kept[start + left] = True
@@ -131,11 +138,11 @@ def unbeaten(table: Rows) -> list[int]:
 
 
 _COMPARED = 256
-"""Rows that are compared with those before them together."""
+"""Number of rows compared with the earlier ones at a time; bounds the memory of the comparison."""
 
 
 def _as_good(rows: Rows, others: Rows) -> np.ndarray[Any, np.dtype[np.bool_]]:
-    """Whether of each row (n) each other one (m) is as good in each column; shape (n, m)."""
+    """Return for each row (n) whether each other row (m) is as good in every column; shape (n, m)."""
     as_good = np.ones((len(rows), len(others)), bool)
     for row, other in zip(rows.T, others.T, strict=True):
         as_good &= other <= row[:, None]

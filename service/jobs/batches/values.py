@@ -1,7 +1,7 @@
-"""The values that a field has in the samples, and how the store has them.
+"""Values of a varied field in the samples, and their stored form.
 
-Lists are JSON. Ten thousand numbers that were drawn, or as many times one of a few large objects, would be megabytes of
-it, and reading them again would take longer than solving some problems; they are arrays of numbers, written in base64.
+Lists are stored as JSON. Ten thousand random numbers, or references to a few large objects, would be megabytes of JSON,
+and parsing those would take longer than solving some problems. They are arrays of numbers, stored in base64.
 """
 
 from __future__ import annotations
@@ -17,14 +17,14 @@ Values = Sequence[Any]
 
 @dataclass(frozen=True)
 class Picked(Sequence[Any]):
-    """Some of few values, each any number of times: the one at ``places[n]`` is the ``n``-th.
+    """A sequence of repeated values: the ``n``-th element is the value at index ``places[n]``.
 
     Attributes
     ----------
     among : sequence
-        The values.
+        The distinct values.
     places : array of type H
-        Numbers of values, from 0.
+        Indices into ``among``, from 0.
     """
 
     among: Sequence[Any]
@@ -38,14 +38,14 @@ class Picked(Sequence[Any]):
 
 
 def written(values: Values) -> Any:
-    """Values as JSON-like data for :func:`read`: lists as they are, arrays of doubles and what is picked in base64."""
+    """Encode values as JSON-like data for :func:`read`: lists unchanged, arrays and picked values in base64."""
     if isinstance(values, Picked):
         return {"among": values.among, "places": _text(values.places)}
     return {"doubles": _text(values)} if isinstance(values, array) else values
 
 
 def read(data: Any) -> Values:
-    """The values of which :func:`written` has made this."""
+    """Decode values that :func:`written` has encoded."""
     if isinstance(data, list):
         return data
     return _array("d", data["doubles"]) if "doubles" in data else Picked(data["among"], _array("H", data["places"]))

@@ -1,6 +1,6 @@
-"""The SQL statements that move a job from one state to another, and those that every job goes through.
+"""The SQL statements that move a job between states, and those executed for every job.
 
-Each change is one ``UPDATE`` whose ``WHERE`` clause holds the states that the move may start from
+Each change is one ``UPDATE`` whose ``WHERE`` clause names the states from which the move is allowed
 (:data:`service.jobs.store.states.MOVES`).
 """
 
@@ -19,33 +19,33 @@ from service.jobs.store.schema import QUEUED, JobRow, JobSummary, Later, StoreCl
 from service.jobs.store.states import MOVES, Cost, Status
 
 LEASE_S = 10.0
-"""An attempt is abandoned this long after its last sign of life. Signs come twice a second, but a machine may be very
-busy, and a database may need some seconds for a restart."""
+"""Time after its last sign of life when an attempt counts as abandoned, seconds. Signs come twice a second, but a
+machine may be very busy, and a database may need some seconds for a restart."""
 
 MAX_CRASHES = 3
-"""A job whose worker died by itself is tried again this many times."""
+"""Number of retries of a job whose worker died by itself."""
 
 MAX_KILLS = 20
-"""A job whose worker was killed from outside is tried again this many times: that is hardly the job's fault. It may be,
-where the system kills what takes the last of the memory, so there is an end to it."""
+"""Number of retries of a job whose worker was killed from outside. That is rarely the job's fault; it may be if the
+system kills processes for lack of memory, so the number is bounded."""
 
 AT_ONCE = 0
-"""The turn of a job that has had one, and was put back: before all that are new, whose turns begin with 1. Shares of
-batches are put back all the time, and a batch may have thousands of samples that end with a worker: they wait again."""
+"""The turn of a requeued job: before all new ones, whose turns begin with 1. Shares of batches are requeued all the
+time, and a batch may have thousands of samples that kill a worker, so shares wait for a new turn instead."""
 
 MAX_IDS = 500
-"""Ids in one statement; databases bound the number of its parameters."""
+"""Maximum number of ids in one statement; databases limit the number of its parameters."""
 
 COLUMNS = tuple(field.name for field in fields(JobRow))  # begins with the fields of a summary
 SUMMARY = [jobs.c[field.name] for field in fields(JobSummary)]
 WHOLE = [jobs.c[name] for name in COLUMNS]
 TAKEN = [jobs.c[name] for name in ("id", "tenant", "claim", "attempt", "cost", "kind", "problem", "batch")]
 SINGLE = jobs.c.batch.is_(None)
-"""Jobs that clients have posted, and no shares of batches."""
+"""Condition for jobs posted by clients, as opposed to shares of batches."""
 
 
 def moved(name: str, job_id: Any, **values: Any) -> Any:
-    """The move of this name, made with a job in one of its source states; ``values`` are stored with it."""
+    """Build the update that makes the named move with a job in a source state; ``values`` are stored with it."""
     move = MOVES[name]
     return (
         update(jobs)
@@ -58,7 +58,7 @@ NO_KEY: Mapping[str, None] = {"idempotency_key": None, "request_hash": None}
 
 
 def died(job_id: str, retries: int) -> ReturningUpdate[Any]:
-    """The job's worker is dead: to the queue with it, or to its end where that has come ``retries`` times already."""
+    """Build the update for a dead worker: requeue the job, or fail it after ``retries`` deaths; returns the state."""
     again, over = MOVES["requeue"], MOVES["give_up"]
     worn_out = jobs.c.crashes >= retries
     return (
@@ -80,7 +80,7 @@ def died(job_id: str, retries: int) -> ReturningUpdate[Any]:
 
 
 def new_row(tenant: str, kind: str, label: str | None, problem: str, cost: Cost = Cost.LONG) -> dict[str, Any]:
-    """A job that has just been accepted."""
+    """Build the row of a job that has just been accepted."""
     return {
         "id": str(ULID()),
         "tenant": tenant,
@@ -103,11 +103,11 @@ def new_row(tenant: str, kind: str, label: str | None, problem: str, cost: Cost 
 
 
 def turn_of(tenant: Any, cost: Any, *, share: bool = False) -> Later:
-    """The turn of a further job of a tenant: after the tenant's others, and not before what is next for anybody.
+    """Build the turn of a tenant's next job: after the tenant's other jobs, and not before the present turn.
 
-    Jobs are taken in the order of their turns, so that tenants go round: of those who wait, each has one job in each
-    turn. Who comes new joins at the present one, however many jobs of others wait. The shares of a tenant's batches go
-    round by themselves, so that its jobs do not wait for them.
+    Jobs are taken in the order of their turns, which is a round robin: each waiting tenant has one job in each turn. A
+    new tenant joins at the present turn, however many jobs of others wait. The shares of a tenant's batches have turns
+    of their own, so that its jobs do not wait for them.
     """
     others = jobs.alias()
     alike = others.c.batch.is_not(None) if share else others.c.batch.is_(None)
@@ -118,13 +118,13 @@ def turn_of(tenant: Any, cost: Any, *, share: bool = False) -> Later:
 
 
 def turn_as_long() -> Any:
-    """The turn of a job or share that is taken for long from now on: after those of its tenant that are."""
+    """Build the turn of a job or share that becomes long: after the tenant's other long ones."""
     tenant = jobs.c.tenant
     return case((SINGLE, turn_of(tenant, Cost.LONG)), else_=turn_of(tenant, Cost.LONG, share=True))
 
 
 TURN_AGAIN = case((SINGLE, AT_ONCE), else_=turn_of(jobs.c.tenant, jobs.c.cost, share=True))
-"""The turn of what had one, and was put back."""
+"""The turn of a requeued job or share."""
 
 BACK_IN_QUEUE: Mapping[str, Any] = {
     "progress_fraction": 0.0,
@@ -133,13 +133,13 @@ BACK_IN_QUEUE: Mapping[str, Any] = {
     "turn": TURN_AGAIN,
 }
 
-# What every job goes through is stated once. SQLAlchemy takes several times as long to put a statement together, and to
-# recognize it in its cache of compiled ones, as the database to execute it.
+# The statements executed for every job are built once. SQLAlchemy takes several times as long to build a statement and
+# to find it in its cache of compiled ones as the database takes to execute it.
 BY_ID = select(*WHOLE).where(jobs.c.id == bindparam("job"), SINGLE)
 _STORED = [*new_row("", "", None, ""), *NO_KEY]
 _queued = select(jobs.c.id).where(QUEUED, jobs.c.tenant == bindparam("of")).limit(bindparam("most", type_=Integer))
 COUNT_QUEUED = select(func.count()).select_from(_queued.subquery())
-# Counted by the statement that inserts, so that many who come at once cannot all find the last place.
+# The inserting statement itself counts, so that concurrent inserts cannot all take the last place.
 INSERT = (
     insert(jobs)
     .from_select(
@@ -150,7 +150,7 @@ INSERT = (
     )
     .execution_options(preserve_rowcount=True)
 )
-# Those that another host is about to take are passed over; SQLite has one that takes jobs.
+# Skips jobs that another host is about to claim; with SQLite only one process claims jobs.
 NEXT = (
     select(jobs.c.id)
     .where(QUEUED, jobs.c.cost == bindparam("cost"))

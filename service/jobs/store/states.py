@@ -1,7 +1,7 @@
-"""The states of a job and who may move it from one to another: one table, ``MOVES``.
+"""The states of a job and the permitted moves between them, in the table ``MOVES``.
 
-The store turns every row of the table into the ``WHERE`` clause of an ``UPDATE``, so that a move that is not
-in the table cannot happen, whichever process asks for it and whatever happened in between.
+The store turns each entry of the table into the ``WHERE`` clause of an ``UPDATE``, so no process can make a move that
+is not in the table, even if the state has changed in between.
 """
 
 from __future__ import annotations
@@ -12,7 +12,7 @@ from typing import Literal
 
 
 class Status(StrEnum):
-    """Where a job stands."""
+    """State of a job."""
 
     QUEUED = "queued"
     RUNNING = "running"
@@ -22,12 +22,12 @@ class Status(StrEnum):
 
     @property
     def finished(self) -> bool:
-        """Whether the job will never change again."""
+        """Whether the state is final."""
         return self in FINISHED
 
 
 class Cost(StrEnum):
-    """How long a job is taken to compute: ``short`` is a fraction of a second. An estimate, made when it is stated."""
+    """Estimated computing time of a job, made when it is accepted: ``short`` means a fraction of a second."""
 
     SHORT = "short"
     LONG = "long"
@@ -39,7 +39,7 @@ UNFINISHED = frozenset({Status.QUEUED, Status.RUNNING})
 
 @dataclass(frozen=True, slots=True)
 class Move:
-    """A permitted change of state: from where, to where, and who makes it."""
+    """A permitted change of state: the source states, the target state and the party that makes it."""
 
     sources: frozenset[Status]
     target: Status

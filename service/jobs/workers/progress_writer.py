@@ -1,4 +1,4 @@
-"""Writes the progress of a worker process's job to the store."""
+"""Writes the progress of a worker's job to the store."""
 
 from __future__ import annotations
 
@@ -13,16 +13,17 @@ from service.jobs.job_store import JobStore
 from service.jobs.store.database import unreachable
 
 PERIOD_S = 0.2
-"""Progress is stored at most this often: each time is a write to the disk that all workers share."""
+"""Minimum period between two stored reports, seconds: each is a write to the disk that all workers share."""
 
 log = structlog.get_logger(__name__)
 
 
 class ProgressWriter:
-    """Stores the newest report of a job, every :data:`PERIOD_S`, from a thread of its own.
+    """Stores the newest report of a job, at most every :data:`PERIOD_S`, in its own thread.
 
-    A report that comes soon after another, or while the store is out of reach, is thus stored late and not lost: it may
-    be the last for minutes. The solver never waits for the store. A report not stored when its job ends is dropped.
+    A report that follows another one closely, or arrives while the store is unreachable, is stored late and not lost:
+    it may be the last one for minutes. The solver never waits for the store. A report not stored when its job ends is
+    dropped.
     """
 
     def __init__(self, store: JobStore) -> None:
@@ -36,7 +37,7 @@ class ProgressWriter:
 
     @contextmanager
     def attempt(self, job_id: str, attempt: int) -> Iterator[Callable[[float, str], None]]:
-        """The progress callback of an attempt, one attempt at a time; first stored a period after the start."""
+        """Yield the progress callback of an attempt, one attempt at a time; the first write comes after one period."""
 
         def progress(fraction: float, message: str) -> None:
             with self._condition:
@@ -70,6 +71,7 @@ class ProgressWriter:
 
     def _retry(self, report: tuple[str, int, float, str]) -> None:
         with self._condition:
+            # A newer report supersedes the failed one, and after the attempt there is nothing to report.
             if self._report is None and self._attempt == report[:2]:
                 self._report = report
 
@@ -77,8 +79,8 @@ class ProgressWriter:
         while True:
             report = self._next()
             try:
-                self._store.progress(*report)  # changes nothing once the attempt is over
-            except Exception as error:  # whatever it is, later jobs must have their progress stored
+                self._store.progress(*report)  # changes nothing once the attempt has ended
+            except Exception as error:  # the thread survives any error, because later jobs need it
                 if unreachable(error):
                     self._retry(report)
                 else:

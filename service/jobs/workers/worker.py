@@ -1,7 +1,7 @@
-"""What runs in a worker process: solve a job, store the answer.
+"""The code of a worker process: solve a job, store the answer.
 
 This module is imported before the worker has set its number of threads, so it must not import numpy, directly or
-through the solvers; :func:`start` does that when everything is in place.
+through the solvers; :func:`start` imports them after that.
 """
 
 from __future__ import annotations
@@ -31,19 +31,19 @@ if TYPE_CHECKING:
     from service.jobs.workers.compile_watch import FirstUse
 
 Outcome = Literal["succeeded", "failed", "out of memory", "superseded", "stopped", "slice"]
-"""What became of a job as its worker knows it; ``superseded``: it has its answer, and was cancelled or given to another
-attempt meanwhile; ``stopped``: it has none, because the lane has said so; ``slice``: of a share of a batch, which is in
-the queue again or at its end."""
+"""Outcome of an attempt as its worker knows it. ``superseded``: solved, but cancelled or given to another attempt
+meanwhile; ``stopped``: ended without an answer on request of the lane; ``slice``: part of a share of a batch, which is
+queued again or has ended."""
 
 LIBRARIES_MB = 400
-"""What solvers load after the worker has started, beside what a job is allowed: convex optimization, kernels."""
+"""Memory for code that solvers load after the start (convex optimization, kernels), added to a job's limit, MiB."""
 
 log = structlog.get_logger(__name__)
 
 
 @dataclass(frozen=True, slots=True)
 class Ran:
-    """An attempt that the worker has ended: what became of it, the kind of its problem, and how long it took."""
+    """An attempt that the worker has ended: its outcome, the kind of the problem and the duration in seconds."""
 
     outcome: Outcome
     kind: str
@@ -52,7 +52,7 @@ class Ran:
 
 @dataclass(frozen=True, slots=True)
 class WorkerSettings:
-    """What a worker has to know; passed to it when it starts."""
+    """Settings of a worker, passed to it at its start."""
 
     store_url: str
     server_pid: int
@@ -75,7 +75,7 @@ _post: _Post | None = None
 
 
 def start(settings: WorkerSettings, solving: Solving) -> None:
-    """Prepare this process for its jobs: its end, its limits, the solvers. Called once, first of all."""
+    """Prepare this process for jobs: end with the server, limits, solvers. Called once, before anything else."""
     global _post
     confine(settings.server_pid, settings.log_level, settings.log_format)
     dispatch = importlib.import_module("synthesis.dispatch")
@@ -88,20 +88,20 @@ def start(settings: WorkerSettings, solving: Solving) -> None:
     slices = Slices(BatchStore(engine), solving, faults.out_of_memory(settings.memory_mb))
     _post = _Post(store, progress, settings, solving, slices, first_use)
     store.ping()
-    # Beside the first jobs: they find what is not loaded yet a little slower, but the service is ready seconds sooner.
+    # In parallel with the first jobs, which may run a little slower; but the service is ready seconds sooner.
     threading.Thread(target=dispatch.warm_up_rest, name="warm-up", daemon=True).start()
 
 
 def hello() -> int:
-    """The process id of the worker; the answer shows that the worker has finished starting."""
+    """Return the worker's process id; the answer shows that the worker has finished starting."""
     return os.getpid()
 
 
 def run(job: Claim) -> Ran:
-    """Run a claimed job to its end. The store has the answer when this returns.
+    """Run a claimed job to its end; on return the store has the answer.
 
-    While the store is out of reach this waits for it. What else the store raises is raised: the executor then treats
-    the worker as dead and the job is tried again.
+    While the store is unreachable this waits. Other errors of the store propagate: the executor then treats the worker
+    as dead, and the job is retried.
     """
     assert _post is not None, "start() comes first"
     if job.batch is not None:
@@ -134,7 +134,7 @@ def _attempt(post: _Post, job: Claim) -> Outcome:
         fault = faults.out_of_memory(post.settings.memory_mb)
         stored = patiently(post.store.fail, job.job_id, job.attempt, fault.as_json(job.job_id))
         return "out of memory" if stored else "superseded"
-    except Exception:  # the boundary of the solvers: whatever defect they have ends this job only
+    except Exception:  # the boundary of the solvers: a defect of theirs ends this job only
         log.exception("the solver raised", job=job.job_id, attempt=job.attempt)
         stored = patiently(post.store.fail, job.job_id, job.attempt, faults.INTERNAL_ERROR.as_json(job.job_id))
         return "failed" if stored else "superseded"
@@ -142,7 +142,7 @@ def _attempt(post: _Post, job: Claim) -> Outcome:
 
 
 def _solve(post: _Post, job: Claim) -> tuple[str, str]:
-    """The answer in JSON, and the digest that equal problems know it by."""
+    """Solve a job; return the answer as JSON, and the digest by which equal problems find it."""
     from service.requests import read
     from synthesis import dispatch
 

@@ -83,6 +83,7 @@ def continue_from_designs(
     found = continue_constrained(bare, designs)
     if problem.driver is None:
         return found
+    # Driver dyads need a result as input; the counts do not matter here.
     search = CandidateLog[LinkageDesign](bare).build_search("tolerance_search")
     result = MotionResult(designs=found, curves=[], search=search, summary="")
     return list(add_driver_dyads(problem, result, progress).designs)
@@ -103,8 +104,10 @@ def _solve_toleranced(problem: MotionProblem, progress: Progress) -> MotionResul
 
 def _solve_in_workspace(problem: MotionProblem, progress: Progress) -> MotionResult:
     """Solve for positions with tolerances in a workspace; fall back to a fit that ignores it if no design passes."""
+    # Many positions have no exact solution to start from.
     exact = None if problem.approximate else _solve_exact(problem, scale_progress(progress, 0.0, 0.3))
     found = solve_in_workspace(problem, exact, scale_progress(progress, 0.3, 0.8))
+    # With few positions the exact designs already belong to the result, so it is final.
     if any(design.verification.passed for design in found.designs) or not problem.approximate:
         return found
     return solve_least_squares(problem, scale_progress(progress, 0.8, 1.0))
@@ -135,6 +138,7 @@ def _solve_exact(problem: MotionProblem, progress: Progress) -> MotionResult:
             # Only an enumeration without doubtful roots or residuals proves that no linkage exists.
             end = f"All are enumerated, so no {noun} exists." if result.search.complete else UNPROVEN_REMARK
             result = result.model_copy(update={"summary": f"{result.summary} {end}"})
+    # Sliders are the last resort: fourbars are preferred in practice.
     return result if result.designs else try_sliders(problem, result, progress)
 
 
@@ -165,6 +169,7 @@ def _verify_all_pairs(pairs: DyadPairs, progress: Progress) -> MotionResult:
     """Verify every pair of a few determined dyads, with either side as the input if both sides have the same dyads."""
     sifting = CandidateLog[LinkageDesign](pairs.problem, DEFECT_REASONS | LENGTH_REASONS)
     target = make_target_poses(pairs.problem)
+    # Each pair of equal dyads once; the other order swaps input and output.
     for i in range(len(pairs.inputs.fixed)):
         for j in range(i + 1 if pairs.same_dyads else 0, len(pairs.outputs.fixed)):
             reasons = [sifting.insert_design(pairs.verify_pair(target, (i, j)))]
@@ -188,6 +193,7 @@ def _search_pairs(pairs: DyadPairs, progress: Progress) -> MotionResult:
     # Lower the threshold only if the transmission angle is what rejects pairs: other constraints stay violated.
     for least in USABLE_TRANSMISSION_ANGLES if limit is None else (limit,):
         screening = pairs.screen_pairs(problem.constraints, least)
+        # Any candidate at this angle, or a different obstacle, ends the search.
         if screening.score.any() or "transmission_angle" not in screening.count_rejections():
             break
     sound = int(np.count_nonzero(screening.score))
@@ -201,6 +207,7 @@ def _search_pairs(pairs: DyadPairs, progress: Progress) -> MotionResult:
     if problem.include_failed and len(sifting.passed) < problem.max_designs:
         # Show the best linkages that move correctly but violate a limit; those that violate none are found already.
         stated = problem.constraints
+        # Only the constraints of a sound motion remain.
         motion_alone = Constraints(same_branch=stated.same_branch, in_order=stated.in_order)
         passed = list(sifting.passed)
         if LIMIT_REASONS & screening.count_rejections().keys():
@@ -248,8 +255,8 @@ def _describe_search(sifting: CandidateLog[LinkageDesign], sound: int) -> str:
     best = max(design.metrics.min_transmission_angle for design in sifting.passed)
     text = (
         f"{format_count(len(sifting.passed), 'design', 'designs')} verified, chosen from {format_integer(sound)} "
-        "feasible dyad "
-        f"pairs ({format_integer(sifting.candidates)} tried). Best minimum transmission angle: {best:.1f}°."
+        f"feasible dyad pairs ({format_integer(sifting.candidates)} tried). Best minimum transmission angle: "
+        f"{best:.1f}°."
     )
     if best < USABLE_TRANSMISSION_ANGLES[0]:
         text += f" No design found reaches {USABLE_TRANSMISSION_ANGLES[0]:.0f}°."
@@ -268,8 +275,7 @@ def _list_remarks(pairs: DyadPairs) -> list[str]:
             kinds = " and ".join(sorted({slider.kind for slider in cloud.sliders}))
             remarks.append(
                 f"{format_count(count, 'more dyad')} of the {name} {choose_word(count, 'has', 'have')} a pivot at "
-                "infinity, "
-                f"that is, a slider ({kinds})."
+                f"infinity, that is, a slider ({kinds})."
             )
     return list(dict.fromkeys(remarks))
 
@@ -284,6 +290,7 @@ def _sample_curves(task: MotionTask, designs: list[LinkageDesign]) -> list[Burme
     pivots = [joint for design in designs for joint in design.mechanism.skeleton.joints.values()]
     reach = max((abs(task.to_task(complex(*pivot))) for pivot in pivots), default=0.0)
     centres = complex(task.points.mean()), complex(task.points[0])
+    # Clip infinite branches: the window covers the designs and the surroundings of the task.
     window = Window(centres, max(MIN_CURVE_WINDOW, 1.5 * reach), math.inf)
     return [
         BurmesterBranch(

@@ -85,13 +85,10 @@ def verify_parallel_motion(
     mechanism = rebuild_mechanism(design)
     if mechanism is None:
         return None
-    place = {name: complex(z) for name, z in mechanism.joints.items()}
-    configuration = FourbarConfiguration(*(place[name] for name in ("O2", "A", "B", "O4", "P")))
-    path = _verify_path(problem, configuration)
+    path = _verify_path(problem, mechanism)
     if problem.path is not None and path is None:
         return None
-    barker = classify_fourbar(mechanism)
-    turns = barker.motion in ROTATING_INPUT_CLASSES
+    turns = classify_fourbar(mechanism).motion in ROTATING_INPUT_CLASSES
     inputs = _list_inputs(mechanism, None if turns or path is None else path.rotation, turns=turns)
     motion = drive(mechanism, inputs, order=1)
     if not motion.smooth.all():
@@ -110,7 +107,7 @@ def verify_parallel_motion(
         curve_size if problem.path is None else problem.path.task_size,
         transmission,
         joints,
-        barker=barker,
+        barker=classify_fourbar(mechanism),
         same_branch=min(transmission.values()) > MIN_TOGGLE_SINE and (path is None or _has_passed(path, "same_branch")),
         visits_in_order=path is None or _has_passed(path, "visits_in_order"),
         full_rotation=turns,
@@ -130,8 +127,8 @@ def verify_parallel_motion(
     checks = [check_error("translates", rotation, TRANSLATION_TOLERANCE + rounding / abs(translation))]
     if off_curve is not None:
         checks.append(_check_curve(off_curve, curve_size, rounding))
-    pivots = list_fixed_pivots(mechanism), list_moving_pivots(mechanism)
-    constraints = check_constraints(problem.constraints, measures, *pivots)
+    fixed, moving = list_fixed_pivots(mechanism), list_moving_pivots(mechanism)
+    constraints = check_constraints(problem.constraints, measures, fixed, moving)
     checks = _merge_checks([*checks, *([] if path is None else path.checks)], constraints)
     return ParallelMotionDesign(
         mechanism=design,
@@ -159,10 +156,11 @@ def _merge_checks(checks: list[Check], constraints: list[Check]) -> list[Check]:
     return kept + [check for name, check in own.items() if name not in {check.name for check in kept}]
 
 
-def _verify_path(problem: ParallelMotionProblem, configuration: FourbarConfiguration) -> _PathVerification | None:
+def _verify_path(problem: ParallelMotionProblem, mechanism: Mechanism) -> _PathVerification | None:
     """Drive the fourbar of the sixbar past the points of the requested path."""
     if problem.path is None:
         return None
+    configuration = FourbarConfiguration(*(complex(mechanism.joints[name]) for name in ("O2", "A", "B", "O4", "P")))
     driven = verify_path(problem.path, build_fourbar(configuration))
     if driven is None:
         return None

@@ -76,6 +76,14 @@ class _SteeredTurn(NamedTuple):
     inputs: Real
 
 
+def _check_error(problem: SteeringProblem, worst: float, *, exact: bool) -> list[Check]:
+    """Check the greatest steering error, degrees; ``exact``: the mechanism steers correctly by its principle."""
+    checks = [check_maximum("steers_correctly", worst, MAX_EXACT_ERROR, ANGLE)] if exact else []
+    if problem.max_steering_error is not None:
+        checks.append(check_maximum("steering_error", worst, problem.max_steering_error, ANGLE))
+    return checks
+
+
 def _compute_turning_radius(problem: SteeringProblem, outer: float) -> float:
     """Return the radius of the outer front wheel's circle at the outer angle of the lock, radians."""
     overhang = 0.5 * ((problem.track or problem.pivot_distance) - problem.pivot_distance)
@@ -161,10 +169,7 @@ def verify_steering(problem: SteeringProblem, design: SteeringMechanisms) -> Ste
         Check(name="reaches_locks", passed=abs(float(inner.max()) - lock) <= LOCK_TOLERANCE),
         Check(name="same_branch", passed=driven.on_branch),
     ]
-    if not is_fourbar:
-        checks.append(check_maximum("steers_correctly", worst, MAX_EXACT_ERROR, ANGLE))
-    if problem.max_steering_error is not None:
-        checks.append(check_maximum("steering_error", worst, problem.max_steering_error, ANGLE))
+    checks += _check_error(problem, worst, exact=not is_fourbar)
     fixed = [joints.pop(name) for name in ("O2", "O4")]
     of_constraints = check_constraints(problem.constraints, measures, fixed, list(joints.values()))
     checks += [check for check in of_constraints if check.name != "same_branch"]  # always checked above

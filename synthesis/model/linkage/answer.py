@@ -280,8 +280,8 @@ class MotionMetrics(UsedRange):
     full_rotation: bool
     link_ratio: float = Field(description="Longest link over shortest link.")
     reach: float | None = optional_field(
-        "Maximum distance between two joints of one link, in sizes of the task (docs/methods/ranking.md); left out if the task "
-        "has no size."
+        "Maximum distance between two joints of one link, in sizes of the task (docs/methods/ranking.md); left out if "
+        "the task has no size."
     )
     size: Length = Field(
         description="Diagonal of the box around all joints and the point P at all targets; without targets, over "

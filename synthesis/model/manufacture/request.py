@@ -1,7 +1,7 @@
 """Block ``manufacture`` of a statement: manufacturing accuracy of a linkage and the quality that it must keep.
 
-See docs/mechanisms/manufacture.md. This module also defines how a kind describes its task to the block, and the requirements on a
-design at its targets.
+See docs/mechanisms/manufacture.md. This module also defines how a kind describes its task to the block, and the
+requirements on a design at its targets.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""The lid of docs/mechanisms/space.md through HTTP: it is answered, and where the frame leaves no room the answer says so."""
+"""The lid of docs/mechanisms/space.md through HTTP: designs, and a message where the frame leaves no room."""
 
 from __future__ import annotations
 

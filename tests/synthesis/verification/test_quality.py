@@ -1,4 +1,4 @@
-"""Quality is the one that docs/methods/ranking.md states, for every kind: recomputed here from the skeleton of each answer."""
+"""Quality of every kind agrees with docs/methods/ranking.md: recomputed here from the skeleton of each answer."""
 
 from __future__ import annotations
 

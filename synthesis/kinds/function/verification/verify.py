@@ -109,6 +109,7 @@ def verify_function(problem: FunctionProblem, mechanism: FunctionMechanism, dial
     met, assemblies = _drive_to_targets(drive, targets)
     if not np.all(np.isfinite(met.place)):
         return None
+    # All targets in the reference's own assembly.
     own = bool(np.all(assemblies == drive.assembly))
     errors = _compute_error(met.place, targets.places, drive.turns)
     structural = _measure_structural_error(problem, dials, drive, targets, errors)
@@ -118,8 +119,10 @@ def verify_function(problem: FunctionProblem, mechanism: FunctionMechanism, dial
     unit = _get_output_unit(problem)
     residuals = np.abs(errors) / (unit if problem.slides else 1.0)
     start, end = _find_input_range(problem, dials, targets)
+    # The used range is meaningless if targets lie in different assemblies.
     same_branch = own and drive.is_on_branch(start, end)
     on_circuit = same_branch or drive.is_one_circuit(targets.angles, assemblies)
+    # A motion through a toggle transmits nothing there.
     least = drive.compute_min_transmissions(start, end) if same_branch else dict.fromkeys(drive.dyads, 0.0)
     steps = np.diff(targets.angles)
     in_order = on_circuit and bool(np.all(steps > 0.0) or np.all(steps < 0.0))
@@ -148,6 +151,7 @@ def verify_function(problem: FunctionProblem, mechanism: FunctionMechanism, dial
     checks = [check_targets_reached(float(residuals.max()))] if problem.aim == "precision" else []
     checks.append(Check(name="same_circuit", passed=on_circuit))
     if problem.function is not None:
+        # A function must be generated over the whole range, not only at its targets.
         checks.append(Check(name="covers_range", passed=whole and drive.is_on_branch(start, end)))
     checks.append(check_error("dials", _measure_dial_deviation(problem, dials, drive), DIAL_TOLERANCE))
     first = [complex(z) for z in met.moving[:, 0]]
@@ -181,6 +185,7 @@ def verify_with_tolerance(
     driven = verify_function(problem, mechanism, dials)
     if driven is None:
         return None
+    # Rounded dimensions meet no target exactly; quality limits apply instead.
     checks = [check for check in driven.verification.checks if check.name != REACHES_TARGETS]
     return driven.model_copy(update={"verification": Verification.from_checks(checks)})
 

@@ -132,6 +132,7 @@ def _check_chain_reach(problem: Any) -> list[Contradiction]:
     first, second = (length or 0.0 for length in chain.links)
     start = problem.positions[0].point
     for k, (position, turn) in enumerate(zip(problem.positions, problem.turns, strict=True)):
+        # H₂ moves with the body; the chain must span its distance from G in every exact position.
         reach = abs(position.point + cmath.exp(1j * turn) * (pin - start) - pivot)
         if position.tolerance is None and not abs(first - second) < reach < first + second:
             detail = f"cannot span G to H₂ at position {k}: the distance is {reach:.6g} {problem.length_unit}"
