@@ -11,10 +11,10 @@ from sqlalchemy.exc import SQLAlchemyError
 
 from service.access.keys import KeyStore, TenantExists
 from service.jobs.store.database import LaterTables, connect, upgrade
-from service.jobs.store.schema import TENANT_LENGTH
+from service.jobs.store.schema import MAX_TENANT_LENGTH
 from service.settings import Settings
 
-_TENANT = re.compile(f"[A-Za-z0-9._@-]{{1,{TENANT_LENGTH}}}")
+_TENANT_PATTERN = re.compile(f"[A-Za-z0-9._@-]{{1,{MAX_TENANT_LENGTH}}}")
 
 
 class KeysFailure(Exception):
@@ -23,8 +23,8 @@ class KeysFailure(Exception):
 
 def create(settings: Settings, tenant: str, *, further: bool) -> None:
     """Make a key and print it, alone on stdout."""
-    if not _TENANT.fullmatch(tenant):
-        raise KeysFailure(f"a tenant is named by up to {TENANT_LENGTH} letters, digits and ._@-")
+    if not _TENANT_PATTERN.fullmatch(tenant):
+        raise KeysFailure(f"a tenant is named by up to {MAX_TENANT_LENGTH} letters, digits and ._@-")
     with _store(settings) as store:
         try:
             key, secret = store.create(tenant, further=further)
@@ -37,7 +37,7 @@ def create(settings: Settings, tenant: str, *, further: bool) -> None:
 def show(settings: Settings) -> None:
     """Print the keys: id, state, when it was made, tenant."""
     with _store(settings) as store:
-        for key in store.all():
+        for key in store.list_keys():
             state = "in force" if key.revoked_at is None else f"revoked {key.revoked_at[:19]}Z"
             print(f"{key.id}  {state:<28}  made {key.created_at[:19]}Z  {key.tenant}")
 

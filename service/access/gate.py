@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING
 
 from starlette.concurrency import run_in_threadpool
 
-from service.access.keys import Key, KeyStore, digest
+from service.access.keys import Key, KeyStore, hash_key
 
 if TYPE_CHECKING:
     from limits import RateLimitItem
@@ -36,7 +36,7 @@ class Allowance:
     limit: int
     window_s: int
 
-    def headers(self) -> dict[str, str]:
+    def format_headers(self) -> dict[str, str]:
         """``RateLimit`` and ``RateLimit-Policy`` (draft-ietf-httpapi-ratelimit-headers)."""
         return {
             "RateLimit": f'"key";r={self.left};t={self.reset_s}',
@@ -82,7 +82,7 @@ class Gate:
         await self._refresh()
         if self._holders is None:
             return ANYBODY, None
-        holder = None if key is None else self._holders.get(digest(key))
+        holder = None if key is None else self._holders.get(hash_key(key))
         if holder is None:
             raise NoKey(given=key is not None)
         if self._limiter is None:
@@ -112,14 +112,14 @@ class Gate:
             if time.monotonic() - self._read_at < FRESH_S:
                 return
             began = time.monotonic()
-            self._holders = await run_in_threadpool(self._keys.holders)
+            self._holders = await run_in_threadpool(self._keys.load_holders)
             if self._holders is not None and self._limiter is None and self._rate_limit is not None:
                 # Its import takes a while, which a service without keys has no use for.
-                self._limiter = await run_in_threadpool(_limiter, self._rate_limit)
+                self._limiter = await run_in_threadpool(_create_limiter, self._rate_limit)
             self._read_at = began
 
 
-def _limiter(rate_limit: str) -> tuple[SlidingWindowCounterRateLimiter, RateLimitItem]:
+def _create_limiter(rate_limit: str) -> tuple[SlidingWindowCounterRateLimiter, RateLimitItem]:
     from limits import parse
     from limits.aio.storage import MemoryStorage
     from limits.aio.strategies import SlidingWindowCounterRateLimiter

@@ -16,16 +16,16 @@ from dataclasses import dataclass, fields
 from sqlalchemy import Column, Engine, Index, String, Table, insert, inspect, select, update
 from ulid import ULID
 
-from service.jobs.store.schema import TENANT_LENGTH, metadata, now
+from service.jobs.store.schema import MAX_TENANT_LENGTH, format_now, metadata
 
-PREFIX = "mechsynth_"
+KEY_PREFIX = "mechsynth_"
 """What every key begins with, so that one that has got somewhere by mistake is recognized."""
 
 api_keys = Table(
     "api_keys",
     metadata,
     Column("id", String(26), primary_key=True),
-    Column("tenant", String(TENANT_LENGTH), nullable=False),
+    Column("tenant", String(MAX_TENANT_LENGTH), nullable=False),
     Column("hash", String(64), nullable=False),
     Column("created_at", String(27), nullable=False),
     Column("revoked_at", String(27)),
@@ -47,10 +47,10 @@ class Key:
     revoked_at: str | None
 
 
-_KEY = [api_keys.c[field.name] for field in fields(Key)]
+_KEY_COLUMNS = [api_keys.c[field.name] for field in fields(Key)]
 
 
-def digest(key: str) -> str:
+def hash_key(key: str) -> str:
     """What the store keeps of a key."""
     return hashlib.sha256(key.encode("utf-8", "surrogateescape")).hexdigest()
 
@@ -74,36 +74,36 @@ class KeyStore:
         TenantExists
             When the tenant has, or has had, a key, and ``further`` is false.
         """
-        secret = PREFIX + secrets.token_urlsafe(32)
-        key = Key(id=str(ULID()), tenant=tenant, created_at=now(), revoked_at=None)
+        secret = KEY_PREFIX + secrets.token_urlsafe(32)
+        key = Key(id=str(ULID()), tenant=tenant, created_at=format_now(), revoked_at=None)
         with self._engine.begin() as connection:
             known = connection.execute(select(api_keys.c.id).where(api_keys.c.tenant == tenant).limit(1)).first()
             if known is not None and not further:
                 raise TenantExists(tenant)
             row = {field.name: getattr(key, field.name) for field in fields(Key)}
-            connection.execute(insert(api_keys).values(**row, hash=digest(secret)))
+            connection.execute(insert(api_keys).values(**row, hash=hash_key(secret)))
         return key, secret
 
-    def all(self) -> list[Key]:
+    def list_keys(self) -> list[Key]:
         """All keys, oldest first, revoked ones too."""
         with self._engine.connect() as connection:
-            return [Key(*row) for row in connection.execute(select(*_KEY).order_by(api_keys.c.id))]
+            return [Key(*row) for row in connection.execute(select(*_KEY_COLUMNS).order_by(api_keys.c.id))]
 
     def revoke(self, key_id: str) -> bool:
         """Make a key useless; False when there is none of this id that was of use."""
         change = update(api_keys).where(api_keys.c.id == key_id, api_keys.c.revoked_at.is_(None))
         with self._engine.begin() as connection:
-            return bool(connection.execute(change.values(revoked_at=now())).rowcount)
+            return bool(connection.execute(change.values(revoked_at=format_now())).rowcount)
 
-    def holders(self) -> dict[str, Key] | None:
+    def load_holders(self) -> dict[str, Key] | None:
         """The keys in force by their hashes; None when no key has ever been made."""
         with self._engine.connect() as connection:
-            rows = connection.execute(select(api_keys.c.hash, *_KEY)).all()
+            rows = connection.execute(select(api_keys.c.hash, *_KEY_COLUMNS)).all()
         if not rows:
             return None
         return {row[0]: key for row in rows if (key := Key(*row[1:])).revoked_at is None}
 
-    def any(self) -> bool:
+    def has_keys(self) -> bool:
         """Whether a key has ever been made; also of a store that has no tables yet."""
         if not inspect(self._engine).has_table(api_keys.name):
             return False

@@ -5,9 +5,9 @@ from __future__ import annotations
 from pydantic import ValidationError
 from pydantic_core import from_json, to_json
 
-from service.answers.job_result import SolvedJob, design_index
+from service.answers.job_result import SolvedJob, parse_design_index
 from service.answers.numerical import refuse_numerical_errors
-from service.refusals import Refusal, not_found
+from service.refusals import Refusal, refuse_not_found
 from service.render import Form
 
 
@@ -21,13 +21,13 @@ def draw_design(job: SolvedJob, number: str, form: Form) -> str | bytes:
     """
     from service import render
 
-    designs = job.answer().designs
-    n = design_index(number, len(designs))
-    problem = job.statement()
+    designs = job.load_result().designs
+    n = parse_design_index(number, len(designs))
+    problem = job.load_problem()
     try:
         return render.export_design(designs[n], problem, render.make_heading(problem, job.label, n), form)
     except render.NoSuchExport:
-        raise not_found(f"There is no .{form} file of this type of mechanism.") from None
+        raise refuse_not_found(f"There is no .{form} file of this type of mechanism.") from None
     except render.NotBuilt:
         raise Refusal(409, "no-drawing", "No drawing", "This design is of a size that is not drawn.") from None
 
@@ -45,7 +45,7 @@ def move_design(result: str, number: str, steps: int) -> bytes:
     from synthesis.mechanisms import MechanismError
 
     designs = from_json(result)["designs"]
-    mechanism = designs[design_index(number, len(designs))]["mechanism"]
+    mechanism = designs[parse_design_index(number, len(designs))]["mechanism"]
     with refuse_numerical_errors("/mechanism"):
         try:
             answer = get_family(mechanism).request.analyze_cycle(mechanism, steps)

@@ -6,8 +6,8 @@ import re
 from dataclasses import dataclass
 from typing import Any
 
-from service.refusals import not_found
-from service.requests import read
+from service.refusals import refuse_not_found
+from service.requests import load_stored_problem
 from synthesis.registry import KINDS
 
 _DESIGN_NUMBER = re.compile("[0-9]{1,4}")
@@ -25,16 +25,16 @@ class SolvedJob:
     problem: str
     result: str
 
-    def statement(self) -> Any:
+    def load_problem(self) -> Any:
         """The problem."""
-        return read(self.kind, self.problem)
+        return load_stored_problem(self.kind, self.problem)
 
-    def answer(self) -> Any:
+    def load_result(self) -> Any:
         """The result of the kind, with its designs."""
         return KINDS[self.kind].result.model_validate_json(self.result)
 
 
-def design_index(number: str, designs: int) -> int:
+def parse_design_index(number: str, designs: int) -> int:
     """The index that a path states of so many designs.
 
     Raises
@@ -43,5 +43,5 @@ def design_index(number: str, designs: int) -> int:
         404 where it is none.
     """
     if not _DESIGN_NUMBER.fullmatch(number) or int(number) >= designs:
-        raise not_found(f"The job has {designs} designs, counted from 0; this is none of them.")
+        raise refuse_not_found(f"The job has {designs} designs, counted from 0; this is none of them.")
     return int(number)

@@ -86,20 +86,20 @@ class Job(JobSummary):
         return self
 
 
-def job_of(shown: Mapping[str, Any]) -> Job:
+def build_job(shown: Mapping[str, Any]) -> Job:
     """The job that an answer shows."""
-    return Job(**_values(shown, _JOB))
+    return Job(**_extract_values(shown, _JOB_FIELDS))
 
 
-def summary_of(listed: Mapping[str, Any]) -> JobSummary:
+def build_summary(listed: Mapping[str, Any]) -> JobSummary:
     """The job that a list or an event shows."""
-    return JobSummary(**_values(listed, _SUMMARY))
+    return JobSummary(**_extract_values(listed, _SUMMARY_FIELDS))
 
 
-_JOB = [field.name for field in fields(Job)]
-_SUMMARY = [field.name for field in fields(JobSummary)]
+_JOB_FIELDS = [field.name for field in fields(Job)]
+_SUMMARY_FIELDS = [field.name for field in fields(JobSummary)]
 
 
-def _values(listed: Mapping[str, Any], names: Sequence[str]) -> Json:
+def _extract_values(listed: Mapping[str, Any], names: Sequence[str]) -> Json:
     # Fields that a newer service has besides are passed over.
     return {**{name: listed[name] for name in names}, "progress": Progress(**listed["progress"])}

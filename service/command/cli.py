@@ -13,12 +13,12 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from service.jobs.processes.parent_death import die_with_parent_from_the_start
+from service.jobs.processes.parent_death import bind_to_parent_at_start
 
 if TYPE_CHECKING:
     from service.settings import Settings
 
-die_with_parent_from_the_start()
+bind_to_parent_at_start()
 
 EXIT_FAILURE = 1
 EXIT_USAGE = 2
@@ -26,16 +26,16 @@ EXIT_USAGE = 2
 
 def main(arguments: Sequence[str] | None = None) -> int:
     """Run a command; returns the exit status: 0 success, 1 failure, 2 wrong arguments or settings."""
-    command = _parser().parse_args(arguments)
+    command = _build_parser().parse_args(arguments)
     if command.name == "serve":
         return _serve()
     if command.name == "worker":
-        return _worker()
+        return _run_worker()
     if command.name == "demo":
-        from service.command.demo import DemoFailure, demo
+        from service.command.demo import DemoFailure, run_demo
 
         try:
-            demo(command.output)
+            run_demo(command.output)
         except (DemoFailure, OSError) as failure:
             print(f"mechsynth demo: {failure}", file=sys.stderr)
             return EXIT_FAILURE
@@ -51,14 +51,14 @@ def main(arguments: Sequence[str] | None = None) -> int:
             return EXIT_FAILURE
         return 0
     if command.name in ("analyze", "draw"):
-        return _of_file(command)
+        return _run_file_command(command)
     if command.name == "openapi":
-        from service.server.app import api_document
+        from service.server.app import build_api_document
 
-        command.output.write_text(api_document(), encoding="utf-8")
+        command.output.write_text(build_api_document(), encoding="utf-8")
         return 0
     if command.name == "keys":
-        return _keys(command)
+        return _run_keys(command)
     from service.server.precompile import WarmingFailure, warm
 
     try:
@@ -69,7 +69,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     return 0
 
 
-def _of_file(command: argparse.Namespace) -> int:
+def _run_file_command(command: argparse.Namespace) -> int:
     from service.client import ClientError
     from service.command.inputs import SourceError
 
@@ -88,7 +88,7 @@ def _of_file(command: argparse.Namespace) -> int:
     return 0
 
 
-def _at_service(command: argparse.ArgumentParser) -> None:
+def _add_service_options(command: argparse.ArgumentParser) -> None:
     command.add_argument(
         "--url",
         default=os.environ.get("MECHSYNTH_URL", "http://127.0.0.1:8000"),
@@ -96,7 +96,7 @@ def _at_service(command: argparse.ArgumentParser) -> None:
     )
 
 
-def _settings() -> Settings | None:
+def _load_settings() -> Settings | None:
     """The settings; None, and the reason is printed, where they cannot be used."""
     from service.settings import SettingsError, read_settings
 
@@ -107,8 +107,8 @@ def _settings() -> Settings | None:
         return None
 
 
-def _keys(command: argparse.Namespace) -> int:
-    settings = _settings()
+def _run_keys(command: argparse.Namespace) -> int:
+    settings = _load_settings()
     if settings is None:
         return EXIT_USAGE
     from service.access import command as keys
@@ -127,7 +127,7 @@ def _keys(command: argparse.Namespace) -> int:
 
 
 def _serve() -> int:
-    settings = _settings()
+    settings = _load_settings()
     if settings is None:
         return EXIT_USAGE
     from service.server.run import ServeError, serve
@@ -140,8 +140,8 @@ def _serve() -> int:
     return 0
 
 
-def _worker() -> int:
-    settings = _settings()
+def _run_worker() -> int:
+    settings = _load_settings()
     if settings is None:
         return EXIT_USAGE
     if settings.executor != "celery":
@@ -150,9 +150,9 @@ def _worker() -> int:
     from sqlalchemy.exc import SQLAlchemyError
 
     from service.jobs.cluster.worker_host import HostError, run_host
-    from service.server.precompile import Compilation, every_part
+    from service.server.precompile import Compilation, list_parts
 
-    compilation = Compilation(every_part, settings.log_level, settings.log_format, ahead=settings.compile_ahead)
+    compilation = Compilation(list_parts, settings.log_level, settings.log_format, ahead=settings.compile_ahead)
     try:
         run_host(settings, compilation)
     except HostError as error:
@@ -165,7 +165,7 @@ def _worker() -> int:
     return 0
 
 
-def _parser() -> argparse.ArgumentParser:
+def _build_parser() -> argparse.ArgumentParser:
     parser = argparse.ArgumentParser(prog="mechsynth", description="A service that designs mechanisms.")
     commands = parser.add_subparsers(dest="name", required=True, metavar="command")
     commands.add_parser("serve", help="run the service; the environment variables MECHSYNTH_... set it up")
@@ -178,7 +178,7 @@ def _parser() -> argparse.ArgumentParser:
         help="a JSON file with a problem, or the body of a request; - for standard input; "
         "or a .csv with columns x, y, angle (motion), x, y (path), or input, output (function)",
     )
-    _at_service(solve)
+    _add_service_options(solve)
     solve.add_argument("--json", action="store_true", help="print the job with its answer as JSON, instead of tables")
     solve.add_argument("--output", type=Path, help="folder of the drawings; named after the file when left out")
     solve.add_argument(
@@ -189,7 +189,7 @@ def _parser() -> argparse.ArgumentParser:
     analyze.add_argument(
         "mechanism", help="a JSON file with a mechanism, or the body of a request; - for standard input"
     )
-    _at_service(analyze)
+    _add_service_options(analyze)
     analyze.add_argument("-o", "--output", type=Path, help="a file, .json or .csv; left out, JSON is printed")
     draw = commands.add_parser("draw", help="draw a design of an answer; this needs no service")
     draw.add_argument("answer", help="what mechsynth solve --json has printed; - for standard input")

@@ -26,7 +26,7 @@ class DemoFailure(Exception):
     """The demonstration did not come to its end; the message says where."""
 
 
-def demo(output: Path) -> None:
+def run_demo(output: Path) -> None:
     """Run the demonstration and write the drawing of the best design to ``output``.
 
     Raises
@@ -34,7 +34,7 @@ def demo(output: Path) -> None:
     DemoFailure
         When the service does not start, does not answer as documented, or finds no design.
     """
-    with _service() as url, Client(url) as client:
+    with _start_service() as url, Client(url) as client:
         try:
             first, *_ = client.problems().values()
             job = client.solve(first["example"], label="demo")
@@ -90,7 +90,7 @@ def _check(check: dict[str, Any]) -> str:
 
 
 @contextmanager
-def _service() -> Iterator[str]:
+def _start_service() -> Iterator[str]:
     """A service of the demonstration's own; gives its URL."""
     Path("var").mkdir(exist_ok=True)
     with tempfile.TemporaryDirectory(prefix="demo-", dir="var") as folder:
@@ -112,7 +112,7 @@ def _service() -> Iterator[str]:
                 [sys.executable, "-m", "service.command.cli", "serve"], env=environment, stdout=stdout
             )
         try:
-            yield _announced_url(server, announced)
+            yield _wait_for_url(server, announced)
         finally:
             server.terminate()
             try:
@@ -122,7 +122,7 @@ def _service() -> Iterator[str]:
                 server.wait()
 
 
-def _announced_url(server: subprocess.Popen[bytes], announced: Path) -> str:
+def _wait_for_url(server: subprocess.Popen[bytes], announced: Path) -> str:
     deadline = time.monotonic() + START_TIMEOUT_S
     while time.monotonic() < deadline:
         words = announced.read_text().split()

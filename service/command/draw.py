@@ -8,9 +8,9 @@ from typing import Any, get_args
 
 from pydantic import ValidationError
 
-from service.command.inputs import SourceError, object_of
+from service.command.inputs import SourceError, read_object
 from service.render import Form, NoSuchExport, NotBuilt, export_design, list_forms, make_heading
-from service.requests import read
+from service.requests import load_stored_problem
 from synthesis.registry import KINDS
 
 
@@ -26,8 +26,8 @@ def draw(source: str, number: int, output: Path) -> None:
     form = next((form for form in known if output.suffix.lower() == f".{form}"), None)
     if form is None:
         raise SourceError(f"{output}: the name must end in one of: {', '.join(f'.{form}' for form in known)}")
-    job = object_of(source)
-    problem, designs = _answer(source, job)
+    job = read_object(source)
+    problem, designs = _read_answer(source, job)
     if not 1 <= number <= len(designs):
         raise SourceError(f"{source} has {len(designs)} designs, counted from 1; {number} is none of them")
     design = designs[number - 1]
@@ -42,12 +42,14 @@ def draw(source: str, number: int, output: Path) -> None:
     output.write_bytes(content if isinstance(content, bytes) else content.encode())
 
 
-def _answer(source: str, job: dict[str, Any]) -> tuple[Any, list[Any]]:
+def _read_answer(source: str, job: dict[str, Any]) -> tuple[Any, list[Any]]:
     problem, result = job.get("problem"), job.get("result")
     if not isinstance(problem, dict) or not isinstance(result, dict) or problem.get("kind") not in KINDS:
         raise SourceError(f"{source} holds no answer; mechsynth solve --json writes one")
     kind = problem["kind"]
     try:
-        return read(kind, json.dumps(problem)), KINDS[kind].result.model_validate_json(json.dumps(result)).designs
+        return load_stored_problem(kind, json.dumps(problem)), KINDS[kind].result.model_validate_json(
+            json.dumps(result)
+        ).designs
     except ValidationError as error:
         raise SourceError(f"{source} holds no answer of this version: {error.errors()[0]['msg']}") from None

@@ -17,7 +17,7 @@ from service.jobs.store.finished_cache import FinishedJobs
 from service.jobs.store.schema import JobRow, JobSummary, SampleRow
 from service.jobs.store.states import Cost, Status
 from service.observability.metrics import Metrics
-from service.observability.telemetry import span
+from service.observability.telemetry import measure_span
 
 log = structlog.get_logger(__name__)
 
@@ -63,11 +63,11 @@ class JobDesk:
         QueueFull
             If the tenant's queue is full.
         """
-        with span("store"):
-            job, new = await run_in_threadpool(self._stored, tenant, kind, label, problem, cost, repeatable)
+        with measure_span("store"):
+            job, new = await run_in_threadpool(self._store_job, tenant, kind, label, problem, cost, repeatable)
         if new:
             log.info("job accepted", job=job.id, kind=kind)
-            self.metrics.accepted(kind)
+            self.metrics.count_job(kind)
         with self.notifier.watch(job.id) as changed:
             if new:
                 self.executor.submit(job.id)
@@ -75,10 +75,10 @@ class JobDesk:
                 return job
             # A free worker may have found the job in the store and ended it before the watch began.
             job = await self.get(job.tenant, job.id) or job
-            with span("job"):
-                return await self._ended(job, changed, wait_s)
+            with measure_span("job"):
+                return await self._wait_for_end(job, changed, wait_s)
 
-    def _stored(
+    def _store_job(
         self, tenant: str, kind: str, label: str | None, problem: str, cost: Cost, repeatable: Repeatable | None
     ) -> tuple[JobRow, bool]:
         if repeatable is None:
@@ -96,7 +96,7 @@ class JobDesk:
             max_queued=self.max_queued,
         )
 
-    async def _ended(self, job: JobRow, changed: asyncio.Event, wait_s: float) -> JobRow:
+    async def _wait_for_end(self, job: JobRow, changed: asyncio.Event, wait_s: float) -> JobRow:
         try:
             async with asyncio.timeout(wait_s):
                 while not job.status.finished and not self.notifier.closed:
@@ -118,12 +118,12 @@ class JobDesk:
                 self.finished.keep(job, removals)
         return job if job is not None and job.tenant == tenant else None
 
-    async def page(
+    async def list_page(
         self, *, tenant: str, limit: int, status: Status | None, kind: str | None, before: str | None
     ) -> list[JobSummary]:
         """Return at most ``limit`` jobs of the tenant, newest first."""
         return await run_in_threadpool(
-            self.store.page, tenant=tenant, limit=limit, status=status, kind=kind, before=before
+            self.store.list_page, tenant=tenant, limit=limit, status=status, kind=kind, before=before
         )
 
     async def cancel_or_delete(self, tenant: str, job_id: str) -> JobRow | Literal["deleted"] | None:
@@ -146,18 +146,18 @@ class JobDesk:
             try:
                 return "deleted" if await run_in_threadpool(self.store.delete, job_id) else None
             finally:
-                self.finished.removed(job_id)
+                self.finished.note_removal(job_id)
         if await run_in_threadpool(self.store.cancel, job_id):
             log.info("job cancelled", job=job_id, was=job.status)
             self.executor.cancel(job_id)
             self.notifier.publish(job_id)
         return await self.get(tenant, job_id)
 
-    async def ready(self) -> str | None:
+    async def check_readiness(self) -> str | None:
         """Return None if jobs can be accepted and run, else a sentence that names the missing part."""
         try:
             await run_in_threadpool(self.store.ping)
         except Exception:  # any error of the database driver means the same here: no store
             log.exception("the store does not answer")
             return "The job store does not answer."
-        return None if self.executor.ready() > 0 else "No worker has finished starting yet."
+        return None if self.executor.count_ready_workers() > 0 else "No worker has finished starting yet."

@@ -35,7 +35,7 @@ class Executor(Protocol):
         """Stop the computation of a job already cancelled in the store, even inside native code."""
         ...
 
-    def ready(self) -> int:
+    def count_ready_workers(self) -> int:
         """Return the number of workers that have finished starting."""
         ...
 

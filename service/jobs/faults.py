@@ -43,7 +43,7 @@ WORKER_DIED = Fault(
 )
 
 
-def timeout(limit_s: float) -> Fault:
+def make_timeout(limit_s: float) -> Fault:
     """Build the fault of a job that took longer than ``limit_s`` seconds."""
     return Fault(
         "/problems/timeout",
@@ -53,7 +53,7 @@ def timeout(limit_s: float) -> Fault:
     )
 
 
-def out_of_memory(limit_mb: int) -> Fault:
+def make_out_of_memory(limit_mb: int) -> Fault:
     """Build the fault of a job that needed more than ``limit_mb`` MiB."""
     return Fault(
         "/problems/out-of-memory",
@@ -63,7 +63,7 @@ def out_of_memory(limit_mb: int) -> Fault:
     )
 
 
-def invalid_problem(errors: Sequence[tuple[str, str]]) -> Fault:
+def make_invalid_problem(errors: Sequence[tuple[str, str]]) -> Fault:
     """Build the fault of a sample with an invalid problem; ``errors`` are pairs of JSON pointer and detail.
 
     At most :data:`~service.error_messages.MAX_FAULTS` errors are reported, as for a refused job.

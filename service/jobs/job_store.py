@@ -16,45 +16,54 @@ from typing import Any
 from sqlalchemy import Connection, Engine, delete, func, select, text, update
 from ulid import ULID
 
-from service.jobs.batches.reading import sample_as_job, samples_as_jobs
-from service.jobs.store.admission import Repeatable, made_by, once, one_after_the_other, surely
-from service.jobs.store.schema import QUEUED, Claim, JobRow, JobSummary, as_stored, as_values, jobs, now
+from service.jobs.batches.reading import load_sample, load_samples
+from service.jobs.store.admission import Repeatable, find_earlier, insert_confirmed, make_once, serialize_inserts
+from service.jobs.store.schema import (
+    QUEUED_CONDITION,
+    Claim,
+    JobRow,
+    JobSummary,
+    as_stored,
+    as_values,
+    format_now,
+    jobs,
+)
 from service.jobs.store.statements import (
-    BACK_IN_QUEUE,
-    BY_ID,
-    CLAIM,
-    CLAIMED,
     COLUMNS,
     COUNT_QUEUED,
-    FAIL,
-    INSERT,
+    INSERT_JOB,
+    IS_SINGLE_JOB,
+    JOB_COLUMNS,
     MAX_CRASHES,
     MAX_IDS,
     MAX_KILLS,
-    NEXT,
-    NEXT_OF_OTHERS,
     NO_KEY,
-    SINGLE,
-    SUCCEED,
-    SUMMARY,
-    WHOLE,
-    died,
-    moved,
-    new_row,
-    turn_as_long,
+    REQUEUED_VALUES,
+    SELECT_BY_ID,
+    SELECT_CLAIMED,
+    SELECT_NEXT,
+    SELECT_NEXT_OF_OTHERS,
+    SUMMARY_COLUMNS,
+    UPDATE_CLAIMED,
+    UPDATE_FAILED,
+    UPDATE_SUCCEEDED,
+    build_death_update,
+    build_long_turn,
+    build_move,
+    build_row,
 )
-from service.jobs.store.states import FINISHED, MOVES, UNFINISHED, Cost, Status
+from service.jobs.store.states import FINISHED_STATES, MOVES, UNFINISHED_STATES, Cost, Status
 
-_FEW = 8
+_SERIAL_THRESHOLD = 8
 """Number of queued jobs above which a tenant's inserts are serialized, so that each job gets its own turn. Below it,
 jobs that arrive at the same time may share a turn."""
 
-_CROWD = 500
+_MAX_CONCURRENT_INSERTS = 500
 """More than the number of concurrent inserts of all servers: this far below its limit, a queue needs no exact count."""
 
-_NO_END = 1 << 30
+_UNLIMITED = 1 << 30
 
-_MESSAGE_LENGTH = 200  # the width of its column
+_MAX_MESSAGE_LENGTH = 200  # the width of its column
 
 
 class JobStore:
@@ -81,14 +90,14 @@ class JobStore:
         """Store a new job in the queue. On return the job is on disk.
 
         If the connection breaks, the job's id ensures that it is stored exactly once
-        (:func:`service.jobs.store.admission.surely`).
+        (:func:`service.jobs.store.admission.insert_confirmed`).
 
         Raises
         ------
         QueueFull
             If ``max_queued`` jobs of the tenant are already queued.
         """
-        return self._insert({**new_row(tenant, kind, label, problem, cost), **NO_KEY}, max_queued)
+        return self._insert({**build_row(tenant, kind, label, problem, cost), **NO_KEY}, max_queued)
 
     def create_once(
         self,
@@ -116,49 +125,49 @@ class JobStore:
             If the job is new and ``max_queued`` jobs of the tenant are already queued.
         """
         row = {
-            **new_row(tenant, kind, label, problem, cost),
+            **build_row(tenant, kind, label, problem, cost),
             "idempotency_key": repeatable.key,
             "request_hash": repeatable.request_hash,
         }
-        return once(lambda: self._insert(row, max_queued), lambda: self._made_by(tenant, repeatable))
+        return make_once(lambda: self._insert(row, max_queued), lambda: self._find_earlier(tenant, repeatable))
 
     def _insert(self, row: dict[str, Any], max_queued: int | None) -> JobRow:
-        surely(
+        insert_confirmed(
             self._engine,
-            lambda connection: _there(connection, row["id"]),
-            lambda connection: _inserted(connection, row, max_queued),
+            lambda connection: _is_stored(connection, row["id"]),
+            lambda connection: _insert_unless_full(connection, row, max_queued),
         )
         return JobRow(**{name: row[name] for name in COLUMNS})
 
-    def _made_by(self, tenant: str, repeatable: Repeatable) -> JobRow | None:
-        row = made_by(self._engine, jobs, WHOLE, tenant, repeatable)
+    def _find_earlier(self, tenant: str, repeatable: Repeatable) -> JobRow | None:
+        row = find_earlier(self._engine, jobs, JOB_COLUMNS, tenant, repeatable)
         return None if row is None else JobRow(*as_values(row))
 
     def get(self, job_id: str) -> JobRow | None:
         """Return the job, which may be an ended sample of a batch; None if it does not exist."""
         with self._engine.connect() as connection:
-            row = connection.execute(BY_ID, {"job": job_id}).one_or_none()
-            return sample_as_job(connection, job_id) if row is None else JobRow(*as_values(row))
+            row = connection.execute(SELECT_BY_ID, {"job": job_id}).one_or_none()
+            return load_sample(connection, job_id) if row is None else JobRow(*as_values(row))
 
-    def unfinished(self) -> dict[str, int]:
+    def count_unfinished(self) -> dict[str, int]:
         """Return the number of queued and of running jobs."""
-        query = select(jobs.c.status, func.count()).where(jobs.c.status.in_(UNFINISHED)).group_by(jobs.c.status)
+        query = select(jobs.c.status, func.count()).where(jobs.c.status.in_(UNFINISHED_STATES)).group_by(jobs.c.status)
         with self._engine.connect() as connection:
             counts = {row[0]: row[1] for row in connection.execute(query)}
         return {status.value: counts.get(status.value, 0) for status in (Status.QUEUED, Status.RUNNING)}
 
-    def summaries(self, job_ids: Sequence[str]) -> dict[str, JobSummary]:
+    def load_summaries(self, job_ids: Sequence[str]) -> dict[str, JobSummary]:
         """Return the existing jobs among these ids, by id, samples of batches included."""
         by_id: dict[str, JobSummary] = {}
         with self._engine.connect() as connection:
             for start in range(0, len(job_ids), MAX_IDS):
-                query = select(*SUMMARY).where(jobs.c.id.in_(job_ids[start : start + MAX_IDS]), SINGLE)
+                query = select(*SUMMARY_COLUMNS).where(jobs.c.id.in_(job_ids[start : start + MAX_IDS]), IS_SINGLE_JOB)
                 for row in connection.execute(query):
                     by_id[row.id] = JobSummary(*as_values(row))
-            by_id |= samples_as_jobs(connection, [job_id for job_id in job_ids if job_id not in by_id])
+            by_id |= load_samples(connection, [job_id for job_id in job_ids if job_id not in by_id])
         return by_id
 
-    def page(
+    def list_page(
         self,
         *,
         tenant: str,
@@ -168,7 +177,12 @@ class JobStore:
         before: str | None = None,
     ) -> list[JobSummary]:
         """Return at most ``limit`` jobs of a tenant older than the job ``before``, newest first."""
-        query = select(*SUMMARY).where(jobs.c.tenant == tenant, SINGLE).order_by(jobs.c.id.desc()).limit(limit)
+        query = (
+            select(*SUMMARY_COLUMNS)
+            .where(jobs.c.tenant == tenant, IS_SINGLE_JOB)
+            .order_by(jobs.c.id.desc())
+            .limit(limit)
+        )
         if status is not None:
             query = query.where(jobs.c.status == status)
         if kind is not None:
@@ -182,61 +196,67 @@ class JobStore:
         """Claim the queued job whose turn it is under a mark; return None if there is none.
 
         ``costs`` are tried in order. The short jobs of the tenants ``passed_over`` stay in the queue. Of concurrent
-        callers only one gets a given job. A caller whose connection broke uses :meth:`claimed` to learn whether it got
+        callers only one gets a given job. A caller whose connection broke uses :meth:`find_claim` to learn whether it got
         one.
         """
         with self._engine.begin() as connection:
             for cost in costs:
-                while (job_id := _next(connection, cost, passed_over if cost == Cost.SHORT else ())) is not None:
-                    row = connection.execute(CLAIM, {"job": job_id, "mark": mark, "moment": now()}).one_or_none()
+                while (job_id := _find_next(connection, cost, passed_over if cost == Cost.SHORT else ())) is not None:
+                    row = connection.execute(
+                        UPDATE_CLAIMED, {"job": job_id, "mark": mark, "moment": format_now()}
+                    ).one_or_none()
                     if row is not None:  # else it was cancelled since the query
                         return _claim(row)
         return None
 
-    def claimed(self, mark: str) -> Claim | None:
+    def find_claim(self, mark: str) -> Claim | None:
         """Return the running job that was claimed under a mark; None if there is none."""
         with self._engine.connect() as connection:
-            row = connection.execute(CLAIMED, {"mark": mark}).one_or_none()
+            row = connection.execute(SELECT_CLAIMED, {"mark": mark}).one_or_none()
         return None if row is None else _claim(row)
 
-    def progress(self, job_id: str, attempt: int, fraction: float, message: str) -> bool:
+    def record_progress(self, job_id: str, attempt: int, fraction: float, message: str) -> bool:
         """Store the progress of an attempt; return False if the attempt is no longer current."""
         change = (
             update(jobs)
             .where(jobs.c.id == job_id, jobs.c.attempt == attempt, jobs.c.status == Status.RUNNING)
             .values(
                 progress_fraction=min(max(fraction, 0.0), 1.0),
-                progress_message=message[:_MESSAGE_LENGTH],
+                progress_message=message[:_MAX_MESSAGE_LENGTH],
                 revision=jobs.c.revision + 1,
             )
         )
-        return self._changed(change)
+        return self._execute_change(change)
 
-    def succeed(self, job_id: str, attempt: int, result: str, digest: str | None = None) -> bool:
+    def complete(self, job_id: str, attempt: int, result: str, digest: str | None = None) -> bool:
         """End the attempt with its result (JSON text); return False if the attempt is no longer current.
 
         Equal problems find the result by the ``digest`` of the problem (:mod:`service.jobs.batches.identity`).
         """
-        ended = {"job": job_id, "of": attempt, "answer": result, "moment": now(), "known_by": digest}
-        return self._changed(SUCCEED, ended)
+        ended = {"job": job_id, "of": attempt, "answer": result, "moment": format_now(), "known_by": digest}
+        return self._execute_change(UPDATE_SUCCEEDED, ended)
 
     def fail(self, job_id: str, attempt: int, error: str) -> bool:
         """End the attempt with an error (JSON text); return False if the attempt is no longer current."""
-        return self._changed(FAIL, {"job": job_id, "of": attempt, "answer": error, "moment": now()})
+        return self._execute_change(
+            UPDATE_FAILED, {"job": job_id, "of": attempt, "answer": error, "moment": format_now()}
+        )
 
     def give_up(self, job_id: str, claim: str, error: str) -> bool:
         """Fail the job from outside; for the executor that runs it under this claim."""
-        change = moved("give_up", job_id, error=error, progress_message="failed", finished_at=now())
-        return self._changed(change.where(jobs.c.claim == claim))
+        change = build_move("give_up", job_id, error=error, progress_message="failed", finished_at=format_now())
+        return self._execute_change(change.where(jobs.c.claim == claim))
 
     def cancel(self, job_id: str) -> bool:
         """Cancel an unfinished job; return False if there is none. No attempt can write to it afterwards."""
-        return self._changed(moved("cancel", job_id, progress_message="cancelled", finished_at=now()))
+        return self._execute_change(
+            build_move("cancel", job_id, progress_message="cancelled", finished_at=format_now())
+        )
 
     def delete(self, job_id: str) -> bool:
         """Remove a finished job; return False if there is none."""
         with self._engine.begin() as connection:
-            deletion = connection.execute(delete(jobs).where(jobs.c.id == job_id, jobs.c.status.in_(FINISHED)))
+            deletion = connection.execute(delete(jobs).where(jobs.c.id == job_id, jobs.c.status.in_(FINISHED_STATES)))
         return deletion.rowcount > 0
 
     def delete_finished(self, before: datetime, at_most: int) -> int:
@@ -246,7 +266,7 @@ class JobStore:
             select(jobs.c.id)
             .where(
                 jobs.c.id < str(ULID.from_datetime(before)),
-                jobs.c.status.in_(FINISHED),
+                jobs.c.status.in_(FINISHED_STATES),
                 jobs.c.finished_at < as_stored(before),
             )
             .order_by(jobs.c.id)
@@ -257,12 +277,12 @@ class JobStore:
 
     def requeue(self, job_id: str, claim: str) -> bool:
         """Requeue a running job because the executor that runs it under this claim stops."""
-        return self._changed(moved("requeue", job_id, **BACK_IN_QUEUE).where(jobs.c.claim == claim))
+        return self._execute_change(build_move("requeue", job_id, **REQUEUED_VALUES).where(jobs.c.claim == claim))
 
     def requeue_as_long(self, job_id: str, claim: str) -> bool:
         """Requeue a running job as a long one because it exceeds the time of a short job."""
-        values: dict[str, Any] = {**BACK_IN_QUEUE, "cost": Cost.LONG, "turn": turn_as_long()}
-        return self._changed(moved("requeue", job_id, **values).where(jobs.c.claim == claim))
+        values: dict[str, Any] = {**REQUEUED_VALUES, "cost": Cost.LONG, "turn": build_long_turn()}
+        return self._execute_change(build_move("requeue", job_id, **values).where(jobs.c.claim == claim))
 
     def requeue_unfinished(self) -> int:
         """Requeue all running jobs; return the number of queued jobs after that.
@@ -274,11 +294,11 @@ class JobStore:
             connection.execute(
                 update(jobs)
                 .where(jobs.c.status == Status.RUNNING)
-                .values(status=move.target, revision=jobs.c.revision + 1, **BACK_IN_QUEUE)
+                .values(status=move.target, revision=jobs.c.revision + 1, **REQUEUED_VALUES)
             )
-            return connection.execute(select(func.count()).select_from(jobs).where(QUEUED)).scalar_one()
+            return connection.execute(select(func.count()).select_from(jobs).where(QUEUED_CONDITION)).scalar_one()
 
-    def crashed(self, job_id: str, claim: str, *, killed: bool) -> Status | None:
+    def record_crash(self, job_id: str, claim: str, *, killed: bool) -> Status | None:
         """Record that the worker of a job died, by itself or ``killed`` from outside.
 
         Returns
@@ -288,37 +308,39 @@ class JobStore:
             last death was a kill); None, and no change: the job had finished, was removed, or belongs to another
             attempt.
         """
-        change = died(job_id, MAX_KILLS if killed else MAX_CRASHES)
+        change = build_death_update(job_id, MAX_KILLS if killed else MAX_CRASHES)
         with self._engine.begin() as connection:
             status = connection.execute(change.where(jobs.c.claim == claim)).scalar_one_or_none()
         return None if status is None else Status(status)
 
-    def _changed(self, change: Any, values: Mapping[str, Any] | None = None) -> bool:
+    def _execute_change(self, change: Any, values: Mapping[str, Any] | None = None) -> bool:
         with self._engine.begin() as connection:
             rows: int = connection.execute(change, values).rowcount
         return rows > 0
 
 
-def _there(connection: Connection, job_id: str) -> bool:
+def _is_stored(connection: Connection, job_id: str) -> bool:
     return connection.execute(select(jobs.c.id).where(jobs.c.id == job_id)).first() is not None
 
 
-def _inserted(connection: Connection, row: Mapping[str, Any], max_queued: int | None) -> bool:
+def _insert_unless_full(connection: Connection, row: Mapping[str, Any], max_queued: int | None) -> bool:
     """Insert a row unless ``max_queued`` jobs of its tenant are already queued; return whether it was inserted."""
-    most = _NO_END if max_queued is None else max_queued
+    most = _UNLIMITED if max_queued is None else max_queued
     asked = {"of": row["tenant"], "most": most}
     # SQLite has one writer at a time, so its inserts need no further order.
     postgresql = connection.dialect.name == "postgresql"
-    if postgresql and connection.execute(COUNT_QUEUED, asked).scalar_one() > min(_FEW, most - _CROWD):
-        one_after_the_other(connection, row["tenant"])
-    return connection.execute(INSERT, {**row, **asked, "as": row["cost"]}).rowcount > 0
+    if postgresql and connection.execute(COUNT_QUEUED, asked).scalar_one() > min(
+        _SERIAL_THRESHOLD, most - _MAX_CONCURRENT_INSERTS
+    ):
+        serialize_inserts(connection, row["tenant"])
+    return connection.execute(INSERT_JOB, {**row, **asked, "as": row["cost"]}).rowcount > 0
 
 
-def _next(connection: Connection, cost: Cost, passed_over: Collection[str]) -> str | None:
+def _find_next(connection: Connection, cost: Cost, passed_over: Collection[str]) -> str | None:
     """Return the id of the next queued job of this cost, skipping the tenants ``passed_over``."""
     if not passed_over:
-        return connection.execute(NEXT, {"cost": cost}).scalar_one_or_none()
-    return connection.execute(NEXT_OF_OTHERS, {"cost": cost, "passed_over": [*passed_over]}).scalar_one_or_none()
+        return connection.execute(SELECT_NEXT, {"cost": cost}).scalar_one_or_none()
+    return connection.execute(SELECT_NEXT_OF_OTHERS, {"cost": cost, "passed_over": [*passed_over]}).scalar_one_or_none()
 
 
 def _claim(row: Any) -> Claim:

@@ -32,38 +32,38 @@ async def keep_tidy(store: JobStore, batches: BatchStore, finished: FinishedJobs
     kept = None if days is None else timedelta(days=days)
     period_s = MAX_PERIOD_S if kept is None else min(max(kept.total_seconds() / 10, MIN_PERIOD_S), MAX_PERIOD_S)
     while True:
-        await _tried(_tidied(batches), "lost batches could not be ended")
+        await _run_logged(_settle_lost_batches(batches), "lost batches could not be ended")
         if kept is not None:
-            await _tried(_without_old_jobs(store, finished, kept), "old jobs could not be removed")
-            await _tried(_without_old_batches(batches, finished, kept), "old batches could not be removed")
+            await _run_logged(_remove_old_jobs(store, finished, kept), "old jobs could not be removed")
+            await _run_logged(_remove_old_batches(batches, finished, kept), "old batches could not be removed")
         await asyncio.sleep(period_s)
 
 
-async def _tried(work: Awaitable[None], failure: str) -> None:
+async def _run_logged(work: Awaitable[None], failure: str) -> None:
     try:
         await work
     except Exception:  # any error of the database driver: the next round does the same work
         log.exception(failure)
 
 
-async def _tidied(batches: BatchStore) -> None:
+async def _settle_lost_batches(batches: BatchStore) -> None:
     lost = await run_in_threadpool(batches.tidy)
     if lost:
         log.warning("lost batches ended", batches=lost)
 
 
-async def _without_old_jobs(store: JobStore, finished: FinishedJobs, kept: timedelta) -> None:
+async def _remove_old_jobs(store: JobStore, finished: FinishedJobs, kept: timedelta) -> None:
     removed = 0
     while gone := await run_in_threadpool(store.delete_finished, datetime.now(UTC) - kept, MAX_REMOVED_AT_ONCE):
         removed += gone
-        finished.removed()
+        finished.note_removal()
         await asyncio.sleep(_PAUSE_S)
     if removed:
         log.info("old jobs removed", jobs=removed)
 
 
-async def _without_old_batches(batches: BatchStore, finished: FinishedJobs, kept: timedelta) -> None:
+async def _remove_old_batches(batches: BatchStore, finished: FinishedJobs, kept: timedelta) -> None:
     while await run_in_threadpool(batches.delete_finished, datetime.now(UTC) - kept):
         log.info("old batch removed")
-        finished.removed()
+        finished.note_removal()
         await asyncio.sleep(_PAUSE_S)

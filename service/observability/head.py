@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from starlette.types import ASGIApp, Receive, Scope, Send
 
-_ASKED = "mechsynth.head"
+_HEAD_KEY = "mechsynth.head"
 
 
 class HeadAsGet:
@@ -16,10 +16,10 @@ class HeadAsGet:
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
         """Pass the request on, its method exchanged in a copy: the server still knows it as ``HEAD``."""
         if scope["type"] == "http" and scope["method"] == "HEAD":
-            scope = {**scope, "method": "GET", _ASKED: True}
+            scope = {**scope, "method": "GET", _HEAD_KEY: True}
         await self._app(scope, receive, send)
 
 
-def asked_for_head(scope: Scope) -> bool:
+def is_head_request(scope: Scope) -> bool:
     """Whether a request that looks like ``GET`` was ``HEAD``; of interest where the body does not end by itself."""
-    return _ASKED in scope
+    return _HEAD_KEY in scope

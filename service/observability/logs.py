@@ -26,7 +26,7 @@ _CONTROLS = [*range(0x20), *range(0x7F, 0xA0), 0x2028, 0x2029, *range(0x202A, 0x
 _SPELT = {code: chr(code).encode("unicode_escape").decode() for code in _CONTROLS}
 
 
-def _spelt(_logger: WrappedLogger, _method: str, record: EventDict) -> EventDict:
+def _escape_controls(_logger: WrappedLogger, _method: str, record: EventDict) -> EventDict:
     """The record with control characters spelt out: texts may come from clients, and a record is one line."""
     return {
         key.translate(_SPELT): value if key == "exc_info" else str(value).translate(_SPELT)
@@ -34,14 +34,14 @@ def _spelt(_logger: WrappedLogger, _method: str, record: EventDict) -> EventDict
     }
 
 
-def _traceback(out: TextIO, error: ExcInfo) -> None:
+def _write_traceback(out: TextIO, error: ExcInfo) -> None:
     for part in traceback.format_exception(*error):
         for line in part.rstrip("\n").split("\n"):
             out.write(f"\n{_MARGIN}{line.translate(_SPELT)}")
 
 
 _RENDERERS: dict[Format, tuple[Processor, ...]] = {
-    "text": (_spelt, structlog.dev.ConsoleRenderer(colors=False, exception_formatter=_traceback)),
+    "text": (_escape_controls, structlog.dev.ConsoleRenderer(colors=False, exception_formatter=_write_traceback)),
     "json": (structlog.processors.format_exc_info, structlog.processors.JSONRenderer()),
 }
 

@@ -37,34 +37,34 @@ class WorkerMetrics:
         self.registry = CollectorRegistry()
         for collector in (ProcessCollector, PlatformCollector, GCCollector):
             collector(registry=self.registry)
-        self._attempts = self._counter("job_attempts", "Attempts at jobs that have ended, by how.", "outcome")
-        self._job_seconds = self._histogram(
+        self._attempts = self._create_counter("job_attempts", "Attempts at jobs that have ended, by how.", "outcome")
+        self._job_seconds = self._create_histogram(
             "job_seconds",
             "Computation of an attempt at a job that its worker has brought to an end.",
             "kind",
             _JOB_SECONDS,
         )
-        self._worker_restarts = self._counter(
+        self._worker_restarts = self._create_counter(
             "worker_restarts", "Worker processes that were replaced, by why.", "reason"
         )
-        self._workers = self._gauge("workers_ready", "Worker processes that have finished starting.")
+        self._workers = self._create_gauge("workers_ready", "Worker processes that have finished starting.")
 
-    def _counter(self, name: str, text: str, *labels: str) -> Counter:
+    def _create_counter(self, name: str, text: str, *labels: str) -> Counter:
         return Counter(f"mechsynth_{name}", text, labels, registry=self.registry)
 
-    def _gauge(self, name: str, text: str, *labels: str) -> Gauge:
+    def _create_gauge(self, name: str, text: str, *labels: str) -> Gauge:
         return Gauge(f"mechsynth_{name}", text, labels, registry=self.registry)
 
-    def _histogram(self, name: str, text: str, label: str, buckets: tuple[float, ...]) -> Histogram:
+    def _create_histogram(self, name: str, text: str, label: str, buckets: tuple[float, ...]) -> Histogram:
         return Histogram(f"mechsynth_{name}", text, (label,), buckets=buckets, registry=self.registry)
 
-    def attempt(self, outcome: str, kind: str | None = None, seconds: float = 0.0) -> None:
+    def count_attempt(self, outcome: str, kind: str | None = None, seconds: float = 0.0) -> None:
         """An attempt at a job has ended; kind and time are known where the worker itself has ended it."""
         self._attempts.labels(outcome.replace(" ", "_")).inc()
         if kind is not None:
             self._job_seconds.labels(kind).observe(seconds)
 
-    def worker_restart(self, reason: str) -> None:
+    def count_worker_restart(self, reason: str) -> None:
         """A worker process is being replaced."""
         self._worker_restarts.labels(reason).inc()
 
@@ -74,7 +74,7 @@ class HostMetrics(WorkerMetrics):
 
     def __init__(self) -> None:
         super().__init__()
-        self._jobs = self._gauge(
+        self._jobs = self._create_gauge(
             "host_jobs",
             "Jobs that this host has taken: a worker computes them.",
             "status",
@@ -91,56 +91,58 @@ class Metrics(WorkerMetrics):
 
     def __init__(self) -> None:
         super().__init__()
-        self._requests = self._counter("http_requests", "Requests that were answered.", "operation", "method", "status")
-        self._request_seconds = self._histogram(
+        self._requests = self._create_counter(
+            "http_requests", "Requests that were answered.", "operation", "method", "status"
+        )
+        self._request_seconds = self._create_histogram(
             "http_request_seconds",
             "From the head of a request to the end of its answer, waits and streams included.",
             "operation",
             _REQUEST_SECONDS,
         )
-        self._rejections = self._counter(
+        self._rejections = self._create_counter(
             "http_rejections", "Requests that were answered with an error, by the type of the problem.", "reason"
         )
-        self._jobs_accepted = self._counter("jobs_accepted", "Jobs that were accepted.", "kind")
-        self._batches_accepted = self._counter("batches_accepted", "Batches that were accepted.", "kind")
-        self._given_up = self._counter(
+        self._jobs_accepted = self._create_counter("jobs_accepted", "Jobs that were accepted.", "kind")
+        self._batches_accepted = self._create_counter("batches_accepted", "Batches that were accepted.", "kind")
+        self._given_up = self._create_counter(
             "calls_given_up",
             "Analyses, drawings, parts and files that were given up, by why: time, memory, busy, gone, lost.",
             "pool",
             "reason",
         )
-        self._defects = self._counter(
+        self._defects = self._create_counter(
             "defects", "Requests refused after a numerical error that no field had kept out.", "operation"
         )
-        self._listeners = self._gauge("event_listeners", "Clients that listen to the events of a job.")
+        self._listeners = self._create_gauge("event_listeners", "Clients that listen to the events of a job.")
 
-    def request(self, operation: str, method: str, status: int, seconds: float) -> None:
+    def count_request(self, operation: str, method: str, status: int, seconds: float) -> None:
         """A request has been answered."""
         self._requests.labels(operation, method if method in METHODS else "other", str(status)).inc()
         self._request_seconds.labels(operation).observe(seconds)
 
-    def refused_unread(self, status: int, type_: str) -> None:
+    def count_unread_refusal(self, status: int, type_: str) -> None:
         """A request was answered with a problem of this type before it was whole, so that no operation has seen it."""
         self._requests.labels("none", "other", str(status)).inc()
-        self.rejection(type_)
+        self.count_rejection(type_)
 
-    def rejection(self, type_: str) -> None:
+    def count_rejection(self, type_: str) -> None:
         """A request was answered with a problem of this type (``/problems/...``)."""
         self._rejections.labels(type_.removeprefix("/problems/")).inc()
 
-    def accepted(self, kind: str) -> None:
+    def count_job(self, kind: str) -> None:
         """A job was accepted."""
         self._jobs_accepted.labels(kind).inc()
 
-    def accepted_batch(self, kind: str) -> None:
+    def count_batch(self, kind: str) -> None:
         """A batch was accepted."""
         self._batches_accepted.labels(kind).inc()
 
-    def call_given_up(self, pool: str, reason: str) -> None:
+    def count_given_up(self, pool: str, reason: str) -> None:
         """An analysis, a drawing, parts or a file were given up."""
         self._given_up.labels(pool, reason).inc()
 
-    def defect(self, operation: str) -> None:
+    def count_defect(self, operation: str) -> None:
         """A request has met a defect of the service's own, and was refused for it."""
         self._defects.labels(operation).inc()
 
@@ -164,17 +166,17 @@ class _Calls(Collector):
         self._counts = counts
 
     def describe(self) -> Iterator[GaugeMetricFamily]:
-        yield _calls_family()
+        yield _create_calls_family()
 
     def collect(self) -> Iterator[GaugeMetricFamily]:
-        family = _calls_family()
+        family = _create_calls_family()
         for pool, counts in self._counts().items():
             for state, calls in counts.items():
                 family.add_metric([pool, state], calls)
         yield family
 
 
-def _calls_family() -> GaugeMetricFamily:
+def _create_calls_family() -> GaugeMetricFamily:
     return GaugeMetricFamily(
         "mechsynth_calls", "Analyses, drawings, parts and files that run or wait.", labels=["pool", "state"]
     )
@@ -187,7 +189,7 @@ class _Queue(Collector):
         self._queue = queue
 
     def describe(self) -> Iterator[GaugeMetricFamily]:
-        yield _family()
+        yield _create_queue_family()
 
     def collect(self) -> Iterator[GaugeMetricFamily]:
         try:
@@ -195,11 +197,11 @@ class _Queue(Collector):
         except Exception:  # whatever a database driver raises: the other metrics are wanted all the more
             log.exception("the unfinished jobs could not be counted")
             return
-        family = _family()
+        family = _create_queue_family()
         for status, jobs in counts.items():
             family.add_metric([status], jobs)
         yield family
 
 
-def _family() -> GaugeMetricFamily:
+def _create_queue_family() -> GaugeMetricFamily:
     return GaugeMetricFamily("mechsynth_jobs_unfinished", "Unfinished jobs in the store.", labels=["status"])

@@ -44,9 +44,9 @@ from service.jobs.events.poller import JobPoller
 from service.jobs.executor import Executor
 from service.jobs.job_store import JobStore
 from service.jobs.retention import keep_tidy
-from service.jobs.store.database import connect, sqlite_file, upgrade
+from service.jobs.store.database import connect, find_sqlite_file, upgrade
 from service.jobs.store.finished_cache import CAPACITY_BYTES, FinishedJobs
-from service.kernels import ANALYSIS, KernelsState
+from service.kernels import ANALYSIS_PART, KernelsState
 from service.observability.metrics import Metrics
 from service.parts.export.worker import Workshop
 from service.settings import Settings
@@ -73,7 +73,7 @@ def create_app(settings: Settings, executor: Executor, measured: Metrics, kernel
         notifier = ChangeNotifier(asyncio.get_running_loop())
         log_as = settings.log_level, settings.log_format
         app.state.answers = answers = AnswerDesk(*log_as, metrics=measured)
-        answers.start(after=lambda: kernels.has(ANALYSIS) or (kernels.ended and answers.is_awaited))
+        answers.start(after=lambda: kernels.has(ANALYSIS_PART) or (kernels.is_ended and answers.is_awaited))
         app.state.readers = readers = ImportDesk(*log_as, metrics=measured)
         app.state.workshop = workshop = Workshop(
             settings.job_memory_mb, settings.job_timeout_s, *log_as, metrics=measured
@@ -84,7 +84,7 @@ def create_app(settings: Settings, executor: Executor, measured: Metrics, kernel
             await run_in_threadpool(upgrade, engine)
             await run_in_threadpool(executor.resume)
             # A SQLite store has one server; of any other, another server may remove a job.
-            finished = FinishedJobs(CAPACITY_BYTES if sqlite_file(settings.store_url) else 0)
+            finished = FinishedJobs(CAPACITY_BYTES if find_sqlite_file(settings.store_url) else 0)
             app.state.desk = JobDesk(store, executor, notifier, measured, settings.max_queued, finished)
             app.state.gate = Gate(KeyStore(engine), settings.rate_limit_rule)
             batch_store = BatchStore(engine)
@@ -92,9 +92,14 @@ def create_app(settings: Settings, executor: Executor, measured: Metrics, kernel
             pollers: list[JobPoller[Any]] = [JobPoller(store, notifier), JobPoller(batch_store, notifier)]
             app.state.poller, app.state.batch_poller = pollers
             measured.watch_calls(
-                lambda: {**answers.counts(), **{pool.name: pool.counts() for pool in (readers.pool, workshop.pool)}}
+                lambda: {
+                    **answers.count_calls(),
+                    **{pool.name: pool.count_calls() for pool in (readers.pool, workshop.pool)},
+                }
             )
-            measured.watch(lambda: sum(each.listeners for each in pollers), executor.ready, store.unfinished)
+            measured.watch(
+                lambda: sum(each.listeners for each in pollers), executor.count_ready_workers, store.count_unfinished
+            )
             polling = [asyncio.create_task(poller.run()) for poller in pollers]
             tidying = asyncio.create_task(keep_tidy(store, batch_store, finished, settings.retention_days))
             yield
@@ -109,24 +114,24 @@ def create_app(settings: Settings, executor: Executor, measured: Metrics, kernel
             await run_in_threadpool(executor.stop)
             engine.dispose()
 
-    app = application(lifespan)
+    app = build_application(lifespan)
     app.state.settings = settings
     app.state.metrics = measured
     app.state.kernels = kernels
     return app
 
 
-def api_document() -> str:
+def build_api_document() -> str:
     """The OpenAPI document of the service as it is kept with the source, without any service running."""
 
     @asynccontextmanager
     async def lifespan(app: FastAPI) -> AsyncIterator[None]:
         yield
 
-    return json.dumps(application(lifespan).openapi(), indent=1, ensure_ascii=False) + "\n"
+    return json.dumps(build_application(lifespan).openapi(), indent=1, ensure_ascii=False) + "\n"
 
 
-def application(lifespan: Lifespan[FastAPI]) -> FastAPI:
+def build_application(lifespan: Lifespan[FastAPI]) -> FastAPI:
     """All routes and errors of the service, around whatever its life brings."""
     app = FastAPI(
         title="mechsynth",

@@ -28,24 +28,24 @@ from uvicorn.protocols.http.httptools_impl import HttpToolsProtocol
 from service.observability.metrics import Metrics
 from service.observability.telemetry import CUT_SHORT
 
-REQUEST_S = 8.0
+REQUEST_TIMEOUT_S = 8.0
 """From the first byte of a request, or the opening of the connection, to the last byte of its body. A connection may
 take ten seconds at most, and a busy event loop runs its timers late."""
 
-READING_S = 10.0
+READING_TIMEOUT_S = 10.0
 """How long a client may leave an answer unread that no longer fits into the buffers."""
 
-IDLE_S = 75
+IDLE_TIMEOUT_S = 75
 """How long a connection may wait for its next request."""
 
-MOST_HEAD_BYTES = 64 << 10
+MAX_HEAD_BYTES = 64 << 10
 """Greatest size of the address and headers of a request together, and of any other data that is not its body."""
 
-MOST_AHEAD = 500
+MAX_PIPELINED = 500
 """Requests that a client may pipeline before the first is answered. Hardly any client sends a second."""
 
-_MORE_S = 1.0
-_SPARE_FILES = 128
+_EXTRA_WAIT_S = 1.0
+_SPARE_FILE_COUNT = 128
 
 log = structlog.get_logger(__name__)
 
@@ -59,7 +59,7 @@ class Fault:
     title: str
     detail: str
 
-    def answer(self) -> bytes:
+    def format_response(self) -> bytes:
         """The whole answer, after which the connection is closed."""
         problem = {"type": self.type, "title": self.title, "status": self.status, "detail": self.detail, "instance": ""}
         body = json.dumps(problem).encode()
@@ -71,7 +71,7 @@ class Fault:
 
 TOO_SLOW = Fault(
     408, "/problems/request-timeout", "Request timeout",
-    f"The request was not complete within {REQUEST_S:g} seconds.",
+    f"The request was not complete within {REQUEST_TIMEOUT_S:g} seconds.",
 )  # fmt: skip
 NOT_HTTP = Fault(400, "/problems/malformed-request", "Malformed request", "What came is not HTTP.")
 HOST_UNCLEAR = Fault(
@@ -79,7 +79,7 @@ HOST_UNCLEAR = Fault(
 )
 HEAD_TOO_LARGE = Fault(
     431, "/problems/head-too-large", "Head too large",
-    f"The address and the headers of a request may have {MOST_HEAD_BYTES} bytes together.",
+    f"The address and the headers of a request may have {MAX_HEAD_BYTES} bytes together.",
 )  # fmt: skip
 
 
@@ -92,7 +92,7 @@ def raise_file_limit() -> int:
     soft, hard = resource.getrlimit(resource.RLIMIT_NOFILE)
     if soft < hard:
         resource.setrlimit(resource.RLIMIT_NOFILE, (hard, hard))
-    return max(hard - _SPARE_FILES, hard // 2) if hard != resource.RLIM_INFINITY else 1 << 20
+    return max(hard - _SPARE_FILE_COUNT, hard // 2) if hard != resource.RLIM_INFINITY else 1 << 20
 
 
 class ImpatientProtocol(HttpToolsProtocol):
@@ -119,7 +119,7 @@ class ImpatientProtocol(HttpToolsProtocol):
         if len(self.connections) > self.most:
             self.transport.abort()
             return
-        self._await_request(REQUEST_S)
+        self._start_request_timer(REQUEST_TIMEOUT_S)
 
     def connection_lost(self, exc: Exception | None) -> None:
         """End all waits."""
@@ -131,13 +131,13 @@ class ImpatientProtocol(HttpToolsProtocol):
         """Bytes have arrived. The parser buffers them until they complete a part of a request."""
         self._unread += len(data)
         super().data_received(data)
-        if self._unread > MOST_HEAD_BYTES:
+        if self._unread > MAX_HEAD_BYTES:
             self._refuse(HEAD_TOO_LARGE)
 
     def on_message_begin(self) -> None:
         """A request begins."""
         if self._request_due is None:
-            self._await_request(REQUEST_S)
+            self._start_request_timer(REQUEST_TIMEOUT_S)
         self._head = self._hosts = self._unread = 0
         super().on_message_begin()
 
@@ -157,7 +157,7 @@ class ImpatientProtocol(HttpToolsProtocol):
 
     def on_headers_complete(self) -> None:
         """The head of a request is complete."""
-        if len(self.pipeline) >= MOST_AHEAD:
+        if len(self.pipeline) >= MAX_PIPELINED:
             self.transport.abort()
             raise Unacceptable
         super().on_headers_complete()
@@ -186,7 +186,7 @@ class ImpatientProtocol(HttpToolsProtocol):
 
     def pause_writing(self) -> None:
         """The client does not read as fast as it is answered."""
-        self._reading_due = self.loop.call_later(READING_S, self.transport.abort)
+        self._reading_due = self.loop.call_later(READING_TIMEOUT_S, self.transport.abort)
         super().pause_writing()
 
     def resume_writing(self) -> None:
@@ -197,14 +197,14 @@ class ImpatientProtocol(HttpToolsProtocol):
     def timeout_keep_alive_handler(self) -> None:
         """Close an idle connection, unless its next request has arrived already."""
         if _has_arrived(self.transport):
-            self.timeout_keep_alive_task = self.loop.call_later(_MORE_S, self.timeout_keep_alive_handler)
+            self.timeout_keep_alive_task = self.loop.call_later(_EXTRA_WAIT_S, self.timeout_keep_alive_handler)
             return
         super().timeout_keep_alive_handler()
 
-    def _await_request(self, seconds: float) -> None:
-        self._request_due = self.loop.call_later(seconds, self._too_slow)
+    def _start_request_timer(self, seconds: float) -> None:
+        self._request_due = self.loop.call_later(seconds, self._handle_timeout)
 
-    def _too_slow(self) -> None:
+    def _handle_timeout(self) -> None:
         if self.transport.is_closing():
             return
         cycle = self.cycle
@@ -215,7 +215,7 @@ class ImpatientProtocol(HttpToolsProtocol):
             or (of_an_earlier_request and not cycle.response_complete)
         ):
             # The delay is the server's own.
-            self._await_request(_MORE_S)
+            self._start_request_timer(_EXTRA_WAIT_S)
             return
         if self.scope is None:  # a connection without a request is just closed
             self.transport.close()
@@ -225,7 +225,7 @@ class ImpatientProtocol(HttpToolsProtocol):
     def _add_to_head(self, size: int) -> None:
         self._unread = 0
         self._head += size
-        if self._head > MOST_HEAD_BYTES:
+        if self._head > MAX_HEAD_BYTES:
             self._fault = HEAD_TOO_LARGE
             raise Unacceptable
 
@@ -236,16 +236,16 @@ class ImpatientProtocol(HttpToolsProtocol):
         cycle = self.cycle
         seen = cycle is not None and cycle.scope is self.scope and self._request_due is not None
         if seen and not cycle.response_started:
-            self.transport.write(fault.answer())
+            self.transport.write(fault.format_response())
             # The operation stops waiting for the rest of the body; telemetry records this status as its answer.
             cycle.scope["state"][CUT_SHORT] = (fault.status, fault.type)
             cycle.disconnected = True
             cycle.message_event.set()
         elif not seen and (cycle is None or cycle.response_complete):
-            self.transport.write(fault.answer())
+            self.transport.write(fault.format_response())
             log.info("request refused", status=fault.status, problem=fault.type)
             if self.metrics is not None:
-                self.metrics.refused_unread(fault.status, fault.type)
+                self.metrics.count_unread_refusal(fault.status, fault.type)
         self.transport.close()
 
     @staticmethod

@@ -21,15 +21,15 @@ from multiprocessing.process import BaseProcess
 
 import structlog
 
-from service.jobs.processes.parent_death import die_with, tell_children
-from service.kernels import ANALYSIS, KernelsState
+from service.jobs.processes.parent_death import bind_to_parent, export_parent_pid
+from service.kernels import ANALYSIS_PART, KernelsState
 from service.loading import IMPORTS
 from service.observability import logs
 
-DEMANDS = "demands"
+CONSTRAINTS_PART = "demands"
 """The part of the kernels that no example of a kind calls."""
 
-PRIORITY = 10
+NICENESS = 10
 """By how much processes that compile beside jobs are nicer than these."""
 
 MAX_START_DELAY_S = 10.0
@@ -45,17 +45,17 @@ class WarmingFailure(Exception):
     """Kernels could not be compiled; the message says which parts are missing."""
 
 
-def every_part() -> list[str]:
+def list_parts() -> list[str]:
     """All parts of the kernels, first those that most of the others call."""
     from kinematics.kernel_marks import LINKAGES_PART
     from synthesis.registry import KINDS
 
-    return [LINKAGES_PART, ANALYSIS, *KINDS, DEMANDS]
+    return [LINKAGES_PART, ANALYSIS_PART, *KINDS, CONSTRAINTS_PART]
 
 
-def analysis_alone() -> list[str]:
+def list_analysis_parts() -> list[str]:
     """The part of a server whose jobs run elsewhere."""
-    return [ANALYSIS]
+    return [ANALYSIS_PART]
 
 
 def warm() -> None:
@@ -69,7 +69,7 @@ def warm() -> None:
     from synthesis import dispatch
 
     logs.configure("warning", "text")
-    compilation = Compilation(every_part, "warning", "text", priority=0, ahead=True)
+    compilation = Compilation(list_parts, "warning", "text", priority=0, ahead=True)
     if not compilation.missing:
         return
     dispatch.warm_up()  # what most parts need is compiled once, before it is needed everywhere
@@ -85,7 +85,7 @@ class Compilation:
     """
 
     def __init__(
-        self, wanted: Callable[[], list[str]], level: str, form: logs.Format, priority: int = PRIORITY, *, ahead: bool
+        self, wanted: Callable[[], list[str]], level: str, form: logs.Format, priority: int = NICENESS, *, ahead: bool
     ) -> None:
         self.state = KernelsState()
         self._wanted = wanted
@@ -121,7 +121,7 @@ class Compilation:
             return
         log.info("compiling kernels in the background; jobs compile their own meanwhile", parts=missing)
         began = time.monotonic()
-        tell_children()
+        export_parent_pid()
         context = get_context("spawn")
         arguments = (missing, os.getpid(), self._priority, self._level, self._form)
         processes = [
@@ -152,7 +152,7 @@ class Compilation:
         except Exception:  # the service can do without: jobs compile what they need
             log.exception("kernels could not be compiled in the background")
         finally:
-            self.state.end()
+            self.state.note_end()
 
     def _watch(self, processes: Sequence[BaseProcess]) -> None:
         from kinematics.kernel_marks import is_compiled
@@ -162,7 +162,7 @@ class Compilation:
             alive = any(process.is_alive() for process in processes)
             for part in self.state.waiting:
                 if is_compiled(part):
-                    self.state.compiled(part)
+                    self.state.note_compiled(part)
                     log.info("kernels compiled", part=part, left=len(self.state.waiting))
             if not self.state.waiting:
                 return
@@ -172,7 +172,7 @@ class Compilation:
 
 def _compile(missing: list[str], parent: int, priority: int, level: str, form: logs.Format) -> None:
     """What a process does: compile the parts that no other process is at, one after the other."""
-    die_with(parent)
+    bind_to_parent(parent)
     logs.configure(level, form)
     from kinematics.kernel_marks import LINKAGES_PART, claim_part, is_compiled, mark_compiled
 
@@ -184,7 +184,7 @@ def _compile(missing: list[str], parent: int, priority: int, level: str, form: l
                 if not ours:
                     elsewhere.append(part)
                 elif not is_compiled(part):
-                    if part not in (LINKAGES_PART, ANALYSIS):  # without these no mechanism can be looked at
+                    if part not in (LINKAGES_PART, ANALYSIS_PART):  # without these no mechanism can be looked at
                         os.nice(priority - os.nice(0))
                     try:
                         _compile_part(part)
@@ -204,9 +204,9 @@ def _compile_part(part: str) -> None:
 
     if part == LINKAGES_PART:
         dispatch.load_linkages()
-    elif part == ANALYSIS:
+    elif part == ANALYSIS_PART:
         warm_analysis.warm_up()
-    elif part == DEMANDS:
+    elif part == CONSTRAINTS_PART:
         dispatch.compile_constraints()
     else:
         dispatch.compile_kind(part)

@@ -16,11 +16,11 @@ from sqlalchemy.exc import SQLAlchemyError
 
 from service.access.keys import KeyStore
 from service.jobs.executor import Executor
-from service.jobs.store.database import connect, sqlite_file
+from service.jobs.store.database import connect, find_sqlite_file
 from service.jobs.workers.local_executor import LocalExecutor
 from service.observability import logs
 from service.observability.metrics import Metrics
-from service.server.precompile import Compilation, analysis_alone, every_part
+from service.server.precompile import Compilation, list_analysis_parts, list_parts
 from service.settings import Settings
 
 log = structlog.get_logger(__name__)
@@ -38,22 +38,22 @@ def serve(settings: Settings) -> None:
     ServeError
         When the port or the data folder cannot be had, or the start fails.
     """
-    signal.signal(signal.SIGTERM, _end)
-    signal.signal(signal.SIGINT, _end)
+    signal.signal(signal.SIGTERM, _raise_stop)
+    signal.signal(signal.SIGINT, _raise_stop)
     logs.configure(settings.log_level, settings.log_format)
-    with _data_folder(settings), _store(settings), _listener(settings, _open(settings)) as listener:
+    with _lock_data_folder(settings), _lock_store(settings), _open_listener(settings, _is_open(settings)) as listener:
         metrics = Metrics()
-        executor = _executor(settings, metrics)
-        compilation = _compilation(settings)
+        executor = _create_executor(settings, metrics)
+        compilation = _create_compilation(settings)
         try:
             # A worker takes as long to start as the web framework to import: side by side, the service is ready in
             # half the time. The tables are made in between, long before any worker is given a job.
             executor.start()
             from service.server.web import WebServer
 
-            compilation.start(after=lambda: executor.ready() > 0)
+            compilation.start(after=lambda: executor.count_ready_workers() > 0)
             WebServer(settings, executor, metrics, compilation.state).run(sockets=[listener])
-        except _Ended:
+        except _StopSignal:
             pass
         except SystemExit:  # uvicorn's way to say that the application did not start
             raise ServeError("the service could not start; the log above has the reason") from None
@@ -62,17 +62,17 @@ def serve(settings: Settings) -> None:
             executor.stop()
 
 
-class _Ended(BaseException):
+class _StopSignal(BaseException):
     """Leaves the program by SIGINT or SIGTERM; like KeyboardInterrupt, nothing that handles errors may catch it."""
 
 
-def _end(_signal: int, _frame: FrameType | None) -> None:
+def _raise_stop(_signal: int, _frame: FrameType | None) -> None:
     # Before the server runs this ends the start. While it runs it has handlers of its own, and it raises the signal
     # again when it has stopped.
-    raise _Ended
+    raise _StopSignal
 
 
-def _executor(settings: Settings, metrics: Metrics) -> Executor:
+def _create_executor(settings: Settings, metrics: Metrics) -> Executor:
     try:
         if settings.executor == "celery":
             # Celery's import takes half a second, which a server with workers of its own has no use for.
@@ -81,34 +81,34 @@ def _executor(settings: Settings, metrics: Metrics) -> Executor:
             return CeleryExecutor(settings)
         return LocalExecutor(settings, metrics)
     except (SQLAlchemyError, ImportError, OSError) as error:
-        raise _no_database(error) from None
+        raise _build_database_error(error) from None
 
 
-def _compilation(settings: Settings) -> Compilation:
+def _create_compilation(settings: Settings) -> Compilation:
     """What the server compiles beside its start: all kernels, or its own where worker hosts run the jobs."""
-    wanted = every_part if settings.executor == "local" else analysis_alone
+    wanted = list_parts if settings.executor == "local" else list_analysis_parts
     return Compilation(wanted, settings.log_level, settings.log_format, ahead=settings.compile_ahead)
 
 
-def _no_database(error: Exception) -> ServeError:
+def _build_database_error(error: Exception) -> ServeError:
     # Not the URL itself, which may hold a password.
     return ServeError(f"cannot use the database ({type(error).__name__}); set MECHSYNTH_DATABASE_URL")
 
 
-def _open(settings: Settings) -> bool:
+def _is_open(settings: Settings) -> bool:
     """Whether the service is open because it has no keys; then it is for this machine only."""
     try:
         engine = connect(settings.store_url, durable=False)
         try:
-            return not KeyStore(engine).any()
+            return not KeyStore(engine).has_keys()
         finally:
             engine.dispose()
     except (SQLAlchemyError, ImportError, OSError) as error:
-        raise _no_database(error) from None
+        raise _build_database_error(error) from None
 
 
 @contextmanager
-def _listener(settings: Settings, only_here: bool) -> Iterator[socket.socket]:
+def _open_listener(settings: Settings, only_here: bool) -> Iterator[socket.socket]:
     try:
         family, kind, protocol, _, address = socket.getaddrinfo(
             settings.host, settings.port, type=socket.SOCK_STREAM, flags=socket.AI_PASSIVE
@@ -143,7 +143,7 @@ def _listener(settings: Settings, only_here: bool) -> Iterator[socket.socket]:
 
 
 @contextmanager
-def _data_folder(settings: Settings) -> Iterator[None]:
+def _lock_data_folder(settings: Settings) -> Iterator[None]:
     """Keep other servers away from the data folder: each would take up the jobs that the other one runs.
 
     Servers that share their jobs through a broker have nothing in it.
@@ -159,29 +159,29 @@ def _data_folder(settings: Settings) -> Iterator[None]:
             f"cannot write to the data folder {settings.data_dir} ({error.strerror}); set MECHSYNTH_DATA_DIR"
         ) from None
     with lock:
-        _take(lock, f"another server uses the data folder {settings.data_dir}; stop it, or set MECHSYNTH_DATA_DIR")
+        _take_lock(lock, f"another server uses the data folder {settings.data_dir}; stop it, or set MECHSYNTH_DATA_DIR")
         yield
 
 
 @contextmanager
-def _store(settings: Settings) -> Iterator[None]:
+def _lock_store(settings: Settings) -> Iterator[None]:
     """Keep other servers away from the store as well, which may lie outside of the data folder."""
     try:
-        file = sqlite_file(settings.store_url)
+        file = find_sqlite_file(settings.store_url)
         if file is not None:
             file.parent.mkdir(parents=True, exist_ok=True)
             lock = open(f"{file}.lock", "w")  # noqa: SIM115 (closed below)
     except (SQLAlchemyError, OSError) as error:
-        raise _no_database(error) from None
+        raise _build_database_error(error) from None
     if file is None:
         yield
         return
     with lock:
-        _take(lock, "another server uses the same database; stop it, or set MECHSYNTH_DATABASE_URL")
+        _take_lock(lock, "another server uses the same database; stop it, or set MECHSYNTH_DATABASE_URL")
         yield
 
 
-def _take(lock: IO[str], taken: str) -> None:
+def _take_lock(lock: IO[str], taken: str) -> None:
     try:
         fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
     except OSError:

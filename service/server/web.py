@@ -13,14 +13,14 @@ from starlette.middleware.cors import CORSMiddleware
 from starlette.middleware.gzip import GZipMiddleware
 from starlette.types import ASGIApp
 
-from service.api.http.cached_representation import WORTH_PACKING_BYTES
+from service.api.http.cached_representation import MIN_PACKED_BYTES
 from service.jobs.executor import Executor
 from service.kernels import KernelsState
 from service.observability.head import HeadAsGet
 from service.observability.metrics import Metrics
 from service.observability.telemetry import Telemetry
 from service.server.app import create_app
-from service.server.connections import IDLE_S, ImpatientProtocol, raise_file_limit
+from service.server.connections import IDLE_TIMEOUT_S, ImpatientProtocol, raise_file_limit
 from service.settings import Settings
 
 GRACE_S = 2
@@ -50,13 +50,13 @@ class WebServer(uvicorn.Server):
         ImpatientProtocol.metrics = metrics
         super().__init__(
             uvicorn.Config(
-                HeadAsGet(Telemetry(_with_cors(_packed(self._app), settings.cors_origins), metrics)),
+                HeadAsGet(Telemetry(_add_cors(_add_compression(self._app), settings.cors_origins), metrics)),
                 log_config=None,
                 access_log=False,
                 server_header=False,
                 http=ImpatientProtocol,
                 ws="none",
-                timeout_keep_alive=IDLE_S,
+                timeout_keep_alive=IDLE_TIMEOUT_S,
                 timeout_graceful_shutdown=GRACE_S,
                 lifespan="on",
             )
@@ -69,7 +69,7 @@ class WebServer(uvicorn.Server):
         # in 50 ms instead of 300.
         gc.freeze()
         if self.started and sockets:
-            self._announcement = asyncio.create_task(self._announce(sockets[0]))
+            self._announcement = asyncio.create_task(self._report_ready(sockets[0]))
 
     async def shutdown(self, sockets: list[socket.socket] | None = None) -> None:
         """Answer the requests that wait for a job now, so that they do not hold the service up, and stop."""
@@ -78,21 +78,21 @@ class WebServer(uvicorn.Server):
             self._announcement.cancel()
         await super().shutdown(sockets)
 
-    async def _announce(self, listener: socket.socket) -> None:
-        while self._executor.ready() == 0:
+    async def _report_ready(self, listener: socket.socket) -> None:
+        while self._executor.count_ready_workers() == 0:
             await asyncio.sleep(_READY_PERIOD_S)
         host, port = listener.getsockname()[:2]
         shown = f"[{host}]" if ":" in host else host
         print(f"mechsynth is ready on http://{shown}:{port}", flush=True)  # noqa: T201 (for whoever started it)
 
 
-def _packed(app: ASGIApp) -> ASGIApp:
+def _add_compression(app: ASGIApp) -> ASGIApp:
     """The application with answers in gzip for who takes them so. Streams of events are left as they are, and so is
     what is packed already."""
-    return GZipMiddleware(app, minimum_size=WORTH_PACKING_BYTES, compresslevel=_PACKING_LEVEL)
+    return GZipMiddleware(app, minimum_size=MIN_PACKED_BYTES, compresslevel=_PACKING_LEVEL)
 
 
-def _with_cors(app: ASGIApp, origins: Sequence[str]) -> ASGIApp:
+def _add_cors(app: ASGIApp, origins: Sequence[str]) -> ASGIApp:
     """The application for web pages of other origins too; around all of it, so that they can read its errors."""
     if not origins:
         return app

@@ -274,6 +274,22 @@ def _integrate_widened_hull(a: complex, b: complex, p: complex, width: float) ->
 
 
 @njit(**OPTIONS)
+def _subtract_holes(
+    row: Real, reach: complex, third: complex, area: float, middle: complex, second_moment: float
+) -> tuple[float, complex, float]:
+    """Return area, first and second moment of a plate less its holes at the joints."""
+    for k in range(3):
+        hole = row[PLATE + 4 + k]
+        if hole > 0.0:
+            centre = 0j if k == 0 else reach if k == 1 else third
+            taken = math.pi * hole * hole
+            area -= taken
+            middle -= taken * centre
+            second_moment -= taken * (0.5 * hole * hole + _square_magnitude(centre))
+    return area, middle, second_moment
+
+
+@njit(**OPTIONS)
 def weigh_links(
     block: Real, joints: Complex, mass: Real, cg: Complex, inertia: Real, arms: Complex, forces: Complex
 ) -> bool:
@@ -322,14 +338,7 @@ def weigh_links(
                     area, middle, second_moment = _integrate_widened_hull(0j, reach, third, width)
                 else:
                     area, middle, second_moment = _integrate_bar(0j, reach, width, row[PLATE + 2] > 0.0, row[PLATE + 3])
-            for k in range(3):
-                hole = row[PLATE + 4 + k]
-                if hole > 0.0:
-                    centre = 0j if k == 0 else reach if k == 1 else third
-                    taken = math.pi * hole * hole
-                    area -= taken
-                    middle -= taken * centre
-                    second_moment -= taken * (0.5 * hole * hole + _square_magnitude(centre))
+            area, middle, second_moment = _subtract_holes(row, reach, third, area, middle, second_moment)
             sound &= area > 0.0 or width == 0.0
             m += density * area
             moment += density * middle

@@ -78,6 +78,19 @@ NO_WORKSPACE = np.zeros(0)
 """Empty workspace."""
 
 
+def _pack_box(
+    box: tuple[tuple[float, float], tuple[float, float]], origin: complex, size: float, aim: float
+) -> tuple[float, float, float, float]:
+    """Return left, right, low and high of a box in task coordinates, every side narrowed by the aim."""
+    (left, low), (right, high) = box
+    return (
+        (left - origin.real) / size + aim,
+        (right - origin.real) / size - aim,
+        (low - origin.imag) / size + aim,
+        (high - origin.imag) / size - aim,
+    )
+
+
 def pack_workspace(
     space: Space | None,
     origin: complex,
@@ -139,18 +152,11 @@ def pack_workspace(
     header[HALF_WIDTH_INDEX], header[CLEARANCE_INDEX] = 0.5 * space.link_width / size, space.clearance / size + aim
     header[LEFT_INDEX : HIGH_INDEX + 1] = -np.inf, np.inf, -np.inf, np.inf
     if space.box is not None:
-        # Narrow every side of the box by the aim; a missing box has infinite sides.
-        (left, low), (right, high) = space.box
-        header[LEFT_INDEX : HIGH_INDEX + 1] = (
-            (left - origin.real) / size + aim, (right - origin.real) / size - aim,
-            (low - origin.imag) / size + aim, (high - origin.imag) / size - aim,
-        )  # fmt: skip
+        header[LEFT_INDEX : HIGH_INDEX + 1] = _pack_box(space.box, origin, size, aim)
     header[HAS_BOX_INDEX], header[CYCLE_INDEX] = space.box is not None, space.over == "cycle"
     if first is not None:
-        header[FIRST_X_INDEX], header[FIRST_Y_INDEX] = (
-            (first.real - origin.real) / size,
-            (first.imag - origin.imag) / size,
-        )
+        header[FIRST_X_INDEX] = (first.real - origin.real) / size
+        header[FIRST_Y_INDEX] = (first.imag - origin.imag) / size
     header[PART_COUNT_INDEX], header[BODY_COUNT_INDEX], header[GROUP_COUNT_INDEX] = len(links), bodies, groups
     # Ease the aim of the body at the ends by the part that its spare clearance does not cover.
     header[PIECE_COUNT_INDEX], header[ZONE_COUNT_INDEX], header[EASED_INDEX] = (

@@ -481,22 +481,9 @@ def _measure_gap_between(
 
 @njit(**OPTIONS)
 def _write_nearest_row(
-    room: Real,
-    part: int,
-    record: int,
-    piece: int,
-    places: Complex,
-    step: int,
-    ring: bool,
-    core: Complex,
-    here: Complex,
-    weights: Real,
-    radius: float,
-    gap: float,
-    values: Real,
-    rows: Real,
-    number: int,
-) -> None:
+    room: Real, part: int, record: int, piece: int, places: Complex, step: int, ring: bool, core: Complex,
+    here: Complex, weights: Real, radius: float, gap: float, values: Real, rows: Real, number: int,
+) -> None:  # fmt: skip
     """Write a margin and its row, at the step with the minimum or between it and its neighbours."""
     n = len(places)
     # Bracket the minimum between the neighbouring steps; at the ends of an open range one side is missing.

@@ -148,6 +148,25 @@ def _write_bending(
         right[i] = -2.0 / DIFFERENCE_STEP * ((ahead[i] - residuals[i]) / DIFFERENCE_STEP - along)
 
 
+@njit(cache=True, nogil=True, error_model="numpy")
+def _solve_velocity(
+    matrix: Real, m: int, free: int, heads: Real, residuals: Real, right: Real, velocity: Real
+) -> float:
+    """Solve for the velocity by the decomposed matrix, and return the magnitude of its largest component."""
+    right[: m + free] = 0.0
+    right[:m] = -residuals[:m]
+    _solve_qr(matrix, m + free, free, heads, right, velocity)
+    return float(np.abs(velocity).max())
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def _move_open(x: Real, open_: Integers, free: int, step: Real, trial: Real) -> None:
+    """Write x with a step of the open unknowns into ``trial``."""
+    trial[:] = x
+    for j in range(free):
+        trial[open_[j]] += step[j]
+
+
 @njit(
     types.float64(types.FunctionType(ROWS), VECTOR, MATRIX, VECTOR, VECTOR, VECTOR, types.int64, types.int64),
     cache=True,
@@ -173,11 +192,9 @@ def follow_valley(
     if m < 0:
         return math.inf
     cost = compute_half_square(residuals, m)
-    trial, trial_state = np.empty(n), np.empty(state.size)
-    open_, scale = np.zeros(n, np.int64), np.zeros(n)
+    trial, trial_state, open_ = np.empty(n), np.empty(state.size), np.zeros(n, np.int64)
     free = _list_open_unknowns(jacobian, m, open_)
-    velocity, acceleration, heads = np.zeros(free), np.zeros(free), np.zeros(free)
-    scale = np.zeros(free)
+    velocity, acceleration, heads, scale = np.zeros(free), np.zeros(free), np.zeros(free), np.zeros(free)
     matrix, right = np.zeros((most + free, free)), np.zeros(most + free)
     damping, idle = FIRST_DAMPING, 0
     for _ in range(steps):
@@ -187,10 +204,7 @@ def follow_valley(
         _fill_damped_matrix(jacobian, m, open_, free, damping, scale, matrix)
         if not _decompose_qr(matrix, m + free, free, heads):
             break
-        right[: m + free] = 0.0
-        right[:m] = -residuals[:m]
-        _solve_qr(matrix, m + free, free, heads, right, velocity)
-        longest = np.abs(velocity).max()
+        longest = _solve_velocity(matrix, m, free, heads, residuals, right, velocity)
         # Infinite or NaN: the decomposition was numerically singular.
         if not longest < math.inf:
             break
@@ -198,9 +212,7 @@ def follow_valley(
         if longest > MAX_STEP:
             damping *= DAMPING_INCREASE
             continue
-        trial[:] = x
-        for j in range(free):
-            trial[open_[j]] += DIFFERENCE_STEP * velocity[j]
+        _move_open(x, open_, free, DIFFERENCE_STEP * velocity, trial)
         trial_state[:] = state
         if rows(trial, points, setting, multipliers, trial_state, tried, unused) != m:
             damping *= DAMPING_INCREASE
@@ -209,15 +221,12 @@ def follow_valley(
         _write_bending(jacobian, m, open_, free, velocity, residuals, tried, right)
         _solve_qr(matrix, m + free, free, heads, right, acceleration)
         # A large acceleration means that the quadratic model does not hold over this step.
-        if not _compute_scaled_norm(scale, acceleration) <= MAX_ACCELERATION_RATIO * _compute_scaled_norm(
-            scale, velocity
-        ):
+        limit = MAX_ACCELERATION_RATIO * _compute_scaled_norm(scale, velocity)
+        if not _compute_scaled_norm(scale, acceleration) <= limit:
             damping *= DAMPING_INCREASE
             continue
-        trial[:] = x
         # Second-order Taylor step x(1) = x + v + a/2 along the geodesic.
-        for j in range(free):
-            trial[open_[j]] += velocity[j] + 0.5 * acceleration[j]
+        _move_open(x, open_, free, velocity + 0.5 * acceleration, trial)
         trial_state[:] = state
         reached = rows(trial, points, setting, multipliers, trial_state, tried, unused)
         gained = compute_half_square(tried, m) if reached == m else math.inf
@@ -230,7 +239,6 @@ def follow_valley(
         x[:] = trial
         state[:] = trial_state
         # Swap buffers instead of copying.
-        residuals, tried = tried, residuals
-        jacobian, unused = unused, jacobian
+        residuals, tried, jacobian, unused = tried, residuals, unused, jacobian
         damping = max(damping / DAMPING_DECREASE, MIN_DAMPING)
     return cost

@@ -81,8 +81,9 @@ def sort_usable_first(problem: LinkageProblem, designs: Sequence[Any]) -> Ordere
     first = [design for design in near if is_usable(design)]
     if first:
         return OrderedDesigns(
-            _move_to_front(first, designs), f" Designs with {practice} and {compact} are listed first."
-        # Without a fully practical design, accept a long link before a poor transmission angle.
+            _move_to_front(first, designs),
+            f" Designs with {practice} and {compact} are listed first.",
+            # Without a fully practical design, accept a long link before a poor transmission angle.
         )
     told = f" {missing} has {practice} and {compact}"
     if has_even_links(passed[0]):

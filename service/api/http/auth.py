@@ -15,7 +15,7 @@ from service.access.gate import ANYBODY, Gate, NoKey, TooOften
 from service.api.http.problem_details import Refusal
 from service.observability import telemetry
 
-SCHEME = "bearer"
+SECURITY_SCHEME = "bearer"
 """The name of the security scheme in the OpenAPI document."""
 
 Handler = Callable[[Request], Coroutine[Any, Any, Response]]
@@ -26,24 +26,24 @@ class GuardedRoute(APIRoute):
 
     def get_route_handler(self) -> Handler:
         """Return the handler, preceded by the check of the key."""
-        handle = self.handler_inside()
+        handle = self.build_inner_handler()
 
-        async def admit_first(request: Request) -> Response:
-            request.state.tenant = await _admitted(request)
+        async def handle_after_admission(request: Request) -> Response:
+            request.state.tenant = await _check_admission(request)
             return await handle(request)
 
-        return admit_first
+        return handle_after_admission
 
-    def handler_inside(self) -> Handler:
+    def build_inner_handler(self) -> Handler:
         """Return the framework's handler, which subclasses may wrap."""
         return super().get_route_handler()
 
 
-async def _admitted(request: Request) -> str:
+async def _check_admission(request: Request) -> str:
     gate = request.app.state.gate
     assert isinstance(gate, Gate)
     try:
-        tenant, allowance = await gate.admit(_key(request))
+        tenant, allowance = await gate.admit(_read_key(request))
     except NoKey as refusal:
         raise Refusal(
             401, "unauthorized", "Unauthorized",
@@ -52,29 +52,29 @@ async def _admitted(request: Request) -> str:
         ) from None  # fmt: skip
     except TooOften as refusal:
         allowance = refusal.allowance
-        telemetry.answer_with(allowance.headers())
+        telemetry.add_headers(allowance.format_headers())
         raise Refusal(
             429, "rate-limited", "Rate limited",
             f"This key has reached its limit of {allowance.limit} requests in {allowance.window_s} seconds.",
             headers={"Retry-After": str(allowance.reset_s)},
         ) from None  # fmt: skip
-    if tenant == ANYBODY and not _meant_for_this_machine(request):
+    if tenant == ANYBODY and not _is_for_this_machine(request):
         raise Refusal(
             403, "foreign-host", "Foreign host",
             "Without API keys the service accepts only requests from this machine, addressed to a local host name. "
             "`mechsynth keys create NAME` makes a key.",
         )  # fmt: skip
     if allowance is not None:
-        telemetry.answer_with(allowance.headers())
+        telemetry.add_headers(allowance.format_headers())
         structlog.contextvars.bind_contextvars(tenant=tenant)
     return tenant
 
 
-NOBODYS = ("localhost", "local", "internal", "test", "example", "invalid")
+UNREGISTRABLE_DOMAINS = ("localhost", "local", "internal", "test", "example", "invalid")
 """Top-level domains in which no names can be registered (RFC 2606, 6761, 6762)."""
 
 
-def _meant_for_this_machine(request: Request) -> bool:
+def _is_for_this_machine(request: Request) -> bool:
     """Return whether the host name of the request can only mean this machine.
 
     A foreign web page may resolve its own host to 127.0.0.1, and the browser would then treat this service as part of
@@ -87,7 +87,7 @@ def _meant_for_this_machine(request: Request) -> bool:
         if not name.strip("."):
             return False
         *registered, last = name.rstrip(".").split(".")
-        return not registered or last in NOBODYS or _is_address(name)
+        return not registered or last in UNREGISTRABLE_DOMAINS or _is_address(name)
     except ValueError:
         return False
 
@@ -100,15 +100,15 @@ def _is_address(name: str) -> bool:
     return True
 
 
-def _key(request: Request) -> str | None:
+def _read_key(request: Request) -> str | None:
     scheme, _, key = request.headers.get("authorization", "").partition(" ")
     return key.strip() if scheme.lower() == "bearer" else None
 
 
-async def _tenant(request: Request) -> str:
+async def _get_tenant(request: Request) -> str:
     tenant = request.state.tenant
     assert isinstance(tenant, str)
     return tenant
 
 
-Tenant = Annotated[str, Depends(_tenant)]
+Tenant = Annotated[str, Depends(_get_tenant)]

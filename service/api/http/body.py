@@ -12,8 +12,8 @@ from starlette.requests import ClientDisconnect
 
 from service.api.http.auth import GuardedRoute, Handler
 from service.api.http.json_limits import locate_excess
-from service.api.http.problem_details import Refusal, invalid_request, malformed_json
-from service.error_messages import pointer
+from service.api.http.problem_details import Refusal, refuse_invalid_request, refuse_malformed_json
+from service.error_messages import format_pointer
 
 MAX_VALUES = 20_000
 """Maximum number of values (numbers, strings, lists, objects) in a body. The largest real problem has a few thousand;
@@ -27,7 +27,7 @@ MAX_DEPTH = 201
 class BoundedRequest(Request):
     """A request whose body is read up to a size limit."""
 
-    async def limited(self, limit: int) -> bytes:
+    async def read_limited(self, limit: int) -> bytes:
         """Read the body, which must be uncompressed and have at most ``limit`` bytes.
 
         Raises
@@ -44,13 +44,13 @@ class BoundedRequest(Request):
         # digits are not converted.
         announced = self.headers.get("content-length", "0")
         if announced.isdecimal() and (len(announced) > 18 or int(announced) > limit):
-            raise _too_large(limit)
+            raise _refuse_large_body(limit)
         body = bytearray()
         try:
             async for chunk in self.stream():
                 body += chunk
                 if len(body) > limit:
-                    raise _too_large(limit)
+                    raise _refuse_large_body(limit)
         except ClientDisconnect:
             # The client is gone and cannot read this answer, which ends the request without logging a defect.
             raise Refusal(
@@ -64,7 +64,7 @@ class BoundedRequest(Request):
         return self.headers.get("content-type", "").partition(";")[0].strip().lower()
 
 
-def foreign(detail: str, *accepted: str) -> Refusal:
+def refuse_media_type(detail: str, *accepted: str) -> Refusal:
     """Build the refusal of a body of another type than the ``accepted`` ones."""
     return Refusal(
         415, "unsupported-media-type", "Unsupported media type", detail, headers={"Accept": ", ".join(accepted)}
@@ -85,9 +85,9 @@ class JsonRequest(BoundedRequest):
             413, 415 or 400, as documented for the endpoints that take a body.
         """
         if self.media_type != "application/json":
-            raise foreign("The body must be application/json.", "application/json")
-        self._body = await self.limited(limit)
-        self._checked = _parsed(self._body)
+            raise refuse_media_type("The body must be application/json.", "application/json")
+        self._body = await self.read_limited(limit)
+        self._checked = _parse_body(self._body)
 
     async def json(self) -> Any:
         """Return the parsed body; :meth:`read` must be called first."""
@@ -97,9 +97,9 @@ class JsonRequest(BoundedRequest):
 class JsonRoute(GuardedRoute):
     """A route that checks the API key and then reads its body through :class:`JsonRequest`."""
 
-    def handler_inside(self) -> Handler:
+    def build_inner_handler(self) -> Handler:
         """Return the framework's handler for a request whose body has been read and parsed."""
-        handle = super().handler_inside()
+        handle = super().build_inner_handler()
         if self.body_field is None:
             return handle
 
@@ -111,7 +111,7 @@ class JsonRoute(GuardedRoute):
         return read_first
 
 
-def _too_large(limit: int) -> Refusal:
+def _refuse_large_body(limit: int) -> Refusal:
     # The rest of the body stays unread, so the connection cannot serve another request.
     return Refusal(
         413, "body-too-large", "Body too large", f"The body must have at most {limit} bytes.",
@@ -119,28 +119,28 @@ def _too_large(limit: int) -> Refusal:
     )  # fmt: skip
 
 
-def _parsed(body: bytes) -> Any:
-    if _surely_has_more_values_than(body, MAX_VALUES):
-        raise _too_many(body)
+def _parse_body(body: bytes) -> Any:
+    if _has_more_values_than(body, MAX_VALUES):
+        raise _refuse_many_values(body)
     # This parser limits depth and digits itself. It passes NaN and 1e999 on to the validation, which names the field.
     try:
         parsed = from_json(body)
     except ValueError as error:
         # The message is the parser's own, "expected `:` at line 1 column 8", without parts of the input.
         detail = f"The body is not valid JSON: {error}."
-        raise malformed_json(detail, _faults_of_depth(body) if "recursion" in str(error) else ()) from None
-    values, keys = _counts(parsed)
+        raise refuse_malformed_json(detail, _find_depth_faults(body) if "recursion" in str(error) else ()) from None
+    values, keys = _count_values(parsed)
     if values > MAX_VALUES:
-        raise _too_many(body)
-    if _keys_written(body) != keys:
+        raise _refuse_many_values(body)
+    if _count_keys(body) != keys:
         # The parser keeps the last of equal keys silently; only then is the slower search for them necessary.
-        twice = [(place, "This key occurs twice; give it once.") for place in _given_twice(body)]
+        twice = [(place, "This key occurs twice; give it once.") for place in _find_duplicate_keys(body)]
         if twice:
-            raise invalid_request(twice)
+            raise refuse_invalid_request(twice)
     return parsed
 
 
-def _too_many(body: bytes) -> Refusal:
+def _refuse_many_values(body: bytes) -> Refusal:
     where = locate_excess(body, MAX_VALUES, MAX_DEPTH)
     detail = f"Up to here the body has more than {MAX_VALUES} values; the limit is {MAX_VALUES}."
     return Refusal(
@@ -149,13 +149,13 @@ def _too_many(body: bytes) -> Refusal:
     )  # fmt: skip
 
 
-def _faults_of_depth(body: bytes) -> list[tuple[str, str]]:
+def _find_depth_faults(body: bytes) -> list[tuple[str, str]]:
     """Find the place where an unparsable body is nested too deeply; an empty list if the fault is another one."""
     where = locate_excess(body, len(body), MAX_DEPTH)
     return [(where, f"This is nested more than {MAX_DEPTH} levels deep.")] if where else []
 
 
-def _surely_has_more_values_than(body: bytes, limit: int) -> bool:
+def _has_more_values_than(body: bytes, limit: int) -> bool:
     """Return whether the punctuation alone shows it: a comma separates two values, and each list or object is a value.
 
     Building and freeing half a million lists takes a third of a second; counting their brackets takes a millisecond. A
@@ -163,23 +163,23 @@ def _surely_has_more_values_than(body: bytes, limit: int) -> bool:
     """
     if len(body) <= limit:
         return False
-    body = _punctuation(body)
+    body = _strip_strings(body)
     lists = min(body.count(b"["), body.count(b"]"))
     objects = min(body.count(b"{"), body.count(b"}"))
     return body.count(b",") > limit or lists + objects > limit + 1
 
 
-def _punctuation(body: bytes) -> bytes:
+def _strip_strings(body: bytes) -> bytes:
     """Return the text outside of strings; a quote after a backslash does not end its string."""
     return b"".join(body.replace(rb"\\", b"").replace(rb"\"", b"").split(b'"')[::2])
 
 
-def _keys_written(body: bytes) -> int:
+def _count_keys(body: bytes) -> int:
     """Count the keys of a valid body: each is followed by a colon outside of strings."""
-    return _punctuation(body).count(b":")
+    return _strip_strings(body).count(b":")
 
 
-def _counts(parsed: Any) -> tuple[int, int]:
+def _count_values(parsed: Any) -> tuple[int, int]:
     """Count the values in objects and lists, and the keys; the parser has kept only the last of equal keys."""
     values = keys = 0
     pending = [parsed]
@@ -198,7 +198,7 @@ class _Members(list[tuple[str, Any]]):
     """An object of the body with all its members, equal keys included."""
 
 
-def _given_twice(body: bytes) -> list[str]:
+def _find_duplicate_keys(body: bytes) -> list[str]:
     """Return the places of keys that occur more than once, as JSON pointers."""
     # Numbers stay texts: they are not needed, and the standard library refuses some valid ones.
     written = json.loads(body, object_pairs_hook=_Members, parse_int=str, parse_float=str)
@@ -208,7 +208,7 @@ def _given_twice(body: bytes) -> list[str]:
         place, value = pending.pop()
         if isinstance(value, _Members):
             counted = Counter(name for name, _ in value)
-            found += [pointer((*place, name)) for name, times in counted.items() if times > 1]
+            found += [format_pointer((*place, name)) for name, times in counted.items() if times > 1]
             pending += [((*place, name), member) for name, member in value]
         elif isinstance(value, list):
             pending += [((*place, k), member) for k, member in enumerate(value)]

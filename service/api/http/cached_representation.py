@@ -13,14 +13,14 @@ from service.api.http import etag
 
 GZIP = "gzip"
 
-WORTH_PACKING_BYTES = 2048
+MIN_PACKED_BYTES = 2048
 """Minimum size for compression, bytes; smaller answers fill one or two packets in either case."""
 
-_LEVEL = 6
+_GZIP_LEVEL = 6
 """Compression level; the highest makes the API description 3 % smaller and takes three times as long."""
 
 
-def takes_gzip(request: Request) -> bool:
+def is_gzip_accepted(request: Request) -> bool:
     """Return whether the client accepts answers in gzip."""
     return GZIP in request.headers.get("accept-encoding", "")
 
@@ -38,17 +38,17 @@ class Representation:
         return hashlib.sha256(self.content).hexdigest()[:16]
 
     @cached_property
-    def packed(self) -> bytes:
+    def gzip_content(self) -> bytes:
         """The content compressed with gzip."""
-        return gzip.compress(self.content, _LEVEL)
+        return gzip.compress(self.content, _GZIP_LEVEL)
 
-    def answer(self, request: Request, headers: dict[str, str]) -> Response:
+    def respond(self, request: Request, headers: dict[str, str]) -> Response:
         """Return a response with the content and its entity tag, or 304 if the client has this version."""
-        tag = etag.tag(self.version)
+        tag = etag.format_tag(self.version)
         headers = {**headers, "ETag": tag}
-        if etag.matches(request.headers.getlist("if-none-match"), tag):
+        if etag.is_current_tag(request.headers.getlist("if-none-match"), tag):
             return Response(status_code=304, headers={**headers, "Vary": "Accept-Encoding"})
-        if not takes_gzip(request) or len(self.content) < WORTH_PACKING_BYTES:
+        if not is_gzip_accepted(request) or len(self.content) < MIN_PACKED_BYTES:
             return Response(self.content, headers=headers, media_type=self.media_type)
         headers |= {"Content-Encoding": GZIP, "Vary": "Accept-Encoding"}
-        return Response(self.packed, headers=headers, media_type=self.media_type)
+        return Response(self.gzip_content, headers=headers, media_type=self.media_type)

@@ -5,19 +5,19 @@ from __future__ import annotations
 import re
 from collections.abc import Iterable
 
-_TAG = re.compile(r'(?:W/)?("[!#-~\x80-\xff]*")')
+_TAG_PATTERN = re.compile(r'(?:W/)?("[!#-~\x80-\xff]*")')
 
 
-def tag(version: int | str) -> str:
+def format_tag(version: int | str) -> str:
     """Return the weak entity tag of a version; weak because the answer may be compressed on its way."""
     return f'W/"{version}"'
 
 
-def matches(headers: Iterable[str], current: str) -> bool:
+def is_current_tag(headers: Iterable[str], current: str) -> bool:
     """Return whether ``If-None-Match`` names the current tag or ``*``. Weak tags compare like strong ones.
 
     >>> matches(['"6", W/"7"'], '"7"'), matches(['"7"'], 'W/"7"')
     (True, True)
     """
     opaque = current.removeprefix("W/")
-    return any(header.strip() == "*" or opaque in _TAG.findall(header) for header in headers)
+    return any(header.strip() == "*" or opaque in _TAG_PATTERN.findall(header) for header in headers)

@@ -8,14 +8,14 @@ from collections.abc import Sequence
 
 from pydantic import BaseModel
 
-from service.api.http.problem_details import Refusal, invalid_request
+from service.api.http.problem_details import Refusal, refuse_invalid_request
 from service.jobs.store.admission import Repeatable
 
-KEY = "^[!-~]{1,200}$"
+KEY_PATTERN = "^[!-~]{1,200}$"
 """Pattern of a key: 1 to 200 visible ASCII characters."""
 
 
-def repeatable(keys: Sequence[str], body: BaseModel) -> Repeatable | None:
+def read_repeatable(keys: Sequence[str], body: BaseModel) -> Repeatable | None:
     """Return the key and the hash of a request that may be repeated; None if it has no key.
 
     The hash covers the content of the request: the order of fields, the spelling of numbers and explicitly written
@@ -29,13 +29,13 @@ def repeatable(keys: Sequence[str], body: BaseModel) -> Repeatable | None:
     if not keys:
         return None
     if len(keys) > 1:
-        raise invalid_request([("/header/idempotency-key", "Send only one `Idempotency-Key`.")])
+        raise refuse_invalid_request([("/header/idempotency-key", "Send only one `Idempotency-Key`.")])
     stated = body.model_dump(mode="json", exclude_defaults=True)
     canonical = json.dumps(stated, sort_keys=True, separators=(",", ":"))
     return Repeatable(keys[0], hashlib.sha256(canonical.encode()).hexdigest())
 
 
-def key_reused() -> Refusal:
+def refuse_reused_key() -> Refusal:
     """Build the refusal of a key that was used with a different body before."""
     return Refusal(
         409, "idempotency-key-reused", "Idempotency key reused",

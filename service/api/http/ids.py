@@ -5,23 +5,23 @@ from __future__ import annotations
 import base64
 import re
 
-from service.api.http.problem_details import invalid_request
+from service.api.http.problem_details import refuse_invalid_request
 
-ULID = re.compile("[0-7][0-9A-HJKMNP-TV-Z]{25}")
+ULID_PATTERN = re.compile("[0-7][0-9A-HJKMNP-TV-Z]{25}")
 """Pattern of an id. Only texts that match reach the database, which does not accept every string."""
 
 
-def cursor_of(last_id: str) -> str:
+def encode_cursor(last_id: str) -> str:
     """Return the cursor of the page after the one that ends with this id."""
     return base64.urlsafe_b64encode(last_id.encode()).decode().rstrip("=")
 
 
-def id_of_cursor(cursor: str) -> str:
+def decode_cursor(cursor: str) -> str:
     """Return the id in a cursor; raise a refusal if the service has not issued it."""
     try:
         last_id = base64.b64decode(cursor + "=" * (-len(cursor) % 4), altchars=b"-_", validate=True).decode()
     except ValueError:
         last_id = ""
-    if not ULID.fullmatch(last_id):
-        raise invalid_request([("/query/cursor", "Expected a `next_cursor` of this service.")])
+    if not ULID_PATTERN.fullmatch(last_id):
+        raise refuse_invalid_request([("/query/cursor", "Expected a `next_cursor` of this service.")])
     return last_id

@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 import re
 
-from service.error_messages import pointer
+from service.error_messages import format_pointer
 
 MAX_STEPS = 8
 """Maximum number of steps in a reported place: the field matters, not the hundredth nested list in it."""
@@ -46,7 +46,7 @@ def locate_excess(body: bytes, most_values: int, most_depth: int) -> str:
             place[-1] = _read_key(token)
         after_colon = token == b":"
         if values > most_values or len(place) > most_depth:
-            return pointer(place[:-1][:MAX_STEPS])
+            return format_pointer(place[:-1][:MAX_STEPS])
     return ""
 
 

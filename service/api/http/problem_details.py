@@ -16,37 +16,37 @@ from starlette.exceptions import HTTPException
 from starlette.routing import Match
 
 from service.error_messages import MAX_FAULTS
-from service.jobs.store.database import unreachable
+from service.jobs.store.database import is_unreachable
 from service.observability import telemetry
 from service.refusals import (
     Refusal,
-    invalid_body,
-    invalid_mechanism,
-    invalid_problem,
-    invalid_request,
-    not_found,
     refuse_faults,
+    refuse_invalid_body,
+    refuse_invalid_mechanism,
+    refuse_invalid_problem,
+    refuse_invalid_request,
+    refuse_not_found,
 )
 
 __all__ = [
     "FieldError",
     "ProblemDetails",
     "Refusal",
-    "busy",
-    "compiling",
-    "gone",
+    "refuse_busy",
+    "refuse_compiling",
+    "refuse_gone",
     "install",
-    "invalid_body",
-    "invalid_drawing",
-    "invalid_mechanism",
-    "invalid_problem",
-    "invalid_request",
-    "malformed_drawing",
-    "malformed_json",
-    "not_found",
-    "queue_full",
-    "responses",
-    "store_unavailable",
+    "refuse_invalid_body",
+    "refuse_invalid_drawing",
+    "refuse_invalid_mechanism",
+    "refuse_invalid_problem",
+    "refuse_invalid_request",
+    "refuse_malformed_drawing",
+    "refuse_malformed_json",
+    "refuse_not_found",
+    "refuse_full_queue",
+    "describe_responses",
+    "refuse_without_store",
 ]
 
 PROBLEM_JSON = "application/problem+json"
@@ -88,22 +88,22 @@ class ProblemDetails(BaseModel):
     )
 
 
-def malformed_json(detail: str, errors: Sequence[tuple[str, str]] = ()) -> Refusal:
+def refuse_malformed_json(detail: str, errors: Sequence[tuple[str, str]] = ()) -> Refusal:
     """Build the refusal of a body that cannot be parsed as JSON; ``errors`` are pairs of path and detail."""
     return Refusal(400, "malformed-json", "Malformed JSON", detail, errors=errors)
 
 
-def malformed_drawing(detail: str) -> Refusal:
+def refuse_malformed_drawing(detail: str) -> Refusal:
     """Build the refusal of a body that cannot be read as a drawing."""
     return Refusal(400, "malformed-drawing", "Malformed drawing", detail)
 
 
-def invalid_drawing(detail: str, errors: Sequence[tuple[str, str]] = ()) -> Refusal:
+def refuse_invalid_drawing(detail: str, errors: Sequence[tuple[str, str]] = ()) -> Refusal:
     """Build the refusal of a drawing without usable outlines; ``errors`` are pairs of element and detail."""
     return Refusal(422, "invalid-drawing", "Invalid drawing", detail, errors=errors)
 
 
-def store_unavailable() -> Refusal:
+def refuse_without_store() -> Refusal:
     """Build the refusal for a job store that does not answer."""
     return Refusal(
         503, "store-unavailable", "Store unavailable",
@@ -113,7 +113,7 @@ def store_unavailable() -> Refusal:
     )  # fmt: skip
 
 
-def queue_full() -> Refusal:
+def refuse_full_queue() -> Refusal:
     """Build the refusal for a full queue."""
     return Refusal(
         503, "queue-full", "Queue full",
@@ -122,7 +122,7 @@ def queue_full() -> Refusal:
     )  # fmt: skip
 
 
-def busy(with_what: str) -> Refusal:
+def refuse_busy(with_what: str) -> Refusal:
     """Build the refusal of a request that did not get its turn because of others of the same sort."""
     return Refusal(
         503, "busy", "Busy", f"The service is busy with other {with_what}. Send the request again.",
@@ -130,12 +130,12 @@ def busy(with_what: str) -> Refusal:
     )  # fmt: skip
 
 
-def gone() -> Refusal:
+def refuse_gone() -> Refusal:
     """Build the refusal for a client that has disconnected; it appears only in the log and the metrics."""
     return Refusal(499, "gone", "Gone", "The client has disconnected.")
 
 
-def compiling() -> Refusal:
+def refuse_compiling() -> Refusal:
     """Build the refusal for the time after an installation when the kernels of analyses are compiled."""
     return Refusal(
         503, "busy", "Busy",
@@ -144,7 +144,7 @@ def compiling() -> Refusal:
     )  # fmt: skip
 
 
-def responses(**described: str) -> dict[int | str, dict[str, Any]]:
+def describe_responses(**described: str) -> dict[int | str, dict[str, Any]]:
     """Return the error responses of an endpoint for OpenAPI: ``responses(e404="There is no such job.")``."""
     content = {PROBLEM_JSON: {"schema": {"$ref": "#/components/schemas/ProblemDetails"}}}
     again = {"Retry-After": {"description": "Seconds to wait before the next attempt.", "schema": {"type": "integer"}}}
@@ -157,54 +157,56 @@ def responses(**described: str) -> dict[int | str, dict[str, Any]]:
 
 def install(app: FastAPI) -> None:
     """Make ``app`` answer every error in this format."""
-    app.add_exception_handler(Refusal, _refused)
-    app.add_exception_handler(RequestValidationError, _invalid)
-    app.add_exception_handler(HTTPException, _http_error)
-    app.add_exception_handler(SQLAlchemyError, _store_error)
-    app.add_exception_handler(Exception, _defect)
+    app.add_exception_handler(Refusal, _respond_to_refusal)
+    app.add_exception_handler(RequestValidationError, _respond_to_invalid)
+    app.add_exception_handler(HTTPException, _respond_to_http_error)
+    app.add_exception_handler(SQLAlchemyError, _respond_to_store_error)
+    app.add_exception_handler(Exception, _respond_to_defect)
 
 
-async def _refused(request: Request, refusal: Exception) -> Response:
+async def _respond_to_refusal(request: Request, refusal: Exception) -> Response:
     assert isinstance(refusal, Refusal)
-    return _answer(
+    return _build_response(
         request, refusal.status, refusal.type, refusal.title, refusal.detail, refusal.errors, refusal.headers
     )
 
 
-async def _invalid(request: Request, error: Exception) -> Response:
+async def _respond_to_invalid(request: Request, error: Exception) -> Response:
     assert isinstance(error, RequestValidationError)
-    return await _refused(request, refuse_faults(error.errors(), error.body))
+    return await _respond_to_refusal(request, refuse_faults(error.errors(), error.body))
 
 
-async def _http_error(request: Request, error: Exception) -> Response:
+async def _respond_to_http_error(request: Request, error: Exception) -> Response:
     assert isinstance(error, HTTPException)
     if error.status_code == 404:
-        return _answer(request, 404, "/problems/not-found", "Not found", "No such resource; check the path.")
+        return _build_response(request, 404, "/problems/not-found", "Not found", "No such resource; check the path.")
     if error.status_code == 405:
-        allowed = _allowed_methods(request)
-        detail = f"This path does not allow {_method(request)}; it allows {', '.join(allowed)}."
+        allowed = _list_allowed_methods(request)
+        detail = f"This path does not allow {_name_method(request)}; it allows {', '.join(allowed)}."
         headers = {"Allow": ", ".join(allowed)}
-        return _answer(request, 405, "/problems/method-not-allowed", "Method not allowed", detail, headers=headers)
-    return _answer(
+        return _build_response(
+            request, 405, "/problems/method-not-allowed", "Method not allowed", detail, headers=headers
+        )
+    return _build_response(
         request, error.status_code, "/problems/http-error", "HTTP error", "The request cannot be served.",
         headers=error.headers,
     )  # fmt: skip
 
 
-async def _store_error(request: Request, error: Exception) -> Response:
-    if not unreachable(error):
+async def _respond_to_store_error(request: Request, error: Exception) -> Response:
+    if not is_unreachable(error):
         raise error
     log.warning("the store does not answer", error=type(error).__name__)
-    return await _refused(request, store_unavailable())
+    return await _respond_to_refusal(request, refuse_without_store())
 
 
-async def _defect(request: Request, _error: Exception) -> Response:
+async def _respond_to_defect(request: Request, _error: Exception) -> Response:
     # The server logs the exception with its traceback afterwards; the client must not see it.
     detail = "The request failed because of a defect of the service; its log has the details."
-    return _answer(request, 500, "/problems/internal-error", "Internal error", detail)
+    return _build_response(request, 500, "/problems/internal-error", "Internal error", detail)
 
 
-def _answer(
+def _build_response(
     request: Request,
     status: int,
     type_: str,
@@ -213,7 +215,7 @@ def _answer(
     errors: Sequence[tuple[str, str]] = (),
     headers: Mapping[str, str] | None = None,
 ) -> Response:
-    telemetry.refused(type_)
+    telemetry.note_refusal(type_)
     content: dict[str, Any] = {
         "type": type_,
         "title": title,
@@ -226,13 +228,13 @@ def _answer(
     return Response(to_json(content), status_code=status, headers=dict(headers or {}), media_type=PROBLEM_JSON)
 
 
-def _method(request: Request) -> str:
+def _name_method(request: Request) -> str:
     # An unknown method is text from the client and must not be repeated.
     known = {"GET", "HEAD", "POST", "PUT", "PATCH", "DELETE", "OPTIONS"}
     return request.method if request.method in known else "this method"
 
 
-def _allowed_methods(request: Request) -> list[str]:
+def _list_allowed_methods(request: Request) -> list[str]:
     # The framework names the methods of a single route, but several routes may share the path.
     matching = (route for route in request.app.state.routes if route.matches(request.scope)[0] is not Match.NONE)
     return sorted({method for route in matching for method in getattr(route, "methods", None) or ()})

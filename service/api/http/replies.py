@@ -14,9 +14,9 @@ def as_json(content: bytes, status: int = 200, headers: dict[str, str] | None = 
     return Response(content, status_code=status, headers=headers, media_type="application/json")
 
 
-def unless_known(request: Request, revision: int, content: Callable[[], bytes]) -> Response:
+def respond_unless_known(request: Request, revision: int, content: Callable[[], bytes]) -> Response:
     """Return JSON text with the entity tag of its revision, or 304 if the client has this revision."""
-    current = etag.tag(revision)
-    if etag.matches(request.headers.getlist("if-none-match"), current):
+    current = etag.format_tag(revision)
+    if etag.is_current_tag(request.headers.getlist("if-none-match"), current):
         return Response(status_code=304, headers={"ETag": current})
     return as_json(content(), headers={"ETag": current})

@@ -10,7 +10,7 @@ from pydantic_core import to_json
 from service.api.http.problem_details import ProblemDetails
 from service.jobs.store.schema import JobRow, JobSummary, SampleRow
 from service.jobs.store.states import Status
-from service.requests import filled_in
+from service.requests import fill_defaults
 from synthesis.model.answer import Result, optional_field
 from synthesis.model.kind import Group
 from synthesis.registry import KINDS, Problem, get_first_example
@@ -24,13 +24,13 @@ else:
 Timestamp = Annotated[str, Field(json_schema_extra={"format": "date-time"}, examples=["2026-01-31T12:00:00.000000Z"])]
 
 
-def _printable(label: str) -> str:
+def _check_printable(label: str) -> str:
     if "\0" in label or any("\ud800" <= character <= "\udfff" for character in label):
         raise ValueError("the label must not contain NUL or lone surrogates")
     return label
 
 
-Label = Annotated[str, Field(strict=True, max_length=200), AfterValidator(_printable)]
+Label = Annotated[str, Field(strict=True, max_length=200), AfterValidator(_check_printable)]
 
 
 class JobRequest(BaseModel):
@@ -169,7 +169,7 @@ class Readiness(Health):
     kernels: Kernels | None = Field(description="Null while unknown, in the first second after the start.")
 
 
-def list_item(job: JobSummary) -> dict[str, Any]:
+def describe_job(job: JobSummary) -> dict[str, Any]:
     """Return a job as :class:`JobListItem`."""
     return {
         "id": job.id,
@@ -179,20 +179,18 @@ def list_item(job: JobSummary) -> dict[str, Any]:
         "created_at": job.created_at,
         "started_at": job.started_at,
         "finished_at": job.finished_at,
-        "progress": progress(job),
+        "progress": describe_progress(job),
     }
 
 
-def progress(job: JobSummary) -> dict[str, Any]:
+def describe_progress(job: JobSummary) -> dict[str, Any]:
     """Return the progress of a job as :class:`Progress`."""
     return {"fraction": job.progress_fraction, "message": job.progress_message}
 
 
-def whole_job(job: JobRow) -> bytes:
+def dump_job(job: JobRow) -> bytes:
     """Return a job as :class:`Job` in JSON; result and error are sent as stored, without parsing them."""
-    stored = (
-        f'"problem":{filled_in(job.kind, job.problem)},"result":{job.result or "null"},"error":{job.error or "null"}'
-    )
+    stored = f'"problem":{fill_defaults(job.kind, job.problem)},"result":{job.result or "null"},"error":{job.error or "null"}'
     if isinstance(job, SampleRow):
         stored += f',"batch":"{job.batch}","cached":{"true" if job.cached else "false"}'
-    return to_json(list_item(job))[:-1] + b"," + stored.encode() + b"}"
+    return to_json(describe_job(job))[:-1] + b"," + stored.encode() + b"}"

@@ -12,7 +12,7 @@ from service.answers.analysis import analyse
 from service.api.http import problem_details
 from service.api.http.auth import Tenant
 from service.api.http.body import JsonRoute
-from service.api.http.computation import answer_with_analysis
+from service.api.http.computation import respond_with_analysis
 from service.api.http.dependencies import Answers
 
 TAG = {"name": "analyses", "description": "Analyse a given mechanism."}
@@ -25,11 +25,11 @@ ANALYSIS = {"$ref": "#/components/schemas/Analysis"}
 router = APIRouter(prefix="/v1/analyses", tags=["analyses"], route_class=JsonRoute)
 
 
-def analysis_responses(description: str, **described: str) -> dict[int | str, dict[str, Any]]:
+def describe_analysis_responses(description: str, **described: str) -> dict[int | str, dict[str, Any]]:
     """Return the responses of an operation that answers with an analysis, and its errors as for `responses`."""
     return {
         200: {"description": description, "content": {"application/json": {"schema": ANALYSIS}}},
-        **problem_details.responses(**described, e503="The service is busy with other analyses."),
+        **problem_details.describe_responses(**described, e503="The service is busy with other analyses."),
     }
 
 
@@ -38,7 +38,7 @@ def analysis_responses(description: str, **described: str) -> dict[int | str, di
     operation_id="analyse",
     summary="Analyse a mechanism",
     response_class=Response,
-    responses=analysis_responses(
+    responses=describe_analysis_responses(
         "The analysis.",
         e400="The body is not JSON.",
         e413="The body is too large.",
@@ -53,7 +53,7 @@ async def analyse_mechanism(
 
     Nothing is stored. Where the mechanism cannot be assembled, `valid` is false and the numbers are null.
     """
-    return await answer_with_analysis(request, answers, tenant, analyse, body)
+    return await respond_with_analysis(request, answers, tenant, analyse, body)
 
 
 def complete(document: dict[str, Any]) -> None:
@@ -73,8 +73,8 @@ def complete(document: dict[str, Any]) -> None:
     )
     document["components"]["schemas"].update(
         schemas["$defs"],
-        AnalysisRequest=_any_of("Analysis request", requests),
-        Analysis=_any_of("Analysis", answers),
+        AnalysisRequest=_build_union_schema("Analysis request", requests),
+        Analysis=_build_union_schema("Analysis", answers),
     )
     content = document["paths"]["/v1/analyses"]["post"]["requestBody"]["content"]["application/json"]
     content["schema"] = REQUEST
@@ -84,5 +84,5 @@ def complete(document: dict[str, Any]) -> None:
     }
 
 
-def _any_of(title: str, models: Iterable[type[BaseModel]]) -> dict[str, Any]:
+def _build_union_schema(title: str, models: Iterable[type[BaseModel]]) -> dict[str, Any]:
     return {"title": title, "anyOf": [{"$ref": f"#/components/schemas/{model.__name__}"} for model in models]}

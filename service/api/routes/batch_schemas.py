@@ -14,9 +14,9 @@ from synthesis.model.answer import optional_field
 from synthesis.model.problem import MAX_MAGNITUDE, Number
 from synthesis.registry import KINDS
 
-MOST_SAMPLES = 10_000
-MOST_VARIED = 20
-MOST_METRICS = 50
+MAX_SAMPLES = 10_000
+MAX_VARIED_FIELDS = 20
+MAX_METRICS = 50
 
 Bound = Annotated[int, Field(strict=True, ge=-MAX_MAGNITUDE, le=MAX_MAGNITUDE)] | Number
 """End of a range; an integer stays an integer, because some fields are counts."""
@@ -54,26 +54,24 @@ class Vary(BaseModel):
         description="JSON pointer into the problem. Missing objects are created, missing list elements are not.",
         examples=["/positions/1/x"],
     )
-    values: Annotated[list[Any], Field(min_length=1, max_length=MOST_SAMPLES)] | None = optional_field(
+    values: Annotated[list[Any], Field(min_length=1, max_length=MAX_SAMPLES)] | None = optional_field(
         "The values, of the type of the field."
     )
-    from_: Bound | None = optional_field(
-        "First of evenly spaced numbers, or lower end of a range.", alias="from"
-    )
+    from_: Bound | None = optional_field("First of evenly spaced numbers, or lower end of a range.", alias="from")
     to: Bound | None = optional_field("Last of these numbers, or upper end.")
-    count: Annotated[int, Field(strict=True, ge=1, le=MOST_SAMPLES)] | None = optional_field(
+    count: Annotated[int, Field(strict=True, ge=1, le=MAX_SAMPLES)] | None = optional_field(
         "Number of values in a grid or a zip. They are integers if all of them are whole; a single value is `from`."
     )
 
     @model_validator(mode="after")
-    def _one_way(self) -> Self:
+    def _check_source(self) -> Self:
         ranged = self.from_ is not None and self.to is not None
-        if ranged == (self.values is not None) or (self.values is not None and self.model_fields_set & _OF_RANGES):
+        if ranged == (self.values is not None) or (self.values is not None and self.model_fields_set & _RANGE_FIELDS):
             raise ValueError("give either values, or from and to")
         return self
 
 
-_OF_RANGES = {"from_", "to", "count"}
+_RANGE_FIELDS = {"from_", "to", "count"}
 
 
 class BatchRequest(BaseModel):
@@ -87,20 +85,20 @@ class BatchRequest(BaseModel):
         description="A problem as in a job; varied fields may be omitted.",
         json_schema_extra={"examples": [EXAMPLE["problem"]]},
     )
-    vary: Annotated[list[Vary], Field(min_length=1, max_length=MOST_VARIED)]
+    vary: Annotated[list[Vary], Field(min_length=1, max_length=MAX_VARIED_FIELDS)]
     sampling: Literal["grid", "latin_hypercube", "zip"] = Field(
         default="grid",
         description="`grid`: all combinations, the last field varying fastest; `zip`: all first values together, then "
         "all second values, and so on; `latin_hypercube`: `samples` draws, one in each of `samples` equal parts of a "
         "range, or evenly distributed over a list.",
     )
-    samples: Annotated[int, Field(strict=True, ge=1, le=MOST_SAMPLES)] | None = Field(
+    samples: Annotated[int, Field(strict=True, ge=1, le=MAX_SAMPLES)] | None = Field(
         default=None, description="Number of problems, for a Latin hypercube only."
     )
     seed: Annotated[int, Field(strict=True, ge=0, le=2**53 - 1)] = Field(
         default=0, description="Seed of the draws of a Latin hypercube."
     )
-    metrics: Annotated[list[str], Field(max_length=MOST_METRICS)] | None = Field(
+    metrics: Annotated[list[str], Field(max_length=MAX_METRICS)] | None = Field(
         default=None,
         description="Metrics of the best design that the table shows. By default those of the default front that the "
         "kind has.",
@@ -176,9 +174,9 @@ class BatchFront(BatchTable):
     greatest: list[str]
 
 
-def batch_item(batch: BatchSummary) -> dict[str, Any]:
+def describe_batch(batch: BatchSummary) -> dict[str, Any]:
     """Return a batch as :class:`BatchListItem`."""
-    done = batch.done
+    done = batch.ended_count
     message = f"{done} of {batch.total}" if batch.status == Status.RUNNING else batch.status.value
     return {
         "id": batch.id,
@@ -197,6 +195,6 @@ def batch_item(batch: BatchSummary) -> dict[str, Any]:
     }
 
 
-def whole_batch(batch: BatchRow) -> bytes:
+def dump_batch(batch: BatchRow) -> bytes:
     """Return a batch as :class:`Batch` in JSON: the members of the list item, followed by those of the request."""
-    return to_json(batch_item(batch))[:-1] + b"," + batch.stated.encode()[1:]
+    return to_json(describe_batch(batch))[:-1] + b"," + batch.stated.encode()[1:]

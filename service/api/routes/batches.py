@@ -15,11 +15,11 @@ from service.api.http import problem_details
 from service.api.http.auth import GuardedRoute, Tenant
 from service.api.http.body import JsonRoute
 from service.api.http.dependencies import Batches, BatchPoller
-from service.api.http.idempotency import KEY, key_reused, repeatable
-from service.api.http.ids import ULID, cursor_of, id_of_cursor
-from service.api.http.problem_details import invalid_request, not_found, queue_full
-from service.api.http.replies import as_json, unless_known
-from service.api.routes.batch_plans import MORE_IS_BETTER, by_default, plan_of
+from service.api.http.idempotency import KEY_PATTERN, read_repeatable, refuse_reused_key
+from service.api.http.ids import ULID_PATTERN, decode_cursor, encode_cursor
+from service.api.http.problem_details import refuse_full_queue, refuse_invalid_request, refuse_not_found
+from service.api.http.replies import as_json, respond_unless_known
+from service.api.routes.batch_plans import MAXIMIZED_METRICS, build_plan, select_default_metrics
 from service.api.routes.batch_schemas import (
     EXAMPLE,
     Batch,
@@ -27,10 +27,10 @@ from service.api.routes.batch_schemas import (
     BatchList,
     BatchRequest,
     BatchTable,
-    batch_item,
-    whole_batch,
+    describe_batch,
+    dump_batch,
 )
-from service.api.routes.events import event_schema, followed
+from service.api.routes.events import build_event_schema, stream_events
 from service.jobs.batches.desk import BatchDesk
 from service.jobs.batches.plan import Plan
 from service.jobs.batches.rows import BatchRow
@@ -48,7 +48,7 @@ following = APIRouter(prefix="/v1/batches", tags=[TAG["name"]], route_class=Guar
 
 _BODY = Body(openapi_examples={"motion": {"summary": "A grid of motion problems", "value": EXAMPLE}})
 _LOCATION = {"Location": {"description": "Path of the batch.", "schema": {"type": "string"}}}
-_RETRY_AFTER = {"Retry-After": {"description": "Seconds to wait before the next request.", "schema": {"type": "integer"}}}
+_RETRY_AFTER = {"Retry-After": {"description": "Seconds until the next request.", "schema": {"type": "integer"}}}
 _ETAG = {"ETag": {"description": "Changes whenever the batch does.", "schema": {"type": "string"}}}
 
 
@@ -65,7 +65,7 @@ _ETAG = {"ETag": {"description": "Changes whenever the batch does.", "schema": {
             "description": "The batch is accepted and will be run.",
             "headers": {**_LOCATION, **_RETRY_AFTER},
         },
-        **problem_details.responses(
+        **problem_details.describe_responses(
             e400="The body is not JSON.",
             e409="The `Idempotency-Key` was used with a different body before.",
             e413="The body is too large.",
@@ -83,7 +83,7 @@ async def create_batch(
     idempotency_key: Annotated[
         str | None,
         Header(
-            pattern=KEY,
+            pattern=KEY_PATTERN,
             description="Key of this request, as for a job: the same request sent again with the same key is answered "
             "with the first batch.",
             examples=["7f9c24e8"],
@@ -92,7 +92,7 @@ async def create_batch(
 ) -> Response:
     """Accept a problem with varied fields. With the answer the batch is stored, and each of its problems will end."""
     keys = request.headers.getlist("idempotency-key")
-    kind, plan, cost = await run_in_threadpool(plan_of, body)
+    kind, plan, cost = await run_in_threadpool(build_plan, body)
     try:
         batch = await desk.accept(
             tenant=tenant,
@@ -100,16 +100,16 @@ async def create_batch(
             label=body.label,
             plan=plan,
             cost=cost,
-            repeatable=await run_in_threadpool(repeatable, keys, body),
+            repeatable=await run_in_threadpool(read_repeatable, keys, body),
         )
     except KeyReused:
-        raise key_reused() from None
+        raise refuse_reused_key() from None
     except QueueFull:
-        raise queue_full() from None
+        raise refuse_full_queue() from None
     headers = {"Location": f"/v1/batches/{batch.id}"}
     if batch.status.finished:
-        return as_json(whole_batch(batch), 200, headers)
-    return as_json(whole_batch(batch), 202, {**headers, "Retry-After": str(RETRY_AFTER_S)})
+        return as_json(dump_batch(batch), 200, headers)
+    return as_json(dump_batch(batch), 202, {**headers, "Retry-After": str(RETRY_AFTER_S)})
 
 
 class BatchFilter(BaseModel):
@@ -128,16 +128,16 @@ class BatchFilter(BaseModel):
     response_class=Response,
     responses={
         200: {"model": BatchList},
-        **problem_details.responses(e422="A parameter is not valid; `errors` names it."),
+        **problem_details.describe_responses(e422="A parameter is not valid; `errors` names it."),
     },
 )
 async def list_batches(desk: Batches, tenant: Tenant, filter_: Annotated[BatchFilter, Query()]) -> Response:
     """Return a page of the batches, newest first."""
-    before = None if filter_.cursor is None else id_of_cursor(filter_.cursor)
-    page = await desk.page(tenant=tenant, limit=filter_.limit + 1, before=before)
+    before = None if filter_.cursor is None else decode_cursor(filter_.cursor)
+    page = await desk.list_page(tenant=tenant, limit=filter_.limit + 1, before=before)
     shown = page[: filter_.limit]
-    cursor = cursor_of(shown[-1].id) if len(page) > filter_.limit else None
-    return as_json(to_json({"batches": [batch_item(batch) for batch in shown], "next_cursor": cursor}))
+    cursor = encode_cursor(shown[-1].id) if len(page) > filter_.limit else None
+    return as_json(to_json({"batches": [describe_batch(batch) for batch in shown], "next_cursor": cursor}))
 
 
 @router.get(
@@ -148,7 +148,7 @@ async def list_batches(desk: Batches, tenant: Tenant, filter_: Annotated[BatchFi
     responses={
         200: {"model": Batch, "headers": _ETAG},
         304: {"description": "The batch is unchanged since the state that the client has.", "headers": _ETAG},
-        **problem_details.responses(e404=NO_BATCH),
+        **problem_details.describe_responses(e404=NO_BATCH),
     },
 )
 async def get_batch(
@@ -161,8 +161,8 @@ async def get_batch(
     ] = None,
 ) -> Response:
     """Return the present state of the batch."""
-    batch = await _batch_of(desk, tenant, batch_id)
-    return unless_known(request, batch.revision, lambda: whole_batch(batch))
+    batch = await _find_batch(desk, tenant, batch_id)
+    return respond_unless_known(request, batch.revision, lambda: dump_batch(batch))
 
 
 @router.delete(
@@ -174,15 +174,15 @@ async def get_batch(
     responses={
         202: {"model": Batch, "description": "The batch was unfinished and is cancelled; ended problems are kept."},
         204: {"description": "The batch was finished and is removed, with the jobs of its problems."},
-        **problem_details.responses(e404=NO_BATCH),
+        **problem_details.describe_responses(e404=NO_BATCH),
     },
 )
 async def delete_batch(desk: Batches, tenant: Tenant, batch_id: str) -> Response:
     """Cancel an unfinished batch; remove a finished one."""
-    batch = await desk.cancel_or_delete(tenant, batch_id) if ULID.fullmatch(batch_id) else None
+    batch = await desk.cancel_or_delete(tenant, batch_id) if ULID_PATTERN.fullmatch(batch_id) else None
     if batch is None:
-        raise not_found(NO_BATCH)
-    return Response(status_code=204) if batch == "deleted" else as_json(whole_batch(batch), 202)
+        raise refuse_not_found(NO_BATCH)
+    return Response(status_code=204) if batch == "deleted" else as_json(dump_batch(batch), 202)
 
 
 @router.get(
@@ -190,11 +190,11 @@ async def delete_batch(desk: Batches, tenant: Tenant, batch_id: str) -> Response
     operation_id="tabulate_batch",
     summary="Read the table of a batch",
     response_class=Response,
-    responses={200: {"model": BatchTable}, **problem_details.responses(e404=NO_BATCH)},
+    responses={200: {"model": BatchTable}, **problem_details.describe_responses(e404=NO_BATCH)},
 )
 async def tabulate_batch(desk: Batches, tenant: Tenant, batch_id: str) -> Response:
     """Return a row for each problem, ended or not, in the order of the samples."""
-    _, table = await _tabulated(desk, tenant, batch_id)
+    _, table = await _load_table(desk, tenant, batch_id)
     return StreamingResponse(table.as_json(), media_type="application/json")
 
 
@@ -205,16 +205,16 @@ async def tabulate_batch(desk: Batches, tenant: Tenant, batch_id: str) -> Respon
     response_class=Response,
     responses={
         200: {"description": "The table.", "content": {"text/csv": {"schema": {"type": "string"}}}},
-        **problem_details.responses(e404=NO_BATCH),
+        **problem_details.describe_responses(e404=NO_BATCH),
     },
 )
 async def tabulate_batch_as_csv(desk: Batches, tenant: Tenant, batch_id: str) -> Response:
     """Return the table as CSV; numbers have all their digits."""
-    _, table = await _tabulated(desk, tenant, batch_id)
+    _, table = await _load_table(desk, tenant, batch_id)
     return StreamingResponse(table.as_csv(), media_type="text/csv; charset=utf-8")
 
 
-class Weighed(BaseModel):
+class FrontQuery(BaseModel):
     """Metrics that define a front."""
 
     model_config = ConfigDict(extra="forbid")
@@ -234,22 +234,22 @@ class Weighed(BaseModel):
     response_class=Response,
     responses={
         200: {"model": BatchFront},
-        **problem_details.responses(
+        **problem_details.describe_responses(
             e404=NO_BATCH, e422="A metric does not belong to the batch or is named twice; `errors` names it."
         ),
     },
 )
 async def weigh_up_batch(
-    desk: Batches, tenant: Tenant, batch_id: str, weighed: Annotated[Weighed, Query()]
+    desk: Batches, tenant: Tenant, batch_id: str, weighed: Annotated[FrontQuery, Query()]
 ) -> Response:
     """Return the Pareto front of the table: the rows that no other row dominates.
 
     By default error and size (for gears the sum of the teeth) are minimized and the minimum transmission angle is
     maximized, as far as the table has them. Signed errors count by their absolute values.
     """
-    plan, table = await _tabulated(desk, tenant, batch_id)
-    least, greatest = _quantities(weighed, plan.metrics)
-    front = await run_in_threadpool(table.front, least, greatest)
+    plan, table = await _load_table(desk, tenant, batch_id)
+    least, greatest = _select_quantities(weighed, plan.metrics)
+    front = await run_in_threadpool(table.select_front, least, greatest)
     return StreamingResponse(front.as_json(least=least, greatest=greatest), media_type="application/json")
 
 
@@ -262,10 +262,10 @@ async def weigh_up_batch(
         200: {
             "description": "Events until the batch has ended, as for a job: `state` (the batch as in a list) and "
             "`progress`; `removed` if it is removed before its end was sent.",
-            "content": {"text/event-stream": {"itemSchema": event_schema("BatchListItem")}},
+            "content": {"text/event-stream": {"itemSchema": build_event_schema("BatchListItem")}},
         },
         204: {"description": "The client already has the event of the final state and need not reconnect."},
-        **problem_details.responses(e404=NO_BATCH, e503="Too many clients of the tenant are listening."),
+        **problem_details.describe_responses(e404=NO_BATCH, e503="Too many clients of the tenant are listening."),
     },
 )
 async def follow_batch(
@@ -279,24 +279,24 @@ async def follow_batch(
     ] = None,
 ) -> Response:
     """Stream the progress of the batch as server-sent events."""
-    return await followed(request, poller, tenant, batch_id, last_event_id, batch_item, NO_BATCH)
+    return await stream_events(request, poller, tenant, batch_id, last_event_id, describe_batch, NO_BATCH)
 
 
-async def _batch_of(desk: BatchDesk, tenant: str, batch_id: str) -> BatchRow:
-    batch = await desk.get(tenant, batch_id) if ULID.fullmatch(batch_id) else None
+async def _find_batch(desk: BatchDesk, tenant: str, batch_id: str) -> BatchRow:
+    batch = await desk.get(tenant, batch_id) if ULID_PATTERN.fullmatch(batch_id) else None
     if batch is None:
-        raise not_found(NO_BATCH)
+        raise refuse_not_found(NO_BATCH)
     return batch
 
 
-async def _tabulated(desk: BatchDesk, tenant: str, batch_id: str) -> tuple[Plan, Table]:
-    tabulated = await desk.table(await _batch_of(desk, tenant, batch_id))
+async def _load_table(desk: BatchDesk, tenant: str, batch_id: str) -> tuple[Plan, Table]:
+    tabulated = await desk.load_table(await _find_batch(desk, tenant, batch_id))
     if tabulated is None:
-        raise not_found(NO_BATCH)
+        raise refuse_not_found(NO_BATCH)
     return tabulated
 
 
-def _quantities(weighed: Weighed, metrics: Sequence[str]) -> tuple[list[str], list[str]]:
+def _select_quantities(weighed: FrontQuery, metrics: Sequence[str]) -> tuple[list[str], list[str]]:
     """Return the names of the metrics to minimize and to maximize; raise a refusal if the request is invalid."""
     faults = []
     for k, name in enumerate([*weighed.least, *weighed.greatest]):
@@ -305,11 +305,11 @@ def _quantities(weighed: Weighed, metrics: Sequence[str]) -> tuple[list[str], li
             faults.append((place, f"Unknown metric; this batch has {', '.join(metrics) or 'none'}."))
         elif name in [*weighed.least, *weighed.greatest][:k]:
             faults.append((place, f"{name} is named twice; minimize or maximize it once."))
-    usual = [] if weighed.least or weighed.greatest else by_default(metrics)
+    usual = [] if weighed.least or weighed.greatest else select_default_metrics(metrics)
     if not (weighed.least or weighed.greatest or usual):
         faults.append(("/query/least", "Name a metric to minimize (`least`) or to maximize (`greatest`)."))
     if faults:
-        raise invalid_request(faults)
+        raise refuse_invalid_request(faults)
     if usual:
-        return [n for n in usual if n not in MORE_IS_BETTER], [n for n in usual if n in MORE_IS_BETTER]
+        return [n for n in usual if n not in MAXIMIZED_METRICS], [n for n in usual if n in MAXIMIZED_METRICS]
     return weighed.least, weighed.greatest

@@ -12,14 +12,14 @@ from service.answers.designs import move_design as compute_motion
 from service.answers.job_result import SolvedJob
 from service.api.http import problem_details
 from service.api.http.auth import GuardedRoute, Tenant
-from service.api.http.computation import answer_with_analysis, draw_in_turn
+from service.api.http.computation import draw_in_turn, respond_with_analysis
 from service.api.http.dependencies import Answers, Desk
 from service.api.http.problem_details import Refusal
-from service.api.routes.analyses import analysis_responses
-from service.api.routes.jobs import TAG, job_of
+from service.api.routes.analyses import describe_analysis_responses
+from service.api.routes.jobs import TAG, find_job
 from service.jobs.desk import JobDesk
 from service.jobs.store.schema import JobRow
-from service.observability.telemetry import span
+from service.observability.telemetry import measure_span
 from service.render import Form
 
 OTHER_DRAWINGS = "The service is busy with other drawings."
@@ -39,12 +39,12 @@ class Export(NamedTuple):
     schema: dict[str, str] = _TEXT
 
 
-_AS_IT_IS_SAID = {"X-Content-Type-Options": "nosniff"}
+_NOSNIFF_HEADERS = {"X-Content-Type-Options": "nosniff"}
 HEADERS: dict[Form, dict[str, str]] = {
     # A browser may open a drawing as a page of its own, which must not run or load anything.
-    "svg": {**_AS_IT_IS_SAID, "Content-Security-Policy": "default-src 'none'; style-src 'unsafe-inline'; sandbox"},
+    "svg": {**_NOSNIFF_HEADERS, "Content-Security-Policy": "default-src 'none'; style-src 'unsafe-inline'; sandbox"},
 }
-"""Headers of the files of a format; the default is :data:`_AS_IT_IS_SAID`."""
+"""Headers of the files of a format; the default is :data:`_NOSNIFF_HEADERS`."""
 
 EXPORTS: dict[Form, Export] = {
     "svg": Export(
@@ -76,27 +76,27 @@ EXPORTS: dict[Form, Export] = {
 }
 
 
-def _offer(form: Form, export: Export) -> None:
+def _add_route(form: Form, export: Export) -> None:
     """Add the operation that returns the files of one format."""
 
-    async def file(
+    async def send_file(
         request: Request, desk: Desk, answers: Answers, tenant: Tenant, job_id: str, number: str
     ) -> Response:
-        job = await solved_job(desk, tenant, job_id)
-        with span("drawing"):
+        job = await get_solved_job(desk, tenant, job_id)
+        with measure_span("drawing"):
             content = await draw_in_turn(request, answers, tenant, draw_design, job, number, form)
-        return Response(content, media_type=export.media_type, headers=HEADERS.get(form, _AS_IT_IS_SAID))
+        return Response(content, media_type=export.media_type, headers=HEADERS.get(form, _NOSNIFF_HEADERS))
 
     router.add_api_route(
         f"/{{job_id}}/designs/{{number}}.{form}",
-        file,
+        send_file,
         operation_id=export.operation_id,
         summary=export.summary,
         description=export.description,
         response_class=Response,
         responses={
             200: {"description": "The file.", "content": {export.media_type: {"schema": export.schema}}},
-            **problem_details.responses(
+            **problem_details.describe_responses(
                 e404="No such job or design, or its type of mechanism has no such file.",
                 e409="The job has no result (yet), or the size of the design is beyond the range for drawings.",
                 e503=OTHER_DRAWINGS,
@@ -106,7 +106,7 @@ def _offer(form: Form, export: Export) -> None:
 
 
 for _form, _export in EXPORTS.items():
-    _offer(_form, _export)
+    _add_route(_form, _export)
 
 
 class MotionSteps(BaseModel):
@@ -114,7 +114,9 @@ class MotionSteps(BaseModel):
 
     model_config = ConfigDict(extra="forbid")
 
-    steps: int = Field(default=360, ge=1, le=3600, description="Number of equal steps of the input; both ends are included.")
+    steps: int = Field(
+        default=360, ge=1, le=3600, description="Number of equal steps of the input; both ends are included."
+    )
 
 
 @router.get(
@@ -122,7 +124,7 @@ class MotionSteps(BaseModel):
     operation_id="move_design",
     summary="Move a design",
     response_class=Response,
-    responses=analysis_responses(
+    responses=describe_analysis_responses(
         "The motion.",
         e404="No such job or design.",
         e409="The job has no result (yet), or the size of the design is beyond the range for analyses.",
@@ -139,11 +141,11 @@ async def move_design(
     return; any other input moves from toggle to toggle of the branch that contains the targets. The answer has the form
     of `POST /v1/analyses`.
     """
-    _, result = await solved(desk, tenant, job_id)
-    return await answer_with_analysis(request, answers, tenant, compute_motion, result, number, query.steps)
+    _, result = await get_job_with_result(desk, tenant, job_id)
+    return await respond_with_analysis(request, answers, tenant, compute_motion, result, number, query.steps)
 
 
-async def solved(desk: JobDesk, tenant: str, job_id: str) -> tuple[JobRow, str]:
+async def get_job_with_result(desk: JobDesk, tenant: str, job_id: str) -> tuple[JobRow, str]:
     """Return a job and its result.
 
     Raises
@@ -151,14 +153,14 @@ async def solved(desk: JobDesk, tenant: str, job_id: str) -> tuple[JobRow, str]:
     Refusal
         404 if there is no such job, 409 if it has no result.
     """
-    job = await job_of(desk, tenant, job_id)
+    job = await find_job(desk, tenant, job_id)
     if job.result is None:
         what = "has no result yet" if not job.status.finished else f"is {job.status.value} and has no result"
         raise Refusal(409, "no-result", "No result", f"The job {what}.")
     return job, job.result
 
 
-async def solved_job(desk: JobDesk, tenant: str, job_id: str) -> SolvedJob:
-    """Return a job with a result for the processes that answer requests; errors as for :func:`solved`."""
-    job, result = await solved(desk, tenant, job_id)
+async def get_solved_job(desk: JobDesk, tenant: str, job_id: str) -> SolvedJob:
+    """Return a job with a result for the processes that answer requests; errors as for :func:`get_job_with_result`."""
+    job, result = await get_job_with_result(desk, tenant, job_id)
     return SolvedJob(job.id, job.kind, job.label, job.created_at, job.finished_at, job.problem, result)

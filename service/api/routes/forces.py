@@ -6,13 +6,13 @@ from typing import Annotated, Any
 
 from fastapi import APIRouter, Body, Query, Request, Response
 
-from service.answers.forces import forces_of_design as compute_forces
+from service.answers.forces import compute_design_forces as compute_forces
 from service.api.http.auth import GuardedRoute, Tenant
 from service.api.http.body import JsonRoute
-from service.api.http.computation import answer_with_analysis
+from service.api.http.computation import respond_with_analysis
 from service.api.http.dependencies import Answers, Desk
-from service.api.routes.analyses import analysis_responses
-from service.api.routes.designs import MotionSteps, solved_job
+from service.api.routes.analyses import describe_analysis_responses
+from service.api.routes.designs import MotionSteps, get_solved_job
 from service.api.routes.jobs import TAG
 
 NO_DYNAMICS = "The job has no result (yet), its problem has no `dynamics`, or the design has no such forces."
@@ -26,7 +26,7 @@ stating = APIRouter(prefix="/v1/jobs", tags=[TAG["name"]], route_class=JsonRoute
     operation_id="forces_of_design",
     summary="Forces of a design",
     response_class=Response,
-    responses=analysis_responses(
+    responses=describe_analysis_responses(
         "The motion with its forces.",
         e404="No such job or design.",
         e409=NO_DYNAMICS,
@@ -43,8 +43,8 @@ async def forces_of_design(
     speed. A design with its own block `dynamics` is driven over the motion of its problem. The answer has the form of
     `POST /v1/analyses`.
     """
-    job = await solved_job(desk, tenant, job_id)
-    return await answer_with_analysis(request, answers, tenant, compute_forces, job, number, query.steps, None)
+    job = await get_solved_job(desk, tenant, job_id)
+    return await respond_with_analysis(request, answers, tenant, compute_forces, job, number, query.steps, None)
 
 
 @stating.post(
@@ -52,7 +52,7 @@ async def forces_of_design(
     operation_id="analyse_forces_of_design",
     summary="Forces of a design with the caller's masses and loads",
     response_class=Response,
-    responses=analysis_responses(
+    responses=describe_analysis_responses(
         "The motion with its forces.",
         e400="The body is not JSON.",
         e404="No such job or design.",
@@ -82,5 +82,5 @@ async def analyse_forces_of_design(
 
     Nothing is stored.
     """
-    job = await solved_job(desk, tenant, job_id)
-    return await answer_with_analysis(request, answers, tenant, compute_forces, job, number, query.steps, body)
+    job = await get_solved_job(desk, tenant, job_id)
+    return await respond_with_analysis(request, answers, tenant, compute_forces, job, number, query.steps, body)

@@ -23,7 +23,7 @@ async def healthz() -> Health:
     "/readyz",
     operation_id="readyz",
     summary="Check that the service takes jobs",
-    responses=problem_details.responses(e503="The store does not answer, or no worker has started yet."),
+    responses=problem_details.describe_responses(e503="The store does not answer, or no worker has started yet."),
 )
 async def readyz(request: Request) -> Readiness:
     """Report that the store answers and at least one worker is ready.
@@ -31,7 +31,7 @@ async def readyz(request: Request) -> Readiness:
     After an installation the numerical kernels are compiled in parallel with the first jobs; `kernels` has the
     progress.
     """
-    missing = await request.app.state.desk.ready()
+    missing = await request.app.state.desk.check_readiness()
     if missing is not None:
         raise Refusal(503, "not-ready", "Not ready", missing, headers={"Retry-After": "1"})
     progress = request.app.state.kernels.progress

@@ -12,17 +12,17 @@ from service.api.http import problem_details
 from service.api.http.auth import Tenant
 from service.api.http.body import JsonRoute
 from service.api.http.dependencies import Desk
-from service.api.http.idempotency import KEY, key_reused, repeatable
-from service.api.http.ids import ULID, cursor_of, id_of_cursor
-from service.api.http.prefer import wait_seconds
-from service.api.http.problem_details import Refusal, invalid_problem, not_found, queue_full
-from service.api.http.replies import as_json, unless_known
-from service.api.http.schemas import Job, JobList, JobRequest, list_item, whole_job
+from service.api.http.idempotency import KEY_PATTERN, read_repeatable, refuse_reused_key
+from service.api.http.ids import ULID_PATTERN, decode_cursor, encode_cursor
+from service.api.http.prefer import parse_wait_seconds
+from service.api.http.problem_details import Refusal, refuse_full_queue, refuse_invalid_problem, refuse_not_found
+from service.api.http.replies import as_json, respond_unless_known
+from service.api.http.schemas import Job, JobList, JobRequest, describe_job, dump_job
 from service.jobs.desk import JobDesk, PartOfBatch
 from service.jobs.store.admission import KeyReused, QueueFull
 from service.jobs.store.schema import JobRow
 from service.jobs.store.states import Cost, Status
-from service.requests import consistent, written
+from service.requests import check_consistency, dump_problem
 from synthesis.registry import KINDS, get_first_example
 
 TAG = {"name": "jobs", "description": "Submit a problem, follow the job, read the answer."}
@@ -35,7 +35,7 @@ NO_JOB = "No job has this id."
 router = APIRouter(prefix="/v1/jobs", tags=["jobs"], route_class=JsonRoute)
 
 
-def _known_kind(kind: str) -> str:
+def _check_kind(kind: str) -> str:
     if kind not in KINDS:
         raise ValueError(f"unknown kind; the kinds are {', '.join(KINDS)}")
     return kind
@@ -49,7 +49,7 @@ class JobFilter(BaseModel):
     status: Literal["queued", "running", "succeeded", "failed", "cancelled"] | None = Field(
         default=None, description="Only jobs in this state."
     )
-    kind: Annotated[str, AfterValidator(_known_kind), Field(json_schema_extra={"enum": list(KINDS)})] | None = Field(
+    kind: Annotated[str, AfterValidator(_check_kind), Field(json_schema_extra={"enum": list(KINDS)})] | None = Field(
         default=None, description="Only jobs of this kind of problem."
     )
     limit: int = Field(default=20, ge=1, le=100, description="Maximum number of jobs on a page.")
@@ -66,9 +66,11 @@ _BODY = Body(
     }
 )
 _LOCATION = {"Location": {"description": "Path of the job.", "schema": {"type": "string"}}}
-_RETRY_AFTER = {"Retry-After": {"description": "Seconds to wait before the next request.", "schema": {"type": "integer"}}}
+_RETRY_AFTER = {"Retry-After": {"description": "Seconds until the next request.", "schema": {"type": "integer"}}}
 _ETAG = {"ETag": {"description": "Changes whenever the job does.", "schema": {"type": "string"}}}
-_APPLIED = {"Preference-Applied": {"description": "`wait`: the service waited for the job.", "schema": {"type": "string"}}}
+_PREFERENCE_APPLIED = {
+    "Preference-Applied": {"description": "`wait`: the service has waited.", "schema": {"type": "string"}}
+}
 
 
 @router.post(
@@ -81,14 +83,14 @@ _APPLIED = {"Preference-Applied": {"description": "`wait`: the service waited fo
         200: {
             "model": Job,
             "description": "The finished job: within the time of `Prefer: wait`, or that of an earlier equal request.",
-            "headers": {**_LOCATION, **_APPLIED},
+            "headers": {**_LOCATION, **_PREFERENCE_APPLIED},
         },
         202: {
             "model": Job,
             "description": "The job is accepted and will be run.",
             "headers": {**_LOCATION, **_RETRY_AFTER},
         },
-        **problem_details.responses(
+        **problem_details.describe_responses(
             e400="The body is not JSON.",
             e409="The `Idempotency-Key` was used with a different body before.",
             e413="The body is too large.",
@@ -112,7 +114,7 @@ async def create_job(
     idempotency_key: Annotated[
         str | None,
         Header(
-            pattern=KEY,
+            pattern=KEY_PATTERN,
             description="Key of this request, 1 to 200 visible ASCII characters. The same request sent again with the "
             "same key is answered with the first job, until that is removed.",
             examples=["7f9c24e8"],
@@ -120,29 +122,29 @@ async def create_job(
     ] = None,
 ) -> Response:
     """Accept a problem as a job. With the answer the job is stored and will end, even if processes die meanwhile."""
-    faults = consistent(body.problem)
+    faults = check_consistency(body.problem)
     if faults:
-        raise invalid_problem([(f"/problem{path}", detail) for path, detail in faults])
+        raise refuse_invalid_problem([(f"/problem{path}", detail) for path, detail in faults])
     # Reads all lines of the header; the parameter serves the documentation and holds only one line.
-    wait_s = wait_seconds(request.headers.getlist("prefer"), request.app.state.settings.max_wait_s)
+    wait_s = parse_wait_seconds(request.headers.getlist("prefer"), request.app.state.settings.max_wait_s)
     try:
         job = await desk.accept(
             tenant=tenant,
             kind=body.problem.kind,
             label=body.label,
-            problem=written(body.problem),
+            problem=dump_problem(body.problem),
             cost=Cost.SHORT if KINDS[body.problem.kind].brief(body.problem) else Cost.LONG,
             wait_s=wait_s,
-            repeatable=repeatable(request.headers.getlist("idempotency-key"), body),
+            repeatable=read_repeatable(request.headers.getlist("idempotency-key"), body),
         )
     except KeyReused:
-        raise key_reused() from None
+        raise refuse_reused_key() from None
     except QueueFull:
-        raise queue_full() from None
+        raise refuse_full_queue() from None
     headers = {"Location": f"/v1/jobs/{job.id}"}
     if not job.status.finished:
-        return as_json(whole_job(job), 202, {**headers, "Retry-After": str(RETRY_AFTER_S)})
-    return as_json(whole_job(job), 200, {**headers, "Preference-Applied": "wait"} if wait_s > 0 else headers)
+        return as_json(dump_job(job), 202, {**headers, "Retry-After": str(RETRY_AFTER_S)})
+    return as_json(dump_job(job), 200, {**headers, "Preference-Applied": "wait"} if wait_s > 0 else headers)
 
 
 @router.get(
@@ -152,21 +154,24 @@ async def create_job(
     response_class=Response,
     responses={
         200: {"model": JobList},
-        **problem_details.responses(e422="A parameter is not valid; `errors` names it."),
+        **problem_details.describe_responses(e422="A parameter is not valid; `errors` names it."),
     },
 )
 async def list_jobs(desk: Desk, tenant: Tenant, filter_: Annotated[JobFilter, Query()]) -> Response:
     """Return a page of the jobs, newest first, without their problems and results."""
-    page = await desk.page(
+    page = await desk.list_page(
         tenant=tenant,
         limit=filter_.limit + 1,
         status=None if filter_.status is None else Status(filter_.status),
         kind=filter_.kind,
-        before=None if filter_.cursor is None else id_of_cursor(filter_.cursor),
+        before=None if filter_.cursor is None else decode_cursor(filter_.cursor),
     )
     shown = page[: filter_.limit]
     more = len(page) > filter_.limit
-    listed = {"jobs": [list_item(job) for job in shown], "next_cursor": cursor_of(shown[-1].id) if more else None}
+    listed = {
+        "jobs": [describe_job(job) for job in shown],
+        "next_cursor": encode_cursor(shown[-1].id) if more else None,
+    }
     return as_json(to_json(listed))
 
 
@@ -178,7 +183,7 @@ async def list_jobs(desk: Desk, tenant: Tenant, filter_: Annotated[JobFilter, Qu
     responses={
         200: {"model": Job, "headers": _ETAG},
         304: {"description": "The job is unchanged since the state that the client has.", "headers": _ETAG},
-        **problem_details.responses(e404=NO_JOB),
+        **problem_details.describe_responses(e404=NO_JOB),
     },
 )
 async def get_job(
@@ -191,8 +196,8 @@ async def get_job(
     ] = None,
 ) -> Response:
     """Return the present state of the job."""
-    job = await job_of(desk, tenant, job_id)
-    return unless_known(request, job.revision, lambda: whole_job(job))
+    job = await find_job(desk, tenant, job_id)
+    return respond_unless_known(request, job.revision, lambda: dump_job(job))
 
 
 @router.delete(
@@ -207,23 +212,25 @@ async def get_job(
             "description": "The job was unfinished and is cancelled; its computation is being stopped.",
         },
         204: {"description": "The job was finished and is removed."},
-        **problem_details.responses(e404=NO_JOB, e409="The job belongs to a batch, which is removed as a whole."),
+        **problem_details.describe_responses(
+            e404=NO_JOB, e409="The job belongs to a batch, which is removed as a whole."
+        ),
     },
 )
 async def delete_job(desk: Desk, tenant: Tenant, job_id: str) -> Response:
     """Cancel a queued or running job; remove a finished one."""
     try:
-        job = await desk.cancel_or_delete(tenant, job_id) if ULID.fullmatch(job_id) else None
+        job = await desk.cancel_or_delete(tenant, job_id) if ULID_PATTERN.fullmatch(job_id) else None
     except PartOfBatch as part:
         raise Refusal(
             409, "part-of-batch", "Part of a batch", f"The job belongs to a batch; remove /v1/batches/{part.batch}."
         ) from None
     if job is None:
-        raise not_found(NO_JOB)
-    return Response(status_code=204) if job == "deleted" else as_json(whole_job(job), 202)
+        raise refuse_not_found(NO_JOB)
+    return Response(status_code=204) if job == "deleted" else as_json(dump_job(job), 202)
 
 
-async def job_of(desk: JobDesk, tenant: str, job_id: str) -> JobRow:
+async def find_job(desk: JobDesk, tenant: str, job_id: str) -> JobRow:
     """Return the job of a tenant.
 
     Raises
@@ -231,7 +238,7 @@ async def job_of(desk: JobDesk, tenant: str, job_id: str) -> JobRow:
     Refusal
         404 if the tenant has no such job.
     """
-    job = await desk.get(tenant, job_id) if ULID.fullmatch(job_id) else None
+    job = await desk.get(tenant, job_id) if ULID_PATTERN.fullmatch(job_id) else None
     if job is None:
-        raise not_found(NO_JOB)
+        raise refuse_not_found(NO_JOB)
     return job

@@ -9,13 +9,20 @@ from fastapi import APIRouter, Query, Request, Response
 from service.api.http import problem_details
 from service.api.http.auth import GuardedRoute, Tenant
 from service.api.http.dependencies import Readers
-from service.api.routes.imports import DXF_TYPES, OF_ANY_FORMAT, SVG_TYPES, answered, file_of, taken
+from service.api.routes.imports import (
+    ANY_FORMAT_TYPES,
+    DXF_TYPES,
+    SVG_TYPES,
+    describe_file_body,
+    read_file,
+    respond_with_reading,
+)
 from service.outlines import DrawingUnit, Outlines
 from service.outlines.limits import DEFAULT_TOLERANCE, MAX_COORDINATE
 
 TAG = {"name": "outlines", "description": "Read a drawing."}
 
-TYPES = (*SVG_TYPES, *DXF_TYPES, *OF_ANY_FORMAT)
+ACCEPTED_TYPES = (*SVG_TYPES, *DXF_TYPES, *ANY_FORMAT_TYPES)
 
 router = APIRouter(prefix="/v1/outlines", tags=["outlines"], route_class=GuardedRoute)
 
@@ -25,14 +32,16 @@ router = APIRouter(prefix="/v1/outlines", tags=["outlines"], route_class=Guarded
     operation_id="read_outlines",
     summary="Read the outlines in a drawing",
     response_model=Outlines,
-    responses=problem_details.responses(
+    responses=problem_details.describe_responses(
         e400="The body cannot be read in the format that its first bytes announce.",
         e413="The body is too large.",
         e415="The body is neither SVG nor the text form of DXF, or is announced as another type.",
         e422="The drawing has no closed outline, or exceeds the size limits; `errors` names its elements.",
         e503="The service is busy with other files.",
     ),
-    openapi_extra=file_of(TYPES, "The unchanged drawing file. Its first bytes determine the format."),
+    openapi_extra=describe_file_body(
+        ACCEPTED_TYPES, "The unchanged drawing file. Its first bytes determine the format."
+    ),
 )
 async def read_outlines(
     request: Request,
@@ -40,7 +49,7 @@ async def read_outlines(
     tenant: Tenant,
     length_unit: Annotated[
         DrawingUnit | None,
-        Query(description="Unit of the answer if the drawing has a unit; otherwise the numbers stay as in the drawing."),
+        Query(description="Unit of the answer if the drawing has a unit; otherwise its numbers are unchanged."),
     ] = None,
     tolerance: Annotated[
         float | None,
@@ -57,7 +66,7 @@ async def read_outlines(
     Reads paths, polygons, polylines with bulges, circles, ellipses and splines; joins lines and arcs at their ends, and
     inserts blocks and `use` elements in their places. Elements without an outline are listed with the reason.
     """
-    content, _ = await taken(request, TYPES)
-    return await answered(
-        request, desk, tenant, "outlines", TYPES, content, tolerance=tolerance, length_unit=length_unit
+    content, _ = await read_file(request, ACCEPTED_TYPES)
+    return await respond_with_reading(
+        request, desk, tenant, "outlines", ACCEPTED_TYPES, content, tolerance=tolerance, length_unit=length_unit
     )

@@ -9,15 +9,15 @@ from fastapi import APIRouter, Query, Request, Response
 from pydantic_core import from_json
 from starlette.concurrency import run_in_threadpool
 
-from service.answers.job_result import SolvedJob, design_index
+from service.answers.job_result import SolvedJob, parse_design_index
 from service.api.http import problem_details
 from service.api.http.auth import GuardedRoute, Tenant
 from service.api.http.dependencies import Bench, Desk
-from service.api.http.problem_details import Refusal, busy, gone, invalid_request, not_found
-from service.api.routes.designs import HEADERS, solved_job
+from service.api.http.problem_details import Refusal, refuse_busy, refuse_gone, refuse_invalid_request, refuse_not_found
+from service.api.routes.designs import HEADERS, get_solved_job
 from service.api.routes.jobs import TAG
-from service.jobs.processes.request_pool import Busy, GivenUp, Gone
-from service.observability.telemetry import span
+from service.jobs.processes.request_pool import Busy, ClientGone, GivenUp
+from service.observability.telemetry import measure_span
 from service.parts.assembly.sizes import (
     CAD_PROCESSES,
     SOLID_FORMATS,
@@ -49,7 +49,7 @@ _MEDIA: dict[File | PartFile, str] = {
 _TEXTS = ("svg", "dxf")
 
 
-def _responses(file: File | PartFile) -> dict[int | str, dict[str, Any]]:
+def _describe_responses(file: File | PartFile) -> dict[int | str, dict[str, Any]]:
     schema = _TEXT if file in _TEXTS else _BINARY
     given: dict[str, Any] = {"content": {_MEDIA[file]: {"schema": schema}}}
     if file == "json":
@@ -58,7 +58,7 @@ def _responses(file: File | PartFile) -> dict[int | str, dict[str, Any]]:
     cad = {"e501": "This file needs the extra `cad`, which the service does not have."} if solid else {}
     return {
         200: {"description": "The assembly." if file == "json" else "The file.", **given},
-        **problem_details.responses(
+        **problem_details.describe_responses(
             e404="No such job or design, or its type of mechanism has no parts.",
             e409="The job has no result (yet), or the design cannot be built of parts; `detail` has the reason.",
             e422="A parameter is not valid or makes parts collide; `errors` names it, with values that work.",
@@ -73,7 +73,7 @@ def _responses(file: File | PartFile) -> dict[int | str, dict[str, Any]]:
     operation_id="make_parts",
     summary="Make the parts of a design",
     response_class=Response,
-    responses=_responses("zip"),
+    responses=_describe_responses("zip"),
 )
 async def make_parts(
     request: Request, desk: Desk, bench: Bench, tenant: Tenant, job_id: str, number: str,
@@ -86,7 +86,7 @@ async def make_parts(
     arranged in planes for these sizes, and a design whose parts would collide in the motion is refused. `print` and
     `mill` need the service's extra `cad`; without it `laser` has no STEP file.
     """
-    return await _answered(request, desk, bench, tenant, job_id, number, query, "zip")
+    return await _respond_with_file(request, desk, bench, tenant, job_id, number, query, "zip")
 
 
 @router.get(
@@ -94,14 +94,14 @@ async def make_parts(
     operation_id="export_assembly_step",
     summary="Export a design's assembly as STEP",
     response_class=Response,
-    responses=_responses("step"),
+    responses=_describe_responses("step"),
 )
 async def export_assembly_step(
     request: Request, desk: Desk, bench: Bench, tenant: Tenant, job_id: str, number: str,
     query: Annotated[AssemblyQuery, Query()],
 ) -> Response:  # fmt: skip
     """Return the assembled parts of design ``number``, in millimetres, with names and colours (AP242)."""
-    return await _answered(request, desk, bench, tenant, job_id, number, query, "step")
+    return await _respond_with_file(request, desk, bench, tenant, job_id, number, query, "step")
 
 
 @router.get(
@@ -109,14 +109,14 @@ async def export_assembly_step(
     operation_id="export_assembly_glb",
     summary="Export a design's assembly as glTF",
     response_class=Response,
-    responses=_responses("glb"),
+    responses=_describe_responses("glb"),
 )
 async def export_assembly_glb(
     request: Request, desk: Desk, bench: Bench, tenant: Tenant, job_id: str, number: str,
     query: Annotated[AssemblyQuery, Query()],
 ) -> Response:  # fmt: skip
     """Return the assembled parts of design ``number`` as binary glTF: in metres, with the shafts upwards along y."""
-    return await _answered(request, desk, bench, tenant, job_id, number, query, "glb")
+    return await _respond_with_file(request, desk, bench, tenant, job_id, number, query, "glb")
 
 
 @router.get(
@@ -124,7 +124,7 @@ async def export_assembly_glb(
     operation_id="view_assembly",
     summary="Show a design's assembly in three dimensions",
     response_class=Response,
-    responses=_responses("json"),
+    responses=_describe_responses("json"),
 )
 async def view_assembly(
     request: Request, desk: Desk, bench: Bench, tenant: Tenant, job_id: str, number: str,
@@ -135,7 +135,7 @@ async def view_assembly(
     The motion of each moving body is given once, as a rotation about a pivot and the position of the pivot. `lift` is
     the displacement of a part in the exploded view. No CAD is needed; the refusals are those of `parts`.
     """
-    return await _answered(request, desk, bench, tenant, job_id, number, query, "json")
+    return await _respond_with_file(request, desk, bench, tenant, job_id, number, query, "json")
 
 
 @router.get(
@@ -143,14 +143,14 @@ async def view_assembly(
     operation_id="draw_assembly",
     summary="Draw a design's assembly",
     response_class=Response,
-    responses=_responses("svg"),
+    responses=_describe_responses("svg"),
 )
 async def draw_assembly(
     request: Request, desk: Desk, bench: Bench, tenant: Tenant, job_id: str, number: str,
     query: Annotated[AssemblyQuery, Query()],
 ) -> Response:  # fmt: skip
     """Return an isometric picture of the parts of design ``number``, assembled and exploded."""
-    return await _answered(request, desk, bench, tenant, job_id, number, query, "svg")
+    return await _respond_with_file(request, desk, bench, tenant, job_id, number, query, "svg")
 
 
 _FORMS: dict[PartFile, str] = {
@@ -161,31 +161,31 @@ _FORMS: dict[PartFile, str] = {
 }
 
 
-def _offer(form: PartFile) -> None:
+def _add_part_route(form: PartFile) -> None:
     """Add the operation that returns files of single parts in one format."""
 
-    async def part(
+    async def send_part(
         request: Request, desk: Desk, bench: Bench, tenant: Tenant, job_id: str, number: str, name: str,
         query: Annotated[PartsQuery, Query()],
     ) -> Response:  # fmt: skip
-        return await _answered(request, desk, bench, tenant, job_id, number, query, form, name)
+        return await _respond_with_file(request, desk, bench, tenant, job_id, number, query, form, name)
 
     router.add_api_route(
         f"/{{job_id}}/designs/{{number}}/parts/{{name}}.{form}",
-        part,
+        send_part,
         operation_id=f"export_part_{form}",
         summary=f"Export a part of a design as {form.upper()}",
         description=f"{_FORMS[form]} ``name`` is the name in the bill of materials, or the `item` in the assembly.",
         response_class=Response,
-        responses=_responses(form),
+        responses=_describe_responses(form),
     )
 
 
 for _form in get_args(PartFile):
-    _offer(_form)
+    _add_part_route(_form)
 
 
-async def assemblies_of(request: Request, bench: Workshop, tenant: str, job: SolvedJob, most: int) -> dict[int, str]:
+async def draw_assemblies(request: Request, bench: Workshop, tenant: str, job: SolvedJob, most: int) -> dict[int, str]:
     """Return pictures of the assemblies of the first ``most`` designs as SVG, or a sentence with the reason for none.
 
     Raises
@@ -197,7 +197,9 @@ async def assemblies_of(request: Request, bench: Workshop, tenant: str, job: Sol
     found = {}
     for n in range(len(designs)):
         try:
-            found[n] = (await _made(request, bench, tenant, make_file, _order(job, n, {}), "svg")).decode()
+            found[n] = (
+                await _make_content(request, bench, tenant, make_file, _build_order(job, n, {}), "svg")
+            ).decode()
         except Refusal as refusal:
             if refusal.status not in (409, 422):
                 raise
@@ -205,29 +207,29 @@ async def assemblies_of(request: Request, bench: Workshop, tenant: str, job: Sol
     return found
 
 
-def _order(job: SolvedJob, number: int, query: dict[str, Any]) -> dict[str, Any]:
+def _build_order(job: SolvedJob, number: int, query: dict[str, Any]) -> dict[str, Any]:
     """Return the arguments for the process that makes the parts."""
     stored = {"kind": job.kind, "problem": job.problem, "label": job.label, "result": job.result}
     return stored | {"number": number, "query": query}
 
 
-async def _answered(
+async def _respond_with_file(
     request: Request, desk: Desk, bench: Bench, tenant: Tenant, job_id: str, number: str, query: PartsQuery,
     file: File | PartFile, part: str | None = None,
 ) -> Response:  # fmt: skip
-    job = await solved_job(desk, tenant, job_id)
-    n = await run_in_threadpool(_checked, job.result, number)
+    job = await get_solved_job(desk, tenant, job_id)
+    n = await run_in_threadpool(_check_design_number, job.result, number)
     if (file in SOLID_FORMATS or (file == "zip" and query.process in CAD_PROCESSES)) and not is_installed():
         raise Refusal(
             501, "no-cad", "No CAD",
             "Solids need the extra `cad`, which the service does not have; `process=laser` gives outlines without it.",
         )  # fmt: skip
-    order = _order(job, n, query.model_dump(exclude_unset=True))
-    with span("parts"):
+    order = _build_order(job, n, query.model_dump(exclude_unset=True))
+    with measure_span("parts"):
         if part is None:
-            content = await _made(request, bench, tenant, make_file, order, file)
+            content = await _make_content(request, bench, tenant, make_file, order, file)
         else:
-            content = await _made(request, bench, tenant, make_item_file, order, part, file)
+            content = await _make_content(request, bench, tenant, make_item_file, order, part, file)
     names = {"zip": f"{job.kind}-{n + 1}-parts.zip", "svg": f"{job.kind}-{n + 1}-assembly.svg"}
     name = names.get(file, f"{job.kind}-{n + 1}.{file}") if part is None else f"{part}.{file}"
     headers = {"X-Content-Type-Options": "nosniff"}
@@ -238,31 +240,31 @@ async def _answered(
     return Response(content, media_type=_MEDIA[file], headers=headers)
 
 
-async def _made(request: Request, bench: Workshop, tenant: str, work: Callable[..., Any], *args: Any) -> bytes:
+async def _make_content(request: Request, bench: Workshop, tenant: str, work: Callable[..., Any], *args: Any) -> bytes:
     """Return the file that the process makes, from the cache if it has made the same before."""
     try:
         made = await bench.run_cached(request.is_disconnected, tenant, work, *args)
     except Busy:
-        raise busy("parts") from None
-    except Gone:
-        raise gone() from None
+        raise refuse_busy("parts") from None
+    except ClientGone:
+        raise refuse_gone() from None
     except GivenUp:
-        raise _refused(
+        raise _refuse_parts(
             f"Making the parts exceeded the limit of {MAX_PARTS_S:g} seconds or the memory limit of a job."
         ) from None
     if isinstance(made, FileRefusal):
         if not made.known:
-            raise not_found(made.detail)
-        raise invalid_request([(made.path, made.detail)]) if made.path else _refused(made.detail)
+            raise refuse_not_found(made.detail)
+        raise refuse_invalid_request([(made.path, made.detail)]) if made.path else _refuse_parts(made.detail)
     assert isinstance(made, bytes)
     return made
 
 
-def _checked(result: str, number: str) -> int:
+def _check_design_number(result: str, number: str) -> int:
     """Return the index of a design in a stored result."""
     designs = from_json(result)["designs"]
-    return design_index(number, len(designs))
+    return parse_design_index(number, len(designs))
 
 
-def _refused(detail: str) -> Refusal:
+def _refuse_parts(detail: str) -> Refusal:
     return Refusal(409, "no-parts", "No parts", detail)

@@ -12,10 +12,10 @@ from service.api.http import problem_details
 from service.api.http.auth import GuardedRoute, Tenant
 from service.api.http.computation import draw_in_turn
 from service.api.http.dependencies import Answers, Bench, Desk
-from service.api.routes.designs import solved_job
+from service.api.routes.designs import get_solved_job
 from service.api.routes.jobs import NO_JOB, TAG
-from service.api.routes.parts import assemblies_of
-from service.observability.telemetry import span
+from service.api.routes.parts import draw_assemblies
+from service.observability.telemetry import measure_span
 
 _TEXT = {"type": "string"}
 
@@ -32,7 +32,7 @@ class ReportScope(BaseModel):
     )
     assemblies: bool = Field(
         default=False,
-        description="Whether each of these is also shown as an assembly of parts, or the reason given if there is none.",
+        description="Whether each of these is also shown as an assembly of parts, or the reason if there is none.",
     )
 
 
@@ -52,7 +52,7 @@ class ReportScope(BaseModel):
                 }
             },
         },
-        **problem_details.responses(
+        **problem_details.describe_responses(
             e404=NO_JOB,
             e409="The job has no result (yet).",
             e422="A parameter is not valid; `errors` names it.",
@@ -68,11 +68,11 @@ async def report_job(
 
     It shows the problem, the search and its completeness, and the designs with drawings, checks and dimensions.
     """
-    job = await solved_job(desk, tenant, job_id)
-    with span("report"):
+    job = await get_solved_job(desk, tenant, job_id)
+    with measure_span("report"):
         built = {}
         if query.assemblies:
-            built = await assemblies_of(request, bench, tenant, job, query.designs)
+            built = await draw_assemblies(request, bench, tenant, job, query.designs)
         page, policy = await draw_in_turn(request, answers, tenant, write_report, job, query.designs, built)
     headers = {
         "Content-Security-Policy": policy,

@@ -12,9 +12,9 @@ from service.api.http import problem_details
 from service.api.http.auth import GuardedRoute, Tenant
 from service.api.http.computation import draw_in_turn
 from service.api.http.dependencies import Answers, Desk
-from service.api.routes.designs import OTHER_DRAWINGS, solved_job
+from service.api.routes.designs import OTHER_DRAWINGS, get_solved_job
 from service.api.routes.jobs import TAG
-from service.observability.telemetry import span
+from service.observability.telemetry import measure_span
 from service.simulation.query import Form, SimulationQuery
 
 router = APIRouter(prefix="/v1/jobs", tags=[TAG["name"]], route_class=GuardedRoute)
@@ -29,7 +29,7 @@ class Simulation(NamedTuple):
     description: str
 
 
-_DRIVEN = (
+_MOTION_NOTE = (
     " The model is in SI units: metres, kilograms, radians, seconds. A fully rotating input turns once at constant "
     "speed; any other input moves over the range of the verification. Masses are those of the problem's `dynamics`, or "
     "of plates. Linkages and gear trains have simulations."
@@ -41,40 +41,40 @@ SIMULATIONS: dict[Form, Simulation] = {
         "export_design_mjcf",
         "Export a design to MuJoCo",
         "Return design ``number`` of the job's result as a MuJoCo model, with closed loops and a driven input."
-        + _DRIVEN,
+        + _MOTION_NOTE,
     ),
     "urdf": Simulation(
         "application/xml",
         "export_design_urdf",
         "Export a design as URDF",
         "Return design ``number`` of the job's result as URDF, a tree whose loops are closed by SDF joints in the block "
-        "`gazebo`." + _DRIVEN,
+        "`gazebo`." + _MOTION_NOTE,
     ),
     "mo": Simulation(
         "text/plain; charset=utf-8",
         "export_design_modelica",
         "Export a design to Modelica",
-        "Return design ``number`` of the job's result as a model of Modelica.Mechanics.MultiBody." + _DRIVEN,
+        "Return design ``number`` of the job's result as a model of Modelica.Mechanics.MultiBody." + _MOTION_NOTE,
     ),
     "sim.py": Simulation(
         "text/x-python; charset=utf-8",
         "export_design_script",
         "Export a design as a script that simulates it",
         "Return design ``number`` of the job's result as a Python script that runs it in MuJoCo and compares its joint "
-        "angles with those of the analysis, which the script contains." + _DRIVEN,
+        "angles with those of the analysis, which the script contains." + _MOTION_NOTE,
     ),
 }
 
 
-def _offer(form: Form, export: Simulation) -> None:
+def _add_route(form: Form, export: Simulation) -> None:
     """Add the operation that returns the models of one format."""
 
-    async def file(
+    async def send_file(
         request: Request, desk: Desk, answers: Answers, tenant: Tenant, job_id: str, number: str,
         query: Annotated[SimulationQuery, Query()],
     ) -> Response:  # fmt: skip
-        job = await solved_job(desk, tenant, job_id)
-        with span("simulation"):
+        job = await get_solved_job(desk, tenant, job_id)
+        with measure_span("simulation"):
             n, content = await draw_in_turn(request, answers, tenant, simulate_design, job, number, form, query)
         headers = {
             "X-Content-Type-Options": "nosniff",
@@ -84,14 +84,14 @@ def _offer(form: Form, export: Simulation) -> None:
 
     router.add_api_route(
         f"/{{job_id}}/designs/{{number}}.{form}",
-        file,
+        send_file,
         operation_id=export.operation_id,
         summary=export.summary,
         description=export.description,
         response_class=Response,
         responses={
             200: {"description": "The file.", "content": {export.media_type: {"schema": {"type": "string"}}}},
-            **problem_details.responses(
+            **problem_details.describe_responses(
                 e404="No such job or design, or its type of mechanism has no simulation.",
                 e409="The job has no result (yet), or the design cannot be simulated; `detail` has the reason.",
                 e422="A parameter is not valid or does not fit the design; `errors` names it.",
@@ -102,7 +102,7 @@ def _offer(form: Form, export: Simulation) -> None:
 
 
 for _form, _export in SIMULATIONS.items():
-    _offer(_form, _export)
+    _add_route(_form, _export)
 
 
 class PmksModel(BaseModel):
@@ -119,7 +119,7 @@ class PmksModel(BaseModel):
     operation_id="open_design_in_pmks",
     summary="Open a design in PMKS+",
     response_model=PmksModel,
-    responses=problem_details.responses(
+    responses=problem_details.describe_responses(
         e404="No such job or design, or the design is not a linkage.",
         e409="The job has no result (yet), or PMKS+ cannot represent the design; `detail` has the reason.",
         e503=OTHER_DRAWINGS,
@@ -133,6 +133,6 @@ async def open_design_in_pmks(
     PMKS+ has pins and slides but no gears. It keeps three decimals of lengths, so the design is scaled by a power of
     ten. Masses are not included.
     """
-    job = await solved_job(desk, tenant, job_id)
+    job = await get_solved_job(desk, tenant, job_id)
     url, scale = await draw_in_turn(request, answers, tenant, open_in_pmks, job, number)
     return PmksModel(url=url, scale=scale)

@@ -21,17 +21,17 @@ import re
 from collections.abc import Mapping
 from graphlib import CycleError, TopologicalSorter
 
-SUFFIX = ".bundle.js"
+BUNDLE_SUFFIX = ".bundle.js"
 """Suffix of a bundle's name, which replaces ``.js`` of its first module."""
 
 _IMPORT = re.compile(
     r'^import (?:\{ (?P<names>[^}]+) \}|\* as (?P<all>\w+)) from "\./(?P<module>[\w./]+)";$', re.MULTILINE
 )
 _EXPORT = re.compile(r"^export (?=(?:async )?(?:function|class|const) (\w+))", re.MULTILINE)
-_OTHER = re.compile(r"^(?:import|export)\b.*$", re.MULTILINE)
-_WAITS = re.compile(r"^(?:export )?const \w+ = (?:.* )?await ", re.MULTILINE)
+_OTHER_STATEMENT = re.compile(r"^(?:import|export)\b.*$", re.MULTILINE)
+_AWAITING_CONST = re.compile(r"^(?:export )?const \w+ = (?:.* )?await ", re.MULTILINE)
 """A module with a top-level ``await``."""
-_LATER = re.compile(r'import\("\./(\w+)\.js"\)(?=[,;)\]])')
+_LAZY_IMPORT = re.compile(r'import\("\./(\w+)\.js"\)(?=[,;)\]])')
 """A dynamic import, which begins a bundle of its own. Types in comments have another form."""
 
 
@@ -39,7 +39,7 @@ class BundleError(Exception):
     """The modules cannot be bundled; the message has the reason."""
 
 
-def bundles(modules: Mapping[str, str], first: str) -> dict[str, str]:
+def build_bundles(modules: Mapping[str, str], first: str) -> dict[str, str]:
     """Return the bundle that begins with the module ``first``, and all bundles imported dynamically, by name.
 
     Parameters
@@ -56,24 +56,24 @@ def bundles(modules: Mapping[str, str], first: str) -> dict[str, str]:
     wanted = [first]
     while wanted:
         begins = wanted.pop()
-        if name_of(begins) in made:
+        if name_bundle(begins) in made:
             continue
-        order = _order(modules, begins)
-        wanted += [f"{later}.js" for name in order for later in _LATER.findall(modules[name])]
-        made[name_of(begins)] = _joined(modules, order)
+        order = _sort_modules(modules, begins)
+        wanted += [f"{later}.js" for name in order for later in _LAZY_IMPORT.findall(modules[name])]
+        made[name_bundle(begins)] = _join_modules(modules, order)
     return made
 
 
-def name_of(module: str) -> str:
+def name_bundle(module: str) -> str:
     """Return the name of the bundle that begins with a module.
 
     >>> name_of("studio.js")
     'studio.bundle.js'
     """
-    return module.removesuffix(".js") + SUFFIX
+    return module.removesuffix(".js") + BUNDLE_SUFFIX
 
 
-def _order(modules: Mapping[str, str], first: str) -> list[str]:
+def _sort_modules(modules: Mapping[str, str], first: str) -> list[str]:
     needs: dict[str, list[str]] = {}
     new = [first]
     while new:
@@ -88,30 +88,30 @@ def _order(modules: Mapping[str, str], first: str) -> list[str]:
         raise BundleError(f"these modules import each other: {', '.join(error.args[1])}") from None
 
 
-def _joined(modules: Mapping[str, str], order: list[str]) -> str:
+def _join_modules(modules: Mapping[str, str], order: list[str]) -> str:
     outside: dict[str, None] = {}
 
-    def taken(found: re.Match[str]) -> str:
+    def replace_import(found: re.Match[str]) -> str:
         if found["module"] not in modules:
             outside[found.group()] = None
             return ""
         what = found["all"] or f"{{ {found['names'].replace(' as ', ': ')} }}"
-        return f"const {what} = {_variable(found['module'])};"
+        return f"const {what} = {_name_variable(found['module'])};"
 
     parts: list[str] = []
     exported: list[str] = []
     for name in order:
         exported = _EXPORT.findall(modules[name])
-        text = _EXPORT.sub("", _IMPORT.sub(taken, modules[name]))
-        if other := _OTHER.search(text):
+        text = _EXPORT.sub("", _IMPORT.sub(replace_import, modules[name]))
+        if other := _OTHER_STATEMENT.search(text):
             raise BundleError(f"{name}: unsupported import or export: {other.group()}")
-        text = _LATER.sub(lambda found: f'import("./{found[1]}{SUFFIX}")', text)
-        made = "await (async () =>" if _WAITS.search(text) else "(() =>"
-        parts.append(f"const {_variable(name)} = {made} {{\n{text}return {{ {', '.join(exported)} }};\n}})();\n")
+        text = _LAZY_IMPORT.sub(lambda found: f'import("./{found[1]}{BUNDLE_SUFFIX}")', text)
+        made = "await (async () =>" if _AWAITING_CONST.search(text) else "(() =>"
+        parts.append(f"const {_name_variable(name)} = {made} {{\n{text}return {{ {', '.join(exported)} }};\n}})();\n")
     # The last module in order is the first one of the bundle; the bundle has the same exports.
-    parts.append(f"export const {{ {', '.join(exported)} }} = {_variable(order[-1])};\n")
+    parts.append(f"export const {{ {', '.join(exported)} }} = {_name_variable(order[-1])};\n")
     return "\n".join([*outside, *parts])
 
 
-def _variable(module: str) -> str:
+def _name_variable(module: str) -> str:
     return f"${module.removesuffix('.js')}"

@@ -11,14 +11,14 @@ from starlette.concurrency import run_in_threadpool
 from service.jobs.batches.plan import Plan
 from service.jobs.batches.rows import BatchRow, BatchSummary
 from service.jobs.batches.store import BatchStore
-from service.jobs.batches.table import Table, table_of
+from service.jobs.batches.table import Table, build_table
 from service.jobs.events.notifier import ChangeNotifier
 from service.jobs.executor import Executor
 from service.jobs.store.admission import Repeatable
 from service.jobs.store.finished_cache import FinishedJobs
 from service.jobs.store.states import Cost
 from service.observability.metrics import Metrics
-from service.observability.telemetry import span
+from service.observability.telemetry import measure_span
 
 log = structlog.get_logger(__name__)
 
@@ -46,7 +46,7 @@ class BatchDesk:
         QueueFull
             If the tenant's queue is full.
         """
-        with span("store"):
+        with measure_span("store"):
             batch, shares = await run_in_threadpool(
                 self.store.create,
                 tenant=tenant,
@@ -59,7 +59,7 @@ class BatchDesk:
             )
         if shares:
             log.info("batch accepted", batch=batch.id, kind=kind, samples=batch.total)
-            self.metrics.accepted_batch(kind)
+            self.metrics.count_batch(kind)
         for share in shares:
             self.executor.submit(share)
         return batch
@@ -69,17 +69,17 @@ class BatchDesk:
         batch = await run_in_threadpool(self.store.get, batch_id)
         return batch if batch is not None and batch.tenant == tenant else None
 
-    async def page(self, *, tenant: str, limit: int, before: str | None) -> list[BatchSummary]:
+    async def list_page(self, *, tenant: str, limit: int, before: str | None) -> list[BatchSummary]:
         """Return at most ``limit`` batches of the tenant, newest first."""
-        return await run_in_threadpool(self.store.page, tenant=tenant, limit=limit, before=before)
+        return await run_in_threadpool(self.store.list_page, tenant=tenant, limit=limit, before=before)
 
-    async def table(self, batch: BatchRow) -> tuple[Plan, Table] | None:
+    async def load_table(self, batch: BatchRow) -> tuple[Plan, Table] | None:
         """Return the plan and the table of a batch; None if it has been removed since it was read."""
-        return await run_in_threadpool(self._table, batch)
+        return await run_in_threadpool(self._load_table, batch)
 
-    def _table(self, batch: BatchRow) -> tuple[Plan, Table] | None:
-        plan = self.store.plan(batch)
-        return None if plan is None else (plan, table_of(batch, plan, self.store.table(batch)))
+    def _load_table(self, batch: BatchRow) -> tuple[Plan, Table] | None:
+        plan = self.store.load_plan(batch)
+        return None if plan is None else (plan, build_table(batch, plan, self.store.load_rows(batch)))
 
     async def cancel_or_delete(self, tenant: str, batch_id: str) -> BatchRow | Literal["deleted"] | None:
         """Cancel an unfinished batch and return it, or remove a finished one; None if the tenant has no such batch.
@@ -95,7 +95,7 @@ class BatchDesk:
                 return "deleted" if await run_in_threadpool(self.store.delete, batch_id) else None
             finally:
                 # The cache holds samples by their own ids, which are not listed here: drop all of them.
-                self.finished.removed()
+                self.finished.note_removal()
         shares = await run_in_threadpool(self.store.cancel, batch_id)
         if shares is not None:
             log.info("batch cancelled", batch=batch_id)

@@ -17,38 +17,38 @@ if TYPE_CHECKING:
 LIBRARIES = ("numpy", "scipy", "numba", "cvxpy-base", "clarabel", "highspy", "pydantic")
 """Libraries that the solvers compute with; another version may change the last digits of an answer."""
 
-SOURCES = (".py", ".npz")
+SOURCE_SUFFIXES = (".py", ".npz")
 
 
-def digest(problem: ProblemBase) -> str:
+def hash_problem(problem: ProblemBase) -> str:
     """Return a hash that is equal for problems to which the same solvers give the same answer.
 
     The order of fields, the spelling of numbers and explicitly written defaults make no difference.
     """
     stated = problem.model_dump(mode="json", exclude_defaults=True)
     meant = json.dumps([problem.kind, stated], sort_keys=True, separators=(",", ":"))
-    return sha256(f"{solvers()}{meant}".encode()).hexdigest()
+    return sha256(f"{hash_solvers()}{meant}".encode()).hexdigest()
 
 
 @cache
-def solvers() -> str:
+def hash_solvers() -> str:
     """Return a hash of the solvers' sources and of the versions of the libraries they compute with."""
     parts = [platform.python_version(), platform.machine(), *(f"{name} {version(name)}" for name in LIBRARIES)]
     told = sha256("\n".join(parts).encode())
     for package in ("kinematics", "synthesis"):
         # Sorted, because the order of a folder's entries differs between file systems.
-        for name, source in sorted(_sources(files(package), package), key=lambda named: named[0]):
+        for name, source in sorted(_list_sources(files(package), package), key=lambda named: named[0]):
             told.update(f"\n{name}\n".encode())
             told.update(sha256(source.read_bytes()).digest())
     return told.hexdigest()
 
 
-def _sources(folder: Traversable, name: str) -> list[tuple[str, Traversable]]:
+def _list_sources(folder: Traversable, name: str) -> list[tuple[str, Traversable]]:
     found = []
     for entry in folder.iterdir():
         place = f"{name}/{entry.name}"
         if entry.is_dir():
-            found += _sources(entry, place)
-        elif entry.name.endswith(SOURCES):
+            found += _list_sources(entry, place)
+        elif entry.name.endswith(SOURCE_SUFFIXES):
             found.append((place, entry))
     return found

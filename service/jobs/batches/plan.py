@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
 
-from service.jobs.batches.values import Values, read, written
+from service.jobs.batches.values import Values, decode_values, encode_values
 
 
 class NoSuchPlace(LookupError):
@@ -59,11 +59,11 @@ class Plan:
             chosen.append(values[place])
         return chosen[::-1]
 
-    def statement(self, number: int) -> Any:
+    def build_statement(self, number: int) -> Any:
         """Return the problem of a sample as a client would post it."""
-        return self.stated(self.sample(number))
+        return self.fill_statement(self.sample(number))
 
-    def stated(self, values: Values) -> Any:
+    def fill_statement(self, values: Values) -> Any:
         """Return the problem with these values of the varied fields.
 
         Raises
@@ -73,48 +73,50 @@ class Plan:
         """
         statement: Any = self.problem
         for steps, value in zip(self._steps, values, strict=True):
-            statement = _with(statement, steps, value)
+            statement = _copy_with(statement, steps, value)
         return statement
 
     @cached_property
     def _steps(self) -> list[list[str]]:
-        return [steps(field) for field in self.fields]
+        return [split_pointer(field) for field in self.fields]
 
-    def stated_as_json(self) -> str:
+    def dump_statement(self) -> str:
         """Return the part of the plan that the API shows, a JSON object: all but the values, which may be very many."""
-        return _as_json({name: getattr(self, name) for name in _SHOWN})
+        return _as_json({name: getattr(self, name) for name in _SHOWN_FIELDS})
 
-    def values_as_json(self) -> str:
-        """Return the values as JSON for :meth:`read`."""
-        return _as_json({"grid": self.grid, "values": [written(values) for values in self.values]})
+    def dump_values(self) -> str:
+        """Return the values as JSON for :meth:`decode_values`."""
+        return _as_json({"grid": self.grid, "values": [encode_values(values) for values in self.values]})
 
     @classmethod
-    def read(cls, stated: str, values: str) -> Plan:
-        """Rebuild a plan from the output of :meth:`stated_as_json` and :meth:`values_as_json`."""
+    def read(cls, statement_json: str, values: str) -> Plan:
+        """Rebuild a plan from the output of :meth:`dump_statement` and :meth:`dump_values`."""
         varied = json.loads(values)
-        return cls(**json.loads(stated), grid=varied["grid"], values=[read(each) for each in varied["values"]])
+        return cls(
+            **json.loads(statement_json), grid=varied["grid"], values=[decode_values(each) for each in varied["values"]]
+        )
 
 
-_SHOWN = ("problem", "fields", "metrics", "reuse")
+_SHOWN_FIELDS = ("problem", "fields", "metrics", "reuse")
 
 
 def _as_json(value: Any) -> str:
     return json.dumps(value, separators=(",", ":"))
 
 
-def steps(pointer: str) -> list[str]:
+def split_pointer(pointer: str) -> list[str]:
     """Split a JSON pointer that begins with a slash into its steps."""
     # "~1" before "~0": the other order would turn "~01" into a slash (RFC 6901, section 4).
     return [step.replace("~1", "/").replace("~0", "~") for step in pointer.split("/")[1:]]
 
 
-def _with(value: Any, way: Sequence[str], new: Any) -> Any:
+def _copy_with(value: Any, way: Sequence[str], new: Any) -> Any:
     """Return a copy of ``value`` with ``new`` at the end of the path ``way``; missing objects are created."""
     if not way:
         return new
     step, *rest = way
     if isinstance(value, dict):
-        return {**value, step: _with(value.get(step, {} if rest else None), rest, new)}
+        return {**value, step: _copy_with(value.get(step, {} if rest else None), rest, new)}
     if isinstance(value, list):
         # At most nine digits are converted: int() of a very long text takes time by the square of its length.
         if not (step.isascii() and step.isdecimal() and str(int(step[:9])) == step):
@@ -122,5 +124,5 @@ def _with(value: Any, way: Sequence[str], new: Any) -> Any:
         if int(step) >= len(value):
             raise NoSuchPlace(f"Element {step} does not exist; the length of the list is {len(value)}.")
         place = int(step)
-        return [*value[:place], _with(value[place], rest, new), *value[place + 1 :]]
+        return [*value[:place], _copy_with(value[place], rest, new), *value[place + 1 :]]
     raise NoSuchPlace(f"The value before {step[:100]!r} is neither an object nor a list.")

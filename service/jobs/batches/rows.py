@@ -21,14 +21,14 @@ class BatchSummary(Entry):
     revision: int
 
     @property
-    def done(self) -> int:
+    def ended_count(self) -> int:
         """Number of samples that have ended."""
         return self.succeeded + self.failed
 
 
 @dataclass(frozen=True, slots=True)
 class BatchRow(BatchSummary):
-    """A batch with its request, as :meth:`service.jobs.batches.plan.Plan.stated_as_json` writes it."""
+    """A batch with its request, as :meth:`service.jobs.batches.plan.Plan.dump_statement` writes it."""
 
     stated: str
 
@@ -44,18 +44,18 @@ class Share:
     end: int
     alone: int | None = None
 
-    def written(self) -> str:
+    def dump(self) -> str:
         """Return the share as JSON; its row in the job table stores that as the problem."""
         return json.dumps(asdict(self))
 
     @classmethod
     def read(cls, text: str) -> Share:
-        """Rebuild a share from the output of :meth:`written`."""
+        """Rebuild a share from the output of :meth:`dump`."""
         return cls(**json.loads(text))
 
 
 @dataclass(frozen=True, slots=True)
-class Ended:
+class EndedSample:
     """A sample that has ended: its ``result`` and its ``figures`` for the table, or its ``error``, in JSON.
 
     ``same_as`` is the number of an equal sample of the batch: the row then repeats its figures and has no result.

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from service.jobs.batches.values import Picked, Values
+from service.jobs.batches.values import PickedValues, Values
 from service.loading import IMPORTS
 
 
@@ -22,7 +22,7 @@ class Span:
 Varied = Sequence[Any] | Span
 
 
-def evenly(begin: float, end: float, count: int) -> Sequence[float]:
+def sample_evenly(begin: float, end: float, count: int) -> Sequence[float]:
     """Return ``count`` evenly spaced numbers including both ends; integers if all of them are whole.
 
     >>> evenly(10, 30, 3), evenly(0, 1, 3)
@@ -38,7 +38,7 @@ def evenly(begin: float, end: float, count: int) -> Sequence[float]:
     return array("d", [begin, *between, end])
 
 
-def latin_hypercube(varied: Sequence[Varied], samples: int, seed: int) -> list[Values]:
+def sample_latin_hypercube(varied: Sequence[Varied], samples: int, seed: int) -> list[Values]:
     """Draw values of each field such that each of ``samples`` equal parts of its range, or of its list, has one.
 
     Uses SciPy's Latin hypercube (McKay, Beckman & Conover 1979, DOI 10.2307/1268522) with the given seed.
@@ -46,12 +46,12 @@ def latin_hypercube(varied: Sequence[Varied], samples: int, seed: int) -> list[V
     with IMPORTS:
         from scipy.stats import qmc
     shares = qmc.LatinHypercube(d=len(varied), rng=seed).random(samples)
-    return [_at(values, column.tolist()) for values, column in zip(varied, shares.T, strict=True)]
+    return [_map_shares(values, column.tolist()) for values, column in zip(varied, shares.T, strict=True)]
 
 
-def _at(values: Varied, shares: Sequence[float]) -> Values:
+def _map_shares(values: Varied, shares: Sequence[float]) -> Values:
     if isinstance(values, Span):
         return array("d", [values.begin + (values.end - values.begin) * share for share in shares])
     count = len(values)
     # Rounding may give a share of exactly 1, which belongs to the last element.
-    return Picked(values, array("H", [min(int(share * count), count - 1) for share in shares]))
+    return PickedValues(values, array("H", [min(int(share * count), count - 1) for share in shares]))

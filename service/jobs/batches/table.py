@@ -13,17 +13,17 @@ import numpy as np
 from pydantic_core import to_json
 
 from service.jobs.batches.plan import Plan
-from service.jobs.batches.reading import sample_id
+from service.jobs.batches.reading import make_sample_id
 from service.jobs.batches.rows import BatchSummary, TableRow
 from service.jobs.faults import WORKER_DIED
 from service.jobs.store.states import Status
 
 Rows = np.ndarray[Any, np.dtype[np.float64]]
 
-SIGNED = ("relative_error", "error")
+SIGNED_METRICS = ("relative_error", "error")
 """Metrics that are signed errors of ratios; their absolute values are compared."""
 
-AT_ONCE = 200
+CHUNK_ROWS = 200
 """Number of rows written in one piece."""
 
 
@@ -39,24 +39,24 @@ class Table:
 
         Numbers have all their digits; values other than numbers and texts are JSON.
         """
-        yield _written([self.columns])
-        for rows in self._pages():
-            yield _written([[_cell(value) for value in row] for row in rows])
+        yield _write_rows([self.columns])
+        for rows in self._iterate_chunks():
+            yield _write_rows([[_format_cell(value) for value in row] for row in rows])
 
     def as_json(self, **more: Any) -> Iterator[bytes]:
         """Yield a JSON object of the columns, the fields ``more`` and the rows, in pieces."""
         yield to_json({"columns": self.columns, **more})[:-1] + b',"rows":['
         comma = b""
-        for rows in self._pages():
+        for rows in self._iterate_chunks():
             yield comma + to_json(rows)[1:-1]
             comma = b","
         yield b"]}"
 
-    def _pages(self) -> Iterator[list[list[Any]]]:
-        for start in range(0, len(self.rows), AT_ONCE):
-            yield self.rows[start : start + AT_ONCE]
+    def _iterate_chunks(self) -> Iterator[list[list[Any]]]:
+        for start in range(0, len(self.rows), CHUNK_ROWS):
+            yield self.rows[start : start + CHUNK_ROWS]
 
-    def front(self, least: Sequence[str], greatest: Sequence[str]) -> Table:
+    def select_front(self, least: Sequence[str], greatest: Sequence[str]) -> Table:
         """Return the Pareto front: the rows for which no other row is as good in all columns and better in one.
 
         Rows without a number in one of these columns are ignored.
@@ -64,13 +64,13 @@ class Table:
         Parameters
         ----------
         least, greatest : sequence of str
-            Columns to minimize and columns to maximize. A signed error (:data:`SIGNED`) is minimized by its absolute
+            Columns to minimize and columns to maximize. A signed error (:data:`SIGNED_METRICS`) is minimized by its absolute
             value.
         """
         signs = {**dict.fromkeys(least, 1.0), **dict.fromkeys(greatest, -1.0)}
         places = [(self.columns.index(name), sign) for name, sign in signs.items()]
-        complete = [row for row in self.rows if all(_number(row[place]) for place, _ in places)]
-        by_size = {self.columns.index(name) for name in least if name in SIGNED}
+        complete = [row for row in self.rows if all(_is_number(row[place]) for place, _ in places)]
+        by_size = {self.columns.index(name) for name in least if name in SIGNED_METRICS}
         weighed = np.array(
             [
                 [abs(row[place]) if place in by_size else sign * row[place] for place, sign in places]
@@ -78,10 +78,10 @@ class Table:
             ],
             float,
         )
-        return Table(self.columns, [complete[n] for n in unbeaten(weighed.reshape(len(complete), len(places)))])
+        return Table(self.columns, [complete[n] for n in find_unbeaten(weighed.reshape(len(complete), len(places)))])
 
 
-def table_of(batch: BatchSummary, plan: Plan, ended: Sequence[TableRow]) -> Table:
+def build_table(batch: BatchSummary, plan: Plan, ended: Sequence[TableRow]) -> Table:
     """Build the current table of a batch: varied fields, outcome of each sample, its best design, its job."""
     columns = [*plan.fields, "status", "cached", "designs", *plan.metrics, "job", "failure"]
     by_number = {row.number: row for row in ended}
@@ -99,12 +99,12 @@ def table_of(batch: BatchSummary, plan: Plan, ended: Sequence[TableRow]) -> Tabl
         error = None if row.error is None else json.loads(row.error)["detail"]
         figures = nothing if row.figures is None else row.figures
         rows.append(
-            [*plan.sample(number), row.status.value, row.cached, *figures, sample_id(batch.id, number), error]
+            [*plan.sample(number), row.status.value, row.cached, *figures, make_sample_id(batch.id, number), error]
         )  # fmt: skip
     return Table(columns, rows)
 
 
-def unbeaten(table: Rows) -> list[int]:
+def find_unbeaten(table: Rows) -> list[int]:
     """Return the indices of the Pareto-optimal rows of a table, all columns minimized, in ascending order.
 
     Equal rows do not dominate each other. The distinct rows are sorted lexicographically; a row is dominated if an
@@ -127,8 +127,8 @@ def unbeaten(table: Rows) -> list[int]:
         if others.shape[1] == 1:
             kept[1:] = others[1:, 0] < np.minimum.accumulate(others[:-1, 0])
     else:
-        for start in range(0, len(different), _COMPARED):
-            block = others[start : start + _COMPARED]
+        for start in range(0, len(different), _BLOCK_ROWS):
+            block = others[start : start + _BLOCK_ROWS]
             left = np.flatnonzero(~_as_good(block, others[:start][kept[:start]]).any(axis=1))
             # Within the block only earlier rows can dominate, hence the lower triangle.
             before = np.tri(len(left), k=-1, dtype=bool)
@@ -137,7 +137,7 @@ def unbeaten(table: Rows) -> list[int]:
     return [int(n) for n in np.flatnonzero(kept[which.reshape(-1)])]
 
 
-_COMPARED = 256
+_BLOCK_ROWS = 256
 """Number of rows compared with the earlier ones at a time; bounds the memory of the comparison."""
 
 
@@ -149,17 +149,17 @@ def _as_good(rows: Rows, others: Rows) -> np.ndarray[Any, np.dtype[np.bool_]]:
     return as_good
 
 
-def _written(rows: Iterable[Sequence[Any]]) -> bytes:
+def _write_rows(rows: Iterable[Sequence[Any]]) -> bytes:
     text = io.StringIO()
     csv.writer(text).writerows(rows)
     return text.getvalue().encode()
 
 
-def _number(value: Any) -> bool:
+def _is_number(value: Any) -> bool:
     return isinstance(value, int | float) and not isinstance(value, bool)
 
 
-def _cell(value: Any) -> Any:
+def _format_cell(value: Any) -> Any:
     if value is None or isinstance(value, str):
         return value
-    return repr(value) if _number(value) else json.dumps(value)
+    return repr(value) if _is_number(value) else json.dumps(value)

@@ -16,7 +16,7 @@ Values = Sequence[Any]
 
 
 @dataclass(frozen=True)
-class Picked(Sequence[Any]):
+class PickedValues(Sequence[Any]):
     """A sequence of repeated values: the ``n``-th element is the value at index ``places[n]``.
 
     Attributes
@@ -37,25 +37,29 @@ class Picked(Sequence[Any]):
         return self.among[self.places[number]]
 
 
-def written(values: Values) -> Any:
-    """Encode values as JSON-like data for :func:`read`: lists unchanged, arrays and picked values in base64."""
-    if isinstance(values, Picked):
-        return {"among": values.among, "places": _text(values.places)}
-    return {"doubles": _text(values)} if isinstance(values, array) else values
+def encode_values(values: Values) -> Any:
+    """Encode values as JSON-like data for :func:`decode_values`: lists unchanged, arrays and picked values in base64."""
+    if isinstance(values, PickedValues):
+        return {"among": values.among, "places": _encode_numbers(values.places)}
+    return {"doubles": _encode_numbers(values)} if isinstance(values, array) else values
 
 
-def read(data: Any) -> Values:
-    """Decode values that :func:`written` has encoded."""
+def decode_values(data: Any) -> Values:
+    """Decode values that :func:`encode_values` has encoded."""
     if isinstance(data, list):
         return data
-    return _array("d", data["doubles"]) if "doubles" in data else Picked(data["among"], _array("H", data["places"]))
+    return (
+        _decode_numbers("d", data["doubles"])
+        if "doubles" in data
+        else PickedValues(data["among"], _decode_numbers("H", data["places"]))
+    )
 
 
-def _text(numbers: array[Any]) -> str:
+def _encode_numbers(numbers: array[Any]) -> str:
     return b64encode(numbers.tobytes()).decode()
 
 
-def _array(type_: str, text: str) -> array[Any]:
+def _decode_numbers(type_: str, text: str) -> array[Any]:
     numbers: array[Any] = array(type_)
     numbers.frombytes(b64decode(text))
     return numbers

@@ -19,13 +19,13 @@ from kombu.exceptions import KombuError, OperationalError
 
 from service.settings import Settings
 
-TASK = "mechsynth.run"
+TASK_NAME = "mechsynth.run"
 
 CONNECT_TIMEOUT_S = 4.0
 CONFIRM_TIMEOUT_S = 5.0
 """Time limit for RabbitMQ's confirmation of a message, seconds."""
 
-PAUSE_S = 1.0
+RETRY_PAUSE_S = 1.0
 """Pause before an unreachable broker is tried again, seconds; callers fail at once meanwhile."""
 
 BROKER_HEARTBEAT_S = 10.0
@@ -38,7 +38,7 @@ class BrokerUnreachable(Exception):
     """The broker did not confirm the message, which may still have arrived."""
 
 
-def celery_app(settings: Settings, *, publisher: bool) -> Celery:
+def create_celery_app(settings: Settings, *, publisher: bool) -> Celery:
     """Create the Celery application of servers and worker hosts: one queue, no results, no control messages."""
     url = settings.broker_url.get_secret_value() if settings.broker_url else ""
     amqp = url.startswith("amqp")
@@ -90,7 +90,7 @@ class Publisher:
     """Sends the ids of jobs, one at a time over one connection. Safe to use from many threads."""
 
     def __init__(self, settings: Settings) -> None:
-        self._app = celery_app(settings, publisher=True)
+        self._app = create_celery_app(settings, publisher=True)
         self._lock = threading.Lock()
         self._connection: Any = None
         self._producer: Any = None
@@ -106,19 +106,19 @@ class Publisher:
         BrokerUnreachable
             If the broker may not have the message.
         """
-        self._asked(lambda: self._publish(job_id))
+        self._run_connected(lambda: self._publish(job_id))
 
     def probe(self) -> None:
         """Check whether the broker answers and set ``reachable``; create the queue if it is missing."""
         with suppress(BrokerUnreachable):
-            self._asked(self._declare)
+            self._run_connected(self._declare)
 
     def close(self) -> None:
         """Close the connection."""
         with self._lock:
             self._disconnect()
 
-    def _asked(self, act: Callable[[], None]) -> None:
+    def _run_connected(self, act: Callable[[], None]) -> None:
         with self._lock:
             if time.monotonic() < self._not_before:
                 raise BrokerUnreachable("the broker was out of reach a moment ago")
@@ -126,10 +126,10 @@ class Publisher:
                 self._connect()
                 act()
             except Exception as error:  # every transport has its own errors, and some raise others
-                if not isinstance(error, (OSError, KombuError, OperationalError, *self._errors())):
+                if not isinstance(error, (OSError, KombuError, OperationalError, *self._list_connection_errors())):
                     log.exception("the broker could not be asked")
                 self._disconnect()
-                self._not_before = time.monotonic() + PAUSE_S
+                self._not_before = time.monotonic() + RETRY_PAUSE_S
                 if self.reachable:
                     log.warning("the broker is out of reach", error=type(error).__name__)
                 self.reachable = False
@@ -138,7 +138,7 @@ class Publisher:
                 log.info("the broker is there again")
             self.reachable = True
 
-    def _errors(self) -> tuple[type[BaseException], ...]:
+    def _list_connection_errors(self) -> tuple[type[BaseException], ...]:
         return () if self._connection is None else self._connection.connection_errors + self._connection.channel_errors
 
     def _connect(self) -> None:
@@ -154,7 +154,12 @@ class Publisher:
 
     def _publish(self, job_id: str) -> None:
         self._app.send_task(
-            TASK, args=(job_id,), producer=self._producer, retry=False, confirm_timeout=CONFIRM_TIMEOUT_S, declare=[]
+            TASK_NAME,
+            args=(job_id,),
+            producer=self._producer,
+            retry=False,
+            confirm_timeout=CONFIRM_TIMEOUT_S,
+            declare=[],
         )
 
     def _disconnect(self) -> None:

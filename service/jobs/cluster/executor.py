@@ -13,7 +13,7 @@ import structlog
 
 from service.jobs.cluster.broker import BrokerUnreachable, Publisher
 from service.jobs.cluster.leases import LeaseStore
-from service.jobs.cluster.listener import CHANGES, StoreListener
+from service.jobs.cluster.listener import CHANGES_CHANNEL, StoreListener
 from service.jobs.cluster.recovery import Recovery
 from service.jobs.executor import Changed
 from service.jobs.job_store import JobStore
@@ -60,7 +60,7 @@ class CeleryExecutor:
 
     def subscribe(self, changed: Changed) -> None:
         """Call ``changed`` with the id of each job whose state changes from now on."""
-        self._listener = StoreListener(self._settings.store_url, CHANGES, changed)
+        self._listener = StoreListener(self._settings.store_url, CHANGES_CHANNEL, changed)
 
     def submit(self, job_id: str) -> None:
         """Wake a free worker host for the job."""
@@ -69,7 +69,7 @@ class CeleryExecutor:
     def cancel(self, job_id: str) -> None:
         """Do nothing: the host that runs the job notices within half a second that its claim is no longer valid."""
 
-    def ready(self) -> int:
+    def count_ready_workers(self) -> int:
         """Return the number of workers on all hosts; 0 while the broker does not answer."""
         return self._workers if self._publisher.reachable else 0
 
@@ -87,7 +87,7 @@ class CeleryExecutor:
         self._engine.dispose()
 
     def _count_workers(self) -> None:
-        self._workers = self._leases.workers()
+        self._workers = self._leases.count_workers()
 
     def _send(self) -> None:
         while (job_id := self._queue.get()) is not None:

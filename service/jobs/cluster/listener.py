@@ -11,9 +11,9 @@ from sqlalchemy import text
 from sqlalchemy.exc import SQLAlchemyError
 
 from service.jobs.executor import Changed
-from service.jobs.store.database import listening
+from service.jobs.store.database import create_listener_engine
 
-CHANGES, WORK = "mechsynth_jobs", "mechsynth_work"
+CHANGES_CHANNEL, WORK_CHANNEL = "mechsynth_jobs", "mechsynth_work"
 """Channels that triggers on the job table notify: changes of state, and newly queued jobs."""
 
 LISTEN_S = 1.0
@@ -30,7 +30,7 @@ class StoreListener(threading.Thread):
 
     def __init__(self, url: str, channel: str, told: Changed) -> None:
         super().__init__(name="store-listener", daemon=True)
-        self._engine = listening(url)
+        self._engine = create_listener_engine(url)
         self._channel = channel
         self._told = told
         self._stopping = threading.Event()
@@ -43,14 +43,14 @@ class StoreListener(threading.Thread):
         """Listen until :meth:`stop`."""
         while not self._stopping.is_set():
             try:
-                self._listen()
+                self._receive_notifications()
             except Exception as error:  # errors of psycopg and of SQLAlchemy both arrive here
                 if not isinstance(error, (OSError, SQLAlchemyError, psycopg.Error)):
                     log.exception("the store could not be listened to")
                 log.warning("no notifications from the store", error=type(error).__name__)
                 self._stopping.wait(RETRY_PERIOD_S)
 
-    def _listen(self) -> None:
+    def _receive_notifications(self) -> None:
         with self._engine.connect().execution_options(isolation_level="AUTOCOMMIT") as connection:
             connection.execute(text(f"LISTEN {self._channel}"))
             driver: Any = connection.connection.driver_connection

@@ -15,7 +15,7 @@ from sqlalchemy.exc import SQLAlchemyError
 
 from service.jobs.cluster.broker import Publisher
 from service.jobs.cluster.leases import LeaseStore
-from service.jobs.store.database import unreachable
+from service.jobs.store.database import is_unreachable
 from service.jobs.store.statements import LEASE_S
 from service.jobs.store.states import Status
 
@@ -47,7 +47,7 @@ class Recovery(threading.Thread):
                 self._each_round()
                 self._take_up_abandoned()
             except SQLAlchemyError as error:
-                if not unreachable(error):
+                if not is_unreachable(error):
                     log.exception("jobs could not be recovered")
                 # No host could renew its leases meanwhile, so expired ones prove nothing until all have had time to.
                 self._trusted_from = time.monotonic() + LEASE_S
@@ -56,7 +56,7 @@ class Recovery(threading.Thread):
 
     def _take_up_abandoned(self) -> None:
         # Query even before the answer can be trusted: it shows whether the store is back.
-        expired = self._leases.expired()
+        expired = self._leases.find_expired()
         if time.monotonic() < self._trusted_from:
             return
         for job_id, status in self._leases.take_back(expired):

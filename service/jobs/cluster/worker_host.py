@@ -22,11 +22,11 @@ from prometheus_client import start_http_server
 from sqlalchemy.exc import SQLAlchemyError
 from ulid import ULID
 
-from service.jobs.cluster.broker import TASK, Publisher, celery_app
+from service.jobs.cluster.broker import TASK_NAME, Publisher, create_celery_app
 from service.jobs.cluster.leases import LeaseStore
-from service.jobs.cluster.listener import WORK, StoreListener
+from service.jobs.cluster.listener import WORK_CHANNEL, StoreListener
 from service.jobs.cluster.recovery import Recovery
-from service.jobs.store.database import LaterTables, connect, unreachable, upgrade
+from service.jobs.store.database import LaterTables, connect, is_unreachable, upgrade
 from service.jobs.workers.local_executor import LocalExecutor
 from service.kernels import Compiling
 from service.observability import logs
@@ -54,22 +54,22 @@ class Host:
         self._leases = LeaseStore(self._engine)
         self._publisher = Publisher(settings)
         self._recovery = Recovery(self._leases, self._publisher, lambda: None)
-        self._beating = threading.Thread(target=self._beat, name="beat", daemon=True)
-        self._listener = StoreListener(settings.store_url, WORK, lambda _: self.lanes.wake())
+        self._beating = threading.Thread(target=self._run_heartbeat, name="beat", daemon=True)
+        self._listener = StoreListener(settings.store_url, WORK_CHANNEL, lambda _: self.lanes.wake())
         self._stopping = threading.Event()
-        metrics.watch(self.lanes.ready, lambda: len(self.lanes.claims()))
+        metrics.watch(self.lanes.count_ready_workers, lambda: len(self.lanes.list_claims()))
 
     def start(self) -> None:
         """Create missing tables and start the lanes."""
         upgrade(self._engine)
         self.lanes.start()
         self.lanes.open()
-        self._compilation.start(after=lambda: self.lanes.ready() > 0)
+        self._compilation.start(after=lambda: self.lanes.count_ready_workers() > 0)
         self._beating.start()
         self._recovery.start()
         self._listener.start()
 
-    def work(self, job_id: str) -> None:
+    def handle_message(self, job_id: str) -> None:
         """Handle a message from Celery: there is work, this job or another one whose turn is earlier."""
         self.lanes.submit(job_id)
 
@@ -83,19 +83,19 @@ class Host:
         self._listener.stop()
         self.lanes.stop()
         try:
-            self._leases.host_is_gone(self.id)
+            self._leases.remove_host(self.id)
         except SQLAlchemyError as error:  # the host's last sign of life then expires by itself
             log.warning("the store does not answer", error=type(error).__name__)
         self._publisher.close()
 
-    def _beat(self) -> None:
+    def _run_heartbeat(self) -> None:
         while not self._stopping.wait(BEAT_PERIOD_S):
             try:
-                for claim in self._leases.renew(self.lanes.claims()):
+                for claim in self._leases.renew(self.lanes.list_claims()):
                     self.lanes.drop(claim)
-                self._leases.host_is_there(self.id, self.lanes.ready())
+                self._leases.record_host(self.id, self.lanes.count_ready_workers())
             except SQLAlchemyError as error:
-                if not unreachable(error):
+                if not is_unreachable(error):
                     log.exception("the leases could not be renewed")
             except Exception:  # the next heartbeat must come after any error
                 log.exception("the leases could not be renewed")
@@ -114,18 +114,18 @@ def run_host(settings: Settings, compilation: Compiling) -> None:
     logs.configure(settings.log_level, settings.log_format)
     metrics = HostMetrics()
     host = Host(settings, metrics, compilation)
-    show(metrics, settings)
-    signal.signal(signal.SIGTERM, _end)
-    signal.signal(signal.SIGINT, _end)
+    serve_metrics(metrics, settings)
+    signal.signal(signal.SIGTERM, _raise_shutdown)
+    signal.signal(signal.SIGINT, _raise_shutdown)
     try:
         _start(host)
-        app = celery_app(settings, publisher=False)
-        app.task(host.work, name=TASK)
-        announcement = threading.Thread(target=_announce, args=(host,), name="announcement", daemon=True)
+        app = create_celery_app(settings, publisher=False)
+        app.task(host.handle_message, name=TASK_NAME)
+        announcement = threading.Thread(target=_report_ready, args=(host,), name="announcement", daemon=True)
         announcement.start()
         app.WorkController(
             hostname=f"{host.id}@{os.uname().nodename}",
-            pool_cls=_pool_of(host),
+            pool_cls=_make_pool_class(host),
             concurrency=1,
             without_mingle=True,
             without_gossip=True,
@@ -147,7 +147,7 @@ def _start(host: Host) -> None:
         raise HostError(str(error)) from None
 
 
-def show(metrics: HostMetrics, settings: Settings) -> None:
+def serve_metrics(metrics: HostMetrics, settings: Settings) -> None:
     """Serve the metrics to Prometheus if the settings name a port, in a thread that ends with the process.
 
     Raises
@@ -167,17 +167,17 @@ def show(metrics: HostMetrics, settings: Settings) -> None:
     log.info("metrics", host=address, port=port)
 
 
-def _end(_signal: int, _frame: FrameType | None) -> None:
+def _raise_shutdown(_signal: int, _frame: FrameType | None) -> None:
     raise WorkerShutdown(0)
 
 
-def _announce(host: Host) -> None:
-    while host.lanes.ready() == 0:
+def _report_ready(host: Host) -> None:
+    while host.lanes.count_ready_workers() == 0:
         time.sleep(BEAT_PERIOD_S / 10)  # lanes send no event when they are ready; this polls only at the start
     print(f"mechsynth worker {host.id} is ready", flush=True)
 
 
-def _pool_of(host: Host) -> type[TaskPool]:
+def _make_pool_class(host: Host) -> type[TaskPool]:
     """Return a Celery pool class whose threads run the tasks that wake the lanes of a host."""
 
     class LanePool(TaskPool):

@@ -28,7 +28,7 @@ PERIOD_S = 0.25
 log = structlog.get_logger(__name__)
 
 
-class Followed(Protocol):
+class FollowedItem(Protocol):
     """The attributes of a job that the poller needs."""
 
     @property
@@ -52,14 +52,14 @@ class Followed(Protocol):
         ...
 
 
-F = TypeVar("F", bound=Followed)
-F_co = TypeVar("F_co", bound=Followed, covariant=True)
+F = TypeVar("F", bound=FollowedItem)
+F_co = TypeVar("F_co", bound=FollowedItem, covariant=True)
 
 
-class Summaries(Protocol[F_co]):
+class SummaryStore(Protocol[F_co]):
     """The query of a store that the poller needs."""
 
-    def summaries(self, ids: Sequence[str], /) -> Mapping[str, F_co]:
+    def load_summaries(self, ids: Sequence[str], /) -> Mapping[str, F_co]:
         """Return the existing jobs among these ids, by id."""
         ...
 
@@ -74,7 +74,7 @@ class Follower(Generic[F]):
     """Whether the store has been queried for the job."""
     _changed: asyncio.Event = field(default_factory=asyncio.Event)
 
-    async def changed(self, within_s: float) -> bool:
+    async def wait_for_change(self, within_s: float) -> bool:
         """Wait for a change of the job; return False if there is none in time."""
         try:
             async with asyncio.timeout(within_s):
@@ -98,7 +98,7 @@ class Follower(Generic[F]):
 class JobPoller(Generic[F]):
     """Keeps followers up to date with their jobs. For use on the event loop only."""
 
-    def __init__(self, store: Summaries[F], notifier: ChangeNotifier) -> None:
+    def __init__(self, store: SummaryStore[F], notifier: ChangeNotifier) -> None:
         self._store = store
         self._notifier = notifier
         self._followers: dict[str, set[Follower[F]]] = {}
@@ -110,7 +110,7 @@ class JobPoller(Generic[F]):
         """Number of followers."""
         return sum(map(len, self._followers.values()))
 
-    def listeners_of(self, tenant: str) -> int:
+    def count_listeners(self, tenant: str) -> int:
         """Return the number of the tenant's followers."""
         return self._listeners[tenant]
 
@@ -139,7 +139,7 @@ class JobPoller(Generic[F]):
 
     async def run(self) -> None:
         """Poll the store for the followers until the service stops, then wake all of them."""
-        with self._notifier.watch_all(self._nudge):
+        with self._notifier.watch_all(self._handle_change):
             while not self.closed:
                 await self._wait()
                 self._nudged.clear()
@@ -148,26 +148,26 @@ class JobPoller(Generic[F]):
             for follower in followers:
                 follower.wake()
 
-    def _nudge(self, job_id: str | None) -> None:
+    def _handle_change(self, job_id: str | None) -> None:
         if job_id is None or job_id in self._followers:
             self._nudged.set()
 
     async def _wait(self) -> None:
         try:
             # Without an unfinished job there is nothing to poll: sleep until a follower arrives or the service stops.
-            async with asyncio.timeout(PERIOD_S if self._unfinished() else None):
+            async with asyncio.timeout(PERIOD_S if self._list_unfinished() else None):
                 await self._nudged.wait()
         except TimeoutError:
             pass
 
     async def _read(self) -> None:
-        wanted = self._unfinished()
+        wanted = self._list_unfinished()
         if not wanted:
             return
         # Followers that arrive during the query wait for the next one: this answer may predate them.
         asked = [(job_id, follower) for job_id in wanted for follower in self._followers[job_id]]
         try:
-            summaries = await run_in_threadpool(self._store.summaries, wanted)
+            summaries = await run_in_threadpool(self._store.load_summaries, wanted)
         except Exception:  # any error of the database driver: the streams wait until it answers again
             log.exception("the store could not be read for the event streams")
             await asyncio.sleep(PERIOD_S)
@@ -175,10 +175,10 @@ class JobPoller(Generic[F]):
         for job_id, follower in asked:
             follower.update(summaries.get(job_id))
 
-    def _unfinished(self) -> list[str]:
+    def _list_unfinished(self) -> list[str]:
         """Return the ids of followed jobs that can still change."""
-        return [job_id for job_id, followers in self._followers.items() if not all(map(_done, followers))]
+        return [job_id for job_id, followers in self._followers.items() if not all(map(_is_done, followers))]
 
 
-def _done(follower: Follower[Any]) -> bool:
+def _is_done(follower: Follower[Any]) -> bool:
     return follower.read and (follower.job is None or follower.job.status.finished)

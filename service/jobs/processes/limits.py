@@ -10,15 +10,15 @@ import resource
 import signal
 import sys
 
-from service.jobs.processes.parent_death import die_with
+from service.jobs.processes.parent_death import bind_to_parent
 from service.observability import logs
 
 _THREADS = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "NUMBA_NUM_THREADS")
 
 
-def confine(server_pid: int, log_level: str, log_format: logs.Format) -> None:
+def restrict_process(server_pid: int, log_level: str, log_format: logs.Format) -> None:
     """Prepare this process: end with the server, signals, threads, log. Must be the first call in the process."""
-    die_with(server_pid)
+    bind_to_parent(server_pid)
     # Ctrl-C at a terminal reaches the whole process group; only the server reacts to it, and stops its workers.
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     # The default action ends the process at once; a handler in Python would wait for native code to return.
@@ -43,7 +43,7 @@ def limit_memory(beyond_mb: int) -> None:
     allocators and compilers reserve and never touch, so it allows no meaningful limit.
     """
     kind = resource.RLIMIT_DATA if sys.platform == "linux" else resource.RLIMIT_AS
-    limit = _memory_in_use() + (beyond_mb << 20)
+    limit = _measure_memory() + (beyond_mb << 20)
     # An unprivileged process cannot exceed the hard limit that it inherited.
     hard = resource.getrlimit(kind)[1]
     if hard != resource.RLIM_INFINITY:
@@ -51,7 +51,7 @@ def limit_memory(beyond_mb: int) -> None:
     resource.setrlimit(kind, (limit, hard))
 
 
-def _memory_in_use() -> int:
+def _measure_memory() -> int:
     """Return the bytes that count towards the limit; 0 if the system does not report them."""
     try:
         with open("/proc/self/status", encoding="ascii") as status:

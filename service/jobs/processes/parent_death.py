@@ -18,7 +18,7 @@ _PARENT = "MECHSYNTH_PARENT_PID"
 """Environment variable with the parent's process id, which a new process needs before its first message. Internal."""
 
 
-def die_with(parent_pid: int) -> None:
+def bind_to_parent(parent_pid: int) -> None:
     """Ensure that this process is killed when its parent, the process ``parent_pid``, ends.
 
     On Linux the kernel kills it at once, even in native code. To the kernel the parent is the *thread* that created
@@ -35,7 +35,7 @@ def die_with(parent_pid: int) -> None:
         os.kill(os.getpid(), signal.SIGKILL)
 
 
-def die_with_parent_from_the_start() -> None:
+def bind_to_parent_at_start() -> None:
     """Do the same in the first line of our code that a spawned process runs; do nothing in any other process.
 
     The imports of a worker before its first message take a second, and a minute on a very busy machine. A server that
@@ -44,15 +44,15 @@ def die_with_parent_from_the_start() -> None:
     """
     # The mark that multiprocessing itself goes by while it imports the main module again.
     if sys.platform == "linux" and getattr(multiprocessing.current_process(), "_inheriting", False):
-        die_with(int(os.environ.pop(_PARENT, os.getppid())))
+        bind_to_parent(int(os.environ.pop(_PARENT, os.getppid())))
 
 
-def tell_children() -> None:
+def export_parent_pid() -> None:
     """Pass this process's id to the processes that it spawns from now on."""
     os.environ[_PARENT] = str(os.getpid())
 
 
-def forget_parent() -> None:
+def clear_parent_pid() -> None:
     """Remove the inherited parent id, so that processes forked from this one take this one as their parent."""
     os.environ.pop(_PARENT, None)
 

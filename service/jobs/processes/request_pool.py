@@ -16,14 +16,14 @@ from collections.abc import Awaitable, Callable
 from typing import Any, Protocol
 
 from service.jobs.processes.request_queue import Call, RequestQueue
-from service.jobs.processes.request_worker import GivenUp, Gone, Hand, Limits, Lost, ProcessStart
+from service.jobs.processes.request_worker import ClientGone, GivenUp, Hand, Limits, ProcessLost, ProcessStart
 
-__all__ = ["Busy", "GivenUp", "Gone", "Limits", "Lost", "PoolMetrics", "RequestPool", "digest"]
+__all__ = ["Busy", "GivenUp", "ClientGone", "Limits", "ProcessLost", "PoolMetrics", "RequestPool", "hash_call"]
 
 MAX_WAIT_S = 20.0
 """Default time that a call waits for its turn, seconds."""
 
-_GONE_PERIOD_S, _STOP_S = 0.25, 5.0
+_CLIENT_CHECK_PERIOD_S, _STOP_S = 0.25, 5.0
 """Period of the check for a disconnected client, and time limit for the end of a thread, seconds."""
 
 
@@ -31,19 +31,19 @@ class Busy(Exception):
     """The call did not start in time because the pool was busy with others."""
 
 
-_REASONS: dict[type[Exception], str] = {Busy: "busy", Gone: "gone", Lost: "lost"}
+_REASONS: dict[type[Exception], str] = {Busy: "busy", ClientGone: "gone", ProcessLost: "lost"}
 """Values of the metric's label `reason`; they stay the same when a class is renamed."""
 
 
 class PoolMetrics(Protocol):
     """Counter of calls without an answer."""
 
-    def call_given_up(self, pool: str, reason: str) -> None:
+    def count_given_up(self, pool: str, reason: str) -> None:
         """Count a call that ended without an answer."""
         ...
 
 
-def digest(work: Callable[..., Any], args: tuple[Any, ...]) -> bytes:
+def hash_call(work: Callable[..., Any], args: tuple[Any, ...]) -> bytes:
     """Return a hash that is equal for calls of the same function with the same arguments."""
     return hashlib.sha256(repr((work.__module__, work.__qualname__, args)).encode()).digest()
 
@@ -92,9 +92,9 @@ class RequestPool:
             for hand in self.hands:
                 hand.begin()
 
-    def counts(self) -> dict[str, int]:
+    def count_calls(self) -> dict[str, int]:
         """Return the number of calls by state."""
-        return self._queue.counts()
+        return self._queue.count_calls()
 
     async def call(self, gone: Callable[[], Awaitable[bool]], tenant: str, work: Callable[..., Any], *args: Any) -> Any:
         """Call a function of a module in a process and return its answer.
@@ -116,7 +116,7 @@ class RequestPool:
         except GivenUp as error:
             self._count(error.of)
             raise
-        except (Busy, Gone, Lost) as error:
+        except (Busy, ClientGone, ProcessLost) as error:
             self._count(_REASONS[type(error)])
             raise
 
@@ -131,26 +131,26 @@ class RequestPool:
 
     def _count(self, reason: str) -> None:
         if self._metrics is not None:
-            self._metrics.call_given_up(self.name, reason)
+            self._metrics.count_given_up(self.name, reason)
 
     async def _wait_for(
         self, gone: Callable[[], Awaitable[bool]], tenant: str, work: Callable[..., Any], args: tuple[Any, ...]
     ) -> Any:
         self.begin()
-        key = digest(work, args)
+        key = hash_call(work, args)
         # Equal requests share one call; the last of them to leave abandons it.
         if key not in self._asked:
             call = Call(work, args, tenant)
             self._asked[key] = call, asyncio.wrap_future(call.future)
-            self._queue.put(call)
+            self._queue.add(call)
         call, answer = self._asked[key]
         call.waiting += 1
         latest = time.monotonic() + self._wait_s
         try:
             while not answer.done():
-                await asyncio.wait([answer], timeout=_GONE_PERIOD_S)
+                await asyncio.wait([answer], timeout=_CLIENT_CHECK_PERIOD_S)
                 if not answer.done() and await gone():
-                    raise Gone
+                    raise ClientGone
                 if not answer.done() and not call.running and time.monotonic() > latest:
                     raise Busy
             return answer.result()

@@ -18,9 +18,9 @@ import structlog
 
 Message = tuple[Literal["ready", "taken", "compiling", "bytes", "returned", "raised"], Any]
 
-READY: Message = ("ready", None)
-TAKEN: Message = ("taken", None)
-COMPILING: Message = ("compiling", None)
+READY_MESSAGE: Message = ("ready", None)
+TAKEN_MESSAGE: Message = ("taken", None)
+COMPILING_MESSAGE: Message = ("compiling", None)
 
 CALLS_BEFORE_RENEWAL = 2000
 """Number of calls after which a process is replaced, which bounds the memory that libraries never free."""
@@ -40,17 +40,17 @@ def serve_calls(pipe: Connection, prepare: Callable[..., Any], settings: tuple[A
     """
     prepare(*settings)
     _report_compilations(pipe)
-    pipe.send(READY)
+    pipe.send(READY_MESSAGE)
     for _ in range(CALLS_BEFORE_RENEWAL):
         try:
             work, args = pipe.recv()
         except EOFError:
             return
-        pipe.send(TAKEN)
+        pipe.send(TAKEN_MESSAGE)
         _send_answer(pipe, *_call(work, args))
 
 
-def spent_seconds(pid: int) -> float:
+def read_cpu_seconds(pid: int) -> float:
     """Return the processor time of a process so far, seconds; 0 if the system does not report it."""
     try:
         with open(f"/proc/{pid}/stat", encoding="ascii", errors="replace") as stat:
@@ -108,7 +108,7 @@ def _report_compilations(pipe: Connection) -> None:
         """Sends a message at the start of each compilation."""
 
         def on_start(self, event: Any) -> None:
-            pipe.send(COMPILING)
+            pipe.send(COMPILING_MESSAGE)
 
         def on_end(self, event: Any) -> None:
             """Do nothing: the end of the call is message enough."""

@@ -81,7 +81,7 @@ class RequestQueue:
         self._running = self._running_long = 0
         self._closed = False
 
-    def put(self, call: Call) -> None:
+    def add(self, call: Call) -> None:
         """Queue a new call."""
         with self._changed:
             self._new.append(call)
@@ -92,7 +92,7 @@ class RequestQueue:
         latest = time.monotonic() + timeout_s
         with self._changed:
             while not self._closed:
-                call = self._next()
+                call = self._pop_next()
                 if call is not None:
                     self._running += 1
                     return call
@@ -105,7 +105,7 @@ class RequestQueue:
     def finish(self, call: Call) -> None:
         """Note that a call has ended, with or without an answer."""
         with self._changed:
-            self._leave(call)
+            self._remove_running(call)
 
     def admit_as_long(self, call: Call) -> bool:
         """Count a running call as long; return False if the bound is reached and the call must release its process."""
@@ -120,7 +120,7 @@ class RequestQueue:
     def put_back(self, call: Call) -> None:
         """Queue a call that has released its process among the long calls, first of its tenant."""
         with self._changed:
-            self._leave(call)
+            self._remove_running(call)
             self._long.append(call, first=True)
             self._changed.notify()
 
@@ -130,7 +130,7 @@ class RequestQueue:
             self._closed = True
             self._changed.notify_all()
 
-    def counts(self) -> dict[str, int]:
+    def count_calls(self) -> dict[str, int]:
         """Return the number of calls by state, for the metrics."""
         with self._changed:
             return {
@@ -140,7 +140,7 @@ class RequestQueue:
                 "waiting_long": len(self._long),
             }
 
-    def _leave(self, call: Call) -> None:
+    def _remove_running(self, call: Call) -> None:
         self._running -= 1
         call.running = False
         if call.counted:
@@ -148,7 +148,7 @@ class RequestQueue:
             call.counted = False
         self._changed.notify()
 
-    def _next(self) -> Call | None:
+    def _pop_next(self) -> Call | None:
         # Long calls first: their bound leaves the other processes to new calls, so neither sort starves.
         if self._running_long < self._max_long:
             call = self._long.pop()

@@ -20,11 +20,11 @@ from typing import Any, Literal
 
 import structlog
 
-from service.jobs.processes.parent_death import tell_children
-from service.jobs.processes.request_process import serve_calls, spent_seconds
+from service.jobs.processes.parent_death import export_parent_pid
+from service.jobs.processes.request_process import read_cpu_seconds, serve_calls
 from service.jobs.processes.request_queue import Call, RequestQueue
 
-START_S = 300.0
+START_TIMEOUT_S = 300.0
 """Time limit for the start of a process, seconds; with no kernel compiled yet it takes a minute."""
 
 COMPILE_S = 120.0
@@ -44,11 +44,11 @@ Limit = Literal["time", "memory"]
 log = structlog.get_logger(__name__)
 
 
-class Lost(Exception):
+class ProcessLost(Exception):
     """No process could execute the call, for a reason other than the call itself."""
 
 
-class Gone(Exception):
+class ClientGone(Exception):
     """The client has disconnected."""
 
 
@@ -60,7 +60,7 @@ class GivenUp(Exception):
         self.of = of
 
 
-class _Outstayed(Exception):
+class _LongCallRefused(Exception):
     """The call turned out to be long while the maximum number of long calls run."""
 
 
@@ -91,7 +91,7 @@ class ProcessStart:
 
     def start_process(self, name: str) -> tuple[BaseProcess, Connection]:
         """Start a process, which prepares itself after the return, and return it with the pipe to it."""
-        tell_children()
+        export_parent_pid()
         # A child forked from the server itself would inherit the locks of its threads and its open connections.
         context: Any = get_context("forkserver" if self.forks() else "spawn")
         ours, theirs = context.Pipe()
@@ -109,10 +109,10 @@ class _Clock:
 
     def __init__(self, pid: int, limits: Limits) -> None:
         self._pid, self._limits = pid, limits
-        self._began, self._spent = time.monotonic(), spent_seconds(pid)
+        self._began, self._spent = time.monotonic(), read_cpu_seconds(pid)
         self._granted = 0.0
 
-    def grant_compilation(self) -> None:
+    def extend_for_compilation(self) -> None:
         """Extend the limits by the time for compilation, once."""
         self._granted = COMPILE_S
 
@@ -136,11 +136,11 @@ class _Clock:
     @property
     def seconds(self) -> float:
         """Processor time of the call, seconds."""
-        return spent_seconds(self._pid) - self._spent
+        return read_cpu_seconds(self._pid) - self._spent
 
 
 class Hand(threading.Thread):
-    """A thread with a process that ends with it (:func:`service.jobs.processes.parent_death.die_with`)."""
+    """A thread with a process that ends with it (:func:`service.jobs.processes.parent_death.bind_to_parent`)."""
 
     def __init__(self, name: str, queue: RequestQueue, start: ProcessStart, limits: Limits) -> None:
         super().__init__(name=name, daemon=True)
@@ -161,12 +161,12 @@ class Hand(threading.Thread):
             call = self._queue.take(IDLE_S)
             if call is None:
                 if not self._process_start.forks():
-                    self._end_process()
+                    self._terminate_process()
             elif self._begin_call(call):
-                self._do(call)
+                self._execute_call(call)
             else:
                 self._queue.finish(call)
-        self._end_process()
+        self._terminate_process()
 
     def _begin_call(self, call: Call) -> bool:
         """Mark the call as running; return False if it is abandoned. The future of a restarted call runs already."""
@@ -175,10 +175,10 @@ class Hand(threading.Thread):
         call.running = call.future.running() or call.future.set_running_or_notify_cancel()
         return call.running
 
-    def _do(self, call: Call) -> None:
+    def _execute_call(self, call: Call) -> None:
         try:
-            answer = self._answer(call)
-        except _Outstayed:
+            answer = self._compute_answer(call)
+        except _LongCallRefused:
             self._queue.put_back(call)
             return
         except Exception as error:  # the future raises any error in the request, and the thread goes on
@@ -188,21 +188,21 @@ class Hand(threading.Thread):
         self._queue.finish(call)
         _settle(call.future, answer=answer)
 
-    def _answer(self, call: Call) -> Any:
+    def _compute_answer(self, call: Call) -> Any:
         # A second try, because the process may have died idle just before the first.
-        pipe = self._give(call) or self._give(call)
+        pipe = self._send_call(call) or self._send_call(call)
         if pipe is None or self.process is None or self.process.pid is None:
-            raise Lost(f"the process {self.name} takes no call")
+            raise ProcessLost(f"the process {self.name} takes no call")
         clock = _Clock(self.process.pid, self._limits)
         slowed = False
         try:
             if call.long:
-                slowed = self._slow_down()
+                slowed = self._reduce_priority()
             while True:
                 slowed = self._wait(pipe, call, clock) or slowed
                 kind, answer = _receive(pipe)
                 if kind == "compiling":
-                    clock.grant_compilation()
+                    clock.extend_for_compilation()
                     continue
                 if kind == "bytes":
                     answer = pipe.recv_bytes()
@@ -210,16 +210,16 @@ class Hand(threading.Thread):
         except (EOFError, OSError):
             # Native code that is refused memory ends its process.
             kind, answer = "raised", MemoryError()
-        except (Gone, GivenUp, _Outstayed):
-            self._end_process()
+        except (ClientGone, GivenUp, _LongCallRefused):
+            self._terminate_process()
             raise
         if isinstance(answer, MemoryError):
-            self._end_process()
+            self._terminate_process()
             log.warning("a call was given up", of="memory", work=call.work.__name__)
             raise GivenUp("memory")
         if slowed:
             # Only a privileged server could raise its priority again.
-            self._end_process()
+            self._terminate_process()
         if kind == "raised":
             raise answer
         return answer
@@ -234,12 +234,12 @@ class Hand(threading.Thread):
                 raise GivenUp("time")
             if not call.long and clock.long:
                 if not self._queue.admit_as_long(call):
-                    raise _Outstayed
+                    raise _LongCallRefused
                 # A compilation is not slowed down: it would only occupy the process longer.
-                slowed = not clock.compiles and self._slow_down()
+                slowed = not clock.compiles and self._reduce_priority()
         return slowed
 
-    def _slow_down(self) -> bool:
+    def _reduce_priority(self) -> bool:
         """Reduce the priority of the process in favour of short calls."""
         assert self.process is not None
         assert self.process.pid is not None
@@ -249,30 +249,30 @@ class Hand(threading.Thread):
 
     def _require_wanted(self, call: Call | None) -> None:
         if self.stopping.is_set() or (call is not None and call.abandoned.is_set()):
-            raise Gone
+            raise ClientGone
 
     def _start_ahead(self) -> None:
         """Fork a process ahead of the next call: it costs little, and the call need not wait for it."""
         if not self._process_start.forks():
             return
         try:
-            self._ready_pipe(None)
-        except Gone:  # the pool stops
+            self._ensure_pipe(None)
+        except ClientGone:  # the pool stops
             pass
-        except (Lost, OSError):
+        except (ProcessLost, OSError):
             log.exception("a process could not be started ahead", process=self.name)
 
-    def _give(self, call: Call) -> Connection | None:
+    def _send_call(self, call: Call) -> Connection | None:
         """Send a call and return the pipe of the process that took it; None if the process had died idle."""
-        pipe = self._ready_pipe(call)
+        pipe = self._ensure_pipe(call)
         try:
             pipe.send((call.work, call.args))
             self._expect(pipe, call, self._limits.wall_s)
         except (EOFError, OSError):
-            self._end_process()
+            self._terminate_process()
             return None
-        except (Gone, GivenUp):
-            self._end_process()
+        except (ClientGone, GivenUp):
+            self._terminate_process()
             raise
         return pipe
 
@@ -285,24 +285,24 @@ class Hand(threading.Thread):
                 raise GivenUp("time")
         _receive(pipe)
 
-    def _ready_pipe(self, call: Call | None) -> Connection:
+    def _ensure_pipe(self, call: Call | None) -> Connection:
         """Return the pipe of a process that waits for calls; start a process if there is none or it died idle."""
         if self.process is not None and not self.process.is_alive():
-            self._end_process()
+            self._terminate_process()
         if self._pipe is not None:
             return self._pipe
         self.process, self._pipe = self._process_start.start_process(self.name)
         try:
-            self._expect(self._pipe, call, START_S)
-        except Gone:
-            self._end_process()
+            self._expect(self._pipe, call, START_TIMEOUT_S)
+        except ClientGone:
+            self._terminate_process()
             raise
         except (EOFError, GivenUp) as error:
-            self._end_process()
-            raise Lost(f"the process {self.name} did not start") from error
+            self._terminate_process()
+            raise ProcessLost(f"the process {self.name} did not start") from error
         return self._pipe
 
-    def _end_process(self) -> None:
+    def _terminate_process(self) -> None:
         process, pipe = self.process, self._pipe
         self.process = self._pipe = None
         if pipe is not None:

@@ -12,10 +12,10 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from multiprocessing.sharedctypes import RawValue
 
-_NONE = -1
+_NO_SAMPLE = -1
 
 
-class Stopped(BaseException):
+class SolverStopped(BaseException):
     """A stop was requested. Derived from BaseException, so that no solver catches it as an error of its own."""
 
 
@@ -28,13 +28,13 @@ class Solving:
     def __init__(self) -> None:
         self._since = RawValue("d", 0.0)
         self._stop = RawValue("b", 0)
-        self._sample = RawValue("q", _NONE)
+        self._sample = RawValue("q", _NO_SAMPLE)
         self._paused_after = 0.0
 
     @contextmanager
-    def at_work(self, sample: int | None = None) -> Iterator[None]:
+    def track_work(self, sample: int | None = None) -> Iterator[None]:
         """Mark the solver as working inside, on this sample if the job is a share of a batch. For the worker."""
-        self._sample.value = _NONE if sample is None else sample
+        self._sample.value = _NO_SAMPLE if sample is None else sample
         self._since.value = time.monotonic()
         try:
             yield
@@ -45,16 +45,16 @@ class Solving:
         """Stop the clock, for work that is not the solver's, such as compiling its kernels. For the worker."""
         self._paused_after, self._since.value = self.seconds, 0.0
 
-    def go_on(self) -> None:
+    def resume(self) -> None:
         """Restart the clock after :meth:`pause`. For the worker."""
         self._since.value = time.monotonic() - self._paused_after
 
-    def stoppable(self, progress: Callable[[float, str], None]) -> Callable[[float, str], None]:
-        """Wrap a progress callback to raise :class:`Stopped` once a stop is requested. For the worker."""
+    def make_stoppable(self, progress: Callable[[float, str], None]) -> Callable[[float, str], None]:
+        """Wrap a progress callback to raise :class:`SolverStopped` once a stop is requested. For the worker."""
 
         def report(fraction: float, message: str) -> None:
-            if self.told_to_stop:
-                raise Stopped
+            if self.should_stop:
+                raise SolverStopped
             progress(fraction, message)
 
         return report
@@ -69,10 +69,10 @@ class Solving:
     def sample(self) -> int | None:
         """The last sample of a batch that was started; None if there is none. For the lane."""
         sample: int = self._sample.value
-        return None if sample == _NONE else sample
+        return None if sample == _NO_SAMPLE else sample
 
     @property
-    def told_to_stop(self) -> bool:
+    def should_stop(self) -> bool:
         """Whether a stop is requested. For the worker."""
         return bool(self._stop.value)
 
@@ -84,4 +84,4 @@ class Solving:
         """Clear the state of the previous job, whose worker may have died at work. For the lane, before each job."""
         self._since.value = 0.0
         self._stop.value = 0
-        self._sample.value = _NONE
+        self._sample.value = _NO_SAMPLE

@@ -10,7 +10,7 @@ from typing import Any, TypeVar
 from sqlalchemy import ColumnElement, Connection, Engine, Table, func, select
 from sqlalchemy.exc import IntegrityError, SQLAlchemyError
 
-from service.jobs.store.database import QUEUE_LOCK, unreachable
+from service.jobs.store.database import QUEUE_LOCK, is_unreachable
 
 SETTLE_S = 5.0
 """Time for which an insert is retried after the connection broke with its outcome unknown, seconds."""
@@ -41,7 +41,7 @@ class KeyReused(Exception):
         super().__init__(f"the key was used for {made}")
 
 
-def surely(engine: Engine, there: Callable[[Connection], bool], insert: Callable[[Connection], bool]) -> None:
+def insert_confirmed(engine: Engine, there: Callable[[Connection], bool], insert: Callable[[Connection], bool]) -> None:
     """Insert a row in one transaction, and confirm it if the connection breaks.
 
     If the connection breaks before the answer, the row may or may not be stored. The database is then queried with
@@ -64,12 +64,12 @@ def surely(engine: Engine, there: Callable[[Connection], bool], insert: Callable
         except SQLAlchemyError as error:
             # Without a connection nothing can have been stored: the client gets the error at once.
             broken = broken or getattr(error, "connection_invalidated", False)
-            if asked_at is None or not (broken and unreachable(error)) or time.monotonic() > asked_at + SETTLE_S:
+            if asked_at is None or not (broken and is_unreachable(error)) or time.monotonic() > asked_at + SETTLE_S:
                 raise
             time.sleep(_SETTLE_PERIOD_S)  # the database may be restarting
 
 
-def one_after_the_other(connection: Connection, tenant: str) -> None:
+def serialize_inserts(connection: Connection, tenant: str) -> None:
     """Lock the tenant's inserts for all other callers of this function until this transaction ends.
 
     SQLite has one writer at a time. PostgreSQL has many, which do not see each other's rows before the commit.
@@ -78,7 +78,7 @@ def one_after_the_other(connection: Connection, tenant: str) -> None:
         connection.execute(select(func.pg_advisory_xact_lock(QUEUE_LOCK, func.hashtext(tenant))))
 
 
-def once(make: Callable[[], T], made: Callable[[], T | None]) -> tuple[T, bool]:
+def make_once(make: Callable[[], T], made: Callable[[], T | None]) -> tuple[T, bool]:
     """Return the row that ``make`` stores under a key, or the one ``made`` finds there, and whether it is new.
 
     Raises
@@ -100,7 +100,7 @@ def once(make: Callable[[], T], made: Callable[[], T | None]) -> tuple[T, bool]:
             # The row that held the key has been removed since; try again.
 
 
-def made_by(
+def find_earlier(
     engine: Engine, table: Table, columns: Iterable[ColumnElement[Any]], tenant: str, repeatable: Repeatable
 ) -> Sequence[Any] | None:
     """Return the columns of the row that the same request created before; None if there is none.

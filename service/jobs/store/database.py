@@ -23,7 +23,7 @@ POOL_SIZE = 10
 UPGRADE_LOCK, QUEUE_LOCK = 0x6D656368, 0x6D656369
 """Keys of our advisory locks in PostgreSQL; arbitrary, but unique in the database."""
 
-UNREACHABLE = (OperationalError, InterfaceError, TimeoutError)
+UNREACHABLE_ERRORS = (OperationalError, InterfaceError, TimeoutError)
 """Errors of SQLAlchemy for a database that is unreachable, starting, stopping, or out of connections."""
 
 RETRY_PERIOD_S = 0.5
@@ -35,7 +35,7 @@ T = TypeVar("T")
 log = structlog.get_logger(__name__)
 
 # A host that vanishes silently is noticed within 10 s; with the kernel's defaults it would take a quarter of an hour.
-_POSTGRESQL = {
+_POSTGRESQL_OPTIONS = {
     "application_name": "mechsynth",
     "connect_timeout": 3,
     "options": "-c synchronous_commit=on",
@@ -71,7 +71,7 @@ def connect(url: str, *, durable: bool) -> Engine:
             pool_size=POOL_SIZE if durable else 2,
             max_overflow=POOL_SIZE,
             pool_timeout=BUSY_TIMEOUT_S,
-            connect_args=_POSTGRESQL,
+            connect_args=_POSTGRESQL_OPTIONS,
         )
     if parsed.get_backend_name() != "sqlite":
         raise ArgumentError("the database must be SQLite or PostgreSQL")
@@ -88,7 +88,7 @@ def connect(url: str, *, durable: bool) -> Engine:
     return engine
 
 
-def sqlite_file(url: str) -> Path | None:
+def find_sqlite_file(url: str) -> Path | None:
     """Return the file of a SQLite store with links resolved; None for other databases.
 
     Raises
@@ -110,20 +110,20 @@ def sqlite_file(url: str) -> Path | None:
     return file
 
 
-def listening(url: str) -> Engine:
+def create_listener_engine(url: str) -> Engine:
     """Create an engine for one connection that stays open for PostgreSQL notifications."""
-    return create_engine(_with_driver(make_url(url)), poolclass=NullPool, connect_args=_POSTGRESQL)
+    return create_engine(_with_driver(make_url(url)), poolclass=NullPool, connect_args=_POSTGRESQL_OPTIONS)
 
 
-def unreachable(error: BaseException) -> bool:
+def is_unreachable(error: BaseException) -> bool:
     """Return whether an error means that the store does not answer, as opposed to a wrong statement.
 
     The outcome of a write that failed like this is unknown.
     """
-    return isinstance(error, UNREACHABLE) or (isinstance(error, DBAPIError) and error.connection_invalidated)
+    return isinstance(error, UNREACHABLE_ERRORS) or (isinstance(error, DBAPIError) and error.connection_invalidated)
 
 
-def patiently(write: Callable[P, T], *args: P.args, **options: P.kwargs) -> T:
+def write_when_reachable(write: Callable[P, T], *args: P.args, **options: P.kwargs) -> T:
     """Write to the store, retrying while it is unreachable: the data would be lost otherwise.
 
     The write must be repeatable with its outcome unknown; it is if it names its claim or attempt.
@@ -132,7 +132,7 @@ def patiently(write: Callable[P, T], *args: P.args, **options: P.kwargs) -> T:
         try:
             return write(*args, **options)
         except SQLAlchemyError as error:
-            if not unreachable(error):
+            if not is_unreachable(error):
                 raise
             log.warning("the store is out of reach", error=type(error).__name__)
             time.sleep(RETRY_PERIOD_S)  # a store that restarts needs seconds
@@ -157,7 +157,7 @@ def upgrade(engine: Engine, revision: str = "head") -> None:
 
     config = Config()
     config.set_main_option("script_location", str(Path(__file__).parents[1] / "migrations").replace("%", "%%"))
-    with _alone(engine) as connection:
+    with _begin_exclusive(engine) as connection:
         config.attributes["connection"] = connection
         try:
             command.upgrade(config, revision)
@@ -168,7 +168,7 @@ def upgrade(engine: Engine, revision: str = "head") -> None:
 
 
 @contextmanager
-def _alone(engine: Engine) -> Iterator[Connection]:
+def _begin_exclusive(engine: Engine) -> Iterator[Connection]:
     """Open a connection with one exclusive transaction around all its work, changes of tables included.
 
     Servers and worker hosts may start at once, hence the lock. Python's SQLite driver begins transactions only before

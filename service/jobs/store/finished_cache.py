@@ -12,10 +12,10 @@ from service.jobs.store.schema import JobRow
 CAPACITY_BYTES = 8 << 20
 """Size of the cache, bytes; enough for some hundreds of jobs with their results."""
 
-_SHARE = 8
+_MIN_CAPACITY_RATIO = 8
 """Minimum ratio of the capacity to the size of a cached job, so that one large job cannot displace all others."""
 
-_BESIDES = 1000
+_OVERHEAD_BYTES = 1000
 """Approximate size of a job without its problem, result and error, bytes."""
 
 
@@ -43,7 +43,7 @@ class FinishedJobs:
     def keep(self, job: JobRow, removals: int) -> None:
         """Cache a job if it is finished and no job was removed since it was read: that might have been this one."""
         size = _size(job)
-        if not job.status.finished or removals != self._removals or size * _SHARE > self._capacity:
+        if not job.status.finished or removals != self._removals or size * _MIN_CAPACITY_RATIO > self._capacity:
             return
         self._drop(job.id)
         self._jobs[job.id] = job
@@ -51,7 +51,7 @@ class FinishedJobs:
         while self._held > self._capacity:
             self._drop(next(iter(self._jobs)))
 
-    def removed(self, job_id: str | None = None) -> None:
+    def note_removal(self, job_id: str | None = None) -> None:
         """Note that a job was removed from the store; None stands for unknown jobs and clears the cache."""
         self._removals += 1
         if job_id is not None:
@@ -67,4 +67,4 @@ class FinishedJobs:
 
 
 def _size(job: JobRow) -> int:
-    return len(job.problem) + len(job.result or "") + len(job.error or "") + _BESIDES
+    return len(job.problem) + len(job.result or "") + len(job.error or "") + _OVERHEAD_BYTES

@@ -11,11 +11,11 @@ from sqlalchemy import Boolean, Column, Float, Index, Integer, MetaData, String,
 from sqlalchemy.ext.compiler import compiles
 from sqlalchemy.sql.expression import FunctionElement
 
-from service.jobs.store.states import UNFINISHED, Cost, Status
+from service.jobs.store.states import UNFINISHED_STATES, Cost, Status
 
 metadata = MetaData()
 
-TENANT_LENGTH = 100
+MAX_TENANT_LENGTH = 100
 """Maximum length of a tenant's name, characters."""
 
 # Times are text of fixed width ("2026-01-31T12:00:00.000000Z"): the same on every database, sortable, and as the API
@@ -44,7 +44,7 @@ jobs = Table(
     Column("revision", Integer, nullable=False),
     Column("idempotency_key", String(200)),
     Column("request_hash", String(64)),
-    Column("tenant", String(TENANT_LENGTH), nullable=False, server_default=""),
+    Column("tenant", String(MAX_TENANT_LENGTH), nullable=False, server_default=""),
     Column("claim", String(26)),
     Column("queued_at", Float, nullable=False, server_default="0"),
     Column("due_at", Float, nullable=False, server_default="0"),
@@ -59,15 +59,20 @@ jobs = Table(
     Index("jobs_by_idempotency_key", "tenant", "idempotency_key", unique=True),
 )
 Index(
-    "jobs_by_due_at", jobs.c.due_at, postgresql_where=jobs.c.status.in_([s.value for s in sorted(UNFINISHED)])
+    "jobs_by_due_at", jobs.c.due_at, postgresql_where=jobs.c.status.in_([s.value for s in sorted(UNFINISHED_STATES)])
 ).ddl_if("postgresql")  # fmt: skip
 
 # Queued jobs are queried often and are a small part of the table, hence the partial indexes.
-QUEUED = text("status = 'queued'")
+QUEUED_CONDITION = text("status = 'queued'")
 """Condition of the partial indexes of queued jobs. A database uses them only for queries with the same condition."""
 
 for _name, _columns in (("turn", ("cost", "turn", "id")), ("tenant", ("tenant", "cost", "batch", "turn"))):
-    Index(f"jobs_queued_by_{_name}", *(jobs.c[c] for c in _columns), sqlite_where=QUEUED, postgresql_where=QUEUED)
+    Index(
+        f"jobs_queued_by_{_name}",
+        *(jobs.c[c] for c in _columns),
+        sqlite_where=QUEUED_CONDITION,
+        postgresql_where=QUEUED_CONDITION,
+    )
 
 # Batches: the client's request and the counts, which the API shows, and the plan, the values of all samples, which only
 # the solution and the table need. Both texts are JSON. A row marked as removed is hidden and about to be deleted.
@@ -75,7 +80,7 @@ batches = Table(
     "batches",
     metadata,
     Column("id", String(26), primary_key=True),
-    Column("tenant", String(TENANT_LENGTH), nullable=False),
+    Column("tenant", String(MAX_TENANT_LENGTH), nullable=False),
     Column("kind", String(40), nullable=False),
     Column("label", String(200)),
     Column("status", String(10), nullable=False),
@@ -104,7 +109,7 @@ samples = Table(
     metadata,
     Column("id", String(26), nullable=False),
     Column("batch", String(26), primary_key=True),
-    Column("tenant", String(TENANT_LENGTH), nullable=False),
+    Column("tenant", String(MAX_TENANT_LENGTH), nullable=False),
     Column("number", Integer, primary_key=True),
     Column("status", String(10), nullable=False),
     Column("cached", Boolean, nullable=False),
@@ -119,8 +124,8 @@ samples = Table(
 )
 
 # Partial indexes: single jobs have no batch, and rows without an answer of their own have no digest.
-_BY_DIGEST = [samples.c.tenant, samples.c.digest, samples.c.batch]
-for _name, _key in (("batch", [jobs.c.batch]), ("digest", [jobs.c.tenant, jobs.c.digest]), ("digest", _BY_DIGEST)):
+_DIGEST_COLUMNS = [samples.c.tenant, samples.c.digest, samples.c.batch]
+for _name, _key in (("batch", [jobs.c.batch]), ("digest", [jobs.c.tenant, jobs.c.digest]), ("digest", _DIGEST_COLUMNS)):
     _given = text(f"{_name} IS NOT NULL")
     Index(f"{_key[0].table.name}_by_{_name}", *_key, sqlite_where=_given, postgresql_where=_given)
 
@@ -134,7 +139,7 @@ hosts = Table(
 )
 
 
-def _written(function: type[FunctionElement[Any]], **databases: str) -> None:
+def _register_sql(function: type[FunctionElement[Any]], **databases: str) -> None:
     """Register the SQL of a function for each database; braces in it stand for the arguments."""
     for database, expression in databases.items():
 
@@ -152,7 +157,7 @@ class StoreClock(FunctionElement[float]):
     inherit_cache = True
 
 
-_written(
+_register_sql(
     StoreClock,
     sqlite="((julianday('now') - 2440587.5) * 86400.0)",
     postgresql="CAST(extract(epoch FROM clock_timestamp()) AS double precision)",
@@ -167,7 +172,7 @@ class Later(FunctionElement[int]):
     inherit_cache = True
 
 
-_written(Later, sqlite="max({})", postgresql="greatest({})")
+_register_sql(Later, sqlite="max({})", postgresql="greatest({})")
 
 
 @dataclass(frozen=True, slots=True)
@@ -232,14 +237,14 @@ class Claim:
 def as_values(row: Sequence[Any]) -> list[Any]:
     """Convert a row, queried in the order of an entry's fields, to the values of these fields."""
     values = [*row]
-    values[_STATUS] = Status(values[_STATUS])
+    values[_STATUS_INDEX] = Status(values[_STATUS_INDEX])
     return values
 
 
-_STATUS = [field.name for field in fields(Entry)].index("status")
+_STATUS_INDEX = [field.name for field in fields(Entry)].index("status")
 
 
-def now() -> str:
+def format_now() -> str:
     """Return the present time in its stored form."""
     return as_stored(datetime.now(UTC))
 

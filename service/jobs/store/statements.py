@@ -15,7 +15,7 @@ from sqlalchemy.sql.dml import ReturningUpdate
 from ulid import ULID
 
 from service.jobs.faults import WORKER_DIED
-from service.jobs.store.schema import QUEUED, JobRow, JobSummary, Later, StoreClock, jobs, now
+from service.jobs.store.schema import QUEUED_CONDITION, JobRow, JobSummary, Later, StoreClock, format_now, jobs
 from service.jobs.store.states import MOVES, Cost, Status
 
 LEASE_S = 10.0
@@ -29,7 +29,7 @@ MAX_KILLS = 20
 """Number of retries of a job whose worker was killed from outside. That is rarely the job's fault; it may be if the
 system kills processes for lack of memory, so the number is bounded."""
 
-AT_ONCE = 0
+IMMEDIATE_TURN = 0
 """The turn of a requeued job: before all new ones, whose turns begin with 1. Shares of batches are requeued all the
 time, and a batch may have thousands of samples that kill a worker, so shares wait for a new turn instead."""
 
@@ -37,14 +37,14 @@ MAX_IDS = 500
 """Maximum number of ids in one statement; databases limit the number of its parameters."""
 
 COLUMNS = tuple(field.name for field in fields(JobRow))  # begins with the fields of a summary
-SUMMARY = [jobs.c[field.name] for field in fields(JobSummary)]
-WHOLE = [jobs.c[name] for name in COLUMNS]
-TAKEN = [jobs.c[name] for name in ("id", "tenant", "claim", "attempt", "cost", "kind", "problem", "batch")]
-SINGLE = jobs.c.batch.is_(None)
+SUMMARY_COLUMNS = [jobs.c[field.name] for field in fields(JobSummary)]
+JOB_COLUMNS = [jobs.c[name] for name in COLUMNS]
+CLAIM_COLUMNS = [jobs.c[name] for name in ("id", "tenant", "claim", "attempt", "cost", "kind", "problem", "batch")]
+IS_SINGLE_JOB = jobs.c.batch.is_(None)
 """Condition for jobs posted by clients, as opposed to shares of batches."""
 
 
-def moved(name: str, job_id: Any, **values: Any) -> Any:
+def build_move(name: str, job_id: Any, **values: Any) -> Any:
     """Build the update that makes the named move with a job in a source state; ``values`` are stored with it."""
     move = MOVES[name]
     return (
@@ -57,7 +57,7 @@ def moved(name: str, job_id: Any, **values: Any) -> Any:
 NO_KEY: Mapping[str, None] = {"idempotency_key": None, "request_hash": None}
 
 
-def died(job_id: str, retries: int) -> ReturningUpdate[Any]:
+def build_death_update(job_id: str, retries: int) -> ReturningUpdate[Any]:
     """Build the update for a dead worker: requeue the job, or fail it after ``retries`` deaths; returns the state."""
     again, over = MOVES["requeue"], MOVES["give_up"]
     worn_out = jobs.c.crashes >= retries
@@ -68,18 +68,18 @@ def died(job_id: str, retries: int) -> ReturningUpdate[Any]:
             status=case((worn_out, over.target), else_=again.target),
             error=case((worn_out, WORKER_DIED.as_json(job_id)), else_=None),
             started_at=case((worn_out, jobs.c.started_at), else_=None),
-            finished_at=case((worn_out, now()), else_=None),
+            finished_at=case((worn_out, format_now()), else_=None),
             progress_fraction=case((worn_out, jobs.c.progress_fraction), else_=0.0),
             progress_message=case((worn_out, "failed"), else_="queued"),
             crashes=jobs.c.crashes + 1,
             revision=jobs.c.revision + 1,
-            turn=TURN_AGAIN,
+            turn=REPEATED_TURN,
         )
         .returning(jobs.c.status)
     )
 
 
-def new_row(tenant: str, kind: str, label: str | None, problem: str, cost: Cost = Cost.LONG) -> dict[str, Any]:
+def build_row(tenant: str, kind: str, label: str | None, problem: str, cost: Cost = Cost.LONG) -> dict[str, Any]:
     """Build the row of a job that has just been accepted."""
     return {
         "id": str(ULID()),
@@ -87,7 +87,7 @@ def new_row(tenant: str, kind: str, label: str | None, problem: str, cost: Cost 
         "kind": kind,
         "label": label,
         "status": Status.QUEUED,
-        "created_at": now(),
+        "created_at": format_now(),
         "started_at": None,
         "finished_at": None,
         "progress_fraction": 0.0,
@@ -102,7 +102,7 @@ def new_row(tenant: str, kind: str, label: str | None, problem: str, cost: Cost 
     }
 
 
-def turn_of(tenant: Any, cost: Any, *, share: bool = False) -> Later:
+def build_turn(tenant: Any, cost: Any, *, share: bool = False) -> Later:
     """Build the turn of a tenant's next job: after the tenant's other jobs, and not before the present turn.
 
     Jobs are taken in the order of their turns, which is a round robin: each waiting tenant has one job in each turn. A
@@ -111,55 +111,62 @@ def turn_of(tenant: Any, cost: Any, *, share: bool = False) -> Later:
     """
     others = jobs.alias()
     alike = others.c.batch.is_not(None) if share else others.c.batch.is_(None)
-    own = select(func.max(others.c.turn) + 1).where(QUEUED, others.c.tenant == tenant, others.c.cost == cost, alike)
-    present = select(func.min(others.c.turn)).where(QUEUED, others.c.cost == cost, others.c.turn > AT_ONCE)
-    first = AT_ONCE + 1
+    own = select(func.max(others.c.turn) + 1).where(
+        QUEUED_CONDITION, others.c.tenant == tenant, others.c.cost == cost, alike
+    )
+    present = select(func.min(others.c.turn)).where(
+        QUEUED_CONDITION, others.c.cost == cost, others.c.turn > IMMEDIATE_TURN
+    )
+    first = IMMEDIATE_TURN + 1
     return Later(func.coalesce(own.scalar_subquery(), first), func.coalesce(present.scalar_subquery(), first))
 
 
-def turn_as_long() -> Any:
+def build_long_turn() -> Any:
     """Build the turn of a job or share that becomes long: after the tenant's other long ones."""
     tenant = jobs.c.tenant
-    return case((SINGLE, turn_of(tenant, Cost.LONG)), else_=turn_of(tenant, Cost.LONG, share=True))
+    return case((IS_SINGLE_JOB, build_turn(tenant, Cost.LONG)), else_=build_turn(tenant, Cost.LONG, share=True))
 
 
-TURN_AGAIN = case((SINGLE, AT_ONCE), else_=turn_of(jobs.c.tenant, jobs.c.cost, share=True))
+REPEATED_TURN = case((IS_SINGLE_JOB, IMMEDIATE_TURN), else_=build_turn(jobs.c.tenant, jobs.c.cost, share=True))
 """The turn of a requeued job or share."""
 
-BACK_IN_QUEUE: Mapping[str, Any] = {
+REQUEUED_VALUES: Mapping[str, Any] = {
     "progress_fraction": 0.0,
     "progress_message": "queued",
     "started_at": None,
-    "turn": TURN_AGAIN,
+    "turn": REPEATED_TURN,
 }
 
 # The statements executed for every job are built once. SQLAlchemy takes several times as long to build a statement and
 # to find it in its cache of compiled ones as the database takes to execute it.
-BY_ID = select(*WHOLE).where(jobs.c.id == bindparam("job"), SINGLE)
-_STORED = [*new_row("", "", None, ""), *NO_KEY]
-_queued = select(jobs.c.id).where(QUEUED, jobs.c.tenant == bindparam("of")).limit(bindparam("most", type_=Integer))
+SELECT_BY_ID = select(*JOB_COLUMNS).where(jobs.c.id == bindparam("job"), IS_SINGLE_JOB)
+_STORED_COLUMNS = [*build_row("", "", None, ""), *NO_KEY]
+_queued = (
+    select(jobs.c.id).where(QUEUED_CONDITION, jobs.c.tenant == bindparam("of")).limit(bindparam("most", type_=Integer))
+)
 COUNT_QUEUED = select(func.count()).select_from(_queued.subquery())
 # The inserting statement itself counts, so that concurrent inserts cannot all take the last place.
-INSERT = (
+INSERT_JOB = (
     insert(jobs)
     .from_select(
-        [*_STORED, "turn"],
+        [*_STORED_COLUMNS, "turn"],
         select(
-            *(bindparam(name, type_=jobs.c[name].type) for name in _STORED), turn_of(bindparam("of"), bindparam("as"))
+            *(bindparam(name, type_=jobs.c[name].type) for name in _STORED_COLUMNS),
+            build_turn(bindparam("of"), bindparam("as")),
         ).where(COUNT_QUEUED.scalar_subquery() < bindparam("most", type_=Integer)),
     )
     .execution_options(preserve_rowcount=True)
 )
 # Skips jobs that another host is about to claim; with SQLite only one process claims jobs.
-NEXT = (
+SELECT_NEXT = (
     select(jobs.c.id)
-    .where(QUEUED, jobs.c.cost == bindparam("cost"))
+    .where(QUEUED_CONDITION, jobs.c.cost == bindparam("cost"))
     .order_by(jobs.c.turn, jobs.c.id)
     .limit(1)
     .with_for_update(skip_locked=True)
 )
-NEXT_OF_OTHERS = NEXT.where(jobs.c.tenant.not_in(bindparam("passed_over", expanding=True)))
-CLAIM = (
+SELECT_NEXT_OF_OTHERS = SELECT_NEXT.where(jobs.c.tenant.not_in(bindparam("passed_over", expanding=True)))
+UPDATE_CLAIMED = (
     update(jobs)
     .where(jobs.c.id == bindparam("job"), jobs.c.status.in_(MOVES["claim"].sources))
     .values(
@@ -171,11 +178,11 @@ CLAIM = (
         claim=bindparam("mark"),
         due_at=StoreClock() + LEASE_S,
     )
-    .returning(*TAKEN)
+    .returning(*CLAIM_COLUMNS)
 )
-CLAIMED = select(*TAKEN).where(jobs.c.status == MOVES["claim"].target, jobs.c.claim == bindparam("mark"))
-_OF_THE_ATTEMPT = jobs.c.attempt == bindparam("of")
-SUCCEED = moved(
+SELECT_CLAIMED = select(*CLAIM_COLUMNS).where(jobs.c.status == MOVES["claim"].target, jobs.c.claim == bindparam("mark"))
+_IS_ATTEMPT = jobs.c.attempt == bindparam("of")
+UPDATE_SUCCEEDED = build_move(
     "succeed",
     bindparam("job"),
     result=bindparam("answer"),
@@ -183,7 +190,7 @@ SUCCEED = moved(
     progress_message="succeeded",
     finished_at=bindparam("moment"),
     digest=bindparam("known_by"),
-).where(_OF_THE_ATTEMPT)
-FAIL = moved(
+).where(_IS_ATTEMPT)
+UPDATE_FAILED = build_move(
     "fail", bindparam("job"), error=bindparam("answer"), progress_message="failed", finished_at=bindparam("moment")
-).where(_OF_THE_ATTEMPT)
+).where(_IS_ATTEMPT)

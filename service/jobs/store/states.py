@@ -23,7 +23,7 @@ class Status(StrEnum):
     @property
     def finished(self) -> bool:
         """Whether the state is final."""
-        return self in FINISHED
+        return self in FINISHED_STATES
 
 
 class Cost(StrEnum):
@@ -33,8 +33,8 @@ class Cost(StrEnum):
     LONG = "long"
 
 
-FINISHED = frozenset({Status.SUCCEEDED, Status.FAILED, Status.CANCELLED})
-UNFINISHED = frozenset({Status.QUEUED, Status.RUNNING})
+FINISHED_STATES = frozenset({Status.SUCCEEDED, Status.FAILED, Status.CANCELLED})
+UNFINISHED_STATES = frozenset({Status.QUEUED, Status.RUNNING})
 
 
 @dataclass(frozen=True, slots=True)
@@ -52,6 +52,6 @@ MOVES = {
     "fail": Move(frozenset({Status.RUNNING}), Status.FAILED, by="worker"),
     "requeue": Move(frozenset({Status.RUNNING}), Status.QUEUED, by="executor"),
     "give_up": Move(frozenset({Status.RUNNING}), Status.FAILED, by="executor"),
-    "cancel": Move(UNFINISHED, Status.CANCELLED, by="client"),
+    "cancel": Move(UNFINISHED_STATES, Status.CANCELLED, by="client"),
 }
 """Every permitted move by name. A finished job never moves; it can only be deleted."""

@@ -16,10 +16,10 @@ from numba.core import event
 
 from service.jobs.processes.stop_flag import Solving
 
-SAID = "compiling what this is the first job to need"
+COMPILING_TEXT = "compiling what this is the first job to need"
 """Progress message of a job during compilation."""
 
-_COMPILES = "numba:compile"
+_COMPILE_EVENT = "numba:compile"
 
 
 class FirstUse(event.Listener):
@@ -31,10 +31,10 @@ class FirstUse(event.Listener):
         self._progress: Callable[[float, str], None] = lambda fraction, message: None
         self._last = (0.0, "")
         self._depth = 0
-        event.register(_COMPILES, self)
+        event.register(_COMPILE_EVENT, self)
 
     @contextmanager
-    def told(self, progress: Callable[[float, str], None]) -> Iterator[Callable[[float, str], None]]:
+    def watch_progress(self, progress: Callable[[float, str], None]) -> Iterator[Callable[[float, str], None]]:
         """Yield a progress callback; compilations by this thread inside the block are reported through it too."""
 
         def report(fraction: float, message: str) -> None:
@@ -55,13 +55,13 @@ class FirstUse(event.Listener):
             self._depth += 1
             if self._depth == 1:
                 self._solving.pause()
-                self._progress(self._last[0], SAID)
+                self._progress(self._last[0], COMPILING_TEXT)
 
     def on_end(self, event: Any) -> None:
         """Note the end of a compilation, successful or not."""
         if self._thread == threading.get_ident():
             self._depth -= 1
             if self._depth == 0:
-                self._solving.go_on()
+                self._solving.resume()
                 if self._last[1]:
                     self._progress(*self._last)

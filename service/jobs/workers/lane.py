@@ -33,9 +33,9 @@ from service.jobs.batches.store import BatchStore
 from service.jobs.executor import Changed
 from service.jobs.faults import Fault
 from service.jobs.job_store import JobStore
-from service.jobs.processes.parent_death import tell_children
+from service.jobs.processes.parent_death import export_parent_pid
 from service.jobs.processes.stop_flag import Solving
-from service.jobs.store.database import unreachable
+from service.jobs.store.database import is_unreachable
 from service.jobs.store.schema import Claim
 from service.jobs.store.states import Cost, Status
 from service.jobs.workers import worker
@@ -80,7 +80,7 @@ class Lane(threading.Thread):
     """Runs the jobs that the scheduler assigns to it, one at a time, in its own worker process.
 
     The thread lives as long as the lane. The thread starts the worker, so the worker dies with it
-    (:func:`service.jobs.processes.parent_death.die_with`).
+    (:func:`service.jobs.processes.parent_death.bind_to_parent`).
     """
 
     def __init__(
@@ -135,7 +135,7 @@ class Lane(threading.Thread):
                 self._cancelled.append(job_id)
 
     @property
-    def held(self) -> tuple[str, str] | None:
+    def current_claim(self) -> tuple[str, str] | None:
         """The mark and the job id of the current claim, until the last change of the job is stored."""
         with self._lock:
             return None if self._job is None else (self._job.mark, self._job.job_id)
@@ -170,17 +170,17 @@ class Lane(threading.Thread):
                 self.settled.set()
                 job = self._turns.take(self, self._free_since)
             except WorkerLost as loss:
-                self._could_not_start(str(loss))
+                self._handle_failed_start(str(loss))
                 continue
             except Exception as error:  # the lane survives any error, because later jobs need it
                 log.exception("the lane failed", lane=self.name)
-                self._could_not_start(f"{type(error).__name__} in the server")
+                self._handle_failed_start(f"{type(error).__name__} in the server")
                 continue
             if job is not None:
                 self._serve(job)
         self._discard_worker()
 
-    def _could_not_start(self, reason: str) -> None:
+    def _handle_failed_start(self, reason: str) -> None:
         log.error("worker could not be started", lane=self.name, reason=reason)
         self._replace_worker("start_failed")
         self.settled.set()
@@ -205,7 +205,7 @@ class Lane(threading.Thread):
             self._job = None
             if not self._stopping.is_set():
                 self._why, self._kill_at = None, float("inf")
-        self._turns.done(self)
+        self._turns.release(self)
         self._free_since = time.monotonic()
         try:
             self._changed(job.batch or job.job_id)
@@ -217,7 +217,7 @@ class Lane(threading.Thread):
             return
         if self._pool is not None:
             self._replace_worker("died_idle")
-        tell_children()
+        export_parent_pid()
         # "spawn": a forked child would inherit the locks of the server's threads and its open connections.
         self._pool = pebble.ProcessPool(
             max_workers=1,
@@ -226,7 +226,7 @@ class Lane(threading.Thread):
             context=get_context("spawn"),
         )
         try:
-            pid = self._call(worker.hello)
+            pid = self._call(worker.report_pid)
         except TimeoutError:
             self._discard_worker()
             raise WorkerLost(f"it did not start within {START_TIMEOUT_S:g} s") from None
@@ -240,7 +240,7 @@ class Lane(threading.Thread):
 
     def _replace_worker(self, reason: str) -> None:
         """End the worker; the next check starts another one."""
-        self._metrics.worker_restart(reason)
+        self._metrics.count_worker_restart(reason)
         self._discard_worker()
 
     def _discard_worker(self) -> None:
@@ -256,33 +256,33 @@ class Lane(threading.Thread):
 
     def _run_job(self, job: Claim) -> None:
         try:
-            ran: worker.Ran = self._call(worker.run, job, job=job)
+            ran: worker.EndedAttempt = self._call(worker.run, job, job=job)
         except TimeoutError:
-            self._metrics.attempt("timeout")
+            self._metrics.count_attempt("timeout")
             self._replace_worker("timeout")
-            if self._give_up(job, faults.timeout(self._timeout_s)):
+            if self._give_up(job, faults.make_timeout(self._timeout_s)):
                 log.warning("job failed", job=job.job_id, reason="timeout")
         except CancelledError:
             if self._stopping.is_set():
                 self._discard_worker()
             else:
                 self._replace_worker(self._why or "cancelled")
-            self._was_stopped(job)
+            self._handle_stopped_job(job)
         except WorkerLost as loss:
-            self._metrics.attempt("worker lost")
+            self._metrics.count_attempt("worker lost")
             self._replace_worker("lost")
-            status = self._crashed(job, killed=loss.killed)
+            status = self._record_crash(job, killed=loss.killed)
             log.warning("worker lost", lane=self.name, job=job.job_id, reason=str(loss), job_is_now=status)
             if status == Status.QUEUED:
                 self._turns.wake()
         else:
             if ran.outcome == "stopped":
-                self._was_stopped(job)
+                self._handle_stopped_job(job)
                 return
             if job.batch is None:
-                self._metrics.attempt(ran.outcome, ran.kind, ran.seconds)
+                self._metrics.count_attempt(ran.outcome, ran.kind, ran.seconds)
             else:
-                self._metrics.attempt(ran.outcome)
+                self._metrics.count_attempt(ran.outcome)
             if ran.outcome == "out of memory":
                 # A library that was refused memory in the middle of a call may be left in any state.
                 self._replace_worker("out_of_memory")
@@ -290,29 +290,29 @@ class Lane(threading.Thread):
     def _give_up(self, job: Claim, fault: Fault) -> bool:
         """Fail the job or, in a share of a batch, the sample at work; return whether the claim was still valid."""
         if job.batch is None:
-            return bool(self._stored(self._store.give_up, job.job_id, job.mark, fault.as_json(job.job_id)))
+            return bool(self._write_with_retries(self._store.give_up, job.job_id, job.mark, fault.as_json(job.job_id)))
         at = self._solving.sample
-        if self._stored(self._batches.give_up, job.job_id, job.mark, at, fault.as_json) is None:
+        if self._write_with_retries(self._batches.give_up, job.job_id, job.mark, at, fault.as_json) is None:
             return False
         self._turns.wake()
         return True
 
-    def _crashed(self, job: Claim, *, killed: bool) -> Status | None:
+    def _record_crash(self, job: Claim, *, killed: bool) -> Status | None:
         status: Status | None
         if job.batch is None:
-            status = self._stored(self._store.crashed, job.job_id, job.mark, killed=killed)
+            status = self._write_with_retries(self._store.record_crash, job.job_id, job.mark, killed=killed)
         else:
             at = self._solving.sample
-            status = self._stored(self._batches.crashed, job.job_id, job.mark, at, killed=killed)
+            status = self._write_with_retries(self._batches.record_crash, job.job_id, job.mark, at, killed=killed)
         return status
 
-    def _was_stopped(self, job: Claim) -> None:
+    def _handle_stopped_job(self, job: Claim) -> None:
         if self._stopping.is_set():
-            if self._stored(self._store.requeue, job.job_id, job.mark):
+            if self._write_with_retries(self._store.requeue, job.job_id, job.mark):
                 log.info("job requeued", job=job.job_id, reason="the service stops")
             return
-        self._metrics.attempt(self._why or "cancelled")
-        if self._why == "outstayed" and self._stored(self._store.requeue_as_long, job.job_id, job.mark):
+        self._metrics.count_attempt(self._why or "cancelled")
+        if self._why == "outstayed" and self._write_with_retries(self._store.requeue_as_long, job.job_id, job.mark):
             log.info("job requeued", job=job.job_id, reason="it is longer than expected")
             self._turns.wake()
 
@@ -341,7 +341,7 @@ class Lane(threading.Thread):
                 self._solving.stop()
         try:
             self._future.add_done_callback(lambda _: self._stirred.set())
-            return self._answer(job)
+            return self._wait_for_answer(job)
         except (CancelledError, TimeoutError, WorkerLost):
             raise
         except pebble.ProcessExpired as error:
@@ -356,7 +356,7 @@ class Lane(threading.Thread):
         finally:
             self._future = None
 
-    def _answer(self, job: Claim | None) -> Any:
+    def _wait_for_answer(self, job: Claim | None) -> Any:
         # Not pebble's own timeout, which would include the worker's waits for the store.
         began = time.monotonic()
         limit_s = START_TIMEOUT_S if job is None else self._timeout_s
@@ -381,17 +381,17 @@ class Lane(threading.Thread):
             raise WorkerLost("unexpected TimeoutError in the worker") from None
 
     def _check_stay(self) -> None:
-        if self._turns.outstayed(self):
+        if self._turns.count_as_long(self):
             with self._lock:
                 self._stop_job("outstayed")
 
-    def _stored(self, write: Any, *args: Any, **options: Any) -> Any:
+    def _write_with_retries(self, write: Any, *args: Any, **options: Any) -> Any:
         """Write to the store, retrying while it is unreachable: the job would be lost until a restart otherwise."""
         while True:
             try:
                 return write(*args, **options)
             except SQLAlchemyError as error:
-                if not unreachable(error):  # it would fail each time, and the lane would never end
+                if not is_unreachable(error):  # it would fail each time, and the lane would never end
                     raise
                 log.exception("the store is out of reach", lane=self.name)
                 if self._stopping.wait(RETRY_PERIOD_S):

@@ -66,7 +66,7 @@ class LocalExecutor:
                 BatchStore(self._engine),
                 for_workers,
                 self._settings.job_timeout_s,
-                self._changed,
+                self._notify_subscriber,
                 self._metrics,
                 after=self._lanes[: 0 if n == 0 else 1 if n < workers else workers],
             )
@@ -102,16 +102,16 @@ class LocalExecutor:
         for lane in self._lanes:
             lane.cancel(job_id)
 
-    def claims(self) -> dict[str, str]:
+    def list_claims(self) -> dict[str, str]:
         """Return the ids of the jobs that the lanes run, by their claims."""
-        return dict(held for lane in self._lanes if (held := lane.held) is not None)
+        return dict(held for lane in self._lanes if (held := lane.current_claim) is not None)
 
     def drop(self, claim: str) -> None:
         """Stop the job that a lane runs under a claim that is no longer valid."""
         for lane in self._lanes:
             lane.drop(claim)
 
-    def ready(self) -> int:
+    def count_ready_workers(self) -> int:
         """Return the number of workers that have finished starting."""
         return sum(lane.ready and lane.is_alive() for lane in self._lanes)
 
@@ -124,6 +124,6 @@ class LocalExecutor:
             lane.join(STOP_TIMEOUT_S)
         self._engine.dispose()
 
-    def _changed(self, job_id: str | None) -> None:
+    def _notify_subscriber(self, job_id: str | None) -> None:
         if self._subscriber is not None:
             self._subscriber(job_id)

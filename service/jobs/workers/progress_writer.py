@@ -10,7 +10,7 @@ from contextlib import contextmanager
 import structlog
 
 from service.jobs.job_store import JobStore
-from service.jobs.store.database import unreachable
+from service.jobs.store.database import is_unreachable
 
 PERIOD_S = 0.2
 """Minimum period between two stored reports, seconds: each is a write to the disk that all workers share."""
@@ -36,10 +36,10 @@ class ProgressWriter:
         threading.Thread(target=self._run, name="progress", daemon=True).start()
 
     @contextmanager
-    def attempt(self, job_id: str, attempt: int) -> Iterator[Callable[[float, str], None]]:
+    def track_attempt(self, job_id: str, attempt: int) -> Iterator[Callable[[float, str], None]]:
         """Yield the progress callback of an attempt, one attempt at a time; the first write comes after one period."""
 
-        def progress(fraction: float, message: str) -> None:
+        def record_progress(fraction: float, message: str) -> None:
             with self._condition:
                 self._report = (job_id, attempt, fraction, message)
                 if self._idle:
@@ -49,12 +49,12 @@ class ProgressWriter:
             self._attempt = job_id, attempt
             self._due = time.monotonic() + PERIOD_S
         try:
-            yield progress
+            yield record_progress
         finally:
             with self._condition:
                 self._attempt = self._report = None
 
-    def _next(self) -> tuple[str, int, float, str]:
+    def _wait_for_report(self) -> tuple[str, int, float, str]:
         with self._condition:
             while True:
                 left = self._due - time.monotonic()
@@ -77,11 +77,11 @@ class ProgressWriter:
 
     def _run(self) -> None:
         while True:
-            report = self._next()
+            report = self._wait_for_report()
             try:
                 self._store.progress(*report)  # changes nothing once the attempt has ended
             except Exception as error:  # the thread survives any error, because later jobs need it
-                if unreachable(error):
+                if is_unreachable(error):
                     self._retry(report)
                 else:
                     log.exception("progress could not be stored", job=report[0], attempt=report[1])

@@ -1,6 +1,6 @@
 """The scheduler: chooses the job that the next free lane gets. Lanes ask it, and it asks the store.
 
-The store decides whose turn it is among the tenants (:func:`service.jobs.store.statements.turn_of`). The scheduler
+The store decides whose turn it is among the tenants (:func:`service.jobs.store.statements.build_turn`). The scheduler
 decides which *cost* a lane may take, so that short jobs never wait for long ones to end. Fewer long jobs may run than
 there are lanes, so a lane is reserved for short jobs, and a job estimated as short that takes long counts as long from
 then on. If lanes are free for both, short and long jobs alternate. The reserved lanes are not given to a tenant who
@@ -23,7 +23,7 @@ from sqlalchemy.exc import SQLAlchemyError
 from ulid import ULID
 
 from service.jobs.job_store import JobStore
-from service.jobs.store.database import unreachable
+from service.jobs.store.database import is_unreachable
 from service.jobs.store.schema import Claim
 from service.jobs.store.states import Cost
 
@@ -55,7 +55,7 @@ class Seat(Protocol):
 
 
 @dataclass(frozen=True, slots=True)
-class _Held:
+class _RunningJob:
     """The job that a lane runs."""
 
     tenant: str
@@ -73,7 +73,7 @@ class Turns:
         self._news = threading.Condition()
         self._calls = 0
         self._open = False
-        self._busy: dict[Seat, _Held] = {}
+        self._busy: dict[Seat, _RunningJob] = {}
         self._doubtful: str | None = None
         self._before = Cost.LONG
 
@@ -100,13 +100,13 @@ class Turns:
         """Claim a job for a lane that has been free since ``free_since`` (monotonic clock, seconds).
 
         Wait up to :data:`ASK_PERIOD_S` for one; return None if there is none. The lane reports the end by
-        :meth:`done`.
+        :meth:`release`.
         """
         with self._news:
             calls, claim = self._calls, None
             asked = self._open
         if asked:
-            claim = self._asked(seat, free_since)
+            claim = self._request_claim(seat, free_since)
         with self._news:
             # An empty answer settles all calls made before the question; a claim settles one of them.
             self._calls = max(0, self._calls - (calls if claim is None else 1))
@@ -114,25 +114,25 @@ class Turns:
                 self._news.wait_for(lambda: self._calls > 0 or self._open != asked, ASK_PERIOD_S)
         return claim
 
-    def done(self, seat: Seat) -> None:
+    def release(self, seat: Seat) -> None:
         """Note that the lane is free again."""
         with self._news:
             self._busy.pop(seat, None)
 
-    def outstayed(self, seat: Seat) -> bool:
+    def count_as_long(self, seat: Seat) -> bool:
         """Count the job of a lane as long from now on; return whether it must release the lane.
 
         It must if no lane is left for short jobs.
         """
         with self._news:
             self._busy[seat] = replace(self._busy[seat], cost=Cost.LONG)
-            if not self._kept or any(not self._is_long(other) for other in self._seats):
+            if not self._reserved_count or any(not self._is_long(other) for other in self._seats):
                 return False
             del self._busy[seat]
             return True
 
     @property
-    def _kept(self) -> int:
+    def _reserved_count(self) -> int:
         """Number of lanes reserved for short jobs."""
         return len(self._seats) - self._most_long
 
@@ -140,23 +140,23 @@ class Turns:
         held = self._busy.get(seat)
         return held is not None and held.cost == Cost.LONG
 
-    def _asked(self, seat: Seat, free_since: float) -> Claim | None:
+    def _request_claim(self, seat: Seat, free_since: float) -> Claim | None:
         with self._asking:
             try:
-                claim = self._given(self._costs(seat, free_since), self._passed_over(seat))
+                claim = self._claim_next(self._order_costs(seat, free_since), self._list_excluded_tenants(seat))
             except SQLAlchemyError as error:
-                if not unreachable(error):
+                if not is_unreachable(error):
                     log.exception("the store could not be asked for a job")
                 return None
             if claim is not None:
                 self._before = claim.cost
                 with self._news:
-                    self._busy[seat] = _Held(claim.tenant, claim.cost)
+                    self._busy[seat] = _RunningJob(claim.tenant, claim.cost)
             return claim
 
-    def _given(self, costs: Sequence[Cost], passed_over: Collection[str]) -> Claim | None:
+    def _claim_next(self, costs: Sequence[Cost], passed_over: Collection[str]) -> Claim | None:
         if self._doubtful is not None:  # the connection broke during a claim, which may have succeeded
-            claim = self._store.claimed(self._doubtful)
+            claim = self._store.find_claim(self._doubtful)
             self._doubtful = None
             if claim is not None:
                 return claim
@@ -165,26 +165,25 @@ class Turns:
         self._doubtful = None
         return claim
 
-    def _costs(self, seat: Seat, free_since: float) -> Sequence[Cost]:
-        if not self._may_take_long(seat, free_since):
+    def _order_costs(self, seat: Seat, free_since: float) -> Sequence[Cost]:
+        if not self._is_long_allowed(seat, free_since):
             return (Cost.SHORT,)
         # Alternate: the cost that was not served last comes first.
         return (Cost.SHORT, Cost.LONG) if self._before == Cost.LONG else (Cost.LONG, Cost.SHORT)
 
-    def _passed_over(self, seat: Seat) -> Collection[str]:
-        """Return the tenants whose short jobs the lane must skip: if only reserved lanes are free, those with one running.
-        """
+    def _list_excluded_tenants(self, seat: Seat) -> Collection[str]:
+        """Return the tenants whose short jobs the lane must skip: those with one running, if only reserved lanes are free."""
         with self._news:
             free = sum(other is not seat and other not in self._busy for other in self._seats)
-            if free >= self._kept:
+            if free >= self._reserved_count:
                 return ()
             return {held.tenant for held in self._busy.values() if held.cost == Cost.SHORT}
 
-    def _may_take_long(self, seat: Seat, free_since: float) -> bool:
+    def _is_long_allowed(self, seat: Seat, free_since: float) -> bool:
         with self._news:
             free = [other for other in self._seats if other is not seat and not self._is_long(other)]
         if len(self._seats) - 1 - len(free) >= self._most_long:
             return False
-        if not self._kept or time.monotonic() > free_since + PATIENCE_S:
+        if not self._reserved_count or time.monotonic() > free_since + PATIENCE_S:
             return True
         return any(other.ready or not other.is_settled for other in free)

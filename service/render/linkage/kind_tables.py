@@ -26,7 +26,7 @@ from service.render.page.diagrams import Diagram
 from service.render.page.numbers import format_angle, format_length, format_small
 from service.render.page.svg import Box, Element, Viewport, draw_circle, draw_line, draw_path
 from service.render.page.symbols import CURVE, OUTPUT, TARGET_COLOUR
-from service.units import symbols
+from service.units import list_symbols
 from synthesis.kinds.balancing.curves import compute_shaking_curves
 from synthesis.kinds.balancing.design import BalancedDesign
 from synthesis.kinds.balancing.problem import BalancingProblem
@@ -491,7 +491,7 @@ def make_balancing(design: BalancedDesign, problem: BalancingProblem, linkage: D
             drawn.append(draw_circle(view.point(at), size, stroke_width=2.4, **marks))
         return drawn
 
-    units, unit = symbols(problem), problem.length_unit
+    units, unit = list_symbols(problem), problem.length_unit
     mass = units[Dimension.MASS]
     rows = [
         (

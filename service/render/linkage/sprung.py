@@ -18,7 +18,7 @@ from service.render.page.diagrams import Diagram
 from service.render.page.numbers import format_angle, format_length
 from service.render.page.svg import Box, Element, Viewport, draw_circle, draw_path
 from service.render.page.symbols import CURVE, OUTPUT, PALE, TARGET_COLOUR
-from service.units import symbols
+from service.units import list_symbols
 from synthesis.kinds.spring_balancing.curves import drive_curves
 from synthesis.kinds.spring_balancing.design import SprungDesign
 from synthesis.kinds.spring_balancing.problem import SpringBalancingProblem
@@ -83,7 +83,7 @@ def _draw_spirals(view: Viewport, places: list[tuple[int, complex, float]]) -> l
 
 def _list_springs(design: SprungDesign, problem: SpringBalancingProblem, diagonal: float) -> list[tuple[str, str]]:
     """Return the rows of the table of springs; ``diagonal`` is the size of the picture in length units."""
-    units, unit = symbols(problem), problem.length_unit
+    units, unit = list_symbols(problem), problem.length_unit
     rows = []
     for spring in design.springs:
         name = f"spring {spring.number + 1}"
@@ -131,7 +131,7 @@ def make_spring_balancing(design: SprungDesign, problem: SpringBalancingProblem,
         ]
         return [*_draw_coils(view, ends), *_draw_spirals(view, spirals)]
 
-    units, unit = symbols(problem), problem.length_unit
+    units, unit = list_symbols(problem), problem.length_unit
     places = [
         (name, f"({format_length(x, box.diagonal)}, {format_length(y, box.diagonal)})")
         for name, (x, y) in design.mechanism.skeleton.joints.items()

@@ -116,9 +116,10 @@ def list_loaded_meshes(
             passed = 1.0 if share is None else share
             if flow.flows_back:
                 force /= passed
-            parts = mesh.approach, mesh.recess
+            on_pitch_circle = stage.shifts == (0.0, 0.0) and stage.kind == "external"
+            pitch_radius = 0.5 * stage.module * driver if on_pitch_circle else radius
             # The mesh counts its approach for the smaller gear as driver; with a larger driver the two change places.
-            approach, recess = parts if driver <= driven else parts[::-1]
+            approach, recess = (mesh.approach, mesh.recess)[:: 1 if driver <= driven else -1]
             loaded.append(
                 {
                     **next(geometries).model_dump(),
@@ -127,12 +128,7 @@ def list_loaded_meshes(
                     "recess": recess,
                     "clearance": mesh.clearance,
                     "efficiency": share,
-                    "pitch_line_velocity": abs(float(turn) * flow.speed)
-                    * (
-                        radius
-                        if stage.shifts != (0.0, 0.0) or stage.kind != "external"
-                        else 0.5 * stage.module * driver
-                    ),
+                    "pitch_line_velocity": abs(float(turn) * flow.speed) * pitch_radius,
                     "tangential_force": force,
                     "radial_force": force * math.tan(mesh.pressure_angle),
                     # The thrust changes sides with the direction of rotation and with the driving gear.

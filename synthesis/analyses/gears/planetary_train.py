@@ -394,10 +394,7 @@ def _analyze_train(request: PlanetaryAnalysisRequest) -> dict[str, Any]:
         "circulating_power": None if flow is None else flow.circulates,
         "bodies": bodies,
         "meshes": [
-            {
-                **_describe_mesh(train, flow, k, unit),
-                **({} if strong[k] is None else {"strength": strong[k]}),
-            }
+            {**_describe_mesh(train, flow, k, unit), **({} if strong[k] is None else {"strength": strong[k]})}
             for k in range(len(train.meshes))
         ],
         **asked,

@@ -43,7 +43,7 @@ def lay_out_mechanism(mechanism: Mechanism, sizes: LayoutSizes, used: tuple[floa
         return _build_empty_layout(str(error))
 
 
-def lay_out_range(mechanism: Mechanism, stated: LayoutSizes, used: tuple[float, float] | None) -> Layout:
+def lay_out_range(mechanism: Mechanism, requested: LayoutSizes, used: tuple[float, float] | None) -> Layout:
     """Lay a linkage out for a range of its input; a range of more than a cycle is reduced to one cycle.
 
     Raises
@@ -53,7 +53,7 @@ def lay_out_range(mechanism: Mechanism, stated: LayoutSizes, used: tuple[float, 
     """
     slides = mechanism.has_slide_input
     try:
-        if stated.over == "cycle":
+        if requested.over == "cycle":
             used = find_cycle(mechanism)
         if used is None:
             return _build_empty_layout("the mechanism cannot move through the used range")
@@ -67,10 +67,10 @@ def lay_out_range(mechanism: Mechanism, stated: LayoutSizes, used: tuple[float, 
             mechanism,
             low,
             high,
-            link_width=stated.link_width,
-            pin_diameter=stated.pin_diameter,
-            gap=stated.gap,
-            through=stated.shafts == "both_sides",
+            link_width=requested.link_width,
+            pin_diameter=requested.pin_diameter,
+            gap=requested.gap,
+            through=requested.shafts == "both_sides",
             closed=math.isfinite(turn) and abs(high - low - turn) <= CYCLE_TOLERANCE * turn,
         )
     except RangeError:
@@ -89,7 +89,7 @@ def lay_out_range(mechanism: Mechanism, stated: LayoutSizes, used: tuple[float, 
         planes=found.planes,
         count=count,
         least=True,
-        height=count * (stated.thickness + stated.gap),
+        height=count * (requested.thickness + requested.gap),
         pins=found.pins,
         stub_shafts=found.stub_shafts,
         crossings=found.crossings,

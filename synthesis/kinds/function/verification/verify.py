@@ -68,6 +68,23 @@ class _DialTargets(NamedTuple):
     places: Real
 
 
+def _is_monotonic(values: Real) -> bool:
+    """Return whether values always rise or always fall."""
+    steps = np.diff(values)
+    return bool(np.all(steps > 0.0) or np.all(steps < 0.0))
+
+
+def _check_range(
+    problem: FunctionProblem, dials: Dials, drive: Drive, *, on_circuit: bool, covered: bool
+) -> list[Check]:
+    """Check that the targets lie on one circuit, that the range is covered, and that the dials are as requested."""
+    checks = [Check(name="same_circuit", passed=on_circuit)]
+    if problem.function is not None:
+        # A function must be generated over the whole range, not only at its targets.
+        checks.append(Check(name="covers_range", passed=covered))
+    return [*checks, check_error("dials", _measure_dial_deviation(problem, dials, drive), DIAL_TOLERANCE)]
+
+
 def _list_targets(targets: _DialTargets, errors: Real, residuals: Real, unit: float) -> list[FunctionTarget]:
     """Return the targets as reported; ``unit`` converts the output's positions, as 180/π does radians to degrees."""
     return [
@@ -124,13 +141,11 @@ def verify_function(problem: FunctionProblem, mechanism: FunctionMechanism, dial
     on_circuit = same_branch or drive.is_one_circuit(targets.angles, assemblies)
     # A motion through a toggle transmits nothing there.
     least = drive.compute_min_transmissions(start, end) if same_branch else dict.fromkeys(drive.dyads, 0.0)
-    steps = np.diff(targets.angles)
-    in_order = on_circuit and bool(np.all(steps > 0.0) or np.all(steps < 0.0))
+    in_order = on_circuit and _is_monotonic(targets.angles)
     joints = np.concatenate([met.moving.ravel(), drive.pivots])
-    lengths = list_link_lengths(mechanism)
     measures = measure_linkage(
-        lengths,
-        max(lengths),
+        list_link_lengths(mechanism),
+        max(list_link_lengths(mechanism)),
         unit if problem.slides else math.inf,  # with angular outputs the size of the linkage is free
         least,
         joints,
@@ -149,11 +164,9 @@ def verify_function(problem: FunctionProblem, mechanism: FunctionMechanism, dial
         output_range=_compute_output_range(problem, dials),
     )
     checks = [check_targets_reached(float(residuals.max()))] if problem.aim == "precision" else []
-    checks.append(Check(name="same_circuit", passed=on_circuit))
-    if problem.function is not None:
-        # A function must be generated over the whole range, not only at its targets.
-        checks.append(Check(name="covers_range", passed=whole and drive.is_on_branch(start, end)))
-    checks.append(check_error("dials", _measure_dial_deviation(problem, dials, drive), DIAL_TOLERANCE))
+    checks += _check_range(
+        problem, dials, drive, on_circuit=on_circuit, covered=whole and drive.is_on_branch(start, end)
+    )
     first = [complex(z) for z in met.moving[:, 0]]
     checks += check_constraints(problem.constraints, measures, drive.pivots, first)
     return FunctionDesign(

@@ -373,6 +373,16 @@ def _insert_in_pool(pool: Pool, n: int, x: Real, cost: float, setting: Real, sta
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
+def _store_sixbar(joints: Complex, make: int, value: float, start: int, arrived: ConvergedSixbars) -> None:
+    """Append a sixbar to the output."""
+    n = int(arrived.counts[0])
+    for k in range(len(joints)):
+        arrived.joints[n, k] = joints[k]
+    arrived.makes[n], arrived.values[n], arrived.starts[n] = make, value, start
+    arrived.counts[0] = n + 1
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
 def run_descents(
     rng: np.random.Generator,
     descents: int,
@@ -404,12 +414,10 @@ def run_descents(
     )
     joints = np.empty(7, np.complex128)
     for _ in range(descents):
-        n = int(arrived.counts[0])
         # The output arrays are full.
-        if n == len(arrived.makes):
+        if arrived.counts[0] == len(arrived.makes):
             return
-        parent, start = POOL_SIZE, 0
-        cost = np.inf
+        parent, start, cost = POOL_SIZE, 0, np.inf
         # The pool must be full before hops may start from it.
         if rng.random() < FRESH_SHARE or not pool.costs[POOL_SIZE - 1] < np.inf:
             start = int(rng.random() * len(poses.first))
@@ -442,10 +450,7 @@ def run_descents(
             value = evaluate_sixbar(x, points, setting, poses, joints)
             if value >= 0.0:
                 value = _optimize_value(rng, x, points, setting, poses, joints, value, room, arrived.counts)
-            for k in range(len(joints)):
-                arrived.joints[n, k] = joints[k]
-            arrived.makes[n], arrived.values[n], arrived.starts[n] = int(setting[TOPOLOGY]), value, start
-            arrived.counts[0] = n + 1
+            _store_sixbar(joints, int(setting[TOPOLOGY]), value, start, arrived)
         # A fresh linkage replaces the worst of the pool, a hop only its own parent, which keeps the pool diverse.
         elif parent == POOL_SIZE:
             if cost < pool.costs[POOL_SIZE - 1]:
