@@ -1,4 +1,4 @@
-"""The client for programs on an event loop: many jobs are waited for at once, in one thread."""
+"""The client for event loops: one thread can wait for many jobs at once."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from service.client.values import ClientError, Job, JobSummary, Progress, Refuse
 
 
 class AsyncClient:
-    """Talks to one service, over one pool of connections; what it does is what :class:`Client` does.
+    """Talks to one service over one pool of connections, with the methods of :class:`Client`.
 
     Parameters
     ----------
@@ -40,11 +40,11 @@ class AsyncClient:
         await self._http.aclose()
 
     async def submit(self, problem: Mapping[str, Any], *, label: str | None = None, wait_s: int = 0) -> Job:
-        """Have a problem solved; waits ``wait_s`` seconds (30 at most) for the end of the job."""
+        """Submit a problem; wait at most ``wait_s`` seconds (up to 30) for the end of the job."""
         return exchange.parse_job(await self._send_request(exchange.build_submission(problem, label, wait_s)))
 
     async def job(self, job_id: str) -> Job:
-        """The job as it stands."""
+        """Return the present state of the job."""
         return exchange.parse_job(await self._send_request(exchange.build_job_request(job_id)))
 
     async def delete(self, job_id: str) -> None:
@@ -52,7 +52,7 @@ class AsyncClient:
         await self._send_request(exchange.build_removal(job_id))
 
     async def follow(self, job_id: str) -> AsyncIterator[JobSummary | Progress]:
-        """What happens to a job, as it happens, to its final state; see :meth:`Client.follow`."""
+        """Yield the events of a job until its final state; see :meth:`Client.follow`."""
         following = EventReader(job_id, self._http.base_url)
         while not following.ended:
             fault: Refused | httpx.TransportError | None = None
@@ -72,7 +72,7 @@ class AsyncClient:
                 await asyncio.sleep(following.handle_break(fault))
 
     async def wait(self, job_id: str, progress: Callable[[Progress], None] | None = None) -> Job:
-        """Wait until the job has ended; tells how far it is by ``progress``."""
+        """Wait until the job has ended; report its progress to ``progress``."""
         async for news in self.follow(job_id):
             if progress is not None:
                 progress(exchange.extract_progress(news))
@@ -85,12 +85,12 @@ class AsyncClient:
         label: str | None = None,
         progress: Callable[[Progress], None] | None = None,
     ) -> Job:
-        """Have a problem solved, and wait for its result. Whoever cancels this task cancels the job.
+        """Solve a problem and wait for its result. Cancelling this task cancels the job.
 
         Raises
         ------
         JobFailed
-            When the job ends without a result. That no design exists is a result.
+            If the job ends without a result. An answer without designs is a result.
         """
         job = await self.submit(problem, label=label)
         try:
@@ -98,13 +98,13 @@ class AsyncClient:
         except ClientError:
             raise
         except BaseException:
-            with suppress(ClientError, RuntimeError):  # the latter of connections that are closed already
+            with suppress(ClientError, RuntimeError):  # RuntimeError if the connections are already closed
                 await self.delete(job.id)
             raise
         return job.with_result()
 
     async def file(self, job_id: str, design: int, form: str) -> bytes | None:
-        """A drawing or table of a design (``svg``, ``dxf``, ``csv``, ...); None where its mechanism has none such."""
+        """Return a file of a design (``svg``, ``dxf``, ``csv``, ...); None if its type of mechanism has no such file."""
         try:
             return (await self._send_request(exchange.build_file_request(job_id, design, form))).content
         except Refused as refusal:

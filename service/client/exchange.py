@@ -1,4 +1,4 @@
-"""How a client speaks with the service, whoever does the reading and waiting: requests, attempts and events."""
+"""The protocol of the clients without input and output: requests, attempts and events."""
 
 from __future__ import annotations
 
@@ -12,21 +12,21 @@ import httpx
 from service.client.values import Job, JobSummary, Json, Progress, Refused, Unreachable, build_job, build_summary
 
 MAX_ATTEMPTS = 4
-"""How often a request is sent in all before it is given up."""
+"""Maximum number of attempts of a request."""
 
 MAX_RESUMPTIONS = 8
-"""How often in a row a broken stream is resumed: for a minute, which a service may take to start again."""
+"""Maximum number of consecutive resumptions of a broken stream: about a minute, enough for a restart of the service."""
 
 MAX_PAUSE_S = 30.0
 
 STREAM_TIMEOUT = httpx.Timeout(60.0)
-"""The service breaks the silence of a stream every 15 seconds."""
+"""Timeout of a stream, on which the service sends at least a comment every 15 seconds."""
 
 _TEMPORARY_STATUSES = (429, 502, 503, 504)
 
 
 class Request(NamedTuple):
-    """What is sent: a method, a path and what httpx takes besides."""
+    """A request: method, path and further arguments for httpx."""
 
     method: str
     path: str
@@ -34,53 +34,53 @@ class Request(NamedTuple):
 
 
 def build_pool_settings(url: str, key: str | None, timeout_s: float) -> dict[str, Any]:
-    """What a pool of connections to one service is made with."""
+    """Return the arguments of httpx for a pool of connections to one service."""
     headers = {} if key is None else {"Authorization": f"Bearer {key}"}
     return {"base_url": url, "headers": headers, "timeout": timeout_s}
 
 
 def build_submission(problem: Mapping[str, Any], label: str | None, wait_s: int) -> Request:
-    """A problem to be solved; the answer may be waited for, for 30 seconds at most."""
+    """Build the request that submits a problem and waits at most ``wait_s`` (up to 30) seconds for its end."""
     body = {"problem": dict(problem), **({} if label is None else {"label": label})}
     headers = {"Idempotency-Key": uuid.uuid4().hex, **({"Prefer": f"wait={wait_s}"} if wait_s > 0 else {})}
     return Request("POST", "/v1/jobs", {"json": body, "headers": headers})
 
 
 def build_job_request(job_id: str) -> Request:
-    """The job as it stands."""
+    """Build the request for the present state of a job."""
     return Request("GET", f"/v1/jobs/{job_id}")
 
 
 def build_removal(job_id: str) -> Request:
-    """Cancels an unfinished job, removes a finished one."""
+    """Build the request that cancels an unfinished job or removes a finished one."""
     return Request("DELETE", f"/v1/jobs/{job_id}")
 
 
 def build_file_request(job_id: str, design: int, form: str) -> Request:
-    """A file of a design."""
+    """Build the request for a file of a design."""
     return Request("GET", f"/v1/jobs/{job_id}/designs/{design}.{form}")
 
 
 def parse_job(answer: httpx.Response) -> Job:
-    """The job in an answer."""
+    """Parse the job in an answer."""
     return build_job(answer.json())
 
 
 class Attempts:
-    """How often one request was sent, and when it is sent again."""
+    """The attempts of one request, and the pauses between them."""
 
     def __init__(self, url: object) -> None:
         self._url, self._made = url, 0
 
     def handle_refusal(self, answer: httpx.Response) -> float:
-        """Seconds to the next attempt after an answer that is none; raises where there is no next one."""
+        """Return the seconds until the next attempt after an error answer; raise if there is no next attempt."""
         self._made += 1
         if answer.status_code not in _TEMPORARY_STATUSES or self._made >= MAX_ATTEMPTS:
             raise build_refusal(answer)
         return _compute_pause_s(self._made, answer.headers.get("retry-after"))
 
     def handle_silence(self, error: httpx.TransportError) -> float:
-        """The same where there was no answer."""
+        """Return the seconds until the next attempt after a missing answer; raise if there is no next attempt."""
         self._made += 1
         if self._made >= MAX_ATTEMPTS:
             raise _build_unreachable(self._url, error) from None
@@ -88,7 +88,7 @@ class Attempts:
 
 
 class EventReader:
-    """Where a reader of a job's events stands: what was heard last, and how often the stream has broken since."""
+    """State of a reader of a job's events: the last event received, and the failures of the stream since."""
 
     def __init__(self, job_id: str, url: object) -> None:
         self.path = f"/v1/jobs/{job_id}/events"
@@ -100,17 +100,17 @@ class EventReader:
         self._id: str | None = None
 
     def build_request(self) -> dict[str, Any]:
-        """What the stream is asked for with: from where on."""
+        """Return the arguments of the request for the stream, with the event after which it resumes."""
         self._name, self._data, self._id = "message", "", None
         return {"headers": {} if self._last is None else {"Last-Event-ID": self._last}, "timeout": STREAM_TIMEOUT}
 
     def check_opened(self, answer: httpx.Response) -> bool:
-        """Whether there is a stream to be read; there is none after the last event."""
+        """Return whether the answer is a stream; after the last event there is none (204)."""
         self.ended = answer.status_code == 204
         return answer.status_code == 200
 
     def parse_line(self, line: str) -> JobSummary | Progress | None:
-        """What a line of the stream completes; comments, and events of other names, are passed over."""
+        """Process a line of the stream and return the event that it completes; ignore comments and unknown events."""
         field, _, value = line.partition(":")
         value = value.removeprefix(" ")
         match field:
@@ -139,7 +139,7 @@ class EventReader:
         return job
 
     def handle_break(self, fault: Refused | httpx.TransportError | None) -> float:
-        """Seconds until the stream is resumed, not to storm a service that has just come up; raises where it is not."""
+        """Return the seconds until the stream is resumed, which spare a restarting service; raise after the last try."""
         if isinstance(fault, Refused) and (
             fault.status not in _TEMPORARY_STATUSES or self._failures >= MAX_RESUMPTIONS
         ):
@@ -151,12 +151,12 @@ class EventReader:
 
 
 def extract_progress(news: JobSummary | Progress) -> Progress:
-    """How far the job is, as something that was heard of it says."""
+    """Return the progress in an event of a job."""
     return news.progress if isinstance(news, JobSummary) else news
 
 
 def build_refusal(answer: httpx.Response) -> Refused:
-    """The refusal that an answer is."""
+    """Build the exception for an error answer."""
     try:
         problem = answer.json()
     except ValueError:
@@ -169,6 +169,6 @@ def _build_unreachable(url: object, error: Exception) -> Unreachable:
 
 
 def _compute_pause_s(attempt: int, retry_after: str | None) -> float:
-    """What the service asks for, or longer each time."""
+    """Return the pause before the next attempt, seconds: as requested by the service, or doubling with each attempt."""
     asked_for = float(retry_after) if retry_after is not None and retry_after.isdecimal() else 0.1 * 2**attempt
     return min(asked_for, MAX_PAUSE_S)

@@ -1,4 +1,4 @@
-"""The client that waits for its answers."""
+"""The synchronous client."""
 
 from __future__ import annotations
 
@@ -16,20 +16,20 @@ from service.client.exchange import Attempts, EventReader, Request
 from service.client.values import ClientError, Job, JobSummary, Json, Progress, Refused, Status, build_summary
 
 _CANCEL_CHECK_PERIOD_S = 0.05
-"""How often it is looked whether a wait was given up."""
+"""Period of the check for a cancellation, seconds."""
 
 
 class Client:
-    """Talks to one service, over one pool of connections.
+    """Talks to one service over one pool of connections.
 
     Parameters
     ----------
     url
-        Where the service is, ``http://127.0.0.1:8000``.
+        URL of the service, such as ``http://127.0.0.1:8000``.
     key
-        The API key, where the service has keys.
+        API key, if the service has keys.
     timeout_s
-        How long one answer may take.
+        Time limit for one answer, seconds.
     """
 
     def __init__(self, url: str, key: str | None = None, *, timeout_s: float = 60.0) -> None:
@@ -48,15 +48,15 @@ class Client:
         self._http.close()
 
     def submit(self, problem: Mapping[str, Any], *, label: str | None = None, wait_s: int = 0) -> Job:
-        """Have a problem solved; waits ``wait_s`` seconds (30 at most) for the end of the job."""
+        """Submit a problem; wait at most ``wait_s`` seconds (up to 30) for the end of the job."""
         return exchange.parse_job(self._send_request(exchange.build_submission(problem, label, wait_s)))
 
     def job(self, job_id: str) -> Job:
-        """The job as it stands."""
+        """Return the present state of the job."""
         return exchange.parse_job(self._send_request(exchange.build_job_request(job_id)))
 
     def jobs(self, *, status: Status | None = None, kind: str | None = None) -> Iterator[JobSummary]:
-        """The jobs, newest first, page by page as they are asked for."""
+        """Yield the jobs, newest first; pages are requested as needed."""
         query: dict[str, str] = {name: value for name, value in (("status", status), ("kind", kind)) if value}
         while True:
             page = self._send_request(Request("GET", "/v1/jobs", {"params": query})).json()
@@ -70,9 +70,9 @@ class Client:
         self._send_request(exchange.build_removal(job_id))
 
     def follow(self, job_id: str) -> Iterator[JobSummary | Progress]:
-        """What happens to a job, as it happens: the job at each change of its state, its progress in between.
+        """Yield the events of a job: the job at each change of its state, its progress in between.
 
-        Ends with the job in its final state. A broken stream is resumed where it broke.
+        The last event is the job in its final state. A broken stream is resumed where it broke.
         """
         following = EventReader(job_id, self._http.base_url)
         while not following.ended:
@@ -94,7 +94,7 @@ class Client:
                 time.sleep(following.handle_break(fault))
 
     def wait(self, job_id: str, progress: Callable[[Progress], None] | None = None) -> Job:
-        """Wait until the job has ended; tells how far it is by ``progress``."""
+        """Wait until the job has ended; report its progress to ``progress``."""
         for news in self.follow(job_id):
             if progress is not None:
                 progress(exchange.extract_progress(news))
@@ -108,14 +108,14 @@ class Client:
         progress: Callable[[Progress], None] | None = None,
         cancel: threading.Event | None = None,
     ) -> Job:
-        """Have a problem solved, and wait for its result.
+        """Solve a problem and wait for its result.
 
-        The job is cancelled when ``cancel`` is set, which another thread may do, and when the wait is interrupted.
+        The job is cancelled if another thread sets ``cancel``, or if the wait is interrupted.
 
         Raises
         ------
         JobFailed
-            When the job ends without a result. That no design exists is a result.
+            If the job ends without a result. An answer without designs is a result.
         """
         job = self.submit(problem, label=label, wait_s=1)
         if not job.finished:
@@ -132,7 +132,7 @@ class Client:
         try:
             yield
         except BaseException as error:
-            if not isinstance(error, ClientError):  # an interrupt, or a fault of who is told how far the job is
+            if not isinstance(error, ClientError):  # an interrupt, or an error of the progress callback
                 with suppress(ClientError):
                     self.delete(job_id)
             raise
@@ -149,7 +149,7 @@ class Client:
                 return
 
     def file(self, job_id: str, design: int, form: str) -> bytes | None:
-        """A drawing or table of a design (``svg``, ``dxf``, ``csv``, ...); None where its mechanism has none such."""
+        """Return a file of a design (``svg``, ``dxf``, ``csv``, ...); None if its type of mechanism has no such file."""
         try:
             return self._send_request(exchange.build_file_request(job_id, design, form)).content
         except Refused as refusal:
@@ -158,26 +158,26 @@ class Client:
             raise
 
     def motion(self, job_id: str, design: int, *, steps: int = 360) -> Json:
-        """A design over its cycle, joint by joint."""
+        """Return the motion of a design over its cycle, joint by joint."""
         request = Request("GET", f"/v1/jobs/{job_id}/designs/{design}/motion", {"params": {"steps": steps}})
         return _parse_object(self._send_request(request))
 
     def analyse(self, mechanism: Mapping[str, Any], motion: Mapping[str, Any]) -> Json:
-        """What the analysis core knows of a given mechanism."""
+        """Analyse a given mechanism."""
         return self.analysis({"mechanism": dict(mechanism), "motion": dict(motion)})
 
     def analysis(self, request: Mapping[str, Any]) -> Json:
-        """The same for the whole body of a request, with all that it may state besides."""
+        """Send a complete analysis request, which may have further blocks, and return its answer."""
         return _parse_object(self._send_request(Request("POST", "/v1/analyses", {"json": dict(request)})))
 
     def problems(self) -> dict[str, Json]:
-        """The kinds of problems, each with title, description, schema and an example that runs."""
+        """Return the kinds of problems by name, each with title, description, schema and an example."""
         return {
             listed["kind"]: listed for listed in self._send_request(Request("GET", "/v1/problems")).json()["problems"]
         }
 
     def _send_request(self, request: Request) -> httpx.Response:
-        """The answer to a request that may be sent again."""
+        """Send a request, repeating it if necessary, and return the answer."""
         attempts = Attempts(self._http.base_url)
         while True:
             try:

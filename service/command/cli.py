@@ -1,6 +1,6 @@
 """The command ``mechsynth``.
 
-Only what is needed to read the command line is imported here: the worker processes import this module again when they
+Only modules needed to parse the command line are imported here: worker processes import this module again at their
 start, and ``mechsynth --help`` should not take a second.
 """
 
@@ -25,7 +25,7 @@ EXIT_USAGE = 2
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
-    """Run a command; returns the exit status: 0 success, 1 failure, 2 wrong arguments or settings."""
+    """Run a command and return the exit status: 0 success, 1 failure, 2 wrong arguments or settings."""
     command = _build_parser().parse_args(arguments)
     if command.name == "serve":
         return _serve()
@@ -92,12 +92,12 @@ def _add_service_options(command: argparse.ArgumentParser) -> None:
     command.add_argument(
         "--url",
         default=os.environ.get("MECHSYNTH_URL", "http://127.0.0.1:8000"),
-        help="the service (MECHSYNTH_URL; the API key comes from MECHSYNTH_API_KEY)",
+        help="URL of the service (default: MECHSYNTH_URL; the API key is read from MECHSYNTH_API_KEY)",
     )
 
 
 def _load_settings() -> Settings | None:
-    """The settings; None, and the reason is printed, where they cannot be used."""
+    """Read the settings; if they are invalid, print the reason and return None."""
     from service.settings import SettingsError, read_settings
 
     try:
@@ -159,7 +159,7 @@ def _run_worker() -> int:
         print(f"mechsynth worker: {error}", file=sys.stderr)
         return EXIT_FAILURE
     except (SQLAlchemyError, OSError) as error:
-        # Not the URL itself, which may hold a password.
+        # The message omits the URL, which may contain a password.
         print(f"mechsynth worker: cannot use the database ({type(error).__name__})", file=sys.stderr)
         return EXIT_FAILURE
     return 0
@@ -168,44 +168,44 @@ def _run_worker() -> int:
 def _build_parser() -> argparse.ArgumentParser:
     parser = argparse.ArgumentParser(prog="mechsynth", description="A service that designs mechanisms.")
     commands = parser.add_subparsers(dest="name", required=True, metavar="command")
-    commands.add_parser("serve", help="run the service; the environment variables MECHSYNTH_... set it up")
-    commands.add_parser("worker", help="run a worker host, which takes jobs from a broker; set up like the service")
-    demo = commands.add_parser("demo", help="solve a problem through a service of its own, and draw the answer")
-    demo.add_argument("--output", type=Path, default=Path("var/demo.svg"), help="where the drawing goes (SVG)")
-    solve = commands.add_parser("solve", help="solve the problem in a file: print the answer, write the drawings")
+    commands.add_parser("serve", help="run the service, configured by environment variables MECHSYNTH_...")
+    commands.add_parser("worker", help="run a worker host, which takes jobs from a broker; configured like the service")
+    demo = commands.add_parser("demo", help="start a service, solve an example problem and draw the answer")
+    demo.add_argument("--output", type=Path, default=Path("var/demo.svg"), help="file for the drawing (SVG)")
+    solve = commands.add_parser("solve", help="solve the problem in a file, print the answer and write the drawings")
     solve.add_argument(
         "problem",
-        help="a JSON file with a problem, or the body of a request; - for standard input; "
+        help="a JSON file with a problem or a request body; - for standard input; "
         "or a .csv with columns x, y, angle (motion), x, y (path), or input, output (function)",
     )
     _add_service_options(solve)
-    solve.add_argument("--json", action="store_true", help="print the job with its answer as JSON, instead of tables")
-    solve.add_argument("--output", type=Path, help="folder of the drawings; named after the file when left out")
+    solve.add_argument("--json", action="store_true", help="print the job with its answer as JSON instead of tables")
+    solve.add_argument("--output", type=Path, help="folder for the drawings; by default named after the problem file")
     solve.add_argument(
         "--forms", default="svg,dxf,csv", type=lambda text: [form for form in text.split(",") if form],
-        help="which files to write for each design, separated by commas; '' for none",
+        help="formats of the files to write for each design, separated by commas; '' for none",
     )  # fmt: skip
-    analyze = commands.add_parser("analyze", help="tell what is known of the mechanism in a file: angles, joints, ...")
+    analyze = commands.add_parser("analyze", help="analyse the mechanism in a file: angles, joints, ...")
     analyze.add_argument(
-        "mechanism", help="a JSON file with a mechanism, or the body of a request; - for standard input"
+        "mechanism", help="a JSON file with a mechanism or a request body; - for standard input"
     )
     _add_service_options(analyze)
-    analyze.add_argument("-o", "--output", type=Path, help="a file, .json or .csv; left out, JSON is printed")
-    draw = commands.add_parser("draw", help="draw a design of an answer; this needs no service")
-    draw.add_argument("answer", help="what mechsynth solve --json has printed; - for standard input")
-    draw.add_argument("-o", "--output", type=Path, required=True, help="the file: .svg, .gif, .dxf or .csv")
-    draw.add_argument("--design", type=int, default=1, help="which of the designs, counted from 1")
+    analyze.add_argument("-o", "--output", type=Path, help="output file, .json or .csv; by default JSON is printed")
+    draw = commands.add_parser("draw", help="draw a design of an answer, without a service")
+    draw.add_argument("answer", help="output of mechsynth solve --json; - for standard input")
+    draw.add_argument("-o", "--output", type=Path, required=True, help="output file: .svg, .gif, .dxf or .csv")
+    draw.add_argument("--design", type=int, default=1, help="number of the design, counted from 1")
     openapi = commands.add_parser("openapi", help="write the OpenAPI document to a file")
     openapi.add_argument("output", type=Path)
-    keys = commands.add_parser("keys", help="make, list and revoke API keys").add_subparsers(
+    keys = commands.add_parser("keys", help="create, list and revoke API keys").add_subparsers(
         dest="act", required=True, metavar="act"
     )
-    create = keys.add_parser("create", help="make a key for a new tenant, and print it")
-    create.add_argument("tenant", help="the name of the tenant, who sees only its own jobs")
-    create.add_argument("--further", action="store_true", help="one more key for a tenant that there is")
-    keys.add_parser("list", help="show all keys by their ids; not the keys themselves")
-    keys.add_parser("revoke", help="make a key useless").add_argument("id", help="the id of the key")
-    commands.add_parser("warm", help="compile the numeric kernels, so that the first start need not")
+    create = keys.add_parser("create", help="create a key for a new tenant and print it")
+    create.add_argument("tenant", help="name of the tenant, who sees only its own jobs")
+    create.add_argument("--further", action="store_true", help="create another key for an existing tenant")
+    keys.add_parser("list", help="list the ids of all keys, without the keys themselves")
+    keys.add_parser("revoke", help="revoke a key").add_argument("id", help="id of the key")
+    commands.add_parser("warm", help="compile the numerical kernels ahead of the first start")
     return parser
 
 

@@ -1,4 +1,4 @@
-"""``mechsynth solve``: a problem from a file, its answer as a table, its drawings as files."""
+"""``mechsynth solve``: solves a problem from a file, prints the answer as tables, writes the drawings."""
 
 from __future__ import annotations
 
@@ -22,29 +22,29 @@ from synthesis.model.counting import format_count
 from synthesis.registry import parse_problem
 
 _MAX_COLUMNS = 7
-"""Metrics that fit beside each other on a terminal; the files have all of them."""
+"""Maximum number of metrics in a row on a terminal; the files have all of them."""
 
 _FILE_WIDTH = 10_000
-"""Columns of a file: more than any table has."""
+"""Width of the output in a file, characters; more than any table needs."""
 
 _OMITTED_KEYS = {"skeleton", "profile", "pitch_curve", "program", "type"}
 
 
 class SolveFailure(Exception):
-    """The problem was not solved; the message says why."""
+    """The problem was not solved; the message has the reason."""
 
 
 def solve(
     source: str, url: str, key: str | None, output: Path | None, forms: Sequence[str], *, as_json: bool = False
 ) -> None:
-    """Solve the problem in a file (``-``: standard input), print the answer, write the drawings.
+    """Solve the problem in a file (``-``: standard input), print the answer and write the drawings.
 
     The answer is printed as tables, or as JSON: the job with its problem and its result, every number in full.
 
     Raises
     ------
     SolveFailure
-        When the file holds no problem, or the service does not solve it.
+        If the file contains no problem, or the service does not solve it.
     """
     try:
         problem, label = read_problem(source)
@@ -64,7 +64,7 @@ def solve(
                 report(job, _create_console())
             written = list(_write_drawings(client, job, folder, forms))
         except service.Refused as refusal:
-            raise SolveFailure(f"the service refuses: {refusal}") from None
+            raise SolveFailure(f"the service refused the request: {refusal}") from None
         except service.ClientError as error:
             raise SolveFailure(str(error)) from None
     if written:
@@ -72,7 +72,7 @@ def solve(
 
 
 def _create_console() -> Console:
-    """Where tables go: as wide as the terminal is; where it is none, so wide that nothing is cut in a file."""
+    """Return the console for tables: as wide as the terminal, or for a file wide enough for any table."""
     return Console(soft_wrap=True) if sys.stdout.isatty() else Console(soft_wrap=True, width=_FILE_WIDTH)
 
 
@@ -102,10 +102,10 @@ def _create_bar() -> Progress:
 
 
 def report(job: service.Job, console: Console) -> None:
-    """Print what the search has found, the designs beside each other, and the best one in full."""
+    """Print the result of the search, a comparison of the designs, and the best design in full."""
     result = job.result or {}
     search, designs = result["search"], result["designs"]
-    known = "complete: there are no others" if search["complete"] else "not complete: there may be others"
+    known = "complete: no other designs exist" if search["complete"] else "not complete: other designs may exist"
     console.print(result["summary"], markup=False, highlight=False)
     console.print(f"Search: {search['method']}, {known}.", markup=False, highlight=False)
     if not designs:
@@ -138,7 +138,7 @@ def _format_amount(value: float | None, unit: str) -> str:
 
 
 def _find_units(problem: Mapping[str, Any]) -> dict[str, str]:
-    """Symbols by dimension; none for a problem of a service that knows more than this client."""
+    """Return unit symbols by dimension; none for a problem of a newer service, which this client cannot parse."""
     try:
         return {str(dimension): symbol for dimension, symbol in list_symbols(parse_problem(dict(problem))).items()}
     except ValidationError:
@@ -147,7 +147,7 @@ def _find_units(problem: Mapping[str, Any]) -> dict[str, str]:
 
 def _compare_designs(designs: Sequence[Mapping[str, Any]]) -> Table:
     plain = [name for name, value in designs[0]["metrics"].items() if isinstance(value, (int, float, str))]
-    # What is the same for all tells nobody which to take.
+    # Metrics that are equal for all designs do not help to choose one.
     telling = [name for name in plain if len({str(design["metrics"].get(name)) for design in designs}) > 1]
     columns = (telling or plain)[:_MAX_COLUMNS]
     table = Table(title=f"{format_count(len(designs), 'design')}, best first")
@@ -162,7 +162,7 @@ def _compare_designs(designs: Sequence[Mapping[str, Any]]) -> Table:
 
 
 def _flatten_dimensions(value: Any, name: str = "") -> Iterator[tuple[str, str]]:
-    """Every dimension with the path of its name; long lists and what can be rebuilt are left to the files."""
+    """Yield every dimension with the path of its name; long lists and derived data are left to the files."""
     if isinstance(value, dict):
         for key, inner in value.items():
             if key not in _OMITTED_KEYS:

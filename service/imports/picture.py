@@ -74,7 +74,7 @@ def read_picture(content: bytes) -> Picture:
             f"The contours of the picture have more than {MAX_CROSSINGS} points, like those of a photograph. Send a "
             "drawing in two colours."
         ) from None
-    # The padding shifts samples by 1, their place in the middle of a pixel by -1/2: together the crossings shift by 1/2.
+    # The padding shifts samples by 1, their place in the middle of a pixel by -1/2: the crossings shift by 1/2.
     kept = [one - complex(0.5, 0.5) for one in found if len(one) >= MIN_CONTOUR_CROSSINGS]
     stepped = [_is_stepped(one) for one in kept]
     smooth = [_smooth_contour(one) if steps else one for one, steps in zip(kept, stepped, strict=True)]

@@ -1,7 +1,7 @@
-"""What the service counts and measures about itself, in Prometheus' form.
+"""Metrics of the service in the format of Prometheus.
 
-No label holds anything that a client has chosen: operations, methods, kinds, outcomes and reasons are from lists of the
-service's own, so that nobody can fill the memory with new ones or put a secret into them.
+Labels contain no text chosen by clients: operations, methods, kinds, outcomes and reasons come from fixed lists, so
+that clients can neither fill the memory with new values nor put secrets into them.
 """
 
 from __future__ import annotations
@@ -31,7 +31,7 @@ log = structlog.get_logger(__name__)
 
 
 class WorkerMetrics:
-    """What is known of workers and of the process that has them, in a registry of its own."""
+    """Metrics of workers and of the process that runs them, in a separate registry."""
 
     def __init__(self) -> None:
         self.registry = CollectorRegistry()
@@ -59,13 +59,13 @@ class WorkerMetrics:
         return Histogram(f"mechsynth_{name}", text, (label,), buckets=buckets, registry=self.registry)
 
     def count_attempt(self, outcome: str, kind: str | None = None, seconds: float = 0.0) -> None:
-        """An attempt at a job has ended; kind and time are known where the worker itself has ended it."""
+        """Count an ended attempt at a job; kind and time are known if the worker itself ended it."""
         self._attempts.labels(outcome.replace(" ", "_")).inc()
         if kind is not None:
             self._job_seconds.labels(kind).observe(seconds)
 
     def count_worker_restart(self, reason: str) -> None:
-        """A worker process is being replaced."""
+        """Count a replaced worker process."""
         self._worker_restarts.labels(reason).inc()
 
 
@@ -81,7 +81,7 @@ class HostMetrics(WorkerMetrics):
         )
 
     def watch(self, workers: Callable[[], int], running: Callable[[], int]) -> None:
-        """Ask these whenever the metrics are read: ready workers, and running jobs of the host."""
+        """Set the callbacks that give the ready workers and the running jobs of the host at each read."""
         self._workers.set_function(workers)
         self._jobs.labels("running").set_function(running)
 
@@ -117,50 +117,50 @@ class Metrics(WorkerMetrics):
         self._listeners = self._create_gauge("event_listeners", "Clients that listen to the events of a job.")
 
     def count_request(self, operation: str, method: str, status: int, seconds: float) -> None:
-        """A request has been answered."""
+        """Count an answered request."""
         self._requests.labels(operation, method if method in METHODS else "other", str(status)).inc()
         self._request_seconds.labels(operation).observe(seconds)
 
     def count_unread_refusal(self, status: int, type_: str) -> None:
-        """A request was answered with a problem of this type before it was whole, so that no operation has seen it."""
+        """Count an incomplete request that was answered with a problem of this type, before any operation saw it."""
         self._requests.labels("none", "other", str(status)).inc()
         self.count_rejection(type_)
 
     def count_rejection(self, type_: str) -> None:
-        """A request was answered with a problem of this type (``/problems/...``)."""
+        """Count a request that was answered with a problem of this type (``/problems/...``)."""
         self._rejections.labels(type_.removeprefix("/problems/")).inc()
 
     def count_job(self, kind: str) -> None:
-        """A job was accepted."""
+        """Count an accepted job."""
         self._jobs_accepted.labels(kind).inc()
 
     def count_batch(self, kind: str) -> None:
-        """A batch was accepted."""
+        """Count an accepted batch."""
         self._batches_accepted.labels(kind).inc()
 
     def count_given_up(self, pool: str, reason: str) -> None:
-        """An analysis, a drawing, parts or a file were given up."""
+        """Count an analysis, a drawing, parts or a file given up."""
         self._given_up.labels(pool, reason).inc()
 
     def count_defect(self, operation: str) -> None:
-        """A request has met a defect of the service's own, and was refused for it."""
+        """Count a request refused because of a defect of the service."""
         self._defects.labels(operation).inc()
 
     def watch_calls(self, counts: Callable[[], Mapping[str, Mapping[str, int]]]) -> None:
-        """Ask this whenever the metrics are read: calls by pool and state."""
+        """Set the callback that gives the calls by pool and state at each read."""
         self.registry.register(_Calls(counts))
 
     def watch(
         self, listeners: Callable[[], int], workers: Callable[[], int], queue: Callable[[], Mapping[str, int]]
     ) -> None:
-        """Ask these whenever the metrics are read: listeners, ready workers, and unfinished jobs by their state."""
+        """Set the callbacks that give the listeners, ready workers and unfinished jobs by state at each read."""
         self._listeners.set_function(listeners)
         self._workers.set_function(workers)
         self.registry.register(_Queue(queue))
 
 
 class _Calls(Collector):
-    """What runs and waits in the pools of processes that answer requests."""
+    """Running and waiting calls in the pools of processes that answer requests."""
 
     def __init__(self, counts: Callable[[], Mapping[str, Mapping[str, int]]]) -> None:
         self._counts = counts
@@ -183,7 +183,7 @@ def _create_calls_family() -> GaugeMetricFamily:
 
 
 class _Queue(Collector):
-    """The unfinished jobs, counted in the store, which several servers may share."""
+    """Unfinished jobs, counted in the store, which several servers may share."""
 
     def __init__(self, queue: Callable[[], Mapping[str, int]]) -> None:
         self._queue = queue
@@ -194,7 +194,7 @@ class _Queue(Collector):
     def collect(self) -> Iterator[GaugeMetricFamily]:
         try:
             counts = self._queue()
-        except Exception:  # whatever a database driver raises: the other metrics are wanted all the more
+        except Exception:  # any error of the database driver: the other metrics matter even more then
             log.exception("the unfinished jobs could not be counted")
             return
         family = _create_queue_family()

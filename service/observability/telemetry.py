@@ -1,7 +1,7 @@
-"""What is told about each request: a line in the log, its metrics, its id, and where its time went.
+"""Telemetry of requests: a log line, metrics, the request id, and the time spent in its parts.
 
-One record a request, in a context variable; whatever has a hand in the answer adds to it. The middleware is outermost,
-so that the answer to a defect has all this as well.
+Each request has a record in a context variable, to which all parts of the answer contribute. The middleware is
+outermost, so that the answer to a defect is covered, too.
 """
 
 from __future__ import annotations
@@ -22,8 +22,8 @@ from service.observability.head import is_head_request
 from service.observability.metrics import Metrics
 
 CUT_SHORT = "mechsynth.cut_short"
-"""Where the state of a request says with which status and problem its connection has answered in place of the
-operation, which was still waiting for the rest of it."""
+"""Key in the state of a request for the status and problem with which the connection answered it while its operation
+was still waiting for the rest of the body."""
 
 _CLIENT_ID_PATTERN = re.compile("[A-Za-z0-9._:/+=@-]{1,100}")
 
@@ -44,7 +44,7 @@ _record: ContextVar[_Record | None] = ContextVar("record", default=None)
 
 @contextmanager
 def measure_span(name: str) -> Iterator[None]:
-    """Time a part of the present request for its ``Server-Timing``; equal names add up."""
+    """Measure the time of a part of the present request for ``Server-Timing``; equal names add up."""
     began = time.perf_counter()
     try:
         yield
@@ -55,28 +55,28 @@ def measure_span(name: str) -> Iterator[None]:
 
 
 def note_refusal(type_: str) -> None:
-    """Note the type of the problem that the present request is answered with."""
+    """Record the type of the problem with which the present request is answered."""
     record = _record.get()
     if record is not None:
         record.refused = type_
 
 
 def note_defect(error: str) -> None:
-    """Note that the present request has met a defect of the service's own, by the type of the error."""
+    """Record that the present request has hit a defect of the service, by the type of the error."""
     record = _record.get()
     if record is not None:
         record.defect = error
 
 
 def add_headers(headers: Mapping[str, str]) -> None:
-    """Add headers to the answer to the present request, whatever that will be."""
+    """Add headers to any answer to the present request."""
     record = _record.get()
     if record is not None:
         record.headers.update(headers)
 
 
 class Telemetry:
-    """Watches every request from outside of the application."""
+    """Middleware around the application that observes every request."""
 
     def __init__(self, app: ASGIApp, metrics: Metrics) -> None:
         self._app = app
@@ -119,7 +119,7 @@ class Telemetry:
             self._metrics.count_rejection(record.refused)
         if record.defect is not None:
             self._metrics.count_defect(operation)
-        # The path holds nothing secret, but a query might; and a path may be long.
+        # The query is omitted, since it may contain a secret, and long paths are cut.
         log.info(
             "request",
             method=method[:20],
@@ -132,7 +132,7 @@ class Telemetry:
 
 
 def _get_request_id(scope: Scope) -> str:
-    # A proxy or client in front may have named the request already; then both logs speak of it by one name.
+    # A proxy or client may have assigned an id already; then both logs use the same one.
     given = Headers(scope=scope).get("x-request-id", "")
     return given if _CLIENT_ID_PATTERN.fullmatch(given) else str(ULID())
 

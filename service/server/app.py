@@ -1,4 +1,4 @@
-"""The application: everything put together, started and stopped."""
+"""The ASGI application: assembly of all parts, start and stop."""
 
 from __future__ import annotations
 
@@ -53,18 +53,17 @@ from service.settings import Settings
 
 _DESCRIPTION = """Designs mechanisms and verifies every answer by driving it.
 
-State a problem in a job (`POST /v1/jobs`), wait for it or come back for it, and read the designs from its result.
-Many problems at once are a batch (`POST /v1/batches`).
-`GET /v1/problems` lists what can be asked, each with an example that runs as it is. A mechanism that exists already is
-analysed at once (`POST /v1/analyses`). The outlines in a drawing are read (`POST /v1/outlines`), and so are the curves
-in a drawing, a table or a picture (`POST /v1/imports`).
+Submit a problem as a job (`POST /v1/jobs`), wait for it or poll it, and read the designs from its result. Submit many
+problems as a batch (`POST /v1/batches`). `GET /v1/problems` lists the kinds of problems, each with an example that can
+be posted as it is. `POST /v1/analyses` analyses a given mechanism at once. `POST /v1/outlines` reads the outlines in a
+drawing, and `POST /v1/imports` reads the curves in a drawing, a table or a picture.
 
 Angles are degrees, counter-clockwise from +x; lengths are plain numbers in the problem's `length_unit`. Unknown fields
 are refused. Errors are `application/problem+json` (RFC 9457); validation errors name each field by its JSON pointer."""
 
 
 def create_app(settings: Settings, executor: Executor, measured: Metrics, kernels: KernelsState) -> FastAPI:
-    """The service as an ASGI application. Its start upgrades the store and takes unfinished jobs up again."""
+    """Create the service as an ASGI application. Its start upgrades the store and resumes unfinished jobs."""
 
     @asynccontextmanager
     async def lifespan(app: FastAPI) -> AsyncIterator[None]:
@@ -83,7 +82,7 @@ def create_app(settings: Settings, executor: Executor, measured: Metrics, kernel
             executor.start()
             await run_in_threadpool(upgrade, engine)
             await run_in_threadpool(executor.resume)
-            # A SQLite store has one server; of any other, another server may remove a job.
+            # A SQLite store has one server; in any other store, another server may remove a job behind the cache.
             finished = FinishedJobs(CAPACITY_BYTES if find_sqlite_file(settings.store_url) else 0)
             app.state.desk = JobDesk(store, executor, notifier, measured, settings.max_queued, finished)
             app.state.gate = Gate(KeyStore(engine), settings.rate_limit_rule)
@@ -122,7 +121,7 @@ def create_app(settings: Settings, executor: Executor, measured: Metrics, kernel
 
 
 def build_api_document() -> str:
-    """The OpenAPI document of the service as it is kept with the source, without any service running."""
+    """Return the OpenAPI document that is kept with the source; no running service is needed."""
 
     @asynccontextmanager
     async def lifespan(app: FastAPI) -> AsyncIterator[None]:
@@ -132,7 +131,7 @@ def build_api_document() -> str:
 
 
 def build_application(lifespan: Lifespan[FastAPI]) -> FastAPI:
-    """All routes and errors of the service, around whatever its life brings."""
+    """Create an application with all routes and error handlers of the service."""
     app = FastAPI(
         title="mechsynth",
         summary="A REST service that designs mechanisms.",
@@ -143,7 +142,7 @@ def build_application(lifespan: Lifespan[FastAPI]) -> FastAPI:
         docs_url=None,
         redoc_url=None,
         redirect_slashes=False,
-        # Problems and designs have one schema each, whether they come or go.
+        # Problems and designs have one schema each for input and output.
         separate_input_output_schemas=False,
         openapi_tags=[jobs.TAG, batches.TAG, analyses.TAG, outlines.TAG, imports.TAG, problems.TAG, health.TAG],
     )

@@ -1,4 +1,4 @@
-"""Runs the service: takes the port, says when it is ready, and stops in good order."""
+"""Run of the service: binds the port, starts all parts, and stops them in order."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ log = structlog.get_logger(__name__)
 
 
 class ServeError(Exception):
-    """The service cannot run here; the message is a sentence for the operator."""
+    """The service cannot run here; the message is for the operator."""
 
 
 def serve(settings: Settings) -> None:
@@ -36,7 +36,7 @@ def serve(settings: Settings) -> None:
     Raises
     ------
     ServeError
-        When the port or the data folder cannot be had, or the start fails.
+        If the port or the data folder is not available, or the start fails.
     """
     signal.signal(signal.SIGTERM, _raise_stop)
     signal.signal(signal.SIGINT, _raise_stop)
@@ -46,8 +46,8 @@ def serve(settings: Settings) -> None:
         executor = _create_executor(settings, metrics)
         compilation = _create_compilation(settings)
         try:
-            # A worker takes as long to start as the web framework to import: side by side, the service is ready in
-            # half the time. The tables are made in between, long before any worker is given a job.
+            # A worker takes as long to start as the web framework to import: in parallel, the service is ready in half
+            # the time. The tables are created in between, long before any worker gets a job.
             executor.start()
             from service.server.web import WebServer
 
@@ -55,7 +55,7 @@ def serve(settings: Settings) -> None:
             WebServer(settings, executor, metrics, compilation.state).run(sockets=[listener])
         except _StopSignal:
             pass
-        except SystemExit:  # uvicorn's way to say that the application did not start
+        except SystemExit:  # uvicorn's signal that the application did not start
             raise ServeError("the service could not start; the log above has the reason") from None
         finally:
             compilation.stop()
@@ -63,19 +63,19 @@ def serve(settings: Settings) -> None:
 
 
 class _StopSignal(BaseException):
-    """Leaves the program by SIGINT or SIGTERM; like KeyboardInterrupt, nothing that handles errors may catch it."""
+    """End of the program by SIGINT or SIGTERM; like KeyboardInterrupt, error handlers must not catch it."""
 
 
 def _raise_stop(_signal: int, _frame: FrameType | None) -> None:
-    # Before the server runs this ends the start. While it runs it has handlers of its own, and it raises the signal
-    # again when it has stopped.
+    # Before the server runs, this ends the start. The running server has its own handlers and raises the signal again
+    # when it has stopped.
     raise _StopSignal
 
 
 def _create_executor(settings: Settings, metrics: Metrics) -> Executor:
     try:
         if settings.executor == "celery":
-            # Celery's import takes half a second, which a server with workers of its own has no use for.
+            # The import of Celery takes half a second, which a server with local workers does not need.
             from service.jobs.cluster.executor import CeleryExecutor
 
             return CeleryExecutor(settings)
@@ -85,18 +85,18 @@ def _create_executor(settings: Settings, metrics: Metrics) -> Executor:
 
 
 def _create_compilation(settings: Settings) -> Compilation:
-    """What the server compiles beside its start: all kernels, or its own where worker hosts run the jobs."""
+    """Create the compilation of the server: all kernels, or only its own if worker hosts run the jobs."""
     wanted = list_parts if settings.executor == "local" else list_analysis_parts
     return Compilation(wanted, settings.log_level, settings.log_format, ahead=settings.compile_ahead)
 
 
 def _build_database_error(error: Exception) -> ServeError:
-    # Not the URL itself, which may hold a password.
+    # The message omits the URL, which may contain a password.
     return ServeError(f"cannot use the database ({type(error).__name__}); set MECHSYNTH_DATABASE_URL")
 
 
 def _is_open(settings: Settings) -> bool:
-    """Whether the service is open because it has no keys; then it is for this machine only."""
+    """Return whether the service is open for lack of keys; it then serves this machine only."""
     try:
         engine = connect(settings.store_url, durable=False)
         try:
@@ -114,22 +114,22 @@ def _open_listener(settings: Settings, only_here: bool) -> Iterator[socket.socke
             settings.host, settings.port, type=socket.SOCK_STREAM, flags=socket.AI_PASSIVE
         )[0]
     except OSError:
-        raise ServeError(f"there is no address for the host {settings.host!r}; set MECHSYNTH_HOST") from None
+        raise ServeError(f"the host {settings.host!r} has no address; set MECHSYNTH_HOST") from None
     if only_here:
         if "*" in settings.cors_origins:
             log.warning(
-                "there are no API keys, and MECHSYNTH_CORS_ORIGINS lets every web page in: whatever page a browser on "
-                "this machine shows can read and cancel all jobs; name the origins, or make a key",
+                "there are no API keys, and MECHSYNTH_CORS_ORIGINS admits every web page: any page shown by a browser "
+                "on this machine can read and cancel all jobs; name the origins, or create a key",
             )
         if not ip_address(str(address[0]).partition("%")[0]).is_loopback:
             log.warning(
-                "there are no API keys, so the service listens on 127.0.0.1 and not where it was told to; "
-                "`mechsynth keys create NAME` makes a key",
+                "there are no API keys, so the service listens on 127.0.0.1 and not on the configured host; "
+                "`mechsynth keys create NAME` creates a key",
                 told=settings.host,
             )
             family, address = socket.AF_INET, ("127.0.0.1", settings.port)
         else:
-            log.info("there are no API keys: the service is open, to this machine only")
+            log.info("there are no API keys: the service is open to this machine only")
     with socket.socket(family, kind, protocol) as listener:
         listener.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
         try:
@@ -137,16 +137,16 @@ def _open_listener(settings: Settings, only_here: bool) -> Iterator[socket.socke
         except OSError as error:
             raise ServeError(
                 f"cannot listen on {settings.host} port {settings.port} ({error.strerror}); "
-                "stop what uses the port, or set MECHSYNTH_PORT"
+                "stop the program that uses the port, or set MECHSYNTH_PORT"
             ) from None
         yield listener
 
 
 @contextmanager
 def _lock_data_folder(settings: Settings) -> Iterator[None]:
-    """Keep other servers away from the data folder: each would take up the jobs that the other one runs.
+    """Lock the data folder against other servers: each would requeue the jobs that the other one runs.
 
-    Servers that share their jobs through a broker have nothing in it.
+    Servers that share jobs through a broker do not use the folder.
     """
     if settings.executor == "celery":
         yield
@@ -165,7 +165,7 @@ def _lock_data_folder(settings: Settings) -> Iterator[None]:
 
 @contextmanager
 def _lock_store(settings: Settings) -> Iterator[None]:
-    """Keep other servers away from the store as well, which may lie outside of the data folder."""
+    """Lock the store against other servers, too, since it may lie outside the data folder."""
     try:
         file = find_sqlite_file(settings.store_url)
         if file is not None:

@@ -79,7 +79,7 @@ class ProgressWriter:
         while True:
             report = self._wait_for_report()
             try:
-                self._store.progress(*report)  # changes nothing once the attempt has ended
+                self._store.record_progress(*report)  # changes nothing once the attempt has ended
             except Exception as error:  # the thread survives any error, because later jobs need it
                 if is_unreachable(error):
                     self._retry(report)
