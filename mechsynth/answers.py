@@ -1,4 +1,4 @@
-"""Answers and their designs, as a person at a prompt wants them: drawn, moved, saved."""
+"""Answers and their designs for interactive use: drawing, motion, files."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ from synthesis.registry import KINDS
 Place = str | PathLike[str]
 
 MAX_COLUMNS = 7
-"""Metrics beside each other in a notebook."""
+"""Maximum number of metrics in a row of a notebook's table."""
 
 
 class Design:
@@ -28,11 +28,11 @@ class Design:
     Attributes
     ----------
     model : pydantic model
-        Everything that the API says of it, frozen.
+        All fields of the design in the API, frozen.
     number : int
-        Its place in the answer, from 0.
+        Index in the answer, from 0.
     title : str
-        The heading of its drawings.
+        Heading of the drawings.
     """
 
     def __init__(self, model: Any, problem: ProblemBase, label: str | None, number: int) -> None:
@@ -45,17 +45,17 @@ class Design:
 
     @property
     def mechanism(self) -> Any:
-        """Its dimensions, under the names of the API."""
+        """Dimensions of the mechanism, with the names of the API."""
         return self.model.mechanism
 
     @property
     def metrics(self) -> Any:
-        """What it is ranked by."""
+        """Metrics by which designs are ranked."""
         return self.model.metrics
 
     @property
     def verification(self) -> Verification:
-        """What was measured when it was driven."""
+        """Checks of the driven mechanism, with measured values."""
         verification: Verification = self.model.verification
         return verification
 
@@ -66,39 +66,39 @@ class Design:
 
     @property
     def forms(self) -> list[Form]:
-        """The forms of files that its type of mechanism has: ``svg``, ``gif``, ``dxf``, ``csv``."""
+        """File formats available for the type of mechanism: ``svg``, ``gif``, ``dxf``, ``csv``."""
         return list_forms(self.mechanism.type)
 
     def draw(self) -> str:
-        """The labelled drawing, SVG: the same as the service's."""
+        """Return the labelled drawing as SVG, the same as from the service."""
         return str(self.file("svg"))
 
     def file(self, form: Form) -> str | bytes:
-        """A file as the service makes it: text, or bytes of an animation.
+        """Return a file as the service makes it: text, or bytes for an animation.
 
         Raises
         ------
         NoSuchExport
-            Where its type of mechanism has no such file.
+            If the type of mechanism has no such file.
         NotBuilt
-            Where its lengths are at the limits of what a statement may hold.
+            If the lengths are near the limits permitted in a problem.
         """
         return export_design(self.model, self.problem, self.title, form)
 
     def to_svg(self, path: Place) -> Path:
-        """Write the drawing; returns the path. Raises as :meth:`file`, and OSError."""
+        """Write the drawing and return its path. Raises as :meth:`file`, and OSError."""
         return self._write_file("svg", path)
 
     def to_dxf(self, path: Place) -> Path:
-        """Write the CAD file, in true dimensions; as :meth:`to_svg`."""
+        """Write the CAD file in true dimensions; see :meth:`to_svg`."""
         return self._write_file("dxf", path)
 
     def to_csv(self, path: Place) -> Path:
-        """Write the table; as :meth:`to_svg`."""
+        """Write the table; see :meth:`to_svg`."""
         return self._write_file("csv", path)
 
     def to_gif(self, path: Place) -> Path:
-        """Write the animation; as :meth:`to_svg`."""
+        """Write the animation; see :meth:`to_svg`."""
         return self._write_file("gif", path)
 
     def _write_file(self, form: Form, path: Place) -> Path:
@@ -107,20 +107,20 @@ class Design:
         return written
 
     def motion(self, steps: int = 360) -> Cycle:
-        """The design over its cycle, in so many equal steps of its input, both ends included.
+        """Analyse the design over its cycle, in ``steps`` equal steps of its input with both ends included.
 
-        A crank turns from the input angle of the first target through a full turn, or as many as its gears need to come
-        back; any other input goes from toggle to toggle of the branch that the targets lie on. The input moves at
-        1 rad/s, or 1 length unit/s.
+        A crank turns from the input angle of the first target through a full turn, or as many turns as its gears need
+        to return; any other input moves from toggle to toggle of the branch that contains the targets. The input moves
+        at 1 rad/s, or 1 length unit/s.
 
         Raises
         ------
         ValueError
-            For no step, and for a mechanism at the limits of what can be analysed.
+            If ``steps`` is below 1, or the size of the mechanism is beyond the range for analyses.
         """
         if steps < 1:
-            raise ValueError(f"a cycle has one step at least, not {steps}")
-        from synthesis.analyses import get_family  # the analysis core is for who moves something
+            raise ValueError(f"steps must be at least 1, got {steps}")
+        from synthesis.analyses import get_family  # imported on demand: the analysis core takes time to load
 
         mechanism = self.mechanism.model_dump(mode="json")
         return Cycle.from_lists(get_family(mechanism).request.analyze_cycle(mechanism, steps))
@@ -143,9 +143,9 @@ class Result:
     Attributes
     ----------
     model : pydantic model
-        Everything that the API says in ``result``, frozen.
-    problem : StatedProblem
-        What was asked.
+        All fields of ``result`` in the API, frozen.
+    problem : ProblemBase
+        The solved problem.
     designs : list of Design
     """
 
@@ -155,12 +155,12 @@ class Result:
 
     @classmethod
     def from_json(cls, problem: Mapping[str, Any], result: Mapping[str, Any], label: str | None = None) -> Result:
-        """The same of a job as a service shows it.
+        """Build the result from the problem and result of a job in JSON.
 
         Raises
         ------
         pydantic.ValidationError
-            Where the service has answered in the words of another version.
+            If the service has another version with other fields.
         """
         kind = KINDS[problem["kind"]]
         model = kind.result.model_validate_json(json.dumps(result))
@@ -171,22 +171,22 @@ class Result:
 
     @property
     def search(self) -> Search:
-        """How the answer was found and how complete it is: ``complete`` is a promise."""
+        """Method and completeness of the search; ``complete`` is a guarantee."""
         search: Search = self.model.search
         return search
 
     @property
     def summary(self) -> str:
-        """The answer in a sentence."""
+        """Summary of the answer in a sentence."""
         return self.model.summary
 
     @property
     def nearest_miss(self) -> NearestMiss[Any] | None:
-        """Where no design passed: what comes nearest."""
+        """The nearest miss if no design passed, else None."""
         return self.model.nearest_miss
 
     def to_json(self) -> str:
-        """The answer as the service would send it, every number in full."""
+        """Return the answer as the service would send it, with all digits of its numbers."""
         return self.model.model_dump_json()
 
     def _repr_html_(self) -> str:
@@ -209,7 +209,7 @@ class Result:
 
 
 def _iterate_metrics(designs: Sequence[Design]) -> Iterator[tuple[str, Any]]:
-    """The metrics of the best design."""
+    """Yield the metrics of the best design."""
     for design in designs[:1]:
         yield from ((name, getattr(design.metrics, name)) for name in type(design.metrics).model_fields)
 

@@ -19,20 +19,20 @@ class Cycle:
     Attributes
     ----------
     input_angle : (n,) array
-        Degrees; of a slider that drives, its places along its line, length units.
+        Input angle in degrees; for a driving slider its position along its line, in length units.
     valid : (n,) array of bool
-        Whether the mechanism can be assembled there; everything else is NaN where it cannot.
+        Whether the mechanism can be assembled at this position; if not, all other values are NaN.
     joints : mapping of (n, 2) arrays
-        x and y of each joint by its name, P being the coupler point, in length units. Empty for what has no joints.
+        x and y of each joint by name, in length units; P is the coupler point. Empty for mechanisms without joints.
     velocities, accelerations : mapping of (n, 2) arrays
-        Their derivatives, the input moving at 1 rad/s (or 1 length unit/s).
+        Time derivatives of the joints for an input speed of 1 rad/s (or 1 length unit/s).
     links : mapping of (n,) arrays
-        The angle of each link by its name, ``coupler`` for one, in degrees.
+        Angle of each link by name, such as ``coupler``, in degrees.
     slides : mapping of (n,) arrays
-        The place of each slide along its line, length units.
+        Position of each slide along its line, in length units.
     answer : mapping
-        All that ``GET /v1/jobs/{id}/designs/{n}/motion`` answers, under its names; lists of numbers are arrays, and
-        null is NaN in them.
+        The complete answer of ``GET /v1/jobs/{id}/designs/{n}/motion`` with its names; lists of numbers are arrays in
+        which null is NaN.
     """
 
     input_angle: Real
@@ -46,7 +46,7 @@ class Cycle:
 
     @classmethod
     def from_lists(cls, listed: Mapping[str, Any]) -> Self:
-        """The same of an answer in plain lists."""
+        """Build a cycle from an answer with plain lists."""
         answer = {name: _convert_arrays(value) for name, value in listed.items()}
         at = answer["input_angle"]
         tracks, links, slides = (answer.get(name, {}) for name in ("joints", "links", "slides"))

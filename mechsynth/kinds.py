@@ -1,4 +1,4 @@
-"""The kinds of problems as classes: each is the statement of its kind, with the kind already stated."""
+"""The kinds of problems as classes: each is the problem model of its kind, with the field ``kind`` set."""
 
 from __future__ import annotations
 

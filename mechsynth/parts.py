@@ -1,7 +1,7 @@
-"""What statements are made of: positions, points, limits, masses, loads, under the names of the API's schemas.
+"""Components of problems: positions, points, limits, masses, loads, with the names of the API's schemas.
 
-Only the stock of a rotor has another one here, ``RotorStock``, because ``Stock`` is that of the bars of linkages. The
-units of a series of trains are mappings.
+Only the stock of a rotor has another name here, ``RotorStock``, because ``Stock`` is the bar stock of linkages. The
+units of a train series are mappings.
 """
 
 from synthesis.kinds.balancing.statement.counterweights import (

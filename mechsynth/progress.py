@@ -1,4 +1,4 @@
-"""How far a solver is: as a bar, or as whoever asks wants to be told."""
+"""Progress of a solver, as a bar or through a callback."""
 
 from __future__ import annotations
 
@@ -9,22 +9,22 @@ from contextlib import contextmanager
 from typing import Any
 
 ProgressCallback = Callable[[float, str], None]
-"""Is told the share that is done, from 0 to 1, and what is being done."""
+"""Callback with the completed share, from 0 to 1, and the present step."""
 
 Progress = bool | ProgressCallback
-"""True: a bar, by ``tqdm.auto`` where tqdm is installed, otherwise lines on standard error. False: nothing."""
+"""True shows a bar if tqdm is installed (``tqdm.auto``), otherwise lines on standard error; False shows nothing."""
 
 
 _FORMAT = "{desc}{percentage:3.0f} %|{bar}| {elapsed}"
 
 
 def ignore_progress(_fraction: float, _message: str) -> None:
-    """Tell nobody."""
+    """Ignore a progress report."""
 
 
 @contextmanager
 def open_progress(progress: Progress) -> Iterator[ProgressCallback]:
-    """Whom a solver is to tell how far it is."""
+    """Yield the progress callback for a solver."""
     if callable(progress):
         yield progress
     elif not progress:
@@ -45,7 +45,7 @@ def _move_bar(bar: Any, fraction: float, message: str) -> None:
 
 
 class _Lines:
-    """A line on standard error whenever something else is being done, or ten per cent more are."""
+    """Progress as lines on standard error: one for each new step, and for each further 10 %."""
 
     def __init__(self) -> None:
         self._last: tuple[int, str] | None = None

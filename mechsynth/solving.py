@@ -1,4 +1,4 @@
-"""Problems solved in this process, or by a service."""
+"""Solution of problems in this process or by a service."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from service import client as service
 
 
 class Cancelled(Exception):
-    """The problem was given up before it was solved."""
+    """The solution was cancelled."""
 
 
 def solve(
@@ -24,20 +24,20 @@ def solve(
     Parameters
     ----------
     problem : a problem of :mod:`mechsynth.kinds`, or a mapping
-        What a client would post as ``problem``.
+        The problem as a client would post it.
     label : str, optional
-        The heading of drawings.
+        Heading of the drawings.
     progress : bool or callable
-        True shows a bar; a callable is told the share that is done and what is being done.
+        True shows a bar; a callable receives the completed share and the present step.
     cancel : threading.Event, optional
-        Set by another thread, it stops the solver at its next report of progress.
+        Event that another thread sets to stop the solver at its next progress report.
 
     Raises
     ------
     InvalidProblem
-        For a problem that is ill-formed or contradicts itself, with the paths of its fields.
+        If the problem is invalid or contradictory, with the paths of its fields.
     Cancelled
-        When ``cancel`` was set.
+        If ``cancel`` was set.
     """
     from synthesis.dispatch import solve as solved
 
@@ -49,28 +49,28 @@ def solve(
 def _stop_on_cancel(cancel: threading.Event | None, report_progress: ProgressCallback) -> ProgressCallback:
     def report(fraction: float, message: str) -> None:
         if cancel is not None and cancel.is_set():
-            raise Cancelled("the problem was given up")
+            raise Cancelled("the solution was cancelled")
         report_progress(fraction, message)
 
     return report
 
 
 class Client:
-    """A running service, which solves problems as :func:`solve` does.
+    """A running service that solves problems like :func:`solve`.
 
     Parameters
     ----------
     url : str
-        Where it is.
+        URL of the service.
     key : str, optional
-        Its API key, where it has keys.
+        API key, if the service has keys.
     timeout_s : float
-        How long one answer may take, seconds.
+        Time limit for one answer, seconds.
 
     Attributes
     ----------
     service : service.client.Client
-        What speaks with it: jobs, lists, analyses.
+        The underlying client for jobs, lists and analyses.
     """
 
     def __init__(self, url: str, key: str | None = None, *, timeout_s: float = 60.0) -> None:
@@ -96,14 +96,14 @@ class Client:
         progress: Progress = False,
         cancel: threading.Event | None = None,
     ) -> Result:
-        """Have a problem solved, and wait for the answer. An interrupt cancels the job, as ``cancel`` does.
+        """Solve a problem and wait for the answer. An interrupt cancels the job, as ``cancel`` does.
 
         Raises
         ------
         InvalidProblem, Cancelled
             As :func:`solve`.
         ClientError
-            ``Unreachable``, ``Refused``, or ``JobFailed`` where the job has ended without a result.
+            ``Unreachable``, ``Refused``, or ``JobFailed`` if the job ended without a result.
         """
         with open_progress(progress) as told:
             try:
@@ -115,12 +115,12 @@ class Client:
         return _build_result(job)
 
     def result(self, job_id: str) -> Result:
-        """The answer of a job that has ended; raises as :meth:`solve`."""
+        """Return the answer of an ended job; raises as :meth:`solve`."""
         return _build_result(self.service.job(job_id).with_result())
 
 
 class AsyncClient:
-    """The same on an event loop; who cancels a task that waits cancels its job.
+    """The client for event loops; cancelling a waiting task cancels its job.
 
     Parameters
     ----------
@@ -144,7 +144,7 @@ class AsyncClient:
         await self.service.close()
 
     async def solve(self, problem: Problem, *, label: str | None = None, progress: Progress = False) -> Result:
-        """Have a problem solved, and wait for the answer; raises as :meth:`Client.solve`."""
+        """Solve a problem and wait for the answer; raises as :meth:`Client.solve`."""
         with open_progress(progress) as told:
             try:
                 job = await self.service.solve(build_statement(problem), label=label, progress=_convert_progress(told))
@@ -153,7 +153,7 @@ class AsyncClient:
         return _build_result(job)
 
     async def result(self, job_id: str) -> Result:
-        """The answer of a job that has ended; raises as :meth:`Client.solve`."""
+        """Return the answer of an ended job; raises as :meth:`Client.solve`."""
         return _build_result((await self.service.job(job_id)).with_result())
 
 
@@ -167,16 +167,16 @@ def _build_result(job: service.Job) -> Result:
 
 
 _PROBLEM_POINTER = "/problem"
-"""Where the problem stands in the body of a request."""
+"""JSON pointer to the problem in a request body."""
 
 
 def _classify_error(error: service.ClientError, cancel: threading.Event | None) -> Exception:
-    """What a fault of a client is called here."""
+    """Convert an error of the client to the exceptions of this package."""
     if isinstance(error, service.JobFailed) and error.job.status == "cancelled":
         return Cancelled(str(error))
     if isinstance(error, service.Refused):
         if cancel is not None and cancel.is_set() and error.status == 404:
-            return Cancelled("the job had ended when it was given up, and was removed")
+            return Cancelled("the job had already ended when it was cancelled, and was removed")
         if error.status == 422 and error.errors and all(_is_in_problem(path) for path in error.errors):
             return InvalidProblem({path.removeprefix(_PROBLEM_POINTER): told for path, told in error.errors.items()})
     return error

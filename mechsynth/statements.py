@@ -1,4 +1,4 @@
-"""Problems as their statements: what is checked here, and what goes to a service."""
+"""Validation of problems, and their JSON form for a service."""
 
 from __future__ import annotations
 
@@ -15,9 +15,9 @@ Problem = ProblemBase | Mapping[str, Any]
 
 
 class InvalidProblem(ValueError):
-    """A problem that is ill-formed or contradicts itself.
+    """An invalid or contradictory problem.
 
-    ``errors`` says what is wrong with which field, by its JSON pointer below the problem: ``/positions/1/x``.
+    ``errors`` has the faults by JSON pointer relative to the problem: ``/positions/1/x``.
     """
 
     def __init__(self, errors: Mapping[str, str]) -> None:
@@ -26,19 +26,19 @@ class InvalidProblem(ValueError):
 
 
 def build_statement(problem: Problem) -> dict[str, Any]:
-    """A problem as the JSON object that states it."""
+    """Return a problem as a JSON object."""
     if isinstance(problem, ProblemBase):
         return {**json.loads(problem.model_dump_json(exclude_unset=True)), "kind": problem.kind}
     return dict(problem)
 
 
 def check_problem(problem: Problem) -> ProblemBase:
-    """A problem that can be solved.
+    """Validate a problem and return it as a model.
 
     Raises
     ------
     InvalidProblem
-        With what a service would say of it.
+        With the faults that a service would report.
     """
     statement = build_statement(problem)
     kind = statement.get("kind")

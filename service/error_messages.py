@@ -1,4 +1,4 @@
-"""What is wrong with what a client has sent: where, as a JSON pointer (RFC 6901), and why, in a sentence."""
+"""Faults of client input: the place as a JSON pointer (RFC 6901), and the reason as a sentence."""
 
 from __future__ import annotations
 
@@ -8,14 +8,14 @@ from typing import Any
 from synthesis.model.error_path import select_given_steps
 
 MAX_FAULTS = 20
-"""A client corrects what it is shown and asks again; a longer list of faults helps nobody."""
+"""Maximum number of reported faults; a client corrects these and sends the request again."""
 
 MAX_STEP = 100
-"""Longest name in a path, characters."""
+"""Maximum length of a reported name in a path, characters."""
 
 
 def make_sentence(text: str) -> str:
-    """A detail as a sentence: with a capital and a full stop.
+    """Format a detail as a sentence, with a capital and a full stop.
 
     >>> sentence("equal to position 0")
     'Equal to position 0.'
@@ -24,17 +24,17 @@ def make_sentence(text: str) -> str:
 
 
 def format_pointer(location: Iterable[str | int]) -> str:
-    """The JSON pointer to a place that is given step by step; the empty string is the whole.
+    """Return the JSON pointer of a place given by its steps; the empty string is the whole document.
 
-    A step is cut at :data:`MAX_STEP` characters: a name so long is no field's, and must not come back in full.
+    A step is cut at :data:`MAX_STEP` characters: no field has such a long name, and it must not be repeated in full.
     """
     return "".join("/" + str(step)[:MAX_STEP].replace("~", "~0").replace("/", "~1") for step in location)
 
 
 def locate_fault(fault: Mapping[str, Any], body: Any) -> str:
-    """The JSON pointer to where a fault of pydantic's lies in what was sent.
+    """Return the JSON pointer to a fault of pydantic in the request.
 
-    Its location begins with the part of a request that it is in; in a body the pointer starts at the body itself.
+    A location begins with the part of the request; in a body the pointer starts at the body itself.
     """
     location = tuple(fault["loc"])
     if location[:1] != ("body",):
@@ -46,13 +46,14 @@ def locate_fault(fault: Mapping[str, Any], body: Any) -> str:
 
 
 def explain_fault(fault: Mapping[str, Any]) -> str:
-    """What is wrong there, in a sentence."""
+    """Describe a fault of pydantic in a sentence."""
     if fault["type"] == "extra_forbidden":
-        return "There is no such field; check its name."
+        return "Unknown field; check its name."
     if fault["type"] == "missing":
         return "This field is required."
     if fault["type"] in ("list_type", "tuple_type"):
         return "This must be a list."
+    # A value of an unknown kind that is not an object cannot have a kind at all.
     unread = fault["type"] == "unknown_kind" and not isinstance(fault["input"], dict)
     if unread or fault["type"] in ("model_type", "model_attributes_type", "dict_type"):
         return "This must be an object."

@@ -1,7 +1,7 @@
-"""One thread at a time imports: two that import a package and one of its modules at once find one of them unfinished.
+"""A lock for imports: two threads that import a package and one of its modules at once may see an unfinished module.
 
-Python lets a thread go on with a module that another is still executing where both would wait for each other. The
-analysis core is imported by the thread that looks for missing kernels beside the server's start, and by others.
+To avoid a deadlock, Python lets a thread continue with a module that another thread is still executing. Several threads
+import the analysis core, among them the one that checks for missing kernels during the server's start.
 """
 
 from __future__ import annotations
@@ -9,4 +9,4 @@ from __future__ import annotations
 import threading
 
 IMPORTS = threading.Lock()
-"""Held by a thread of the server while it imports a library of ours on demand."""
+"""Lock held by a thread of the server while it imports one of our packages on demand."""

@@ -1,7 +1,7 @@
-"""Why a request is refused: the status, the kind of problem, and the faults by their places.
+"""Refusals of requests: the status, the type of the problem, and the faults by their places.
 
-A refusal is an exception that a process can raise for the server: it is pickled by its fields. Nothing here knows of
-HTTP frameworks, so the processes that answer requests need not load one.
+A refusal is an exception that a process can raise for the server: it is pickled by its fields. This module imports no
+HTTP framework, so the processes that answer requests need not load one.
 """
 
 from __future__ import annotations
@@ -15,13 +15,13 @@ from service.error_messages import MAX_FAULTS, explain_fault, locate_fault
 from synthesis.model.counting import format_count
 
 FieldFaults = Sequence[tuple[str, str]]
-"""Pairs of a JSON pointer and what is wrong there."""
+"""Pairs of JSON pointer and description of the fault."""
 
 
 class Refusal(Exception):
-    """A request that is answered with an error, by a client's fault or by the state of things.
+    """A request that is answered with an error, caused by the client or by the state of the service.
 
-    ``defect`` names the error of the service's own that led to the refusal, where there was one.
+    ``defect`` is the type of the internal error that led to the refusal, if there was one.
     """
 
     def __init__(
@@ -59,35 +59,35 @@ def _restore_refusal(
 
 
 def refuse_not_found(detail: str) -> Refusal:
-    """There is no such thing."""
+    """Build the refusal for a missing resource."""
     return Refusal(404, "not-found", "Not found", detail)
 
 
 def refuse_invalid_problem(errors: FieldFaults) -> Refusal:
-    """The problem is well-formed, but cannot be meant; ``errors`` are pairs of path and detail."""
+    """Build the refusal of an invalid problem; ``errors`` are pairs of path and detail."""
     return Refusal(422, "invalid-problem", "Invalid problem", count_faults(len(errors)), errors=errors)
 
 
 def refuse_invalid_mechanism(errors: FieldFaults, *, defect: str | None = None) -> Refusal:
-    """The mechanism is well-formed, but there is none such; ``errors`` are pairs of path and detail."""
+    """Build the refusal of an invalid mechanism; ``errors`` are pairs of path and detail."""
     detail = count_faults(len(errors))
     return Refusal(422, "invalid-mechanism", "Invalid mechanism", detail, errors=errors, defect=defect)
 
 
 def refuse_invalid_request(errors: FieldFaults) -> Refusal:
-    """Something else of the request cannot be meant; ``errors`` are pairs of path and detail."""
+    """Build the refusal of another invalid part of a request; ``errors`` are pairs of path and detail."""
     return Refusal(422, "invalid-request", "Invalid request", count_faults(len(errors)), errors=errors)
 
 
 def refuse_invalid_body(error: ValidationError, body: Any) -> Refusal:
-    """The refusal of a body that is validated where it is used, not by the framework."""
+    """Build the refusal of a body that is validated by this code and not by the framework."""
     faults = error.errors(include_url=False, include_context=False)
     return refuse_faults([{**fault, "loc": ("body", *fault["loc"])} for fault in faults], body)
 
 
 def refuse_faults(faults: Sequence[Mapping[str, Any]], body: Any) -> Refusal:
-    """Sort pydantic's faults into the refusal that names what they lie in: a problem, a mechanism, or the request."""
-    # Several models that a part was tried as may say the same of it.
+    """Build the refusal for pydantic's faults: of a problem, a mechanism or the request, depending on their places."""
+    # A union tries several models, which may report the same fault.
     placed = list(dict.fromkeys((locate_fault(fault, body), explain_fault(fault)) for fault in faults))
     if all(path.startswith("/problem/") for path, _ in placed):
         return refuse_invalid_problem(placed)
@@ -97,7 +97,7 @@ def refuse_faults(faults: Sequence[Mapping[str, Any]], body: Any) -> Refusal:
 
 
 def count_faults(faults: int) -> str:
-    """Say in a sentence how many faults a request has."""
+    """Return a sentence with the number of faults of a request."""
     if faults > MAX_FAULTS:
         return f"The request has more than {MAX_FAULTS} faults; the first {MAX_FAULTS} are listed."
     return f"The request has {format_count(faults, 'fault')}."

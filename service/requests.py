@@ -1,8 +1,8 @@
-"""What a client has stated: checked, written into the store, read from there, and shown.
+"""Problems of clients: validation, storage, and display.
 
-The store has the fields that were stated and no others, so that what a client sends, what is stored and what a worker
-solves are one statement. A job shows its problem with the defaults of all that was left out; a default that is written
-out states nothing, so that this problem, posted again, is the same one.
+The store has exactly the fields that the client sent, so the client's, the stored and the solved problem are the same.
+A job shows its problem with the defaults of all omitted fields. An explicitly written default has no effect, so this
+problem, posted again, counts as the same one.
 """
 
 from __future__ import annotations
@@ -16,11 +16,11 @@ from synthesis.model.problem import ProblemBase
 from synthesis.registry import KINDS
 
 Faults = list[tuple[str, str]]
-"""Pairs of the JSON pointer below the problem, and what is wrong there."""
+"""Pairs of JSON pointer, relative to the problem, and description of the fault."""
 
 
 def dump_problem(problem: ProblemBase) -> str:
-    """A problem as the store has it: what was stated, in JSON."""
+    """Return a problem in its stored form: the given fields as JSON."""
     return problem.model_dump_json(exclude_unset=True)
 
 
@@ -30,7 +30,7 @@ def load_stored_problem(kind: str, stored: str) -> Any:
 
 
 def check_fields(kind: str, statement: Any) -> tuple[Any, Faults]:
-    """The problem of a JSON-like statement, or None; and what is wrong with single fields of it."""
+    """Validate a problem field by field; return it, or None, and the faults of its fields."""
     try:
         return KINDS[kind].problem.model_validate(statement), []
     except ValidationError as error:
@@ -39,14 +39,14 @@ def check_fields(kind: str, statement: Any) -> tuple[Any, Faults]:
 
 
 def check_consistency(problem: ProblemBase) -> Faults:
-    """What is wrong with a problem as a whole; nothing where it can be solved."""
+    """Return the contradictions in a problem; an empty list if it can be solved."""
     return [(fault.path, make_sentence(fault.detail)) for fault in problem.find_contradictions()]
 
 
 def fill_defaults(kind: str, stored: str) -> str:
-    """The same with all defaults, in JSON.
+    """Return a stored problem with all defaults as JSON.
 
-    What an earlier version has taken and this one would refuse is shown as it was stated.
+    A problem that an earlier version accepted and this one would refuse is returned unchanged.
     """
     try:
         problem = load_stored_problem(kind, stored)

@@ -1,4 +1,4 @@
-"""The symbol of what a number measures, in the units of a problem."""
+"""Unit symbols of dimensions in the units of a problem."""
 
 from __future__ import annotations
 
@@ -15,11 +15,11 @@ _SI = {
     Dimension.SPEED: "m/s",
     Dimension.ENERGY: "J",
 }
-"""What masses, loads and flywheels have, and nothing else."""
+"""Units of masses, loads and flywheels, which are SI in any case."""
 
 
 def list_symbols(problem: ProblemBase) -> dict[Dimension, str]:
-    """The symbol of each dimension in the units of a problem; forces and masses of inches are those of pounds-force."""
+    """Return the symbol of each dimension in the units of a problem; inches go with pounds-force and their mass."""
     length = problem.length_unit
     inches = length == "in"
     displacement, rate = ("°", "rad") if problem.is_oscillating else (length, length)

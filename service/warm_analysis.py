@@ -1,7 +1,7 @@
-"""The analysis core, warmed up: its kernels compiled, or loaded from their cache.
+"""Warm-up of the analysis core: its kernels are compiled or loaded from their cache.
 
-The processes that answer requests are forked from one that has done so (:mod:`service.answers`), and kernels that are
-missing are compiled ahead by others (:mod:`service.server.precompile`).
+The processes that answer requests are forked from one that has done this (:mod:`service.answers`); missing kernels are
+compiled ahead in other processes (:mod:`service.server.precompile`).
 """
 
 from __future__ import annotations
@@ -12,7 +12,7 @@ from service.loading import IMPORTS
 
 
 def warm_up() -> None:
-    """Compile the kernels of the analysis core, or load them from their cache, by an analysis of each sort."""
+    """Compile the kernels of the analysis core, or load them from their cache, by running an analysis of each sort."""
     with IMPORTS:
         from synthesis.analyses import list_families, parse_request
 
@@ -29,7 +29,7 @@ def warm_up() -> None:
     parse_request({"mechanism": fourbar, **_TOPICS}).build_answer()
 
 
-# Optional blocks, whose kernels nothing else here calls: a request that needs one must not wait for the compiler.
+# Optional blocks whose kernels the examples do not call: a request with one of them must not wait for the compiler.
 _LAYOUT: dict[str, Any] = {"layout": {"link_width": 1.0, "pin_diameter": 0.4, "thickness": 0.3}}
 _TARGETS: dict[str, Any] = {"targets": [{"x": 1.0, "y": 2.0}, {"x": 2.0, "y": 3.0}]}
 _MANUFACTURE: dict[str, Any] = {**_TARGETS, "manufacture": {"tolerances": {"length": 0.1}}}

@@ -24,7 +24,7 @@ class KeysFailure(Exception):
 def create(settings: Settings, tenant: str, *, further: bool) -> None:
     """Create a key and print it, alone on stdout."""
     if not _TENANT_PATTERN.fullmatch(tenant):
-        raise KeysFailure(f"a tenant is named by up to {MAX_TENANT_LENGTH} letters, digits and ._@-")
+        raise KeysFailure(f"the name of a tenant has up to {MAX_TENANT_LENGTH} letters, digits and ._@-")
     with _store(settings) as store:
         try:
             key, secret = store.create(tenant, further=further)

@@ -29,7 +29,8 @@ def draw_design(job: SolvedJob, number: str, form: Form) -> str | bytes:
     except render.NoSuchExport:
         raise refuse_not_found(f"This type of mechanism has no .{form} file.") from None
     except render.NotBuilt:
-        raise Refusal(409, "no-drawing", "No drawing", "The size of this design is beyond the range for drawings.") from None
+        detail = "The size of this design is beyond the range for drawings."
+        raise Refusal(409, "no-drawing", "No drawing", detail) from None
 
 
 def move_design(result: str, number: str, steps: int) -> bytes:

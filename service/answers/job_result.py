@@ -43,5 +43,9 @@ def parse_design_index(number: str, designs: int) -> int:
         404 if there is no such design.
     """
     if not _DESIGN_NUMBER.fullmatch(number) or int(number) >= designs:
-        raise refuse_not_found(f"The job has {designs} designs, counted from 0; this is none of them.")
+        raise refuse_not_found(
+            f"Design {number[:20]} does not exist; this job has designs 0 to {designs - 1}."
+            if designs
+            else "This job has no designs."
+        )
     return int(number)

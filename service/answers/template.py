@@ -1,7 +1,8 @@
-"""What a process has loaded before it is forked: the analysis core, warmed up.
+"""The template process: it loads and warms up the analysis core before others are forked from it.
 
-The processes that answer requests are forked from one that has imported this module, so that they share its memory and
-are there within some hundredths of a second. The import has effects for that reason; nothing else may import it.
+The processes that answer requests are forked from a process that has imported this module, so that they share its
+memory and start within some hundredths of a second. The import has side effects for that reason; nothing else may
+import it.
 """
 
 from __future__ import annotations
@@ -24,13 +25,13 @@ def _load() -> None:
     from service.answers import analysis, designs, forces, reports, simulations
     from synthesis import registry
 
-    # Named here to be there when they are called.
+    # Only their import matters: forked processes then need no imports of their own.
     assert all((render, analysis, designs, forces, reports, simulations, registry))
     try:
         warm_analysis.warm_up()
-    except Exception:  # the requests will say, one by one, what they could not have
+    except Exception:  # each request will report its own failure
         structlog.get_logger(__name__).exception("the analysis core could not be warmed up", pid=os.getpid())
-    # A collection would write to the pages that forked processes share.
+    # A later garbage collection would write to the memory pages that the forked processes share.
     gc.collect()
     gc.freeze()
 

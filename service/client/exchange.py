@@ -139,13 +139,14 @@ class EventReader:
         return job
 
     def handle_break(self, fault: Refused | httpx.TransportError | None) -> float:
-        """Return the seconds until the stream is resumed, which spare a restarting service; raise after the last try."""
+        """Return the seconds until the stream is resumed, sparing a restarting service; raise after the last try."""
         if isinstance(fault, Refused) and (
             fault.status not in _TEMPORARY_STATUSES or self._failures >= MAX_RESUMPTIONS
         ):
             raise fault
         if isinstance(fault, httpx.TransportError) and self._failures >= MAX_RESUMPTIONS:
             raise _build_unreachable(self._url, fault) from None
+        # Any event received resets the count, so it bounds only consecutive failures.
         self._failures += 1
         return _compute_pause_s(self._failures, None)
 
@@ -169,6 +170,6 @@ def _build_unreachable(url: object, error: Exception) -> Unreachable:
 
 
 def _compute_pause_s(attempt: int, retry_after: str | None) -> float:
-    """Return the pause before the next attempt, seconds: as requested by the service, or doubling with each attempt."""
+    """Return the pause before the next attempt, seconds: as the service requests, or doubling with each attempt."""
     asked_for = float(retry_after) if retry_after is not None and retry_after.isdecimal() else 0.1 * 2**attempt
     return min(asked_for, MAX_PAUSE_S)

@@ -149,7 +149,7 @@ class Client:
                 return
 
     def file(self, job_id: str, design: int, form: str) -> bytes | None:
-        """Return a file of a design (``svg``, ``dxf``, ``csv``, ...); None if its type of mechanism has no such file."""
+        """Return a file of a design (``svg``, ``dxf``, ``csv``, ...); None if its type of mechanism has none such."""
         try:
             return self._send_request(exchange.build_file_request(job_id, design, form)).content
         except Refused as refusal:

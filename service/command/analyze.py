@@ -46,7 +46,7 @@ def _format_table(source: str, answer: dict[str, Any]) -> str:
     count = len(answer.get("input_angle", ()))
     columns = {name: values for name, values in _iterate_lists("", answer) if len(values) == count > 0}
     if not columns:
-        raise SourceError(f"{source}: this analysis has no values over the motion for a table; write a .json file instead")
+        raise SourceError(f"{source}: this analysis has no values over the motion; write a .json file")
     text = io.StringIO()
     rows = csv.writer(text, lineterminator="\n")
     rows.writerow(columns)

@@ -1,4 +1,4 @@
-"""The points of a curve: dense where it bends, its corners as they stand."""
+"""Points of a curve: dense in bends, with corners kept."""
 
 from __future__ import annotations
 
@@ -16,24 +16,27 @@ from service.outlines.faults import UnsuitableDrawing
 from service.outlines.limits import DEFAULT_TOLERANCE
 
 DUPLICATE_TOLERANCE = 1e-12
-"""Points this share of the greatest coordinate apart are one, which rounding has made two."""
+"""Distance, relative to the greatest coordinate, up to which two points count as one: they differ by rounding only."""
 
 DENSE_CHORD_SHARE = 0.125
-"""What of the tolerance goes to the chords between the points that are looked at; the rest to those that are left."""
+"""Share of the tolerance for the chords between the dense points; the rest is for thinning them out."""
 
 _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(16)
 
 
 @dataclass(frozen=True)
 class PointRequest:
-    """How many points a curve is to have: ``tolerance`` None takes a share of its own extent, and keeps its corners."""
+    """Requested points of a curve. Without ``tolerance`` it is a share of the curve's extent, and corners are kept."""
 
     tolerance: float | None
     max_points: int
 
 
 class Points(NamedTuple):
-    """The points of a curve, complex, shape (n,), of so many that were looked at; the first of a closed one once."""
+    """Selected points x + iy, shape (n,), the reached tolerance, and the number of dense points they are selected from.
+
+    A closed curve has its first point once.
+    """
 
     points: Complex
     tolerance: float
@@ -41,20 +44,20 @@ class Points(NamedTuple):
 
 
 def select_piece_points(pieces: Complex, closed: bool, request: PointRequest) -> Points:
-    """Points of a curve that is stated by cubics, shape (n, 4), one after the other.
+    """Select points of a curve given by consecutive cubics, shape (n, 4).
 
-    Corners, where a straight piece begins or ends, stay as they stand unless a tolerance is asked for.
+    Corners, where a straight piece begins or ends, are kept unless a tolerance is requested.
 
     Raises
     ------
     ValueError
-        It has no length.
-    Unsuitable
-        It takes more points than are counted here.
+        If the curve has no length.
+    UnsuitableDrawing
+        If the dense points exceed the limit.
     """
     pieces = pieces[np.ptp(pieces.real, axis=1) + np.ptp(pieces.imag, axis=1) > 0.0]
     if not len(pieces):
-        raise ValueError("it has no length")
+        raise ValueError("its length is zero")
     if closed and pieces[-1, 3] != pieces[0, 0]:
         pieces = np.concatenate([pieces, make_line(pieces[-1, 3], pieces[0, 0])])
     extent = _measure_extent(pieces.ravel())
@@ -75,9 +78,9 @@ def select_piece_points(pieces: Complex, closed: bool, request: PointRequest) ->
 
 
 def select_polyline_points(points: Complex, closed: bool, request: PointRequest, tolerance: float = 0.0) -> Points:
-    """Points of a curve that is stated by points, shape (n,): all of them, or those within a tolerance.
+    """Select points of a curve given by points, shape (n,): all of them, or those needed within a tolerance.
 
-    ``tolerance`` is what is taken where none is asked for; 0 keeps all points.
+    ``tolerance`` is the default if none is requested; 0 keeps all points.
     """
     whole = np.append(points, points[0]) if closed else points
     within = request.tolerance if request.tolerance is not None else tolerance
@@ -92,26 +95,26 @@ def _select_points(
     request: PointRequest,
     chords: float = 0.0,
 ) -> Points:
-    """``tolerance`` is for the chords between the points that are left, ``chords`` for those between all of them."""
+    """Select among dense points; ``tolerance`` applies to the selected chords, ``chords`` to the dense ones."""
     same = DUPLICATE_TOLERANCE * float(np.abs(dense).max())
     new = np.append(True, np.abs(np.diff(dense)) > same)
     dense, kept = dense[new], kept[new]
     if closed:
-        # It comes back to its first point, to the last digit or not.
+        # The curve may return to its first point exactly, within rounding, or not at all.
         if len(dense) > 1 and abs(dense[-1] - dense[0]) <= same:
             dense, kept = dense[:-1], kept[:-1]
         dense, kept = np.append(dense, dense[0]), np.append(kept, True)
     if len(dense) < 2:
-        raise ValueError("it has no length")
+        raise ValueError("its length is zero")
     if closed and len(dense) < 4:
-        raise ValueError("it goes to and fro, and encloses nothing")
+        raise ValueError("it encloses no area")
     if request.tolerance is not None:
         kept = np.zeros(len(dense), bool)
     chosen = reduce_points(dense, tolerance, kept) if tolerance > 0.0 else np.arange(len(dense))
     if len(chosen) - closed > request.max_points:
         chosen = limit_points(dense, request.max_points + closed, tolerance)
     while closed and len(chosen) < 4:
-        # However large the tolerance, it goes around something.
+        # A closed curve needs three points to enclose an area, even with a large tolerance.
         chosen = add_farthest(dense, chosen)
     away = measure_deviation(dense, chosen)
     found = dense[chosen[:-1] if closed else chosen]
@@ -119,7 +122,7 @@ def _select_points(
 
 
 def measure_length(pieces: Complex) -> float:
-    """Length of a curve that is stated by cubics: the speed is integrated by Gauss in two halves of each."""
+    """Return the length of a curve of cubics, by Gauss-Legendre integration of the speed over both halves of each."""
     total = 0.0
     edges = np.diff(pieces, axis=1)
     for start in (0.0, 0.5):
@@ -131,13 +134,13 @@ def measure_length(pieces: Complex) -> float:
 
 
 def measure_polyline(points: Complex, closed: bool) -> float:
-    """Length of the chords between points."""
+    """Return the total length of the chords between points."""
     way = np.append(points, points[0]) if closed else points
     return float(np.abs(np.diff(way)).sum())
 
 
 def find_straight(pieces: Complex) -> NDArray[np.bool_]:
-    """Which cubics are lines that run evenly from end to end."""
+    """Return which cubics are straight lines of constant speed."""
     bends = np.abs(pieces[:, :-2] - 2.0 * pieces[:, 1:-1] + pieces[:, 2:]).max(axis=1)
     return np.asarray(bends <= STRAIGHTNESS_TOLERANCE * np.abs(np.diff(pieces, axis=1)).sum(axis=1))
 

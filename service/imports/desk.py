@@ -1,7 +1,7 @@
-"""Files that clients send are read by processes of their own, a file each at a time, within bounded time and memory.
+"""Reading of client files in separate processes, one file at a time each, within bounded time and memory.
 
-A reader that takes too long or too much is killed and replaced, so that no file can hold the server up or take it down
-with it (:mod:`service.jobs.processes.request_pool`).
+A reader that exceeds its limits is killed and replaced, so that no file can block or crash the server
+(:mod:`service.jobs.processes.request_pool`).
 """
 
 from __future__ import annotations
@@ -17,11 +17,11 @@ from service.observability.logs import Format
 from service.outlines.faults import UnsuitableDrawing
 
 READER_COUNT = 2
-"""Files that are read at once."""
+"""Maximum number of files that are read at once."""
 
 
 class ImportDesk:
-    """Has files read, each in its turn; ``memory_mb`` is what a file may take. To be used on one event loop only."""
+    """Reads files in turn; ``memory_mb`` is the memory limit for a file. For use on one event loop only."""
 
     def __init__(
         self, log_level: str, log_format: Format, memory_mb: int = MEMORY_MB, metrics: PoolMetrics | None = None
@@ -34,12 +34,12 @@ class ImportDesk:
     async def read(
         self, gone: Callable[[], Awaitable[bool]], tenant: str, door: reader.Door, content: bytes, **asked: Any
     ) -> bytes:
-        """What a door of :mod:`service.imports.reader` answers to a file, as JSON.
+        """Return the content that a door of :mod:`service.imports.reader` reads from a file, as JSON.
 
         Raises
         ------
         DrawingError
-            Why the file gives nothing; it may also have taken more than the time or the memory that a file has.
+            If the file is unusable or exceeds the limits of time or memory.
         Busy, Gone, Lost
             As :meth:`service.jobs.processes.request_pool.RequestPool.call`.
         """

@@ -1,4 +1,4 @@
-"""From a file in any format to its curves as points."""
+"""Reading of a file in any supported format to its curves as points."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ from service.outlines.path_data import make_unit_arc
 
 @dataclass(frozen=True)
 class FoundCurve:
-    """A curve before its points are chosen: ``drawn`` are cubics, shape (n, 4), or points, shape (n,)."""
+    """A curve before the selection of its points; ``drawn`` has cubics, shape (n, 4), or points, shape (n,)."""
 
     source: Source
     drawn: Complex
@@ -43,13 +43,13 @@ class FoundCurve:
     tolerance: float = 0.0
 
     def choose_points(self, request: PointRequest) -> Points:
-        """Its points as they are asked for."""
+        """Select the requested points."""
         if self.drawn.ndim == 2:
             return select_piece_points(self.drawn, self.closed, request)
         return select_polyline_points(self.drawn, self.closed, request, self.tolerance)
 
     def compute_length(self, points: Complex) -> float:
-        """How long it is, where these are its points. A contour wavers within a pixel, and is as long as its chords."""
+        """Return the length; for a curve of points that of the chords, since a contour wavers within a pixel."""
         return measure_length(self.drawn) if self.drawn.ndim == 2 else measure_polyline(points, self.closed)
 
 
@@ -65,31 +65,31 @@ def read_curves(
     pixel_size: float | None = None,
     tables: bool = True,
 ) -> Imports:
-    """The curves of a file.
+    """Read the curves of a file.
 
     Parameters
     ----------
     content : bytes
-        SVG, the text form of DXF, PNG, or a table of points.
+        SVG, DXF as text, PNG, or a table of points.
     length_unit : optional
-        The unit of the answer, where the file states its own; the file's where it states none.
+        Unit of the answer if the file has a unit; otherwise the numbers stay as in the file.
     tolerance : float, optional
-        Chord tolerance in the unit of the answer; by default a share of each curve's extent, and points that the file
-        states are kept.
+        Chord tolerance in the unit of the answer; by default a share of each curve's extent, with points given in the
+        file kept.
     max_points : int
-        Points of a curve at most, whatever the tolerance.
+        Maximum number of points of a curve, which takes precedence over the tolerance.
     pixel_size : float, optional
-        Side of a pixel in the unit of the answer, instead of what a picture states.
+        Side of a pixel in the unit of the answer, instead of the value in a picture.
     tables : bool
-        Whether text that begins as nothing else may be a table.
+        Whether text of no other format may be a table.
 
     Raises
     ------
     DrawingError
-        One of its kinds says why there are no curves.
+        One of its subclasses, if there are no curves.
     """
     asked = PointRequest(tolerance, max_points)
-    # Numbers that overflow are looked for where they come out.
+    # Overflows are checked in the resulting coordinates.
     with np.errstate(all="ignore"):
         if content.startswith(PNG_SIGNATURE):
             return _read_picture(content, length_unit, pixel_size, asked)
@@ -111,7 +111,7 @@ def _read_drawing(drawing: Drawing, length_unit: DrawingUnit, request: PointRequ
 
 
 def _connect_curves(curves: Sequence[Curve], reach: float) -> tuple[list[FoundCurve], LeftOut]:
-    """What is closed by itself, and what is joined of the rest, in the order of the drawing; and what is too short."""
+    """Return closed curves and chains of joined open curves, in the order of the drawing, and curves too short."""
     place: dict[int, int] = {}
     for k, one in enumerate(curves):
         place.setdefault(id(one.source), k)
@@ -121,7 +121,7 @@ def _connect_curves(curves: Sequence[Curve], reach: float) -> tuple[list[FoundCu
         if not one.closed and measure_extent([one]) > reach:
             open_.append(one)
         elif not one.closed:
-            tiny.append((one.source, "it is no longer than the gap between ends that are joined"))
+            tiny.append((one.source, "it is not longer than the gap for joining ends"))
     found = [([one], True) for one in curves if one.closed]
     found += [(chain.members, chain.closed) for chain in find_chains(open_, reach)]
     found.sort(key=lambda one: min(place[id(each.source)] for each in one[0]))
@@ -150,7 +150,7 @@ def _read_picture(content: bytes, length_unit: DrawingUnit, pixel_size: float | 
         )
         for one, steps in zip(picture.contours, picture.stepped, strict=True)
     ]
-    left_out: LeftOut = [(Source("contour"), "it goes around a few pixels only")] * picture.specks
+    left_out: LeftOut = [(Source("contour"), "it encloses only a few pixels")] * picture.specks
     millimetres = None if unit is None else across * MILLIMETRES_PER_UNIT[unit]
     return _build_answer("png", found, left_out, millimetres, unit, across, request)
 
@@ -189,7 +189,7 @@ def _build_answer(
             left_out.append((one.source, str(error)))
             continue
         if not np.all(np.abs(points) <= MAX_COORDINATE):
-            left_out.append((one.source, f"its coordinates go beyond {MAX_COORDINATE:g}, or are no numbers"))
+            left_out.append((one.source, f"its coordinates exceed {MAX_COORDINATE:g} or are not numbers"))
             continue
         total, looked = total + len(points), looked + looked_at
         if total > MAX_POINTS or looked > MAX_DENSE_POINTS:
@@ -222,7 +222,7 @@ def _build_answer(
 
 
 def _select_largest(found: Sequence[FoundCurve]) -> tuple[Sequence[FoundCurve], LeftOut]:
-    """As many curves as an answer has, in their order; and those that are smaller, as left out."""
+    """Return the largest curves up to the limit of an answer, in their order, and the smaller ones as left out."""
     if len(found) <= MAX_CURVES:
         return found, []
     size = np.array([max(np.ptp(one.drawn.real), np.ptp(one.drawn.imag)) for one in found])
@@ -235,7 +235,7 @@ def _select_largest(found: Sequence[FoundCurve]) -> tuple[Sequence[FoundCurve], 
 
 
 def _join_pieces(members: Sequence[Curve], closed: bool) -> Complex:
-    """The cubics of curves in a row; where the next one begins near to the end of the one before, it begins there."""
+    """Join the cubics of consecutive curves, moving the start of each to the end of the previous one."""
     (first, *_) = members
     if first.circle is not None:
         return np.asarray(first.circle.centre + first.circle.radius * make_unit_arc(0.0, 2.0 * np.pi))

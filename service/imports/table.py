@@ -1,4 +1,4 @@
-"""Points from a table: two columns of numbers, in a row each, with names above them or without."""
+"""Points from a table of two columns of numbers, one point in each row, with or without a header."""
 
 from __future__ import annotations
 
@@ -16,12 +16,12 @@ from service.outlines.limits import MAX_COORDINATE
 _NUMBER = re.compile(r"[+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?", re.ASCII)
 _UNIT = re.compile(r"(.*?)\s*[\[(]\s*([A-Za-z]+)\s*[\])]")
 MAX_CELL_LENGTH = 64
-"""Characters of a number, or of a name with its unit."""
+"""Maximum length of a number, or of a name with its unit, characters."""
 
 
 @dataclass(frozen=True)
 class Table:
-    """Curves as points, complex, one for each block of rows; the names of the columns; millimetres in their unit."""
+    """Curves as points x + iy, one for each block of rows; names of the columns; millimetres in their unit."""
 
     curves: list[Complex]
     names: tuple[str, str] | None
@@ -29,21 +29,21 @@ class Table:
 
 
 def read_table(content: bytes) -> Table:
-    """The points in a table.
+    """Read the points in a table.
 
-    Cells are parted by semicolons, tabs, commas or blanks, whichever of these the first row has, in this order; where
-    it is not by commas, a number may have one in place of its point. A first row that holds no numbers names the
-    columns: those called x and y are read, or the first two. A unit may stand with both: ``x [mm]``. An empty row
-    begins another curve, and what follows # is not read.
+    The separator is the first of semicolon, tab, comma and blank that occurs in the first row. Unless it is the comma,
+    numbers may have a decimal comma. A first row without numbers names the columns: those named x and y are read,
+    otherwise the first two. Both may have a unit: ``x [mm]``. An empty row begins another curve, and text after # is a
+    comment.
 
     Raises
     ------
     ForeignFormat
-        It is no text.
-    Malformed
-        A cell is no number; the message has its line.
-    Unsuitable
-        There are no points, or too many.
+        If it is not text.
+    MalformedDrawing
+        If a cell is not a number; the message has its line.
+    UnsuitableDrawing
+        If there are no points, or too many.
     """
     lines = _decode_text(content).splitlines()
     rows = [(n, line.partition("#")[0].strip()) for n, line in enumerate(lines, 1)]
@@ -65,14 +65,14 @@ def read_table(content: bytes) -> Table:
             names, columns, millimetres = _find_columns(cells)
             continue
         if len(cells) <= max(columns) or len(cells) > MAX_COLUMNS:
-            raise MalformedDrawing(f"Line {n} of the table has not two columns of numbers.")
+            raise MalformedDrawing(f"Line {n} of the table does not have two columns of numbers.")
         curves[-1].append(complex(*(_parse_number(cells[k], decimal_comma, n) for k in columns)))
         count += 1
         if count > MAX_POINTS or len(curves) > MAX_CURVES:
             raise UnsuitableDrawing(f"The table has more than {MAX_POINTS} points, or more than {MAX_CURVES} curves.")
     found = [np.array(curve) for curve in curves if curve]
     if not found:
-        raise UnsuitableDrawing("The table has names and no points.")
+        raise UnsuitableDrawing("The table has a header but no points.")
     return Table(found, names, millimetres)
 
 
@@ -81,10 +81,10 @@ def _decode_text(content: bytes) -> str:
     try:
         text = content.decode(encoding)
     except UnicodeDecodeError:
-        # What is written by hand elsewhere has letters at most in its names.
+        # An old 8-bit encoding: only the names can contain other letters, and Latin-1 decodes any bytes.
         text = content.decode("latin-1")
     if any(code < " " and code not in "\t\r\n\f\v" for code in set(text)):
-        raise ForeignFormat("The body is neither SVG, DXF text, PNG nor a table of points.")
+        raise ForeignFormat("The body is neither SVG, DXF as text, PNG nor a table of points.")
     return text
 
 
@@ -93,13 +93,13 @@ def _has_names(cells: list[str], decimal_comma: bool) -> bool:
 
 
 def _find_columns(cells: list[str]) -> tuple[tuple[str, str], tuple[int, int], float | None]:
-    """Names, places and unit of the two columns that are read."""
+    """Return the names, indices and unit of the two columns to read."""
     parted = [_UNIT.fullmatch(cell) if len(cell) <= MAX_CELL_LENGTH else None for cell in cells]
     names = [found[1] if found else cell for found, cell in zip(parted, cells, strict=True)]
     lower = [name.lower() for name in names]
     columns = (lower.index("x"), lower.index("y")) if {"x", "y"} <= set(lower) else (0, 1)
     if len(cells) < 2:
-        raise UnsuitableDrawing("The table has one column; it takes two, x and y.")
+        raise UnsuitableDrawing("The table has one column; it needs two, x and y.")
     stated: set[str] = {found[2] if (found := parted[k]) else "" for k in columns}
     units: dict[str, float] = {unit: MILLIMETRES_PER_UNIT[unit] for unit in MILLIMETRES_PER_UNIT}
     return (names[columns[0]], names[columns[1]]), columns, units.get(stated.pop()) if len(stated) == 1 else None
@@ -112,7 +112,7 @@ def _replace_comma(cell: str, decimal_comma: bool) -> str:
 def _parse_number(cell: str, decimal_comma: bool, line: int) -> float:
     spelt = _replace_comma(cell[: MAX_CELL_LENGTH + 1], decimal_comma)
     if not _NUMBER.fullmatch(spelt) or len(spelt) > MAX_CELL_LENGTH:
-        raise MalformedDrawing(f"Line {line} of the table has a cell that is no number.")
+        raise MalformedDrawing(f"Line {line} of the table has a cell that is not a number.")
     value = float(spelt)
     if not abs(value) <= MAX_COORDINATE:
         raise UnsuitableDrawing(f"Line {line} of the table has a number beyond {MAX_COORDINATE:g}.")

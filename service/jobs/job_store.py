@@ -196,8 +196,8 @@ class JobStore:
         """Claim the queued job whose turn it is under a mark; return None if there is none.
 
         ``costs`` are tried in order. The short jobs of the tenants ``passed_over`` stay in the queue. Of concurrent
-        callers only one gets a given job. A caller whose connection broke uses :meth:`find_claim` to learn whether it got
-        one.
+        callers only one gets a given job. A caller whose connection broke uses :meth:`find_claim` to learn whether it
+        got one.
         """
         with self._engine.begin() as connection:
             for cost in costs:

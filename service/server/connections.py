@@ -79,7 +79,7 @@ HOST_UNCLEAR = Fault(
 )
 HEAD_TOO_LARGE = Fault(
     431, "/problems/head-too-large", "Head too large",
-    f"The address and the headers of a request may have {MAX_HEAD_BYTES} bytes together.",
+    f"The address and the headers of a request exceed {MAX_HEAD_BYTES} bytes.",
 )  # fmt: skip
 
 

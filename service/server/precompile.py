@@ -184,7 +184,7 @@ def _compile(missing: list[str], parent: int, priority: int, level: str, form: l
                 if not ours:
                     elsewhere.append(part)
                 elif not is_compiled(part):
-                    if part not in (LINKAGES_PART, ANALYSIS_PART):  # without these no mechanism can be looked at
+                    if part not in (LINKAGES_PART, ANALYSIS_PART):  # these are needed first: full priority
                         os.nice(priority - os.nice(0))
                     try:
                         _compile_part(part)

@@ -105,7 +105,7 @@ class GivenFollower(Statement):
 
 
 class GivenCurve(Statement):
-    """Points around the cam in its own frame, the first not repeated; the angles are not read."""
+    """Points around the cam in its own frame, the first not repeated; the angles are ignored."""
 
     x: Coordinates
     y: Coordinates

@@ -77,7 +77,7 @@ def find_course_errors(course: ForceCurve | TorqueCurve, mechanism: Mechanism) -
         period = FULL_TURN * count_turns(course, mechanism)
     except KinematicsError as error:
         # The period is unknown, for example with gears of irrational ratio.
-        yield "/turns", f"state it: {error}"
+        yield "/turns", f"give the number of turns after which the table repeats: {error}"
         return
     fault = find_period_error(course.table, period)
     if fault is not None:

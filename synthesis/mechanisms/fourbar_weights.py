@@ -54,7 +54,7 @@ def build_weights(dynamics: DesignDynamics, joints: Complex, unit: LengthUnit) -
     origin = complex(joints[0, 0]) if count else 0j
     block = pack_loads(dynamics, unit, origin)
     if block is None:
-        raise ValueError("expected a block without springs, friction and loads that change; weigh it by its machine")
+        raise ValueError("expected a block without springs, friction and loads that change; use `Machine` for others")
     loads = int(block[LOADS])
     mass, inertia = np.empty((2, count, 3))
     cg = np.empty((count, 3), np.complex128)

@@ -370,5 +370,5 @@ class _MachineBuilder(LinkBodies):
             # A slide's motion does not repeat by turns, so no rotation is counted modulo a cycle.
             period = math.inf if self.mechanism.has_slide_input else compute_cycle(self.mechanism)
         except KinematicsError as error:
-            raise BlockError(path, f"how far the spring is wound cannot be told: {error}") from None
+            raise BlockError(path, f"the rotation of the torsion spring cannot be followed: {error}") from None
         return follow_rotation(self.mechanism, links, period)

@@ -113,8 +113,8 @@ class GivenSkeleton(Statement):
     links: dict[str, PositiveLength] = Field(
         default={},
         max_length=20,
-        description="Lengths by name: each is the distance between two joints of the skeleton's link of that name, or, "
-        "where none has the name, of any link.",
+        description="Lengths by name: each is the distance between two joints of the skeleton's link of that name, or "
+        "of any link if none has that name.",
     )
     fixed_pivots: dict[str, Point] = Field(
         default={},

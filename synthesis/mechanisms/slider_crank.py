@@ -99,8 +99,8 @@ class GivenInvertedSliderCrank(GivenByDimensions):
     slide: OutputSlide
     coupler_point: CouplerPointSpec | None = Field(
         default=None,
-        description="P on the body that slides: its distance from A, and the angle from the line A → O4 to the line "
-        "A → P in the reference, which must then be stated.",
+        description="P on the body that slides: its distance from A, and the angle from the line A → O4 to the line A "
+        "→ P in the reference configuration, for which `reference_input_angle` must then be given.",
     )
     assembly: Assembly = "open"
 

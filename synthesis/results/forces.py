@@ -153,7 +153,7 @@ def prepare_drive(dynamics: DesignDynamics, design: Any, steps: int = STEP_COUNT
     speed = dynamics.speed if slides else dynamics.speed_rpm
     if speed is None:
         missing, moves = ("speed", "slides") if slides else ("speed_rpm", "turns")
-        raise ForcesUnknownError(f"/dynamics/{missing}", f"the input of this linkage {moves}; state it")
+        raise ForcesUnknownError(f"/dynamics/{missing}", f"the input of this linkage {moves}; give its speed")
     at = _list_inputs(block, mechanism, design.metrics, steps)
     if at is None:
         raise ForcesUnknownError("", "the design has no verified motion")

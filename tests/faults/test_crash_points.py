@@ -14,9 +14,9 @@ from tests.support.service.running import PROBLEM, REACHED_S, SCRIPTED, SOON_S, 
 from tests.support.service.scripted_server import BRIEF, BROKEN, DIES_ONCE, GATED, INSTANT, NATIVE, TOLD
 
 RUNS = int(os.environ.get("MECHSYNTH_FAULT_RUNS", "20"))
-WORKER_POINTS = {"progress": TOLD, "succeed": BRIEF, "fail": BROKEN}
+WORKER_POINTS = {"record_progress": TOLD, "complete": BRIEF, "fail": BROKEN}
 SERVER_POINTS = (
-    "create", "create_once", "take", "cancel", "delete", "requeue", "requeue_unfinished", "crashed", "give_up"
+    "create", "create_once", "take", "cancel", "delete", "requeue", "requeue_unfinished", "record_crash", "give_up"
 )  # fmt: skip
 
 pytestmark = [pytest.mark.faults, pytest.mark.timeout(1500)]
@@ -184,7 +184,7 @@ def dies_at_requeue_unfinished(folder, moment, run):
 
 def dies_at_crashed(folder, moment, run):
     (folder.path / "died").unlink(missing_ok=True)
-    folder.arm(moment, "crashed")
+    folder.arm(moment, "record_crash")
     job = folder.post(DIES_ONCE)
     until(lambda: folder.server.process.poll() is not None, REACHED_S, "the death of the server")
     folder.again()

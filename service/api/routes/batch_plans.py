@@ -229,7 +229,7 @@ def _find_value_faults(body: BatchRequest, kind: str, plan: Plan, until: float) 
             for k, field in enumerate(plan.fields):
                 if k in places and (path == field or path.startswith(f"{field}/")):
                     given = body.vary[k].values is not None
-                    unknown = detail.startswith("There is no such field")
+                    unknown = detail.startswith("Unknown field")
                     inside = f"/values/{places[k]}{path[len(field) :]}" if given else ""
                     place = "/field" if unknown and path == field else inside
                     # Values computed from a range have no place in the request, so the message names the value.

@@ -117,7 +117,7 @@ async def stream_events(
     """
     if poller.count_listeners(tenant) >= MAX_LISTENERS:
         raise Refusal(
-            503, "too-many-listeners", "Too many listeners", "Too many of your clients are listening. Send the request again.",
+            503, "too-many-listeners", "Too many listeners", "Too many of your clients are listening; try again.",
             headers={"Retry-After": "5"},
         )  # fmt: skip
     job = await _read_current(poller, id_, tenant) if ULID_PATTERN.fullmatch(id_) else None

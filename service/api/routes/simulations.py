@@ -47,8 +47,8 @@ SIMULATIONS: dict[Form, Simulation] = {
         "application/xml",
         "export_design_urdf",
         "Export a design as URDF",
-        "Return design ``number`` of the job's result as URDF, a tree whose loops are closed by SDF joints in the block "
-        "`gazebo`." + _MOTION_NOTE,
+        "Return design ``number`` of the job's result as URDF, a tree whose loops are closed by SDF joints in the "
+        "block `gazebo`." + _MOTION_NOTE,
     ),
     "mo": Simulation(
         "text/plain; charset=utf-8",

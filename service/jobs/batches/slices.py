@@ -1,7 +1,7 @@
 """The work on a share of a batch: a worker solves a slice of it and stores the slice in one transaction.
 
-A slice ends after :data:`SLICE_S` seconds or :data:`MAX_SAMPLES` samples, the earlier of the two. That is soon enough to free
-the worker for the next job in turn, and late enough to make claiming and storing, which take as long as a quick
+A slice ends after :data:`SLICE_S` seconds or :data:`MAX_SAMPLES` samples, the earlier of the two. That is soon enough to
+free the worker for the next job in turn, and late enough to make claiming and storing, which take as long as a quick
 problem, a small part of the work.
 
 This module is imported before the worker has set its number of threads, so it must not import numpy.

@@ -64,8 +64,8 @@ class Table:
         Parameters
         ----------
         least, greatest : sequence of str
-            Columns to minimize and columns to maximize. A signed error (:data:`SIGNED_METRICS`) is minimized by its absolute
-            value.
+            Columns to minimize and columns to maximize. A signed error (:data:`SIGNED_METRICS`) is minimized by its
+            absolute value.
         """
         signs = {**dict.fromkeys(least, 1.0), **dict.fromkeys(greatest, -1.0)}
         places = [(self.columns.index(name), sign) for name, sign in signs.items()]

@@ -38,7 +38,7 @@ class PickedValues(Sequence[Any]):
 
 
 def encode_values(values: Values) -> Any:
-    """Encode values as JSON-like data for :func:`decode_values`: lists unchanged, arrays and picked values in base64."""
+    """Encode values as JSON-like data for :func:`decode_values`: lists unchanged, arrays and picks in base64."""
     if isinstance(values, PickedValues):
         return {"among": values.among, "places": _encode_numbers(values.places)}
     return {"doubles": _encode_numbers(values)} if isinstance(values, array) else values

@@ -172,7 +172,10 @@ class Turns:
         return (Cost.SHORT, Cost.LONG) if self._before == Cost.LONG else (Cost.LONG, Cost.SHORT)
 
     def _list_excluded_tenants(self, seat: Seat) -> Collection[str]:
-        """Return the tenants whose short jobs the lane must skip: those with one running, if only reserved lanes are free."""
+        """Return the tenants whose short jobs the lane must skip.
+
+        If only reserved lanes are free, these are the tenants with a short job running.
+        """
         with self._news:
             free = sum(other is not seat and other not in self._busy for other in self._seats)
             if free >= self._reserved_count:

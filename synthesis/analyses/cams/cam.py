@@ -68,7 +68,10 @@ class Train(Statement):
 
 
 class Cutter(Statement):
-    """A cutter or grinding wheel that makes the profile: at the positions of the motion, or as close as chords ask."""
+    """A cutter or grinding wheel that makes the profile.
+
+    Its path is given at the positions of the motion, or within a chordal tolerance.
+    """
 
     radius: NonNegative
     chordal_tolerance: PositiveNumber | None = Field(

@@ -16,8 +16,8 @@ ENCLOSURE_BITS = 256
 """Number of bits of the required ratio's enclosure: errors are correct to all digits of a float."""
 
 WANTED_DESCRIPTION = (
-    "The ratio that the train ought to have, a number or an exact expression such as `354375/12000`: the answer then "
-    "has `drift`, of the sizes of both where they differ in sign."
+    "Required ratio of the train, a number or an exact expression such as `354375/12000`. The answer then has "
+    "`drift`, which compares magnitudes if the signs differ."
 )
 
 
@@ -28,8 +28,8 @@ class Drift(Answer):
     seconds_per_day: float = Field(description="Seconds per day; positive if the output is fast.")
     days_per_second: float | None = Field(description="Days until the error is one second; null if it never is.")
     opposite: bool | None = optional_field(
-        "True where ratio and wanted ratio differ in sign: the train turns the other way, or about axes that are not "
-        "parallel. The rest is then that of their sizes."
+        "True if ratio and required ratio differ in sign: the train turns the other way, or about axes that are not "
+        "parallel. The other fields then compare magnitudes."
     )
 
 

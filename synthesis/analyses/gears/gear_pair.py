@@ -90,13 +90,15 @@ class PairedGear(Answer):
 
     teeth: int
     pitch_diameter: float
-    outside_diameter: float | None = Field(description="Null without a tooth depth.")
+    outside_diameter: float | None = Field(description="Outside diameter; null without a tooth depth.")
     addendum: float | None
     dedendum: float | None
     helix_angle: float | None = Field(description="Helix angle; only for helical gears and worm sets.")
     pitch_cone_angle: float | None = Field(description="Cone angle; only for bevel gears.")
     virtual_teeth: float | None = Field(description="Teeth of the equivalent spur gear, not rounded.")
-    circular_pitch: float = Field(description="In the plane of rotation, at the large end.")
+    circular_pitch: float = Field(
+        description="Circular pitch in the plane of rotation; for bevel gears at the large end."
+    )
     tooth_thickness: float | None
     speed: float = Field(description="rad/s")
 
@@ -105,14 +107,16 @@ class GearPairAnalysis(Answer):
     """Dimensions of a pair of gears."""
 
     ratio: float = Field(description="Speed of the first gear over the second, without sign.")
-    centre_distance: float | None = Field(description="Null for bevel gears, whose shafts meet.")
-    cone_distance: float | None = Field(description="From the apex of bevel gears to the large end.")
+    centre_distance: float | None = Field(description="Centre distance; null for bevel gears, whose shafts intersect.")
+    cone_distance: float | None = Field(description="Distance from the apex of bevel gears to the large end.")
     tooth_system: str | None = Field(description="Tooth proportions of bevel gears.")
     whole_depth: float | None
-    transverse_contact_ratio: float | None = Field(description="Only for helical gears on parallel shafts.")
+    transverse_contact_ratio: float | None = Field(
+        description="Contact ratio in the plane of rotation; only for helical gears on parallel shafts."
+    )
     face_contact_ratio: float | None = Field(description="Face width over axial pitch, if a face width is given.")
     least_face_width: float | None = Field(description="Face width for an overlap of 1.15 pitches.")
-    lead: float | None = Field(description="Only for a worm set.")
+    lead: float | None = Field(description="Lead of the worm; only for a worm set.")
     lead_angle: float | None
     self_locking: bool | None = Field(description="Whether the gear cannot drive the worm, with square threads.")
     gears: list[PairedGear]

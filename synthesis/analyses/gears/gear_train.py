@@ -64,22 +64,23 @@ class GearTrainAnalysisRequest(DrivenRequest[GivenGearTrain]):
     length_unit: Literal["mm", "cm", "m", "in"] = "mm"
     input_torque: Number = Field(
         default=1.0,
-        description="Torque on the input shaft, N·m; if opposite to its speed at the first position, output drives.",
+        description="Torque on the input shaft, N·m. If it is opposite to the speed at the first position, the output "
+        "drives.",
     )
     mesh_efficiency: Annotated[float, Field(strict=True, gt=0.0, le=1.0)] | None = Field(
         default=None,
-        description="Share of the power that every mesh passes on, but those of worms, whose loss is always that of "
-        "their own friction; from the friction where left out.",
+        description="Share of the power that every mesh transmits. The losses of worms always follow from their own "
+        "friction. Default: computed from `friction`.",
     )
     friction: Annotated[float, Field(strict=True, ge=0.0, le=1.0)] = Field(
         default=USUAL_FRICTION,
-        description="Friction coefficient between the teeth; a worm has its own, given by the stage.",
+        description="Coefficient of friction between the teeth; a worm has its own, given by its stage.",
     )
     wanted_ratio: ExactRatio | None = Field(default=None, description=WANTED_DESCRIPTION)
     strength: StrengthMethod | None = Field(
         default=None,
-        description="Stresses of every mesh under the torque at the first position, over the stage's face width or "
-        "over the least that keeps the allowable stresses; pairs are of the driving gear and the driven one.",
+        description="Stresses of every mesh under the torque at the first position, at the stage's face width or at "
+        "the minimum that keeps within the allowable stresses; pairs are for the driving and the driven gear.",
     )
 
     def find_errors(self) -> list[tuple[str, str]]:
@@ -206,7 +207,7 @@ class TurningGear(TurningPart):
     pitch_diameter: float
     outside_diameter: float
     root_diameter: float
-    base_diameter: float | None = Field(description="Null of bevel gears and of a worm.")
+    base_diameter: float | None = Field(description="Base diameter; null for bevel gears and for a worm.")
     tooth_thickness: float = Field(description="Value on the pitch circle.")
     undercut: bool = Field(description="Whether a rack that cuts the gear undercuts it.")
 
@@ -215,9 +216,9 @@ class Shaft(Answer):
     """A shaft that passes torque on, from the input shaft to the output shaft."""
 
     speed_ratio: float
-    torque: float = Field(description="N m, with the losses between the input and it.")
+    torque: float = Field(description="Torque, N·m, including the losses between the input and this shaft.")
     axis: tuple[float, float, float] | None = optional_field(
-        "About which the speed is counted, the input's along z; left out where all shafts are parallel."
+        "Axis about which the speed is counted; the input's axis is z. Left out if all shafts are parallel."
     )
 
 

@@ -33,7 +33,7 @@ class GivenGearboxStage(Statement):
 
 
 class GivenGearbox(Statement):
-    """A machine-tool gearbox; of a design's other fields none is needed."""
+    """A machine-tool gearbox; the other fields of a design are optional."""
 
     type: Literal["gearbox"]
     stages: list[GivenGearboxStage] = Field(min_length=1, max_length=6)

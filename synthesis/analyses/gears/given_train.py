@@ -42,24 +42,24 @@ class GivenStage(StageType):
     """Two gears that mesh; the driven gear sits on the shaft of the next stage's driver."""
 
     driver: Annotated[int, Field(strict=True, ge=1, le=MAX_TEETH)] = Field(
-        description=f"Teeth of the driving gear, at least {MIN_TEETH}; of a worm its threads."
+        description=f"Teeth of the driving gear, at least {MIN_TEETH}; for a worm the number of its threads."
     )
     driven: ToothNumber
     module: PositiveNumber = Field(
         default=1.0,
-        description="Module in length units: of helical teeth in the normal plane, of bevel teeth at the large end, "
-        "of a worm the axial one.",
+        description="Module in length units: for helical teeth in the normal plane, for bevel teeth at the large end, "
+        "for a worm the axial module.",
     )
     shift: GivenShifts | None = None
     centre_distance: PositiveNumber | None = Field(
-        default=None, description="As in a design; it must equal the distance of the teeth without play."
+        default=None, description="Centre distance, as in a design; it must be the distance without play."
     )
     face_width: PositiveNumber | None = Field(
         default=None,
-        description="For `strength`; of helical gears for the overlap, of bevel gears for the forces, which then "
-        "stand in the middle of the face. That of bevel gears is less than the cone distance, where their teeth would "
-        "reach the apex; in practice it is at most 0.3 of it, and 10 modules (Shigley's Mechanical Engineering Design, "
-        "Tab. 13-3).",
+        description="Face width, used for `strength`, for the overlap of helical gears, and for the forces of bevel "
+        "gears, which then act at the middle of the face. The face of bevel gears must be narrower than the cone "
+        "distance, at which the teeth would reach the apex; in practice it is at most 0.3 of that distance, and 10 "
+        "modules (Shigley's Mechanical Engineering Design, Tab. 13-3).",
     )
     addendum: GivenAddenda | None = Field(
         default=None,

@@ -60,21 +60,25 @@ class LoadedMesh(MeshGeometry):
     clearance: float
     efficiency: float | None = Field(description="Null if fewer than one pair of teeth is in contact.")
     pitch_line_velocity: float = Field(
-        description="At the first position, length units per second; of a worm that of its own threads."
+        description="Pitch line velocity at the first position, length units per second; for a worm that of its "
+        "threads."
     )
-    tangential_force: float = Field(description="N; of a worm that on the gear, which is axial on the worm.")
+    tangential_force: float = Field(
+        description="Tangential force, N; for a worm set the tangential force on the gear, which is axial on the worm."
+    )
     radial_force: float = Field(
         description="Radial force that separates the gears, N; for bevel gears the one on the driver."
     )
     radial_forces: GearNumbers | None = optional_field(
-        "N, of bevel gears: on the driver and on the driven gear, each towards its axis. Of all others both are "
-        "`radial_force`."
+        "Radial forces on the driver and on the driven gear, each towards its axis, N; only for bevel gears. For all "
+        "others both equal `radial_force`."
     )
     axial_force: GearNumbers | None = optional_field(
-        "N, of helical, bevel and worm gears: on the driver and on the driven gear. Of helical gears positive where "
-        "it points along the axis about which the speed of their shafts is counted (of a train with bevel or worm "
-        "stages the `axis` in `shafts`, otherwise the input's) while the input's speed is positive, and against it "
-        "while that is negative; of bevel gears positive away from the apex; of a worm its size."
+        "Axial forces on the driver and on the driven gear, N; only for helical, bevel and worm gears. Helical "
+        "gears: while the input's speed is positive, a positive force points along the axis about which the speeds "
+        "of the shafts are counted (`axis` in `shafts` for a train with bevel or worm stages, otherwise the input's "
+        "axis); while the input's speed is negative, it points against that axis. Bevel gears: positive away from "
+        "the apex. Worm gears: the magnitude."
     )
     strength: PairStrength | None = optional_field("Stresses, if a method is given.")
 

@@ -77,7 +77,8 @@ class GivenPlanetaryTrain(Statement):
         default=None, max_length=8, description="Face width of each plane, as in a design, for `strength`."
     )
     ratio: GivenRatio | None = Field(
-        default=None, description="As in a design; compared with the teeth if all three members are given."
+        default=None,
+        description="Ratio, as in a design; compared with that of the teeth if all three members are given.",
     )
 
     def build_train(self) -> Train:
@@ -151,8 +152,8 @@ class PlanetaryAnalysisRequest(DrivenRequest[GivenPlanetaryTrain]):
     speeds: dict[Body, Number] | None = Field(
         default=None,
         max_length=24,
-        description="Known speeds by body, in any one unit, 0 for a body that is held; in place of the input and fixed "
-        "member turning by `motion`.",
+        description="Known speeds by body, all in the same unit; 0 for a body at rest. They replace the input that "
+        "turns by `motion` and the fixed member.",
     )
     locked: list[tuple[Body, Body]] = Field(
         default=[], max_length=24, description="Pairs of bodies that a clutch connects."
@@ -163,7 +164,7 @@ class PlanetaryAnalysisRequest(DrivenRequest[GivenPlanetaryTrain]):
     loads: list[Body] | None = Field(
         default=None,
         max_length=24,
-        description="Members that something outside drives, brakes or holds; null: those with known speeds or torques, "
+        description="Members that are driven, braked or held from outside; null: those with known speeds or torques, "
         "and the output.",
     )
     mesh_efficiency: Annotated[float, Field(strict=True, gt=0.5, le=1.0)] = Field(
@@ -172,7 +173,7 @@ class PlanetaryAnalysisRequest(DrivenRequest[GivenPlanetaryTrain]):
     include: list[Literal["shift_table"]] = Field(
         default=[],
         max_length=1,
-        description="`shift_table`: which clutches and brakes give which ratio between input and output.",
+        description="`shift_table`: the ratio between input and output for each choice of engaged clutches and brakes.",
     )
     elements: list[GivenElement] | None = Field(
         default=None,
@@ -186,9 +187,9 @@ class PlanetaryAnalysisRequest(DrivenRequest[GivenPlanetaryTrain]):
     length_unit: Literal["mm", "cm", "m", "in"] = Field(default="mm", description="Unit of the module, for `strength`.")
     strength: PlanetStrength | None = Field(
         default=None,
-        description="Stresses of every mesh of an arrangement with its `module` and `planets`, under the `torques` "
-        "stated, N m, and the speed of the motion at its first position; over `face_widths` or over the least that "
-        f"keeps the allowable stresses. {PAIRS_NOTE}",
+        description="Stresses of every mesh of an arrangement that has `module` and `planets`, under the given "
+        "`torques`, N·m, and at the speed of the first position of the motion; at `face_widths`, or at the minimum "
+        f"face widths that keep within the allowable stresses. {PAIRS_NOTE}",
     )
 
     def find_errors(self) -> list[tuple[str, str]]:

@@ -86,15 +86,17 @@ class GivenGearPair(Statement):
     teeth: tuple[ToothNumber, ToothNumber]
     module: PositiveNumber = Field(default=1.0, description="Module; of helical teeth in the normal plane.")
     shift: tuple[ShiftCoefficient, ShiftCoefficient] = Field(
-        default=(0.0, 0.0), description="Profile shifts in modules, positive outwards, for a ring, too."
+        default=(0.0, 0.0), description="Profile shifts in modules, positive outwards, also for a ring."
     )
     addendum: tuple[Addendum, Addendum] = Field(
         default=(FULL_DEPTH_ADDENDUM, FULL_DEPTH_ADDENDUM),
-        description="Of both gears, modules. Full-depth teeth of a ring reach below the involute that a rack leaves on "
-        "the pinion; rings are made with less.",
+        description="Addenda of both gears, modules. Full-depth teeth of a ring reach below the involute that a rack "
+        "leaves on the pinion, so rings are made with shorter teeth.",
     )
     internal: Flag = Field(default=False, description="Whether the second gear is a ring.")
-    helix_angle: Annotated[float, Field(strict=True, gt=-60.0, lt=60.0)] = Field(default=0.0, description="Degrees.")
+    helix_angle: Annotated[float, Field(strict=True, gt=-60.0, lt=60.0)] = Field(
+        default=0.0, description="Helix angle, degrees."
+    )
     pressure_angle: PressureAngle = Field(default=20.0, description="Pressure angle in the normal plane, degrees.")
     centre_distance: PositiveNumber | None = Field(
         default=None, description="Centre distance; by default the distance without play."
@@ -102,8 +104,8 @@ class GivenGearPair(Statement):
     face_width: PositiveNumber | None = None
     cutter_teeth: ToothNumber | None = Field(
         default=None,
-        description=f"Of the cutter that shapes a ring; {DEFAULT_CUTTER_TEETH}, or half of the ring's where that is "
-        "less, where left out. It has no shift, an addendum of 1.25 modules and sharp corners.",
+        description=f"Teeth of the cutter that shapes a ring; by default {DEFAULT_CUTTER_TEETH}, or half as many as "
+        "the ring has if that is less. The cutter has no profile shift, an addendum of 1.25 modules and sharp corners.",
     )
 
     def build_pair(self) -> RunningPair:
@@ -160,7 +162,7 @@ class RunningGear(Answer):
     """One gear of a pair; lengths in the module's unit, thicknesses in the plane of rotation."""
 
     teeth: int
-    shift: float = Field(description="Modules.")
+    shift: float = Field(description="Profile shift, modules.")
     speed: float = Field(description="Speed, rad/s; the second of two external gears turns the other way.")
     pitch_diameter: float
     working_pitch_diameter: float
@@ -175,7 +177,8 @@ class RunningGear(Answer):
     least_shift: float | None = Field(description="Profile shift below which the rack undercuts; null for a ring.")
     undercut: bool
     involute_left: float = Field(
-        description="Length of the line of action between the deepest contact and the fillet; negative: contact in it."
+        description="Length of the line of action between the deepest contact and the fillet; negative if the contact "
+        "reaches into the fillet.",
     )
     fillet_interference: bool = Field(description="Whether the mate's tip reaches below the involute of this gear.")
     specific_sliding: float | None = Field(
@@ -201,7 +204,7 @@ class RunningPairAnalysis(Answer):
     centre_distance: float
     standard_distance: float = Field(description="Centre distance of the pitch circles.")
     tight_distance: float = Field(description="Centre distance without play.")
-    working_pressure_angle: float = Field(description="In the plane of rotation.")
+    working_pressure_angle: float = Field(description="Working pressure angle in the plane of rotation, degrees.")
     backlash: float = Field(description="Play on the working pitch circles; negative: the teeth would overlap.")
     contact_ratio: float = Field(description="Contact ratio in the plane of rotation, limited by the tips.")
     overlap_ratio: float | None = Field(description="Face width over axial pitch of helical teeth.")
@@ -220,8 +223,9 @@ class RunningPairAnalysis(Answer):
     gears: list[RunningGear]
     strength: PairStrength | None = optional_field("Stresses under the given power.")
     profiles: list[ToothSpace | None] | None = optional_field(
-        "Where `include` asks for it: involutes and the fillets that the rack of the normal plane leaves, a ring "
-        "without those of its cutter; null where the rack's tooth would come to a point."
+        "Tooth outlines, if `include` contains `profiles`: involutes with the fillets that the rack of the normal "
+        "plane leaves; a ring is drawn without the fillets of its cutter. Null if the rack's tooth would come to a "
+        "point."
     )
 
 

@@ -26,7 +26,9 @@ class GivenTrainSeries(Statement):
 
     type: Literal["train_series"]
     units: list[GivenUnit] = Field(min_length=1, max_length=8)
-    ratio: GivenRatio | None = Field(default=None, description="As in a design; compared with the ratio of the teeth.")
+    ratio: GivenRatio | None = Field(
+        default=None, description="Ratio, as in a design; compared with the ratio of the teeth."
+    )
 
     def compute_ratio(self) -> Fraction:
         """Compute input speed of the first unit over output speed of the last, for valid units."""
@@ -72,7 +74,8 @@ class TrainSeriesAnalysisRequest(DrivenRequest[GivenTrainSeries]):
     length_unit: Literal["mm", "cm", "m", "in"] = "mm"
     input_torque: Number = Field(
         default=1.0,
-        description="Torque on the first input, N·m; if opposite to its speed at the first position, output drives.",
+        description="Torque on the first input, N·m. If it is opposite to the speed at the first position, the output "
+        "drives.",
     )
     mesh_efficiency: Annotated[float, Field(strict=True, gt=0.5, le=1.0)] = Field(
         default=0.99,
@@ -89,7 +92,7 @@ class TrainSeriesAnalysisRequest(DrivenRequest[GivenTrainSeries]):
             if isinstance(unit, GivenPlanetaryTrain):
                 own = unit.find_errors()
                 named = [part for part in ("input", "output", "fixed") if getattr(unit, part) is None]
-                own += [(f"/mechanism/{part}", "state it") for part in named]
+                own += [(f"/mechanism/{part}", f"give the {part} of the unit") for part in named]
                 if not own:
                     # Examine speeds only after the fields, because the equations need valid members.
                     own = PlanetaryAnalysisRequest(mechanism=unit).find_errors()
@@ -120,17 +123,17 @@ class SeriesShaft(TurningPart):
     """The input, a shaft between two units, or the output."""
 
     torque: float | None = Field(
-        description="N m, with the losses between the input and it; null where those are not known, or where no torque "
-        "of the output drives the input."
+        description="Torque, N·m, including the losses between the input and this shaft; null if the losses are "
+        "unknown, or if no torque on the output can drive the input.",
     )
 
 
 class TrainSeriesAnalysis(DrivenAnalysis):
-    """What the analysis core knows of trains in series.
+    """Analysis of trains in series.
 
-    Every unit is told by its own family for its own input at speed 1 and torque 1, or −1 where the output drives; with
-    its speeds multiplied by the speed ratio of its input, and its torques by the torque there over its own, they are
-    those in the series.
+    Every unit is analysed by its own family, with its own input at speed 1 and torque 1 (−1 if the output drives). In
+    the series, multiply its speeds by the speed ratio of its input, and its torques by the torque at its input divided
+    by the torque of its own analysis there.
     """
 
     valid: list[bool]

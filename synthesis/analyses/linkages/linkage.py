@@ -288,7 +288,8 @@ class LinkageAnalysis(Answer):
     toggles: list[float]
     circuits: list[CircuitBranches]
     limits: dict[str, list[float] | None] = Field(
-        description="Extreme angles (positions) of the grounded links (slides) on the reference's branch; null: turns."
+        description="Extreme angles of the grounded links, and extreme positions of the slides, on the reference's "
+        "branch; null for a link that makes full turns.",
     )
     notes: list[str] = Field(description="Names of missing fields, with the reason.")
     fourbar: FourbarAnalysis | None = Field(description="Results requested by `include`.")

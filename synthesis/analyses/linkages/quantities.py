@@ -169,17 +169,17 @@ def _describe_undefined(mechanism: Mechanism, sines: dict[str, Real]) -> list[st
     notes = []
     if decompose(mechanism).left and not sines:
         notes.append(
-            "transmission_angle: no link is held by three legs on the input and the ground, so that no leg pushes on a "
-            "path of its own; torque_ratio and force_ratio say how force is passed on"
+            "transmission_angle: no link is carried by three legs on the input and the ground, so that no leg pushes "
+            "along a path of its own; torque_ratio and force_ratio describe the transmission of force"
         )
     elif mechanism.redundant:
         notes.append("transmission_angle: constraints are redundant, so that the pushing link is not determined")
     elif not sines:
-        notes.append("transmission_angle: the mechanism has no closure, as gears alone drive every link")
+        notes.append("transmission_angle: gears alone drive every link, so that no link pushes another")
     if has_given_up(mechanism):
         notes.append(
-            "valid: links of very different lengths; the motion was followed for a great many steps, and where it was "
-            "left a position is given as not valid though it may exist"
+            "valid: the links have very different lengths; the motion was followed up to the maximum number of "
+            "steps, and positions beyond are reported as not valid although they may exist"
         )
     return notes
 

@@ -14,7 +14,7 @@ from synthesis.model.problem import Degrees, PositiveLength, Statement
 
 
 class GivenCylinder(Statement):
-    """A cylinder: the direction of its axis, and by how much its throw lags behind the crank's angle, degrees."""
+    """A cylinder: direction of its axis, and lag of its throw behind the crank's angle, degrees."""
 
     axis: Degrees = 0.0
     phase: Degrees = 0.0
@@ -24,7 +24,7 @@ class GivenCylinder(Statement):
 
 
 class GivenEngine(Statement):
-    """A crankshaft with its cylinders; of a design's other fields none is needed."""
+    """A crankshaft with its cylinders; the other fields of a design are optional."""
 
     type: Literal["engine"]
     crank: PositiveLength = Field(description="Radius of the crank throws.")
@@ -35,7 +35,7 @@ class GivenEngine(Statement):
 
 
 class PistonMotion(Answer):
-    """A piston over the positions: its distance from the shaft, and the rates of that."""
+    """A piston over the positions: its distance from the shaft, with velocity and acceleration."""
 
     number: int
     place: list[float]

@@ -17,7 +17,7 @@ ENTRY_TOLERANCE = 1e-9
 
 
 class GivenDragLink(Statement):
-    """A drag link whose output turns the crank; the ground is the shortest link, and all links turn through."""
+    """A drag link whose output turns the crank; the ground is the shortest link, and the others make full turns."""
 
     ground: PositiveLength
     input: PositiveLength
@@ -29,17 +29,19 @@ class GivenDragLink(Statement):
 
 
 class GivenGeneva(Statement):
-    """A Geneva drive; of a design's other fields none is needed."""
+    """A Geneva drive; the other fields of a design are optional."""
 
     type: Literal["geneva_external", "geneva_internal", "geneva_spherical"]
     stations: Annotated[Count, Field(ge=3, le=1000)]
     rollers: Annotated[Count, Field(ge=1, le=5)] = 1
-    center_distance: PositiveLength | None = Field(default=None, description="Only for a plane drive.")
+    center_distance: PositiveLength | None = Field(default=None, description="Center distance; only for a plane drive.")
     crank_radius: PositiveLength | None = Field(
-        default=None, description="Only for a plane drive; by default the value for shock-free entry."
+        default=None, description="Crank radius; only for a plane drive. By default the value for shock-free entry."
     )
     cone_angle: Degrees | None = Field(
-        default=None, description="Only for a spherical drive; by default the value for shock-free entry."
+        default=None,
+        description="Angle of the roller's axis from the crank's; only for a spherical drive. By default the value "
+        "for shock-free entry.",
     )
     drag_link: GivenDragLink | None = None
     sphere_radius: Any = None

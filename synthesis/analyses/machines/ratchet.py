@@ -15,7 +15,7 @@ from synthesis.model.problem import Count, Degrees, PositiveLength, Statement
 
 
 class GivenPawl(Statement):
-    """A pawl: by how much the wheel is beyond its first stop where this one first holds it, degrees."""
+    """A pawl: angle of the wheel beyond its first stop at which this pawl first holds it, degrees."""
 
     stop: Degrees = 0.0
     pivot: Any = None
@@ -23,7 +23,7 @@ class GivenPawl(Statement):
 
 
 class GivenRatchet(Statement):
-    """A ratchet wheel with its pawls; of a design's other fields none is needed."""
+    """A ratchet wheel with its pawls; the other fields of a design are optional."""
 
     type: Literal["ratchet"]
     teeth: Annotated[Count, Field(ge=4, le=1000)]
@@ -52,7 +52,7 @@ class RatchetAnalysis(DrivenAnalysis):
 
 
 class RatchetAnalysisRequest(DrivenRequest[GivenRatchet]):
-    """A ratchet and how its wheel turns, on from where the first pawl holds it."""
+    """A ratchet and how its wheel turns, from the position at which the first pawl holds it."""
 
     model_config = ConfigDict(
         title="Ratchet: motion of its pawls",

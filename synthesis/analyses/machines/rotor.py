@@ -38,7 +38,7 @@ class GivenCorrection(GivenUnbalance):
 
 
 class GivenRotor(Statement):
-    """A rotor by its unbalances; of a design's other fields none is needed."""
+    """A rotor, described by its unbalances; the other fields of a design are optional."""
 
     type: Literal["rotor"]
     unbalances: list[GivenUnbalance] = Field(min_length=1, max_length=500)
@@ -149,7 +149,7 @@ class RotorAnalysis(DrivenAnalysis):
     moment_about: float = Field(
         description="Position along the axis about which the moment is taken: the first bearing, or 0."
     )
-    bearings: list[BearingLoad] = Field(description="Empty without bearings.")
+    bearings: list[BearingLoad] = Field(description="Forces on the bearings; empty if no bearings are given.")
     unbalance: float = Field(description="The sum of all moments, g·mm or in the consistent units.")
     unbalance_angle: float = Field(description="Angle in the rotor, degrees.")
 

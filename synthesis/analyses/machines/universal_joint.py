@@ -32,15 +32,18 @@ class JointSpec(Statement):
     )
     offset: Number = Field(
         default=0.0,
-        description="Of a joint that is not the first, degrees: the angle between the forks on the shaft before it, "
-        "less the angle between the planes of the shafts at the two joints. With equal angles 0 evens the speeds.",
+        description="Only for joints after the first, degrees: the angle between the forks on the shaft before the "
+        "joint, minus the angle between the planes of the shafts at the two joints. With two equal joint angles, an "
+        "offset of 0 makes the output speed uniform.",
     )
 
 
 class SpeedLimits(Statement):
     """Limits on the unevenness of the output: its fluctuation, or limits of the speed ratio."""
 
-    fluctuation: NonNegative | None = Field(default=None, description="(ω_max − ω_min)/ω_mean.")
+    fluctuation: NonNegative | None = Field(
+        default=None, description="Maximum coefficient of fluctuation, (ω_max − ω_min)/ω_mean."
+    )
     least_ratio: Annotated[float, Field(strict=True, ge=0.0, le=1.0)] = 0.0
     greatest_ratio: Annotated[float, Field(strict=True, ge=1.0, le=MAX_MAGNITUDE, allow_inf_nan=False)] | None = None
 
@@ -153,7 +156,7 @@ class JointExtremes(Answer):
     least_ratio: float
     greatest_ratio_at: list[float] = Field(description="Input angles, degrees.")
     least_ratio_at: list[float] = Field(description="Input angles, degrees.")
-    fluctuation: float = Field(description="(ω_max − ω_min)/ω_mean.")
+    fluctuation: float = Field(description="Maximum coefficient of fluctuation, (ω_max − ω_min)/ω_mean.")
     greatest_speed: float
     least_speed: float
     greatest_acceleration: float = Field(description="Magnitude, rad/s².")

@@ -310,7 +310,7 @@ def build_result(
 
 def _describe_method(composed: Composition, has_fixed_size: bool) -> str:
     program = "convex_program" if composed.bound is not None else "laws"
-    return f"{program}, {'stated size' if has_fixed_size else 'exact sizing'}"
+    return f"{program}, {'given size' if has_fixed_size else 'exact sizing'}"
 
 
 def build_empty_result(problem: CamProblem, reason: str, proven: bool, cause: str) -> CamResult:

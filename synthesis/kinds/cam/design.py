@@ -248,7 +248,9 @@ class SecondMetrics(Answer):
     max_pressure_angle_rise: Angle = Field(description="Degrees.")
     max_pressure_angle_fall: Angle = Field(description="Degrees.")
     min_convex_radius: Length
-    min_concave_radius: Length | None = optional_field("None where it is convex.")
+    min_concave_radius: Length | None = optional_field(
+        "Least concave radius of curvature of the profile; null if it has no hollow."
+    )
     curvature_ratio: float
 
 
@@ -260,12 +262,14 @@ class CamMetrics(Answer):
     max_pressure_angle_rise: Angle | None = optional_field("Degrees.")
     max_pressure_angle_fall: Angle | None = optional_field("Degrees.")
     min_convex_radius: Length = Field(description="Least convex radius of curvature of the profile.")
-    min_concave_radius: Length | None = optional_field("None where it is convex.")
+    min_concave_radius: Length | None = optional_field(
+        "Least concave radius of curvature of the profile; null if it has no hollow."
+    )
     curvature_ratio: float | None = optional_field(
         "Least radius of curvature of the pitch curve over the roller's radius."
     )
     face_width: Length | None = optional_field("Length that the contact sweeps.")
-    second: SecondMetrics | None = optional_field("Of conjugate cams.")
+    second: SecondMetrics | None = optional_field("Measurements on the second of two conjugate cams.")
     overturning_moment: Torque | None = optional_field(
         "Greatest moment on the slide of a translating follower, if its forces and the lever are known."
     )

@@ -57,14 +57,16 @@ class RockerOutput(Statement):
     """The output swings about a fixed pivot."""
 
     type: Literal["rocker"] = "rocker"
-    swing: Annotated[float, ANGLE, Field(strict=True, gt=0.0, lt=180.0), Sizable] = Field(description="Degrees.")
+    swing: Annotated[float, ANGLE, Field(strict=True, gt=0.0, lt=180.0), Sizable] = Field(
+        description="Angle of the swing, degrees."
+    )
 
 
 class SliderOutput(Statement):
     """The output slides back and forth."""
 
     type: Literal["slider"]
-    stroke: PositiveLength = Field(description="In length units.")
+    stroke: PositiveLength = Field(description="Stroke of the output, length units.")
 
 
 def _get_tag(statement: Any) -> str | None:

@@ -144,7 +144,7 @@ class FlywheelProblem(ProblemBase, FlywheelSpec):
     machine: Machine | None = None
     speed_rpm: Annotated[PositiveNumber, ROTATIONAL_SPEED] = Field(description="Shaft speed, mean over time.")
     form: Literal["disc", "rim", "any"] = Field(
-        default="disc", description="A full disc, or a ring without counting arms and hub."
+        default="disc", description="A full disc, or a ring whose arms and hub are not counted."
     )
     density: Annotated[PositiveNumber, DENSITY]
     limits: FlywheelLimits

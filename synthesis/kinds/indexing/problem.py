@@ -136,7 +136,8 @@ class Ratcheting(Statement):
     friction: NonNegative = Field(default=0.15, description="Coefficient of friction between tooth and pawl.")
     face_angle: Annotated[float, Field(strict=True, ge=0.0, le=60.0, allow_inf_nan=False), ANGLE] | None = Field(
         default=None,
-        description="Angle of a tooth's face from the radius, leaning over; default: the smallest that locks.",
+        description="Angle between a tooth's face and the radius, leaning over the pawl; default: the smallest that "
+        "locks.",
     )
     reserve: Annotated[float, Field(strict=True, ge=0.0, le=30.0, allow_inf_nan=False), ANGLE] = Field(
         default=2.0, description="Reserve of the locking angle beyond the friction angle."
@@ -268,7 +269,9 @@ class IndexingProblem(ProblemBase):
         "bore.",
     )
     pawls: Ratcheting | None = Field(default=None, description="Pawls and teeth of a ratchet.")
-    wheel_shaft_diameter: Annotated[NonNegative, LENGTH] = Field(default=0.0, description="The bore of the wheel.")
+    wheel_shaft_diameter: Annotated[NonNegative, LENGTH] = Field(
+        default=0.0, description="Diameter of the wheel's bore."
+    )
     crank_shaft_diameter: Annotated[NonNegative, LENGTH] = Field(
         default=0.0, description="Diameter of the crank's shaft through the plane of an external wheel; 0: overhung."
     )

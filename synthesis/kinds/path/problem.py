@@ -71,8 +71,8 @@ class PathPoint(Statement):
     )
     tolerance: PositiveLength | None = Field(
         default=None,
-        description="Maximum distance of P from this point, and of the curve from its course near it; for all points, "
-        "or none.",
+        description="Maximum distance of P from this point, and of the traced curve from the line through the points "
+        "near it. Give it for all points, or for none.",
     )
 
     @property
@@ -199,7 +199,7 @@ class PathProblem(LinkageProblem):
 
     kind: Literal["path"]
     points: list[PathPoint] = Field(
-        min_length=3, max_length=MAX_POINTS, description="In the order in which they are visited."
+        min_length=3, max_length=MAX_POINTS, description="Points of the path, in the order in which P visits them."
     )
     timing: Literal["free", "prescribed"] = Field(
         default="free", description="Whether each point has a crank angle at which it is met."
@@ -212,9 +212,7 @@ class PathProblem(LinkageProblem):
     crank_direction: Literal["as_given", "either"] = Field(
         default="as_given", description="Whether the crank may also turn in the direction opposite to its angles."
     )
-    closed: Flag = Field(
-        default=False, description="The points lie around a closed curve, and the input turns through."
-    )
+    closed: Flag = Field(default=False, description="The points lie on a closed curve, and the input makes full turns.")
     method: Literal["auto", "exact", "least_squares", "curve_match"] = Field(
         default="auto",
         description="How the points are met: exactly, with the minimum sum of squared distances, or, by curve_match, "
@@ -244,7 +242,7 @@ class PathProblem(LinkageProblem):
     )
     start: StartFourbar | None = Field(
         default=None,
-        description="For least_squares: the fit descends from this fourbar alone, and none are drawn.",
+        description="For least_squares: the fit starts from this fourbar alone; no random fourbars are tried.",
     )
     fixed_pivots: PathPivots = PathPivots()
     constraints: PathConstraints = PathConstraints()

@@ -40,7 +40,8 @@ def _create_unit_model(name: str, kind: str, words: str) -> Any:
             # A shallow copy, so that the description of the kind's own field stays unchanged.
             info = copy.copy(info)
             if field == "max_stages":
-                info.description = f"Default {DEFAULT_STAGE_COUNT}; not together with `stages`."
+                default = DEFAULT_STAGE_COUNT
+                info.description = f"Maximum number of stages; default {default}. Not together with `stages`."
             fields[field] = (info.annotation, info)
     return create_model(name, __base__=Statement, __module__=__name__, __doc__=words, **fields)
 

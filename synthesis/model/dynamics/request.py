@@ -24,7 +24,9 @@ METRES_PER_UNIT: dict[str, float] = {"mm": 1e-3, "cm": 1e-2, "m": 1.0, "in": 0.0
 class Gravity(Statement):
     """Acceleration of gravity."""
 
-    magnitude: Annotated[NonNegative, GRAVITY] = Field(default=9.80665, description="m/s², or in the consistent units.")
+    magnitude: Annotated[NonNegative, GRAVITY] = Field(
+        default=9.80665, description="Magnitude, m/s² or in the consistent units."
+    )
     angle: Degrees = Field(default=270.0, description="Direction of gravity, degrees.")
 
     @property
@@ -64,7 +66,7 @@ class FlywheelSpec(Statement):
     """Permitted fluctuation of speed for which to size a flywheel on the input shaft."""
 
     coefficient: Annotated[float, Field(strict=True, ge=MIN_COEFFICIENT, le=1.0, allow_inf_nan=False)] = Field(
-        description="(ω_max − ω_min)/ω_mean."
+        description="Maximum coefficient of fluctuation, (ω_max − ω_min)/ω_mean."
     )
     existing_inertia: Annotated[NonNegative, INERTIA] = Field(
         default=0.0, description="Moment of inertia that the shaft already has."

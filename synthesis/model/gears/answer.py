@@ -98,7 +98,7 @@ class MeshGeometry(Answer):
         default=None, description="Profile shift that would remove interference and undercut, if there is one."
     )
     working_pressure_angle: Angle | None = optional_field(
-        "Degrees; this field and those down to `backlash` are given for fitted teeth."
+        "Working pressure angle, degrees. This field and those down to `backlash` are given for fitted teeth."
     )
     tip_diameter: GearLengths | None = optional_field()
     tip_shortening: Length | None = optional_field("Shortening of the tips of shifted gears that keeps the clearance.")
@@ -110,7 +110,7 @@ class MeshGeometry(Answer):
     type: StageKind | None = optional_field(
         "Type of the stage; this field and those that follow are left out for external spur gears."
     )
-    pitch_diameter: GearLengths | None = optional_field("Pitch diameters; of bevel gears at the large end.")
+    pitch_diameter: GearLengths | None = optional_field("Pitch diameters; those of bevel gears at the large end.")
     addendum: GearNumbers | None = optional_field(
         "Addenda of an internal pair, modules; the ring's teeth are shortened for the pinion."
     )

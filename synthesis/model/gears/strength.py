@@ -179,7 +179,8 @@ class StressedGear(Answer):
     """Stresses (MPa) and safety factors of one gear; null if an input is missing or a value unknown."""
 
     form: float | None = Field(
-        description="Lewis's Y; null for a ring without a given value; of helical gears in the normal plane."
+        description="Lewis's form factor Y, for helical gears in the normal plane; null for a ring without a given "
+        "value."
     )
     size_factor: float | None
     bending_geometry: float | None

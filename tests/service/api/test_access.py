@@ -255,7 +255,7 @@ def test_without_keys_it_listens_on_this_machine_only(tmp_path):
     try:
         assert server.url.startswith("http://127.0.0.1:")
         assert "there are no API keys" in server.log()
-        assert "CORS_ORIGINS lets every web page in" in server.log()
+        assert "CORS_ORIGINS admits every web page" in server.log()
         assert "bearer" not in str(server.client.get("/openapi.json").json())
         assert listening_on(server.url.rpartition(":")[2]) == {"0100007F"}
         # The first key closes what was open, without a restart.

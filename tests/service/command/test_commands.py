@@ -120,9 +120,9 @@ def test_a_table_is_solved(server, tmp_path):
     [
         ("a,b\n1,2\n", "the first line must name the columns"),
         ("", "the first line must name the columns"),
-        ("x,y\n1,2,3\n", "line 2: there are more cells than columns"),
-        ("x,y\n1,2\n3,north\n", "line 3: y is no number: north"),
-        ("x,y\n1,NaN\n", "line 2: y is no number: NaN"),
+        ("x,y\n1,2,3\n", "line 2: more cells than columns"),
+        ("x,y\n1,2\n3,north\n", "line 3: y is not a number: north"),
+        ("x,y\n1,NaN\n", "line 2: y is not a number: NaN"),
         ("x,y,colour\n1,2,3\n4,5,6\n7,1,2\n", "/problem/points/0/colour"),
     ],
 )
@@ -156,7 +156,7 @@ def test_a_mechanism_is_analysed(server, tmp_path, body):
     [
         ("{", "not JSON"),
         ("[]", "no JSON object"),
-        ('{"mechanism": 3}', "holds no mechanism"),
+        ('{"mechanism": 3}', "contains no mechanism"),
         (json.dumps({**FOURBAR, "links": {"input": 2.0}}), "/mechanism/links/coupler"),
         (None, "cannot read"),
     ],
@@ -185,11 +185,11 @@ def test_a_design_is_drawn_as_the_service_draws_it(server, solved, number):
     ("arguments", "says"),
     [
         (("answer.json", "-o", "a.png"), "must end in one of: .svg, .gif, .dxf, .csv"),
-        (("answer.json", "-o", "a.svg", "--design", "3"), "3 is none of them"),
-        (("answer.json", "-o", "a.svg", "--design", "0"), "counted from 1; 0 is none of them"),
+        (("answer.json", "-o", "a.svg", "--design", "3"), "design 3 does not exist"),
+        (("answer.json", "-o", "a.svg", "--design", "0"), "design 0 does not exist"),
         (("train.json", "-o", "a.svg"), "mechsynth solve --json writes one"),
         (("other.json", "-o", "a.svg"), "no answer of this version"),
-        (("rotor.json", "-o", "a.gif"), "there are: svg, dxf, csv"),
+        (("rotor.json", "-o", "a.gif"), "available: svg, dxf, csv"),
         (("nowhere.json", "-o", "a.svg"), "cannot read"),
     ],
 )

@@ -36,7 +36,7 @@ def test_faults_beside_a_varied_field_are_looked_for_no_longer_than_may_be():
     """These could go by its value, so that other samples are looked at as well."""
     problem = {**MOTION, "constraints": {f"q{k}": 1 for k in range(9000)}}
     refusal = refused(problem, [{"field": "/constraints/grashof", "values": ["any"]}, SEEDS])
-    assert refusal.errors[0] == ("/problem/constraints/q0", "There is no such field; check its name.")
+    assert refusal.errors[0] == ("/problem/constraints/q0", "Unknown field; check its name.")
 
 
 def test_values_with_very_many_faults_are_told_in_part():
@@ -49,7 +49,7 @@ def test_values_with_very_many_faults_are_told_in_part():
 def test_a_spaced_value_is_told_by_itself():
     refusal = refused(MOTION, [{"field": "/max_designs", "from": 0.123456789, "to": 0.2, "count": 3}])
     assert refusal.errors[0][0] == "/vary/0"
-    assert "This is of the value 0.123456789." in refusal.errors[0][1]
+    assert "The value is 0.123456789." in refusal.errors[0][1]
 
 
 def test_a_field_that_another_goes_by_does_not_condemn_the_problem():

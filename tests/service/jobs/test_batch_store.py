@@ -110,14 +110,14 @@ def test_batches_and_jobs_of_one_millisecond_have_their_own_samples(store, singl
         new = [ended(n) for n in range(share.first, share.end)]
         assert store.store(batch, claim.job_id, claim.attempt, None, new)
     for batch in made_at_once:
-        rows = store.table(store.get(batch.id))
+        rows = store.load_rows(store.get(batch.id))
         assert [row.number for row in rows] == list(range(40))
         assert single.get(make_sample_id(batch.id, 1)).batch == batch.id
     assert single.get(job.id).status is Status.QUEUED
     for gone, left in (made_at_once, made_at_once[::-1]):
-        before = len(store.table(left)) if store.get(left.id) else 0
+        before = len(store.load_rows(left)) if store.get(left.id) else 0
         assert store.delete(gone.id)
-        assert len(store.table(left)) == before
+        assert len(store.load_rows(left)) == before
     assert numbers(engine) == []
 
 
@@ -207,7 +207,7 @@ def test_a_sample_that_is_given_up_ends_the_batch_where_it_is_the_last(store, si
     assert store.give_up(claim.job_id, claim.mark, 0, lambda job_id: f'{{"detail": "{job_id}"}}') is Status.QUEUED
     now = store.get(batch.id)
     assert (now.status, now.failed) == (Status.FAILED, 1)
-    assert store.table(now)[0].error == f'{{"detail": "{make_sample_id(batch.id, 0)}"}}'
+    assert store.load_rows(now)[0].error == f'{{"detail": "{make_sample_id(batch.id, 0)}"}}'
 
 
 def test_a_cancelled_batch_takes_no_more(store, single, engine):
@@ -506,7 +506,7 @@ def test_what_is_the_same_as_another_has_its_answer(store, single, monkeypatch):
         ('{"of": 1}', None, True), ('{"of": 1}', None, False), (None, "{}", False),
     ]  # fmt: skip
     assert single.get(make_sample_id(other.id, 0)).result == "{3}"
-    assert [row.figures for row in store.table(batch)] == [[1, 2.5], [1, 2.5], None]
+    assert [row.figures for row in store.load_rows(batch)] == [[1, 2.5], [1, 2.5], None]
     assert store.get(batch.id).cached == 1
 
 

@@ -215,7 +215,7 @@ def test_a_broken_sample_fails_and_the_others_do_not(scripted):
 
 @pytest.mark.slow
 @pytest.mark.parametrize("moment", further(["before", "after"], ["after"]))
-@pytest.mark.parametrize("write", ["store", "begun"])
+@pytest.mark.parametrize("write", ["store", "start_batch"])
 def test_a_worker_may_die_at_any_write(scripted, moment, write):
     (scripted.folder / f"crash-{moment}-batch-{write}").touch()
     done = finished(scripted.client, post(scripted.client, stated(*range(BRIEF, BRIEF + 30))))

@@ -96,7 +96,7 @@ def test_a_contradiction_that_only_the_solver_sees_fails_its_sample(bench):
     assert bench.run() == ["slice", "slice"]
     now, errors = bench.ended(batch)
     assert (now.failed, errors) == (2, [INVALID, INVALID])
-    [told, _] = [json.loads(row.error) for row in bench.store.table(now)]
+    [told, _] = [json.loads(row.error) for row in bench.store.load_rows(now)]
     assert [fault["path"].startswith("/linkage") for fault in told["errors"]] == [True]
 
 
@@ -224,7 +224,7 @@ def test_of_many_faults_of_a_sample_some_are_stored(bench):
     """Ten thousand samples of a thousand faults each would be a gigabyte."""
     batch = bench.batch(1, problem={"kind": "path", "points": [{"x": 1.0}] * 500})
     bench.run()
-    [row] = bench.store.table(batch)
+    [row] = bench.store.load_rows(batch)
     told = json.loads(row.error)
     assert [fault["path"] for fault in told["errors"]] == [f"/points/{n}/y" for n in range(MAX_FAULTS)]
     assert told["detail"].endswith("/points/0/y: This field is required.")

@@ -56,8 +56,8 @@ def test_a_lane_is_kept_for_short_jobs(store):
     assert [cost_for(turns, seat) for seat in seats] == [Cost.LONG, Cost.LONG, None]
     made(store, Cost.SHORT)
     assert cost_for(turns, seats[2]) == Cost.SHORT
-    turns.done(seats[2])
-    turns.done(seats[0])
+    turns.release(seats[2])
+    turns.release(seats[0])
     assert cost_for(turns, seats[0]) == Cost.LONG
     assert cost_for(turns, seats[2], free_since=0.0) is None, "however long it has been idle"
 
@@ -69,9 +69,9 @@ def test_a_flood_leaves_the_last_lane_to_other_tenants(store):
     assert [cost_for(turns, seat) for seat in seats] == [Cost.SHORT, Cost.SHORT, None]
     [job] = made(store, Cost.SHORT, tenant="guest")
     assert turns.take(seats[2], time.monotonic()).job_id == job
-    turns.done(seats[0])
+    turns.release(seats[0])
     assert cost_for(turns, seats[0]) is None, "the last one that is free, again"
-    turns.done(seats[1])
+    turns.release(seats[1])
     assert cost_for(turns, seats[0]) == Cost.SHORT, "another one is free"
 
 
@@ -101,7 +101,7 @@ def test_short_and_long_jobs_alternate_where_lanes_are_free_for_both(store):
     given = []
     for _ in range(6):
         given.append(cost_for(turns, seats[0]))
-        turns.done(seats[0])
+        turns.release(seats[0])
     assert given == [Cost.SHORT, Cost.LONG] * 3
 
 
@@ -113,7 +113,7 @@ def test_the_last_worker_that_is_ready_is_not_given_to_a_long_job(store):
     assert cost_for(turns, seats[0]) is None
     made(store, Cost.SHORT)
     assert cost_for(turns, seats[0]) == Cost.SHORT
-    turns.done(seats[0])
+    turns.release(seats[0])
     assert cost_for(turns, seats[0], time.monotonic() - PATIENCE_S - 1.0) == Cost.LONG, "none of them can be started"
 
 
@@ -130,8 +130,8 @@ def test_a_job_that_turns_out_to_be_long_gives_the_last_lane_back(store):
     turns = opened(store, seats, 1)
     assert [cost_for(turns, seat) for seat in seats] == [Cost.SHORT, Cost.LONG]
     assert turns.count_as_long(seats[0])
-    turns.done(seats[0])
-    turns.done(seats[1])
+    turns.release(seats[0])
+    turns.release(seats[1])
     assert cost_for(turns, seats[0]) == Cost.SHORT
     assert not turns.count_as_long(seats[0]), "the other is free for short ones"
 

@@ -97,7 +97,7 @@ def test_a_payload_that_is_lifted_slowly_takes_the_torque_of_its_rise(client):
 def test_what_a_slide_drives_has_a_force(client):
     _, found = designs(client, {**STEERING, "dynamics": PAYLOAD | {"point_masses": [{"joint": "A", "mass": 1.0}]}})
     for design in found:
-        assert design["forces"]["remark"] == "/dynamics/speed: the input of this linkage slides; state it"
+        assert design["forces"]["remark"] == "/dynamics/speed: the input of this linkage slides; give its speed"
     block = {"links": {"density": 7800.0, "thickness": 10.0, "width": 40.0}, "speed": 100.0}
     job, found = designs(client, {**STEERING, "dynamics": block})
     assert found

@@ -131,18 +131,18 @@ def crash_points():
             written = write(self, *args, **kwargs)
             if written is not None:  # a lane that asks and gets nothing has written nothing
                 die_if_told(f"crash-after-{called}{name}")
-            if name == "progress":
+            if name == "record_progress":
                 progress_is_stored.set()
             return written
 
         setattr(store, name, wrapped)
 
     for name in (
-        "create", "create_once", "take", "progress", "succeed", "fail", "give_up", "cancel", "delete", "requeue",
-        "requeue_unfinished", "crashed",
+        "create", "create_once", "take", "record_progress", "complete", "fail", "give_up", "cancel", "delete", "requeue",
+        "requeue_unfinished", "record_crash",
     ):  # fmt: skip
         deadly(name)
-    for name in ("create", "begun", "store", "crashed", "give_up", "cancel"):
+    for name in ("create", "start_batch", "store", "record_crash", "give_up", "cancel"):
         deadly(name, BatchStore, "batch-")
 
 

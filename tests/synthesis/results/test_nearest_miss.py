@@ -216,7 +216,7 @@ def test_zones_of_the_linkage_are_not_for_the_joints_of_its_driver():
     miss = solve(problem).nearest_miss
     joints = {name: complex(*place) for name, place in miss.design.mechanism.skeleton.joints.items()}
     assert not problem.constraints.fixed_pivot_region.contains(joints["O6"])
-    outside = max(map(problem.constraints.fixed_pivot_region.distance, (joints["O2"], joints["O4"])))
+    outside = max(map(problem.constraints.fixed_pivot_region.compute_distance, (joints["O2"], joints["O4"])))
     told = {check.name: check.value for check in miss.design.verification.checks}
     assert told["fixed_pivot_region"] == pytest.approx(outside, abs=1e-9)
     assert [gap.check for gap in miss.gaps] == ["transmission_angle"]

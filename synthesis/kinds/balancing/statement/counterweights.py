@@ -55,7 +55,7 @@ class Counterweights(Statement):
         default=None,
         min_length=1,
         max_length=20,
-        description="Links that may have one; by default as few as possible, those on fixed pivots first.",
+        description="Links that may have a counterweight; by default as few as possible, those on fixed pivots first.",
     )
     radius: PositiveLength | None = Field(
         default=None,

@@ -21,7 +21,7 @@ class CamLimits(Statement):
     pressure_angle_fall: LimitAngle | None = Field(
         default=None,
         description="Maximum pressure angle during the fall, when a spring drives instead of the cam; degrees. "
-        "Default: the same.",
+        "Default: `pressure_angle`.",
     )
     curvature_ratio: NonNegative = Field(
         default=2.0,
@@ -48,8 +48,14 @@ class CamLimits(Statement):
         default=None,
         description="Maximum velocity of every optimal or automatic motion. Refused if all laws are given by name.",
     )
-    acceleration: Annotated[PositiveNumber, ACCELERATION] | None = Field(default=None, description="Likewise.")
-    jerk: Annotated[PositiveNumber, JERK] | None = Field(default=None, description="Likewise.")
+    acceleration: Annotated[PositiveNumber, ACCELERATION] | None = Field(
+        default=None,
+        description="Maximum acceleration of every optimal or automatic motion. Refused if all laws are given by name.",
+    )
+    jerk: Annotated[PositiveNumber, JERK] | None = Field(
+        default=None,
+        description="Maximum jerk of every optimal or automatic motion. Refused if all laws are given by name.",
+    )
 
     @property
     def falling_pressure_angle(self) -> float:

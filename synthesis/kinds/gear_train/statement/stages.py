@@ -45,7 +45,9 @@ class RequestedStage(StageType):
         f"{MAX_THREADS}. Required for bevel and worm stages.",
     )
     driven: StageTeeth | StageTeethRange | None = Field(
-        default=None, description="Teeth of the driven gear, likewise. Required for bevel and worm stages."
+        default=None,
+        description="Teeth of the driven gear, or a range of them, in place of `teeth`. Required for bevel and worm "
+        "stages.",
     )
 
     @property

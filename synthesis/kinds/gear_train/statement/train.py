@@ -84,7 +84,7 @@ class GearTrainBase(ProblemBase):
         "stage ratio limit.",
     )
     max_stages: Annotated[Count, Field(ge=1, le=4)] | None = Field(
-        default=None, description=f"Default {DEFAULT_MAX_STAGES}; not together with `stages`."
+        default=None, description=f"Maximum number of stages; default {DEFAULT_MAX_STAGES}. Not together with `stages`."
     )
     stages: list[RequestedStage] | None = Field(
         default=None,

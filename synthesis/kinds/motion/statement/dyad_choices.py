@@ -54,7 +54,7 @@ class DyadChoices(Statement):
         "on a line of the ground. RP: a line of the body slides through a block that is pinned to the ground. any: "
         "RR, or a slider if no RR dyad is feasible.",
     )
-    fixed_pivot: PartialPoint | None = Field(default=None, description="A coordinate may be left open.")
+    fixed_pivot: PartialPoint | None = Field(default=None, description="Fixed pivot; a coordinate may be left open.")
     moving_pivot: PartialPoint | None = Field(
         default=None, description="Moving pivot in the first position; a coordinate may be left open."
     )

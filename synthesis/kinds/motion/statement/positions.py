@@ -20,10 +20,10 @@ the three coordinates of the body on it, apart from the input angles."""
 class Tolerance(Statement):
     """Tolerance of a position, by coordinate; a coordinate that is left out is met exactly."""
 
-    x: PositiveLength | None = Field(default=None, description="Length units, plus or minus.")
-    y: PositiveLength | None = Field(default=None, description="Length units, plus or minus.")
+    x: PositiveLength | None = Field(default=None, description="Permitted error in either direction, length units.")
+    y: PositiveLength | None = Field(default=None, description="Permitted error in either direction, length units.")
     angle: Annotated[float, ANGLE, Field(strict=True, gt=0.0, le=180.0), Sizable] | None = Field(
-        default=None, description="Degrees, plus or minus."
+        default=None, description="Permitted error in either direction, degrees."
     )
 
     @model_validator(mode="after")

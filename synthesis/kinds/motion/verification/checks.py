@@ -76,17 +76,34 @@ class DrivenLinkage(NamedTuple):
         return [complex(side.pins[0]) for side in (self.input_side, self.output_side) if side.pins is not None]
 
 
+class MeasuredRun(NamedTuple):
+    """Motion of the input through the targets.
+
+    Attributes
+    ----------
+    inputs : float, shape (targets,)
+        Inputs at the targets, in one run: degrees, or length units if the input slides.
+    on_circuit : bool
+        Whether all targets are met on one circuit.
+    carried : BodyMotion
+        Measurements of the body's motion from the first target to the last.
+    slides : bool
+        Whether the input slides.
+    """
+
+    inputs: Real
+    on_circuit: bool
+    carried: BodyMotion
+    slides: bool = False
+
+
 def build_linkage_design(
     problem: MotionProblem,
     mechanism: LinkageMechanism,
     target: TargetPoses,
     driven: DrivenLinkage,
     measures: Measures,
-    inputs: Real,
-    *,
-    on_circuit: bool,
-    carried: BodyMotion,
-    slides: bool = False,
+    run: MeasuredRun,
     own: Sequence[Check] = (),
 ) -> LinkageDesign:
     """Build the design of a driven linkage of any type, with its verification and metrics.
@@ -99,15 +116,12 @@ def build_linkage_design(
         The dimensions that were driven.
     target, driven, measures
         Target poses of the body, and the measured values.
-    inputs : float, shape (targets,)
-        Inputs at the targets, in one run: degrees, or length units if the input slides.
-    on_circuit, slides : bool
-        Whether all targets are met on one circuit, and whether the input slides.
-    carried : Carried
-        Measurements of the body's motion from the first target to the last.
+    run : MeasuredRun
+        The motion through the targets.
     own : sequence of Check
         Checks of the linkage's type.
     """
+    inputs, on_circuit, carried, slides = run
     travelled = float(inputs[-1] - inputs[0])
     return LinkageDesign(
         mechanism=mechanism,

@@ -19,7 +19,7 @@ from kinematics.errors import DimensionError
 from kinematics.linkage.fourbar import BARKER, Fourbar, barker_type, find_transmission_extremes, positions, traverse
 from synthesis.kinds.motion.problem import MotionProblem
 from synthesis.kinds.motion.task.target_poses import TargetPoses
-from synthesis.kinds.motion.verification.checks import DrivenLinkage, Side, build_linkage_design
+from synthesis.kinds.motion.verification.checks import DrivenLinkage, MeasuredRun, Side, build_linkage_design
 from synthesis.kinds.motion.verification.nearest_pose import Motion, find_closest_inputs, is_as_near
 from synthesis.model.linkage.answer import FourbarMechanism, LinkageDesign
 from synthesis.model.linkage.conversion import DrivenFourbar, build_driven_fourbar, compute_body_shift
@@ -101,9 +101,8 @@ def verify_fourbar(problem: MotionProblem, mechanism: FourbarMechanism, target: 
         used=(way.start + away, way.end + away) if way.same_branch else None,
         eased=compute_ease(way_of_body.input_turn, way_of_body.excess),
     )
-    return build_linkage_design(
-        problem, mechanism, target, driven, measures, inputs, on_circuit=way.same_circuit, carried=way_of_body
-    )
+    run = MeasuredRun(inputs, way.same_circuit, way_of_body)
+    return build_linkage_design(problem, mechanism, target, driven, measures, run)
 
 
 def _drive_to_exact_targets(target: TargetPoses, fourbar: DrivenFourbar, shift: float) -> _TargetStates | None:

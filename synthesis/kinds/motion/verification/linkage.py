@@ -23,7 +23,7 @@ from kinematics.linkage.planar.mechanism import GROUND, Mechanism
 from synthesis.kinds.motion.problem import MotionProblem
 from synthesis.kinds.motion.task.target_poses import TargetPoses
 from synthesis.kinds.motion.verification.chain_match import measure_chain_gap
-from synthesis.kinds.motion.verification.checks import DrivenLinkage, Side, build_linkage_design
+from synthesis.kinds.motion.verification.checks import DrivenLinkage, MeasuredRun, Side, build_linkage_design
 from synthesis.kinds.motion.verification.nearest_pose import MISS_TOLERANCE, find_closest_inputs, is_as_near
 from synthesis.model.answer import Check
 from synthesis.model.linkage.answer import (
@@ -121,18 +121,10 @@ def verify_mechanism(problem: MotionProblem, design: LinkageMechanism, target: T
         slides=slides,
         eased=compute_ease(way_of_body.input_turn, way_of_body.excess),
     )
-    return build_linkage_design(
-        problem,
-        design,
-        target,
-        driven,
-        measures,
-        way.inputs if slides else np.degrees(way.inputs),
-        on_circuit=bool(all(listed[row].circuit == here.circuit for row in met.rows)),
-        carried=way_of_body,
-        slides=slides,
-        own=_check_sixbar(problem, design, mechanism, here, way, joints, target),
-    )
+    on_circuit = bool(all(listed[row].circuit == here.circuit for row in met.rows))
+    run = MeasuredRun(way.inputs if slides else np.degrees(way.inputs), on_circuit, way_of_body, slides)
+    type_checks = _check_sixbar(problem, design, mechanism, here, way, joints, target)
+    return build_linkage_design(problem, design, target, driven, measures, run, type_checks)
 
 
 class _Body(MechanismOnBranch):

@@ -20,7 +20,7 @@ Index = Annotated[Count, Field(ge=0)]
 
 
 class Stance(Statement):
-    """A part of the path on which P goes straight, from one of the points to another.
+    """A part of the path on which P moves along a straight line, from one of the points to another.
 
     The stance line goes from the first of the two points to the last. P is measured between the inputs at which it
     passes them: the height of all its places across this line, and its speed along it per angle of the input.
