@@ -172,7 +172,7 @@ def _relax_workspace(problem: Any, solve: MeteredSearch, progress: Progress) -> 
     zoned = space.model_copy(update={"box": None, "obstacles": []})
     looser = [touching] if space.obstacles and space.clearance > 0.0 else []
     # Without zones the next step would drop the whole workspace, so skip this one.
-    looser += [zoned] if space.swept and zoned.has_constraints else []
+    looser += [zoned] if space.has_swept_constraints and zoned.has_constraints else []
     sound: list[Any] = []
     misses: list[_Miss] = []
     # The last step drops the workspace altogether.

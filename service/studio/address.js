@@ -20,8 +20,8 @@ const MOST_UNPACKED = 1_000_000;
  * @property {Problem} problem
  * @property {string} label of the task
  * @property {Linked | null} mechanism
- * @property {boolean} placed whether the linkage was shifted, turned and sized to what is stated, which it then need
- *   not pass as stated
+ * @property {boolean} placed whether the linkage was shifted, rotated and scaled to the given points; it then need not
+ *   pass through them as they were drawn
  */
 
 /** Why an address cannot be read. */
@@ -43,7 +43,7 @@ export function holds(fragment) {
 }
 
 /**
- * What a fragment holds. Nothing is taken on trust but that it is of the right form: the service judges what is stated.
+ * Read a fragment. Only its form is checked here; the service validates the problem.
  * @param {string} fragment @param {import("./api.js").Kind[]} kinds @returns {Promise<Sent>}
  */
 export async function sentIn(fragment, kinds) {
@@ -51,14 +51,14 @@ export async function sentIn(fragment, kinds) {
     throw new Unreadable(t`The address is longer than ${MOST} characters, which no statement needs.`);
   const text = await unpacked(fragment.slice(MARK.length));
   /**
-   * What it should be: whoever made the address may have written what they liked.
+   * The expected form; an address from elsewhere may contain anything.
    * @type {{problem?: Problem, label?: unknown, mechanism?: Linked | null, placed?: unknown} | null}
    */
   let told;
   try {
     told = JSON.parse(text);
   } catch {
-    throw new Unreadable(t`The address holds no statement: what comes out of it is no JSON.`);
+    throw new Unreadable(t`The address holds no problem: its content is not JSON.`);
   }
   const { problem, label = "", mechanism = null, placed = false } = told ?? {};
   const kind = kinds.find((one) => one.kind === problem?.kind);

@@ -1,4 +1,4 @@
-/** The answer of a job: what is known, the designs as cards, and the selected design in full. */
+/** The answer of a job: its summary, the designs as cards, and the selected design in full. */
 
 import * as api from "./api.js";
 import { Choosing } from "./choosing.js";

@@ -133,7 +133,7 @@ export function hasParts(mechanism) {
 }
 
 /**
- * The parts of a design as a zip, as something that a download can refer to; whoever gets it revokes it.
+ * Fetch the parts of a design as a zip and return an object URL for a download; the caller revokes it.
  * @param {string} id @param {number} design @param {Record<string, string>} sizes what they are made of
  */
 export async function parts(id, design, sizes) {
@@ -169,7 +169,7 @@ export async function assembly(id, design, query, signal) {
 }
 
 /**
- * The forms of files that there are of a type of mechanism.
+ * Return the file formats available for a type of mechanism.
  * @param {string} kind
  * @param {string} mechanism
  * @returns {string[]}
@@ -188,7 +188,7 @@ export function reportAt(id) {
   return `/v1/jobs/${encodeURIComponent(id)}/report.html?assemblies=true`;
 }
 
-/** The report of a job, as something that a download can refer to; whoever gets it revokes it. @param {string} id */
+/** Fetch the report of a job and return an object URL for a download; the caller revokes it. @param {string} id */
 export async function report(id) {
   return URL.createObjectURL(await (await patiently(() => ask(reportAt(id)))).blob());
 }
@@ -257,7 +257,7 @@ export async function forces(id, design, steps, block, signal) {
 }
 
 /**
- * @template {Analysis} [Answer=LinkageAnalysis] as that of a linkage, where nothing else is asked about
+ * @template {Analysis} [Answer=LinkageAnalysis] type of the answer; by default that of a linkage
  * @param {Question} question @param {AbortSignal} signal @returns {Promise<Answer>}
  */
 export async function analysis(question, signal) {
@@ -292,7 +292,7 @@ export async function curves(file, unit, most) {
 }
 
 /**
- * A file of a design, as something that a picture or a download can refer to; whoever gets it revokes it.
+ * Fetch a file of a design and return an object URL for a picture or a download; the caller revokes it.
  * @param {string} id @param {number} design @param {string} form @param {AbortSignal} [signal]
  */
 export async function file(id, design, form, signal) {

@@ -1,4 +1,4 @@
-/** Where the parts of an assembly are at an input: between two of those that the service tells, on a straight line. */
+/** Positions of the parts of an assembly at an input, interpolated linearly between those that the service returns. */
 
 /**
  * @typedef {{origins: number[][], along: number[][], normals: number[][]}} Standing

@@ -22,7 +22,7 @@ const TRAVEL_MS = 350;
 /** Inputs at which it is seen how far it reaches. */
 const SEEN_AT = 12;
 
-/** Directions from which it is looked at. @type {Record<string, [number, number, number]>} */
+/** Directions of view. @type {Record<string, [number, number, number]>} */
 export const VIEWS = { Isometric: [1, -1, 0.9], Top: [0, -1e-4, 1], Front: [0, -1, 0], Side: [1, 0, 0] };
 
 /** Whether this browser can draw in three dimensions. */
@@ -33,7 +33,7 @@ export function drawable() {
 export class AssemblyScene {
   /**
    * @param {HTMLCanvasElement} canvas @param {Assembly} assembly
-   * @param {{hover: (item: string | null) => void, choose: (item: string | null) => void}} told what the pointer is on
+   * @param {{hover: (item: string | null) => void, choose: (item: string | null) => void}} told callbacks for the part under the pointer
    */
   constructor(canvas, assembly, told) {
     this.canvas = canvas;
@@ -41,7 +41,7 @@ export class AssemblyScene {
     this.motion = new AssemblyMotion(assembly.input, assembly.carriers);
     this.at = 0;
     this.explosion = 0;
-    /** Whether it is looked at from where it was put, and nobody has turned it since. */
+    /** Whether the camera is still where it was placed, and the user has not turned the scene. */
     this.fitted = true;
     this.dirty = true;
     /** @type {string | null} */
@@ -161,7 +161,7 @@ export class AssemblyScene {
     this.scene.add(sun, sun.target, fill, fill.target);
   }
 
-  /** A grid below everything, a line every so many millimetres, and what catches shadows. @param {Assembly} assembly */
+  /** Add a grid below everything, with lines at a regular distance, and a surface that catches shadows. @param {Assembly} assembly */
   floor(assembly) {
     const { centre, radius } = this.reach;
     const step = stepOf((2 * radius) / 12);
@@ -302,7 +302,7 @@ export class AssemblyScene {
     this.go(new THREE.Vector3(...VIEWS[name]), animated);
   }
 
-  /** See it whole, from where it is looked at now. @param {boolean} [animated] */
+  /** Fit the whole assembly into view, in the present direction of view. @param {boolean} [animated] */
   fit(animated = !matchMedia("(prefers-reduced-motion: reduce)").matches) {
     this.go(this.camera.position.clone().sub(this.controls.target), animated);
   }
@@ -360,7 +360,7 @@ export class AssemblyScene {
     const share = Math.min(1, Math.max(0, (now - began) / TRAVEL_MS));
     const eased = share * share * (3 - 2 * share);
     this.controls.target.lerpVectors(target, aim, eased);
-    // About what is looked at, and not through it.
+    // Rotate about the target of the camera, and do not pass through it.
     const [one, other] = [from.clone().sub(target), to.clone().sub(aim)];
     const way = one.clone().normalize().lerp(other.clone().normalize(), eased).normalize();
     this.camera.position
@@ -391,7 +391,7 @@ export class AssemblyScene {
     return true;
   }
 
-  /** What lies under the pointer is told, and chosen by a click; a drag is none. */
+  /** Report the part under the pointer; a click chooses it, a drag does not. */
   pointed() {
     /** @type {[number, number] | null} */
     let down = null;
@@ -461,7 +461,7 @@ function standing({ origins, along, normals }, at) {
   return new THREE.Matrix4().makeBasis(x, z.clone().cross(x), z).setPosition(of(origins));
 }
 
-/** A step of 1, 2 or 5 times a power of ten, not below so much. @param {number} least */
+/** Return a step of 1, 2 or 5 times a power of ten, at least `least`. @param {number} least */
 export function stepOf(least) {
   const power = 10 ** Math.floor(Math.log10(least));
   return power * ([1, 2, 5, 10].find((one) => one * power >= least) ?? 10);

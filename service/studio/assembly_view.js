@@ -26,7 +26,7 @@ import { symbolOf } from "./units.js";
 
 /** @typedef {{all: HTMLInputElement, names: string[], each: Map<string, HTMLInputElement>}} Shows `each` by `names` */
 
-/** Inputs that are asked for. */
+/** Number of requested inputs. */
 const POSITIONS = 144;
 
 /** The scale that a refusal says will do. */
@@ -83,7 +83,7 @@ export class AssemblyView {
     this.frame = requestAnimationFrame(step);
   }
 
-  /** What the parts are made of, as the files are asked for. */
+  /** Options of the parts, as in the requests for files. */
   sizes() {
     const unit = symbolOf("length", this.job.problem);
     const field = (/** @type {string} */ name, /** @type {string} */ title, /** @type {HTMLElement} */ box) => {
@@ -212,7 +212,7 @@ export class AssemblyView {
     );
   }
 
-  /** @param {Assembly} assembly @param {Record<string, string>} query by which it was asked for */
+  /** @param {Assembly} assembly @param {Record<string, string>} query of the request */
   present(assembly, query) {
     this.scene?.stop();
     this.scene = null;
@@ -274,7 +274,7 @@ export class AssemblyView {
     this.follow();
   }
 
-  /** Where it is looked at from, and its picture. */
+  /** Build the buttons for the direction of view and for the picture. */
   tools() {
     const button = (/** @type {string} */ title, /** @type {() => void} */ does) =>
       el("button", { type: "button", class: "small", onclick: does }, title);
@@ -292,7 +292,7 @@ export class AssemblyView {
     );
   }
 
-  /** How far its planes are apart; it moves with the drawing, whose clock stands beside it. */
+  /** Build the slider for the distance of the planes. The motion follows the clock of the drawing. */
   sliders() {
     const apart = el("input", {
       type: "range",

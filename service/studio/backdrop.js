@@ -22,7 +22,7 @@ export class Backdrop {
      * @type {{scale: number, corner: Point} | null}
      */
     this.placed = null;
-    /** Points that have been clicked; null while nobody asks for them. @type {Point[] | null} */
+    /** Points that have been clicked; null while none are requested. @type {Point[] | null} */
     this.picked = null;
     this.unit = "mm";
     this.node = el("div", { id: "backdrop" });

@@ -36,7 +36,7 @@ export function beginnings(problem, skeleton, motion, targets, held) {
     P
   )
     found.push({
-      text: held ? t`Optimise from here, what is held let go` : t`Optimise from here`,
+      text: held ? t`Optimise from here, without the fixed dimensions` : t`Optimise from here`,
       solved: true,
       statement: () => ({
         ...problem,

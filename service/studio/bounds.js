@@ -52,7 +52,7 @@ export class Bounds {
     );
   }
 
-  /** Sliders for some quantities, and for those that have a bound. @param {number[]} wanted */
+  /** Show sliders for the chosen quantities, and for all that have a bound. @param {number[]} wanted */
   show(wanted) {
     this.shown = wanted;
     const all = [...new Set([...wanted, ...this.set.keys()])].filter((k) => differ(this.quantities[k].values));

@@ -17,7 +17,7 @@ export class Choosing {
    * @param {HTMLElement} place
    * @param {import("./desk.js").Desk} desk
    * @param {Solved} job with two designs at least
-   * @param {import("./strip.js").Strip} strip @param {() => void} narrowed told when bounds hide designs
+   * @param {import("./strip.js").Strip} strip @param {() => void} narrowed called when bounds hide designs
    */
   constructor(place, desk, job, strip, narrowed) {
     this.place = place;
@@ -156,7 +156,7 @@ export class Choosing {
     this.pick.value = this.other === null ? "" : String(this.other);
   }
 
-  /** Compare the chosen design with another one, as it is asked for now. */
+  /** Compare the chosen design with the other one that is selected now. */
   compare() {
     this.end();
     if (!this.open) return;

@@ -25,7 +25,7 @@ export function others(motion) {
   );
 }
 
-/** The joint whose path tells the most: P, or the last pin that moves. @param {Skeleton} skeleton */
+/** Return the joint whose path describes the motion best: P, or the last pin that moves. @param {Skeleton} skeleton */
 export function telling(skeleton) {
   const still = grounded(skeleton);
   const names = drawn(skeleton).filter((name) => !still.includes(name));

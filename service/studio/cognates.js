@@ -73,7 +73,7 @@ function told(one) {
 
 /** @param {Choice[]} choices @param {(choice: Choice) => void} choose */
 export function picker(choices, choose) {
-  // Of the design the service tells, of the others the page.
+  // The service measured the design; the page computes the others.
   const notes = choices.map((one, k) =>
     k ? el("span", {}, one.note) : el("span", { lang: foreign(one.note) }, translated(one.note)),
   );

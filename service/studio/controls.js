@@ -155,7 +155,7 @@ export function choices(name, note, path, all, value, set) {
 }
 
 /**
- * Tooth numbers that there are, some of them several times: `20, 24 × 3, 30`.
+ * Tooth numbers of a stock, with the number of equal gears: `20, 24 × 3, 30`.
  * @param {unknown} value
  * @param {(value: Json | undefined) => void} set
  */

@@ -29,7 +29,7 @@ const OF_PATH = 24;
 const OF_CAM = 48;
 const OF_AREA = 1000;
 
-/** Fewer points are asked for anew, from the file. */
+/** Request fewer points of the same file. */
 const LEAST = 3;
 
 export class CurveImport {
@@ -70,7 +70,7 @@ export class CurveImport {
     this.accept(place.ownerDocument);
   }
 
-  /** Files that are dropped on the page are taken, whatever lies under them. @param {Document} page */
+  /** Accept files that are dropped anywhere on the page. @param {Document} page */
   accept(page) {
     const files = (/** @type {DragEvent} */ event) => event.dataTransfer?.types.includes("Files");
     const over = (/** @type {boolean} */ is) => page.body.classList.toggle("dropping", is);
@@ -149,7 +149,7 @@ export class CurveImport {
     this.chooser.value = "";
   }
 
-  /** Read the file that was taken, with so many points for a curve. @param {number} most */
+  /** Read the accepted file with at most `most` points for each curve. @param {number} most */
   async read(most) {
     const { file } = this;
     if (!file) return;
@@ -322,7 +322,7 @@ export class CurveImport {
 }
 
 /**
- * One curve: how it looks, what it is called, how large it is, and what it becomes.
+ * A row for one curve: its picture, name and size, and its use.
  * @param {Curve} curve
  * @param {number} k
  * @param {Use[]} uses

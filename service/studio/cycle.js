@@ -39,7 +39,7 @@ export async function overTheCycle(mechanism, steps, signal) {
 }
 
 /**
- * A mechanism that is stated by its dimensions, with its skeleton as the motion shows it.
+ * A mechanism given by its dimensions, with its skeleton in the reference position of the motion.
  * @param {Mechanism} mechanism
  * @param {LinkageAnalysis} motion
  * @returns {Linked}

@@ -173,8 +173,8 @@ export class Shown {
   }
 
   /**
-   * The motion of a cognate; null where it cannot be driven. Of the design it shares the curve only: it has numbers of
-   * its own.
+   * Return the motion of a cognate, or null if it cannot be driven. It shares only the curve with the design and has
+   * its own figures.
    * @param {import("./cognates.js").Choice} choice @returns {Promise<Film | null>}
    */
   async film(choice) {
@@ -292,7 +292,7 @@ export class Shown {
           this.forces = details.open && details.isConnected ? new Forces(inside, job, n, this.mover) : null;
         },
       },
-      el("summary", {}, t`Forces: what it bears, and what drives it`),
+      el("summary", {}, t`Forces: joint forces and drive`),
       inside,
     );
     return [details];
@@ -395,7 +395,7 @@ export class Shown {
 }
 
 /**
- * The numbers of a cognate: what was measured of it, and its dimensions.
+ * The figures of a cognate: its measurements and its dimensions.
  * @param {Film} film
  * @param {Problem} problem
  */

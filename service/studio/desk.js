@@ -1,4 +1,4 @@
-/** The parts of the window in which a design is shown: the stage, the drawer beside it, and what stands in both. */
+/** The parts of the window in which a design is shown: the stage, the drawer next to it, and their contents. */
 
 import { byId, el } from "./dom.js";
 import { Drawer } from "./drawer.js";
@@ -71,7 +71,7 @@ export class Desk {
   /** Say whether a linkage can be explored. @param {boolean} is */
   explored(is) {
     this.exploring.replaceChildren();
-    const note = t`Linkages are explored: their pins are dragged, and what they do then is told here.`;
+    const note = t`Only linkages can be explored: drag their pins, and their figures appear here.`;
     this.explore.replaceChildren(...(is ? [] : [el("p", { class: "note" }, note)]));
   }
 }

@@ -1,9 +1,9 @@
 /**
- * The dimensions of a linkage that is explored: what they are, and where its joints go when one is stated.
+ * The dimensions of an explored linkage: their values, and the joints that satisfy given ones.
  *
  * A link of two joints has a length; each further joint has its distance from the first one, and the angle there from
- * the line to the second. Joints are moved least so that what is stated holds: a step of Newton's method towards
- * c(x) = 0 that is shortest is −Jᵀ(JJᵀ)⁻¹c.
+ * the line to the second. Given dimensions are met with the least movement of the joints: the shortest Newton step to
+ * c(x) = 0 is −Jᵀ(JJᵀ)⁻¹c.
  */
 
 /** @import { Skeleton } from "./types/values.js" */
@@ -24,7 +24,7 @@ const KEPT = 1e-9;
 /** Changes of coordinates from which slopes are taken, of the linkage's size. */
 const CHANGE = 1e-6;
 
-/** Keeps what is stated twice solvable, of the greatest slope squared. */
+/** Damping as a share of the greatest squared slope; it keeps redundant dimensions solvable. */
 const DAMPING = 1e-12;
 
 /**
@@ -59,7 +59,7 @@ export function valueOf({ joints: [at, from, to] }, places) {
  */
 
 /**
- * Joints moved least so that all demands hold; null where none of the places found does so.
+ * Return the joints, moved as little as possible, that satisfy all demands; null if none were found.
  * @param {Joints} places
  * @param {Demand[]} demands
  * @param {string[]} still joints that stay where they are
@@ -109,7 +109,7 @@ function miss({ dimension, value, other }, places) {
 }
 
 /**
- * A symmetric system, by elimination; what is there twice is damped.
+ * Solve a symmetric system by elimination, with damping for redundant equations.
  * @param {number[][]} matrix
  * @param {number[]} right
  */

@@ -73,9 +73,8 @@ function called(one) {
 }
 
 /**
- * Make anew what stands in some places. What had the focus in one of them has it again, by its id or its name; where it
- * is
- * gone, the place itself has it: whoever goes by keys keeps the place.
+ * Rebuild the content of some places. The focused element gets the focus again, by its id or name; if it is gone, the
+ * place itself gets it, so that keyboard users keep their position.
  * @param {HTMLElement[]} places
  * @param {() => void} make
  */

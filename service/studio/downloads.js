@@ -9,7 +9,7 @@ import { t } from "./messages.js";
 /** @type {Record<string, [string, string]>} */
 const SIMULATIONS = {
   mjcf: ["MuJoCo", t`A model of MuJoCo: loops closed, the input driven`],
-  urdf: ["URDF", t`A tree of links and joints for robotics programs, its loops beside it`],
+  urdf: ["URDF", t`A tree of links and joints for robotics programs, with its loops in a separate block`],
   mo: ["Modelica", t`A model of Modelica's MultiBody library`],
   "sim.py": [t`Simulation`, t`A Python script that runs the design in MuJoCo and compares it with the analysis`],
 };
@@ -103,7 +103,7 @@ function opened(job, n, button) {
     el("a", { href: url, target: "_blank", rel: "noopener noreferrer" }).click();
     return "";
   });
-  there.title = t`Open it in PMKS+, whose models are in their addresses: app.pmksplus.com is told all of it`;
+  there.title = t`Open it in PMKS+: the whole model is in the address and is sent to app.pmksplus.com`;
   return there;
 }
 
@@ -120,7 +120,7 @@ async function raster(image) {
   return URL.createObjectURL(blob);
 }
 
-/** Hand a file over to who looks at the page. @param {string} url @param {string} name */
+/** Offer a file to the user as a download. @param {string} url @param {string} name */
 export function saved(url, name) {
   el("a", { href: url, download: name }).click();
   setTimeout(() => URL.revokeObjectURL(url), 10000);

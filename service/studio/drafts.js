@@ -39,7 +39,7 @@ export function lastSteps() {
 
 /**
  * @param {Problem} problem @param {string} label @param {Steps} steps
- * @param {string} job whose answers stand beside it; empty where there are none
+ * @param {string} job the job of its answers; empty without answers
  */
 export function keepDraft(problem, label, { past, future }, job) {
   lasting.write(`${NAME}.${problem.kind}`, JSON.stringify({ problem, label, job }));

@@ -1,5 +1,5 @@
 /**
- * The tabs beside the stage: what is shown of the chosen design. On a phone they are a sheet, with task and answers.
+ * The tabs next to the stage, with the details of the chosen design. On a phone they are a sheet with task and answers.
  */
 
 import { el } from "./dom.js";

@@ -20,7 +20,7 @@ const DIGITS = 9;
 export class DrawingImport {
   /**
    * @param {import("./store.js").Store} store
-   * @param {(path: string | undefined) => void} placed told the area that is chosen before anything shows it
+   * @param {(path: string | undefined) => void} placed called with the chosen area before anything shows it
    */
   constructor(store, placed) {
     this.store = store;
@@ -129,7 +129,7 @@ export class DrawingImport {
   }
 
   /**
-   * One outline: how it looks, what it is called, how large it is, and what it becomes.
+   * A row for one outline: its picture, name and size, and its use.
    * @param {Drawn} one
    * @param {number} k
    */
@@ -202,7 +202,7 @@ export class DrawingImport {
     );
   }
 
-  /** The room as it was before; what was changed in it since then would be lost, so then it stays. */
+  /** Restore the workspace, unless it was changed since the import: those changes would be lost. */
   undo() {
     const { last, store } = this;
     if (!last) return;

@@ -1,4 +1,4 @@
-/** What an analysis tells of a linkage, as facts for reading. */
+/** Results of the analysis of a linkage, as a list of facts. */
 
 import { telling } from "./circuits.js";
 import { shown, words } from "./dom.js";
@@ -10,7 +10,7 @@ import { t } from "./messages.js";
 /** @typedef {[number, number]} Point */
 
 /**
- * The curve of the point that tells a linkage, over a motion; NaN where it is not reached.
+ * The curve of a linkage's characteristic point over a motion; NaN where it is not reached.
  * @param {LinkageAnalysis} answer
  * @param {Skeleton} skeleton
  * @returns {Point[]}

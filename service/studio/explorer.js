@@ -1,4 +1,4 @@
-/** A linkage whose pins are dragged: what it does then, as the analysis core says, while it is dragged. */
+/** A linkage whose pins are dragged, with its motion from the analysis core while they are dragged. */
 
 import * as api from "./api.js";
 import { stands } from "./cycle.js";
@@ -26,7 +26,7 @@ const BURST_MS = 700;
 export class Explorer {
   /**
    * @param {HTMLElement} board of the stage
-   * @param {HTMLElement} place what is told of it
+   * @param {HTMLElement} place of its figures
    * @param {Linked} mechanism with its skeleton
    * @param {Problem} problem
    * @param {import("./mover.js").Target[]} targets as demanded
@@ -106,7 +106,7 @@ export class Explorer {
       el(
         "p",
         { class: "note" },
-        t`Drag a pin, move it with the arrow keys, or type a dimension: curve, motion and figures are those of the linkage as it is then. What is held stays, whichever pin is dragged.`,
+        t`Drag a pin, move it with the arrow keys, or type a dimension: curve, motion and figures follow. Fixed dimensions stay, whichever pin is dragged.`,
       ),
       el("p", { class: "row" }, this.steps.back, this.steps.forth),
       this.sizes.node,
@@ -282,7 +282,7 @@ export class Explorer {
   }
 
   /**
-   * The checks of the problem, as far as they can be told at once.
+   * List the checks of the problem that can be evaluated at once.
    * @param {boolean} turns
    * @param {number | null} least
    * @param {string | null} grashof
@@ -295,7 +295,7 @@ export class Explorer {
     );
     /** @type {[string, boolean][]} */
     const checks = [];
-    // The curve is known at so many places only: nearer than their distance nothing can be told.
+    // The curve is sampled: distances below the spacing of the samples are not resolved.
     if (missed.length)
       checks.push([
         t`Passes the targets within ${`${shown(Number((0.01 * size).toPrecision(2)))} ${this.unit}`}`,

@@ -36,7 +36,7 @@ const AGAINST = /** @type {Record<string, string>} */ ({
 });
 
 /**
- * The metrics that are plain numbers or words, the telling ones first.
+ * The metrics that are plain numbers or words, the most important first.
  * @param {Partial<Design>} design
  * @returns {[string, string | number | boolean][]}
  */
@@ -52,7 +52,7 @@ export function figures(design) {
 }
 
 /**
- * Digits of a number for reading, where it is no dimension that is made; all of them are told where the pointer rests.
+ * Digits shown of a number that is not a dimension to be made; all digits are shown under the pointer.
  */
 const DIGITS = 3;
 
@@ -87,7 +87,7 @@ export function nothing(left, of) {
  * @param {string} name
  * @param {unknown} value
  * @param {string | undefined} dimension
- * @param {number} [size] of the mechanism, where lengths are asked for
+ * @param {number} [size] of the mechanism, for lengths
  */
 export function exact(name, value, dimension, size = 0) {
   if (typeof value !== "number" || !MISSES.test(name)) return false;
@@ -97,10 +97,10 @@ export function exact(name, value, dimension, size = 0) {
 }
 
 /**
- * A figure of a design: few digits, `exact` where nothing is missed, and all of its digits where the pointer rests.
+ * A figure of a design: few digits, `exact` for an error of zero, and all digits under the pointer.
  * @param {string} name
  * @param {unknown} value
- * @param {Problem | null} problem whose units stand beside it
+ * @param {Problem | null} problem whose units are shown with it
  * @param {number} [size] of the mechanism
  * @returns {{text: string, title: string | null}}
  */
@@ -120,7 +120,7 @@ export function typeOf({ mechanism, springs }) {
 /** What is written short. @type {Record<string, string>} */
 const SHORT = { cw: t`clockwise`, ccw: t`counterclockwise` };
 
-/** @param {unknown} value @param {string} [unit] beside a number */
+/** @param {unknown} value @param {string} [unit] shown after a number */
 export function text(value, unit = "") {
   if (typeof value === "string" && value in SHORT) return SHORT[value];
   return typeof value === "number"
@@ -157,7 +157,7 @@ export function amount(value, check, problem) {
 }
 
 /**
- * Value and limit of a check; with as many digits as it takes to tell the two apart.
+ * Value and limit of a check, with enough digits to distinguish them.
  * @param {Schemas["Check"]} check
  * @param {Problem} problem
  */
@@ -205,7 +205,7 @@ export function checks(design, problem) {
 /**
  * @param {string} title
  * @param {[string, unknown][]} rows
- * @param {Problem | null} [problem] whose units stand beside the numbers
+ * @param {Problem | null} [problem] whose units are shown with the numbers
  */
 export function table(title, rows, problem = null) {
   const size = Number(rows.find(([name]) => name === "size")?.[1]) || undefined;
@@ -238,7 +238,7 @@ function rowed(title, rows) {
 /**
  * What becomes of a design as a shop makes it: nothing where the problem does not ask.
  * @param {Partial<Design>} design
- * @param {Problem} problem whose units stand beside the numbers
+ * @param {Problem} problem whose units are shown with the numbers
  * @returns {HTMLElement[]}
  */
 export function made(design, problem) {

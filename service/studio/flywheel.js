@@ -16,7 +16,7 @@ export class Flywheel extends Turning {
   /**
    * @param {import("./stage.js").Frame} frame
    * @param {Schemas["FlywheelDesign"]} design
-   * @param {unknown} _motion which its course tells
+   * @param {unknown} _motion unused: the design's course contains it
    * @param {Problem} problem
    */
   constructor(frame, design, _motion, problem) {

@@ -1,9 +1,9 @@
 /**
- * What forces and torques of a linkage are measured by: what rounding leaves of them beside that is nothing.
+ * Scales of the forces and torques of a linkage: values of the size of rounding errors on these scales count as zero.
  *
- * A balanced linkage needs no drive, but the sum of what its loads ask for ends at 1e-15 and not at 0. The scale of
- * forces is the greatest that there is at a pin, or that shakes the frame; that of torques the greatest drive or
- * moment, or the same force on an arm as long as the linkage.
+ * A balanced linkage needs no drive, but the computed sum of its loads is 1e-15 instead of 0. The scale of forces is
+ * the greatest force at a pin or on the frame; that of torques is the greatest drive or moment, or this force on an arm
+ * as long as the linkage.
  */
 
 import { nothing } from "./figures.js";
@@ -16,7 +16,7 @@ import { nothing } from "./figures.js";
 /** Length units in metres. @type {Record<string, number>} */
 const METRES = { mm: 1e-3, cm: 1e-2, m: 1, in: 0.0254 };
 
-/** How far apart joints are. @param {Skeleton} skeleton */
+/** Return the greatest distance of two joints. @param {Skeleton} skeleton */
 function reach({ joints }) {
   const [xs, ys] = [0, 1].map((axis) => Object.values(joints).map((at) => at[axis]));
   return Math.hypot(Math.max(...xs) - Math.min(...xs), Math.max(...ys) - Math.min(...ys));

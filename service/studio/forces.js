@@ -17,7 +17,7 @@ import { symbolOf } from "./units.js";
 /** Samples of a turn, or of the range. */
 const STEPS = 360;
 
-/** Lines of one plot: so many colours there are. */
+/** Maximum number of lines in one plot: the number of colours. */
 const TOGETHER = 4;
 
 /** Why numbers are missing, or are to be read with care, by the status of a position. @type {Record<string, string>} */
@@ -80,7 +80,7 @@ export class Forces {
         el(
           "p",
           { class: "note" },
-          t`The problem does not state what the linkage weighs and carries: its forces are not known until that is stated above.`,
+          t`The problem gives no masses and loads. Enter them above to see the forces of the linkage.`,
         ),
       );
   }
@@ -109,7 +109,7 @@ export class Forces {
     this.put();
   }
 
-  /** The arrows, in the picture of the motion that there is. */
+  /** Draw the arrows in the current picture of the motion. */
   put() {
     const { answer, mover } = this;
     if (!answer || !mover) return;
@@ -382,7 +382,7 @@ export class Forces {
     );
   }
 
-  /** @param {number} input @param {boolean} told whether numbers are told of it */
+  /** @param {number} input @param {boolean} told whether its numbers are shown */
   show(input, told) {
     const at = this.placeAt(input);
     this.at = at;

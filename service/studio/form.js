@@ -21,7 +21,7 @@ import { unitOf } from "./units.js";
 /** Fields of every problem that few people touch; they come last. */
 const LAST = ["length_unit", "rank_by", "max_designs", "include_failed", "seed"];
 
-/** Fewer fields than these that nobody has stated need not be folded away. */
+/** Minimum number of empty optional fields that are folded away. */
 const FOLDED = 3;
 
 let ids = 0;
@@ -83,7 +83,7 @@ function folded(sheet, schema, path, order = Object.keys(propertiesOf(schema))) 
  */
 function field(sheet, schema, name, path, required) {
   const what = kinded(schema, sheet.root);
-  // The units beside the other fields are those of the length unit, or of the mechanism that is asked for.
+  // The units of other fields depend on the length unit and on the requested mechanism.
   const set = (/** @type {Json | undefined} */ value) =>
     sheet.put(path, value, name === "length_unit" || (name === "mechanism" && typeof value === "string"));
   const value = sheet.at(path);
@@ -180,7 +180,7 @@ function shapeName(option) {
 }
 
 /**
- * A value that is stated in one of several ways, as a number or a range: the way is chosen first.
+ * A value with several forms, such as a number or a range: the form is chosen first.
  *
  * A word that stands for itself, and null where leaving the field out means something else, have nothing below them.
  * @param {Sheet} sheet
@@ -269,7 +269,7 @@ function members(sheet, item, path) {
 }
 
 /**
- * @param {Sheet} sheet that looks at the first of them where none is stated
+ * @param {Sheet} sheet that shows the first of them if none is given
  * @param {Schema[]} options @param {string} path
  */
 function union(sheet, options, path) {
@@ -289,7 +289,7 @@ function union(sheet, options, path) {
 }
 
 /**
- * A group of fields that opens; what may be absent is stated by a flag.
+ * A group of fields that opens; a flag switches an optional group on.
  * @param {Sheet} sheet @param {Schema} schema @param {string} name @param {string} note @param {string} path
  * @param {boolean} always @param {() => (Node | null)[]} inside
  */
@@ -407,7 +407,7 @@ function named(text) {
 }
 
 /**
- * `0, open` or `90`; what is no number stays as it is written, and the service says so.
+ * `0, open` or `90`; text that is not a number stays as typed, and the service reports it.
  * @param {string} text
  * @param {Schema[]} options
  */

@@ -31,7 +31,7 @@ export function stroke(event, view, picture, pen, drawn) {
       picture.removeEventListener("pointermove", move);
       pen.removeAttribute("d");
       const closed = meets(way);
-      // Round and back to the first point, which is stated once.
+      // A closed curve returns to its first point, which is listed once.
       const points = closed ? evenly([...way, way[0]], POINTS + 1).slice(0, POINTS) : evenly(way, POINTS);
       if (points.length >= 3)
         drawn(

@@ -98,7 +98,7 @@ export class Gallery {
   }
 }
 
-/** What a person may want, the most wanted first. */
+/** Fields of application, the most common first. */
 const ORDER = [
   "Carry a body",
   "Draw a curve",

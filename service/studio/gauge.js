@@ -80,7 +80,7 @@ export class Gauge {
     );
   }
 
-  /** @param {number | null} angle @param {boolean} told whether its number is told */
+  /** @param {number | null} angle @param {boolean} told whether its number is shown */
   show(angle, told) {
     if (told) this.now.value = degrees(angle);
     this.needle.toggleAttribute("hidden", angle === null);

@@ -83,7 +83,7 @@ export class Gears extends Turning {
     ]);
   }
 
-  /** Of a gearbox: which gear is engaged, in the drawing and in the assembly beside it. */
+  /** Build the choice of the engaged gear of a gearbox, for the drawing and the assembly. */
   engaging() {
     const { mechanism } = this.design;
     const { speeds } = this.motion;

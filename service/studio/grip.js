@@ -22,11 +22,11 @@ const FINE_TURN = 1;
 export class Grip {
   /**
    * @param {object} looks
-   * @param {string} [looks.name] what stands beside it
+   * @param {string} [looks.name] label next to it
    * @param {Point} [looks.beside] where the name stands, pixels from its middle
    * @param {string} [looks.kind] class of the whole
-   * @param {string} [looks.dot] class of what is seen
-   * @param {number} [looks.radius] of what is seen, pixels
+   * @param {string} [looks.dot] class of the visible dot
+   * @param {number} [looks.radius] of the visible dot, pixels
    * @param {string} [looks.key] by which it is found again in a picture that is made anew
    * @param {string} [looks.role]
    */
@@ -101,7 +101,7 @@ export function led(node, picture, view, { taken, led: follow, left }) {
  * @param {Element} node
  * @param {import("./view.js").View} view
  * @param {object} on
- * @param {(by: Point) => void} on.moved by so much of the plane's units
+ * @param {(by: Point) => void} on.moved called with the displacement, in units of the plane
  * @param {((degrees: number) => void) | null} [on.turned]
  * @param {(() => void) | null} [on.removed]
  */

@@ -1,4 +1,4 @@
-/** Leads through a task step by step: a note beside the thing that a step speaks of, which can be left at any time. */
+/** A guide through a task: each step is a note next to the element that it describes. It can be left at any time. */
 
 import { byId, el } from "./dom.js";
 import { GUIDES } from "./guides.js";
@@ -18,8 +18,8 @@ const GAP = 12;
  * What a guide has of the page.
  * @typedef {object} Page
  * @property {(kind: string, example: string) => void} state begins with an example by its name
- * @property {() => Problem} problem as it is stated
- * @property {() => boolean} answered whether there are answers to what is stated
+ * @property {() => Problem} problem in its present state
+ * @property {() => boolean} answered whether the present problem has answers
  * @property {import("./desk.js").Desk} desk
  */
 

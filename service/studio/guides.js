@@ -1,4 +1,4 @@
-/** Tasks of a minute each, step by step: where a step stands, what it says, and when it is done. */
+/** Tasks of a minute each, in steps: the place of each step, its text, and the condition that completes it. */
 
 import { t } from "./messages.js";
 
@@ -7,9 +7,9 @@ import { t } from "./messages.js";
 /**
  * What a step is judged by.
  * @typedef {object} Now
- * @property {Problem} problem as it is stated
+ * @property {Problem} problem in its present state
  * @property {Problem} before as it was when the step began
- * @property {boolean} answered whether there are answers to what is stated
+ * @property {boolean} answered whether the present problem has answers
  * @property {string} chosen the number of the design that was chosen when the step began
  */
 

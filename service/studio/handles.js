@@ -14,13 +14,13 @@ import { smoothed, symmetric } from "./shaping.js";
 
 /**
  * @typedef {object} Handle
- * @property {string} name what stands beside it
+ * @property {string} name label next to it
  * @property {string} label what it is
  * @property {() => Point} get
  * @property {(x: number, y: number) => void} put
  * @property {{get: () => number, set: (degrees: number) => void}} [turn]
  * @property {() => void} [remove]
- * @property {string} [path] JSON pointer of what has the fields x, y and angle
+ * @property {string} [path] JSON pointer of the object with the fields x, y and angle
  */
 
 /**
@@ -30,7 +30,7 @@ import { smoothed, symmetric } from "./shaping.js";
  * @property {string} [word] what a double click adds
  * @property {(x: number, y: number) => void} [add]
  * @property {boolean} [freehand] a curve may be drawn
- * @property {{text: string, make: (at: Point, size: number) => void}[]} offers what may be stated on the canvas too
+ * @property {{text: string, make: (at: Point, size: number) => void}[]} offers further entries that can be made on the canvas
  * @property {{text: string, title: string, make: (fine: (value: number) => number) => void}[]} [shapes] what is done to
  *   a curve as a whole
  */
@@ -228,7 +228,7 @@ function quickReturn(problem) {
     offers.push({
       text: t`State both limit positions`,
       make: (/** @type {Point} */ [x, y], /** @type {number} */ size) => {
-        // They say how far the output swings; a swing or a stroke beside them would say it twice.
+        // They determine the motion of the output, so a swing or a stroke would be redundant.
         Object.assign(problem, {
           swing: null,
           stroke: null,

@@ -1,4 +1,4 @@
-/** How the areas of a room look: an outline, a hatch and a colour for each role, and the legend that tells them. */
+/** Styles of the areas of a workspace: outline, hatch and colour for each role, and their legend. */
 
 import { el, svg } from "./dom.js";
 

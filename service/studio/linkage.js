@@ -14,7 +14,7 @@ export function grounded(skeleton) {
 }
 
 /**
- * Joints worth a drawing: a coupler point that nobody asked for lies on another joint.
+ * Return the joints to draw: a coupler point that was not requested lies on another joint.
  * @param {Skeleton} skeleton
  * @returns {string[]}
  */

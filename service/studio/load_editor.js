@@ -16,12 +16,12 @@ import { symbolOf } from "./units.js";
 /** How near to a pin a click means it, pixels of the picture. */
 const NEAR = 22;
 
-/** What is edited here; all else of a stated block is kept. */
+/** Fields that are edited here; the others of a given block are kept. */
 const EDITED = ["units", "gravity", "speed_rpm", "speed", "links", "point_masses", "loads"];
 
 /** @typedef {import("./mover.js").Mover} Mover */
 /** @typedef {Schemas["DesignForcesBlock"]} Block */
-/** A mass that is being stated: its number may be missing yet. @typedef {Partial<Schemas["PointMass"]>} Mass */
+/** A mass that is being entered: its number may still be missing. @typedef {Partial<Schemas["PointMass"]>} Mass */
 /** @typedef {Schemas["StatedLoad"]} Load */
 /** @typedef {{select: HTMLSelectElement, button: HTMLElement}} Placed */
 
@@ -265,7 +265,7 @@ export class LoadEditor {
           k,
           path,
           "load",
-          el("p", { class: "note" }, t`On ${load.joint ?? load.link}, kept as it is stated.`),
+          el("p", { class: "note" }, t`On ${load.joint ?? load.link}, kept unchanged.`),
         );
       }),
     );
@@ -395,6 +395,6 @@ export class LoadEditor {
     } else if (error instanceof Error && error.name !== "AbortError")
       this.faults.replaceChildren(el("p", { class: "error" }, error.message));
     if (this.answered)
-      this.faults.append(el("p", { class: "note" }, t`The forces below are those of what was stated before.`));
+      this.faults.append(el("p", { class: "note" }, t`The forces below belong to the previous masses and loads.`));
   }
 }

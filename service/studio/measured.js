@@ -1,4 +1,4 @@
-/** The numbers that the designs of an answer have in common: what they are chosen by. */
+/** The numbers that all designs of an answer have, for choosing between them. */
 
 import { words } from "./dom.js";
 import { brief, exact, figures, unitFor } from "./figures.js";
@@ -21,7 +21,7 @@ import { symbolOf } from "./units.js";
 /** Of what more is better; of all else less is. */
 const MORE = /^(quality|yield|min_.*|.*efficiency|.*_share|locking_angle|transmission_angle)$/;
 
-/** @param {Design[]} designs @param {Problem} problem @returns {Quantity[]} the telling ones first */
+/** @param {Design[]} designs @param {Problem} problem @returns {Quantity[]} the most important first */
 export function quantities(designs, problem) {
   const names = [
     ...new Set(

@@ -1,10 +1,9 @@
 /**
- * The language of the page: its texts, by what they are in English, and the numbers in them.
+ * The language of the page: its texts, with the English text as key, and the numbers in them.
  *
- * The sources say what they say in English. The tag t looks a text of the page up among the messages of the chosen
- * language,
- * and translated a text of the service; what is not found there stays English. English itself has no messages and waits
- * for none.
+ * The sources are in English. The tag t looks up a text of the page among the messages of the chosen language, and
+ * translated a text of the service; texts that are not found stay English. English needs no messages and waits for
+ * none.
  */
 
 import { lasting } from "./storage.js";
@@ -47,10 +46,10 @@ const GROUPED = 10_000;
 /** A number in English prose: what stands in its place is a number too. */
 const NUMBER = /(?<![\w{])[-−]?\d+(?:\u202f\d{3})*(?:\.\d+)?(?:e[-+]?\d+)?(?![\w}])/g;
 
-/** Texts by what they are in English; of English itself none. @type {Record<string, string>} */
+/** Texts by their English form; empty for English. @type {Record<string, string>} */
 const messages = language === SOURCE ? {} : await fetched(languages[language].messages);
 
-/** What was chosen, or the first of the languages of the browser that there is. */
+/** The chosen language, or the first available one of the browser's languages. */
 function chosen() {
   const wanted = [lasting.read(KEPT) ?? "", ...navigator.languages.map((one) => one.split("-")[0])];
   return wanted.find((one) => one in languages) ?? SOURCE;

@@ -23,7 +23,7 @@ const AND = ` ${t`and`} `;
 /** Digits of a limit that is eased. */
 const DIGITS = 4;
 
-/** Where the limit of a check is stated, if it has not the name of the check. @type {Record<string, string[]>} */
+/** Field of a check's limit, if its name differs from that of the check. @type {Record<string, string[]>} */
 const STATED = {
   transmission_angle: ["constraints", "min_transmission_angle"],
   link_ratio: ["constraints", "max_link_ratio"],
@@ -132,7 +132,7 @@ export function offers(problem, { gaps, reachable }) {
  * Ease a demand by as much as the nearest miss breaks it.
  * @param {Problem} problem
  * @param {Gap} gap
- * @returns {Easing | null} null where nothing of the statement says it
+ * @returns {Easing | null} null if no field of the problem gives it
  */
 function eased(problem, gap) {
   const { check, value, limit } = gap;
@@ -184,7 +184,7 @@ function reached(problem, name, value) {
   return limited(path, check ?? name, value, value > limit, told);
 }
 
-/** The unit of what is reached. @param {string} name @param {Problem} problem */
+/** Return the unit of the value that was reached. @param {string} name @param {Problem} problem */
 function unitOf(name, problem) {
   return unitFor(name, problem) || (name.includes("angle") ? "°" : "");
 }

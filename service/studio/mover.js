@@ -27,12 +27,12 @@ const PLANES = 300;
 /** @typedef {{x: number, y: number, angle?: number}} Target */
 
 /**
- * What goes with the motion: a layer of the picture that is told the input.
+ * A layer of the picture that follows the motion: it receives the input.
  * @typedef {object} Companion
  * @property {SVGElement} node
  * @property {import("./view.js").Box} extent what the picture has to show with it, pixels
- * @property {(input: number, now: import("./linkage.js").Places, told: boolean) => void} show with whether numbers are
- *   told of it
+ * @property {(input: number, now: import("./linkage.js").Places, told: boolean) => void} show the flag: whether numbers are
+ *   shown
  */
 
 export class Mover {
@@ -274,7 +274,7 @@ export class Mover {
   /**
    * Show the motion at a place of its arrays, between samples on a straight line.
    * @param {number} at
-   * @param {boolean} [told] whether numbers are told of it
+   * @param {boolean} [told] whether its numbers are shown
    */
   show(at, told = true) {
     const now = jointsAt(this.motion, at);

@@ -46,7 +46,7 @@ export class Opening {
     this.tabulate();
   }
 
-  /** The service has told what numbers measure: their units stand beside them now. */
+  /** The service has returned the dimensions of the numbers: show their units. */
   measured() {
     if (!this.gone.signal.aborted) this.tabulate?.();
   }

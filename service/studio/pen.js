@@ -14,7 +14,7 @@ const CLOSE_BY_TOUCH = 28;
 /** What is drawn smaller than this was a click. */
 const CLICK = 4;
 
-/** Of the picture's height, what is put down by keys alone. */
+/** Size of a shape that is placed by keys alone, as a share of the picture's height. */
 const SHARE = 0.3;
 
 export class Pen {
@@ -54,7 +54,7 @@ export class Pen {
     on("pointermove", (event) => this.show(this.at(event)));
     on("pointerup", (event) => (this.tool === "polygon" ? this.corner(event) : this.finish(this.at(event))));
     this.sheet.addEventListener("dblclick", (event) => event.stopPropagation(), { signal });
-    // Wherever the focus is, but for a field in which somebody types.
+    // Wherever the focus is, except in a text field.
     document.addEventListener("keydown", (event) => this.key(event), { signal, capture: true });
   }
 
@@ -64,7 +64,7 @@ export class Pen {
     return [this.view.rounded(x), this.view.rounded(y)];
   }
 
-  /** How far apart on the picture. @param {Point} one @param {Point} other */
+  /** Return the distance of two points on the picture. @param {Point} one @param {Point} other */
   far(one, other) {
     return this.view.scale * Math.hypot(one[0] - other[0], one[1] - other[1]);
   }

@@ -1,4 +1,4 @@
-/** Designs that somebody likes, by their jobs: kept in this browser. */
+/** Pinned designs by their jobs, kept in this browser. */
 
 const KEPT = "mechsynth.pins";
 

@@ -17,10 +17,10 @@ const FOOT = 44;
 /** Height of a base, pixels. */
 const BASE = 14;
 
-/** Planes are never drawn thicker than so many pixels: the side view is not to scale upward. */
+/** Maximum thickness of a drawn plane, pixels: the side view is not to scale in height. */
 const THICKEST = 26;
 
-/** The colours that there are; with more planes they begin again. */
+/** Colours of the planes; with more planes they repeat. */
 const COLOURS = 8;
 
 /** @param {number} plane */
@@ -66,7 +66,7 @@ export class Planes {
    * @param {Skeleton} skeleton
    * @param {Layout} layout
    * @param {Problem} problem
-   * @param {Schemas["StatedLayout"]} stated what planes are asked for
+   * @param {Schemas["StatedLayout"]} stated the requested layout
    * @param {(input: number) => void} lead leads the motion to an input
    */
   constructor(view, skeleton, layout, problem, stated, lead) {
@@ -139,7 +139,7 @@ export class Planes {
   clashes(unit, lead) {
     const { clashes, free_range: range, free_stroke: stroke } = this.layout;
     if (!clashes.length)
-      return [el("p", { class: "good" }, `✓ ${t`Nothing clashes over the motion that is looked at.`}`)].filter(
+      return [el("p", { class: "good" }, `✓ ${t`Nothing clashes over the motion shown.`}`)].filter(
         () => !this.layout.remark,
       );
     const rounded = (/** @type {number} */ value) => shown(Math.round(10 * value) / 10);

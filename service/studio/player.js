@@ -1,4 +1,4 @@
-/** The clock of a motion: play and pause, speed, a scrubber, and the reading beside it. One motion plays at a time. */
+/** The clock of a motion: play and pause, speed, a scrubber and its reading. Only one motion plays at a time. */
 
 import { el } from "./dom.js";
 import { t } from "./messages.js";
@@ -6,7 +6,7 @@ import { t } from "./messages.js";
 /** Seconds that a cycle takes at speed 1. */
 const CYCLE_S = 4;
 
-/** Between numbers that are told while it plays, milliseconds: those of every frame cannot be read. */
+/** Interval of the numbers shown during play, milliseconds: those of every frame cannot be read. */
 const TOLD_MS = 100;
 
 /**
@@ -16,9 +16,9 @@ const TOLD_MS = 100;
  * @property {boolean} [endless] the place counts on beyond the last sample: what turns need not come back after a cycle
  * @property {string} label what the scrubber moves
  * @property {string} [name] before the ids of its controls, where a page has a second one
- * @property {(at: number) => string} reading what stands beside the scrubber
+ * @property {(at: number) => string} reading text next to the scrubber
  * @property {(at: number, told: boolean) => void} show called with a place of the arrays, between two samples as a
- *   fraction, and whether numbers are told of it
+ *   fraction, and whether its numbers are shown
  */
 
 export class Player {
@@ -34,7 +34,7 @@ export class Player {
     /** Where it goes back and forth, instead of over all of it. @type {[number, number] | null} */
     this.range = null;
     this.last = moved.count - 1;
-    /** Told the share of the way whenever it changes. @type {Set<(share: number, told: boolean) => void>} */
+    /** Listeners for the share of the motion, called at every change. @type {Set<(share: number, told: boolean) => void>} */
     this.followers = new Set();
     this.button = el(
       "button",
@@ -105,7 +105,7 @@ export class Player {
     else this.at = within(this.at, this.last);
   }
 
-  /** @param {number} at @param {boolean} [told] whether numbers are told of it */
+  /** @param {number} at @param {boolean} [told] whether its numbers are shown */
   seek(at, told = true) {
     this.at = at;
     if (!this.moved.endless) at = within(at, this.last);
@@ -150,7 +150,7 @@ export class Player {
     this.button.textContent = t`Play`;
     if (!this.playing) return;
     this.playing = false;
-    // What stands still is told.
+    // Show the numbers of a motion that stands still.
     this.seek(this.at);
   }
 }

@@ -18,7 +18,7 @@ const STYLES = [
 ];
 
 /**
- * All numbers of a plot, as something that a download can refer to; whoever gets it revokes it.
+ * Return an object URL with all numbers of a plot, for a download; the caller revokes it.
  * @param {string} title
  * @param {Record<string, (number | null)[]>} lines
  * @param {number[] | undefined} input

@@ -15,7 +15,7 @@ export function escaped(name) {
   return name.replaceAll("~", "~0").replaceAll("/", "~1");
 }
 
-/** What stands at a place; undefined where nothing does. @param {object} root @param {string[]} path */
+/** Return the value at a path, or undefined. @param {object} root @param {string[]} path */
 export function at(root, path) {
   return path.reduce(
     (inner, name) => (group(inner) ? inner[name] : undefined),

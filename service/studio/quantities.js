@@ -9,7 +9,7 @@ import { t, term } from "./messages.js";
 /** @typedef {(number | null)[]} Series */
 
 /**
- * Parts whose motion can be plotted, the telling ones first.
+ * Return the parts whose motion can be plotted, the most important first.
  * @param {LinkageAnalysis} motion
  * @param {Skeleton} skeleton
  * @returns {string[]}

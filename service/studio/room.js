@@ -21,7 +21,7 @@ import { group, put } from "./pointer.js";
  * @property {string} name
  * @property {string} text
  * @property {string} mark what stands in it
- * @property {string[]} field where it is stated in the block
+ * @property {string[]} field its path in the block
  * @property {Tool[]} tools what draws it
  */
 
@@ -99,7 +99,7 @@ export class Area {
     return Array.isArray(this.value) ? null : (this.value.circle ?? null);
   }
 
-  /** The corners that are stated. @returns {Point[]} */
+  /** Return the given corners. @returns {Point[]} */
   get points() {
     return Array.isArray(this.value) ? this.value : (this.value.polygon ?? []);
   }
@@ -179,7 +179,7 @@ export class Area {
     else this.corners.forEach((corner, k) => (this.corners[k] = moved(corner)));
   }
 
-  /** Take it out of the statement; what is empty then goes too. */
+  /** Remove it from the problem, with parents that become empty. */
   remove() {
     const {
       space,
@@ -199,7 +199,7 @@ export class Area {
 }
 
 /**
- * Whether it is a shape that can be drawn; what is being typed need not be one yet.
+ * Return whether the shape can be drawn; a shape that is being typed may be incomplete.
  * @param {Role} role
  * @param {Shape | null | undefined} value
  */

@@ -1,4 +1,4 @@
-/** A rotor that turns: its planes of correction with their masses, and the forces on its bearings beside it. */
+/** A turning rotor: its correction planes with their masses, and the forces on its bearings. */
 
 import { el, shown, svg } from "./dom.js";
 import { beside, nothing } from "./figures.js";

@@ -1,4 +1,4 @@
-/** A ruler on a picture of the plane: two ends that are dragged, and how far apart they are, and in which direction. */
+/** A ruler on a picture of the plane: two draggable ends, with their distance and direction. */
 
 import { el, shown, svg } from "./dom.js";
 import { brief } from "./figures.js";
@@ -81,7 +81,7 @@ export class Ruler {
     return grip;
   }
 
-  /** A place, or what is so near to it that it is meant. @param {Point} place @returns {Point} */
+  /** Snap a place to a point nearby. @param {Point} place @returns {Point} */
   caught(place) {
     const far = (/** @type {Point} */ [x, y]) => this.view.scale * Math.hypot(x - place[0], y - place[1]);
     const near = this.points()
@@ -94,7 +94,7 @@ export class Ruler {
     const { ends } = this.memory;
     this.button.setAttribute("aria-pressed", String(Boolean(ends)));
     if (!ends) return this.node.remove();
-    // Laid on once: what is put anew while it is dragged lets the pointer go.
+    // Attach once: an element that is replaced during a drag loses the pointer.
     if (!this.node.parentNode) this.picture.append(this.node);
     const [[x, y], [u, v]] = ends.map((end) => this.view.at(...end));
     for (const [name, value] of Object.entries({ x1: x, y1: y, x2: u, y2: v }))

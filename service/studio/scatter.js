@@ -15,14 +15,14 @@ const EDGE = { left: 50, right: 14, top: 28, bottom: 38 };
 /** Between two ticks at least, pixels. */
 const APART = [64, 40];
 
-/** Where values of one sign differ by more than this factor, equal factors are equally far apart. */
+/** Ratio of values of one sign above which the axis is logarithmic. */
 const WIDE = 1000;
 
-/** Up to so many designs have their numbers beside them. */
+/** Maximum number of designs that are labelled with their numbers. */
 const NUMBERED = 24;
 
 /**
- * What is told of the designs.
+ * Callbacks of the designs.
  * @typedef {object} Told
  * @property {number} chosen
  * @property {boolean[]} kept what meets the bounds

@@ -36,7 +36,7 @@ import { group } from "./pointer.js";
  * @property {boolean} nullable
  * @property {string[]} [choices]
  * @property {Schema} [item] schema of the rows of a table, or of the members of a map
- * @property {number} [count] rows of a table that has always so many
+ * @property {number} [count] fixed number of rows of a table
  */
 
 /** What fields an object has, by their names. @param {Schema} schema */
@@ -92,7 +92,7 @@ function listOfNumbers(schema, root) {
   );
 }
 
-/** The name of the property that tells alternatives of an object apart. @param {Schema[]} options */
+/** Return the name of the property that distinguishes alternatives of an object. @param {Schema[]} options */
 export function discriminator(options) {
   const names = Object.keys(options[0] ? propertiesOf(options[0]) : {});
   const constant = (/** @type {Schema} */ one, /** @type {string} */ name) =>
@@ -160,7 +160,7 @@ export function kinded(schema, root) {
   return is("json");
 }
 
-/** A first value for a field that must be stated. @param {Schema} schema @param {Schema} root @returns {Json} */
+/** Return a first value for a required field. @param {Schema} schema @param {Schema} root @returns {Json} */
 export function initial(schema, root) {
   if (schema.default !== undefined && schema.default !== null) return structuredClone(schema.default);
   const [option] = alternatives(schema, root).filter((one) => one.type !== "null");
@@ -231,7 +231,7 @@ export function beyond(option, root) {
 }
 
 /**
- * The path of what is of another form than a schema has it; null where nothing is. Only the service judges numbers and
+ * Return the path of the first value whose form differs from the schema, or null. Only the service checks numbers and
  * words.
  * @param {unknown} value @param {Schema} schema @param {Schema} root @param {string} [path] @returns {string | null}
  */
@@ -288,7 +288,7 @@ function withoutDefaults(value, schema, root) {
       const of = properties[name] ?? additionalProperties;
       if (typeof of !== "object") return [[name, inner]];
       const open = resolved(of, root);
-      // What tells alternatives apart is needed.
+      // The property that distinguishes alternatives is required.
       return (open.const === undefined || options.length === 1) &&
         JSON.stringify(open.default) === JSON.stringify(inner)
         ? []
@@ -305,7 +305,7 @@ function formOf(value) {
 /** A statement without defaults. @param {Problem} statement @param {Schema | undefined} schema @returns {Problem} */
 export function plainly(statement, schema) {
   if (!schema) return statement;
-  // Only what the service holds for stated anyway is left out.
+  // Leave out only values that equal the service's defaults.
   const plain = /** @type {unknown} */ (
     withoutDefaults(/** @type {Json} */ (/** @type {unknown} */ (statement)), schema, schema)
   );

@@ -1,4 +1,4 @@
-/** A linkage that came in an address: driven by the service that opens it, and told as far as that shows it. */
+/** A linkage from an address: the service that opens it drives it and reports its motion. */
 
 import * as api from "./api.js";
 import { overTheCycle, stands } from "./cycle.js";
@@ -55,7 +55,7 @@ export class SentLinkage {
       el(
         "p",
         { class: "note" },
-        t`This linkage came in the address. What is told of it here this service has found by driving it; whether it does what is stated, Solve says.`,
+        t`This linkage came in the address. The figures here are from driving it on this service; use Solve to check it against the problem.`,
       ),
       el(
         "dl",

@@ -31,11 +31,10 @@ export function smoothed(points, closed) {
 }
 
 /**
- * Points made symmetric: each becomes the mean of itself and the mirror of its partner. An open curve is mirrored in
- * the
- * perpendicular bisector of its ends. Of a closed one, with points z about their mean and partners z[j - k], the line
- * through the
- * mean at half the argument of sum(z[k] z[j - k]) mirrors it best, and the j whose sum is greatest is taken.
+ * Make points symmetric: each becomes the mean of itself and the mirror image of its partner. An open curve is mirrored
+ * in the perpendicular bisector of its ends. For a closed one, with points z about their mean and partners z[j - k],
+ * the best mirror is the line through the mean at half the argument of sum(z[k] z[j - k]); the j with the greatest sum
+ * is taken.
  * @param {Point[]} points @param {boolean} closed @returns {Point[]}
  */
 export function symmetric(points, closed) {

@@ -12,8 +12,8 @@ export const ROOT = "/problem";
 export class Sheet {
   /**
    * @param {Store} store
-   * @param {{path: string, value: Json}[]} [looked] what is shown where nothing is stated, and stated with the first
-   *   change below it: what is only looked at is not
+   * @param {{path: string, value: Json}[]} [looked] values shown for fields without an entry; they become part
+   *   of the problem with the first change below them
    */
   constructor(store, looked = []) {
     this.store = store;
@@ -50,7 +50,7 @@ export class Sheet {
    * @param {boolean} [remade] whether the form has other controls then
    */
   put(path, value, remade = false) {
-    // Nothing is stated by leaving something out.
+    // Removing a field adds nothing to the problem.
     if (value === undefined) this.store.change((statement) => put(statement, within(path), value), by(remade));
     else this.change((statement) => put(statement, within(path), value), remade);
   }
@@ -60,7 +60,7 @@ export class Sheet {
     this.store.change((statement) => change(this.whole(statement)), by(remade));
   }
 
-  /** The same with a value that is looked at where none is stated. @param {string} path @param {Json} value */
+  /** Return a sheet that shows a value where none is given. @param {string} path @param {Json} value */
   looking(path, value) {
     return new Sheet(this.store, [...this.looked, { path, value }]);
   }

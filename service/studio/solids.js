@@ -1,6 +1,5 @@
 /**
- * Surfaces of parts from the shapes that the service tells: triangles with their normals, and the edges of what is
- * solid.
+ * Surfaces of parts from the shapes that the service returns: triangles with normals, and the edges of the solids.
  */
 
 /** @typedef {[number, number]} Point */
@@ -14,7 +13,7 @@
  */
 
 /**
- * A straight piece of an outline, with the directions out of what it encloses at its ends.
+ * A straight piece of an outline, with the outward directions at its ends.
  * @typedef {{from: Point, to: Point, out: [Point, Point]}} Piece
  */
 
@@ -53,7 +52,7 @@ export class Surface {
   }
 
   /**
-   * A prism, or one that turns by so much as it goes up.
+   * A prism, which may be twisted along its height.
    * @param {Shape} shape
    * @param {number} twist
    * @param {Point} centre

@@ -14,7 +14,7 @@ const HALF = 5;
 const STRAIGHT = 10;
 
 /**
- * The springs of a design: those that were found for it, or stated with its loads.
+ * The springs of a design: those found for it, or given with its loads.
  * @param {LinkedDesign} design
  * @param {Problem} problem
  * @returns {Ends[]}

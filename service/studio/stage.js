@@ -24,7 +24,7 @@ export const CLOCK = 48;
  * @property {(Node | string | null | undefined | false)[]} [plots] in the drawer, with the plots
  */
 
-/** Where a mechanism that moves is shown, whatever shows it. */
+/** The place for the picture of a moving mechanism. */
 export class Frame {
   /** @param {HTMLElement} board of the stage @param {HTMLElement} beside @param {HTMLElement} plots */
   constructor(board, beside, plots) {
@@ -36,7 +36,7 @@ export class Frame {
   }
 
   /**
-   * Width and height that a picture has, pixels, as much less as something beneath it takes.
+   * Return width and height of a picture, pixels, less the height of an element below it.
    * @param {number} [less]
    * @returns {[number, number]}
    */

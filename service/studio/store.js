@@ -1,4 +1,4 @@
-/** The statement that is being made, what was posted and what was answered, and the steps between which one goes. */
+/** The current problem, the posted problem and its answer, and the steps for undo and redo. */
 
 import { misfit, plainly, propertiesOf, spelling } from "./schema.js";
 import { Undo } from "./undo.js";
@@ -10,11 +10,11 @@ import { Undo } from "./undo.js";
 /** @typedef {"form" | "canvas" | "text"} Editor */
 
 /**
- * What listeners are told.
+ * A change, as listeners receive it.
  * @typedef {object} Change
- * @property {boolean} stated whether the statement is another one; otherwise its answer is
+ * @property {boolean} stated whether the problem has changed; otherwise its answer has
  * @property {Editor | null} by where it was changed and is seen already; null where all that shows it is made anew
- * @property {boolean} edited whether somebody changed it, or went a step back or forth
+ * @property {boolean} edited whether the user changed it, by an edit, undo or redo
  * @property {boolean} begun whether it was begun with, and not made of the one before
  */
 
@@ -25,7 +25,7 @@ export class Store {
   constructor() {
     /** What the service can be asked. @type {Kind[]} */
     this.kinds = [];
-    /** Nothing is stated until the kinds are known. @type {Problem} */
+    /** The problem is empty until the kinds are loaded. @type {Problem} */
     this.problem = /** @type {Problem} */ ({});
     /** Counts the statements that were not made of the one before, as what is remembered of one is not of another. */
     this.origin = 0;
@@ -70,7 +70,7 @@ export class Store {
     return this.kind.schema.examples ?? [this.kind.example];
   }
 
-  /** The number of the example that is stated; -1 where none is. */
+  /** The number of the example that equals the problem; -1 if none does. */
   get example() {
     const now = this.spelt(this.problem);
     return this.examples.findIndex((one) => this.spelt(one) === now);

@@ -1,4 +1,4 @@
-/** The studio: state a problem, follow its job, look at the answers. A client of the public API only. */
+/** The studio: enter a problem, follow its job, view the answers. It is a client of the public API only. */
 
 import { Unreadable, holds, sentIn } from "./address.js";
 import * as api from "./api.js";
@@ -29,14 +29,14 @@ let history;
 let imported;
 /** @type {Gallery | undefined} */
 let gallery;
-/** Whether the gallery has been asked for before it was there. */
+/** Whether the gallery was requested before it was loaded. */
 let wanted = false;
 
 translatePage();
 
 const desk = new Desk();
 const opening = new Opening(desk, "Hatch lid");
-/** What is shown until somebody states something. @type {{leave: () => void}} */
+/** The view that is shown until a problem is entered. @type {{leave: () => void}} */
 let guest = opening;
 
 const label = byId("label", HTMLInputElement);
@@ -70,7 +70,7 @@ function tell(error) {
   byId("status").textContent = error instanceof Error ? error.message : String(error ?? "");
 }
 
-/** Make room for what is stated now. What came in the address is there again when one goes back. */
+/** Remove the linkage from the address, for the current problem. Undo brings it back. */
 function vacate() {
   guest.leave();
   if (holds(location.hash)) window.history.pushState(null, "", location.pathname);
@@ -95,7 +95,7 @@ function drafted() {
  */
 function resume(kind, steps) {
   const draft = draftOf(kind);
-  // It may have been stated on another version of the service.
+  // The draft may be from another version of the service.
   if (!draft || !store.fits(draft.problem)) {
     store.begin((store.kinds.find((one) => one.kind === kind) ?? store.kinds[0]).example);
     return;
@@ -137,7 +137,7 @@ async function solve() {
   }
 }
 
-/** An answer is awaited: what is shown of the one before is faint. @param {boolean} is */
+/** Mark that an answer is awaited: the previous one is shown faintly. @param {boolean} is */
 function busy(is) {
   for (const place of [byId("answers"), byId("watch"), byId("numbers"), byId("beside")]) {
     if (is) place.setAttribute("aria-busy", "true");
@@ -225,7 +225,7 @@ async function restore(reloaded = false) {
   }
 }
 
-/** Leave the job that is shown: what is stated next has no answers yet. */
+/** Leave the shown job: the next problem has no answers yet. */
 function left() {
   running.leave(byId("progress"));
   busy(false);

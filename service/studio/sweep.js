@@ -13,7 +13,7 @@ import { plateOf } from "./room_view.js";
 
 /** @typedef {[number, number]} Point */
 
-/** Places of the motion that make up the swept area, and of them those that have an outline: one in so many. */
+/** Number of positions that make up the swept area, and the interval between those that get an outline. */
 const PLACES = 120;
 const OUTLINED = 12;
 

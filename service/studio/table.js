@@ -18,22 +18,22 @@ import { unitOf } from "./units.js";
 /** Columns that stay at least where others are folded away. */
 const FEWEST = 2;
 
-/** Columns that rows have in one line, where nothing of them is chosen. */
+/** Maximum number of columns in one line, unless columns were chosen. */
 const ONE_LINE = 3;
 
-/** Tables of which all columns have been asked for. @type {Set<string>} */
+/** Tables that show all columns. @type {Set<string>} */
 const wide = new Set();
 
-/** Whether nobody has stated a value. @param {unknown} value */
+/** Return whether a value is empty. @param {unknown} value */
 function empty(value) {
   return value === undefined || value === null || value === false;
 }
 
 /**
- * @param {Sheet} sheet that looks at an empty list where none is stated @param {Schema} item schema of a row
+ * @param {Sheet} sheet that shows an empty list if none is given @param {Schema} item schema of a row
  * @param {string} path JSON pointer of the list
  * @param {Controls} controls of what a cell cannot state
- * @param {number} [count] where there are always so many rows
+ * @param {number} [count] fixed number of rows, if there is one
  */
 export function table(sheet, item, path, controls, count) {
   const rows = rowsAt(sheet.problem, path);
@@ -188,7 +188,7 @@ function cell(sheet, head, row, list, k, item) {
   const tells = options.length > 1 && name === discriminator(options);
   const set = (/** @type {Json | undefined} */ value) => {
     if (!tells) return sheet.put(`${path}/${name}`, value);
-    // Another alternative has other fields: what it does not know goes.
+    // Another alternative has other fields: remove those that it lacks.
     const before = { ...rowsAt(sheet.problem, list)[k], [name]: value };
     const now = optionOf(options, before);
     const known = Object.entries(before).filter(([one]) => propertiesOf(now)[one]);
@@ -231,7 +231,7 @@ function optionAt(sheet, item, row) {
  */
 function more(sheet, item, row, path, controls, width, k) {
   const option = optionAt(sheet, item, row);
-  // What a cell can state as a number stands here only where it is stated in detail.
+  // A value that fits a cell as a number is shown here only if it is given in detail.
   const names = beyond(option, sheet.root).filter(
     (name) => kinded(propertiesOf(option)[name], sheet.root).control !== "shapes" || group(row[name]),
   );

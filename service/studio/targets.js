@@ -1,5 +1,5 @@
 /**
- * A statement on a canvas: what it places in the plane is dragged, turned, added and removed, and curves are sketched.
+ * A problem on a canvas: its elements in the plane are dragged, turned, added and removed, and curves are sketched.
  */
 
 import { el, shown, svg } from "./dom.js";
@@ -34,7 +34,7 @@ const ARM = 44;
 /** What angles snap to, degrees. */
 const SNAP_TURN = 15;
 
-/** What somebody has chosen of the tools; it outlives every canvas. */
+/** The chosen tools, kept from one canvas to the next. */
 const tools = { grid: true, snap: false };
 
 /**
@@ -42,7 +42,7 @@ const tools = { grid: true, snap: false };
  * @typedef {object} Kept
  * @property {number} origin of the statement whose view it is
  * @property {View | null} view
- * @property {boolean} led whether somebody has led the view somewhere; otherwise all is to be seen
+ * @property {boolean} led whether the user has moved the view; otherwise it shows everything
  * @property {import("./room_editor.js").Memory} room
  * @property {{ends: [[number, number], [number, number]] | null}} ruler
  */
@@ -54,7 +54,7 @@ const NOTHING = { handles: [], lines: () => [], offers: [] };
 const kept = new WeakMap();
 
 /**
- * Draw what is stated on the canvas.
+ * Draw the problem on the canvas.
  * @param {HTMLElement} place
  * @param {Store} store
  * @param {import("./backdrop.js").Backdrop} backdrop what lies behind it

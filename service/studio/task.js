@@ -1,4 +1,4 @@
-/** The task: what is stated, in the form, on the canvas and as JSON, and the kinds and examples it is chosen from. */
+/** The task: the problem in the form, on the canvas and as JSON, and the choice of kinds and examples. */
 
 import { byId, el } from "./dom.js";
 import { forgetDraft } from "./drafts.js";
@@ -99,7 +99,7 @@ export class Task {
     byId("about").textContent = prose(kind.description);
   }
 
-  /** Show what is stated now; where it was changed it is seen already. @param {Change} change */
+  /** Show the present problem everywhere except where it was changed. @param {Change} change */
   show({ by, begun }) {
     const { store, text } = this;
     const { kind } = store.problem;
@@ -118,7 +118,7 @@ export class Task {
     byId("json-error").replaceChildren();
   }
 
-  /** Draw what is stated, as large as there is room now. */
+  /** Draw the problem as large as the available space permits. */
   draw() {
     if (!this.introduced) return;
     canvas(this.sketch, this.store, this.backdrop);
@@ -129,7 +129,7 @@ export class Task {
   async outline() {
     const { store, page, sketch } = this;
     const { kind } = store.problem;
-    const note = t`Nothing of this is placed in the plane: it is stated beside the stage. Solve shows it in motion.`;
+    const note = t`This problem has nothing to place in the plane: fill in the form. Solve shows the result in motion.`;
     const place = el("div", { class: "said" }, el("p", { class: "note" }, note));
     sketch.replaceChildren(place);
     const picture = await page.picture(`${kind}-${Math.max(store.example, 0)}`);

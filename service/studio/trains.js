@@ -137,7 +137,7 @@ function ordinary(motion, problem) {
 }
 
 /**
- * A planetary train: which gear is on which body is told by the meshes.
+ * A planetary train: the meshes determine the body of each gear.
  * @param {Schemas["PlanetaryMechanism"]} mechanism
  * @param {Schemas["PlanetaryAnalysis"]} motion
  * @param {Schemas["PlanetaryMetrics"]} metrics
@@ -330,7 +330,7 @@ function gearbox(mechanism, motion) {
 }
 
 /**
- * A layshaft gearbox: input and main shaft on one axis, the layshaft beside it, reverse by an idler.
+ * A layshaft gearbox: input and main shaft on one axis, the layshaft parallel to it, reverse by an idler.
  * @param {Schemas["LayshaftMechanism"]} mechanism
  * @param {Schemas["GearboxAnalysis"]} motion
  */

@@ -1,4 +1,4 @@
-/** What turns: its clock, which tells the angle of what drives it, its picture, and plots that go with them. */
+/** A turning mechanism: its clock with the input angle, its picture, and the plots that follow it. */
 
 import { el, shown } from "./dom.js";
 import { t } from "./messages.js";
@@ -73,7 +73,7 @@ export class Turning {
   /**
    * Show it at a place of its arrays, between samples as a fraction.
    * @param {number} _at
-   * @param {boolean} _told whether numbers are told of it
+   * @param {boolean} _told whether its numbers are shown
    */
   show(_at, _told) {}
 

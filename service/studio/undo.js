@@ -1,4 +1,4 @@
-/** What has been stated, step by step, to go back and forth in. */
+/** The history of the problem, for undo and redo. */
 
 /** @import { Problem } from "./types/values.js" */
 

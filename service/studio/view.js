@@ -82,7 +82,7 @@ export class View {
     return [this.middle[0] + (u - this.width / 2) / this.scale, this.middle[1] - (v - this.height / 2) / this.scale];
   }
 
-  /** Look at a place of the picture, from so much nearer. @param {number[]} place pixels @param {number} nearness */
+  /** Zoom in on a place of the picture by a factor. @param {number[]} place pixels @param {number} nearness */
   look([u, v], nearness) {
     this.middle = this.of(u, v);
     this.scale *= nearness;
@@ -93,12 +93,12 @@ export class View {
     return 10 ** Math.round(Math.log10(pixels / this.scale));
   }
 
-  /** A value rounded to what can be told apart on the screen, or to what it snaps to. @param {number} value */
+  /** Round a value to the grid if it snaps, otherwise to the resolution of the screen. @param {number} value */
   rounded(value) {
     return this.snap ? nearest(value, this.snap) : this.fine(value);
   }
 
-  /** A value rounded to what can be told apart on the screen. @param {number} value */
+  /** Round a value to the resolution of the screen. @param {number} value */
   fine(value) {
     return nearest(value, this.step(0.5));
   }

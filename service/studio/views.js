@@ -16,7 +16,7 @@ import { Rotor } from "./rotor.js";
 /** Samples of a cycle of a linkage. */
 export const STEPS = 240;
 
-/** Of a turn of what has no toggles: a sample a degree. */
+/** Number of samples of a full turn without toggles: one per degree. */
 export const TURN_STEPS = 360;
 
 /**

@@ -1,6 +1,5 @@
 /**
- * A picture that is brought nearer and led along: by wheel and pinch at the pointer, by dragging where nothing lies, by
- * buttons.
+ * A picture that can be zoomed and moved: by wheel and pinch at the pointer, by dragging an empty place, by buttons.
  */
 
 import { el } from "./dom.js";
@@ -10,7 +9,7 @@ import { t } from "./messages.js";
 const PRESS = 1.5;
 const WHEEL = 1.0015;
 
-/** When the wheel has stood still so long it has been turned. */
+/** Time without wheel events after which a turn of the wheel has ended, milliseconds. */
 const REST_MS = 200;
 
 /** What is led along by less, pixels, was a click. */
@@ -35,7 +34,7 @@ export class Zoom {
    * @param {SVGSVGElement} picture
    * @param {object} [on]
    * @param {() => boolean} [on.busy] whether the pointer draws just now
-   * @param {(seen: Seen) => void} [on.settled] told what is seen when it has been chosen
+   * @param {(seen: Seen) => void} [on.settled] called with the view when it has been chosen
    */
   constructor(picture, { busy, settled } = {}) {
     this.picture = picture;
@@ -124,7 +123,7 @@ export class Zoom {
     this.tell();
   }
 
-  /** What keeps its size on the screen is told how much larger all else is. */
+  /** Report the zoom factor to elements that keep their size on the screen. */
   tell() {
     const scale = Math.min(this.room[0] / this.whole.width, this.room[1] / this.whole.height) || 1;
     this.picture.style.setProperty("--nearness", String(this.nearness * scale));

@@ -49,6 +49,6 @@ def test_branches_of_cells_that_draw_a_circle() -> None:
 def test_a_branch_less_would_be_seen(monkeypatch: pytest.MonkeyPatch) -> None:
     cell = take(EVERY["Peaucellier"](np.random.default_rng(63), 1), 0)
     found = find_branches(cell)
-    monkeypatch.setattr("tests.support.kinematics.peaucellier_branches.branches", lambda _: found[1:])
+    monkeypatch.setattr("tests.support.kinematics.peaucellier_branches.find_branches", lambda _: found[1:])
     with pytest.raises(AssertionError):
         same_cell(cell)

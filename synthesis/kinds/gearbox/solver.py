@@ -197,8 +197,10 @@ def _describe_unsearched(problem: GearboxProblem, tried: list[Structure]) -> str
     two: {0, 1, 4, 5} with {0, 2} makes the steps 0 to 7 too (de Bruijn, On number systems, Nieuw Arch. Wisk. 4, 1956).
     """
     if problem.widest > problem.structure_tolerance:
-        return " At this tolerance, above a quarter of a step, gearboxes without a structural formula exist; they "
-        "were not searched."
+        return (
+            " At this tolerance, above a quarter of a step, gearboxes without a structural formula exist; they "
+            "were not searched."
+        )
     several = [[group.pairs for group in structure if group.pairs > 1] for structure in tried]
     if any(len(pairs) > 1 and max(pairs) > 3 for pairs in several):
         return " Stages of four or six pairs with two characteristics were not searched."

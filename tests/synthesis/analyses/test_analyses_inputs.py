@@ -64,7 +64,7 @@ class Driven:
 def driven(name: str) -> Driven:
     statement = stated(name)
     request = parse_request({"mechanism": statement})
-    mechanism = request.mechanism.mechanism()
+    mechanism = request.mechanism.build_mechanism()
     slide, reference = mechanism.has_slide_input, float(mechanism.reference_input)
     constraints = Constraints.of(mechanism)
     at = reference if slide else math.degrees(reference)

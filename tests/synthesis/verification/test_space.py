@@ -47,9 +47,9 @@ def test_a_zone_is_its_shape(name):
     rng = np.random.default_rng(1)
     points = rng.uniform(-60.0, 60.0, 500) + 1j * rng.uniform(-40.0, 60.0, 500)
     away = shapely.distance(shape, shapely.points(points.real, points.imag))
-    assert zone.distance_each(points) == pytest.approx(away, abs=1e-5)
-    drawn = zone.sampled(rng, 4000)
-    assert (zone.distance_each(drawn) == 0.0).all()
+    assert zone.compute_distances(points) == pytest.approx(away, abs=1e-5)
+    drawn = zone.sample_points(rng, 4000)
+    assert (zone.compute_distances(drawn) == 0.0).all()
     # Even over the area: half of it has half of the points.
     left, low, right, high = shape.bounds
     for part in (shapely.box(left, low, 0.5 * (left + right), high), shapely.box(left, low, right, 0.5 * (low + high))):

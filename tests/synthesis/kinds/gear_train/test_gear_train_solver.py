@@ -148,7 +148,7 @@ def test_reverted_with_modules_of_its_stages() -> None:
         ({"ratio": 2, "stock": [20, 40], "hunting_tooth": "require"}, "no two gears"),
         (
             {"ratio": 2, "max_stages": 1, "teeth": {"min": 12, "max": 40}, "max_total_teeth": 30, "tolerance": 0.0},
-            "beyond",
+            "exceeds the tolerance",
         ),
     ],
 )

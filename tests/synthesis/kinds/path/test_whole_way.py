@@ -126,7 +126,7 @@ def test_tolerances_are_kept_by_every_design_and_weigh_the_points():
 
 def test_tolerances_are_for_all_points_of_a_fit():
     points = listed(curve(EGG, np.linspace(0.0, 5.0, 6)), 0.1)
-    assert stated([], points=points, closed=False, method="auto").fitted
+    assert stated([], points=points, closed=False, method="auto").is_fitted
     exact = stated([], points=points, closed=False, method="exact")
     assert [fault.path for fault in exact.find_contradictions()] == ["/points/0/tolerance"]
     del points[4]["tolerance"]
