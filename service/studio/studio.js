@@ -1,25 +1,25 @@
 /** The studio: state a problem, follow its job, look at the answers. A client of the public API only. */
 
-import { Unreadable, holds, sentIn } from "./address.js";
-import * as api from "./api.js";
-import * as answers from "./answers.js";
-import { Backdrop } from "./backdrop.js";
-import { CurveImport } from "./curve_import.js";
-import { Desk } from "./desk.js";
-import { byId, el } from "./dom.js";
-import { draftOf, forgetDraft, keepDraft, lastKind, lastSteps } from "./drafts.js";
-import { Gallery, listed } from "./gallery.js";
-import { Leader } from "./guide.js";
-import { History } from "./history.js";
-import { keymap } from "./keymap.js";
-import { Keys } from "./keys.js";
-import { Link } from "./link.js";
-import { choose, language, languages, t, translatePage, translated } from "./messages.js";
-import { Opening } from "./opening.js";
-import * as running from "./run.js";
-import { SentLinkage } from "./sent.js";
-import { Store } from "./store.js";
-import { Task } from "./task.js";
+import { Unreadable, holds, sentIn } from "./core/address_fragment.js";
+import * as api from "./core/api.js";
+import * as answers from "./answers/answers.js";
+import { Backdrop } from "./canvas/backdrop.js";
+import { CurveImport } from "./canvas/curve_import.js";
+import { Desk } from "./design/workbench.js";
+import { byId, el } from "./core/dom.js";
+import { draftOf, forgetDraft, keepDraft, lastKind, lastSteps } from "./core/drafts.js";
+import { Gallery, listed } from "./task/gallery.js";
+import { Leader } from "./task/guide.js";
+import { History } from "./task/job_history.js";
+import { keymap } from "./page/keymap.js";
+import { Keys } from "./page/keyboard.js";
+import { Link } from "./page/copy_link.js";
+import { choose, language, languages, t, translatePage, translated } from "./core/messages.js";
+import { Opening } from "./task/opening_example.js";
+import * as running from "./task/job_progress.js";
+import { SentLinkage } from "./task/shared_linkage.js";
+import { Store } from "./core/store.js";
+import { Task } from "./task/task.js";
 
 /** @import { Linked, Problem } from "./types/values.js" */
 
@@ -91,7 +91,7 @@ function drafted() {
 /**
  * Go on with the statement that was left, or begin with the example.
  * @param {string} kind
- * @param {import("./undo.js").Steps} [steps] that led to it
+ * @param {import("./core/undo.js").Steps} [steps] that led to it
  */
 function resume(kind, steps) {
   const draft = draftOf(kind);
@@ -286,7 +286,7 @@ function browse() {
   gallery?.open();
 }
 
-/** What a link to this page as it is now holds. @returns {import("./address.js").Sent} */
+/** What a link to this page as it is now holds. @returns {import("./core/address_fragment.js").Sent} */
 function sending() {
   // What answers an earlier statement is no part of this one.
   const design = store.stale ? null : desk.shown;

@@ -10,7 +10,7 @@ from tests.support.browser.studio import PLAIN, state
 pytestmark = pytest.mark.browser
 
 ASKED = """async asked => {
-  const { symbolOf } = await import("/studio/units.js");
+  const { symbolOf } = await import("/studio/core/units.js");
   return asked.map(([problem, dimensions]) => dimensions.map(one => symbolOf(one, problem)));
 }"""
 
@@ -76,7 +76,7 @@ def test_only_what_is_missed_by_rounding_is_exact(kept_studio):
     ]
     told = kept_studio.page.evaluate(
         """async asked => {
-          const { exact } = await import("/studio/figures.js");
+          const { exact } = await import("/studio/design/design_metrics.js");
           return asked.map(([name, value, dimension, size]) => exact(name, value, dimension ?? undefined, size));
         }""",
         asked,

@@ -55,9 +55,14 @@ def spoken() -> list[str]:
     return list(dict.fromkeys([*of_the_page(), *of_the_service(), *names(), *progress()]))
 
 
+def studio_modules() -> list[Path]:
+    """Return the paths of the page's own modules."""
+    return [path for path in sorted(STUDIO.rglob("*.js")) if path.parent.name != "vendor"]
+
+
 def of_the_page() -> Iterator[str]:
     """Texts of the modules and of the markup."""
-    for module in sorted(STUDIO.glob("*.js")):
+    for module in studio_modules():
         yield from tagged(module.read_text("utf-8"))
     markup = _Markup()
     markup.feed((STUDIO / "index.html").read_text("utf-8"))

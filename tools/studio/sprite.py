@@ -31,8 +31,8 @@ WIDTH, HEIGHT = 150, 84
 CHROMIUM = "/usr/bin/chromium"
 
 DRAW = """async ([design, motion]) => {
-  const { thumbnail } = await import("/studio/thumbnail.js");
-  const { telling } = await import("/studio/circuits.js");
+  const { thumbnail } = await import("/studio/motion/thumbnail.js");
+  const { telling } = await import("/studio/motion/circuits.js");
   const skeleton = design.mechanism.skeleton;
   const track = skeleton && motion && motion.joints[telling(skeleton)];
   const curve = track ? track.x.map((x, k) => (x === null ? [NaN, NaN] : [x, track.y[k]])) : [];

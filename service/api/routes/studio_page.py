@@ -1,42 +1,40 @@
-"""The studio at ``/``: the page's files, its modules as one, and a policy that lets it speak to this service only."""
+"""Serve the studio at ``/``: its files, its bundled modules, and a policy that restricts it to this service."""
 
 from __future__ import annotations
 
 import re
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from functools import cache
 from importlib.resources import files
+from importlib.resources.abc import Traversable
 
 from fastapi import APIRouter, Request, Response
 from starlette.exceptions import HTTPException
 
 from service.api.http.cached_representation import Representation
-from service.api.routes.studio_bundle import bundles, name_of
+from service.api.routes.studio_bundle import bundle_modules, bundle_path
 
 PAGE = "index.html"
 FIRST = "studio.js"
-"""The module that the page begins with."""
+"""The module that the page loads."""
 
 VENDOR = "vendor/"
-"""Where modules of others are, as they were published; `make vendor` has them."""
+"""Folder of third-party modules, as published; `make vendor` fetches them."""
 
 POLICY = (
     "default-src 'none'; script-src 'self'; style-src 'self'; img-src 'self' blob:; connect-src 'self'; "
     "base-uri 'none'; form-action 'none'; frame-ancestors 'none'"
 )
-"""Nothing from elsewhere and nothing inline; ``blob:`` are drawings that the page has fetched with its key."""
-
-MESSAGES = "messages/"
-"""Where the texts of the page are in other languages, a file for each."""
+"""No other host and nothing inline; ``blob:`` allows drawings that the page fetched with its key."""
 
 _HEADERS = {
     "Content-Security-Policy": POLICY,
     "X-Content-Type-Options": "nosniff",
     "Referrer-Policy": "no-referrer",
 }
-_ASKED_AGAIN = "no-cache"
-_KEPT = "public, max-age=31536000, immutable"
-"""Of what is asked for by its version: its address has never another content."""
+_REVALIDATE = "no-cache"
+_IMMUTABLE = "public, max-age=31536000, immutable"
+"""For requests that name the version: the content at such an address never changes."""
 
 _LINK = re.compile(r'\b(href|src)="/studio/([^"?]+)"')
 
@@ -52,34 +50,38 @@ _TYPES = {
 
 @cache
 def studio_files() -> dict[str, Representation]:
-    """All files of the page by name; they are few, and no request can name another.
+    """Return all files of the page by path; requests can reach no others.
 
-    They are read when the page is asked for first, which takes a tenth of a second.
+    The first request reads and bundles them, which takes a tenth of a second.
     """
-    texts = {}
-    studio = files("service").joinpath("studio")
-    for folder, prefix in ((studio, ""), (studio.joinpath("vendor"), VENDOR), (studio.joinpath("messages"), MESSAGES)):
-        for entry in folder.iterdir():
-            if _media_type(entry.name) is not None:
-                texts[prefix + entry.name] = entry.read_text("utf-8")
+    texts = dict(_read_folder(files("service").joinpath("studio")))
     own = {name: text for name, text in texts.items() if name.endswith(".js") and not name.startswith(VENDOR)}
-    texts |= bundles(own, FIRST)
-    read = {name: Representation(text.encode(), _media_type(name) or "") for name, text in texts.items()}
-    return {**read, PAGE: Representation(_dated(texts[PAGE], read).encode(), _TYPES["html"])}
+    texts |= bundle_modules(own, FIRST)
+    served = {name: Representation(text.encode(), _media_type(name) or "") for name, text in texts.items()}
+    return {**served, PAGE: Representation(_add_versions(texts[PAGE], served).encode(), _TYPES["html"])}
+
+
+def _read_folder(folder: Traversable, prefix: str = "") -> Iterator[tuple[str, str]]:
+    """Read all files of a known type below a folder, with their paths; type declarations are not for browsers."""
+    for entry in folder.iterdir():
+        if entry.is_dir():
+            yield from _read_folder(entry, f"{prefix}{entry.name}/")
+        elif _media_type(entry.name) is not None:
+            yield prefix + entry.name, entry.read_text("utf-8")
 
 
 def _media_type(name: str) -> str | None:
     return _TYPES.get(name.rpartition(".")[2])
 
 
-def _dated(page: str, read: Mapping[str, Representation]) -> str:
-    """The page, asking for its bundle and for all of its files by their version."""
+def _add_versions(page: str, served: Mapping[str, Representation]) -> str:
+    """Make the page request its bundle and its other files by their versions."""
 
-    def versioned(found: re.Match[str]) -> str:
-        name = name_of(FIRST) if found[2] == FIRST else found[2]
-        return f'{found[1]}="/studio/{name}?v={read[name].version}"'
+    def add_version(match: re.Match[str]) -> str:
+        name = bundle_path(FIRST) if match[2] == FIRST else match[2]
+        return f'{match[1]}="/studio/{name}?v={served[name].version}"'
 
-    return _LINK.sub(versioned, page)
+    return _LINK.sub(add_version, page)
 
 
 router = APIRouter(include_in_schema=False)
@@ -87,16 +89,16 @@ router = APIRouter(include_in_schema=False)
 
 @router.get("/")
 async def studio(request: Request) -> Response:
-    """The page."""
-    return studio_files()[PAGE].answer(request, {**_HEADERS, "Cache-Control": _ASKED_AGAIN})
+    """Serve the page."""
+    return studio_files()[PAGE].answer(request, {**_HEADERS, "Cache-Control": _REVALIDATE})
 
 
 @router.get("/studio/{name:path}")
 async def studio_file(request: Request, name: str, v: str = "") -> Response:
-    """A module, the style sheet or the icon of the page."""
+    """Serve a file of the page: a module, a bundle, a style sheet, messages or an icon."""
     file = studio_files().get(name)
     if file is None or name == PAGE:
         raise HTTPException(404)
-    # Another server, of the version before or after, may have sent the page: what it has is sent, and not kept.
-    kept = _KEPT if v == file.version else _ASKED_AGAIN
-    return file.answer(request, {**_HEADERS, "Cache-Control": kept})
+    # The page may come from another server, of an older or newer version: then this file is sent, but not cached.
+    caching = _IMMUTABLE if v == file.version else _REVALIDATE
+    return file.answer(request, {**_HEADERS, "Cache-Control": caching})

@@ -1,0 +1,203 @@
+/** Two designs of an answer: side by side on the stage, or one over the other, and their numbers in one table. */
+
+import * as api from "../core/api.js";
+import { drawn, Linkage } from "../canvas/linkage_drawing.js";
+import { el, svg, words } from "../core/dom.js";
+import { dimensionRows, figure, figures, typeOf } from "../design/design_metrics.js";
+import { Mover } from "../motion/linkage_motion.js";
+import { Frame } from "../canvas/stage.js";
+import { jointsAt } from "../motion/swept_area.js";
+import { telling } from "../motion/circuits.js";
+import { t } from "../core/messages.js";
+import { STEPS, TURN_STEPS, VIEWS } from "../motion/motion_views.js";
+
+/** @import { Design, LinkageAnalysis, Linked, LinkedDesign, Problem, Solved } from "../types/values.js" */
+
+/** @typedef {[number, number]} Point */
+/** @typedef {"beside" | "over"} Manner */
+
+/** Numbers that differ by less, of their size, differ by rounding. */
+const ROUNDING = 1e-9;
+
+/** The second half of the stage: a picture that follows the clock of the first. */
+class Second extends Frame {
+  /** @param {HTMLElement} board @param {string} caption */
+  constructor(board, caption) {
+    super(board, el("div"), el("div"));
+    this.caption = caption;
+  }
+
+  /** @param {import("../canvas/stage.js").View} view */
+  fill({ picture }) {
+    super.fill({ picture });
+    this.board.append(el("p", { class: "second-name" }, this.caption));
+  }
+}
+
+export class Comparison {
+  /**
+   * @param {import("../design/workbench.js").Desk} desk @param {Solved} job @param {number} n the other design
+   * @param {Manner} manner @param {import("../design/design.js").Shown} shown the design that is chosen
+   */
+  constructor(desk, job, n, manner, shown) {
+    this.desk = desk;
+    this.job = job;
+    this.n = n;
+    this.manner = manner;
+    this.shown = shown;
+    this.design = job.result.designs[n];
+    this.gone = new AbortController();
+    /** @type {import("../motion/motion_views.js").Moving | null} */
+    this.moving = null;
+    /** What goes with the clock of the chosen design. @type {((share: number, told: boolean) => void) | null} */
+    this.follow = null;
+    this.begin().catch((error) => {
+      if (!this.gone.signal.aborted)
+        desk.other.replaceChildren(el("div", { class: "said" }, el("p", { class: "error" }, error.message)));
+    });
+  }
+
+  async begin() {
+    const { design, desk, job, manner, shown } = this;
+    const linkage = Boolean(design.mechanism.skeleton);
+    this.split(manner === "beside");
+    const moved = await api.motion(job.id, this.n, linkage ? STEPS : TURN_STEPS, this.gone.signal);
+    const motion = /** @type {LinkageAnalysis} */ (moved);
+    if (this.gone.signal.aborted) return;
+    if (manner === "over") {
+      const tracks = Object.values(motion.joints).flatMap((track) => points(track));
+      shown.around = tracks;
+      shown.told = () => this.overlay(motion);
+      shown.again();
+      return;
+    }
+    const frame = new Second(desk.other, t`Design ${this.n + 1}: ${typeOf(design)}`);
+    const View = VIEWS[design.mechanism.type];
+    this.moving = View
+      ? new View(frame, design, moved, job.problem)
+      : new Mover(frame, /** @type {LinkedDesign} */ (design), motion, job.problem);
+    const { player } = this.moving;
+    player.stop();
+    this.follow = (share, told) => player.seek(share * player.last, told);
+    shown.told = () => this.attend();
+    // It has half of the stage now.
+    shown.again();
+  }
+
+  /** Go with the clock of the chosen design. */
+  attend() {
+    const { follow } = this;
+    const player = this.shown.moving?.player;
+    if (!follow || !player) return;
+    player.followers.add(follow);
+    follow(player.at / player.last, true);
+  }
+
+  /** Draw the other one over the chosen one. @param {LinkageAnalysis} motion */
+  overlay(motion) {
+    const { mover } = this.shown;
+    if (!mover) return;
+    const { skeleton } = /** @type {Linked} */ (this.design.mechanism);
+    const linkage = new Linkage(mover.view, skeleton, { names: false });
+    linkage.node.setAttribute("class", "overlaid");
+    const name = telling(skeleton);
+    const track = motion.joints[name];
+    if (drawn(skeleton).includes(name))
+      linkage.node.prepend(svg("path", { class: "curve other", d: mover.view.path(points(track)) }));
+    mover.picture.append(linkage.node);
+    const last = motion.input_angle.length - 1;
+    this.follow = (share) => linkage.show(jointsAt(motion, share * last));
+    this.attend();
+  }
+
+  /** @param {boolean} is whether the stage shows two */
+  split(is) {
+    const { other } = this.desk;
+    other.hidden = !is;
+    other.parentElement?.classList.toggle("split", is);
+    other.replaceChildren(
+      ...(is ? [el("div", { class: "said" }, el("p", { class: "note" }, t`The motion is being computed …`))] : []),
+    );
+  }
+
+  stop() {
+    this.gone.abort();
+    this.moving?.stop();
+    this.split(false);
+    const { shown } = this;
+    shown.told = () => {};
+    shown.around = [];
+    if (this.follow && !shown.ended) shown.again();
+  }
+}
+
+/** @param {{x: (number | null)[], y: (number | null)[]}} track @returns {Point[]} */
+function points({ x, y }) {
+  return x.map((one, k) => (one === null ? [NaN, NaN] : [one, Number(y[k])]));
+}
+
+/**
+ * The numbers of two designs beside each other; those that differ are marked.
+ * @param {Design[]} designs
+ * @param {[number, number]} which
+ * @param {Problem} problem
+ */
+export function sideBySide(designs, which, problem) {
+  const [one, other] = which.map((n) => designs[n]);
+  const told = [one, other].map(
+    (design) =>
+      new Map(figures(design).map(([name, value]) => [name, figure(name, value, problem, design.metrics?.size)])),
+  );
+  const sizes = [one, other].map((design) => new Map(dimensionRows(design, problem)));
+  const names = (/** @type {Map<string, Cell>[]} */ maps) => [...new Set(maps.flatMap((map) => [...map.keys()]))];
+  const rows = (/** @type {Map<string, {text: string, title: string | null}>[]} */ maps) =>
+    names(maps).map((name) => {
+      const [a, b] = maps.map((map) => map.get(name) ?? { text: "–", title: null });
+      const differs = !alike(a, b);
+      // As many digits as it takes to tell the two apart.
+      const close = differs && a.text === b.text;
+      return el(
+        "tr",
+        { class: differs ? "differs" : null },
+        el("th", { scope: "row" }, words(name), differs && el("span", { class: "hidden" }, ", ", t`differs`)),
+        ...[a, b].map((cell) => el("td", { title: cell.title }, close ? cell.title : cell.text)),
+      );
+    });
+  return el(
+    "div",
+    { class: "side-by-side" },
+    el(
+      "table",
+      { class: "figures" },
+      el(
+        "thead",
+        {},
+        el(
+          "tr",
+          {},
+          el("th", { scope: "col" }, t`Quantities`),
+          ...which.map((n) => el("th", { scope: "col" }, t`Design ${n + 1}`)),
+        ),
+      ),
+      el("tbody", {}, ...rows(told)),
+      el(
+        "tbody",
+        {},
+        el("tr", {}, el("th", { scope: "rowgroup", colspan: 3, class: "part" }, t`Dimensions`)),
+        ...rows(sizes),
+      ),
+    ),
+  );
+}
+
+/** @typedef {{text: string, title: string | null}} Cell */
+
+/** Whether two cells say the same, but for rounding. @param {Cell} one @param {Cell} other */
+function alike(one, other) {
+  if (one.title === null || other.title === null || one.text === "exact") return one.text === other.text;
+  const [a, b] = [one.title, other.title].map((text) => text.split(", ").map(parseFloat));
+  return (
+    a.length === b.length &&
+    a.every((value, k) => Math.abs(value - b[k]) <= ROUNDING * Math.max(Math.abs(value), Math.abs(b[k])))
+  );
+}

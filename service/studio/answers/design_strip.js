@@ -1,0 +1,140 @@
+/** The designs of an answer in a row, best first, those that are pinned before the others. */
+
+import { el, words } from "../core/dom.js";
+import { figure, figures, typeOf } from "../design/design_metrics.js";
+import { t } from "../core/messages.js";
+import { pin, pinned } from "../core/pinned_designs.js";
+import { thumbnail } from "../motion/thumbnail.js";
+
+/** @import { Design, Problem, Solved } from "../types/values.js" */
+
+/** How long keys must rest on a card before it is shown. */
+const PASSING_MS = 150;
+
+export class Strip {
+  /** @param {Solved} job with its result @param {(n: number) => void} choose */
+  constructor(job, choose) {
+    this.job = job;
+    this.choose = choose;
+    this.chosen = -1;
+    this.passing = 0;
+    const { designs } = job.result;
+    /** What meets the bounds. @type {boolean[]} */
+    this.kept = designs.map(() => true);
+    /** @type {HTMLElement[]} */
+    this.cards = designs.map((design, /** @type {number} */ n) => card(design, n, job.problem, () => this.select(n)));
+    this.pins = this.cards.map((_, n) =>
+      el(
+        "button",
+        {
+          type: "button",
+          class: "pin-button",
+          "aria-label": t`Pin design ${n + 1}`,
+          title: t`Pin it: it then comes first`,
+          "aria-pressed": "false",
+          onclick: () => this.pin(n),
+        },
+        "☆",
+      ),
+    );
+    this.slots = this.cards.map((one, n) => el("div", { class: "slot" }, one, this.pins[n]));
+    this.pinned = pinned(job.id).filter((n) => n < this.cards.length);
+    /** Told when pins change. */
+    this.changed = () => {};
+    this.node = el("div", {
+      class: "cards",
+      role: "group",
+      "aria-label": t`Designs, best first; arrow keys choose`,
+      onkeydown: (/** @type {KeyboardEvent} */ event) => this.keyed(event),
+    });
+    this.order();
+  }
+
+  /** Numbers of the designs in the order in which they stand. */
+  get row() {
+    return [...this.pinned, ...this.cards.map((_, n) => n).filter((n) => !this.pinned.includes(n))];
+  }
+
+  order() {
+    const focused = document.activeElement;
+    this.node.replaceChildren(...this.row.map((n) => this.slots[n]));
+    this.pins.forEach((button, n) => {
+      const is = this.pinned.includes(n);
+      button.setAttribute("aria-pressed", String(is));
+      button.textContent = is ? "★" : "☆";
+    });
+    if (focused instanceof HTMLElement && this.node.contains(focused)) focused.focus({ preventScroll: true });
+  }
+
+  /** Choose a design. @param {number} n */
+  select(n) {
+    this.chosen = n;
+    this.cards.forEach((one, k) => one.setAttribute("aria-pressed", String(k === n)));
+    this.cards[n].scrollIntoView({ block: "nearest", inline: "nearest" });
+    this.choose(n);
+  }
+
+  /** Pin a design, or take its pin away. @param {number} n */
+  pin(n) {
+    this.pinned = pin(this.job.id, n, !this.pinned.includes(n));
+    this.order();
+    this.cards[n].scrollIntoView({ block: "nearest", inline: "nearest" });
+    this.changed();
+  }
+
+  /** Show what meets the bounds only. @param {boolean[]} kept */
+  keep(kept) {
+    this.kept = kept;
+    this.slots.forEach((slot, n) => slot.toggleAttribute("hidden", !kept[n]));
+  }
+
+  /** Arrow keys, Home and End go from card to card and choose. @param {KeyboardEvent} event */
+  keyed(event) {
+    const shown = this.row.filter((n) => this.kept[n]);
+    const at = shown.findIndex((n) => this.cards[n] === document.activeElement);
+    const to = {
+      ArrowRight: at + 1,
+      ArrowDown: at + 1,
+      ArrowLeft: at - 1,
+      ArrowUp: at - 1,
+      Home: 0,
+      End: shown.length - 1,
+    }[event.key];
+    if (at < 0 || to === undefined) return;
+    event.preventDefault();
+    const n = shown[Math.min(shown.length - 1, Math.max(0, to))];
+    this.cards[n].focus();
+    // A card that is only passed by is not shown.
+    clearTimeout(this.passing);
+    this.passing = setTimeout(() => {
+      if (this.cards[n] === document.activeElement && this.chosen !== n) this.select(n);
+    }, PASSING_MS);
+  }
+}
+
+/** @param {Design} design @param {number} n @param {Problem} problem @param {() => void} choose */
+function card(design, n, problem, choose) {
+  const passed = design.verification?.passed;
+  return el(
+    "button",
+    { type: "button", class: "card", "data-design": n + 1, "aria-pressed": "false", onclick: choose },
+    thumbnail(design),
+    el(
+      "span",
+      { class: "told" },
+      el("strong", { title: typeOf(design) }, `${n + 1}. ${typeOf(design)}`),
+      el("span", { class: passed ? "good" : "bad" }, passed ? `✓ ${t`verified`}` : `✗ ${t`fails a check`}`),
+      ...figures(design)
+        .slice(0, 1)
+        .map(([name, value]) => {
+          const told = figure(name, value, problem, design.metrics?.size);
+          return el(
+            "span",
+            { class: "figure", title: told.title },
+            el("span", {}, words(name)),
+            el("span", {}, told.text),
+          );
+        }),
+    ),
+  );
+}

@@ -1,0 +1,229 @@
+/** What comes nearest where no design satisfies all demands, and the same problem with what is within reach. */
+
+import { el, shown, words } from "../core/dom.js";
+import { amount, beside, unitFor } from "../design/design_metrics.js";
+import { t, term } from "../core/messages.js";
+import { at, put } from "../core/pointer.js";
+import { thumbnail } from "../motion/thumbnail.js";
+
+/** @import { Json, Problem, Result, Schemas } from "../types/values.js" */
+
+/** @typedef {Schemas["Gap"]} Gap */
+/**
+ * How a demand is eased.
+ * @typedef {object} Easing
+ * @property {string} text after "Solve "
+ * @property {(problem: Problem) => void} apply changes a statement
+ */
+/** @typedef {{text: string, statement: Problem}} Offer */
+
+/** Between the last two of a list. */
+const AND = ` ${t`and`} `;
+
+/** Digits of a limit that is eased. */
+const DIGITS = 4;
+
+/** Where the limit of a check is stated, if it has not the name of the check. @type {Record<string, string[]>} */
+const STATED = {
+  transmission_angle: ["constraints", "min_transmission_angle"],
+  link_ratio: ["constraints", "max_link_ratio"],
+  shortest_link: ["constraints", "link_length", "min"],
+  longest_link: ["constraints", "link_length", "max"],
+  planes: ["layout", "max_planes"],
+  ratio_error: ["tolerance"],
+  ratio: ["tolerance"],
+  speeds: ["tolerance"],
+  ratios: ["tolerance"],
+  obstacles: ["space", "clearance"],
+  contact_force: ["dynamics", "least_force"],
+  min_dwell_share: ["limits", "dwell_share", "min"],
+  max_dwell_share: ["limits", "dwell_share", "max"],
+};
+
+/**
+ * What has no measure, or no number that could be eased: it is left out.
+ * @type {Record<string, {text: string, path: string[], value: Json}>}
+ */
+const LEFT_OUT = {
+  grashof: { text: t`with any class of linkage`, path: ["constraints", "grashof"], value: "any" },
+  full_rotation: { text: t`without a full turn of the input`, path: ["constraints", "full_rotation"], value: false },
+  box: { text: t`without the box`, path: ["space", "box"], value: null },
+  obstacles: { text: t`without the obstacles`, path: ["space", "obstacles"], value: [] },
+  fixed_pivot_zones: { text: t`without the zones of fixed pivots`, path: ["space", "fixed_pivots"], value: null },
+  moving_pivot_zones: { text: t`without the zones of moving pivots`, path: ["space", "moving_pivots"], value: null },
+};
+
+/** Rectangles that are widened by as much as pivots lie outside of them. @type {Record<string, string[]>} */
+const WIDENED = {
+  fixed_pivot_region: ["constraints", "fixed_pivot_region"],
+  moving_pivot_region: ["constraints", "moving_pivot_region"],
+  driver_pivot_region: ["driver_dyad", "pivot_region"],
+};
+
+/**
+ * What is reached beside all other demands, by its name in the answer: the check that it is of.
+ * @type {Record<string, string>}
+ */
+const REACHED = {
+  min_transmission_angle: "transmission_angle",
+  max_link_ratio: "link_ratio",
+  tolerance: "ratio_error",
+};
+
+/**
+ * @param {NonNullable<Result["nearest_miss"]>} miss
+ * @param {Problem} problem
+ * @param {(problem: Problem) => void} solve
+ */
+export function missed(miss, problem, solve) {
+  const { design, gaps, reachable } = miss;
+  const short = (/** @type {number | number[] | null} */ value) =>
+    [value]
+      .flat()
+      .map((one) => shown(Number(Number(one).toPrecision(4))))
+      .join(AND);
+  const within = Object.entries(reachable).map(
+    ([name, value]) => `${term(name)} ${beside(short(value), unitOf(name, problem))}`,
+  );
+  return el(
+    "section",
+    { id: "miss" },
+    thumbnail(design),
+    el("strong", {}, t`Nearest miss: ${words(design.mechanism.type)}`),
+    ...gaps.map((/** @type {Gap} */ gap) =>
+      el(
+        "span",
+        { class: "bad" },
+        `✗ ${words(gap.check)}`,
+        typeof gap.value === "number" && ` ${amount(gap.value, gap, problem)}`,
+        typeof gap.limit === "number" && `, ${t`demanded ${amount(gap.limit, gap, problem)}`}`,
+      ),
+    ),
+    within.length > 0 && el("span", { class: "note" }, t`Within reach beside all other demands: ${within.join("; ")}.`),
+    ...offers(problem, miss).map(({ text, statement }, k) =>
+      el("button", { type: "button", class: k ? "small" : "main", onclick: () => solve(statement) }, text),
+    ),
+  );
+}
+
+/**
+ * The problem with what the nearest miss has, and with what can be reached of one demand beside all others; of two that
+ * are the same the first.
+ * @param {Problem} problem @param {NonNullable<Result["nearest_miss"]>} miss @returns {Offer[]}
+ */
+export function offers(problem, { gaps, reachable }) {
+  const whole = gaps.map((/** @type {Gap} */ gap) => eased(problem, gap));
+  const single = Object.entries(reachable).map(([name, value]) => reached(problem, name, value));
+  const sets = [...(single.length && gaps.length < 2 ? [] : [whole]), ...single.map((one) => [one]), whole];
+  const found = sets
+    .filter((/** @type {(Easing | null)[]} */ set) => set.length && set.every((one) => one))
+    .map((all) => {
+      const set = all.filter((one) => one !== null);
+      const statement = structuredClone(problem);
+      for (const { apply } of set) apply(statement);
+      return { text: t`Solve ${set.map((one) => one.text).join(AND)}`, statement };
+    });
+  return found.filter(
+    (one, k) => found.findIndex((other) => JSON.stringify(other.statement) === JSON.stringify(one.statement)) === k,
+  );
+}
+
+/**
+ * Ease a demand by as much as the nearest miss breaks it.
+ * @param {Problem} problem
+ * @param {Gap} gap
+ * @returns {Easing | null} null where nothing of the statement says it
+ */
+function eased(problem, gap) {
+  const { check, value, limit } = gap;
+  const region = WIDENED[check];
+  if (region && typeof value === "number" && at(problem, region)) {
+    const by = rounded(value, true);
+    return {
+      text: t`with ${term(check)} wider by ${amount(by, gap, problem)}`,
+      apply: (statement) => {
+        for (const way of ["x", "y"]) {
+          const sides = at(statement, [...region, way]);
+          if (Array.isArray(sides)) put(statement, [...region, way], [Number(sides[0]) - by, Number(sides[1]) + by]);
+        }
+      },
+    };
+  }
+  // What lies in an obstacle has no clearance that could be demanded of it.
+  if (typeof value === "number" && typeof limit === "number" && !(check === "obstacles" && value <= 0)) {
+    const path = STATED[check] ?? named(problem, check, limit);
+    if (path && at(problem, path) === limit)
+      return limited(path, check, value, value > limit, amount(rounded(value, value > limit), gap, problem));
+  }
+  const out = LEFT_OUT[check];
+  return out && at(problem, out.path.slice(0, -1))
+    ? { text: out.text, apply: (statement) => put(statement, out.path, out.value) }
+    : null;
+}
+
+/**
+ * Demand what is reached where all else holds.
+ * @param {Problem} problem
+ * @param {string} name
+ * @param {number | number[] | null} value
+ * @returns {Easing | null}
+ */
+function reached(problem, name, value) {
+  const check = REACHED[name];
+  const path = check ? STATED[check] : [name];
+  if (name === "dwell_angles" && Array.isArray(problem.dwells) && Array.isArray(value)) {
+    const angles = value.map((one) => rounded(one, false));
+    return {
+      text: t`with dwells of ${angles.map((one) => `${shown(one)}°`).join(AND)}`,
+      apply: (statement) => statement.dwells?.forEach((dwell, k) => (dwell.angle = angles[k])),
+    };
+  }
+  const limit = at(problem, path);
+  if (typeof limit !== "number" || typeof value !== "number") return null;
+  const told = beside(shown(rounded(value, value > limit)), unitOf(name, problem));
+  return limited(path, check ?? name, value, value > limit, told);
+}
+
+/** The unit of what is reached. @param {string} name @param {Problem} problem */
+function unitOf(name, problem) {
+  return unitFor(name, problem) || (name.includes("angle") ? "°" : "");
+}
+
+/**
+ * Another limit.
+ * @param {string[]} path
+ * @param {string} check
+ * @param {number} value
+ * @param {boolean} up
+ * @param {string} told
+ * @returns {Easing}
+ */
+function limited(path, check, value, up, told) {
+  const name = term(["tolerance", "clearance"].find((one) => one === path.at(-1)) ?? check);
+  return { text: t`with ${name} ${told}`, apply: (statement) => put(statement, path, rounded(value, up)) };
+}
+
+/** Rounded to the side on which it is reached. @param {number} value @param {boolean} up */
+function rounded(value, up) {
+  if (Number.isInteger(value)) return value;
+  const step = 10 ** (Math.floor(Math.log10(Math.abs(value) || 1)) + 1 - DIGITS);
+  return Number(((up ? Math.ceil : Math.floor)(value / step) * step).toPrecision(DIGITS));
+}
+
+/**
+ * Where a statement has a limit under the name of its check.
+ * @param {unknown} owner
+ * @param {string} check
+ * @param {number} limit
+ * @param {string[]} [above]
+ * @returns {string[] | null}
+ */
+function named(owner, check, limit, above = []) {
+  if (typeof owner !== "object" || owner === null || Array.isArray(owner)) return null;
+  for (const [name, value] of Object.entries(owner)) {
+    if ([check, `min_${check}`, `max_${check}`].includes(name) && value === limit) return [...above, name];
+    const found = named(value, check, limit, [...above, name]);
+    if (found) return found;
+  }
+  return null;
+}

@@ -1,0 +1,552 @@
+/**
+ * The assembly of a design: its parts in three dimensions, moving with the drawing, drawn apart, hidden and taken home.
+ */
+
+import * as api from "../core/api.js";
+import { el, shown } from "../core/dom.js";
+import { saved } from "../design/design_files.js";
+import { foreign, t, term, translated } from "../core/messages.js";
+import { between } from "../core/player.js";
+import { symbolOf } from "../core/units.js";
+
+/** @import { Schemas, Solved } from "../types/values.js" */
+
+/**
+ * @typedef {{name: string, described: string, sort: string, material: string, colour: string, standard: string, lift:
+ *   number, carrier: number, shapes: import("./solids.js").Shape[], item: string, files: string[]}} Part
+ */
+/**
+ * @typedef {{length_unit: string, unit: number, scale: number, low: number, high: number, notes: string[], input:
+ *   import("./assembly_motion.js").Inputs, carriers: import("./assembly_motion.js").Carrier[], parts: Part[]}} Assembly
+ */
+/**
+ * What moves in the drawing.
+ * @typedef {{player: import("../core/player.js").Player, motion: {input_angle: (number | null)[], engaged?: number[]}}}
+ *   Led
+ */
+
+/** @typedef {{all: HTMLInputElement, names: string[], each: Map<string, HTMLInputElement>}} Shows `each` by `names` */
+
+/** Inputs that are asked for. */
+const POSITIONS = 144;
+
+/** The scale that a refusal says will do. */
+const SCALE = /fit at scale ([\d.e+]+) or more|; use at most scale ([\d.e+-]*\d)/;
+
+const PROCESSES = { laser: t`cut by laser`, print: t`printed`, mill: t`milled` };
+
+export class AssemblyView {
+  /**
+   * @param {HTMLElement} place of the list of parts @param {Solved} job @param {number} n
+   * @param {() => Partial<Led> | null} moving what moves in the drawing now, if anything does
+   * @param {HTMLElement} board of the picture
+   */
+  constructor(place, job, n, moving, board) {
+    this.board = board;
+    this.job = job;
+    this.n = n;
+    this.moving = moving;
+    this.gone = new AbortController();
+    /** @type {AbortController | null} */
+    this.asked = null;
+    /** @type {Assembly | null} */
+    this.assembly = null;
+    /** @type {import("./assembly_scene.js").AssemblyScene | null} */
+    this.scene = null;
+    /** What is in the picture, if it can be. @type {typeof import("./assembly_scene.js") | null} */
+    this.drawing = null;
+    /** Names of parts. @type {Set<string>} */
+    this.hidden = new Set();
+    /** @type {string | null} */
+    this.chosen = null;
+    this.explosion = 0;
+    this.frame = 0;
+    /** The speed of a gearbox that the parts are made for, from 1. @type {number | null} */
+    this.engaged = null;
+    /** The place of the drawing's motion that is shown. @type {number} */
+    this.seen = NaN;
+    this.list = el("div");
+    this.fileFault = el("p", { class: "error", role: "alert" });
+    this.beyond = el("p", { class: "note", hidden: true });
+    /** Of each kind of part: what shows all of it, and what shows each. @type {Shows[]} */
+    this.shows = [];
+    this.words = el("p", { class: "note", role: "status" });
+    this.fault = el("div", { class: "fault", role: "alert" });
+    this.body = el("div", { class: "assembly", hidden: true });
+    this.form = this.sizes();
+    styled();
+    place.replaceChildren(this.form, this.fault, this.words, this.body);
+    this.load();
+    const step = () => {
+      this.frame = requestAnimationFrame(step);
+      this.follow();
+    };
+    this.frame = requestAnimationFrame(step);
+  }
+
+  /** What the parts are made of, as the files are asked for. */
+  sizes() {
+    const unit = symbolOf("length", this.job.problem);
+    const field = (/** @type {string} */ name, /** @type {string} */ title, /** @type {HTMLElement} */ box) => {
+      box.id = `assembly-${name}`;
+      box.setAttribute("name", name);
+      box.setAttribute("aria-describedby", "assembly-fault");
+      return el("span", { class: "field" }, el("label", { for: box.id }, title), box);
+    };
+    const number = (/** @type {string} */ hint) =>
+      el("input", { type: "number", min: 0, step: "any", inputmode: "decimal", placeholder: hint });
+    const form = el(
+      "form",
+      {
+        class: "row sizes",
+        "aria-label": t`What the parts are made of`,
+        novalidate: true,
+        onsubmit: (/** @type {Event} */ event) => {
+          event.preventDefault();
+          this.load();
+        },
+      },
+      field(
+        "process",
+        t`Made`,
+        el(
+          "select",
+          { onchange: () => this.load() },
+          ...Object.entries(PROCESSES).map(([value, title]) => el("option", { value }, title)),
+        ),
+      ),
+      field("pin", t`Pin (${unit})`, number(t`what fits`)),
+      field("width", t`Width (${unit})`, number(t`2.5 pins`)),
+      field("scale", t`Scale`, number("1")),
+      el("button", { type: "submit", class: "small" }, t`Make them so`),
+    );
+    this.fault.id = "assembly-fault";
+    return form;
+  }
+
+  /** Of a gearbox: the number of the speed that is engaged in the drawing, from 1. @returns {number | null} */
+  speed() {
+    const { mechanism, metrics } = this.job.result.designs[this.n];
+    if (mechanism.type !== "gearbox") return null;
+    const speeds = /** @type {Schemas["SpindleSpeed"][]} */ (metrics.speeds);
+    const engaged = String(this.moving()?.motion?.engaged);
+    return (
+      1 +
+      Math.max(
+        0,
+        speeds.findIndex((one) => String(one.engaged) === engaged),
+      )
+    );
+  }
+
+  /** The fields that are filled in. @returns {Record<string, string>} */
+  stated() {
+    const boxes = /** @type {HTMLInputElement[]} */ ([...this.form.querySelectorAll("[name]")]);
+    const filled = boxes.filter(({ value }) => value.trim() !== "").map(({ name, value }) => [name, value.trim()]);
+    return Object.fromEntries(this.engaged === null ? filled : [...filled, ["speed", String(this.engaged)]]);
+  }
+
+  async load() {
+    this.asked?.abort();
+    const asked = (this.asked = new AbortController());
+    this.engaged = this.speed();
+    this.words.textContent = t`The parts are being made …`;
+    this.body.setAttribute("aria-busy", "true");
+    this.clear();
+    if (!this.scene) this.said(t`The parts are being made …`);
+    try {
+      const query = this.stated();
+      const [assembly, drawing] = await Promise.all([
+        api.assembly(this.job.id, this.n, { ...query, positions: String(POSITIONS) }, asked.signal),
+        import("./assembly_scene.js"),
+      ]);
+      if (asked.signal.aborted || this.gone.signal.aborted) return;
+      this.drawing = drawing.drawable() ? drawing : null;
+      this.present(assembly, query);
+    } catch (error) {
+      if (asked.signal.aborted || this.gone.signal.aborted) return;
+      this.words.replaceChildren();
+      this.body.hidden = true;
+      this.said(t`There are no such parts.`);
+      this.scene?.stop();
+      this.scene = null;
+      this.refused(error);
+    }
+    this.body.removeAttribute("aria-busy");
+  }
+
+  /** Say something in the place of the picture. @param {string} what */
+  said(what) {
+    this.board.replaceChildren(el("div", { class: "said" }, el("p", { class: "note" }, what)));
+  }
+
+  /** Nothing is wrong any more. */
+  clear() {
+    this.fault.replaceChildren();
+    for (const box of this.form.querySelectorAll("[aria-invalid]")) box.removeAttribute("aria-invalid");
+  }
+
+  /** Say why there are no such parts, and offer what works. @param {unknown} error */
+  refused(error) {
+    const faults = error instanceof api.Refused ? error.errors : [];
+    const reason =
+      faults.map((one) => one.detail).join(" ") || (error instanceof Error ? error.message : String(error));
+    this.fault.replaceChildren(el("p", { class: "error" }, reason));
+    for (const { path } of faults)
+      this.form.querySelector(`[name="${path.replace("/query/", "")}"]`)?.setAttribute("aria-invalid", "true");
+    const [, least, greatest] = SCALE.exec(reason) ?? [];
+    const scale = least ?? greatest;
+    if (scale === undefined) return;
+    this.fault.append(
+      el(
+        "button",
+        {
+          type: "button",
+          class: "small",
+          onclick: () => {
+            /** @type {HTMLInputElement} */ (this.form.elements.namedItem("scale")).value = String(Number(scale));
+            this.load();
+          },
+        },
+        t`Build it at scale ${Number(scale)}`,
+      ),
+    );
+  }
+
+  /** @param {Assembly} assembly @param {Record<string, string>} query by which it was asked for */
+  present(assembly, query) {
+    this.scene?.stop();
+    this.scene = null;
+    this.assembly = assembly;
+    const kinds = new Set(assembly.parts.map(({ item }) => item));
+    const names = new Set(assembly.parts.map(({ name }) => name));
+    this.hidden = new Set([...this.hidden].filter((name) => names.has(name)));
+    this.chosen = null;
+    this.words.textContent =
+      [
+        t`${assembly.parts.length} parts of ${kinds.size} kinds`,
+        assembly.scale !== 1 && t`${shown(assembly.scale)} times the design`,
+      ]
+        .filter(Boolean)
+        .join(", ") + ".";
+    this.list = this.listed(assembly, query);
+    this.body.hidden = false;
+    if (!this.drawing) {
+      const reason = t`This browser does not draw in three dimensions (WebGL 2 is missing or switched off). The parts are listed, and their files are there.`;
+      this.said(reason);
+      this.body.replaceChildren(this.list);
+      return;
+    }
+    const canvas = el("canvas", {
+      class: "canvas solid",
+      tabindex: 0,
+      role: "application",
+      "aria-describedby": "assembly-keys",
+      "aria-label": t`The assembly in three dimensions, ${assembly.parts.length} parts`,
+      onkeydown: (/** @type {KeyboardEvent} */ event) => {
+        if (!event.ctrlKey && !event.metaKey && !event.altKey && this.scene?.key(event)) event.preventDefault();
+      },
+    });
+    this.body.replaceChildren(this.list);
+    this.board.replaceChildren(
+      el(
+        "figure",
+        { class: "solids" },
+        this.tools(),
+        canvas,
+        this.sliders(),
+        el(
+          "p",
+          { class: "note", id: "assembly-keys" },
+          t`Drag to turn, with the right button or two fingers to move, the wheel or + and − to zoom; arrow keys turn, with Shift they move; Home shows all.`,
+        ),
+        this.beyond,
+        ...assembly.notes.map((note) => el("p", { class: "note", lang: foreign(note) }, translated(note))),
+      ),
+    );
+    this.scene = new this.drawing.AssemblyScene(canvas, assembly, {
+      hover: (item) => this.hover(item),
+      choose: (item) => this.choose(item),
+    });
+    for (const name of this.hidden) this.scene.hide(name, false);
+    this.scene.explode(this.explosion);
+    this.scene.fit(false);
+    this.seen = NaN;
+    this.follow();
+  }
+
+  /** Where it is looked at from, and its picture. */
+  tools() {
+    const button = (/** @type {string} */ title, /** @type {() => void} */ does) =>
+      el("button", { type: "button", class: "small", onclick: does }, title);
+    return el(
+      "div",
+      { class: "row", role: "toolbar", "aria-label": t`View of the assembly` },
+      ...Object.keys(this.drawing?.VIEWS ?? {}).map((name) => button(name, () => this.scene?.look(name))),
+      button(t`Fit`, () => this.scene?.fit()),
+      button(
+        t`Save picture`,
+        async () =>
+          this.scene &&
+          saved(URL.createObjectURL(await this.scene.picture()), `${this.job.kind}-${this.n + 1}-assembly.png`),
+      ),
+    );
+  }
+
+  /** How far its planes are apart; it moves with the drawing, whose clock stands beside it. */
+  sliders() {
+    const apart = el("input", {
+      type: "range",
+      id: "explode",
+      min: 0,
+      max: 1,
+      step: 0.01,
+      value: this.explosion,
+      oninput: () => {
+        this.explosion = apart.valueAsNumber;
+        apart.setAttribute("aria-valuetext", `${Math.round(100 * this.explosion)} %`);
+        this.scene?.explode(this.explosion);
+      },
+    });
+    apart.setAttribute("aria-valuetext", `${Math.round(100 * this.explosion)} %`);
+    return el(
+      "div",
+      { class: "row" },
+      el("label", { for: "explode" }, t`Apart`),
+      apart,
+      el(
+        "button",
+        {
+          type: "button",
+          class: "small",
+          onclick: () => {
+            apart.value = this.explosion > 0 ? "0" : "1";
+            apart.dispatchEvent(new Event("input"));
+          },
+        },
+        t`Together / apart`,
+      ),
+    );
+  }
+
+  /**
+   * The parts by kind: shown or hidden, chosen, and their files.
+   * @param {Assembly} assembly
+   * @param {Record<string, string>} query
+   */
+  listed(assembly, query) {
+    /** @type {Map<string, Part[]>} */
+    const kinds = new Map();
+    for (const part of assembly.parts) kinds.set(part.item, [...(kinds.get(part.item) ?? []), part]);
+    this.fileFault.replaceChildren();
+    this.shows = [];
+    const every = assembly.parts.map(({ name }) => name);
+    const all = el(
+      "div",
+      { class: "row" },
+      el("button", { type: "button", class: "small", onclick: () => this.show(every, true) }, t`Show all`),
+      el("button", { type: "button", class: "small", onclick: () => this.show(every, false) }, t`Hide all`),
+      this.file(t`All files`, t`All files as a zip`, `${this.job.kind}-${this.n + 1}-parts.zip`, () =>
+        api.parts(this.job.id, this.n, query),
+      ),
+    );
+    const rows = [...kinds].map(([item, equals]) => {
+      const [part, ...others] = equals;
+      const called = others.length ? term(item) : translated(part.described);
+      const names = equals.map(({ name }) => name);
+      const box = this.box(`show-${item}`, called, names);
+      const each = this.places(equals);
+      this.shows.push({ all: box, names, each: each.boxes });
+      const swatch = el("span", { class: "swatch", "aria-hidden": "true" });
+      swatch.style.backgroundColor = part.colour;
+      return el(
+        "li",
+        {
+          "data-item": item,
+          onpointerenter: () => this.scene?.hover(item),
+          onpointerleave: () => this.scene?.hover(null),
+        },
+        box,
+        swatch,
+        el(
+          "button",
+          {
+            type: "button",
+            class: "called",
+            "aria-pressed": "false",
+            onclick: () => this.choose(this.chosen === item ? null : item),
+          },
+          called,
+          others.length > 0 && ` × ${others.length + 1}`,
+        ),
+        el("span", { class: "note" }, part.standard || part.material),
+        el(
+          "span",
+          { class: "files" },
+          ...part.files.map((form) =>
+            this.file(form.toUpperCase(), t`${called} as ${form.toUpperCase()}`, `${item}.${form}`, () =>
+              api.part(this.job.id, this.n, item, form, query),
+            ),
+          ),
+        ),
+        each.node,
+      );
+    });
+    this.told();
+    return el(
+      "div",
+      { class: "parts" },
+      el("h3", { id: "assembly-parts", class: "minor" }, t`Parts`),
+      all,
+      this.fileFault,
+      el("ul", { "aria-labelledby": "assembly-parts" }, ...rows),
+      !api.makesSolids() &&
+        el("p", { class: "note" }, t`Outlines of plates are there. For solids the service needs its extra cad.`),
+    );
+  }
+
+  /** @param {string} title @param {string} described @param {string} name @param {() => Promise<string>} make */
+  file(title, described, name, make) {
+    const button = el(
+      "button",
+      {
+        type: "button",
+        class: "small",
+        "aria-label": described,
+        title: described,
+        onclick: async () => {
+          button.disabled = true;
+          this.fileFault.replaceChildren();
+          try {
+            saved(await make(), name);
+          } catch (error) {
+            const reasons = error instanceof api.Refused ? error.errors.map((one) => one.detail) : [];
+            this.fileFault.replaceChildren(reasons.join(" ") || /** @type {Error} */ (error).message);
+          }
+          button.disabled = false;
+        },
+      },
+      title,
+    );
+    return button;
+  }
+
+  /** What shows or hides parts. @param {string} id @param {string} called @param {string[]} names */
+  box(id, called, names) {
+    const box = el("input", {
+      type: "checkbox",
+      id,
+      "aria-label": t`Show ${called}`,
+      onchange: () => this.show(names, box.checked),
+    });
+    return box;
+  }
+
+  /**
+   * Of equal parts each at its place, behind a summary; one alone is shown by its row.
+   * @param {Part[]} equals
+   * @returns {{node: HTMLElement | null, boxes: Map<string, HTMLInputElement>}}
+   */
+  places(equals) {
+    if (equals.length === 1) return { node: null, boxes: new Map() };
+    /** @type {Map<string, number>} */
+    const met = new Map();
+    const rows = equals.map(({ name, described }) => {
+      const nth = (met.get(described) ?? 0) + 1;
+      met.set(described, nth);
+      const alike = equals.filter((one) => one.described === described).length > 1;
+      const called = `${translated(described)}${alike ? ` (${nth})` : ""}`;
+      const box = this.box(`show-place-${name}`, called, [name]);
+      const node = el(
+        "label",
+        { for: box.id, onpointerenter: () => this.scene?.hover(name), onpointerleave: () => this.scene?.hover(null) },
+        box,
+        called,
+      );
+      return { name, box, node };
+    });
+    return {
+      node: el("details", { class: "places" }, el("summary", {}, t`One by one`), ...rows.map(({ node }) => node)),
+      boxes: new Map(rows.map(({ name, box }) => [name, box])),
+    };
+  }
+
+  /** @param {string[]} names @param {boolean} visible */
+  show(names, visible) {
+    for (const name of names) {
+      if (visible) this.hidden.delete(name);
+      else this.hidden.add(name);
+      this.scene?.hide(name, visible);
+    }
+    this.told();
+  }
+
+  /** The list says what is shown: of a kind all, some or none. */
+  told() {
+    for (const { all, names, each } of this.shows) {
+      for (const [name, box] of each) box.checked = !this.hidden.has(name);
+      const shown = names.filter((name) => !this.hidden.has(name)).length;
+      all.checked = shown === names.length;
+      all.indeterminate = shown > 0 && shown < names.length;
+    }
+  }
+
+  /** @param {string | null} item */
+  hover(item) {
+    this.scene?.hover(item);
+    for (const row of this.list.querySelectorAll("li")) row.classList.toggle("hovered", row.dataset.item === item);
+  }
+
+  /** @param {string | null} item */
+  choose(item) {
+    this.chosen = item;
+    this.scene?.choose(item);
+    for (const row of this.list.querySelectorAll("li")) {
+      const chosen = row.dataset.item === item;
+      row.querySelector(".called")?.setAttribute("aria-pressed", String(chosen));
+      if (chosen) row.scrollIntoView({ block: "nearest" });
+    }
+  }
+
+  /** What moves in the drawing, where it has a player. @returns {Led | null} */
+  led() {
+    const moving = this.moving();
+    const { player, motion } = moving ?? {};
+    return player && motion && (motion.input_angle?.length ?? 0) > 1 ? { player, motion } : null;
+  }
+
+  /** Go where the drawing is. */
+  follow() {
+    const led = this.led();
+    if (led && this.speed() !== this.engaged) this.load();
+    if (!led || !this.scene || !this.assembly) return;
+    const { player, motion } = led;
+    if (player.at === this.seen) return;
+    this.seen = player.at;
+    const turns = Math.floor(player.at / player.last);
+    const rest = player.at - turns * player.last;
+    const [begin, end] = [Number(motion.input_angle[0]), Number(motion.input_angle[player.last])];
+    const input = Number(between(motion.input_angle, rest)) + turns * (end - begin);
+    const { at, within } = this.scene.motion.place(input);
+    this.scene.show(at);
+    const { low, high, quantity } = this.assembly.input;
+    const unit = quantity === "angle" ? "°" : ` ${symbolOf("length", this.job.problem)}`;
+    this.beyond.hidden = within;
+    const [from, to] = [low, high].map((end) => shown(Number(end.toFixed(2))) + unit);
+    this.beyond.textContent = t`The parts are made for inputs from ${from} to ${to}; the drawing is beyond, and they wait at the end.`;
+  }
+
+  stop() {
+    this.gone.abort();
+    this.asked?.abort();
+    cancelAnimationFrame(this.frame);
+    this.scene?.stop();
+    this.scene = null;
+  }
+}
+
+/** The style sheet of the view comes with the first of them. */
+function styled() {
+  if (document.querySelector('link[href="/studio/assembly.css"]')) return;
+  document.head.append(el("link", { rel: "stylesheet", href: "/studio/assembly.css" }));
+}

@@ -1,0 +1,128 @@
+/**
+ * What is taken hold of on a picture: led by the pointer or moved by keys, as large as a finger needs it, and named for
+ * who
+ * hears the page.
+ */
+
+import { svg } from "../core/dom.js";
+
+/** @typedef {[number, number]} Point */
+
+/** How far around its middle a grip is taken hold of, pixels. */
+const REACH = 12;
+
+/** How far arrow keys move a grip, pixels: the nearest power of ten of the plane's units, and with Shift. */
+const STEP = 10;
+const FINE_STEP = 1;
+
+/** How far page keys turn a grip, degrees, and with Shift. */
+const TURN = 5;
+const FINE_TURN = 1;
+
+export class Grip {
+  /**
+   * @param {object} looks
+   * @param {string} [looks.name] what stands beside it
+   * @param {Point} [looks.beside] where the name stands, pixels from its middle
+   * @param {string} [looks.kind] class of the whole
+   * @param {string} [looks.dot] class of what is seen
+   * @param {number} [looks.radius] of what is seen, pixels
+   * @param {string} [looks.key] by which it is found again in a picture that is made anew
+   * @param {string} [looks.role]
+   */
+  constructor({
+    name = "",
+    beside: [dx, dy] = [10, -9],
+    kind = "target",
+    dot = "dot",
+    radius = 7,
+    key,
+    role = "button",
+  }) {
+    this.dot = svg("circle", { class: dot, r: radius });
+    this.hit = svg("circle", { class: "hit", r: REACH });
+    this.text = name ? svg("text", { dx, dy }, name) : null;
+    this.node = svg("g", { class: kind, tabindex: 0, role, "data-grip": key }, this.text, this.hit, this.dot);
+  }
+
+  /** Put it at a place of the picture. @param {Point} place pixels */
+  put([u, v]) {
+    for (const one of [this.dot, this.hit]) set(one, { cx: u, cy: v });
+    if (this.text) set(this.text, { x: u, y: v });
+  }
+
+  /** @param {string} label */
+  call(label) {
+    this.node.setAttribute("aria-label", label);
+  }
+}
+
+/**
+ * Something is led by the pointer, from where it is taken to where it is let go.
+ * @param {Element} node
+ * @param {SVGSVGElement} picture
+ * @param {import("../core/view.js").View} view
+ * @param {object} on
+ * @param {(at: Point) => void} [on.taken]
+ * @param {(at: Point, event: PointerEvent) => void} on.led
+ * @param {() => void} [on.left]
+ */
+export function led(node, picture, view, { taken, led: follow, left }) {
+  node.addEventListener("pointerdown", (down) => {
+    const event = /** @type {PointerEvent} */ (down);
+    if (event.button !== 0) return;
+    // The picture behind it stays where it is.
+    event.stopPropagation();
+    node.setPointerCapture(event.pointerId);
+    taken?.(view.under(picture, event));
+    const gone = new AbortController();
+    const { signal } = gone;
+    node.addEventListener(
+      "pointermove",
+      (move) => {
+        const now = /** @type {PointerEvent} */ (move);
+        if (now.pointerId === event.pointerId) follow(view.under(picture, now), now);
+      },
+      { signal },
+    );
+    node.addEventListener(
+      "lostpointercapture",
+      () => {
+        gone.abort();
+        left?.();
+      },
+      { signal },
+    );
+  });
+}
+
+/**
+ * Something is moved by arrow keys, turned by page keys and removed by Delete or Backspace.
+ * @param {Element} node
+ * @param {import("../core/view.js").View} view
+ * @param {object} on
+ * @param {(by: Point) => void} on.moved by so much of the plane's units
+ * @param {((degrees: number) => void) | null} [on.turned]
+ * @param {(() => void) | null} [on.removed]
+ */
+export function keyed(node, view, { moved, turned, removed }) {
+  node.addEventListener("keydown", (pressed) => {
+    const event = /** @type {KeyboardEvent} */ (pressed);
+    const step = view.step(event.shiftKey ? FINE_STEP : STEP);
+    const angle = event.shiftKey ? FINE_TURN : TURN;
+    /** @type {Record<string, Point>} */
+    const ways = { ArrowLeft: [-step, 0], ArrowRight: [step, 0], ArrowUp: [0, step], ArrowDown: [0, -step] };
+    const turns = /** @type {Record<string, number>} */ ({ PageUp: angle, PageDown: -angle });
+    if (event.key in ways) moved(ways[event.key]);
+    else if (event.key in turns && turned) turned(turns[event.key]);
+    else if (["Delete", "Backspace"].includes(event.key) && removed) removed();
+    else return;
+    event.preventDefault();
+    event.stopPropagation();
+  });
+}
+
+/** @param {Element} node @param {Record<string, number>} attributes */
+function set(node, attributes) {
+  for (const [name, value] of Object.entries(attributes)) node.setAttribute(name, String(value));
+}

@@ -1,0 +1,203 @@
+/** The pen: draws one area on a picture with mouse, finger or keys. */
+
+import { svg } from "../core/dom.js";
+import { hatched, outline } from "./area_hatching.js";
+import { t } from "../core/messages.js";
+
+/** @typedef {[number, number]} Point */
+/** @typedef {import("./workspace.js").Zone} Zone */
+
+/** How near to the first corner a polygon closes, pixels of the picture: a finger is less exact. */
+const CLOSE = 12;
+const CLOSE_BY_TOUCH = 28;
+
+/** What is drawn smaller than this was a click. */
+const CLICK = 4;
+
+/** Of the picture's height, what is put down by keys alone. */
+const SHARE = 0.3;
+
+export class Pen {
+  /**
+   * @param {SVGSVGElement} picture
+   * @param {import("../core/view.js").View} view
+   * @param {string} role
+   * @param {import("./workspace.js").Tool} tool
+   * @param {{done: (zone: Zone) => void, left: () => void, tell: (text: string) => void}} on
+   */
+  constructor(picture, view, role, tool, on) {
+    this.picture = picture;
+    this.view = view;
+    this.tool = tool;
+    this.on = on;
+    /** @type {Point[]} */
+    this.corners = [];
+    this.gone = new AbortController();
+    this.shape = hatched(role, "");
+    this.dots = svg("path", { class: "pen-dots" });
+    this.sheet = svg("rect", { class: "pen-sheet", width: view.width, height: view.height });
+    this.node = svg("g", {}, this.shape, this.dots, this.sheet);
+    picture.append(this.node);
+    this.listen();
+    this.hint();
+  }
+
+  listen() {
+    const { signal } = this.gone;
+    /** @param {"pointerdown" | "pointermove" | "pointerup"} name @param {(event: PointerEvent) => void} act */
+    const on = (name, act) => this.sheet.addEventListener(name, act, { signal });
+    on("pointerdown", (event) => {
+      event.stopPropagation();
+      this.sheet.setPointerCapture(event.pointerId);
+      if (this.tool !== "polygon") this.corners = [this.at(event)];
+    });
+    on("pointermove", (event) => this.show(this.at(event)));
+    on("pointerup", (event) => (this.tool === "polygon" ? this.corner(event) : this.finish(this.at(event))));
+    this.sheet.addEventListener("dblclick", (event) => event.stopPropagation(), { signal });
+    // Wherever the focus is, but for a field in which somebody types.
+    document.addEventListener("keydown", (event) => this.key(event), { signal, capture: true });
+  }
+
+  /** @param {PointerEvent} event @returns {Point} */
+  at(event) {
+    const [x, y] = this.view.under(this.picture, event);
+    return [this.view.rounded(x), this.view.rounded(y)];
+  }
+
+  /** How far apart on the picture. @param {Point} one @param {Point} other */
+  far(one, other) {
+    return this.view.scale * Math.hypot(one[0] - other[0], one[1] - other[1]);
+  }
+
+  /** @param {PointerEvent} event */
+  corner(event) {
+    const at = this.at(event);
+    const near = event.pointerType === "touch" ? CLOSE_BY_TOUCH : CLOSE;
+    const { corners } = this;
+    if (corners.length >= 3 && this.far(at, corners[0]) < near) return this.finish();
+    // The second click of a double one ends the polygon too.
+    if (corners.length && this.far(at, corners[corners.length - 1]) < CLICK)
+      return corners.length >= 3 ? this.finish() : undefined;
+    corners.push(at);
+    this.show(at);
+    this.hint();
+  }
+
+  /** @param {KeyboardEvent} event */
+  key(event) {
+    if (event.target instanceof HTMLElement && event.target.matches("input, textarea, select")) return;
+    if (event.key === "Escape") this.on.left();
+    else if (event.key === "Enter") this.enter();
+    else if (event.key === "Backspace" && this.corners.length) {
+      this.corners.pop();
+      this.show(this.corners.at(-1) ?? null);
+      this.hint();
+    } else return;
+    event.preventDefault();
+    event.stopPropagation();
+  }
+
+  /** Enter closes a polygon; before anything is drawn it puts an area into the middle. */
+  enter() {
+    if (this.tool === "polygon" && this.corners.length) {
+      if (this.corners.length >= 3) this.finish();
+      return;
+    }
+    const { view } = this;
+    const [x, y] = view.middle.map((one) => view.rounded(one));
+    const half = view.rounded((0.5 * SHARE * view.height) / view.scale);
+    this.on.done(
+      this.tool === "circle"
+        ? { circle: { center: [x, y], radius: half } }
+        : {
+            polygon: [
+              [x - half, y - half],
+              [x + half, y - half],
+              [x + half, y + half],
+              [x - half, y + half],
+            ],
+          },
+    );
+  }
+
+  /** @param {Point} [last] */
+  finish(last) {
+    if (this.tool === "polygon") return this.on.done({ polygon: this.corners });
+    if (!this.corners.length || !last) return;
+    const zone = this.spanned(this.corners[0], last);
+    this.corners = [];
+    if (zone) this.on.done(zone);
+    else this.show(null);
+  }
+
+  /**
+   * The rectangle or circle between two points; null where it is none.
+   * @param {Point} from
+   * @param {Point} to
+   * @returns {Zone | null}
+   */
+  spanned(from, to) {
+    const [width, height] = [Math.abs(to[0] - from[0]), Math.abs(to[1] - from[1])];
+    if (this.tool === "circle") {
+      const radius = Number(Math.hypot(width, height).toPrecision(4));
+      return radius * this.view.scale < CLICK ? null : { circle: { center: from, radius } };
+    }
+    if (Math.min(width, height) * this.view.scale < CLICK) return null;
+    const [left, low] = [Math.min(from[0], to[0]), Math.min(from[1], to[1])];
+    const [right, high] = [Math.max(from[0], to[0]), Math.max(from[1], to[1])];
+    return {
+      polygon: [
+        [left, low],
+        [right, low],
+        [right, high],
+        [left, high],
+      ],
+    };
+  }
+
+  /** What is drawn so far, up to where the pointer is. @param {Point | null} at */
+  show(at) {
+    const { view, corners } = this;
+    const zone = at && corners.length && this.tool !== "polygon" ? this.spanned(corners[0], at) : null;
+    const line = this.tool === "polygon" ? [...corners, ...(at ? [at] : [])] : (zone?.polygon ?? []);
+    const circle = zone?.circle ?? null;
+    this.shape.setAttribute(
+      "d",
+      circle || (zone && line.length)
+        ? outline(view, { circle, corners: line })
+        : corners.length && line.length > 1
+          ? view.path(line)
+          : "",
+    );
+    this.dots.setAttribute(
+      "d",
+      (this.tool === "polygon" ? corners : [])
+        .map((corner) => {
+          const [u, v] = view.at(...corner);
+          return `M${u - 4} ${v}a4 4 0 1 0 8 0a4 4 0 1 0 -8 0Z`;
+        })
+        .join(""),
+    );
+    if (circle) this.on.tell(t`Radius ${circle.radius}`);
+    else if (zone) this.on.tell(`${view.rounded(line[2][0] - line[0][0])} × ${view.rounded(line[2][1] - line[0][1])}`);
+    else if (at && corners.length) this.on.tell(`x ${at[0]}, y ${at[1]}. ${this.how()}`);
+  }
+
+  hint() {
+    this.on.tell(this.how());
+  }
+
+  how() {
+    if (this.tool === "rectangle") return t`Drag from corner to corner. Enter puts one into the middle, Escape ends.`;
+    if (this.tool === "circle") return t`Drag from the centre outward. Enter puts one into the middle, Escape ends.`;
+    if (!this.corners.length) return t`Click its corners. Enter puts one into the middle, Escape ends.`;
+    return this.corners.length < 3
+      ? t`Click the next corner. Backspace takes one back, Escape ends.`
+      : t`Click the first corner, or press Enter, to close it. Backspace takes one back.`;
+  }
+
+  leave() {
+    this.gone.abort();
+    this.node.remove();
+  }
+}

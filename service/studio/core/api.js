@@ -1,0 +1,350 @@
+/** The public API of the service, and nothing else: all that the studio knows comes through here. */
+
+import { t, translated } from "./messages.js";
+import { ofTheTab } from "./storage.js";
+
+/** @import { Analysis, LinkageAnalysis, Mechanism, Problem, Question, Schemas } from "../types/values.js" */
+
+/** @typedef {Schemas["FieldError"]} FieldError */
+/** @typedef {Schemas["Progress"]} Progress */
+/** @typedef {Schemas["JobListItem"]} JobItem */
+/** @typedef {import("../types/values.js").Job} Job */
+/**
+ * @typedef {{kind: string, title: string, description: string, schema: import("./schema.js").Schema, example: Problem,
+ *   files: Record<string, string[]>, examples: {name: string, group: string, line: string}[], measures:
+ *   Record<string, string>}} Kind
+ */
+/**
+ * @typedef {{element: string, id: string | null, name: string | null, layer: string | null, polygon: [number, number][]
+ *   | null, circle: {center: [number, number], radius: number} | null, area: number, joined: number}} Drawn
+ */
+/**
+ * @typedef {{element: string, id: string | null, name: string | null, layer: string | null, reason: string}} LeftOut
+ */
+/**
+ * @typedef {{millimetres_per_unit: number | null, length_unit: string | null, scale: number, tolerance: number,
+ *   outlines: Drawn[], left_out: LeftOut[], left_out_count: number}} Outlines
+ */
+
+/**
+ * @typedef {{element: string, id: string | null, name: string | null, layer: string | null, points: {x: number, y:
+ *   number}[], closed: boolean, length: number, tolerance: number, joined: number}} Curve
+ */
+/**
+ * @typedef {{format: string, millimetres_per_unit: number | null, length_unit: string | null, scale: number, curves:
+ *   Curve[], left_out: LeftOut[], left_out_count: number}} Curves
+ */
+
+const KEY = "mechsynth.key";
+const RECONNECT_MS = 1000;
+
+/** How often a busy service is asked, and how long after each time. */
+const BUSY_TRIES = 4;
+const BUSY_MS = 5000;
+
+/** An answer that says what went wrong (problem+json). */
+export class Refused extends Error {
+  /** @param {Partial<Schemas["ProblemDetails"]>} problem @param {number} status */
+  constructor(problem, status) {
+    super(problem.detail ? translated(problem.detail) : t`The service answered ${status}.`);
+    this.status = status;
+    this.title = problem.title ? translated(problem.title) : t`Error`;
+    /** @type {FieldError[]} */
+    this.errors = (problem.errors ?? []).map((/** @type {FieldError} */ one) => ({
+      ...one,
+      detail: translated(one.detail),
+    }));
+  }
+}
+
+/** The key is kept for this tab only. */
+export function key() {
+  return ofTheTab.read(KEY) ?? "";
+}
+
+/** @param {string} value */
+export function useKey(value) {
+  ofTheTab.write(KEY, value || null);
+}
+
+/**
+ * @param {string} path
+ * @param {RequestInit} [options]
+ */
+async function ask(path, options = {}) {
+  const headers = new Headers(options.headers);
+  if (key()) headers.set("Authorization", `Bearer ${key()}`);
+  const answer = await fetch(path, { ...options, headers });
+  if (!answer.ok) throw new Refused(await answer.json().catch(() => ({})), answer.status);
+  return answer;
+}
+
+/**
+ * Ask again where the service is busy with other analyses (503), as long after as it says.
+ * @template T @param {() => Promise<T>} asked @param {AbortSignal} [signal] @returns {Promise<T>}
+ */
+async function patiently(asked, signal) {
+  for (let left = BUSY_TRIES; ; left--) {
+    try {
+      return await asked();
+    } catch (error) {
+      if (!(error instanceof Refused) || error.status !== 503 || left <= 1 || signal?.aborted) throw error;
+      await new Promise((done) => setTimeout(done, BUSY_MS));
+    }
+  }
+}
+
+/** @param {string} path @param {unknown} body @param {AbortSignal} [signal] */
+function post(path, body, signal) {
+  const headers = { "Content-Type": "application/json" };
+  return ask(path, { method: "POST", headers, body: JSON.stringify(body), signal });
+}
+
+/** @type {Kind[]} */
+let told = [];
+
+let solids = false;
+
+/** @type {string[]} */
+let built = [];
+
+/** @returns {Promise<Kind[]>} */
+export async function kinds() {
+  const answer = await (await ask("/v1/problems")).json();
+  told = answer.problems;
+  solids = answer.solids;
+  built = answer.parts;
+  return told;
+}
+
+/** What the numbers of the designs of a kind measure, by their names. @param {string} kind */
+export function measures(kind) {
+  return told.find((one) => one.kind === kind)?.measures ?? {};
+}
+
+/** Whether the service makes solids of parts, and not their outlines alone. */
+export function makesSolids() {
+  return solids;
+}
+
+/** Whether designs of a mechanism are had as parts. @param {Mechanism} mechanism */
+export function hasParts(mechanism) {
+  return Boolean(mechanism.skeleton) || built.includes(mechanism.type);
+}
+
+/**
+ * The parts of a design as a zip, as something that a download can refer to; whoever gets it revokes it.
+ * @param {string} id @param {number} design @param {Record<string, string>} sizes what they are made of
+ */
+export async function parts(id, design, sizes) {
+  const path = `/v1/jobs/${encodeURIComponent(id)}/designs/${design}/parts?${new URLSearchParams(sizes)}`;
+  return URL.createObjectURL(await (await patiently(() => ask(path))).blob());
+}
+
+/**
+ * A file of one part of a design, likewise.
+ * @param {string} id
+ * @param {number} design
+ * @param {string} item
+ * @param {string} form
+ * @param {Record<string, string>} sizes
+ */
+export async function part(id, design, item, form, sizes) {
+  const parts = `/v1/jobs/${encodeURIComponent(id)}/designs/${design}/parts`;
+  const path = `${parts}/${encodeURIComponent(item)}.${form}?${new URLSearchParams(sizes)}`;
+  return URL.createObjectURL(await (await patiently(() => ask(path))).blob());
+}
+
+/**
+ * The parts of a design and how they move.
+ * @param {string} id
+ * @param {number} design
+ * @param {Record<string, string>} query sizes and positions
+ * @param {AbortSignal} signal
+ * @returns {Promise<import("../assembly/assembly_view.js").Assembly>}
+ */
+export async function assembly(id, design, query, signal) {
+  const path = `/v1/jobs/${encodeURIComponent(id)}/designs/${design}/assembly?${new URLSearchParams(query)}`;
+  return (await patiently(() => ask(path, { signal }), signal)).json();
+}
+
+/**
+ * The forms of files that there are of a type of mechanism.
+ * @param {string} kind
+ * @param {string} mechanism
+ * @returns {string[]}
+ */
+export function files(kind, mechanism) {
+  return told.find((one) => one.kind === kind)?.files[mechanism] ?? [];
+}
+
+/** Where PMKS+ opens a design of linkages. @param {string} id @param {number} design @returns {Promise<string>} */
+export async function pmks(id, design) {
+  return (await (await ask(`/v1/jobs/${encodeURIComponent(id)}/designs/${design}/pmks`)).json()).url;
+}
+
+/** Where the report of a job is, with its assemblies. @param {string} id */
+export function reportAt(id) {
+  return `/v1/jobs/${encodeURIComponent(id)}/report.html?assemblies=true`;
+}
+
+/** The report of a job, as something that a download can refer to; whoever gets it revokes it. @param {string} id */
+export async function report(id) {
+  return URL.createObjectURL(await (await patiently(() => ask(reportAt(id)))).blob());
+}
+
+/** @param {Problem} problem @param {string | null} label @returns {Promise<Job>} */
+export async function solve(problem, label) {
+  return (await post("/v1/jobs", { problem, label })).json();
+}
+
+/**
+ * Solve a small problem, and wait for its answer.
+ * @param {Problem} problem
+ * @param {string} label
+ * @param {AbortSignal} signal
+ * @returns {Promise<Job>}
+ */
+export async function solved(problem, label, signal) {
+  const headers = { "Content-Type": "application/json", Prefer: "wait=20" };
+  return (await ask("/v1/jobs", { method: "POST", headers, body: JSON.stringify({ problem, label }), signal })).json();
+}
+
+/** @param {string} id @returns {Promise<Job>} */
+export async function job(id) {
+  return (await ask(`/v1/jobs/${encodeURIComponent(id)}`)).json();
+}
+
+/**
+ * @param {string} kind
+ * @param {string | null} cursor
+ * @returns {Promise<{jobs: JobItem[], next_cursor: string | null}>}
+ */
+export async function jobs(kind, cursor) {
+  const query = new URLSearchParams({ limit: "20" });
+  if (kind) query.set("kind", kind);
+  if (cursor) query.set("cursor", cursor);
+  return (await ask(`/v1/jobs?${query}`)).json();
+}
+
+/** Cancels an unfinished job and removes a finished one. @param {string} id */
+export async function remove(id) {
+  await ask(`/v1/jobs/${encodeURIComponent(id)}`, { method: "DELETE" });
+}
+
+/**
+ * @param {string} id @param {number} design @param {number} steps @param {AbortSignal} [signal]
+ * @returns {Promise<Analysis>}
+ */
+export async function motion(id, design, steps, signal) {
+  const path = `/v1/jobs/${encodeURIComponent(id)}/designs/${design}/motion?steps=${steps}`;
+  return (await patiently(() => ask(path, { signal }), signal)).json();
+}
+
+/**
+ * The motion of a design with its forces: by the block of its problem, or by one of the page's.
+ * @param {string} id
+ * @param {number} design
+ * @param {number} steps
+ * @param {Schemas["DesignForcesBlock"] | null} block null for the problem's own
+ * @param {AbortSignal} signal
+ * @returns {Promise<LinkageAnalysis>}
+ */
+export async function forces(id, design, steps, block, signal) {
+  const path = `/v1/jobs/${encodeURIComponent(id)}/designs/${design}/forces?steps=${steps}`;
+  const asked = () => (block === null ? ask(path, { signal }) : post(path, { dynamics: block }, signal));
+  return (await patiently(asked, signal)).json();
+}
+
+/**
+ * @template {Analysis} [Answer=LinkageAnalysis] as that of a linkage, where nothing else is asked about
+ * @param {Question} question @param {AbortSignal} signal @returns {Promise<Answer>}
+ */
+export async function analysis(question, signal) {
+  return (await patiently(() => post("/v1/analyses", question, signal), signal)).json();
+}
+
+/**
+ * The closed outlines of a drawing.
+ * @param {Blob} drawing
+ * @param {string} unit of the answer, where the drawing states its own
+ * @returns {Promise<Outlines>}
+ */
+export async function outlines(drawing, unit) {
+  const headers = { "Content-Type": "application/octet-stream" };
+  const asked = () =>
+    ask(`/v1/outlines?${new URLSearchParams({ length_unit: unit })}`, { method: "POST", headers, body: drawing });
+  return (await patiently(asked)).json();
+}
+
+/**
+ * The curves of a drawing, a table or a picture.
+ * @param {File} file
+ * @param {string} unit of the answer, where the file states its own
+ * @param {number} most points of a curve
+ * @returns {Promise<Curves>}
+ */
+export async function curves(file, unit, most) {
+  // Some systems know no type for a table.
+  const headers = { "Content-Type": "application/octet-stream" };
+  const query = new URLSearchParams({ length_unit: unit, max_points: String(most) });
+  return (await patiently(() => ask(`/v1/imports?${query}`, { method: "POST", headers, body: file }))).json();
+}
+
+/**
+ * A file of a design, as something that a picture or a download can refer to; whoever gets it revokes it.
+ * @param {string} id @param {number} design @param {string} form @param {AbortSignal} [signal]
+ */
+export async function file(id, design, form, signal) {
+  const answer = await ask(`/v1/jobs/${encodeURIComponent(id)}/designs/${design}.${form}`, { signal });
+  return URL.createObjectURL(await answer.blob());
+}
+
+/**
+ * Follow a job to its end by its server-sent events. They are read from a response and not by `EventSource`, which
+ * cannot send a key; a stream that breaks is taken up again after the last event.
+ *
+ * @param {string} id
+ * @param {(event: string, data: Job & Partial<Progress>) => void} tell
+ * @param {AbortSignal} signal
+ */
+export async function follow(id, tell, signal) {
+  let last = "";
+  let ended = false;
+  while (!ended && !signal.aborted) {
+    try {
+      const headers = last ? { "Last-Event-ID": last } : undefined;
+      const answer = await ask(`/v1/jobs/${encodeURIComponent(id)}/events`, { headers, signal });
+      if (answer.status === 204 || !answer.body) return;
+      const reader = answer.body.pipeThrough(new TextDecoderStream()).getReader();
+      for (let text = "", part; !(part = await reader.read()).done;) {
+        text += part.value;
+        const blocks = text.split("\n\n");
+        text = blocks.pop() ?? "";
+        for (const block of blocks) {
+          const event = parsed(block);
+          if (!event) continue;
+          last = event.id || last;
+          ended ||= event.name === "removed" || ["succeeded", "failed", "cancelled"].includes(event.data.status);
+          tell(event.name, event.data);
+        }
+      }
+    } catch (error) {
+      if (signal.aborted) return;
+      if (error instanceof Refused && error.status !== 503) throw error;
+    }
+    if (!ended) await new Promise((done) => setTimeout(done, RECONNECT_MS));
+  }
+}
+
+/** @param {string} block */
+function parsed(block) {
+  const event = { name: "message", id: "", text: "" };
+  for (const line of block.split("\n")) {
+    const [, field, value] = /^(\w+): ?(.*)$/.exec(line) ?? [];
+    if (field === "event") event.name = value;
+    else if (field === "id") event.id = value;
+    else if (field === "data") event.text += value;
+  }
+  return event.text ? { name: event.name, id: event.id, data: JSON.parse(event.text) } : null;
+}

@@ -1,0 +1,73 @@
+/**
+ * Statements that have been edited: the last one of each kind, and the steps that led to the last of all. The browser
+ * keeps them.
+ */
+
+import { lasting } from "./storage.js";
+
+/** @import { Problem } from "../types/values.js" */
+
+const NAME = "mechsynth.draft";
+
+/** How much of the steps is kept, characters: statements of the usual size by the dozen. */
+const STEPS = 60_000;
+
+/** @typedef {{problem: Problem, label: string, job: string}} Draft `job` has the answers beside which it was edited */
+/** @typedef {import("./undo.js").Steps} Steps */
+
+/** The last statement of a kind, where one was left. @param {string} kind @returns {Draft | null} */
+export function draftOf(kind) {
+  const draft = read(`${NAME}.${kind}`);
+  return draft?.problem?.kind === kind
+    ? { problem: draft.problem, label: String(draft.label ?? ""), job: String(draft.job ?? "") }
+    : null;
+}
+
+/** The kind of the statement that was edited last; empty where there is none. */
+export function lastKind() {
+  const kind = read(NAME)?.kind;
+  return typeof kind === "string" && draftOf(kind) ? kind : "";
+}
+
+/** The steps that led to it. @returns {Steps} */
+export function lastSteps() {
+  const { past, future } = read(NAME) ?? {};
+  const texts = (/** @type {unknown} */ listed) =>
+    Array.isArray(listed) ? listed.filter((one) => typeof one === "string") : [];
+  return { past: texts(past), future: texts(future) };
+}
+
+/**
+ * @param {Problem} problem @param {string} label @param {Steps} steps
+ * @param {string} job whose answers stand beside it; empty where there are none
+ */
+export function keepDraft(problem, label, { past, future }, job) {
+  lasting.write(`${NAME}.${problem.kind}`, JSON.stringify({ problem, label, job }));
+  lasting.write(NAME, JSON.stringify({ kind: problem.kind, past: newest(past), future: newest(future) }));
+}
+
+/** @param {string} kind */
+export function forgetDraft(kind) {
+  lasting.write(`${NAME}.${kind}`, null);
+  if (read(NAME)?.kind === kind) lasting.write(NAME, null);
+}
+
+/** As many of the newest as are kept. @param {string[]} texts */
+function newest(texts) {
+  let room = STEPS;
+  const from = texts.findLastIndex((text) => (room -= text.length) < 0);
+  return texts.slice(from + 1);
+}
+
+/**
+ * What is kept under a name: another version of the page may have kept it.
+ * @param {string} name
+ * @returns {Partial<Record<"label" | "job" | "kind" | "past" | "future", unknown> & {problem: Problem}> | null}
+ */
+function read(name) {
+  try {
+    return JSON.parse(lasting.read(name) ?? "null");
+  } catch {
+    return null;
+  }
+}

@@ -1,0 +1,78 @@
+/**
+ * The symbol of what a number measures, in the units of the problem: schemas say it as `x-dimension`, a check as
+ * `dimension`.
+ */
+
+/** @import { Problem } from "../types/values.js" */
+
+/** @param {Problem} problem */
+function symbols(problem) {
+  const length = problem.length_unit ?? "mm";
+  const arm = problem.kind === "indexing" || String(problem.follower?.type ?? "").startsWith("oscillating");
+  const slides =
+    problem.mechanism === "slider_crank" ||
+    (typeof problem.output === "object" && problem.output?.type === "slider") ||
+    (problem.stroke ?? null) !== null;
+  const way = slides ? length : "rad";
+  const [lift, rate] = arm ? ["°", "rad"] : [length, length];
+  const inches = length === "in";
+  // Masses and loads come with units of their own, but for those of cams.
+  const own = problem.kind === "cam" ? null : (problem.dynamics?.units ?? problem.units ?? "si");
+  const force = inches && own === null ? "lbf" : "N";
+  const forces =
+    own === "consistent"
+      ? {}
+      : {
+          force,
+          stiffness: own === null ? `${force}/${length}` : "N/m",
+          mass: inches && own === null ? "lbf·s²/in" : "kg",
+          torque: own === null ? `${force}·${length}` : "N·m",
+          power: "W",
+          density: "kg/m³",
+          inertia: "kg·m²",
+          "torsion stiffness": "N·m/rad",
+          gravity: "m/s²",
+          unbalance: "g·mm",
+          speed: "m/s",
+          energy: "J",
+        };
+  return /** @type {Record<string, string>} */ ({
+    length,
+    area: `${length}²`,
+    "inverse length": `1/${length}`,
+    angle: "°",
+    displacement: lift,
+    velocity: `${rate}/rad`,
+    acceleration: `${rate}/rad²`,
+    jerk: `${rate}/rad³`,
+    "acceleration squared": `${rate}²/rad³`,
+    output: slides ? length : "°",
+    "output per radian": `${way}/rad`,
+    "output per radian squared": `${way}/rad²`,
+    "length per radian": `${length}/rad`,
+    "angle per length": `°/${length}`,
+    "radian frequency": "rad/s",
+    "rotational speed": "1/min",
+    percent: "%",
+    "balance grade": "mm/s",
+    ...forces,
+  });
+}
+
+/**
+ * The unit of a dimension; empty where there is none.
+ * @param {string | undefined} dimension
+ * @param {Problem} problem
+ */
+export function symbolOf(dimension, problem) {
+  return dimension === undefined ? "" : (symbols(problem)[dimension] ?? "");
+}
+
+/**
+ * The unit of a field; empty for a pure number.
+ * @param {import("./schema.js").Schema} schema
+ * @param {Problem} problem
+ */
+export function unitOf(schema, problem) {
+  return symbolOf(schema["x-dimension"], problem);
+}

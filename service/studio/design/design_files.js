@@ -1,0 +1,127 @@
+/** The files of a design, to take home. */
+
+import * as api from "../core/api.js";
+import { el } from "../core/dom.js";
+import { t } from "../core/messages.js";
+
+/** @import { Solved } from "../types/values.js" */
+
+/** @type {Record<string, [string, string]>} */
+const SIMULATIONS = {
+  mjcf: ["MuJoCo", t`A model of MuJoCo: loops closed, the input driven`],
+  urdf: ["URDF", t`A tree of links and joints for robotics programs, its loops beside it`],
+  mo: ["Modelica", t`A model of Modelica's MultiBody library`],
+  "sim.py": [t`Simulation`, t`A Python script that runs the design in MuJoCo and compares it with the analysis`],
+};
+
+/** @param {Solved} job @param {number} n @param {HTMLElement} drawing where the labelled drawing stands */
+export function downloads(job, n, drawing) {
+  const place = el(
+    "div",
+    { class: "row", id: "downloads", role: "group", "aria-label": t`Files to take home` },
+    el("span", {}, t`Take home`),
+  );
+  const fault = el("span", { class: "error", role: "alert" });
+  const button = (/** @type {string} */ title, /** @type {string} */ name, /** @type {() => Promise<string>} */ make) =>
+    el(
+      "button",
+      {
+        type: "button",
+        class: "small",
+        onclick: async (/** @type {MouseEvent} */ event) => {
+          const pressed = /** @type {HTMLButtonElement} */ (event.currentTarget);
+          pressed.disabled = true;
+          fault.replaceChildren();
+          try {
+            const done = await make();
+            if (done) {
+              saved(done, name);
+              place.dataset.taken = title;
+            }
+          } catch (error) {
+            const reasons = error instanceof api.Refused ? error.errors.map((one) => one.detail) : [];
+            fault.replaceChildren(reasons.join(" ") || /** @type {Error} */ (error).message);
+          }
+          pressed.disabled = false;
+        },
+      },
+      title,
+    );
+  place.append(
+    ...api.files(job.kind, job.result.designs[n].mechanism.type).map((form) => {
+      const [title, told] = SIMULATIONS[form] ?? [form.toUpperCase(), ""];
+      const one = button(title, `${job.kind}-${n + 1}.${form}`, () => api.file(job.id, n, form));
+      if (told) one.title = told;
+      return one;
+    }),
+    button("PNG", `${job.kind}-${n + 1}.png`, async () => {
+      const image = drawing.querySelector("img");
+      if (!image) throw new Error(t`The drawing is not there yet.`);
+      return raster(image);
+    }),
+    button("JSON", `${job.kind}.json`, async () => {
+      const parts = [JSON.stringify({ problem: job.problem, result: job.result }, null, 1)];
+      return URL.createObjectURL(new Blob(parts, { type: "application/json" }));
+    }),
+    ...(api.hasParts(job.result.designs[n].mechanism) ? made(job, n, button) : []),
+    ...(job.result.designs[n].mechanism.skeleton ? [opened(job, n, button)] : []),
+    button(t`Report`, `${job.kind}.html`, () => api.report(job.id)),
+    // A link cannot send a key.
+    api.key() ? "" : el("a", { href: api.reportAt(job.id), target: "_blank", rel: "noopener" }, t`Open the report`),
+    fault,
+  );
+  return place;
+}
+
+/**
+ * The parts of a design, to cut and to print.
+ * @param {Solved} job @param {number} n
+ * @param {(title: string, name: string, make: () => Promise<string>) => HTMLElement} button
+ */
+function made(job, n, button) {
+  const cut = button(t`Parts`, `${job.kind}-${n + 1}-parts.zip`, () => api.parts(job.id, n, { process: "laser" }));
+  cut.title = t`Plates to be cut, with what joins them, a drawing of the assembly and a bill`;
+  const printed = button(t`Printed parts`, `${job.kind}-${n + 1}-printed.zip`, () =>
+    api.parts(job.id, n, { process: "print" }),
+  );
+  printed.title = t`STL and 3MF files of all parts, and their assembly`;
+  if (!api.makesSolids()) {
+    printed.setAttribute("disabled", "");
+    printed.title = t`This service makes no solids: it runs without its extra cad (MECHSYNTH_CAD=1 make serve)`;
+  }
+  return [cut, printed];
+}
+
+/**
+ * What opens a linkage in PMKS+.
+ * @param {Solved} job @param {number} n
+ * @param {(title: string, name: string, make: () => Promise<string>) => HTMLElement} button
+ */
+function opened(job, n, button) {
+  const there = button("PMKS+", "", async () => {
+    const url = await api.pmks(job.id, n);
+    el("a", { href: url, target: "_blank", rel: "noopener noreferrer" }).click();
+    return "";
+  });
+  there.title = t`Open it in PMKS+, whose models are in their addresses: app.pmksplus.com is told all of it`;
+  return there;
+}
+
+/** The drawing in pixels, two for one of its own. @param {HTMLImageElement} image @returns {Promise<string>} */
+async function raster(image) {
+  await image.decode();
+  const canvas = el("canvas", { width: 2 * image.naturalWidth, height: 2 * image.naturalHeight });
+  const pen = /** @type {CanvasRenderingContext2D} */ (canvas.getContext("2d"));
+  pen.fillStyle = "white";
+  pen.fillRect(0, 0, canvas.width, canvas.height);
+  pen.drawImage(image, 0, 0, canvas.width, canvas.height);
+  const blob = /** @type {Blob | null} */ (await new Promise((done) => canvas.toBlob(done, "image/png")));
+  if (!blob) throw new Error(t`The drawing is too large for a picture in pixels; the SVG has it whole.`);
+  return URL.createObjectURL(blob);
+}
+
+/** Hand a file over to who looks at the page. @param {string} url @param {string} name */
+export function saved(url, name) {
+  el("a", { href: url, download: name }).click();
+  setTimeout(() => URL.revokeObjectURL(url), 10000);
+}

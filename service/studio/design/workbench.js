@@ -1,0 +1,77 @@
+/** The parts of the window in which a design is shown: the stage, the drawer beside it, and what stands in both. */
+
+import { byId, el } from "../core/dom.js";
+import { Drawer } from "../page/drawer.js";
+import { t } from "../core/messages.js";
+import { Stage } from "../canvas/stage.js";
+
+/** @import { Mechanism } from "../types/values.js" */
+
+export class Desk {
+  constructor() {
+    /** The design that is shown, if one is. @type {{mechanism: Mechanism, placement?: unknown} | null} */
+    this.shown = null;
+    /** The linkage that is explored, if one is. @type {import("../explorer/explorer.js").Explorer | null} */
+    this.explorer = null;
+    this.stage = new Stage();
+    this.drawer = new Drawer(byId("design"), byId("tabs"));
+    this.title = byId("design-title");
+    this.before = byId("before");
+    this.numbers = byId("numbers");
+    this.forced = byId("forced");
+    this.files = byId("files");
+    this.explore = byId("explore");
+    this.exploring = byId("exploring");
+    this.curves = byId("burmester");
+    this.built = byId("built");
+    this.other = byId("other");
+    this.choosing = byId("choosing");
+    this.assembly = byId("assembly");
+    for (const [name, text] of [
+      ["task", t`Task`],
+      ["answers", t`Answers`],
+    ]) {
+      this.drawer.add(name, text, byId(name === "task" ? "statement" : "answers"), true);
+    }
+    const tabs = {
+      numbers: t`Numbers`,
+      plots: t`Plots`,
+      explore: t`Explore`,
+      compare: t`Compare`,
+      curves: t`Curves`,
+      assembly: t`Assembly`,
+      files: t`Files`,
+      jobs: t`Jobs`,
+    };
+    for (const [name, text] of Object.entries(tabs)) this.drawer.add(name, text, byId(`pane-${name}`));
+    for (const name of ["compare", "curves", "assembly"]) this.drawer.offer(name, false);
+  }
+
+  get frame() {
+    return this.stage.frame;
+  }
+
+  /** Show no design any more. */
+  clear() {
+    this.shown = null;
+    this.title.replaceChildren();
+    this.frame.say();
+    this.before.replaceChildren();
+    this.forced.replaceChildren();
+    for (const [place, text] of /** @type {[HTMLElement, string][]} */ ([
+      [this.numbers, t`The numbers of a design stand here when there is one.`],
+      [this.frame.plots, t`The plots of a design stand here when there is one.`],
+      [this.files, t`The files of a design stand here when there is one.`],
+    ])) {
+      place.replaceChildren(el("p", { class: "note" }, text));
+    }
+    this.explored(false);
+  }
+
+  /** Say whether a linkage can be explored. @param {boolean} is */
+  explored(is) {
+    this.exploring.replaceChildren();
+    const note = t`Linkages are explored: their pins are dragged, and what they do then is told here.`;
+    this.explore.replaceChildren(...(is ? [] : [el("p", { class: "note" }, note)]));
+  }
+}

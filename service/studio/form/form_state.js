@@ -1,0 +1,82 @@
+/** What the controls of a form share: the statement as they show it, and how they change it. */
+
+import { at, names, put } from "../core/pointer.js";
+
+/** @import { Json, Problem } from "../types/values.js" */
+/** @import { Schema } from "../core/schema.js" */
+/** @import { Store } from "../core/store.js" */
+
+/** The path of the statement itself, which all pointers begin with, as in what the service says of faults. */
+export const ROOT = "/problem";
+
+export class Sheet {
+  /**
+   * @param {Store} store
+   * @param {{path: string, value: Json}[]} [looked] what is shown where nothing is stated, and stated with the first
+   *   change below it: what is only looked at is not
+   */
+  constructor(store, looked = []) {
+    this.store = store;
+    this.looked = looked;
+  }
+
+  /** The schema of the statement. @returns {Schema} */
+  get root() {
+    return this.store.kind.schema;
+  }
+
+  /** The statement as it is shown. @returns {Problem} */
+  get problem() {
+    const { problem } = this.store;
+    return this.looked.some(({ path }) => missing(problem, path)) ? this.whole(structuredClone(problem)) : problem;
+  }
+
+  /** @param {Problem} statement changed in place */
+  whole(statement) {
+    for (const { path, value } of this.looked)
+      if (missing(statement, path)) put(statement, within(path), structuredClone(value));
+    return statement;
+  }
+
+  /** What stands at a pointer. @param {string} path */
+  at(path) {
+    return at(this.problem, within(path));
+  }
+
+  /**
+   * State a value, or leave it out.
+   * @param {string} path
+   * @param {Json | undefined} value
+   * @param {boolean} [remade] whether the form has other controls then
+   */
+  put(path, value, remade = false) {
+    // Nothing is stated by leaving something out.
+    if (value === undefined) this.store.change((statement) => put(statement, within(path), value), by(remade));
+    else this.change((statement) => put(statement, within(path), value), remade);
+  }
+
+  /** @param {(statement: Problem) => void} change @param {boolean} [remade] */
+  change(change, remade = false) {
+    this.store.change((statement) => change(this.whole(statement)), by(remade));
+  }
+
+  /** The same with a value that is looked at where none is stated. @param {string} path @param {Json} value */
+  looking(path, value) {
+    return new Sheet(this.store, [...this.looked, { path, value }]);
+  }
+}
+
+/** @param {boolean} remade */
+function by(remade) {
+  return remade ? null : "form";
+}
+
+/** The place of a pointer in the statement. @param {string} path */
+export function within(path) {
+  return names(path).slice(1);
+}
+
+/** @param {Problem} statement @param {string} path */
+function missing(statement, path) {
+  return (at(statement, within(path)) ?? null) === null;
+}

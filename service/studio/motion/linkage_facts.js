@@ -1,0 +1,79 @@
+/** What an analysis tells of a linkage, as facts for reading. */
+
+import { telling } from "./circuits.js";
+import { shown, words } from "../core/dom.js";
+import { degrees } from "../plots/gauge.js";
+import { t } from "../core/messages.js";
+
+/** @import { LinkageAnalysis, Skeleton } from "../types/values.js" */
+
+/** @typedef {[number, number]} Point */
+
+/**
+ * The curve of the point that tells a linkage, over a motion; NaN where it is not reached.
+ * @param {LinkageAnalysis} answer
+ * @param {Skeleton} skeleton
+ * @returns {Point[]}
+ */
+export function curveOf(answer, skeleton) {
+  const { x, y } = answer.joints[telling(skeleton)];
+  return x.map((one, k) => (one === null ? [NaN, NaN] : [one, Number(y[k])]));
+}
+
+/**
+ * How far a target is from the line between two samples of the curve; infinitely where one of them is not reached.
+ * @param {{x: number, y: number}} target
+ * @param {Point} from
+ * @param {Point} to
+ */
+function away({ x, y }, [px, py], [qx, qy]) {
+  const [dx, dy] = [qx - px, qy - py];
+  const share = Math.min(1, Math.max(0, ((x - px) * dx + (y - py) * dy) / (dx * dx + dy * dy || 1)));
+  const far = Math.hypot(px + share * dx - x, py + share * dy - y);
+  return Number.isNaN(far) ? Infinity : far;
+}
+
+/**
+ * @typedef {object} Driven
+ * @property {Record<string, string>} facts
+ * @property {boolean} turns whether the input turns through
+ * @property {number | null} least transmission angle, degrees
+ * @property {string | null} grashof
+ * @property {number[]} missed how far each target is from the curve
+ */
+
+/**
+ * @param {LinkageAnalysis} answer of the analysis over a turn of its input
+ * @param {Skeleton} skeleton
+ * @param {{x: number, y: number}[]} targets
+ * @param {string} unit of lengths
+ * @returns {Driven}
+ */
+export function driven(answer, skeleton, targets, unit) {
+  const curve = curveOf(answer, skeleton);
+  const angles = answer.transmission_angle.filter((/** @type {number | null} */ one) => one !== null);
+  const least = angles.length ? Math.min(...angles) : null;
+  const missed =
+    "P" in skeleton.joints
+      ? targets.map((target) =>
+          curve.slice(1).reduce((least, to, k) => Math.min(least, away(target, curve[k], to)), Infinity),
+        )
+      : [];
+  const turns = answer.valid.every(Boolean);
+  const { grashof } = answer.classification;
+  return {
+    turns,
+    least,
+    grashof,
+    missed,
+    facts: {
+      ...(grashof ? { [t`Grashof`]: words(grashof) } : {}),
+      [t`Input turns through`]: turns ? t`yes` : t`no`,
+      [t`Least transmission angle`]: degrees(least),
+      ...(missed.length
+        ? { [t`Farthest target from the curve`]: `${shown(Number(Math.max(...missed).toPrecision(3)))} ${unit}` }
+        : {}),
+      [t`Circuits`]: shown(answer.circuits.length),
+    },
+  };
+}

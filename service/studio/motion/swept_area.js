@@ -1,0 +1,128 @@
+/**
+ * What a linkage sweeps over its used range: links as wide as they are, and the body, at many places of the motion at
+ * once.
+ */
+
+import { el, svg } from "../core/dom.js";
+import { outline } from "../canvas/area_hatching.js";
+import { t } from "../core/messages.js";
+import { between, within } from "../core/player.js";
+import { plateOf } from "../assembly/workspace_view.js";
+
+/** @import { LinkageAnalysis, Skeleton } from "../types/values.js" */
+
+/** @typedef {[number, number]} Point */
+
+/** Places of the motion that make up the swept area, and of them those that have an outline: one in so many. */
+const PLACES = 120;
+const OUTLINED = 12;
+
+export class Sweep {
+  /**
+   * @param {import("../core/view.js").View} view @param {Skeleton} skeleton @param
+   *   {import("../assembly/workspace_view.js").RoomView} room
+   * @param {(at: number) => import("../canvas/linkage_drawing.js").Places} places joints at a place of the motion
+   * @param {[number, number]} range of the motion, places of its arrays @param {() => void} toggled
+   */
+  constructor(view, skeleton, room, places, range, toggled) {
+    this.range = range;
+    this.box = el("input", {
+      type: "checkbox",
+      id: "sweep",
+      onchange: () => {
+        if (this.box.checked && !this.node.childElementCount) this.draw(view, skeleton, room, places);
+        this.node.toggleAttribute("hidden", !this.box.checked);
+        toggled();
+      },
+    });
+    this.node = svg("g", { class: "sweep", hidden: true });
+    this.control = el(
+      "label",
+      { class: "flag", for: "sweep" },
+      this.box,
+      room.cycle ? t`Sweep over the whole cycle` : t`Sweep over the used range`,
+    );
+  }
+
+  get on() {
+    return this.box.checked;
+  }
+
+  /**
+   * @param {import("../core/view.js").View} view
+   * @param {Skeleton} skeleton
+   * @param {import("../assembly/workspace_view.js").RoomView} room
+   * @param {(at: number) => import("../canvas/linkage_drawing.js").Places} places
+   */
+  draw(view, skeleton, room, places) {
+    const [from, to] = this.range;
+    const stands = Array.from({ length: PLACES + 1 }, (_, k) => places(from + ((to - from) * k) / PLACES));
+    const names = skeleton.links.map((link) => link.name).filter((/** @type {string} */ name) => name !== "ground");
+    const links = room.links.map((joints, k) => ({
+      name: names[k],
+      width: room.width,
+      shapes: stands.map((now) => plateOf(view, joints, now)),
+    }));
+    const body = stands.map((now) => {
+      const corners = room.carried(now);
+      return corners ? outline(view, { circle: null, corners }) : "";
+    });
+    for (const { name, width, shapes } of [...links, { name: "body", width: 0, shapes: body }]) {
+      const part = name === "body" ? "body" : name === skeleton.input_link ? "input" : "";
+      this.node.append(
+        svg("path", { class: `swept ${part}`, d: shapes.join(""), "stroke-width": Math.max(view.scale * width, 1) }),
+        svg("path", {
+          class: `ghosts ${part}`,
+          d: shapes
+            .filter((/** @type {string} */ _, /** @type {number} */ k) => k % (PLACES / OUTLINED) === 0)
+            .join(""),
+        }),
+      );
+    }
+  }
+}
+
+/**
+ * The places of a motion's arrays between two inputs; beyond the arrays where the motion comes back to its beginning.
+ * @param {LinkageAnalysis} motion
+ * @param {[number, number] | null | undefined} used inputs
+ * @param {boolean} closed
+ * @returns {[number, number]}
+ */
+export function rangeOf(motion, used, closed) {
+  const last = motion.input_angle.length - 1;
+  const places = used?.map((value) => placeOf(motion.input_angle, value, closed)).sort((one, other) => one - other);
+  return places ? [places[0], places[1]] : [0, last];
+}
+
+/** The place at which a motion has an input. @param {number[]} input @param {number} value @param {boolean} closed */
+export function placeOf(input, value, closed) {
+  const last = input.length - 1;
+  const period = input[last] - input[0];
+  const turns = closed ? Math.floor((value - input[0]) / period) : 0;
+  const on = value - turns * period;
+  const sense = Math.sign(period);
+  const next = Math.max(
+    1,
+    input.findIndex((one, k) => k > 0 && sense * (one - on) >= 0),
+  );
+  const k = sense * (input[last] - on) < 0 ? last : next;
+  const share = (on - input[k - 1]) / (input[k] - input[k - 1] || 1);
+  return turns * last + k - 1 + Math.min(1, Math.max(0, share));
+}
+
+/**
+ * The joints at a place of a motion, which may lie beyond its arrays.
+ * @param {LinkageAnalysis} motion
+ * @param {number} place
+ * @returns {import("../canvas/linkage_drawing.js").Places}
+ */
+export function jointsAt(motion, place) {
+  const at = within(place, motion.input_angle.length - 1);
+  return Object.fromEntries(
+    Object.entries(motion.joints).map(([name, track]) => {
+      const x = between(track.x, at);
+      return [name, x === null ? null : [x, Number(between(track.y, at))]];
+    }),
+  );
+}

@@ -1,0 +1,101 @@
+/**
+ * The page by keys: what each does, and the sheet that lists them. Single letters act outside of fields only, and can
+ * be switched off.
+ */
+
+import { byId, el } from "../core/dom.js";
+import { t } from "../core/messages.js";
+import { lasting } from "../core/storage.js";
+
+const OFF = "mechsynth.letters-off";
+
+/**
+ * @typedef {object} Binding
+ * @property {string[]} keys
+ * @property {string} shown in the sheet; empty where another one speaks for it
+ * @property {string} text
+ * @property {(event: KeyboardEvent) => void} act
+ * @property {boolean} [everywhere] in fields, too
+ */
+
+export class Keys {
+  /** @param {Binding[]} bindings */
+  constructor(bindings) {
+    this.bindings = bindings;
+    this.sheet = byId("keys", HTMLDialogElement);
+    const letters = byId("letters", HTMLInputElement);
+    letters.checked = lasting.read(OFF) === null;
+    letters.addEventListener("change", () => lasting.write(OFF, letters.checked ? null : "1"));
+    this.letters = letters;
+    const cap = (/** @type {string} */ one) => (one === t`or` ? ` ${one} ` : el("kbd", {}, one));
+    const caps = (/** @type {string} */ shown) => shown.split(" ").map(cap);
+    byId("keys-list").replaceChildren(
+      ...bindings
+        .filter(({ shown }) => shown)
+        .map(({ shown, text }) => el("div", {}, el("dt", {}, ...caps(shown)), el("dd", {}, text))),
+    );
+    document.addEventListener("keydown", (event) => this.pressed(event));
+  }
+
+  open() {
+    if (!this.sheet.open) this.sheet.showModal();
+  }
+
+  /** @param {KeyboardEvent} event */
+  pressed(event) {
+    const name = named(event);
+    const found = this.bindings.find((one) => one.keys.includes(name));
+    if (!found || event.defaultPrevented || event.altKey) return;
+    if (!found.everywhere && (busy(event.target) || !this.letters.checked)) return;
+    event.preventDefault();
+    found.act(event);
+  }
+}
+
+/** As bindings have it; of what is typed alone Shift is no part. @param {KeyboardEvent} event */
+function named(event) {
+  const ctrl = event.ctrlKey || event.metaKey;
+  const typed = event.key.length === 1;
+  const shift = event.shiftKey && (ctrl || !typed);
+  return `${ctrl ? "Ctrl+" : ""}${shift ? "Shift+" : ""}${typed ? event.key.toLowerCase() : event.key}`;
+}
+
+/** What has a use of its own for keys. */
+const TAKEN = "input, select, textarea, button, a, summary, .target, .held, .grip, [role=tab]";
+
+/** Whether what has the focus has a use of its own for keys, or a dialog is open. @param {EventTarget | null} target */
+function busy(target) {
+  if (document.querySelector("dialog[open]")) return true;
+  const taken = target instanceof Element ? target.closest(TAKEN) : null;
+  // What stands in a dialog that has been closed may have the focus for a moment.
+  return taken !== null && taken.getClientRects().length > 0;
+}
+
+/** The first of some elements that is shown. @param {string} selector @returns {HTMLElement | null} */
+export function visible(selector) {
+  const all = /** @type {NodeListOf<HTMLElement>} */ (document.querySelectorAll(selector));
+  return [...all].find((one) => one.getClientRects().length) ?? null;
+}
+
+/** The scrubber that is shown. */
+function scrubber() {
+  const slider = visible(".player input[type=range]");
+  return slider instanceof HTMLInputElement ? slider : null;
+}
+
+/** Degrees on, or back, on the scrubber that is shown. @param {number} by share of a step of a degree */
+export function scrub(by) {
+  const slider = scrubber();
+  if (!slider) return;
+  const most = Number(slider.max);
+  slider.value = String(Math.min(most, Math.max(0, slider.valueAsNumber + (by * most) / 360)));
+  slider.dispatchEvent(new Event("input"));
+}
+
+/** Lead the motion that is shown to a share of its way. @param {number} share */
+export function scrubTo(share) {
+  const slider = scrubber();
+  if (!slider) return;
+  slider.value = String(share * Number(slider.max));
+  slider.dispatchEvent(new Event("input"));
+}

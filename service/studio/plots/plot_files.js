@@ -1,0 +1,76 @@
+/** A plot to take home: its numbers as a table, and its picture. */
+
+import { t } from "../core/messages.js";
+
+/** Pixels of a picture for one of the plot. */
+const SCALE = 4;
+
+/** What a picture has of the styles of the page. */
+const STYLES = [
+  "fill",
+  "stroke",
+  "stroke-width",
+  "stroke-dasharray",
+  "opacity",
+  "font-size",
+  "font-family",
+  "text-anchor",
+];
+
+/**
+ * All numbers of a plot, as something that a download can refer to; whoever gets it revokes it.
+ * @param {string} title
+ * @param {Record<string, (number | null)[]>} lines
+ * @param {number[] | undefined} input
+ * @param {string} unit of the input
+ */
+export function comma(title, lines, input, unit) {
+  const quoted = (/** @type {string} */ text) => `"${text.replaceAll('"', '""')}"`;
+  const names = Object.keys(lines);
+  const heads = [
+    input ? t`Input (${unit})` : t`Sample`,
+    ...names.map((name) => (names.length > 1 ? `${title}: ${name}` : title)),
+  ];
+  const count = Object.values(lines)[0].length;
+  const rows = Array.from({ length: count }, (_, k) =>
+    [input ? input[k] : k, ...Object.values(lines).map((series) => series[k] ?? "")].join(","),
+  );
+  return URL.createObjectURL(
+    new Blob([`${[heads.map(quoted).join(","), ...rows].join("\r\n")}\r\n`], { type: "text/csv" }),
+  );
+}
+
+/**
+ * A plot in pixels, as it stands on the page, with its title above it.
+ * @param {SVGSVGElement} picture @param {string} title @returns {Promise<string>}
+ */
+export async function pictured(picture, title) {
+  const { width, height } = picture.viewBox.baseVal;
+  const copy = /** @type {SVGSVGElement} */ (picture.cloneNode(true));
+  const [drawn, copied] = [picture, copy].map((one) => [...one.querySelectorAll("*")]);
+  drawn.forEach((one, k) => {
+    const styles = getComputedStyle(one);
+    for (const name of STYLES) copied[k].setAttribute(name, styles.getPropertyValue(name));
+  });
+  copy.querySelector(".cursor")?.remove();
+  copy.setAttribute("width", String(SCALE * width));
+  copy.setAttribute("height", String(SCALE * height));
+  const image = new Image();
+  image.src = URL.createObjectURL(new Blob([new XMLSerializer().serializeToString(copy)], { type: "image/svg+xml" }));
+  await image.decode().finally(() => URL.revokeObjectURL(image.src));
+  const canvas = document.createElement("canvas");
+  const head = 20 * SCALE;
+  Object.assign(canvas, { width: SCALE * width, height: SCALE * height + head });
+  const pen = canvas.getContext("2d");
+  if (!pen) throw new Error(t`This browser draws no pictures.`);
+  const style = getComputedStyle(document.body);
+  pen.fillStyle = style.getPropertyValue("--sheet");
+  pen.fillRect(0, 0, canvas.width, canvas.height);
+  pen.fillStyle = style.color;
+  pen.font = `${13 * SCALE}px ${style.fontFamily}`;
+  pen.fillText(title, 8 * SCALE, 15 * SCALE);
+  pen.drawImage(image, 0, head);
+  const blob = /** @type {Blob | null} */ (await new Promise((done) => canvas.toBlob(done, "image/png")));
+  if (!blob) throw new Error(t`The picture could not be made.`);
+  return URL.createObjectURL(blob);
+}
