@@ -24,14 +24,14 @@ STUDIO = ROOT / "service" / "studio"
 _TAG = re.compile(r"(?<![\w$.])t`")
 _READ = ("aria-label", "title", "placeholder", "content")
 _CHECK = re.compile(
-    r"\b(?:Check\(\s*name=|(?:at_least|at_most|tolerated|check|_fitted|within_zone|reject)\(\s*|name, \w+ = )"
+    r"\b(?:Check\(\s*name=|(?:_?check(?:_\w+)?|_?reject(?:_\w+)?)\(\s*|name, \w+ = )"
     r"\"([a-z]\w*)\""
     r"|^[A-Z_]+ = \"([a-z]+_[a-z_]+|outranked)\"$",
     re.MULTILINE,
 )
 """Names of checks and of reasons for which candidates are left out, as modules say them."""
 
-_PROGRESS = re.compile(r"\bprogress\([^\n]*, (f?)\"((?:[^\"{\n]|\{[^}\n]*\})*)\"\)")
+_PROGRESS = re.compile(r"\bprogress\(\s*[^\n]*,\s+(f?)\"((?:[^\"{\n]|\{[^}\n]*\})*)\",?\s*\)")
 _VALUE = re.compile(r"\{[^}]*\}")
 
 STATES = ("queued", "running", "succeeded", "failed", "cancelled")
