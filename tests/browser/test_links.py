@@ -14,10 +14,10 @@ pytestmark = [pytest.mark.browser, pytest.mark.timeout(300)]
 
 
 MISFITS = """async every => {
-  const { misfit } = await import("/studio/core/schema.js");
+  const { findMismatch } = await import("/studio/core/schema.js");
   const told = (await (await fetch("/v1/problems")).json()).problems;
   const schemas = Object.fromEntries(told.map(({ kind, schema }) => [kind, schema]));
-  return every.map(([kind, one]) => misfit(one, schemas[kind], schemas[kind]));
+  return every.map(([kind, one]) => findMismatch(one, schemas[kind], schemas[kind]));
 }"""
 
 

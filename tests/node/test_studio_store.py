@@ -36,8 +36,8 @@ seen.origin = store.origin;
 seen.written = tries(() => store.problem.points.push([6, 6]));
 seen.failed = tries(() => store.change((statement) => { statement.points = []; throw new RangeError(); }));
 seen.now = store.problem.points;
-store.post("A", store.problem);
-store.answer("A");
+store.recordSubmission("A", store.problem);
+store.recordAnswer("A");
 time = 2000;
 store.change((statement) => (statement.seed = 0));
 seen.defaults = store.stale;
@@ -50,8 +50,8 @@ seen.forth = store.problem.points;
 store.undo();
 store.undo();
 seen.all = [store.problem.points, store.past.steps.past.length, store.past.steps.future.length];
-store.write({ kind: "cam" }, "text");
-seen.kind = [store.kind.kind, store.past.steps.future.length, store.fits({ kind: "lid" })];
+store.replace({ kind: "cam" }, "text");
+seen.kind = [store.kind.kind, store.past.steps.future.length, store.matchesSchema({ kind: "lid" })];
 console.log(JSON.stringify({ ...seen, told }));
 """
 
@@ -84,9 +84,9 @@ def test_changes_make_statements_steps_and_news(tmp_path):
 
 SPELT = """
 import { readFileSync } from "node:fs";
-import { spelling } from "./core/schema.js";
+import { canonicalText } from "./core/schema.js";
 const cases = JSON.parse(readFileSync("cases.json"));
-console.log(JSON.stringify(cases.map(([schema, ...both]) => both.map((one) => spelling(one, schema)))));
+console.log(JSON.stringify(cases.map(([schema, ...both]) => both.map((one) => canonicalText(one, schema)))));
 """
 
 

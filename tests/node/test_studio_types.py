@@ -29,7 +29,7 @@ def test_the_studio_is_well_typed(tmp_path):
     # What must be refused, so that nothing passes because nothing is looked at.
     (tmp_path / "mistaken.js").write_text(
         'import { View } from "./core/view.js";\n'
-        '/** @param {View} view */\nexport const wrong = (view) => view.at("one");\n'
+        '/** @param {View} view */\nexport const wrong = (view) => view.toPicture("one");\n'
         '/** @param {import("./types/values.js").Design} one */\nexport const no = (one) => one.mechanism.cranc;\n'
     )
     settings = json.loads((HERE / "studio.json").read_text())

@@ -1,64 +1,68 @@
 /** The answer of a job: what is known, the designs as cards, and the selected design in full. */
 
 import * as api from "../core/api.js";
-import { Choosing } from "./design_chooser.js";
-import { el } from "../core/dom.js";
-import { Shown } from "../design/design.js";
-import { foreign, grouped, readable, t, term, translated } from "../core/messages.js";
-import { missed } from "./near_misses.js";
-import { Strip } from "./design_strip.js";
+import { DesignChooser } from "./design_chooser.js";
+import { createElement } from "../core/dom.js";
+import { DesignView } from "../design/design.js";
+import { foreignLanguage, groupDigits, formatText, t, term, translate } from "../core/messages.js";
+import { describeNearMiss } from "./near_misses.js";
+import { DesignStrip } from "./design_strip.js";
 
 /** @import { Problem, Result, Solved } from "../types/values.js" */
 
-/** @type {Shown | null} */
-let chosen = null;
-/** @type {Strip | null} */
+/** @type {DesignView | null} */
+let chooser = null;
+/** @type {DesignStrip | null} */
 let strip = null;
 
-/** Show nothing of the job before. @param {HTMLElement} place @param {import("../design/workbench.js").Desk} desk */
-export function leave(place, desk) {
-  chosen?.stop();
-  chosen = null;
+/**
+ * Show nothing of the job before.
+ * @param {HTMLElement} place
+ * @param {import("../design/workbench.js").Workbench} desk
+ */
+export function clearAnswers(place, desk) {
+  chooser?.stop();
+  chooser = null;
   strip = null;
   place.replaceChildren();
-  desk.drawer.on("compare", null);
-  for (const name of ["assembly", "compare"]) desk.drawer.offer(name, false);
+  desk.drawer.setReaction("compare", null);
+  for (const name of ["assembly", "compare"]) desk.drawer.setAvailable(name, false);
   desk.clear();
 }
 
 /**
- * @param {HTMLElement} place @param {import("../design/workbench.js").Desk} desk @param {api.Job} job
+ * @param {HTMLElement} place @param {import("../design/workbench.js").Workbench} desk @param {api.Job} job
  * @param {(problem: Problem) => void} state begins another statement
  * @param {(problem: Problem) => void} solve states and solves one
  */
-export function answer(place, desk, job, state, solve) {
-  leave(place, desk);
+export function showAnswer(place, desk, job, state, solve) {
+  clearAnswers(place, desk);
   if (!job.result) {
     place.append(
-      el(
+      createElement(
         "p",
         { class: job.status === "failed" ? "error" : "note" },
         job.status === "failed"
-          ? `${translated(job.error?.title ?? "Failed")}: ${translated(job.error?.detail ?? "")}`
+          ? `${translate(job.error?.title ?? "Failed")}: ${translate(job.error?.detail ?? "")}`
           : t`The job was ${term(job.status)}.`,
       ),
     );
-    desk.stage.offer(false);
+    desk.stage.offerMotion(false);
     return;
   }
   const solved = /** @type {Solved} */ (job);
   const { designs, search, summary, nearest_miss } = solved.result;
-  /** @type {Choosing | null} */
+  /** @type {DesignChooser | null} */
   let choosing = null;
-  const row = (strip = new Strip(solved, (n) => {
-    chosen?.stop();
-    chosen = new Shown(desk, solved, n, state, chosen?.before);
-    choosing?.chosen(chosen);
+  const row = (strip = new DesignStrip(solved, (n) => {
+    chooser?.stop();
+    chooser = new DesignView(desk, solved, n, state, chooser?.before);
+    choosing?.showChosen(chooser);
   }));
-  const count = el("p", { class: "warn", role: "status" });
+  const count = createElement("p", { class: "warn", role: "status" });
   const choice =
     designs.length > 1
-      ? new Choosing(desk.choosing, desk, solved, row, () => {
+      ? new DesignChooser(desk.choosing, desk, solved, row, () => {
           const kept = row.kept.filter(Boolean).length;
           count.textContent =
             kept < designs.length ? t`${kept} of ${designs.length} designs meet the bounds and are shown.` : "";
@@ -66,43 +70,46 @@ export function answer(place, desk, job, state, solve) {
       : null;
   choosing = choice;
   place.append(
-    el(
+    createElement(
       "div",
       { class: "known", tabindex: 0, role: "group", "aria-label": t`What is known` },
-      el("p", { class: "warn outdated" }, t`Answers to an earlier statement.`),
+      createElement("p", { class: "warn outdated" }, t`Answers to an earlier statement.`),
       count,
-      ...known(search, designs.length, summary),
-      el("p", { class: "note summary", lang: foreign(summary) }, readable(translated(summary))),
+      ...describeSearch(search, designs.length, summary),
+      createElement("p", { class: "note summary", lang: foreignLanguage(summary) }, formatText(translate(summary))),
     ),
     row.node,
   );
   if (designs.length) row.select(0);
-  desk.drawer.on("compare", choice && { opened: () => choice.opened(), closed: () => choice.closed() });
-  desk.drawer.offer("compare", choice !== null);
-  if (designs.length) return;
-  desk.stage.offer(true, nearest_miss ? t`None found; this comes nearest` : t`None found`);
-  desk.frame.say(
-    ...(nearest_miss
-      ? [missed(nearest_miss, job.problem, solve)]
-      : [el("p", { class: "note", lang: foreign(summary) }, translated(summary))]),
+  desk.drawer.setReaction(
+    "compare",
+    choice && { opened: () => choice.handleOpen(), closed: () => choice.handleClose() },
   );
-  desk.stage.show("watch");
+  desk.drawer.setAvailable("compare", choice !== null);
+  if (designs.length) return;
+  desk.stage.offerMotion(true, nearest_miss ? t`None found; this comes nearest` : t`None found`);
+  desk.frame.showMessage(
+    ...(nearest_miss
+      ? [describeNearMiss(nearest_miss, job.problem, solve)]
+      : [createElement("p", { class: "note", lang: foreignLanguage(summary) }, translate(summary))]),
+  );
+  desk.stage.showMode("watch");
 }
 
 /** Choose a design by its number. @param {number} number */
-export function select(number) {
+export function selectDesign(number) {
   if (strip?.kept[number - 1]) strip.select(number - 1);
 }
 
 /** Choose the design that stands so many further in the row. @param {number} by */
-export function further(by) {
+export function moveSelection(by) {
   const shown = strip?.row.filter((n) => strip?.kept[n]) ?? [];
   const next = shown[shown.indexOf(strip?.chosen ?? -1) + by];
   if (next !== undefined) strip?.select(next);
 }
 
 /** Pin the chosen design, or take its pin away. */
-export function pin() {
+export function togglePin() {
   if (strip && strip.chosen >= 0) strip.pin(strip.chosen);
 }
 
@@ -112,11 +119,11 @@ export function pin() {
  * @param {number} found
  * @param {string} summary
  */
-function known(search, found, summary) {
+function describeSearch(search, found, summary) {
   if (!search) return [];
   const counted = Object.entries(search.rejected ?? {})
     .filter(([, n]) => n)
-    .map(([why, n]) => `${term(why)} ${grouped(n)}`);
+    .map(([why, n]) => `${term(why)} ${groupDigits(n)}`);
   const sure = search.complete
     ? found
       ? t`Complete: the search has left out nothing that the problem allows; the best are shown.`
@@ -126,7 +133,7 @@ function known(search, found, summary) {
       : t`None found; that is no proof that none exists.`;
   const told = counted.length > 0 && !summary.includes("Rejected:");
   return [
-    el("p", { class: "verdict" }, sure),
-    told && el("p", { class: "note" }, t`Left out: ${counted.join(", ")}.`),
+    createElement("p", { class: "verdict" }, sure),
+    told && createElement("p", { class: "note" }, t`Left out: ${counted.join(", ")}.`),
   ].filter((one) => one !== false);
 }

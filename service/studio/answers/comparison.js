@@ -1,15 +1,15 @@
 /** Two designs of an answer: side by side on the stage, or one over the other, and their numbers in one table. */
 
 import * as api from "../core/api.js";
-import { drawn, Linkage } from "../canvas/linkage_drawing.js";
-import { el, svg, words } from "../core/dom.js";
-import { dimensionRows, figure, figures, typeOf } from "../design/design_metrics.js";
-import { Mover } from "../motion/linkage_motion.js";
+import { drawnJoints, LinkageDrawing } from "../canvas/linkage_drawing.js";
+import { createElement, createSvg, toWords } from "../core/dom.js";
+import { listDimensions, formatFigure, listFigures, typeName } from "../design/design_metrics.js";
+import { LinkageMotion } from "../motion/linkage_motion.js";
 import { Frame } from "../canvas/stage.js";
-import { jointsAt } from "../motion/swept_area.js";
-import { telling } from "../motion/circuits.js";
+import { jointPositions } from "../motion/swept_area.js";
+import { findTracedJoint } from "../motion/circuits.js";
 import { t } from "../core/messages.js";
-import { STEPS, TURN_STEPS, VIEWS } from "../motion/motion_views.js";
+import { STEP_COUNT, TURN_STEP_COUNT, VIEWS } from "../motion/motion_views.js";
 
 /** @import { Design, LinkageAnalysis, Linked, LinkedDesign, Problem, Solved } from "../types/values.js" */
 
@@ -17,27 +17,27 @@ import { STEPS, TURN_STEPS, VIEWS } from "../motion/motion_views.js";
 /** @typedef {"beside" | "over"} Manner */
 
 /** Numbers that differ by less, of their size, differ by rounding. */
-const ROUNDING = 1e-9;
+const ROUNDING_TOLERANCE = 1e-9;
 
 /** The second half of the stage: a picture that follows the clock of the first. */
-class Second extends Frame {
+class SecondFrame extends Frame {
   /** @param {HTMLElement} board @param {string} caption */
   constructor(board, caption) {
-    super(board, el("div"), el("div"));
+    super(board, createElement("div"), createElement("div"));
     this.caption = caption;
   }
 
   /** @param {import("../canvas/stage.js").View} view */
   fill({ picture }) {
     super.fill({ picture });
-    this.board.append(el("p", { class: "second-name" }, this.caption));
+    this.board.append(createElement("p", { class: "second-name" }, this.caption));
   }
 }
 
 export class Comparison {
   /**
-   * @param {import("../design/workbench.js").Desk} desk @param {Solved} job @param {number} n the other design
-   * @param {Manner} manner @param {import("../design/design.js").Shown} shown the design that is chosen
+   * @param {import("../design/workbench.js").Workbench} desk @param {Solved} job @param {number} n the other design
+   * @param {Manner} manner @param {import("../design/design.js").DesignView} shown the design that is chosen
    */
   constructor(desk, job, n, manner, shown) {
     this.desk = desk;
@@ -53,39 +53,41 @@ export class Comparison {
     this.follow = null;
     this.begin().catch((error) => {
       if (!this.gone.signal.aborted)
-        desk.other.replaceChildren(el("div", { class: "said" }, el("p", { class: "error" }, error.message)));
+        desk.other.replaceChildren(
+          createElement("div", { class: "said" }, createElement("p", { class: "error" }, error.message)),
+        );
     });
   }
 
   async begin() {
     const { design, desk, job, manner, shown } = this;
     const linkage = Boolean(design.mechanism.skeleton);
-    this.split(manner === "beside");
-    const moved = await api.motion(job.id, this.n, linkage ? STEPS : TURN_STEPS, this.gone.signal);
+    this.splitStage(manner === "beside");
+    const moved = await api.fetchMotion(job.id, this.n, linkage ? STEP_COUNT : TURN_STEP_COUNT, this.gone.signal);
     const motion = /** @type {LinkageAnalysis} */ (moved);
     if (this.gone.signal.aborted) return;
     if (manner === "over") {
-      const tracks = Object.values(motion.joints).flatMap((track) => points(track));
+      const tracks = Object.values(motion.joints).flatMap((track) => trackPoints(track));
       shown.around = tracks;
-      shown.told = () => this.overlay(motion);
+      shown.told = () => this.drawOverlay(motion);
       shown.again();
       return;
     }
-    const frame = new Second(desk.other, t`Design ${this.n + 1}: ${typeOf(design)}`);
+    const frame = new SecondFrame(desk.other, t`Design ${this.n + 1}: ${typeName(design)}`);
     const View = VIEWS[design.mechanism.type];
     this.moving = View
       ? new View(frame, design, moved, job.problem)
-      : new Mover(frame, /** @type {LinkedDesign} */ (design), motion, job.problem);
+      : new LinkageMotion(frame, /** @type {LinkedDesign} */ (design), motion, job.problem);
     const { player } = this.moving;
     player.stop();
     this.follow = (share, told) => player.seek(share * player.last, told);
-    shown.told = () => this.attend();
+    shown.told = () => this.syncWithFirst();
     // It has half of the stage now.
     shown.again();
   }
 
   /** Go with the clock of the chosen design. */
-  attend() {
+  syncWithFirst() {
     const { follow } = this;
     const player = this.shown.moving?.player;
     if (!follow || !player) return;
@@ -94,36 +96,44 @@ export class Comparison {
   }
 
   /** Draw the other one over the chosen one. @param {LinkageAnalysis} motion */
-  overlay(motion) {
+  drawOverlay(motion) {
     const { mover } = this.shown;
     if (!mover) return;
     const { skeleton } = /** @type {Linked} */ (this.design.mechanism);
-    const linkage = new Linkage(mover.view, skeleton, { names: false });
+    const linkage = new LinkageDrawing(mover.view, skeleton, { names: false });
     linkage.node.setAttribute("class", "overlaid");
-    const name = telling(skeleton);
+    const name = findTracedJoint(skeleton);
     const track = motion.joints[name];
-    if (drawn(skeleton).includes(name))
-      linkage.node.prepend(svg("path", { class: "curve other", d: mover.view.path(points(track)) }));
+    if (drawnJoints(skeleton).includes(name))
+      linkage.node.prepend(createSvg("path", { class: "curve other", d: mover.view.pathData(trackPoints(track)) }));
     mover.picture.append(linkage.node);
     const last = motion.input_angle.length - 1;
-    this.follow = (share) => linkage.show(jointsAt(motion, share * last));
-    this.attend();
+    this.follow = (share) => linkage.moveTo(jointPositions(motion, share * last));
+    this.syncWithFirst();
   }
 
   /** @param {boolean} is whether the stage shows two */
-  split(is) {
+  splitStage(is) {
     const { other } = this.desk;
     other.hidden = !is;
     other.parentElement?.classList.toggle("split", is);
     other.replaceChildren(
-      ...(is ? [el("div", { class: "said" }, el("p", { class: "note" }, t`The motion is being computed …`))] : []),
+      ...(is
+        ? [
+            createElement(
+              "div",
+              { class: "said" },
+              createElement("p", { class: "note" }, t`The motion is being computed …`),
+            ),
+          ]
+        : []),
     );
   }
 
   stop() {
     this.gone.abort();
     this.moving?.stop();
-    this.split(false);
+    this.splitStage(false);
     const { shown } = this;
     shown.told = () => {};
     shown.around = [];
@@ -132,7 +142,7 @@ export class Comparison {
 }
 
 /** @param {{x: (number | null)[], y: (number | null)[]}} track @returns {Point[]} */
-function points({ x, y }) {
+function trackPoints({ x, y }) {
   return x.map((one, k) => (one === null ? [NaN, NaN] : [one, Number(y[k])]));
 }
 
@@ -142,48 +152,55 @@ function points({ x, y }) {
  * @param {[number, number]} which
  * @param {Problem} problem
  */
-export function sideBySide(designs, which, problem) {
+export function compareNumbers(designs, which, problem) {
   const [one, other] = which.map((n) => designs[n]);
   const told = [one, other].map(
     (design) =>
-      new Map(figures(design).map(([name, value]) => [name, figure(name, value, problem, design.metrics?.size)])),
+      new Map(
+        listFigures(design).map(([name, value]) => [name, formatFigure(name, value, problem, design.metrics?.size)]),
+      ),
   );
-  const sizes = [one, other].map((design) => new Map(dimensionRows(design, problem)));
+  const sizes = [one, other].map((design) => new Map(listDimensions(design, problem)));
   const names = (/** @type {Map<string, Cell>[]} */ maps) => [...new Set(maps.flatMap((map) => [...map.keys()]))];
   const rows = (/** @type {Map<string, {text: string, title: string | null}>[]} */ maps) =>
     names(maps).map((name) => {
       const [a, b] = maps.map((map) => map.get(name) ?? { text: "–", title: null });
-      const differs = !alike(a, b);
+      const differs = !cellsAgree(a, b);
       // As many digits as it takes to tell the two apart.
       const close = differs && a.text === b.text;
-      return el(
+      return createElement(
         "tr",
         { class: differs ? "differs" : null },
-        el("th", { scope: "row" }, words(name), differs && el("span", { class: "hidden" }, ", ", t`differs`)),
-        ...[a, b].map((cell) => el("td", { title: cell.title }, close ? cell.title : cell.text)),
+        createElement(
+          "th",
+          { scope: "row" },
+          toWords(name),
+          differs && createElement("span", { class: "hidden" }, ", ", t`differs`),
+        ),
+        ...[a, b].map((cell) => createElement("td", { title: cell.title }, close ? cell.title : cell.text)),
       );
     });
-  return el(
+  return createElement(
     "div",
     { class: "side-by-side" },
-    el(
+    createElement(
       "table",
       { class: "figures" },
-      el(
+      createElement(
         "thead",
         {},
-        el(
+        createElement(
           "tr",
           {},
-          el("th", { scope: "col" }, t`Quantities`),
-          ...which.map((n) => el("th", { scope: "col" }, t`Design ${n + 1}`)),
+          createElement("th", { scope: "col" }, t`Quantities`),
+          ...which.map((n) => createElement("th", { scope: "col" }, t`Design ${n + 1}`)),
         ),
       ),
-      el("tbody", {}, ...rows(told)),
-      el(
+      createElement("tbody", {}, ...rows(told)),
+      createElement(
         "tbody",
         {},
-        el("tr", {}, el("th", { scope: "rowgroup", colspan: 3, class: "part" }, t`Dimensions`)),
+        createElement("tr", {}, createElement("th", { scope: "rowgroup", colspan: 3, class: "part" }, t`Dimensions`)),
         ...rows(sizes),
       ),
     ),
@@ -193,11 +210,11 @@ export function sideBySide(designs, which, problem) {
 /** @typedef {{text: string, title: string | null}} Cell */
 
 /** Whether two cells say the same, but for rounding. @param {Cell} one @param {Cell} other */
-function alike(one, other) {
+function cellsAgree(one, other) {
   if (one.title === null || other.title === null || one.text === "exact") return one.text === other.text;
   const [a, b] = [one.title, other.title].map((text) => text.split(", ").map(parseFloat));
   return (
     a.length === b.length &&
-    a.every((value, k) => Math.abs(value - b[k]) <= ROUNDING * Math.max(Math.abs(value), Math.abs(b[k])))
+    a.every((value, k) => Math.abs(value - b[k]) <= ROUNDING_TOLERANCE * Math.max(Math.abs(value), Math.abs(b[k])))
   );
 }

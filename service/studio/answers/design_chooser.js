@@ -1,23 +1,23 @@
 /** Choosing among the designs of an answer: by two quantities, by bounds, and by comparing two of them. */
 
-import { Bounds } from "./metric_bounds.js";
-import { Comparison, sideBySide } from "./comparison.js";
-import { el } from "../core/dom.js";
-import { quantities } from "./shared_metrics.js";
+import { MetricBounds } from "./metric_bounds.js";
+import { Comparison, compareNumbers } from "./comparison.js";
+import { createElement } from "../core/dom.js";
+import { collectQuantities } from "./shared_metrics.js";
 import { t, term } from "../core/messages.js";
-import { Scatter } from "./scatter_plot.js";
+import { ScatterPlot } from "./scatter_plot.js";
 
 /** @import { Solved } from "../types/values.js" */
 
 /** Of a front, the names of what stands in the metrics under another name. @type {Record<string, string>} */
-const FRONT = { rms: "rms_residual" };
+const FRONT_METRICS = { rms: "rms_residual" };
 
-export class Choosing {
+export class DesignChooser {
   /**
    * @param {HTMLElement} place
-   * @param {import("../design/workbench.js").Desk} desk
+   * @param {import("../design/workbench.js").Workbench} desk
    * @param {Solved} job with two designs at least
-   * @param {import("./design_strip.js").Strip} strip @param {() => void} narrowed told when bounds hide designs
+   * @param {import("./design_strip.js").DesignStrip} strip @param {() => void} narrowed told when bounds hide designs
    */
   constructor(place, desk, job, strip, narrowed) {
     this.place = place;
@@ -26,10 +26,10 @@ export class Choosing {
     this.strip = strip;
     this.narrowed = narrowed;
     this.designs = job.result.designs;
-    this.quantities = quantities(this.designs, job.problem);
+    this.quantities = collectQuantities(this.designs, job.problem);
     /** @type {number[]} */
     this.front = job.result.front?.designs ?? [];
-    /** @type {import("../design/design.js").Shown | null} */
+    /** @type {import("../design/design.js").DesignView | null} */
     this.shown = null;
     /** The design that the chosen one is compared with. @type {number | null} */
     this.other = null;
@@ -38,19 +38,19 @@ export class Choosing {
     /** @type {Comparison | null} */
     this.comparison = null;
     this.open = false;
-    const axes = this.axes();
-    this.bounds = new Bounds(this.quantities, () => this.bounded());
-    this.scatter = new Scatter(
+    const axes = this.chooseAxes();
+    this.bounds = new MetricBounds(this.quantities, () => this.applyBounds());
+    this.scatter = new ScatterPlot(
       this.quantities,
       axes,
       (n) => strip.select(n),
       () => {
         this.bounds.show(this.scatter.axes);
-        this.tell();
+        this.update();
       },
     );
-    this.table = el("div");
-    this.pick = el("select", {
+    this.table = createElement("div");
+    this.pick = createElement("select", {
       id: "compare-with",
       onchange: () => {
         this.other = this.pick.value === "" ? null : Number(this.pick.value);
@@ -58,7 +58,7 @@ export class Choosing {
       },
     });
     this.manners = /** @type {const} */ (["beside", "over"]).map((manner) =>
-      el(
+      createElement(
         "button",
         {
           type: "button",
@@ -72,15 +72,17 @@ export class Choosing {
         manner === "beside" ? t`Side by side` : t`Overlay`,
       ),
     );
-    strip.changed = () => this.tell();
+    strip.changed = () => this.update();
   }
 
   /**
    * Along the front where there is one, else by the first two quantities in which the designs differ.
    * @returns {[number, number]}
    */
-  axes() {
-    const names = (this.job.result.front?.quantities ?? []).map((/** @type {string} */ name) => FRONT[name] ?? name);
+  chooseAxes() {
+    const names = (this.job.result.front?.quantities ?? []).map(
+      (/** @type {string} */ name) => FRONT_METRICS[name] ?? name,
+    );
     const of = (/** @type {string} */ name) =>
       this.quantities.findIndex((one) => one.name === name && one.values.some((value) => value !== one.values[0]));
     const found = names.map(of).filter((/** @type {number} */ k) => k >= 0);
@@ -89,76 +91,84 @@ export class Choosing {
   }
 
   /** What the designs of the front are not beaten in. @returns {string[]} */
-  beaten() {
-    return (this.job.result.front?.quantities ?? []).map((/** @type {string} */ name) => term(FRONT[name] ?? name));
+  listObjectives() {
+    return (this.job.result.front?.quantities ?? []).map((/** @type {string} */ name) =>
+      term(FRONT_METRICS[name] ?? name),
+    );
   }
 
   /** The tab has been opened. */
-  opened() {
+  handleOpen() {
     this.open = true;
     this.bounds.show(this.scatter.axes);
     this.place.replaceChildren(
       this.scatter.node,
       ...(this.front.length
-        ? [el("p", { class: "note" }, t`Ringed: no other design beats it in all of ${this.beaten().join(", ")}.`)]
+        ? [
+            createElement(
+              "p",
+              { class: "note" },
+              t`Ringed: no other design beats it in all of ${this.listObjectives().join(", ")}.`,
+            ),
+          ]
         : []),
       this.bounds.node,
-      el(
+      createElement(
         "section",
         { "aria-label": t`Two designs` },
-        el("h3", { class: "minor" }, t`Compare`),
-        el(
+        createElement("h3", { class: "minor" }, t`Compare`),
+        createElement(
           "div",
           { class: "row" },
-          el("label", { for: "compare-with" }, t`With`),
+          createElement("label", { for: "compare-with" }, t`With`),
           this.pick,
-          el("div", { class: "row", role: "group", "aria-label": t`On the stage` }, ...this.manners),
+          createElement("div", { class: "row", role: "group", "aria-label": t`On the stage` }, ...this.manners),
         ),
         this.table,
       ),
     );
-    this.tell();
+    this.update();
     this.compare();
   }
 
-  closed() {
+  handleClose() {
     this.open = false;
-    this.end();
+    this.endComparison();
     this.place.replaceChildren();
   }
 
-  /** Another design is chosen. @param {import("../design/design.js").Shown} shown */
-  chosen(shown) {
-    this.end();
+  /** Another design is chosen. @param {import("../design/design.js").DesignView} shown */
+  showChosen(shown) {
+    this.endComparison();
     this.shown = shown;
     if (this.other === this.strip.chosen) this.other = null;
-    this.tell();
+    this.update();
     this.compare();
   }
 
-  bounded() {
-    this.strip.keep(this.bounds.kept());
+  applyBounds() {
+    this.strip.filter(this.bounds.listKept());
     this.narrowed();
-    this.tell();
+    this.update();
   }
 
   /** What is shown of all designs. */
-  tell() {
+  update() {
     if (!this.open) return;
     const { chosen, pinned } = this.strip;
-    this.scatter.show({ chosen, pinned, kept: this.bounds.kept(), front: this.front });
+    this.scatter.show({ chosen, pinned, kept: this.bounds.listKept(), front: this.front });
     this.pick.replaceChildren(
-      el("option", { value: "" }, "–"),
+      createElement("option", { value: "" }, "–"),
       ...this.strip.row
         .filter((n) => n !== chosen)
-        .map((n) => el("option", { value: n }, t`Design ${n + 1}`, pinned.includes(n) && " ★")),
+        .map((n) => createElement("option", { value: n }, t`Design ${n + 1}`, pinned.includes(n) && " ★")),
     );
     this.pick.value = this.other === null ? "" : String(this.other);
   }
 
   /** Compare the chosen design with another one, as it is asked for now. */
   compare() {
-    this.end();
+    this.endComparison();
     if (!this.open) return;
     const { designs, other, manner, shown, strip } = this;
     const both = other !== null && [designs[strip.chosen], designs[other]].every((one) => one.mechanism.skeleton);
@@ -169,15 +179,15 @@ export class Choosing {
     });
     this.table.replaceChildren(
       other === null
-        ? el("p", { class: "note" }, t`Choose a second design: what differs is marked.`)
-        : sideBySide(designs, [strip.chosen, other], this.job.problem),
+        ? createElement("p", { class: "note" }, t`Choose a second design: what differs is marked.`)
+        : compareNumbers(designs, [strip.chosen, other], this.job.problem),
     );
     if (other === null || manner === null || !shown || (manner === "over" && !both)) return;
-    this.desk.stage.show("watch");
+    this.desk.stage.showMode("watch");
     this.comparison = new Comparison(this.desk, this.job, other, manner, shown);
   }
 
-  end() {
+  endComparison() {
     this.comparison?.stop();
     this.comparison = null;
   }

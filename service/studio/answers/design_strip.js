@@ -1,17 +1,17 @@
 /** The designs of an answer in a row, best first, those that are pinned before the others. */
 
-import { el, words } from "../core/dom.js";
-import { figure, figures, typeOf } from "../design/design_metrics.js";
+import { createElement, toWords } from "../core/dom.js";
+import { formatFigure, listFigures, typeName } from "../design/design_metrics.js";
 import { t } from "../core/messages.js";
-import { pin, pinned } from "../core/pinned_designs.js";
-import { thumbnail } from "../motion/thumbnail.js";
+import { setPinned, listPinned } from "../core/pinned_designs.js";
+import { createThumbnail } from "../motion/thumbnail.js";
 
 /** @import { Design, Problem, Solved } from "../types/values.js" */
 
 /** How long keys must rest on a card before it is shown. */
-const PASSING_MS = 150;
+const KEY_REST_MS = 150;
 
-export class Strip {
+export class DesignStrip {
   /** @param {Solved} job with its result @param {(n: number) => void} choose */
   constructor(job, choose) {
     this.job = job;
@@ -22,9 +22,11 @@ export class Strip {
     /** What meets the bounds. @type {boolean[]} */
     this.kept = designs.map(() => true);
     /** @type {HTMLElement[]} */
-    this.cards = designs.map((design, /** @type {number} */ n) => card(design, n, job.problem, () => this.select(n)));
+    this.cards = designs.map((design, /** @type {number} */ n) =>
+      createCard(design, n, job.problem, () => this.select(n)),
+    );
     this.pins = this.cards.map((_, n) =>
-      el(
+      createElement(
         "button",
         {
           type: "button",
@@ -37,17 +39,17 @@ export class Strip {
         "☆",
       ),
     );
-    this.slots = this.cards.map((one, n) => el("div", { class: "slot" }, one, this.pins[n]));
-    this.pinned = pinned(job.id).filter((n) => n < this.cards.length);
+    this.slots = this.cards.map((one, n) => createElement("div", { class: "slot" }, one, this.pins[n]));
+    this.pinned = listPinned(job.id).filter((n) => n < this.cards.length);
     /** Told when pins change. */
     this.changed = () => {};
-    this.node = el("div", {
+    this.node = createElement("div", {
       class: "cards",
       role: "group",
       "aria-label": t`Designs, best first; arrow keys choose`,
-      onkeydown: (/** @type {KeyboardEvent} */ event) => this.keyed(event),
+      onkeydown: (/** @type {KeyboardEvent} */ event) => this.handleKey(event),
     });
-    this.order();
+    this.sortCards();
   }
 
   /** Numbers of the designs in the order in which they stand. */
@@ -55,7 +57,7 @@ export class Strip {
     return [...this.pinned, ...this.cards.map((_, n) => n).filter((n) => !this.pinned.includes(n))];
   }
 
-  order() {
+  sortCards() {
     const focused = document.activeElement;
     this.node.replaceChildren(...this.row.map((n) => this.slots[n]));
     this.pins.forEach((button, n) => {
@@ -76,20 +78,20 @@ export class Strip {
 
   /** Pin a design, or take its pin away. @param {number} n */
   pin(n) {
-    this.pinned = pin(this.job.id, n, !this.pinned.includes(n));
-    this.order();
+    this.pinned = setPinned(this.job.id, n, !this.pinned.includes(n));
+    this.sortCards();
     this.cards[n].scrollIntoView({ block: "nearest", inline: "nearest" });
     this.changed();
   }
 
   /** Show what meets the bounds only. @param {boolean[]} kept */
-  keep(kept) {
+  filter(kept) {
     this.kept = kept;
     this.slots.forEach((slot, n) => slot.toggleAttribute("hidden", !kept[n]));
   }
 
   /** Arrow keys, Home and End go from card to card and choose. @param {KeyboardEvent} event */
-  keyed(event) {
+  handleKey(event) {
     const shown = this.row.filter((n) => this.kept[n]);
     const at = shown.findIndex((n) => this.cards[n] === document.activeElement);
     const to = {
@@ -108,31 +110,31 @@ export class Strip {
     clearTimeout(this.passing);
     this.passing = setTimeout(() => {
       if (this.cards[n] === document.activeElement && this.chosen !== n) this.select(n);
-    }, PASSING_MS);
+    }, KEY_REST_MS);
   }
 }
 
 /** @param {Design} design @param {number} n @param {Problem} problem @param {() => void} choose */
-function card(design, n, problem, choose) {
+function createCard(design, n, problem, choose) {
   const passed = design.verification?.passed;
-  return el(
+  return createElement(
     "button",
     { type: "button", class: "card", "data-design": n + 1, "aria-pressed": "false", onclick: choose },
-    thumbnail(design),
-    el(
+    createThumbnail(design),
+    createElement(
       "span",
       { class: "told" },
-      el("strong", { title: typeOf(design) }, `${n + 1}. ${typeOf(design)}`),
-      el("span", { class: passed ? "good" : "bad" }, passed ? `✓ ${t`verified`}` : `✗ ${t`fails a check`}`),
-      ...figures(design)
+      createElement("strong", { title: typeName(design) }, `${n + 1}. ${typeName(design)}`),
+      createElement("span", { class: passed ? "good" : "bad" }, passed ? `✓ ${t`verified`}` : `✗ ${t`fails a check`}`),
+      ...listFigures(design)
         .slice(0, 1)
         .map(([name, value]) => {
-          const told = figure(name, value, problem, design.metrics?.size);
-          return el(
+          const told = formatFigure(name, value, problem, design.metrics?.size);
+          return createElement(
             "span",
             { class: "figure", title: told.title },
-            el("span", {}, words(name)),
-            el("span", {}, told.text),
+            createElement("span", {}, toWords(name)),
+            createElement("span", {}, told.text),
           );
         }),
     ),

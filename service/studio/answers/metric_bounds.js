@@ -1,24 +1,24 @@
 /** Bounds of quantities, set by sliders: designs beyond them are hidden. */
 
-import { el } from "../core/dom.js";
-import { differ, range, told } from "./shared_metrics.js";
+import { createElement } from "../core/dom.js";
+import { valuesDiffer, valueRange, formatQuantity } from "./shared_metrics.js";
 import { t } from "../core/messages.js";
 
 /** @typedef {import("./shared_metrics.js").Quantity} Quantity */
 
 /** Places of a slider. */
-const STEPS = 100;
+const SLIDER_STEPS = 100;
 
-export class Bounds {
+export class MetricBounds {
   /** @param {Quantity[]} quantities @param {() => void} changed */
   constructor(quantities, changed) {
     this.quantities = quantities;
     this.changed = changed;
     /** @type {Map<number, {least: boolean, limit: number}>} */
     this.set = new Map();
-    this.rows = el("div", { class: "bounds" });
-    this.said = el("span", { role: "status" });
-    this.all = el(
+    this.rows = createElement("div", { class: "bounds" });
+    this.said = createElement("span", { role: "status" });
+    this.all = createElement(
       "button",
       {
         type: "button",
@@ -33,17 +33,17 @@ export class Bounds {
     );
     /** @type {number[]} */
     this.shown = [];
-    this.node = el(
+    this.node = createElement(
       "section",
       { "aria-label": t`Bounds` },
-      el("h3", { class: "minor" }, t`Bounds`),
+      createElement("h3", { class: "minor" }, t`Bounds`),
       this.rows,
-      el("p", { class: "row" }, this.said, this.all),
+      createElement("p", { class: "row" }, this.said, this.all),
     );
   }
 
   /** Which designs meet all bounds. @returns {boolean[]} */
-  kept() {
+  listKept() {
     return this.quantities[0].values.map((_, n) =>
       [...this.set].every(([k, { least, limit }]) => {
         const value = this.quantities[k].values[n];
@@ -55,68 +55,75 @@ export class Bounds {
   /** Sliders for some quantities, and for those that have a bound. @param {number[]} wanted */
   show(wanted) {
     this.shown = wanted;
-    const all = [...new Set([...wanted, ...this.set.keys()])].filter((k) => differ(this.quantities[k].values));
-    this.rows.replaceChildren(...all.map((k) => this.row(k)));
-    this.tell();
+    const all = [...new Set([...wanted, ...this.set.keys()])].filter((k) => valuesDiffer(this.quantities[k].values));
+    this.rows.replaceChildren(...all.map((k) => this.createRow(k)));
+    this.showCount();
   }
 
   /** @param {number} k */
-  row(k) {
+  createRow(k) {
     const quantity = this.quantities[k];
-    const [low, high] = range(quantity.values);
-    const step = (high - low) / STEPS;
+    const [low, high] = valueRange(quantity.values);
+    const step = (high - low) / SLIDER_STEPS;
     const id = `bound-${k}`;
     let least = this.set.get(k)?.least ?? quantity.more;
-    const sense = el(
+    const sense = createElement(
       "select",
       {
         "aria-label": t`${quantity.text}: which side`,
         onchange: () => {
           least = sense.value === "≥";
-          slider.value = String(least ? 0 : STEPS);
+          slider.value = String(least ? 0 : SLIDER_STEPS);
           this.set.delete(k);
           say();
-          this.told();
+          this.handleInput();
         },
       },
-      el("option", { value: "≥" }, "≥"),
-      el("option", { value: "≤" }, "≤"),
+      createElement("option", { value: "≥" }, "≥"),
+      createElement("option", { value: "≤" }, "≤"),
     );
     sense.value = least ? "≥" : "≤";
     const limit = () => this.set.get(k)?.limit ?? (least ? low : high);
-    const slider = el("input", {
+    const slider = createElement("input", {
       type: "range",
       id,
       min: 0,
-      max: STEPS,
+      max: SLIDER_STEPS,
       step: 1,
       value: Math.round((limit() - low) / step),
       oninput: () => {
         const at = Number(slider.value);
-        if (at === (least ? 0 : STEPS)) this.set.delete(k);
+        if (at === (least ? 0 : SLIDER_STEPS)) this.set.delete(k);
         // A slider at its end is at the value that the last design has.
-        else this.set.set(k, { least, limit: at === 0 ? low : at === STEPS ? high : low + at * step });
+        else this.set.set(k, { least, limit: at === 0 ? low : at === SLIDER_STEPS ? high : low + at * step });
         say();
-        this.told();
+        this.handleInput();
       },
     });
-    const reading = el("output", { for: id, class: "reading" });
+    const reading = createElement("output", { for: id, class: "reading" });
     const say = () => {
-      reading.value = told(quantity, limit());
+      reading.value = formatQuantity(quantity, limit());
       slider.setAttribute("aria-valuetext", `${least ? t`at least` : t`at most`} ${reading.value}`);
     };
     say();
-    return el("div", { class: "bound" }, el("label", { for: id }, quantity.text), sense, slider, reading);
+    return createElement(
+      "div",
+      { class: "bound" },
+      createElement("label", { for: id }, quantity.text),
+      sense,
+      slider,
+      reading,
+    );
   }
 
-  told() {
-    this.tell();
+  handleInput() {
+    this.showCount();
     this.changed();
   }
 
   /** How many meet the bounds. */
-  tell() {
-    const kept = this.kept();
+  showCount() {
+    const kept = this.listKept();
     const some = kept.filter(Boolean).length;
     this.all.hidden = this.set.size === 0;
     this.said.textContent = this.set.size

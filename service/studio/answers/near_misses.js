@@ -1,10 +1,10 @@
 /** What comes nearest where no design satisfies all demands, and the same problem with what is within reach. */
 
-import { el, shown, words } from "../core/dom.js";
-import { amount, beside, unitFor } from "../design/design_metrics.js";
+import { createElement, formatNumber, toWords } from "../core/dom.js";
+import { formatAmount, joinUnit, metricUnit } from "../design/design_metrics.js";
 import { t, term } from "../core/messages.js";
-import { at, put } from "../core/pointer.js";
-import { thumbnail } from "../motion/thumbnail.js";
+import { readPointer, writePointer } from "../core/pointer.js";
+import { createThumbnail } from "../motion/thumbnail.js";
 
 /** @import { Json, Problem, Result, Schemas } from "../types/values.js" */
 
@@ -18,13 +18,13 @@ import { thumbnail } from "../motion/thumbnail.js";
 /** @typedef {{text: string, statement: Problem}} Offer */
 
 /** Between the last two of a list. */
-const AND = ` ${t`and`} `;
+const LAST_SEPARATOR = ` ${t`and`} `;
 
 /** Digits of a limit that is eased. */
-const DIGITS = 4;
+const LIMIT_DIGITS = 4;
 
 /** Where the limit of a check is stated, if it has not the name of the check. @type {Record<string, string[]>} */
-const STATED = {
+const LIMIT_PATHS = {
   transmission_angle: ["constraints", "min_transmission_angle"],
   link_ratio: ["constraints", "max_link_ratio"],
   shortest_link: ["constraints", "link_length", "min"],
@@ -44,7 +44,7 @@ const STATED = {
  * What has no measure, or no number that could be eased: it is left out.
  * @type {Record<string, {text: string, path: string[], value: Json}>}
  */
-const LEFT_OUT = {
+const REMOVABLE_DEMANDS = {
   grashof: { text: t`with any class of linkage`, path: ["constraints", "grashof"], value: "any" },
   full_rotation: { text: t`without a full turn of the input`, path: ["constraints", "full_rotation"], value: false },
   box: { text: t`without the box`, path: ["space", "box"], value: null },
@@ -54,7 +54,7 @@ const LEFT_OUT = {
 };
 
 /** Rectangles that are widened by as much as pivots lie outside of them. @type {Record<string, string[]>} */
-const WIDENED = {
+const REGION_PATHS = {
   fixed_pivot_region: ["constraints", "fixed_pivot_region"],
   moving_pivot_region: ["constraints", "moving_pivot_region"],
   driver_pivot_region: ["driver_dyad", "pivot_region"],
@@ -64,7 +64,7 @@ const WIDENED = {
  * What is reached beside all other demands, by its name in the answer: the check that it is of.
  * @type {Record<string, string>}
  */
-const REACHED = {
+const REACHABLE_CHECKS = {
   min_transmission_angle: "transmission_angle",
   max_link_ratio: "link_ratio",
   tolerance: "ratio_error",
@@ -75,33 +75,34 @@ const REACHED = {
  * @param {Problem} problem
  * @param {(problem: Problem) => void} solve
  */
-export function missed(miss, problem, solve) {
+export function describeNearMiss(miss, problem, solve) {
   const { design, gaps, reachable } = miss;
   const short = (/** @type {number | number[] | null} */ value) =>
     [value]
       .flat()
-      .map((one) => shown(Number(Number(one).toPrecision(4))))
-      .join(AND);
+      .map((one) => formatNumber(Number(Number(one).toPrecision(4))))
+      .join(LAST_SEPARATOR);
   const within = Object.entries(reachable).map(
-    ([name, value]) => `${term(name)} ${beside(short(value), unitOf(name, problem))}`,
+    ([name, value]) => `${term(name)} ${joinUnit(short(value), reachedUnit(name, problem))}`,
   );
-  return el(
+  return createElement(
     "section",
     { id: "miss" },
-    thumbnail(design),
-    el("strong", {}, t`Nearest miss: ${words(design.mechanism.type)}`),
+    createThumbnail(design),
+    createElement("strong", {}, t`Nearest miss: ${toWords(design.mechanism.type)}`),
     ...gaps.map((/** @type {Gap} */ gap) =>
-      el(
+      createElement(
         "span",
         { class: "bad" },
-        `✗ ${words(gap.check)}`,
-        typeof gap.value === "number" && ` ${amount(gap.value, gap, problem)}`,
-        typeof gap.limit === "number" && `, ${t`demanded ${amount(gap.limit, gap, problem)}`}`,
+        `✗ ${toWords(gap.check)}`,
+        typeof gap.value === "number" && ` ${formatAmount(gap.value, gap, problem)}`,
+        typeof gap.limit === "number" && `, ${t`demanded ${formatAmount(gap.limit, gap, problem)}`}`,
       ),
     ),
-    within.length > 0 && el("span", { class: "note" }, t`Within reach beside all other demands: ${within.join("; ")}.`),
-    ...offers(problem, miss).map(({ text, statement }, k) =>
-      el("button", { type: "button", class: k ? "small" : "main", onclick: () => solve(statement) }, text),
+    within.length > 0 &&
+      createElement("span", { class: "note" }, t`Within reach beside all other demands: ${within.join("; ")}.`),
+    ...listOffers(problem, miss).map(({ text, statement }, k) =>
+      createElement("button", { type: "button", class: k ? "small" : "main", onclick: () => solve(statement) }, text),
     ),
   );
 }
@@ -111,9 +112,9 @@ export function missed(miss, problem, solve) {
  * are the same the first.
  * @param {Problem} problem @param {NonNullable<Result["nearest_miss"]>} miss @returns {Offer[]}
  */
-export function offers(problem, { gaps, reachable }) {
-  const whole = gaps.map((/** @type {Gap} */ gap) => eased(problem, gap));
-  const single = Object.entries(reachable).map(([name, value]) => reached(problem, name, value));
+export function listOffers(problem, { gaps, reachable }) {
+  const whole = gaps.map((/** @type {Gap} */ gap) => easeDemand(problem, gap));
+  const single = Object.entries(reachable).map(([name, value]) => demandReachable(problem, name, value));
   const sets = [...(single.length && gaps.length < 2 ? [] : [whole]), ...single.map((one) => [one]), whole];
   const found = sets
     .filter((/** @type {(Easing | null)[]} */ set) => set.length && set.every((one) => one))
@@ -121,7 +122,7 @@ export function offers(problem, { gaps, reachable }) {
       const set = all.filter((one) => one !== null);
       const statement = structuredClone(problem);
       for (const { apply } of set) apply(statement);
-      return { text: t`Solve ${set.map((one) => one.text).join(AND)}`, statement };
+      return { text: t`Solve ${set.map((one) => one.text).join(LAST_SEPARATOR)}`, statement };
     });
   return found.filter(
     (one, k) => found.findIndex((other) => JSON.stringify(other.statement) === JSON.stringify(one.statement)) === k,
@@ -134,30 +135,37 @@ export function offers(problem, { gaps, reachable }) {
  * @param {Gap} gap
  * @returns {Easing | null} null where nothing of the statement says it
  */
-function eased(problem, gap) {
+function easeDemand(problem, gap) {
   const { check, value, limit } = gap;
-  const region = WIDENED[check];
-  if (region && typeof value === "number" && at(problem, region)) {
-    const by = rounded(value, true);
+  const region = REGION_PATHS[check];
+  if (region && typeof value === "number" && readPointer(problem, region)) {
+    const by = roundOutwards(value, true);
     return {
-      text: t`with ${term(check)} wider by ${amount(by, gap, problem)}`,
+      text: t`with ${term(check)} wider by ${formatAmount(by, gap, problem)}`,
       apply: (statement) => {
         for (const way of ["x", "y"]) {
-          const sides = at(statement, [...region, way]);
-          if (Array.isArray(sides)) put(statement, [...region, way], [Number(sides[0]) - by, Number(sides[1]) + by]);
+          const sides = readPointer(statement, [...region, way]);
+          if (Array.isArray(sides))
+            writePointer(statement, [...region, way], [Number(sides[0]) - by, Number(sides[1]) + by]);
         }
       },
     };
   }
   // What lies in an obstacle has no clearance that could be demanded of it.
   if (typeof value === "number" && typeof limit === "number" && !(check === "obstacles" && value <= 0)) {
-    const path = STATED[check] ?? named(problem, check, limit);
-    if (path && at(problem, path) === limit)
-      return limited(path, check, value, value > limit, amount(rounded(value, value > limit), gap, problem));
+    const path = LIMIT_PATHS[check] ?? findLimitPath(problem, check, limit);
+    if (path && readPointer(problem, path) === limit)
+      return changeLimit(
+        path,
+        check,
+        value,
+        value > limit,
+        formatAmount(roundOutwards(value, value > limit), gap, problem),
+      );
   }
-  const out = LEFT_OUT[check];
-  return out && at(problem, out.path.slice(0, -1))
-    ? { text: out.text, apply: (statement) => put(statement, out.path, out.value) }
+  const out = REMOVABLE_DEMANDS[check];
+  return out && readPointer(problem, out.path.slice(0, -1))
+    ? { text: out.text, apply: (statement) => writePointer(statement, out.path, out.value) }
     : null;
 }
 
@@ -168,25 +176,25 @@ function eased(problem, gap) {
  * @param {number | number[] | null} value
  * @returns {Easing | null}
  */
-function reached(problem, name, value) {
-  const check = REACHED[name];
-  const path = check ? STATED[check] : [name];
+function demandReachable(problem, name, value) {
+  const check = REACHABLE_CHECKS[name];
+  const path = check ? LIMIT_PATHS[check] : [name];
   if (name === "dwell_angles" && Array.isArray(problem.dwells) && Array.isArray(value)) {
-    const angles = value.map((one) => rounded(one, false));
+    const angles = value.map((one) => roundOutwards(one, false));
     return {
-      text: t`with dwells of ${angles.map((one) => `${shown(one)}°`).join(AND)}`,
+      text: t`with dwells of ${angles.map((one) => `${formatNumber(one)}°`).join(LAST_SEPARATOR)}`,
       apply: (statement) => statement.dwells?.forEach((dwell, k) => (dwell.angle = angles[k])),
     };
   }
-  const limit = at(problem, path);
+  const limit = readPointer(problem, path);
   if (typeof limit !== "number" || typeof value !== "number") return null;
-  const told = beside(shown(rounded(value, value > limit)), unitOf(name, problem));
-  return limited(path, check ?? name, value, value > limit, told);
+  const told = joinUnit(formatNumber(roundOutwards(value, value > limit)), reachedUnit(name, problem));
+  return changeLimit(path, check ?? name, value, value > limit, told);
 }
 
 /** The unit of what is reached. @param {string} name @param {Problem} problem */
-function unitOf(name, problem) {
-  return unitFor(name, problem) || (name.includes("angle") ? "°" : "");
+function reachedUnit(name, problem) {
+  return metricUnit(name, problem) || (name.includes("angle") ? "°" : "");
 }
 
 /**
@@ -198,16 +206,19 @@ function unitOf(name, problem) {
  * @param {string} told
  * @returns {Easing}
  */
-function limited(path, check, value, up, told) {
+function changeLimit(path, check, value, up, told) {
   const name = term(["tolerance", "clearance"].find((one) => one === path.at(-1)) ?? check);
-  return { text: t`with ${name} ${told}`, apply: (statement) => put(statement, path, rounded(value, up)) };
+  return {
+    text: t`with ${name} ${told}`,
+    apply: (statement) => writePointer(statement, path, roundOutwards(value, up)),
+  };
 }
 
 /** Rounded to the side on which it is reached. @param {number} value @param {boolean} up */
-function rounded(value, up) {
+function roundOutwards(value, up) {
   if (Number.isInteger(value)) return value;
-  const step = 10 ** (Math.floor(Math.log10(Math.abs(value) || 1)) + 1 - DIGITS);
-  return Number(((up ? Math.ceil : Math.floor)(value / step) * step).toPrecision(DIGITS));
+  const step = 10 ** (Math.floor(Math.log10(Math.abs(value) || 1)) + 1 - LIMIT_DIGITS);
+  return Number(((up ? Math.ceil : Math.floor)(value / step) * step).toPrecision(LIMIT_DIGITS));
 }
 
 /**
@@ -218,11 +229,11 @@ function rounded(value, up) {
  * @param {string[]} [above]
  * @returns {string[] | null}
  */
-function named(owner, check, limit, above = []) {
+function findLimitPath(owner, check, limit, above = []) {
   if (typeof owner !== "object" || owner === null || Array.isArray(owner)) return null;
   for (const [name, value] of Object.entries(owner)) {
     if ([check, `min_${check}`, `max_${check}`].includes(name) && value === limit) return [...above, name];
-    const found = named(value, check, limit, [...above, name]);
+    const found = findLimitPath(value, check, limit, [...above, name]);
     if (found) return found;
   }
   return null;

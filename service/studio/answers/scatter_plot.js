@@ -1,36 +1,36 @@
 /** Designs by two of their quantities: a click or the arrow keys choose one. */
 
-import { el, remade, svg } from "../core/dom.js";
-import { brief } from "../design/design_metrics.js";
-import { spacing } from "../canvas/grid.js";
-import { range, titled, told } from "./shared_metrics.js";
+import { createElement, rebuild, createSvg } from "../core/dom.js";
+import { formatBriefly } from "../design/design_metrics.js";
+import { roundSpacing } from "../canvas/grid.js";
+import { valueRange, quantityTitle, formatQuantity } from "./shared_metrics.js";
 import { t } from "../core/messages.js";
 
 /** @typedef {import("./shared_metrics.js").Quantity} Quantity */
 
 const WIDTH = 336;
 const HEIGHT = 236;
-const EDGE = { left: 50, right: 14, top: 28, bottom: 38 };
+const MARGIN = { left: 50, right: 14, top: 28, bottom: 38 };
 
 /** Between two ticks at least, pixels. */
-const APART = [64, 40];
+const MIN_TICK_SPACING = [64, 40];
 
 /** Where values of one sign differ by more than this factor, equal factors are equally far apart. */
-const WIDE = 1000;
+const MIN_LOGARITHMIC_RATIO = 1000;
 
 /** Up to so many designs have their numbers beside them. */
-const NUMBERED = 24;
+const MAX_LABELLED = 24;
 
 /**
  * What is told of the designs.
- * @typedef {object} Told
+ * @typedef {object} DesignStates
  * @property {number} chosen
  * @property {boolean[]} kept what meets the bounds
  * @property {number[]} pinned
  * @property {number[]} front what no other beats
  */
 
-export class Scatter {
+export class ScatterPlot {
   /**
    * @param {Quantity[]} quantities
    * @param {[number, number]} axes which of them
@@ -42,7 +42,7 @@ export class Scatter {
     this.axes = axes;
     this.choose = choose;
     const pick = (/** @type {0 | 1} */ k, /** @type {string} */ id, /** @type {string} */ text) => {
-      const box = el(
+      const box = createElement(
         "select",
         {
           id,
@@ -51,91 +51,99 @@ export class Scatter {
             turned();
           },
         },
-        ...quantities.map((one, n) => el("option", { value: n }, one.text)),
+        ...quantities.map((one, n) => createElement("option", { value: n }, one.text)),
       );
       box.value = String(axes[k]);
-      return el("div", { class: "axis" }, el("label", { for: id }, text), box);
+      return createElement("div", { class: "axis" }, createElement("label", { for: id }, text), box);
     };
-    this.picture = svg("svg", {
+    this.picture = createSvg("svg", {
       viewBox: `0 0 ${WIDTH} ${HEIGHT}`,
       role: "group",
       "aria-label": t`Designs by two quantities; arrow keys choose`,
-      onkeydown: (/** @type {KeyboardEvent} */ event) => this.keyed(event),
+      onkeydown: (/** @type {KeyboardEvent} */ event) => this.handleKey(event),
     });
-    this.place = el("div", { class: "scatter" }, this.picture);
-    this.node = el(
+    this.place = createElement("div", { class: "scatter" }, this.picture);
+    this.node = createElement(
       "figure",
       {},
-      el("div", { class: "axes" }, pick(1, "axis-up", t`Up`), pick(0, "axis-across", t`Across`)),
+      createElement("div", { class: "axes" }, pick(1, "axis-up", t`Up`), pick(0, "axis-across", t`Across`)),
       this.place,
     );
   }
 
-  /** @param {Told} now */
+  /** @param {DesignStates} now */
   show(now) {
     this.now = now;
-    remade([this.place], () => this.picture.replaceChildren(...this.drawn(now)));
+    rebuild([this.place], () => this.picture.replaceChildren(...this.draw(now)));
   }
 
-  /** @param {Told} now */
-  drawn(now) {
+  /** @param {DesignStates} now */
+  draw(now) {
     const [across, up] = this.axes.map((k) => this.quantities[k]);
-    const x = scale(across.values, EDGE.left, WIDTH - EDGE.right, APART[0]);
-    const y = scale(up.values, HEIGHT - EDGE.bottom, EDGE.top, APART[1]);
+    const x = createScale(across.values, MARGIN.left, WIDTH - MARGIN.right, MIN_TICK_SPACING[0]);
+    const y = createScale(up.values, HEIGHT - MARGIN.bottom, MARGIN.top, MIN_TICK_SPACING[1]);
     this.places = across.values.map((value, n) =>
       value === null || up.values[n] === null
         ? null
         : /** @type {[number, number]} */ ([x.at(value), y.at(/** @type {number} */ (up.values[n]))]),
     );
-    const [right, low] = [WIDTH - EDGE.right, HEIGHT - EDGE.bottom];
-    const few = this.places.length <= NUMBERED;
+    const [right, low] = [WIDTH - MARGIN.right, HEIGHT - MARGIN.bottom];
+    const few = this.places.length <= MAX_LABELLED;
     return [
-      svg("rect", { class: "paper", width: WIDTH, height: HEIGHT }),
+      createSvg("rect", { class: "paper", width: WIDTH, height: HEIGHT }),
       ...x.ticks.map((value) =>
-        svg(
+        createSvg(
           "g",
           {},
-          svg("line", { class: "grid", x1: x.at(value), x2: x.at(value), y1: EDGE.top, y2: low }),
-          svg("text", { class: "tick", x: x.at(value), y: low + 14, "text-anchor": "middle" }, brief(value)),
+          createSvg("line", { class: "grid", x1: x.at(value), x2: x.at(value), y1: MARGIN.top, y2: low }),
+          createSvg(
+            "text",
+            { class: "tick", x: x.at(value), y: low + 14, "text-anchor": "middle" },
+            formatBriefly(value),
+          ),
         ),
       ),
       ...y.ticks.map((value) =>
-        svg(
+        createSvg(
           "g",
           {},
-          svg("line", { class: "grid", x1: EDGE.left, x2: right, y1: y.at(value), y2: y.at(value) }),
-          svg("text", { class: "tick", x: EDGE.left - 5, y: y.at(value) + 4, "text-anchor": "end" }, brief(value)),
+          createSvg("line", { class: "grid", x1: MARGIN.left, x2: right, y1: y.at(value), y2: y.at(value) }),
+          createSvg(
+            "text",
+            { class: "tick", x: MARGIN.left - 5, y: y.at(value) + 4, "text-anchor": "end" },
+            formatBriefly(value),
+          ),
         ),
       ),
-      svg("path", { class: "axis-line", d: `M${EDGE.left} ${EDGE.top}V${low}H${right}` }),
-      svg("text", { class: "axis-name", x: 6, y: 16 }, titled(up)),
-      svg("text", { class: "axis-name", x: right, y: HEIGHT - 6, "text-anchor": "end" }, titled(across)),
+      createSvg("path", { class: "axis-line", d: `M${MARGIN.left} ${MARGIN.top}V${low}H${right}` }),
+      createSvg("text", { class: "axis-name", x: 6, y: 16 }, quantityTitle(up)),
+      createSvg("text", { class: "axis-name", x: right, y: HEIGHT - 6, "text-anchor": "end" }, quantityTitle(across)),
       ...[...this.places.keys()]
         .sort((a, b) => Number(a === now.chosen) - Number(b === now.chosen))
-        .map((n) => this.point(n, now, few)),
+        .map((n) => this.createPoint(n, now, few)),
     ];
   }
 
-  /** @param {number} n @param {Told} now @param {boolean} few */
-  point(n, now, few) {
+  /** @param {number} n @param {DesignStates} now @param {boolean} few */
+  createPoint(n, now, few) {
     const place = this.places?.[n];
     if (!place) return "";
     const [u, v] = place;
     const [across, up] = this.axes.map((k) => this.quantities[k]);
     const says = [
       t`Design ${n + 1}`,
-      ...[up, across].map((one) => `${one.text} ${told(one, Number(one.values[n]))}`),
+      ...[up, across].map((one) => `${one.text} ${formatQuantity(one, Number(one.values[n]))}`),
       ...(now.front.includes(n) ? [t`no other beats it`] : []),
       ...(now.pinned.includes(n) ? [t`pinned`] : []),
     ].join(", ");
     const marks = [now.chosen === n && "chosen", !now.kept[n] && "beyond", now.pinned.includes(n) && "pinned"]
       .filter(Boolean)
       .join(" ");
-    return svg(
+    return createSvg(
       "g",
       {
         class: `spot ${marks}`,
-        tabindex: n === this.stop(now) ? 0 : -1,
+        tabindex: n === this.findTabStop(now) ? 0 : -1,
         role: "button",
         "aria-pressed": String(n === now.chosen),
         "aria-label": says,
@@ -143,14 +151,14 @@ export class Scatter {
         "aria-disabled": now.kept[n] ? null : "true",
         onclick: () => this.choose(n),
       },
-      svg("title", {}, says),
-      svg("circle", { class: "hit", cx: u, cy: v, r: 12 }),
-      now.front.includes(n) && svg("circle", { class: "ring", cx: u, cy: v, r: 8 }),
+      createSvg("title", {}, says),
+      createSvg("circle", { class: "hit", cx: u, cy: v, r: 12 }),
+      now.front.includes(n) && createSvg("circle", { class: "ring", cx: u, cy: v, r: 8 }),
       now.pinned.includes(n)
-        ? svg("path", { class: "spot-mark", d: `M${u} ${v - 6}L${u + 6} ${v}L${u} ${v + 6}L${u - 6} ${v}Z` })
-        : svg("circle", { class: "spot-mark", cx: u, cy: v, r: 4.5 }),
+        ? createSvg("path", { class: "spot-mark", d: `M${u} ${v - 6}L${u + 6} ${v}L${u} ${v + 6}L${u - 6} ${v}Z` })
+        : createSvg("circle", { class: "spot-mark", cx: u, cy: v, r: 4.5 }),
       few &&
-        svg(
+        createSvg(
           "text",
           {
             class: "tick",
@@ -163,14 +171,14 @@ export class Scatter {
     );
   }
 
-  /** The design at which the keys stop. @param {Told} now */
-  stop(now) {
+  /** The design at which the keys stop. @param {DesignStates} now */
+  findTabStop(now) {
     const there = (/** @type {number} */ n) => Boolean(this.places?.[n]);
     return there(now.chosen) ? now.chosen : (this.places?.findIndex((one) => one !== null) ?? -1);
   }
 
   /** To the next design to the right, to the left, above or below. @param {KeyboardEvent} event */
-  keyed(event) {
+  handleKey(event) {
     const way = { ArrowRight: [0, 1], ArrowLeft: [0, -1], ArrowUp: [1, -1], ArrowDown: [1, 1] }[event.key];
     const { now, places } = this;
     if (!way || !now || !places) return;
@@ -193,9 +201,9 @@ export class Scatter {
  * @param {(number | null)[]} values @param {number} from @param {number} to @param {number} apart
  * @returns {{at: (value: number) => number, ticks: number[]}}
  */
-function scale(values, from, to, apart) {
-  let [low, high] = range(values);
-  if (low > 0 && high / low > WIDE) {
+function createScale(values, from, to, apart) {
+  let [low, high] = valueRange(values);
+  if (low > 0 && high / low > MIN_LOGARITHMIC_RATIO) {
     const [a, b] = [Math.floor(Math.log10(low)), Math.ceil(Math.log10(high))];
     const every = Math.ceil(((b - a) * apart) / Math.abs(to - from));
     const ticks = [];
@@ -206,7 +214,7 @@ function scale(values, from, to, apart) {
   const more = steady ? Math.abs(high) || 1 : 0.08 * (high - low);
   const ticks = steady ? [high] : [];
   [low, high] = [low - more, high + more];
-  const step = spacing(((high - low) * apart) / Math.abs(to - from));
+  const step = roundSpacing(((high - low) * apart) / Math.abs(to - from));
   if (!steady)
     for (let k = Math.ceil(low / step); k * step <= high; k++) ticks.push(Number((k * step).toPrecision(12)));
   return { at: (value) => from + ((value - low) / (high - low)) * (to - from), ticks };

@@ -1,10 +1,10 @@
 /** The numbers that the designs of an answer have in common: what they are chosen by. */
 
-import { words } from "../core/dom.js";
-import { brief, exact, figures, unitFor } from "../design/design_metrics.js";
+import { toWords } from "../core/dom.js";
+import { formatBriefly, isExact, listFigures, metricUnit } from "../design/design_metrics.js";
 import * as api from "../core/api.js";
 import { t, term } from "../core/messages.js";
-import { symbolOf } from "../core/units.js";
+import { unitSymbol } from "../core/units.js";
 
 /** @import { Design, Problem, Schemas } from "../types/values.js" */
 
@@ -19,14 +19,14 @@ import { symbolOf } from "../core/units.js";
  */
 
 /** Of what more is better; of all else less is. */
-const MORE = /^(quality|yield|min_.*|.*efficiency|.*_share|locking_angle|transmission_angle)$/;
+const MORE_IS_BETTER = /^(quality|yield|min_.*|.*efficiency|.*_share|locking_angle|transmission_angle)$/;
 
 /** @param {Design[]} designs @param {Problem} problem @returns {Quantity[]} the telling ones first */
-export function quantities(designs, problem) {
+export function collectQuantities(designs, problem) {
   const names = [
     ...new Set(
       designs.flatMap((design) =>
-        figures(design)
+        listFigures(design)
           .filter(([, value]) => typeof value === "number")
           .map(([name]) => name),
       ),
@@ -34,38 +34,38 @@ export function quantities(designs, problem) {
   ];
   const sizes = designs.map((design) => design.metrics?.size);
   const found = names.map((name) =>
-    made(
+    createQuantity(
       name,
-      words(name),
-      unitFor(name, problem),
+      toWords(name),
+      metricUnit(name, problem),
       designs.map((design, n) =>
-        plain(
+        clearRounding(
           name,
           /** @type {Record<string, unknown>} */ (design.metrics ?? {})[name],
-          api.measures(problem.kind)[name],
+          api.metricDimensions(problem.kind)[name],
           sizes[n],
         ),
       ),
     ),
   );
-  for (const check of checksOf(designs)) {
+  for (const check of collectChecks(designs)) {
     const values = designs.map((design, n) => {
       const one = (design.verification?.checks ?? []).find((other) => other.name === check.name);
-      return plain(check.name, one?.value, check.dimension ?? undefined, sizes[n]);
+      return clearRounding(check.name, one?.value, check.dimension ?? undefined, sizes[n]);
     });
     const told = found.some((one) => one.values.every((value, n) => value === values[n]));
-    if (!told && differ(values))
+    if (!told && valuesDiffer(values))
       found.push(
-        made(
+        createQuantity(
           `check:${check.name}`,
           t`Check: ${term(check.name)}`,
-          symbolOf(check.dimension ?? undefined, problem),
+          unitSymbol(check.dimension ?? undefined, problem),
           values,
         ),
       );
   }
   // What all have alike is no choice.
-  return [...found.filter((one) => differ(one.values)), ...found.filter((one) => !differ(one.values))];
+  return [...found.filter((one) => valuesDiffer(one.values)), ...found.filter((one) => !valuesDiffer(one.values))];
 }
 
 /**
@@ -75,12 +75,12 @@ export function quantities(designs, problem) {
  * @param {(number | null)[]} values
  * @returns {Quantity}
  */
-function made(name, text, unit, values) {
-  return { name, text, unit, values, more: MORE.test(name.replace("check:", "")) };
+function createQuantity(name, text, unit, values) {
+  return { name, text, unit, values, more: MORE_IS_BETTER.test(name.replace("check:", "")) };
 }
 
 /** Every check with a number, once. @param {Design[]} designs @returns {Schemas["Check"][]} */
-function checksOf(designs) {
+function collectChecks(designs) {
   const all = designs
     .flatMap((design) => design.verification?.checks ?? [])
     .filter((one) => typeof one.value === "number");
@@ -94,29 +94,29 @@ function checksOf(designs) {
  * @param {number | undefined} size
  * @returns {number | null}
  */
-function plain(name, value, dimension, size) {
+function clearRounding(name, value, dimension, size) {
   if (typeof value !== "number" || !Number.isFinite(value)) return null;
-  return exact(name, value, dimension, size) ? 0 : value;
+  return isExact(name, value, dimension, size) ? 0 : value;
 }
 
 /** Whether there is a choice at all. @param {(number | null)[]} values */
-export function differ(values) {
-  const [low, high] = range(values);
+export function valuesDiffer(values) {
+  const [low, high] = valueRange(values);
   return high - low > 1e-9 * Math.max(Math.abs(low), Math.abs(high));
 }
 
 /** Least and greatest of those that are known. @param {(number | null)[]} values @returns {[number, number]} */
-export function range(values) {
+export function valueRange(values) {
   const known = values.filter((one) => one !== null);
   return known.length ? [known.reduce((a, b) => Math.min(a, b)), known.reduce((a, b) => Math.max(a, b))] : [0, 0];
 }
 
 /** A number with its unit, three digits. @param {Quantity} quantity @param {number} value */
-export function told({ unit }, value) {
-  return `${brief(value)}${unit === "" || unit === "°" ? unit : ` ${unit}`}`;
+export function formatQuantity({ unit }, value) {
+  return `${formatBriefly(value)}${unit === "" || unit === "°" ? unit : ` ${unit}`}`;
 }
 
 /** Its name with its unit. @param {Quantity} quantity */
-export function titled({ text, unit }) {
+export function quantityTitle({ text, unit }) {
   return unit ? `${text} (${unit})` : text;
 }

@@ -1,8 +1,8 @@
 /** Where the parts of an assembly are at an input: between two of those that the service tells, on a straight line. */
 
 /**
- * @typedef {{origins: number[][], along: number[][], normals: number[][]}} Standing
- * @typedef {{pivot: [number, number], angles: number[], places: [number, number][], frame: Standing | null}} Carrier
+ * @typedef {{origins: number[][], along: number[][], normals: number[][]}} PlaneFrame
+ * @typedef {{pivot: [number, number], angles: number[], places: [number, number][], frame: PlaneFrame | null}} Carrier
  * @typedef {{quantity: "angle" | "place", low: number, high: number, reference: number, closed: boolean, endless:
  *   boolean, values: number[]}} Inputs
  */
@@ -13,14 +13,14 @@ export class AssemblyMotion {
     this.inputs = inputs;
     this.carriers = carriers;
     /** How each goes round, where all do so evenly and without end. @type {Map<Carrier, Orbit>} */
-    this.orbits = new Map(inputs.endless ? carriers.map((carrier) => [carrier, orbit(carrier.places)]) : []);
+    this.orbits = new Map(inputs.endless ? carriers.map((carrier) => [carrier, findOrbit(carrier.places)]) : []);
   }
 
   /**
    * The place of an input in the arrays, as a fraction; the nearest there is where the parts were not made for it.
    * @param {number} input @returns {{at: number, within: boolean}}
    */
-  place(input) {
+  findIndex(input) {
     const { values, low, high, closed, endless, quantity } = this.inputs;
     const count = values.length;
     if (count < 2) return { at: 0, within: true };
@@ -44,7 +44,7 @@ export class AssemblyMotion {
    * Where a carrier is: the angle by which it has turned, radians, and the place of its pivot.
    * @param {Carrier} carrier @param {number} at @returns {{angle: number, place: [number, number]}}
    */
-  carried(carrier, at) {
+  carrierPose(carrier, at) {
     const { angles, places } = carrier;
     const count = angles.length;
     const round = this.orbits.get(carrier);
@@ -80,7 +80,7 @@ export class AssemblyMotion {
  * @param {[number, number][]} places
  * @returns {Orbit}
  */
-function orbit(places) {
+function findOrbit(places) {
   const still = { centre: places[0], arm: /** @type {[number, number]} */ ([0, 0]), step: 0 };
   if (places.length < 3) return still;
   const [[ax, ay], [bx, by], [cx, cy]] = places;

@@ -14,19 +14,19 @@ import { Surface } from "./solids.js";
  */
 
 /** Field of view, degrees. */
-const FIELD = 30;
+const FIELD_OF_VIEW = 30;
 
 /** Milliseconds in which the camera goes to another place. */
 const TRAVEL_MS = 350;
 
 /** Inputs at which it is seen how far it reaches. */
-const SEEN_AT = 12;
+const EXTENT_SAMPLES = 12;
 
 /** Directions from which it is looked at. @type {Record<string, [number, number, number]>} */
 export const VIEWS = { Isometric: [1, -1, 0.9], Top: [0, -1e-4, 1], Front: [0, -1, 0], Side: [1, 0, 0] };
 
 /** Whether this browser can draw in three dimensions. */
-export function drawable() {
+export function canDraw() {
   return document.createElement("canvas").getContext("webgl2") !== null;
 }
 
@@ -58,7 +58,7 @@ export class AssemblyScene {
     this.scene = new THREE.Scene();
     this.root = new THREE.Group();
     this.scene.add(this.root);
-    this.camera = new THREE.PerspectiveCamera(FIELD, 1, 0.1, 10);
+    this.camera = new THREE.PerspectiveCamera(FIELD_OF_VIEW, 1, 0.1, 10);
     this.camera.up.set(0, 0, 1);
     this.carriers = assembly.carriers.map(() => {
       const group = new THREE.Group();
@@ -66,11 +66,11 @@ export class AssemblyScene {
       this.root.add(group);
       return group;
     });
-    this.solids = assembly.parts.map((part) => this.solid(part));
+    this.solids = assembly.parts.map((part) => this.createSolid(part));
     this.show(0);
-    this.reach = this.around();
-    this.lit();
-    this.ground = this.floor(assembly);
+    this.reach = this.measureExtent();
+    this.addLights();
+    this.ground = this.addFloor(assembly);
     this.controls = new OrbitControls(this.camera, canvas);
     this.controls.addEventListener("change", () => (this.dirty = true));
     this.controls.addEventListener("start", () => {
@@ -80,24 +80,24 @@ export class AssemblyScene {
     this.controls.maxDistance = 40 * this.reach.radius;
     this.controls.minDistance = 0.3 * this.reach.radius;
     this.schemes = matchMedia("(prefers-color-scheme: dark)");
-    this.tint = () => this.tinted();
+    this.tint = () => this.applyColours();
     this.schemes.addEventListener("change", this.tint);
-    this.tinted();
-    this.sizes = new ResizeObserver(() => this.sized());
+    this.applyColours();
+    this.sizes = new ResizeObserver(() => this.resize());
     this.sizes.observe(canvas);
-    this.pointed();
-    this.sized();
-    this.look("Isometric", false);
+    this.listenToPointer();
+    this.resize();
+    this.lookFrom("Isometric", false);
     const step = (/** @type {number} */ now) => {
       this.frame = requestAnimationFrame(step);
-      this.travelled(now);
+      this.stepCamera(now);
       if (this.dirty) this.draw();
     };
     this.frame = requestAnimationFrame(step);
   }
 
   /** @param {import("./assembly_view.js").Part} part @returns {Solid} */
-  solid(part) {
+  createSolid(part) {
     const surface = new Surface((outer, holes) =>
       THREE.ShapeUtils.triangulateShape(
         outer.map(([x, y]) => new THREE.Vector2(x, y)),
@@ -137,7 +137,7 @@ export class AssemblyScene {
   }
 
   /** Light from above at the left, and from all around; shadows reach as far as the assembly goes. */
-  lit() {
+  addLights() {
     const { centre, radius } = this.reach;
     this.scene.add(new THREE.HemisphereLight(0xffffff, 0xc9d1da, 2.1));
     const sun = new THREE.DirectionalLight(0xffffff, 2.1);
@@ -162,9 +162,9 @@ export class AssemblyScene {
   }
 
   /** A grid below everything, a line every so many millimetres, and what catches shadows. @param {Assembly} assembly */
-  floor(assembly) {
+  addFloor(assembly) {
     const { centre, radius } = this.reach;
-    const step = stepOf((2 * radius) / 12);
+    const step = roundStep((2 * radius) / 12);
     const lines = 2 * Math.ceil((1.25 * radius) / step);
     const grid = new THREE.GridHelper(lines * step, lines);
     grid.rotation.x = Math.PI / 2;
@@ -184,15 +184,15 @@ export class AssemblyScene {
   }
 
   /** What the assembly reaches over its whole motion. */
-  around() {
+  measureExtent() {
     const count = this.motion.inputs.values.length;
     /**
      * Corners of the boxes of all parts, and how far they go which way.
      * @type {{place: THREE.Vector3, lift: number, along: THREE.Vector3}[]}
      */
     const corners = [];
-    for (let k = 0; k < SEEN_AT; k++) {
-      this.show(((count - 1) * k) / (SEEN_AT - 1));
+    for (let k = 0; k < EXTENT_SAMPLES; k++) {
+      this.show(((count - 1) * k) / (EXTENT_SAMPLES - 1));
       this.root.updateMatrixWorld(true);
       for (const { mesh, lift, along } of this.solids) {
         const { min, max } = /** @type {THREE.Box3} */ (mesh.geometry.boundingBox);
@@ -210,7 +210,7 @@ export class AssemblyScene {
   }
 
   /** The colours of the page. */
-  tinted() {
+  applyColours() {
     const style = getComputedStyle(document.documentElement);
     const colour = (/** @type {string} */ name) => new THREE.Color(style.getPropertyValue(name).trim());
     this.scene.background = colour("--sheet");
@@ -229,10 +229,10 @@ export class AssemblyScene {
       edges.material.opacity = dark ? 0.35 : 0.6;
     }
     this.accent = colour("--accent");
-    this.marked();
+    this.showMarks();
   }
 
-  sized() {
+  resize() {
     const { clientWidth, clientHeight } = this.canvas;
     if (!clientWidth || !clientHeight) return;
     this.renderer.setPixelRatio(Math.min(devicePixelRatio, 2));
@@ -247,13 +247,13 @@ export class AssemblyScene {
     this.at = at;
     this.carriers.forEach((group, k) => {
       const carrier = this.motion.carriers[k];
-      const { angle, place } = this.motion.carried(carrier, at);
+      const { angle, place } = this.motion.carrierPose(carrier, at);
       const [px, py] = carrier.pivot;
       group.matrix
         .makeTranslation(place[0], place[1], 0)
         .multiply(new THREE.Matrix4().makeRotationZ(angle))
         .multiply(new THREE.Matrix4().makeTranslation(-px, -py, 0));
-      if (carrier.frame) group.matrix.premultiply(standing(carrier.frame, at));
+      if (carrier.frame) group.matrix.premultiply(createPlaneMatrix(carrier.frame, at));
       group.matrixWorldNeedsUpdate = true;
     });
     this.dirty = true;
@@ -276,18 +276,18 @@ export class AssemblyScene {
   }
 
   /** @param {string | null} item */
-  choose(item) {
+  highlight(item) {
     this.chosen = item;
-    this.marked();
+    this.showMarks();
   }
 
   /** @param {string | null} which of the kinds of parts, or which part */
-  hover(which) {
+  setHovered(which) {
     this.hovered = which;
-    this.marked();
+    this.showMarks();
   }
 
-  marked() {
+  showMarks() {
     for (const { item, group, mesh } of this.solids) {
       const pointed = this.hovered === item || this.hovered === group.name;
       const light = item === this.chosen ? 0.5 : pointed ? 0.25 : 0;
@@ -298,17 +298,17 @@ export class AssemblyScene {
   }
 
   /** Go to where it is seen whole from a direction. @param {string} name @param {boolean} [animated] */
-  look(name, animated = !matchMedia("(prefers-reduced-motion: reduce)").matches) {
-    this.go(new THREE.Vector3(...VIEWS[name]), animated);
+  lookFrom(name, animated = !matchMedia("(prefers-reduced-motion: reduce)").matches) {
+    this.moveCamera(new THREE.Vector3(...VIEWS[name]), animated);
   }
 
   /** See it whole, from where it is looked at now. @param {boolean} [animated] */
   fit(animated = !matchMedia("(prefers-reduced-motion: reduce)").matches) {
-    this.go(this.camera.position.clone().sub(this.controls.target), animated);
+    this.moveCamera(this.camera.position.clone().sub(this.controls.target), animated);
   }
 
   /** @param {THREE.Vector3} direction @param {boolean} animated */
-  go(direction, animated) {
+  moveCamera(direction, animated) {
     this.fitted = true;
     const corners = this.reach.corners.map(({ place, lift, along }) =>
       place.clone().addScaledVector(along, this.explosion * lift),
@@ -323,7 +323,7 @@ export class AssemblyScene {
     const aim = new THREE.Vector3();
     for (const way of [right, up, toward]) aim.addScaledVector(way, middle(way));
     // The distance at which all corners lie in the picture.
-    const high = Math.tan((FIELD * Math.PI) / 360);
+    const high = Math.tan((FIELD_OF_VIEW * Math.PI) / 360);
     const wide = high * this.camera.aspect;
     const away = corners.reduce((most, corner) => {
       const from = corner.clone().sub(aim);
@@ -354,7 +354,7 @@ export class AssemblyScene {
   }
 
   /** @param {number} now */
-  travelled(now) {
+  stepCamera(now) {
     if (!this.travel) return;
     const { from, to, target, aim, began } = this.travel;
     const share = Math.min(1, Math.max(0, (now - began) / TRAVEL_MS));
@@ -375,7 +375,7 @@ export class AssemblyScene {
   }
 
   /** Turn, zoom and move by keys; whether it was one of them. @param {KeyboardEvent} event */
-  key(event) {
+  handleKey(event) {
     const by = { ArrowLeft: [1, 0], ArrowRight: [-1, 0], ArrowUp: [0, 1], ArrowDown: [0, -1] }[event.key];
     this.travel = null;
     if (!event.key.match(/^(Shift|Tab)$/)) this.fitted = false;
@@ -392,7 +392,7 @@ export class AssemblyScene {
   }
 
   /** What lies under the pointer is told, and chosen by a click; a drag is none. */
-  pointed() {
+  listenToPointer() {
     /** @type {[number, number] | null} */
     let down = null;
     const under = (/** @type {PointerEvent} */ event) => {
@@ -426,7 +426,7 @@ export class AssemblyScene {
   }
 
   /** The picture as it is seen now. @returns {Promise<Blob>} */
-  picture() {
+  takePicture() {
     this.draw();
     return new Promise((done, failed) =>
       this.canvas.toBlob((blob) => (blob ? done(blob) : failed(new Error("the picture is too large"))), "image/png"),
@@ -451,10 +451,10 @@ export class AssemblyScene {
 
 /**
  * Where a plane is at a place of the arrays; it stands still between two of them.
- * @param {import("./assembly_motion.js").Standing} frame
+ * @param {import("./assembly_motion.js").PlaneFrame} frame
  * @param {number} at
  */
-function standing({ origins, along, normals }, at) {
+function createPlaneMatrix({ origins, along, normals }, at) {
   const of = (/** @type {number[][]} */ list) =>
     new THREE.Vector3(...list[list.length === 1 ? 0 : Math.round(at) % list.length]);
   const [x, z] = [of(along), of(normals)];
@@ -462,7 +462,7 @@ function standing({ origins, along, normals }, at) {
 }
 
 /** A step of 1, 2 or 5 times a power of ten, not below so much. @param {number} least */
-export function stepOf(least) {
+export function roundStep(least) {
   const power = 10 ** Math.floor(Math.log10(least));
   return power * ([1, 2, 5, 10].find((one) => one * power >= least) ?? 10);
 }

@@ -3,11 +3,11 @@
  */
 
 import * as api from "../core/api.js";
-import { el, shown } from "../core/dom.js";
-import { saved } from "../design/design_files.js";
-import { foreign, t, term, translated } from "../core/messages.js";
-import { between } from "../core/player.js";
-import { symbolOf } from "../core/units.js";
+import { createElement, formatNumber } from "../core/dom.js";
+import { saveFile } from "../design/design_files.js";
+import { foreignLanguage, t, term, translate } from "../core/messages.js";
+import { interpolate } from "../core/player.js";
+import { unitSymbol } from "../core/units.js";
 
 /** @import { Schemas, Solved } from "../types/values.js" */
 
@@ -22,23 +22,26 @@ import { symbolOf } from "../core/units.js";
 /**
  * What moves in the drawing.
  * @typedef {{player: import("../core/player.js").Player, motion: {input_angle: (number | null)[], engaged?: number[]}}}
- *   Led
+ *   LeadingMotion
  */
 
-/** @typedef {{all: HTMLInputElement, names: string[], each: Map<string, HTMLInputElement>}} Shows `each` by `names` */
+/**
+ * @typedef {{all: HTMLInputElement, names: string[], each: Map<string, HTMLInputElement>}} VisibilityBox `each` by
+ *   `names`
+ */
 
 /** Inputs that are asked for. */
-const POSITIONS = 144;
+const POSITION_COUNT = 144;
 
 /** The scale that a refusal says will do. */
-const SCALE = /fit at scale ([\d.e+]+) or more|; use at most scale ([\d.e+-]*\d)/;
+const SCALE_PATTERN = /fit at scale ([\d.e+]+) or more|; use at most scale ([\d.e+-]*\d)/;
 
 const PROCESSES = { laser: t`cut by laser`, print: t`printed`, mill: t`milled` };
 
 export class AssemblyView {
   /**
    * @param {HTMLElement} place of the list of parts @param {Solved} job @param {number} n
-   * @param {() => Partial<Led> | null} moving what moves in the drawing now, if anything does
+   * @param {() => Partial<LeadingMotion> | null} moving what moves in the drawing now, if anything does
    * @param {HTMLElement} board of the picture
    */
   constructor(place, job, n, moving, board) {
@@ -65,16 +68,16 @@ export class AssemblyView {
     this.engaged = null;
     /** The place of the drawing's motion that is shown. @type {number} */
     this.seen = NaN;
-    this.list = el("div");
-    this.fileFault = el("p", { class: "error", role: "alert" });
-    this.beyond = el("p", { class: "note", hidden: true });
-    /** Of each kind of part: what shows all of it, and what shows each. @type {Shows[]} */
+    this.list = createElement("div");
+    this.fileFault = createElement("p", { class: "error", role: "alert" });
+    this.beyond = createElement("p", { class: "note", hidden: true });
+    /** Of each kind of part: what shows all of it, and what shows each. @type {VisibilityBox[]} */
     this.shows = [];
-    this.words = el("p", { class: "note", role: "status" });
-    this.fault = el("div", { class: "fault", role: "alert" });
-    this.body = el("div", { class: "assembly", hidden: true });
-    this.form = this.sizes();
-    styled();
+    this.words = createElement("p", { class: "note", role: "status" });
+    this.fault = createElement("div", { class: "fault", role: "alert" });
+    this.body = createElement("div", { class: "assembly", hidden: true });
+    this.form = this.createSizeFields();
+    loadStyles();
     place.replaceChildren(this.form, this.fault, this.words, this.body);
     this.load();
     const step = () => {
@@ -85,17 +88,17 @@ export class AssemblyView {
   }
 
   /** What the parts are made of, as the files are asked for. */
-  sizes() {
-    const unit = symbolOf("length", this.job.problem);
+  createSizeFields() {
+    const unit = unitSymbol("length", this.job.problem);
     const field = (/** @type {string} */ name, /** @type {string} */ title, /** @type {HTMLElement} */ box) => {
       box.id = `assembly-${name}`;
       box.setAttribute("name", name);
       box.setAttribute("aria-describedby", "assembly-fault");
-      return el("span", { class: "field" }, el("label", { for: box.id }, title), box);
+      return createElement("span", { class: "field" }, createElement("label", { for: box.id }, title), box);
     };
     const number = (/** @type {string} */ hint) =>
-      el("input", { type: "number", min: 0, step: "any", inputmode: "decimal", placeholder: hint });
-    const form = el(
+      createElement("input", { type: "number", min: 0, step: "any", inputmode: "decimal", placeholder: hint });
+    const form = createElement(
       "form",
       {
         class: "row sizes",
@@ -109,23 +112,23 @@ export class AssemblyView {
       field(
         "process",
         t`Made`,
-        el(
+        createElement(
           "select",
           { onchange: () => this.load() },
-          ...Object.entries(PROCESSES).map(([value, title]) => el("option", { value }, title)),
+          ...Object.entries(PROCESSES).map(([value, title]) => createElement("option", { value }, title)),
         ),
       ),
       field("pin", t`Pin (${unit})`, number(t`what fits`)),
       field("width", t`Width (${unit})`, number(t`2.5 pins`)),
       field("scale", t`Scale`, number("1")),
-      el("button", { type: "submit", class: "small" }, t`Make them so`),
+      createElement("button", { type: "submit", class: "small" }, t`Make them so`),
     );
     this.fault.id = "assembly-fault";
     return form;
   }
 
   /** Of a gearbox: the number of the speed that is engaged in the drawing, from 1. @returns {number | null} */
-  speed() {
+  engagedSpeed() {
     const { mechanism, metrics } = this.job.result.designs[this.n];
     if (mechanism.type !== "gearbox") return null;
     const speeds = /** @type {Schemas["SpindleSpeed"][]} */ (metrics.speeds);
@@ -140,7 +143,7 @@ export class AssemblyView {
   }
 
   /** The fields that are filled in. @returns {Record<string, string>} */
-  stated() {
+  readSizes() {
     const boxes = /** @type {HTMLInputElement[]} */ ([...this.form.querySelectorAll("[name]")]);
     const filled = boxes.filter(({ value }) => value.trim() !== "").map(({ name, value }) => [name, value.trim()]);
     return Object.fromEntries(this.engaged === null ? filled : [...filled, ["speed", String(this.engaged)]]);
@@ -149,56 +152,56 @@ export class AssemblyView {
   async load() {
     this.asked?.abort();
     const asked = (this.asked = new AbortController());
-    this.engaged = this.speed();
+    this.engaged = this.engagedSpeed();
     this.words.textContent = t`The parts are being made …`;
     this.body.setAttribute("aria-busy", "true");
-    this.clear();
-    if (!this.scene) this.said(t`The parts are being made …`);
+    this.clearErrors();
+    if (!this.scene) this.showNote(t`The parts are being made …`);
     try {
-      const query = this.stated();
+      const query = this.readSizes();
       const [assembly, drawing] = await Promise.all([
-        api.assembly(this.job.id, this.n, { ...query, positions: String(POSITIONS) }, asked.signal),
+        api.fetchAssembly(this.job.id, this.n, { ...query, positions: String(POSITION_COUNT) }, asked.signal),
         import("./assembly_scene.js"),
       ]);
       if (asked.signal.aborted || this.gone.signal.aborted) return;
-      this.drawing = drawing.drawable() ? drawing : null;
+      this.drawing = drawing.canDraw() ? drawing : null;
       this.present(assembly, query);
     } catch (error) {
       if (asked.signal.aborted || this.gone.signal.aborted) return;
       this.words.replaceChildren();
       this.body.hidden = true;
-      this.said(t`There are no such parts.`);
+      this.showNote(t`There are no such parts.`);
       this.scene?.stop();
       this.scene = null;
-      this.refused(error);
+      this.showRefusal(error);
     }
     this.body.removeAttribute("aria-busy");
   }
 
   /** Say something in the place of the picture. @param {string} what */
-  said(what) {
-    this.board.replaceChildren(el("div", { class: "said" }, el("p", { class: "note" }, what)));
+  showNote(what) {
+    this.board.replaceChildren(createElement("div", { class: "said" }, createElement("p", { class: "note" }, what)));
   }
 
   /** Nothing is wrong any more. */
-  clear() {
+  clearErrors() {
     this.fault.replaceChildren();
     for (const box of this.form.querySelectorAll("[aria-invalid]")) box.removeAttribute("aria-invalid");
   }
 
   /** Say why there are no such parts, and offer what works. @param {unknown} error */
-  refused(error) {
-    const faults = error instanceof api.Refused ? error.errors : [];
+  showRefusal(error) {
+    const faults = error instanceof api.Refusal ? error.errors : [];
     const reason =
       faults.map((one) => one.detail).join(" ") || (error instanceof Error ? error.message : String(error));
-    this.fault.replaceChildren(el("p", { class: "error" }, reason));
+    this.fault.replaceChildren(createElement("p", { class: "error" }, reason));
     for (const { path } of faults)
       this.form.querySelector(`[name="${path.replace("/query/", "")}"]`)?.setAttribute("aria-invalid", "true");
-    const [, least, greatest] = SCALE.exec(reason) ?? [];
+    const [, least, greatest] = SCALE_PATTERN.exec(reason) ?? [];
     const scale = least ?? greatest;
     if (scale === undefined) return;
     this.fault.append(
-      el(
+      createElement(
         "button",
         {
           type: "button",
@@ -225,43 +228,45 @@ export class AssemblyView {
     this.words.textContent =
       [
         t`${assembly.parts.length} parts of ${kinds.size} kinds`,
-        assembly.scale !== 1 && t`${shown(assembly.scale)} times the design`,
+        assembly.scale !== 1 && t`${formatNumber(assembly.scale)} times the design`,
       ]
         .filter(Boolean)
         .join(", ") + ".";
-    this.list = this.listed(assembly, query);
+    this.list = this.listParts(assembly, query);
     this.body.hidden = false;
     if (!this.drawing) {
       const reason = t`This browser does not draw in three dimensions (WebGL 2 is missing or switched off). The parts are listed, and their files are there.`;
-      this.said(reason);
+      this.showNote(reason);
       this.body.replaceChildren(this.list);
       return;
     }
-    const canvas = el("canvas", {
+    const canvas = createElement("canvas", {
       class: "canvas solid",
       tabindex: 0,
       role: "application",
       "aria-describedby": "assembly-keys",
       "aria-label": t`The assembly in three dimensions, ${assembly.parts.length} parts`,
       onkeydown: (/** @type {KeyboardEvent} */ event) => {
-        if (!event.ctrlKey && !event.metaKey && !event.altKey && this.scene?.key(event)) event.preventDefault();
+        if (!event.ctrlKey && !event.metaKey && !event.altKey && this.scene?.handleKey(event)) event.preventDefault();
       },
     });
     this.body.replaceChildren(this.list);
     this.board.replaceChildren(
-      el(
+      createElement(
         "figure",
         { class: "solids" },
-        this.tools(),
+        this.createTools(),
         canvas,
-        this.sliders(),
-        el(
+        this.createSliders(),
+        createElement(
           "p",
           { class: "note", id: "assembly-keys" },
           t`Drag to turn, with the right button or two fingers to move, the wheel or + and − to zoom; arrow keys turn, with Shift they move; Home shows all.`,
         ),
         this.beyond,
-        ...assembly.notes.map((note) => el("p", { class: "note", lang: foreign(note) }, translated(note))),
+        ...assembly.notes.map((note) =>
+          createElement("p", { class: "note", lang: foreignLanguage(note) }, translate(note)),
+        ),
       ),
     );
     this.scene = new this.drawing.AssemblyScene(canvas, assembly, {
@@ -276,26 +281,26 @@ export class AssemblyView {
   }
 
   /** Where it is looked at from, and its picture. */
-  tools() {
+  createTools() {
     const button = (/** @type {string} */ title, /** @type {() => void} */ does) =>
-      el("button", { type: "button", class: "small", onclick: does }, title);
-    return el(
+      createElement("button", { type: "button", class: "small", onclick: does }, title);
+    return createElement(
       "div",
       { class: "row", role: "toolbar", "aria-label": t`View of the assembly` },
-      ...Object.keys(this.drawing?.VIEWS ?? {}).map((name) => button(name, () => this.scene?.look(name))),
+      ...Object.keys(this.drawing?.VIEWS ?? {}).map((name) => button(name, () => this.scene?.lookFrom(name))),
       button(t`Fit`, () => this.scene?.fit()),
       button(
         t`Save picture`,
         async () =>
           this.scene &&
-          saved(URL.createObjectURL(await this.scene.picture()), `${this.job.kind}-${this.n + 1}-assembly.png`),
+          saveFile(URL.createObjectURL(await this.scene.takePicture()), `${this.job.kind}-${this.n + 1}-assembly.png`),
       ),
     );
   }
 
   /** How far its planes are apart; it moves with the drawing, whose clock stands beside it. */
-  sliders() {
-    const apart = el("input", {
+  createSliders() {
+    const apart = createElement("input", {
       type: "range",
       id: "explode",
       min: 0,
@@ -309,12 +314,12 @@ export class AssemblyView {
       },
     });
     apart.setAttribute("aria-valuetext", `${Math.round(100 * this.explosion)} %`);
-    return el(
+    return createElement(
       "div",
       { class: "row" },
-      el("label", { for: "explode" }, t`Apart`),
+      createElement("label", { for: "explode" }, t`Apart`),
       apart,
-      el(
+      createElement(
         "button",
         {
           type: "button",
@@ -334,41 +339,41 @@ export class AssemblyView {
    * @param {Assembly} assembly
    * @param {Record<string, string>} query
    */
-  listed(assembly, query) {
+  listParts(assembly, query) {
     /** @type {Map<string, Part[]>} */
     const kinds = new Map();
     for (const part of assembly.parts) kinds.set(part.item, [...(kinds.get(part.item) ?? []), part]);
     this.fileFault.replaceChildren();
     this.shows = [];
     const every = assembly.parts.map(({ name }) => name);
-    const all = el(
+    const all = createElement(
       "div",
       { class: "row" },
-      el("button", { type: "button", class: "small", onclick: () => this.show(every, true) }, t`Show all`),
-      el("button", { type: "button", class: "small", onclick: () => this.show(every, false) }, t`Hide all`),
-      this.file(t`All files`, t`All files as a zip`, `${this.job.kind}-${this.n + 1}-parts.zip`, () =>
-        api.parts(this.job.id, this.n, query),
+      createElement("button", { type: "button", class: "small", onclick: () => this.show(every, true) }, t`Show all`),
+      createElement("button", { type: "button", class: "small", onclick: () => this.show(every, false) }, t`Hide all`),
+      this.createFileButton(t`All files`, t`All files as a zip`, `${this.job.kind}-${this.n + 1}-parts.zip`, () =>
+        api.downloadParts(this.job.id, this.n, query),
       ),
     );
     const rows = [...kinds].map(([item, equals]) => {
       const [part, ...others] = equals;
-      const called = others.length ? term(item) : translated(part.described);
+      const called = others.length ? term(item) : translate(part.described);
       const names = equals.map(({ name }) => name);
-      const box = this.box(`show-${item}`, called, names);
-      const each = this.places(equals);
+      const box = this.createCheckbox(`show-${item}`, called, names);
+      const each = this.listPlaces(equals);
       this.shows.push({ all: box, names, each: each.boxes });
-      const swatch = el("span", { class: "swatch", "aria-hidden": "true" });
+      const swatch = createElement("span", { class: "swatch", "aria-hidden": "true" });
       swatch.style.backgroundColor = part.colour;
-      return el(
+      return createElement(
         "li",
         {
           "data-item": item,
-          onpointerenter: () => this.scene?.hover(item),
-          onpointerleave: () => this.scene?.hover(null),
+          onpointerenter: () => this.scene?.setHovered(item),
+          onpointerleave: () => this.scene?.setHovered(null),
         },
         box,
         swatch,
-        el(
+        createElement(
           "button",
           {
             type: "button",
@@ -379,35 +384,39 @@ export class AssemblyView {
           called,
           others.length > 0 && ` × ${others.length + 1}`,
         ),
-        el("span", { class: "note" }, part.standard || part.material),
-        el(
+        createElement("span", { class: "note" }, part.standard || part.material),
+        createElement(
           "span",
           { class: "files" },
           ...part.files.map((form) =>
-            this.file(form.toUpperCase(), t`${called} as ${form.toUpperCase()}`, `${item}.${form}`, () =>
-              api.part(this.job.id, this.n, item, form, query),
+            this.createFileButton(form.toUpperCase(), t`${called} as ${form.toUpperCase()}`, `${item}.${form}`, () =>
+              api.downloadPart(this.job.id, this.n, item, form, query),
             ),
           ),
         ),
         each.node,
       );
     });
-    this.told();
-    return el(
+    this.updateList();
+    return createElement(
       "div",
       { class: "parts" },
-      el("h3", { id: "assembly-parts", class: "minor" }, t`Parts`),
+      createElement("h3", { id: "assembly-parts", class: "minor" }, t`Parts`),
       all,
       this.fileFault,
-      el("ul", { "aria-labelledby": "assembly-parts" }, ...rows),
+      createElement("ul", { "aria-labelledby": "assembly-parts" }, ...rows),
       !api.makesSolids() &&
-        el("p", { class: "note" }, t`Outlines of plates are there. For solids the service needs its extra cad.`),
+        createElement(
+          "p",
+          { class: "note" },
+          t`Outlines of plates are there. For solids the service needs its extra cad.`,
+        ),
     );
   }
 
   /** @param {string} title @param {string} described @param {string} name @param {() => Promise<string>} make */
-  file(title, described, name, make) {
-    const button = el(
+  createFileButton(title, described, name, make) {
+    const button = createElement(
       "button",
       {
         type: "button",
@@ -418,9 +427,9 @@ export class AssemblyView {
           button.disabled = true;
           this.fileFault.replaceChildren();
           try {
-            saved(await make(), name);
+            saveFile(await make(), name);
           } catch (error) {
-            const reasons = error instanceof api.Refused ? error.errors.map((one) => one.detail) : [];
+            const reasons = error instanceof api.Refusal ? error.errors.map((one) => one.detail) : [];
             this.fileFault.replaceChildren(reasons.join(" ") || /** @type {Error} */ (error).message);
           }
           button.disabled = false;
@@ -432,8 +441,8 @@ export class AssemblyView {
   }
 
   /** What shows or hides parts. @param {string} id @param {string} called @param {string[]} names */
-  box(id, called, names) {
-    const box = el("input", {
+  createCheckbox(id, called, names) {
+    const box = createElement("input", {
       type: "checkbox",
       id,
       "aria-label": t`Show ${called}`,
@@ -447,7 +456,7 @@ export class AssemblyView {
    * @param {Part[]} equals
    * @returns {{node: HTMLElement | null, boxes: Map<string, HTMLInputElement>}}
    */
-  places(equals) {
+  listPlaces(equals) {
     if (equals.length === 1) return { node: null, boxes: new Map() };
     /** @type {Map<string, number>} */
     const met = new Map();
@@ -455,18 +464,27 @@ export class AssemblyView {
       const nth = (met.get(described) ?? 0) + 1;
       met.set(described, nth);
       const alike = equals.filter((one) => one.described === described).length > 1;
-      const called = `${translated(described)}${alike ? ` (${nth})` : ""}`;
-      const box = this.box(`show-place-${name}`, called, [name]);
-      const node = el(
+      const called = `${translate(described)}${alike ? ` (${nth})` : ""}`;
+      const box = this.createCheckbox(`show-place-${name}`, called, [name]);
+      const node = createElement(
         "label",
-        { for: box.id, onpointerenter: () => this.scene?.hover(name), onpointerleave: () => this.scene?.hover(null) },
+        {
+          for: box.id,
+          onpointerenter: () => this.scene?.setHovered(name),
+          onpointerleave: () => this.scene?.setHovered(null),
+        },
         box,
         called,
       );
       return { name, box, node };
     });
     return {
-      node: el("details", { class: "places" }, el("summary", {}, t`One by one`), ...rows.map(({ node }) => node)),
+      node: createElement(
+        "details",
+        { class: "places" },
+        createElement("summary", {}, t`One by one`),
+        ...rows.map(({ node }) => node),
+      ),
       boxes: new Map(rows.map(({ name, box }) => [name, box])),
     };
   }
@@ -478,11 +496,11 @@ export class AssemblyView {
       else this.hidden.add(name);
       this.scene?.hide(name, visible);
     }
-    this.told();
+    this.updateList();
   }
 
   /** The list says what is shown: of a kind all, some or none. */
-  told() {
+  updateList() {
     for (const { all, names, each } of this.shows) {
       for (const [name, box] of each) box.checked = !this.hidden.has(name);
       const shown = names.filter((name) => !this.hidden.has(name)).length;
@@ -493,14 +511,14 @@ export class AssemblyView {
 
   /** @param {string | null} item */
   hover(item) {
-    this.scene?.hover(item);
+    this.scene?.setHovered(item);
     for (const row of this.list.querySelectorAll("li")) row.classList.toggle("hovered", row.dataset.item === item);
   }
 
   /** @param {string | null} item */
   choose(item) {
     this.chosen = item;
-    this.scene?.choose(item);
+    this.scene?.highlight(item);
     for (const row of this.list.querySelectorAll("li")) {
       const chosen = row.dataset.item === item;
       row.querySelector(".called")?.setAttribute("aria-pressed", String(chosen));
@@ -508,8 +526,8 @@ export class AssemblyView {
     }
   }
 
-  /** What moves in the drawing, where it has a player. @returns {Led | null} */
-  led() {
+  /** What moves in the drawing, where it has a player. @returns {LeadingMotion | null} */
+  leadingMotion() {
     const moving = this.moving();
     const { player, motion } = moving ?? {};
     return player && motion && (motion.input_angle?.length ?? 0) > 1 ? { player, motion } : null;
@@ -517,8 +535,8 @@ export class AssemblyView {
 
   /** Go where the drawing is. */
   follow() {
-    const led = this.led();
-    if (led && this.speed() !== this.engaged) this.load();
+    const led = this.leadingMotion();
+    if (led && this.engagedSpeed() !== this.engaged) this.load();
     if (!led || !this.scene || !this.assembly) return;
     const { player, motion } = led;
     if (player.at === this.seen) return;
@@ -526,13 +544,13 @@ export class AssemblyView {
     const turns = Math.floor(player.at / player.last);
     const rest = player.at - turns * player.last;
     const [begin, end] = [Number(motion.input_angle[0]), Number(motion.input_angle[player.last])];
-    const input = Number(between(motion.input_angle, rest)) + turns * (end - begin);
-    const { at, within } = this.scene.motion.place(input);
+    const input = Number(interpolate(motion.input_angle, rest)) + turns * (end - begin);
+    const { at, within } = this.scene.motion.findIndex(input);
     this.scene.show(at);
     const { low, high, quantity } = this.assembly.input;
-    const unit = quantity === "angle" ? "°" : ` ${symbolOf("length", this.job.problem)}`;
+    const unit = quantity === "angle" ? "°" : ` ${unitSymbol("length", this.job.problem)}`;
     this.beyond.hidden = within;
-    const [from, to] = [low, high].map((end) => shown(Number(end.toFixed(2))) + unit);
+    const [from, to] = [low, high].map((end) => formatNumber(Number(end.toFixed(2))) + unit);
     this.beyond.textContent = t`The parts are made for inputs from ${from} to ${to}; the drawing is beyond, and they wait at the end.`;
   }
 
@@ -546,7 +564,7 @@ export class AssemblyView {
 }
 
 /** The style sheet of the view comes with the first of them. */
-function styled() {
+function loadStyles() {
   if (document.querySelector('link[href="/studio/assembly.css"]')) return;
-  document.head.append(el("link", { rel: "stylesheet", href: "/studio/assembly.css" }));
+  document.head.append(createElement("link", { rel: "stylesheet", href: "/studio/assembly.css" }));
 }

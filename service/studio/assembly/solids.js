@@ -24,13 +24,13 @@
  */
 
 /** Pieces of a whole circle. */
-const ROUND = 96;
+const CIRCLE_PIECES = 96;
 
 /** Turn of the normal from which on an edge is seen, radians. */
-const CREASE = 0.6;
+const CREASE_ANGLE = 0.6;
 
 /** Turn of a twisted prism within one layer, radians. */
-const TWIST = 0.06;
+const LAYER_TWIST = 0.06;
 
 export class Surface {
   /** @param {Triangulate} triangulate */
@@ -46,10 +46,10 @@ export class Surface {
 
   /** @param {Shape} shape */
   add(shape) {
-    if (shape.form === "prism") this.upright(shape, 0, [0, 0]);
-    else if (shape.form === "twisted") this.upright(shape, (shape.twist * Math.PI) / 180, shape.centre);
-    else if (shape.form === "turned") this.turned(shape);
-    else this.mesh(shape);
+    if (shape.form === "prism") this.addPrism(shape, 0, [0, 0]);
+    else if (shape.form === "twisted") this.addPrism(shape, (shape.twist * Math.PI) / 180, shape.centre);
+    else if (shape.form === "turned") this.addRevolution(shape);
+    else this.addMesh(shape);
   }
 
   /**
@@ -58,21 +58,21 @@ export class Surface {
    * @param {number} twist
    * @param {Point} centre
    */
-  upright({ low, high, outer, holes }, twist, centre) {
-    const outlines = [outer, ...holes].map(pieces);
-    const layers = Math.max(1, Math.ceil(Math.abs(twist) / TWIST));
+  addPrism({ low, high, outer, holes }, twist, centre) {
+    const outlines = [outer, ...holes].map(splitOutline);
+    const layers = Math.max(1, Math.ceil(Math.abs(twist) / LAYER_TWIST));
     const at = Array.from({ length: layers + 1 }, (_, k) => {
       const share = k / layers;
-      return { height: low + share * (high - low), turned: turning(twist * share, centre) };
+      return { height: low + share * (high - low), turned: createRotation(twist * share, centre) };
     });
     outlines.forEach((outline, n) => {
       const side = n === 0 ? 1 : -1;
       for (const piece of outline) {
-        for (let k = 0; k < layers; k++) this.wall(piece, at[k], at[k + 1], side);
+        for (let k = 0; k < layers; k++) this.addWall(piece, at[k], at[k + 1], side);
       }
-      this.outline(outline, at[0]);
-      this.outline(outline, at[layers]);
-      if (layers === 1) this.creases(outline, at[0], at[1]);
+      this.addOutline(outline, at[0]);
+      this.addOutline(outline, at[layers]);
+      if (layers === 1) this.addCreases(outline, at[0], at[1]);
     });
     const points = outlines.map((outline) => outline.map(({ from }) => from));
     const all = points.flat();
@@ -84,7 +84,7 @@ export class Surface {
         const corners = three.map((k) => turned.place(all[k]));
         const [a, b, c] = corners;
         const left = (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]) > 0;
-        for (const [x, y] of left === up > 0 ? corners : corners.reverse()) this.corner(x, y, height, 0, 0, up);
+        for (const [x, y] of left === up > 0 ? corners : corners.reverse()) this.addCorner(x, y, height, 0, 0, up);
       }
     }
   }
@@ -95,7 +95,7 @@ export class Surface {
    * @param {Level} above
    * @param {number} side 1 of an outline, -1 of a hole
    */
-  wall({ from, to, out }, below, above, side) {
+  addWall({ from, to, out }, below, above, side) {
     const [a, b, c, d] = [
       below.turned.place(from),
       below.turned.place(to),
@@ -117,41 +117,40 @@ export class Surface {
       [c, above.height, nc],
       [d, above.height, nd],
     ];
-    for (const [[x, y], z, [u, v]] of side > 0 ? quad : quad.reverse()) this.corner(x, y, z, side * u, side * v, 0);
+    for (const [[x, y], z, [u, v]] of side > 0 ? quad : quad.reverse()) this.addCorner(x, y, z, side * u, side * v, 0);
   }
 
   /** @param {number} x @param {number} y @param {number} z @param {number} u @param {number} v @param {number} w */
-  corner(x, y, z, u, v, w) {
+  addCorner(x, y, z, u, v, w) {
     this.places.push(x, y, z);
     this.normals.push(u, v, w);
   }
 
   /** @param {Piece[]} outline @param {Level} level */
-  outline(outline, { height, turned }) {
+  addOutline(outline, { height, turned }) {
     for (const { from, to } of outline) this.edges.push(...turned.place(from), height, ...turned.place(to), height);
   }
 
   /** Upright edges where an outline has corners. @param {Piece[]} outline @param {Level} below @param {Level} above */
-  creases(outline, below, above) {
+  addCreases(outline, below, above) {
     outline.forEach(({ from, out }, k) => {
       const before = outline[(k + outline.length - 1) % outline.length].out[1];
-      if (out[0][0] * before[0] + out[0][1] * before[1] < Math.cos(CREASE))
+      if (out[0][0] * before[0] + out[0][1] * before[1] < Math.cos(CREASE_ANGLE))
         this.edges.push(...from, below.height, ...from, above.height);
     });
   }
 
   /** @param {Shape} shape */
-  turned({ profile, centre }) {
-    const around = Array.from({ length: ROUND + 1 }, (_, k) => (2 * Math.PI * k) / ROUND).map((angle) => [
-      Math.cos(angle),
-      Math.sin(angle),
-    ]);
+  addRevolution({ profile, centre }) {
+    const around = Array.from({ length: CIRCLE_PIECES + 1 }, (_, k) => (2 * Math.PI * k) / CIRCLE_PIECES).map(
+      (angle) => [Math.cos(angle), Math.sin(angle)],
+    );
     profile.forEach(([r, z], n) => {
       const [s, t] = profile[(n + 1) % profile.length];
       const long = Math.hypot(s - r, t - z);
       if (long === 0 || (r === 0 && s === 0)) return;
       const [flat, up] = [(t - z) / long, (r - s) / long];
-      for (let k = 0; k < ROUND; k++) {
+      for (let k = 0; k < CIRCLE_PIECES; k++) {
         const [[c, d], [e, f]] = [around[k], around[k + 1]];
         /** @type {[number, number, number[]][]} */
         const quad = [
@@ -163,7 +162,7 @@ export class Surface {
           [s, t, [c, d]],
         ];
         for (const [radius, height, [x, y]] of quad) {
-          this.corner(centre[0] + radius * x, centre[1] + radius * y, height, flat * x, flat * y, up);
+          this.addCorner(centre[0] + radius * x, centre[1] + radius * y, height, flat * x, flat * y, up);
         }
         if (r > 0) this.edges.push(centre[0] + r * c, centre[1] + r * d, z, centre[0] + r * e, centre[1] + r * f, z);
       }
@@ -171,7 +170,7 @@ export class Surface {
   }
 
   /** @param {Shape} shape */
-  mesh({ corners, triangles }) {
+  addMesh({ corners, triangles }) {
     /** The normals of the triangles at an edge, by the numbers of its ends. @type {Map<string, number[]>} */
     const beside = new Map();
     for (const three of triangles) {
@@ -180,23 +179,23 @@ export class Surface {
       const cross = [p[1] * q[2] - p[2] * q[1], p[2] * q[0] - p[0] * q[2], p[0] * q[1] - p[1] * q[0]];
       const size = Math.hypot(...cross) || 1;
       const normal = cross.map((one) => one / size);
-      for (const corner of [a, b, c]) this.corner(corner[0], corner[1], corner[2], normal[0], normal[1], normal[2]);
+      for (const corner of [a, b, c]) this.addCorner(corner[0], corner[1], corner[2], normal[0], normal[1], normal[2]);
       three.forEach((one, n) => {
         const other = three[(n + 1) % 3];
         const key = one < other ? `${one} ${other}` : `${other} ${one}`;
         const before = beside.get(key);
         if (!before) beside.set(key, normal);
-        else if (before.reduce((sum, value, k) => sum + value * normal[k], 0) < Math.cos(CREASE))
+        else if (before.reduce((sum, value, k) => sum + value * normal[k], 0) < Math.cos(CREASE_ANGLE))
           this.edges.push(...corners[one], ...corners[other]);
       });
     }
   }
 }
 
-/** @typedef {{height: number, turned: ReturnType<typeof turning>}} Level */
+/** @typedef {{height: number, turned: ReturnType<typeof createRotation>}} Level */
 
 /** How places and directions are turned about a centre. @param {number} angle @param {Point} centre */
-function turning(angle, [x, y]) {
+function createRotation(angle, [x, y]) {
   const [c, s] = [Math.cos(angle), Math.sin(angle)];
   /** @param {Point} way @returns {Point} */
   const way = ([u, v]) => [c * u - s * v, s * u + c * v];
@@ -211,8 +210,8 @@ function turning(angle, [x, y]) {
 }
 
 /** An outline in straight pieces, counter-clockwise. @param {Outline} outline @returns {Piece[]} */
-export function pieces(outline) {
-  if (outline.form === "circle") return arc(outline.centre, outline.radius, 0, 2 * Math.PI);
+export function splitOutline(outline) {
+  if (outline.form === "circle") return sampleArc(outline.centre, outline.radius, 0, 2 * Math.PI);
   const { corners, bulges } = outline;
   const found = corners.flatMap((from, k) => {
     const to = corners[(k + 1) % corners.length];
@@ -226,14 +225,14 @@ export function pieces(outline) {
     }
     const away = (1 - bulge * bulge) / (4 * bulge);
     const centre = /** @type {Point} */ ([(from[0] + to[0]) / 2 - away * dy, (from[1] + to[1]) / 2 + away * dx]);
-    return arc(
+    return sampleArc(
       centre,
       Math.hypot(from[0] - centre[0], from[1] - centre[1]),
       Math.atan2(from[1] - centre[1], from[0] - centre[0]),
       4 * Math.atan(bulge),
     );
   });
-  return outline.smooth ? smoothed(found) : found;
+  return outline.smooth ? smoothNormals(found) : found;
 }
 
 /**
@@ -243,8 +242,8 @@ export function pieces(outline) {
  * @param {number} angle signed
  * @returns {Piece[]}
  */
-function arc(centre, radius, begin, angle) {
-  const count = Math.max(2, Math.ceil((Math.abs(angle) / (2 * Math.PI)) * ROUND));
+function sampleArc(centre, radius, begin, angle) {
+  const count = Math.max(2, Math.ceil((Math.abs(angle) / (2 * Math.PI)) * CIRCLE_PIECES));
   const side = Math.sign(angle);
   const ways = Array.from({ length: count + 1 }, (_, k) => begin + (angle * k) / count).map((at) => [
     Math.cos(at),
@@ -262,7 +261,7 @@ function arc(centre, radius, begin, angle) {
 }
 
 /** Pieces of a smooth curve: their normals go over into one another. @param {Piece[]} found @returns {Piece[]} */
-function smoothed(found) {
+function smoothNormals(found) {
   /** @param {Point} one @param {Point} other @returns {Point} */
   const between = (one, other) => {
     const [x, y] = [one[0] + other[0], one[1] + other[1]];

@@ -1,8 +1,8 @@
 /** The room in the picture of an answer: what stands, and the body that moves. */
 
-import { svg } from "../core/dom.js";
-import { hatched, legend, outline } from "../canvas/area_hatching.js";
-import { areas } from "../canvas/workspace.js";
+import { createSvg } from "../core/dom.js";
+import { createHatch, createLegend, outlinePath } from "../canvas/area_hatching.js";
+import { listAreas } from "../canvas/workspace.js";
 
 /** @import { Mechanism, Problem } from "../types/values.js" */
 
@@ -11,18 +11,18 @@ import { areas } from "../canvas/workspace.js";
 
 /** How a link lies: its turn, and where that takes a point. @typedef {{turn: Point, from: Point, to: Point}} Pose */
 
-export class RoomView {
+export class WorkspaceView {
   /** @param {Problem} problem @param {Mechanism} mechanism with its skeleton */
   constructor(problem, mechanism) {
-    this.areas = areas(problem.space);
+    this.areas = listAreas(problem.space);
     this.skeleton = mechanism.skeleton;
     const first = problem.positions?.[0];
     const body = this.areas.find((one) => one.role.name === "body");
     /** Corners of the body as it lies at the first target. @type {Point[]} */
-    this.body = body && first ? asMet(body.corners, first, mechanism) : [];
+    this.body = body && first ? alignCorners(body.corners, first, mechanism) : [];
     const joints =
       this.skeleton?.links.find((link) => link.name !== "ground" && link.joints.includes("P"))?.joints ?? [];
-    this.carrier = farthest(joints, this.skeleton?.joints ?? {});
+    this.carrier = farthestPair(joints, this.skeleton?.joints ?? {});
     this.standing = this.areas.filter((one) => one !== body);
     /** Joints of each moving link; the coupler of a body that has an outline is a bar. @type {string[][]} */
     this.links = (this.skeleton?.links ?? [])
@@ -40,21 +40,22 @@ export class RoomView {
   /** @param {import("../core/view.js").View} view */
   draw(view) {
     this.view = view;
-    this.path = hatched("body", "");
+    this.path = createHatch("body", "");
     this.plates = this.width
-      ? this.links.map(() => svg("path", { class: "plate", "stroke-width": view.scale * this.width }))
+      ? this.links.map(() => createSvg("path", { class: "plate", "stroke-width": view.scale * this.width }))
       : [];
-    return svg(
+    return createSvg(
       "g",
       { class: "room still" },
       ...this.standing.map((area) => {
-        const [u, v] = view.at(...area.top);
-        return svg(
+        const [u, v] = view.toPicture(...area.labelPoint);
+        return createSvg(
           "g",
           {},
-          svg("title", {}, area.label),
-          hatched(area.role.name, outline(view, area)),
-          area.role.name !== "box" && svg("text", { class: `area-mark ${area.role.name}`, x: u, y: v }, area.role.mark),
+          createSvg("title", {}, area.label),
+          createHatch(area.role.name, outlinePath(view, area)),
+          area.role.name !== "box" &&
+            createSvg("text", { class: `area-mark ${area.role.name}`, x: u, y: v }, area.role.mark),
         );
       }),
       ...this.plates,
@@ -65,7 +66,7 @@ export class RoomView {
   /** What the hatches mean; nothing where there is no room. @returns {Element[]} */
   get legend() {
     const roles = [...new Set(this.areas.map((area) => area.role))];
-    return roles.length ? [legend(roles)] : [];
+    return roles.length ? [createLegend(roles)] : [];
   }
 
   /**
@@ -73,22 +74,22 @@ export class RoomView {
    * @param {Places} places
    * @returns {Point[] | null}
    */
-  carried(places) {
+  createCarriedBody(places) {
     const { skeleton } = this;
     if (!this.body.length || !this.carrier || !skeleton) return null;
-    const pose = posed(
+    const pose = segmentPose(
       this.carrier.map((name) => skeleton.joints[name]),
       this.carrier.map((name) => places[name]),
     );
-    return pose && this.body.map((corner) => moved(pose, corner));
+    return pose && this.body.map((corner) => applyPose(pose, corner));
   }
 
   /** @param {Places} places */
   show(places) {
-    const corners = this.carried(places);
-    this.path?.setAttribute("d", corners && this.view ? outline(this.view, { circle: null, corners }) : "");
+    const corners = this.createCarriedBody(places);
+    this.path?.setAttribute("d", corners && this.view ? outlinePath(this.view, { circle: null, corners }) : "");
     this.plates?.forEach((plate, k) =>
-      plate.setAttribute("d", this.view ? plateOf(this.view, this.links[k], places) : ""),
+      plate.setAttribute("d", this.view ? findPlatePose(this.view, this.links[k], places) : ""),
     );
   }
 }
@@ -99,9 +100,11 @@ export class RoomView {
  * @param {string[]} joints
  * @param {Places} places
  */
-export function plateOf(view, joints, places) {
+export function findPlatePose(view, joints, places) {
   const points = joints.map((name) => places[name]);
-  return points.every(Boolean) ? `${view.path(/** @type {Point[]} */ (points))}${points.length > 2 ? "Z" : ""}` : "";
+  return points.every(Boolean)
+    ? `${view.pathData(/** @type {Point[]} */ (points))}${points.length > 2 ? "Z" : ""}`
+    : "";
 }
 
 /**
@@ -111,7 +114,7 @@ export function plateOf(view, joints, places) {
  * @param {Mechanism} mechanism
  * @returns {Point[]}
  */
-function asMet(corners, first, mechanism) {
+function alignCorners(corners, first, mechanism) {
   const stands = mechanism.reference_body_angle ?? first.angle ?? 0;
   const turn = ((stands - (first.angle ?? 0)) * Math.PI) / 180;
   const to = mechanism.skeleton?.joints.P;
@@ -120,7 +123,7 @@ function asMet(corners, first, mechanism) {
     from: /** @type {Point} */ ([first.x, first.y]),
     to,
   };
-  return pose ? corners.map((corner) => moved(pose, corner)) : corners;
+  return pose ? corners.map((corner) => applyPose(pose, corner)) : corners;
 }
 
 /**
@@ -129,7 +132,7 @@ function asMet(corners, first, mechanism) {
  * @param {Record<string, Point>} at
  * @returns {[string, string] | null}
  */
-function farthest(joints, at) {
+function farthestPair(joints, at) {
   const pairs = joints.flatMap((one, k) =>
     joints.slice(k + 1).map((other) => /** @type {[string, string]} */ ([one, other])),
   );
@@ -144,7 +147,7 @@ function farthest(joints, at) {
  * @param {(Point | null)[]} to
  * @returns {Pose | null}
  */
-function posed([a, b], [c, d]) {
+function segmentPose([a, b], [c, d]) {
   if (!a || !b || !c || !d) return null;
   const [ux, uy, vx, vy] = [b[0] - a[0], b[1] - a[1], d[0] - c[0], d[1] - c[1]];
   const size = Math.hypot(ux, uy) * Math.hypot(vx, vy);
@@ -152,7 +155,7 @@ function posed([a, b], [c, d]) {
 }
 
 /** @param {Pose} pose @param {Point} point @returns {Point} */
-function moved({ turn: [c, s], from, to }, [x, y]) {
+function applyPose({ turn: [c, s], from, to }, [x, y]) {
   const [dx, dy] = [x - from[0], y - from[1]];
   return [to[0] + c * dx - s * dy, to[1] + s * dx + c * dy];
 }

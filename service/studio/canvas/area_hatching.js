@@ -1,6 +1,6 @@
 /** How the areas of a room look: an outline, a hatch and a colour for each role, and the legend that tells them. */
 
-import { el, svg } from "../core/dom.js";
+import { createElement, createSvg } from "../core/dom.js";
 
 /** @typedef {[number, number]} Point */
 /** @typedef {import("./workspace.js").Role} Role */
@@ -9,7 +9,7 @@ import { el, svg } from "../core/dom.js";
  * Lines of the hatch in a tile of 8 px; roles that share a colour have different ones.
  * @type {Record<string, string>}
  */
-const LINES = {
+const HATCH_LINES = {
   o2: "M-2 6l4 4M-2 -2l12 12M6 -2l4 4",
   o4: "M-2 2l4 -4M-2 10l12 -12M6 10l4 -4",
   a: "M-2 6l4 4M-2 -2l12 12M6 -2l4 4",
@@ -19,20 +19,20 @@ const LINES = {
 };
 
 /** The patterns stand in the page once. @param {Document} page */
-function patterned(page) {
+function addPatterns(page) {
   if (page.getElementById("hatches")) return;
   page.body.append(
-    svg(
+    createSvg(
       "svg",
       { id: "hatches", class: "hidden", width: 0, height: 0, "aria-hidden": "true" },
-      svg(
+      createSvg(
         "defs",
         {},
-        ...Object.entries(LINES).map(([name, d]) =>
-          svg(
+        ...Object.entries(HATCH_LINES).map(([name, d]) =>
+          createSvg(
             "pattern",
             { id: `hatch-${name}`, width: 8, height: 8, patternUnits: "userSpaceOnUse" },
-            svg("path", { class: `hatch ${name}`, d }),
+            createSvg("path", { class: `hatch ${name}`, d }),
           ),
         ),
       ),
@@ -46,9 +46,14 @@ function patterned(page) {
  * @param {string} [d]
  * @param {Record<string, string>} [attributes]
  */
-export function hatched(role, d, attributes = {}) {
-  patterned(document);
-  return svg("path", { class: `area ${role}`, fill: LINES[role] ? `url(#hatch-${role})` : "none", d, ...attributes });
+export function createHatch(role, d, attributes = {}) {
+  addPatterns(document);
+  return createSvg("path", {
+    class: `area ${role}`,
+    fill: HATCH_LINES[role] ? `url(#hatch-${role})` : "none",
+    d,
+    ...attributes,
+  });
 }
 
 /**
@@ -56,26 +61,26 @@ export function hatched(role, d, attributes = {}) {
  * @param {import("../core/view.js").View} view
  * @param {{circle: {center: Point, radius: number} | null, corners: Point[]}} area
  */
-export function outline(view, { circle, corners }) {
-  if (!circle) return `${view.path(corners)}Z`;
-  const [u, v] = view.at(...circle.center);
+export function outlinePath(view, { circle, corners }) {
+  if (!circle) return `${view.pathData(corners)}Z`;
+  const [u, v] = view.toPicture(...circle.center);
   const r = view.scale * circle.radius;
   return `M${u - r} ${v}a${r} ${r} 0 1 0 ${2 * r} 0a${r} ${r} 0 1 0 ${-2 * r} 0Z`;
 }
 
 /** What the hatches mean. @param {Role[]} roles */
-export function legend(roles) {
-  return el(
+export function createLegend(roles) {
+  return createElement(
     "ul",
     { class: "legend", "aria-label": "Areas in the picture" },
     ...roles.map((role) =>
-      el(
+      createElement(
         "li",
         {},
-        svg(
+        createSvg(
           "svg",
           { viewBox: "0 0 26 16", width: 26, height: 16, "aria-hidden": "true" },
-          hatched(role.name, "M1 1h24v14h-24Z"),
+          createHatch(role.name, "M1 1h24v14h-24Z"),
         ),
         role.text,
       ),

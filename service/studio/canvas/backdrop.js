@@ -1,6 +1,6 @@
 /** A picture behind the canvas, to trace over: it is laid there, and scaled by two points whose distance is known. */
 
-import { el, shown, svg } from "../core/dom.js";
+import { createElement, formatNumber, createSvg } from "../core/dom.js";
 import { t } from "../core/messages.js";
 
 /** @typedef {[number, number]} Point */
@@ -9,7 +9,7 @@ import { t } from "../core/messages.js";
 const OPACITY = 0.45;
 
 /** The share of the canvas that a picture takes which has no scale yet. */
-const SHARE = 0.8;
+const INITIAL_SHARE = 0.8;
 
 export class Backdrop {
   /** @param {() => void} changed the canvas is to be drawn anew */
@@ -25,7 +25,7 @@ export class Backdrop {
     /** Points that have been clicked; null while nobody asks for them. @type {Point[] | null} */
     this.picked = null;
     this.unit = "mm";
-    this.node = el("div", { id: "backdrop" });
+    this.node = createElement("div", { id: "backdrop" });
   }
 
   /**
@@ -63,7 +63,7 @@ export class Backdrop {
    * @param {Point} point
    * @returns {Point}
    */
-  at([x, y]) {
+  toPlane([x, y]) {
     const { scale, corner } = this.placed ?? { scale: 1, corner: [0, 0] };
     return [corner[0] + scale * x, corner[1] + scale * y];
   }
@@ -74,11 +74,11 @@ export class Backdrop {
    * @param {SVGSVGElement} canvas
    * @returns {SVGElement[]}
    */
-  drawn(view, canvas) {
+  draw(view, canvas) {
     const { picture } = this;
     if (!picture) return [];
     if (!this.placed) {
-      const scale = (SHARE * Math.min(view.width / picture.width, view.height / picture.height)) / view.scale;
+      const scale = (INITIAL_SHARE * Math.min(view.width / picture.width, view.height / picture.height)) / view.scale;
       this.placed = {
         scale,
         corner: [view.middle[0] - 0.5 * scale * picture.width, view.middle[1] - 0.5 * scale * picture.height],
@@ -86,14 +86,14 @@ export class Backdrop {
       this.show(false);
     }
     const { scale, corner } = this.placed;
-    const [u, v] = view.at(corner[0], corner[1] + scale * picture.height);
+    const [u, v] = view.toPicture(corner[0], corner[1] + scale * picture.height);
     const size = scale * view.scale;
-    const marks = svg("g", { class: "marks" });
+    const marks = createSvg("g", { class: "marks" });
     const mark = () =>
       marks.replaceChildren(
         ...(this.picked ?? []).map((point) => {
-          const [x, y] = view.at(...point);
-          return svg("path", { class: "mark", d: `M${x - 8} ${y}h16M${x} ${y - 8}v16` });
+          const [x, y] = view.toPicture(...point);
+          return createSvg("path", { class: "mark", d: `M${x - 8} ${y}h16M${x} ${y - 8}v16` });
         }),
       );
     mark();
@@ -104,14 +104,14 @@ export class Backdrop {
         // Nothing else on the canvas is meant.
         event.stopImmediatePropagation();
         event.preventDefault();
-        this.picked.push(view.under(canvas, event));
+        this.picked.push(view.toPlaneFromPointer(canvas, event));
         mark();
         this.show(false);
       },
       { capture: true },
     );
     return [
-      svg("image", {
+      createSvg("image", {
         href: picture.url,
         x: u,
         y: v,
@@ -131,8 +131,8 @@ export class Backdrop {
     if (!picture) this.node.replaceChildren();
     else {
       const button = (/** @type {string} */ id, /** @type {string} */ text, /** @type {() => void} */ act) =>
-        el("button", { type: "button", class: "small", id, onclick: act }, text);
-      const width = el("input", {
+        createElement("button", { type: "button", class: "small", id, onclick: act }, text);
+      const width = createElement("input", {
         type: "number",
         id: "backdrop-width",
         step: "any",
@@ -141,7 +141,7 @@ export class Backdrop {
         onchange: () => this.rescale(width.valueAsNumber / picture.width, placed?.corner ?? [0, 0]),
       });
       const apart = picked?.length === 2 ? Math.hypot(picked[1][0] - picked[0][0], picked[1][1] - picked[0][1]) : NaN;
-      const distance = el("input", {
+      const distance = createElement("input", {
         type: "number",
         id: "backdrop-distance",
         step: "any",
@@ -151,14 +151,14 @@ export class Backdrop {
       const set = () =>
         this.rescale(((placed?.scale ?? 1) * distance.valueAsNumber) / apart, /** @type {Point[]} */ (picked)[0]);
       this.node.replaceChildren(
-        el(
+        createElement(
           "fieldset",
           { class: "choice" },
-          el("legend", {}, t`Behind the canvas: ${picture.name}`),
-          el(
+          createElement("legend", {}, t`Behind the canvas: ${picture.name}`),
+          createElement(
             "div",
             { class: "row" },
-            el("label", { for: "backdrop-width" }, t`Its width (${unit})`),
+            createElement("label", { for: "backdrop-width" }, t`Its width (${unit})`),
             width,
             button("backdrop-pick", picked ? t`Leave` : t`Scale by two points`, () => {
               this.picked = picked ? null : [];
@@ -166,21 +166,21 @@ export class Backdrop {
             }),
             button("backdrop-clear", t`Take it away`, () => this.clear()),
           ),
-          el(
+          createElement(
             "p",
             { class: "note", role: "status" },
             !picked
-              ? t`A pixel is ${shown(placed?.scale)} ${unit}.`
+              ? t`A pixel is ${formatNumber(placed?.scale)} ${unit}.`
               : [t`Click one end of a length that you know.`, t`Click its other end.`, t`State how long it is.`][
                   picked.length
                 ],
           ),
           picked?.length === 2 &&
             apart > 0 &&
-            el(
+            createElement(
               "div",
               { class: "row" },
-              el("label", { for: "backdrop-distance" }, t`From one point to the other (${unit})`),
+              createElement("label", { for: "backdrop-distance" }, t`From one point to the other (${unit})`),
               distance,
               button("backdrop-set", t`Set`, set),
             ),

@@ -4,12 +4,12 @@
  */
 
 import * as api from "../core/api.js";
-import { el, shown, svg } from "../core/dom.js";
-import { called, leftOut, precise, rounded, spread } from "./drawing_import.js";
-import { brief } from "../design/design_metrics.js";
-import { segmentsOf } from "./follower_table.js";
+import { createElement, formatNumber, createSvg } from "../core/dom.js";
+import { describeElement, listSkipped, roundToDigits, roundCoordinate, axisSpan } from "./drawing_import.js";
+import { formatBriefly } from "../design/design_metrics.js";
+import { fitSegments } from "./follower_table.js";
 import { t } from "../core/messages.js";
-import { rolesOf, stateArea } from "./workspace.js";
+import { availableRoles, stateArea } from "./workspace.js";
 import { View } from "../core/view.js";
 
 /** @import { Problem } from "../types/values.js" */
@@ -21,16 +21,16 @@ import { View } from "../core/view.js";
  *   Point[], closed: boolean) => void}} Use what `closed` is null of takes both
  */
 
-const ACCEPTED = ".svg,.dxf,.csv,.png,.jpg,.jpeg,image/svg+xml,image/vnd.dxf,text/csv,image/png,image/jpeg";
+const ACCEPTED_FILES = ".svg,.dxf,.csv,.png,.jpg,.jpeg,image/svg+xml,image/vnd.dxf,text/csv,image/png,image/jpeg";
 
 /** Points that a path begins with: as many as a stroke that is drawn freehand. */
-const OF_PATH = 24;
+const PATH_USES = 24;
 /** Angles of a table for a cam. */
-const OF_CAM = 48;
-const OF_AREA = 1000;
+const CAM_USES = 48;
+const AREA_ROLES = 1000;
 
 /** Fewer points are asked for anew, from the file. */
-const LEAST = 3;
+const MIN_POINTS = 3;
 
 export class CurveImport {
   /**
@@ -40,38 +40,38 @@ export class CurveImport {
   constructor(place, backdrop, store) {
     this.backdrop = backdrop;
     this.store = store;
-    this.chooser = el("input", {
+    this.chooser = createElement("input", {
       type: "file",
       id: "curve-file",
       class: "hidden",
-      accept: ACCEPTED,
+      accept: ACCEPTED_FILES,
       "aria-label": t`Drawing, table or picture`,
       tabindex: -1,
-      onchange: () => this.take(this.chooser.files?.[0]),
+      onchange: () => this.takeFile(this.chooser.files?.[0]),
     });
-    this.button = el(
+    this.button = createElement(
       "button",
       { type: "button", class: "small", id: "curve-import", onclick: () => this.chooser.click() },
       t`Import curves`,
     );
-    this.hint = el("span", { class: "note" }, t`SVG, DXF, CSV or PNG; or drop a file anywhere on the page`);
-    this.said = el("p", { class: "note", role: "status" });
-    this.list = el("div", {});
-    this.node = el(
+    this.hint = createElement("span", { class: "note" }, t`SVG, DXF, CSV or PNG; or drop a file anywhere on the page`);
+    this.said = createElement("p", { class: "note", role: "status" });
+    this.list = createElement("div", {});
+    this.node = createElement(
       "div",
       { id: "curves" },
       this.chooser,
-      el("div", { class: "row" }, this.button, this.hint),
+      createElement("div", { class: "row" }, this.button, this.hint),
       this.said,
       this.list,
       backdrop.node,
     );
     place.replaceChildren(this.node);
-    this.accept(place.ownerDocument);
+    this.acceptFiles(place.ownerDocument);
   }
 
   /** Files that are dropped on the page are taken, whatever lies under them. @param {Document} page */
-  accept(page) {
+  acceptFiles(page) {
     const files = (/** @type {DragEvent} */ event) => event.dataTransfer?.types.includes("Files");
     const over = (/** @type {boolean} */ is) => page.body.classList.toggle("dropping", is);
     page.addEventListener("dragover", (event) => {
@@ -86,13 +86,13 @@ export class CurveImport {
       if (!files(event)) return;
       event.preventDefault();
       over(false);
-      this.take(event.dataTransfer?.files[0]);
+      this.takeFile(event.dataTransfer?.files[0]);
     });
   }
 
   /** What a curve can become in the statement as it is. @returns {Use[]} */
-  uses() {
-    const { problem, roomy } = this.store;
+  listUses() {
+    const { problem, hasWorkspace: roomy } = this.store;
     /** @type {Use[]} */
     const uses = [];
     if (problem.kind === "path") {
@@ -100,7 +100,7 @@ export class CurveImport {
         name: "points",
         text: t`Points of the path`,
         closed: null,
-        most: OF_PATH,
+        most: PATH_USES,
         state: (statement, points, closed) => {
           statement.points = points.map(([x, y]) => ({ x, y }));
           statement.closed = closed;
@@ -112,20 +112,20 @@ export class CurveImport {
         name: "motion",
         text: t`Motion of the follower`,
         closed: false,
-        most: OF_CAM,
+        most: CAM_USES,
         state: (statement, points) => {
           const swings = statement.follower?.type?.startsWith("oscillating");
-          statement.segments = segmentsOf(points, swings ? Math.PI / 180 : 1);
+          statement.segments = fitSegments(points, swings ? Math.PI / 180 : 1);
         },
       });
     }
     if (roomy) {
       uses.push(
-        ...rolesOf(problem).map((role) => ({
+        ...availableRoles(problem).map((role) => ({
           name: role.name,
           text: role.text,
           closed: true,
-          most: OF_AREA,
+          most: AREA_ROLES,
           state: (/** @type {Problem} */ statement, /** @type {Point[]} */ points) =>
             void stateArea(statement, role, { polygon: points }),
         })),
@@ -135,43 +135,45 @@ export class CurveImport {
   }
 
   /** @param {File | undefined} file */
-  async take(file) {
+  async takeFile(file) {
     if (!file) return;
     this.file = file;
     this.list.replaceChildren();
     if (/\.jpe?g$/i.test(file.name)) {
-      await this.behind(file);
+      await this.layBehind(file);
     } else {
-      const [first] = this.uses();
-      await this.read(first?.most ?? OF_AREA);
+      const [first] = this.listUses();
+      await this.readCurves(first?.most ?? AREA_ROLES);
     }
     // The same file may have been changed, and is read again when it is chosen again.
     this.chooser.value = "";
   }
 
   /** Read the file that was taken, with so many points for a curve. @param {number} most */
-  async read(most) {
+  async readCurves(most) {
     const { file } = this;
     if (!file) return;
     const unit = this.store.problem.length_unit ?? "mm";
     this.said.textContent = t`Reading ${file.name} …`;
     this.button.disabled = true;
     try {
-      const found = await api.curves(file, unit, most);
+      const found = await api.importCurves(file, unit, most);
       // An area is as it is drawn, however few points a path is to have.
       const areas =
-        most < OF_AREA && this.uses().some(({ closed }) => closed) ? await api.curves(file, unit, OF_AREA) : found;
+        most < AREA_ROLES && this.listUses().some(({ closed }) => closed)
+          ? await api.importCurves(file, unit, AREA_ROLES)
+          : found;
       if (file === this.file) this.show(file, found, areas, unit, most);
     } catch (error) {
       const why =
-        error instanceof api.Refused
-          ? error.errors.map((one) => el("li", {}, `${one.path.slice(1)}: ${one.detail}`))
+        error instanceof api.Refusal
+          ? error.errors.map((one) => createElement("li", {}, `${one.path.slice(1)}: ${one.detail}`))
           : [];
       this.said.textContent = `${file.name}: ${error instanceof Error ? error.message : error}`;
       // What cannot be read may still be traced over.
       this.list.replaceChildren(
-        ...(why.length ? [el("ul", { class: "reasons" }, ...why)] : []),
-        ...(/\.png$/i.test(file.name) ? [this.layer(file, null)] : []),
+        ...(why.length ? [createElement("ul", { class: "reasons" }, ...why)] : []),
+        ...(/\.png$/i.test(file.name) ? [this.createLayerButton(file, null)] : []),
       );
     } finally {
       this.button.disabled = false;
@@ -187,9 +189,9 @@ export class CurveImport {
    * @param {number} most
    */
   show(file, found, areas, unit, most) {
-    const uses = this.uses();
+    const uses = this.listUses();
     const { origin } = this.store;
-    const scale = el("input", {
+    const scale = createElement("input", {
       type: "number",
       id: "curve-scale",
       step: "any",
@@ -197,41 +199,43 @@ export class CurveImport {
       value: Number(found.scale.toPrecision(9)),
       oninput: () => told(),
     });
-    const count = el("input", {
+    const count = createElement("input", {
       type: "number",
       id: "curve-points",
       step: 1,
-      min: LEAST,
+      min: MIN_POINTS,
       max: 10000,
       value: most,
-      onchange: () => this.read(Math.max(LEAST, count.valueAsNumber || most)),
+      onchange: () => this.readCurves(Math.max(MIN_POINTS, count.valueAsNumber || most)),
     });
     const laid = () => found.format === "png" && this.backdrop.picture?.name === file.name && this.backdrop.placed;
     const factor = () => (laid() || scale.valueAsNumber > 0 ? scale.valueAsNumber / found.scale : NaN);
     /** @param {Curve} curve @returns {Point[]} */
     const placed = ({ points }) =>
       points.map(({ x, y }) => {
-        const [u, v] = laid() ? this.backdrop.at([x / found.scale, y / found.scale]) : [x * factor(), y * factor()];
-        return [rounded(u), rounded(v)];
+        const [u, v] = laid()
+          ? this.backdrop.toPlane([x / found.scale, y / found.scale])
+          : [x * factor(), y * factor()];
+        return [roundCoordinate(u), roundCoordinate(v)];
       });
-    const rows = found.curves.map((curve, k) => row(curve, k, uses));
-    const place = el(
+    const rows = found.curves.map((curve, k) => createRow(curve, k, uses));
+    const place = createElement(
       "button",
       {
         type: "button",
         class: "small",
         id: "curve-place",
-        onclick: () => this.place(file.name, rows, (k, area) => placed((area ? areas : found).curves[k])),
+        onclick: () => this.placeCurves(file.name, rows, (k, area) => placed((area ? areas : found).curves[k])),
       },
       t`Use`,
     );
     const told = () => {
       for (const { curve, size } of rows) {
         const points = placed(curve);
-        const [width, height] = [spread(points, 0), spread(points, 1)];
+        const [width, height] = [axisSpan(points, 0), axisSpan(points, 1)];
         const counted = curve.closed ? t`${points.length} points, closed` : t`${points.length} points, open`;
-        size.textContent = `${brief(width)} × ${brief(height)} ${unit}, ${counted}`;
-        size.title = `${precise(width)} × ${precise(height)} ${unit}`;
+        size.textContent = `${formatBriefly(width)} × ${formatBriefly(height)} ${unit}, ${counted}`;
+        size.title = `${roundToDigits(width)} × ${roundToDigits(height)} ${unit}`;
       }
       place.disabled =
         this.store.origin !== origin || rows.every(({ use }) => !use.value) || !(laid() || Number.isFinite(factor()));
@@ -239,30 +243,30 @@ export class CurveImport {
     for (const { use } of rows) use.addEventListener("change", told);
     const states =
       found.format === "png" && found.length_unit === null
-        ? t`the picture states no scale, and a pixel is taken as ${shown(found.scale)} ${unit}`
+        ? t`the picture states no scale, and a pixel is taken as ${formatNumber(found.scale)} ${unit}`
         : found.length_unit === null
           ? t`the file states no unit, and its numbers are taken as ${unit}`
-          : t`a unit of the file is ${shown(found.millimetres_per_unit)} mm`;
+          : t`a unit of the file is ${formatNumber(found.millimetres_per_unit)} mm`;
     const counted = found.curves.length === 1 ? t`1 curve` : t`${found.curves.length} curves`;
     this.said.textContent = `${file.name}: ${counted}; ${states}.`;
     if (!uses.length) this.said.append(" ", t`Problems of this kind take no curve.`);
     this.list.replaceChildren(
-      el(
+      createElement(
         "div",
         { class: "row" },
-        el("label", { for: "curve-scale" }, t`Scale (${unit} in a unit of the file)`),
+        createElement("label", { for: "curve-scale" }, t`Scale (${unit} in a unit of the file)`),
         scale,
-        el("label", { for: "curve-points" }, t`Points at most`),
+        createElement("label", { for: "curve-points" }, t`Points at most`),
         count,
       ),
-      el("ul", { class: "drawn", "aria-label": t`Curves in ${file.name}` }, ...rows.map(({ node }) => node)),
-      leftOut(found),
-      el(
+      createElement("ul", { class: "drawn", "aria-label": t`Curves in ${file.name}` }, ...rows.map(({ node }) => node)),
+      listSkipped(found),
+      createElement(
         "div",
         { class: "row" },
         place,
-        found.format === "png" && this.layer(file, found.length_unit === null ? null : found.scale),
-        el("button", { type: "button", class: "small", onclick: () => this.close("") }, t`Close`),
+        found.format === "png" && this.createLayerButton(file, found.length_unit === null ? null : found.scale),
+        createElement("button", { type: "button", class: "small", onclick: () => this.close("") }, t`Close`),
       ),
     );
     this.told = told;
@@ -270,16 +274,16 @@ export class CurveImport {
   }
 
   /** The button that lays a picture behind the canvas. @param {File} file @param {number | null} scale */
-  layer(file, scale) {
-    return el(
+  createLayerButton(file, scale) {
+    return createElement(
       "button",
-      { type: "button", class: "small", id: "curve-behind", onclick: () => this.behind(file, scale) },
+      { type: "button", class: "small", id: "curve-behind", onclick: () => this.layBehind(file, scale) },
       t`Lay it behind the canvas`,
     );
   }
 
   /** @param {File} file @param {number | null} [scale] */
-  async behind(file, scale = null) {
+  async layBehind(file, scale = null) {
     try {
       await this.backdrop.lay(file, this.store.problem.length_unit ?? "mm", scale);
       this.said.textContent = t`${file.name} lies behind the canvas.`;
@@ -294,8 +298,8 @@ export class CurveImport {
    * @param {{curve: Curve, use: HTMLSelectElement}[]} rows
    * @param {(k: number, area: boolean) => Point[]} placed
    */
-  place(name, rows, placed) {
-    const uses = this.uses();
+  placeCurves(name, rows, placed) {
+    const uses = this.listUses();
     const used = rows.flatMap(({ curve, use }, k) => {
       const chosen = uses.find((one) => one.name === use.value);
       return chosen ? [{ chosen, curve, k }] : [];
@@ -327,28 +331,28 @@ export class CurveImport {
  * @param {number} k
  * @param {Use[]} uses
  */
-function row(curve, k, uses) {
+function createRow(curve, k, uses) {
   const points = curve.points.map(({ x, y }) => /** @type {Point} */ ([x, y]));
   const view = new View(points, 46, 34, 3);
-  const size = el("p", { class: "note" });
+  const size = createElement("p", { class: "note" });
   const id = `curve${k}`;
-  const use = el(
+  const use = createElement(
     "select",
     { id },
-    el("option", { value: "" }, t`not used`),
+    createElement("option", { value: "" }, t`not used`),
     ...uses
       .filter(({ closed }) => closed === null || closed === curve.closed)
-      .map(({ name, text }) => el("option", { value: name }, text)),
+      .map(({ name, text }) => createElement("option", { value: name }, text)),
   );
-  const node = el(
+  const node = createElement(
     "li",
     {},
-    svg(
+    createSvg(
       "svg",
       { viewBox: "0 0 46 34", width: 46, height: 34, "aria-hidden": "true" },
-      svg("path", { class: "area", d: `${view.path(points)}${curve.closed ? "Z" : ""}` }),
+      createSvg("path", { class: "area", d: `${view.pathData(points)}${curve.closed ? "Z" : ""}` }),
     ),
-    el("div", {}, el("label", { for: id }, called(curve)), size),
+    createElement("div", {}, createElement("label", { for: id }, describeElement(curve)), size),
     use,
   );
   return { curve, node, use, size };

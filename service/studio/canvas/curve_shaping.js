@@ -3,11 +3,11 @@
 /** @typedef {[number, number]} Point */
 
 /** Steps inwards and outwards of Taubin's filter: a curve becomes smoother and does not shrink (SIGGRAPH 1995). */
-const INWARDS = 0.5;
-const OUTWARDS = -0.53;
+const SHRINK_STEP = 0.5;
+const EXPAND_STEP = -0.53;
 
 /** So many times for one press. */
-const ROUNDS = 3;
+const SMOOTHING_ROUNDS = 3;
 
 /**
  * Points made smoother; the ends of an open curve stay.
@@ -15,11 +15,11 @@ const ROUNDS = 3;
  * @param {boolean} closed
  * @returns {Point[]}
  */
-export function smoothed(points, closed) {
+export function smoothCurve(points, closed) {
   const count = points.length;
   let now = points;
-  for (let k = 0; k < 2 * ROUNDS; k++) {
-    const share = k % 2 ? OUTWARDS : INWARDS;
+  for (let k = 0; k < 2 * SMOOTHING_ROUNDS; k++) {
+    const share = k % 2 ? EXPAND_STEP : SHRINK_STEP;
     const before = now;
     now = before.map((point, n) => {
       if (!closed && (n === 0 || n === count - 1)) return point;
@@ -38,7 +38,7 @@ export function smoothed(points, closed) {
  * mean at half the argument of sum(z[k] z[j - k]) mirrors it best, and the j whose sum is greatest is taken.
  * @param {Point[]} points @param {boolean} closed @returns {Point[]}
  */
-export function symmetric(points, closed) {
+export function makeSymmetric(points, closed) {
   const count = points.length;
   const middle = closed
     ? points.reduce(

@@ -7,13 +7,13 @@ import { t } from "../core/messages.js";
 /** @typedef {[number, number]} Point */
 
 /** Degrees of a turn. */
-const TURN = 360;
+const TURN_DEGREES = 360;
 
 /** What the last displacement may differ from the first by, as a share of the travel; it is then taken for the same. */
-const CLOSES = 0.02;
+const CLOSING_SHARE = 0.02;
 
 /** @param {number} value */
-function rounded(value) {
+function roundAngle(value) {
   return Number(value.toPrecision(12));
 }
 
@@ -23,7 +23,7 @@ function rounded(value) {
  * @param {number} unit of displacements in their derivatives: 1, or radians in a degree for an arm
  * @returns {NonNullable<Problem["segments"]>}
  */
-export function segmentsOf(points, unit) {
+export function fitSegments(points, unit) {
   const [first, last] = [points[0], points[points.length - 1]];
   const span = last[0] - first[0];
   const ordered = span < 0 ? [...points].reverse() : points;
@@ -34,23 +34,23 @@ export function segmentsOf(points, unit) {
   const low = Math.min(...heights);
   const travel = Math.max(...heights) - low;
   if (!(travel > 0)) throw new Error(t`The follower never moves.`);
-  if (Math.abs(last[1] - first[1]) > CLOSES * travel)
+  if (Math.abs(last[1] - first[1]) > CLOSING_SHARE * travel)
     throw new Error(t`The motion must end at the displacement at which it began: a cam goes around.`);
-  const angles = ordered.map(([x]) => rounded((TURN * (x - ordered[0][0])) / Math.abs(span)));
-  const lifts = heights.slice(0, -1).map((y) => rounded(y - low));
+  const angles = ordered.map(([x]) => roundAngle((TURN_DEGREES * (x - ordered[0][0])) / Math.abs(span)));
+  const lifts = heights.slice(0, -1).map((y) => roundAngle(y - low));
   const widths = lifts.map((_, k) => angles[k + 1] - angles[k]);
   const turns = widths.map((one) => (one * Math.PI) / 180);
-  const bends = spline(turns, lifts);
+  const bends = solvePeriodicSpline(turns, lifts);
   const count = lifts.length;
   const state = (/** @type {number} */ k, /** @type {number} */ angle) => {
     const next = (k + 1) % count;
     const speed = (lifts[next] - lifts[k]) / turns[k] - (turns[k] * (2 * bends[k] + bends[next])) / 6;
-    return { angle, s: lifts[k], v: rounded(speed * unit), a: rounded(bends[k] * unit) };
+    return { angle, s: lifts[k], v: roundAngle(speed * unit), a: roundAngle(bends[k] * unit) };
   };
   return lifts.map((_, k) => ({
     motion: "polynomial",
-    angle: rounded(widths[k]),
-    conditions: [state(k, 0), state((k + 1) % count, rounded(widths[k]))],
+    angle: roundAngle(widths[k]),
+    conditions: [state(k, 0), state((k + 1) % count, roundAngle(widths[k]))],
   }));
 }
 
@@ -59,7 +59,7 @@ export function segmentsOf(points, unit) {
  * (de Boor, A Practical Guide to Splines, ch. IV), and the last piece leads to the first point.
  * @param {number[]} widths @param {number[]} heights @returns {number[]}
  */
-function spline(widths, heights) {
+function solvePeriodicSpline(widths, heights) {
   const count = heights.length;
   const rows = heights.map((height, k) => {
     const [before, next] = [(k + count - 1) % count, (k + 1) % count];

@@ -1,10 +1,10 @@
 /** A curve drawn freehand: a stroke of the pointer becomes the points of a path. */
 
 /** How many points a stroke becomes. */
-const POINTS = 24;
+const POINT_COUNT = 24;
 
 /** Ends that lie nearer to each other than this share of the way are one: the curve is closed. */
-const CLOSING = 0.1;
+const CLOSING_SHARE = 0.1;
 
 /** @typedef {[number, number]} Point */
 
@@ -16,13 +16,13 @@ const CLOSING = 0.1;
  * @param {SVGElement} pen
  * @param {(points: Point[], closed: boolean) => void} drawn
  */
-export function stroke(event, view, picture, pen, drawn) {
+export function drawStroke(event, view, picture, pen, drawn) {
   /** @type {Point[]} */
-  const way = [view.under(picture, event)];
+  const way = [view.toPlaneFromPointer(picture, event)];
   picture.setPointerCapture(event.pointerId);
   const move = (/** @type {PointerEvent} */ now) => {
-    way.push(view.under(picture, now));
-    pen.setAttribute("d", view.path(way));
+    way.push(view.toPlaneFromPointer(picture, now));
+    pen.setAttribute("d", view.pathData(way));
   };
   picture.addEventListener("pointermove", move);
   picture.addEventListener(
@@ -30,12 +30,14 @@ export function stroke(event, view, picture, pen, drawn) {
     () => {
       picture.removeEventListener("pointermove", move);
       pen.removeAttribute("d");
-      const closed = meets(way);
+      const closed = isClosed(way);
       // Round and back to the first point, which is stated once.
-      const points = closed ? evenly([...way, way[0]], POINTS + 1).slice(0, POINTS) : evenly(way, POINTS);
+      const points = closed
+        ? resample([...way, way[0]], POINT_COUNT + 1).slice(0, POINT_COUNT)
+        : resample(way, POINT_COUNT);
       if (points.length >= 3)
         drawn(
-          points.map(([x, y]) => [view.fine(x), view.fine(y)]),
+          points.map(([x, y]) => [view.roundToPixel(x), view.roundToPixel(y)]),
           closed,
         );
     },
@@ -44,14 +46,14 @@ export function stroke(event, view, picture, pen, drawn) {
 }
 
 /** Whether a way comes back to where it began. @param {Point[]} way */
-function meets(way) {
+function isClosed(way) {
   const far = (/** @type {Point} */ [x, y], /** @type {Point} */ [u, v]) => Math.hypot(u - x, v - y);
   const length = way.slice(1).reduce((sum, point, k) => sum + far(way[k], point), 0);
-  return way.length > 3 && far(way[0], way[way.length - 1]) < CLOSING * length;
+  return way.length > 3 && far(way[0], way[way.length - 1]) < CLOSING_SHARE * length;
 }
 
 /** Points at equal distances along a way. @param {Point[]} way @param {number} count @returns {Point[]} */
-function evenly(way, count) {
+function resample(way, count) {
   const along = [0];
   for (let k = 1; k < way.length; k++) {
     along.push(along[k - 1] + Math.hypot(way[k][0] - way[k - 1][0], way[k][1] - way[k - 1][1]));

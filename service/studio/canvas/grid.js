@@ -1,44 +1,44 @@
 /** Lines at round coordinates behind a picture of the plane. */
 
-import { shown, svg } from "../core/dom.js";
+import { formatNumber, createSvg } from "../core/dom.js";
 
 /** Between two lines at least, pixels: their numbers have room, on a phone too. */
-const APART = 76;
+const MIN_LINE_SPACING = 76;
 
 /** 1, 2 or 5 of a power of ten, not less than a length. @param {number} least */
-export function spacing(least) {
+export function roundSpacing(least) {
   const power = 10 ** Math.floor(Math.log10(least));
   return ([1, 2, 5].find((digit) => digit * power >= least) ?? 10) * power;
 }
 
 /** Between two places that coordinates snap to, pixels. */
-const SNAP = 12;
+const SNAP_SPACING = 12;
 
 /** What coordinates of a picture snap to: a part of its grid. @param {import("../core/view.js").View} view */
-export function snapping(view) {
-  return spacing(SNAP / view.scale);
+export function snapSpacing(view) {
+  return roundSpacing(SNAP_SPACING / view.scale);
 }
 
 /** @param {import("../core/view.js").View} view */
-export function grid(view) {
+export function drawGrid(view) {
   const { width, height } = view;
-  const step = spacing(APART / view.scale);
+  const step = roundSpacing(MIN_LINE_SPACING / view.scale);
   const [west, north] = view.middle.map((m, c) => m + ((c ? 1 : -1) * (c ? height : width)) / 2 / view.scale);
   const lines = [];
   for (let k = Math.ceil(west / step); lines.length < 60; k++) {
-    const [u] = view.at(k * step, 0);
+    const [u] = view.toPicture(k * step, 0);
     if (u > width) break;
     lines.push(
-      svg("line", { class: "grid", x1: u, x2: u, y1: 0, y2: height }),
-      svg("text", { class: "tick", x: u + 3, y: height - 5 }, shown(Number((k * step).toPrecision(6)))),
+      createSvg("line", { class: "grid", x1: u, x2: u, y1: 0, y2: height }),
+      createSvg("text", { class: "tick", x: u + 3, y: height - 5 }, formatNumber(Number((k * step).toPrecision(6)))),
     );
   }
   for (let k = Math.floor(north / step), first = lines.length; lines.length < first + 60; k--) {
-    const [, v] = view.at(0, k * step);
+    const [, v] = view.toPicture(0, k * step);
     if (v > height) break;
     lines.push(
-      svg("line", { class: "grid", x1: 0, x2: width, y1: v, y2: v }),
-      svg("text", { class: "tick", x: 4, y: v - 4 }, shown(Number((k * step).toPrecision(6)))),
+      createSvg("line", { class: "grid", x1: 0, x2: width, y1: v, y2: v }),
+      createSvg("text", { class: "tick", x: 4, y: v - 4 }, formatNumber(Number((k * step).toPrecision(6)))),
     );
   }
   return lines;

@@ -4,20 +4,20 @@
  * hears the page.
  */
 
-import { svg } from "../core/dom.js";
+import { createSvg } from "../core/dom.js";
 
 /** @typedef {[number, number]} Point */
 
 /** How far around its middle a grip is taken hold of, pixels. */
-const REACH = 12;
+const GRIP_RADIUS = 12;
 
 /** How far arrow keys move a grip, pixels: the nearest power of ten of the plane's units, and with Shift. */
-const STEP = 10;
-const FINE_STEP = 1;
+const KEY_STEP = 10;
+const FINE_KEY_STEP = 1;
 
 /** How far page keys turn a grip, degrees, and with Shift. */
-const TURN = 5;
-const FINE_TURN = 1;
+const KEY_TURN = 5;
+const FINE_KEY_TURN = 1;
 
 export class Grip {
   /**
@@ -39,20 +39,20 @@ export class Grip {
     key,
     role = "button",
   }) {
-    this.dot = svg("circle", { class: dot, r: radius });
-    this.hit = svg("circle", { class: "hit", r: REACH });
-    this.text = name ? svg("text", { dx, dy }, name) : null;
-    this.node = svg("g", { class: kind, tabindex: 0, role, "data-grip": key }, this.text, this.hit, this.dot);
+    this.dot = createSvg("circle", { class: dot, r: radius });
+    this.hit = createSvg("circle", { class: "hit", r: GRIP_RADIUS });
+    this.text = name ? createSvg("text", { dx, dy }, name) : null;
+    this.node = createSvg("g", { class: kind, tabindex: 0, role, "data-grip": key }, this.text, this.hit, this.dot);
   }
 
   /** Put it at a place of the picture. @param {Point} place pixels */
-  put([u, v]) {
-    for (const one of [this.dot, this.hit]) set(one, { cx: u, cy: v });
-    if (this.text) set(this.text, { x: u, y: v });
+  moveTo([u, v]) {
+    for (const one of [this.dot, this.hit]) setAttributes(one, { cx: u, cy: v });
+    if (this.text) setAttributes(this.text, { x: u, y: v });
   }
 
   /** @param {string} label */
-  call(label) {
+  setLabel(label) {
     this.node.setAttribute("aria-label", label);
   }
 }
@@ -67,21 +67,21 @@ export class Grip {
  * @param {(at: Point, event: PointerEvent) => void} on.led
  * @param {() => void} [on.left]
  */
-export function led(node, picture, view, { taken, led: follow, left }) {
+export function dragWithPointer(node, picture, view, { taken, led: follow, left }) {
   node.addEventListener("pointerdown", (down) => {
     const event = /** @type {PointerEvent} */ (down);
     if (event.button !== 0) return;
     // The picture behind it stays where it is.
     event.stopPropagation();
     node.setPointerCapture(event.pointerId);
-    taken?.(view.under(picture, event));
+    taken?.(view.toPlaneFromPointer(picture, event));
     const gone = new AbortController();
     const { signal } = gone;
     node.addEventListener(
       "pointermove",
       (move) => {
         const now = /** @type {PointerEvent} */ (move);
-        if (now.pointerId === event.pointerId) follow(view.under(picture, now), now);
+        if (now.pointerId === event.pointerId) follow(view.toPlaneFromPointer(picture, now), now);
       },
       { signal },
     );
@@ -105,11 +105,11 @@ export function led(node, picture, view, { taken, led: follow, left }) {
  * @param {((degrees: number) => void) | null} [on.turned]
  * @param {(() => void) | null} [on.removed]
  */
-export function keyed(node, view, { moved, turned, removed }) {
+export function moveWithKeys(node, view, { moved, turned, removed }) {
   node.addEventListener("keydown", (pressed) => {
     const event = /** @type {KeyboardEvent} */ (pressed);
-    const step = view.step(event.shiftKey ? FINE_STEP : STEP);
-    const angle = event.shiftKey ? FINE_TURN : TURN;
+    const step = view.roundStep(event.shiftKey ? FINE_KEY_STEP : KEY_STEP);
+    const angle = event.shiftKey ? FINE_KEY_TURN : KEY_TURN;
     /** @type {Record<string, Point>} */
     const ways = { ArrowLeft: [-step, 0], ArrowRight: [step, 0], ArrowUp: [0, step], ArrowDown: [0, -step] };
     const turns = /** @type {Record<string, number>} */ ({ PageUp: angle, PageDown: -angle });
@@ -123,6 +123,6 @@ export function keyed(node, view, { moved, turned, removed }) {
 }
 
 /** @param {Element} node @param {Record<string, number>} attributes */
-function set(node, attributes) {
+function setAttributes(node, attributes) {
   for (const [name, value] of Object.entries(attributes)) node.setAttribute(name, String(value));
 }

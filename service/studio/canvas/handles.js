@@ -5,8 +5,8 @@
  */
 
 import { t } from "../core/messages.js";
-import { at, put } from "../core/pointer.js";
-import { smoothed, symmetric } from "./curve_shaping.js";
+import { readPointer, writePointer } from "../core/pointer.js";
+import { smoothCurve, makeSymmetric } from "./curve_shaping.js";
 
 /** @import { Problem, Schemas } from "../types/values.js" */
 
@@ -24,7 +24,7 @@ import { smoothed, symmetric } from "./curve_shaping.js";
  */
 
 /**
- * @typedef {object} Stated
+ * @typedef {object} Handles
  * @property {Handle[]} handles
  * @property {() => Point[][]} lines drawn between them
  * @property {string} [word] what a double click adds
@@ -35,27 +35,27 @@ import { smoothed, symmetric } from "./curve_shaping.js";
  *   a curve as a whole
  */
 
-/** @param {Problem} problem @returns {Stated | null} null for a kind that has no place in the plane */
-export function stated(problem) {
-  /** @type {Record<string, {make(problem: Problem): Stated | null}["make"]>} */
+/** @param {Problem} problem @returns {Handles | null} null for a kind that has no place in the plane */
+export function findHandles(problem) {
+  /** @type {Record<string, {make(problem: Problem): Handles | null}["make"]>} */
   const makers = {
-    motion,
-    path,
-    quick_return: quickReturn,
-    straight_line: straightLine,
-    dwell,
-    steering,
-    parallel_motion: parallelMotion,
-    function: functionPairs,
+    motion: motionHandles,
+    path: pathHandles,
+    quick_return: quickReturnHandles,
+    straight_line: straightLineHandles,
+    dwell: dwellHandles,
+    steering: steeringHandles,
+    parallel_motion: parallelMotionHandles,
+    function: functionHandles,
   };
   const make = makers[problem.kind];
   const found = make ? make(problem) : null;
-  if (found && problem.kind !== "function") regions(problem, found);
+  if (found && problem.kind !== "function") addRegionHandles(problem, found);
   return found;
 }
 
 /** @param {unknown} value */
-const whole = (value) => Array.isArray(value) && value.length === 2 && value.every(Number.isFinite);
+const wholeNumber = (value) => Array.isArray(value) && value.length === 2 && value.every(Number.isFinite);
 
 /**
  * A point `[x, y]` of an object.
@@ -66,15 +66,15 @@ const whole = (value) => Array.isArray(value) && value.length === 2 && value.eve
  * @param {boolean} [removable]
  * @returns {Handle[]}
  */
-function point(owner, field, name, label, removable = true) {
-  if (!owner || !whole(at(owner, [field]))) return [];
+function pointHandle(owner, field, name, label, removable = true) {
+  if (!owner || !wholeNumber(readPointer(owner, [field]))) return [];
   return [
     {
       name,
       label,
-      get: () => /** @type {Point} */ (at(owner, [field])),
-      put: (x, y) => put(owner, [field], [x, y]),
-      ...(removable ? { remove: () => put(owner, [field], null) } : {}),
+      get: () => /** @type {Point} */ (readPointer(owner, [field])),
+      put: (x, y) => writePointer(owner, [field], [x, y]),
+      ...(removable ? { remove: () => writePointer(owner, [field], null) } : {}),
     },
   ];
 }
@@ -87,7 +87,7 @@ function point(owner, field, name, label, removable = true) {
  * @param {boolean} turning
  * @param {boolean} [fixed] their number is
  */
-function listed(list, field, word, turning, fixed = false) {
+function listHandles(list, field, word, turning, fixed = false) {
   return list.flatMap((one, k) =>
     Number.isFinite(one?.x) && Number.isFinite(one?.y)
       ? [
@@ -107,8 +107,8 @@ function listed(list, field, word, turning, fixed = false) {
   );
 }
 
-/** @param {Schemas["MotionProblem"]} problem @returns {Stated} */
-function motion(problem) {
+/** @param {Schemas["MotionProblem"]} problem @returns {Handles} */
+function motionHandles(problem) {
   const { positions } = problem;
   const sides = /** @type {const} */ ([
     ["input_side", "O2", "A"],
@@ -116,12 +116,12 @@ function motion(problem) {
   ]);
   const line = problem.ground_line;
   const chosen = sides.flatMap(([side, fixed, moving]) => [
-    ...point(problem[side], "fixed_pivot", fixed, t`Fixed pivot ${fixed}`),
-    ...point(problem[side], "moving_pivot", moving, t`Moving pivot ${moving} in the first position`),
+    ...pointHandle(problem[side], "fixed_pivot", fixed, t`Fixed pivot ${fixed}`),
+    ...pointHandle(problem[side], "moving_pivot", moving, t`Moving pivot ${moving} in the first position`),
   ]);
   /** @type {Handle[]} */
   const ground =
-    line && whole(line.point)
+    line && wholeNumber(line.point)
       ? [
           {
             name: "ground",
@@ -134,7 +134,7 @@ function motion(problem) {
         ]
       : [];
   const offers = sides
-    .filter(([side]) => !whole(problem[side]?.fixed_pivot))
+    .filter(([side]) => !wholeNumber(problem[side]?.fixed_pivot))
     .map(([side, fixed], k) => ({
       text: t`Choose ${fixed}`,
       make: (/** @type {Point} */ [x, y], /** @type {number} */ size) => {
@@ -142,14 +142,14 @@ function motion(problem) {
       },
     }));
   return {
-    handles: [...listed(positions, "positions", t`Position`, true), ...chosen, ...ground],
+    handles: [...listHandles(positions, "positions", t`Position`, true), ...chosen, ...ground],
     word: "position",
     offers,
     lines: () => [
       positions.map((one) => [one.x, one.y]),
-      ...(line && ground.length ? [through(/** @type {Point} */ (line.point), line.angle, 1e4)] : []),
+      ...(line && ground.length ? [lineThrough(/** @type {Point} */ (line.point), line.angle, 1e4)] : []),
       ...sides.flatMap(([side]) =>
-        whole(problem[side]?.fixed_pivot) && whole(problem[side]?.moving_pivot)
+        wholeNumber(problem[side]?.fixed_pivot) && wholeNumber(problem[side]?.moving_pivot)
           ? [/** @type {Point[]} */ ([problem[side]?.fixed_pivot, problem[side]?.moving_pivot])]
           : [],
       ),
@@ -158,19 +158,19 @@ function motion(problem) {
   };
 }
 
-/** @param {Schemas["PathProblem"]} problem @returns {Stated} */
-function path(problem) {
+/** @param {Schemas["PathProblem"]} problem @returns {Handles} */
+function pathHandles(problem) {
   const pivots = problem.fixed_pivots;
   return {
-    handles: [...listed(problem.points, "points", t`Point`, false), ...chosenPivots(problem)],
+    handles: [...listHandles(problem.points, "points", t`Point`, false), ...fixedPivotHandles(problem)],
     lines: () => [problem.points.map((one) => [one.x, one.y])],
     word: "point",
     freehand: true,
-    shapes: shaped(problem),
+    shapes: curveTools(problem),
     add: (x, y) => problem.points.push({ x, y }),
     offers: [
       ...(problem.closed && problem.method === "curve_match"
-        ? [{ text: t`Keep it open`, make: () => opened(problem) }]
+        ? [{ text: t`Keep it open`, make: () => isOpenCurve(problem) }]
         : []),
       pivots
         ? { text: t`Leave the pivots open`, make: () => Object.assign(problem, { fixed_pivots: null }) }
@@ -187,11 +187,11 @@ function path(problem) {
 }
 
 /** Fewer points than these are no curve. */
-const CURVE = 5;
+const MIN_CURVE_POINTS = 5;
 
 /** What is done to the points of a path as a whole. @param {Schemas["PathProblem"]} problem */
-function shaped(problem) {
-  if (problem.points.length < CURVE) return [];
+function curveTools(problem) {
+  if (problem.points.length < MIN_CURVE_POINTS) return [];
   const by =
     (/** @type {(points: Point[], closed: boolean) => Point[]} */ shape) =>
     (/** @type {(value: number) => number} */ fine) => {
@@ -204,25 +204,29 @@ function shaped(problem) {
       );
     };
   return [
-    { text: t`Smooth`, title: t`Make the curve smoother; once more, smoother still`, make: by(smoothed) },
-    { text: t`Symmetric`, title: t`Make the curve symmetric about the line that mirrors it best`, make: by(symmetric) },
+    { text: t`Smooth`, title: t`Make the curve smoother; once more, smoother still`, make: by(smoothCurve) },
+    {
+      text: t`Symmetric`,
+      title: t`Make the curve symmetric about the line that mirrors it best`,
+      make: by(makeSymmetric),
+    },
   ];
 }
 
 /** A curve that is closed is matched as a whole; a curve has no timing. @param {Problem} problem */
-export function matched(problem) {
+export function isMatchedCurve(problem) {
   Object.assign(problem, { closed: true, method: "curve_match" });
   delete problem.timing;
 }
 
 /** A curve that ends somewhere else than it begins. @param {Problem} problem */
-export function opened(problem) {
+export function isOpenCurve(problem) {
   delete problem.closed;
   if (problem.method === "curve_match") delete problem.method;
 }
 
-/** @param {Schemas["QuickReturnProblem"]} problem @returns {Stated} */
-function quickReturn(problem) {
+/** @param {Schemas["QuickReturnProblem"]} problem @returns {Handles} */
+function quickReturnHandles(problem) {
   const offers = [];
   if (!problem.positions) {
     offers.push({
@@ -240,23 +244,23 @@ function quickReturn(problem) {
       },
     });
   }
-  if (problem.positions && !whole(problem.rotopole))
+  if (problem.positions && !wholeNumber(problem.rotopole))
     offers.push({
       text: t`Choose the rocker's pivot`,
       make: (/** @type {Point} */ [x, y], /** @type {number} */ size) => (problem.rotopole = [x, y + size]),
     });
-  if (!problem.positions && !whole(problem.crank_pivot))
+  if (!problem.positions && !wholeNumber(problem.crank_pivot))
     offers.push({
       text: t`Choose the crank's pivot`,
       make: (/** @type {Point} */ [x, y]) => (problem.crank_pivot = [x, y]),
     });
-  const crank = point(problem, "crank_pivot", "O2", t`Fixed pivot O2 of the crank`);
+  const crank = pointHandle(problem, "crank_pivot", "O2", t`Fixed pivot O2 of the crank`);
   for (const one of crank)
     one.turn = { get: () => problem.ground_angle ?? 0, set: (angle) => (problem.ground_angle = angle) };
   return {
     handles: [
-      ...listed(problem.positions ?? [], "positions", t`Limit position`, true, true),
-      ...point(problem, "rotopole", "O4", t`Pivot of the rocker`),
+      ...listHandles(problem.positions ?? [], "positions", t`Limit position`, true, true),
+      ...pointHandle(problem, "rotopole", "O4", t`Pivot of the rocker`),
       ...crank,
     ],
     lines: () => (problem.positions ? [problem.positions.map((one) => [one.x, one.y])] : []),
@@ -272,8 +276,8 @@ function quickReturn(problem) {
   };
 }
 
-/** @param {Schemas["StraightLineProblem"]} problem @returns {Stated} */
-function straightLine(problem) {
+/** @param {Schemas["StraightLineProblem"]} problem @returns {Handles} */
+function straightLineHandles(problem) {
   const start = () => /** @type {Point} */ (problem.start ?? [0, 0]);
   const end = () => {
     const [x, y] = start();
@@ -302,13 +306,13 @@ function straightLine(problem) {
   };
 }
 
-/** @param {Schemas["DwellProblem"]} problem @returns {Stated} */
-function dwell(problem) {
+/** @param {Schemas["DwellProblem"]} problem @returns {Handles} */
+function dwellHandles(problem) {
   const get = () => /** @type {Point} */ (problem.pivot ?? [0, 0]);
   const crank = () => problem.crank ?? 10;
   return {
     offers: [],
-    lines: () => [round(get(), crank())],
+    lines: () => [circlePath(get(), crank())],
     handles: [
       { name: "O2", label: t`Fixed pivot O2 of the crank`, get, put: (x, y) => (problem.pivot = [x, y]) },
       ...(problem.crank
@@ -329,9 +333,9 @@ function dwell(problem) {
 /**
  * A car from above: kingpins in front, the rear axle behind.
  * @param {Schemas["SteeringProblem"]} problem
- * @returns {Stated}
+ * @returns {Handles}
  */
-function steering(problem) {
+function steeringHandles(problem) {
   const half = () => problem.pivot_distance / 2;
   const digits = (/** @type {number} */ value) => Number(Math.max(value, 1e-6).toPrecision(6));
   const track = () => (problem.track ?? problem.pivot_distance) / 2;
@@ -384,12 +388,12 @@ function steering(problem) {
 /**
  * The fourbar whose curve is followed, held by its joints.
  * @param {Schemas["ParallelMotionProblem"]} problem
- * @returns {Stated | null}
+ * @returns {Handles | null}
  */
-function parallelMotion(problem) {
+function parallelMotionHandles(problem) {
   const { linkage } = problem;
   if (!linkage) return null;
-  const joints = assembled(linkage);
+  const joints = assembleFourbar(linkage);
   if (!joints) return null;
   const restate = () => {
     const { O2, O4, A, B, P } = joints;
@@ -425,16 +429,16 @@ function parallelMotion(problem) {
 }
 
 /** What lengths are rounded to, as a share of them, with room for what it does to a square. */
-const ROUNDED = 1e-7;
+const ROUNDING_SHARE = 1e-7;
 
 /**
  * Joints of a fourbar at its reference, or where it can first be assembled.
  * @param {NonNullable<Schemas["ParallelMotionProblem"]["linkage"]>} linkage
  * @returns {Record<string, Point> | null}
  */
-function assembled(linkage) {
+function assembleFourbar(linkage) {
   const { fixed_pivots: pivots, links, coupler_point: at, assembly, reference_input_angle: reference } = linkage;
-  if (!whole(pivots?.input) || !whole(pivots?.output)) return null;
+  if (!wholeNumber(pivots?.input) || !wholeNumber(pivots?.output)) return null;
   for (let k = 0; k < 360; k++) {
     const input = (((reference ?? 30) + k) * Math.PI) / 180;
     const A = /** @type {Point} */ ([
@@ -446,7 +450,7 @@ function assembled(linkage) {
     const along = (links.coupler ** 2 - links.output ** 2 + diagonal ** 2) / (2 * diagonal);
     // In line with each other, joints that are rounded may be apart by that much more than links reach.
     const square = links.coupler ** 2 - along ** 2;
-    const rounded = Math.abs(square) < ROUNDED * links.coupler ** 2;
+    const rounded = Math.abs(square) < ROUNDING_SHARE * links.coupler ** 2;
     const up = rounded ? 0 : Math.sqrt(square) * (assembly === "crossed" ? -1 : 1);
     if (!Number.isFinite(up)) continue;
     const B = /** @type {Point} */ ([
@@ -470,16 +474,16 @@ function assembled(linkage) {
  * @param {Problem} problem
  * @returns {Handle[]}
  */
-export function chosenPivots(problem) {
+export function fixedPivotHandles(problem) {
   const pivots = problem.fixed_pivots;
   return [
-    ...point(pivots, "input", "O2", t`Fixed pivot O2`, false),
-    ...point(pivots, "output", "O4", t`Fixed pivot O4`, false),
+    ...pointHandle(pivots, "input", "O2", t`Fixed pivot O2`, false),
+    ...pointHandle(pivots, "output", "O4", t`Fixed pivot O4`, false),
   ];
 }
 
-/** Pairs of a function as points of its graph. @param {Schemas["FunctionProblem"]} problem @returns {Stated} */
-function functionPairs(problem) {
+/** Pairs of a function as points of its graph. @param {Schemas["FunctionProblem"]} problem @returns {Handles} */
+function functionHandles(problem) {
   const pairs = problem.pairs ?? [];
   return {
     word: "pair",
@@ -521,15 +525,15 @@ function functionPairs(problem) {
   };
 }
 
-/** Rectangles in which pivots may lie, held by two corners. @param {Problem} problem @param {Stated} found */
-function regions(problem, found) {
+/** Rectangles in which pivots may lie, held by two corners. @param {Problem} problem @param {Handles} found */
+function addRegionHandles(problem, found) {
   const { constraints } = problem;
   for (const [field, name] of /** @type {const} */ ([
     ["fixed_pivot_region", t`fixed pivots`],
     ["moving_pivot_region", t`moving pivots`],
   ])) {
     const region = constraints?.[field];
-    if (!constraints || !region || !whole(region.x) || !whole(region.y)) continue;
+    if (!constraints || !region || !wholeNumber(region.x) || !wholeNumber(region.y)) continue;
     const { lines } = found;
     found.lines = () => [
       ...lines(),
@@ -557,7 +561,7 @@ function regions(problem, found) {
 }
 
 /** @param {Point} at @param {number} degrees @param {number} far @returns {Point[]} */
-function through([x, y], degrees, far) {
+function lineThrough([x, y], degrees, far) {
   const angle = (degrees * Math.PI) / 180;
   return [
     [x - far * Math.cos(angle), y - far * Math.sin(angle)],
@@ -566,7 +570,7 @@ function through([x, y], degrees, far) {
 }
 
 /** @param {Point} at @param {number} radius @returns {Point[]} */
-function round([x, y], radius) {
+function circlePath([x, y], radius) {
   return Array.from({ length: 49 }, (_, k) => [
     x + radius * Math.cos((k * Math.PI) / 24),
     y + radius * Math.sin((k * Math.PI) / 24),

@@ -1,6 +1,6 @@
 /** A linkage as a drawing: links, slides and pins, put where the joints are. */
 
-import { svg } from "../core/dom.js";
+import { createSvg } from "../core/dom.js";
 
 /** @import { Schemas, Skeleton } from "../types/values.js" */
 
@@ -9,7 +9,7 @@ import { svg } from "../core/dom.js";
 /** @typedef {import("../core/view.js").View} View */
 
 /** Joints that stand still. @param {Skeleton} skeleton @returns {string[]} */
-export function grounded(skeleton) {
+export function groundedJoints(skeleton) {
   return skeleton.links.find((link) => link.name === "ground")?.joints ?? [];
 }
 
@@ -18,7 +18,7 @@ export function grounded(skeleton) {
  * @param {Skeleton} skeleton
  * @returns {string[]}
  */
-export function drawn(skeleton) {
+export function drawnJoints(skeleton) {
   const [px, py] = skeleton.joints.P ?? [NaN, NaN];
   const doubled = Object.entries(skeleton.joints).some(([name, [x, y]]) => name !== "P" && x === px && y === py);
   return Object.keys(skeleton.joints).filter((name) => name !== "P" || !doubled);
@@ -29,17 +29,17 @@ export function drawn(skeleton) {
  * @param {{on: string[], lean: number}} slide
  * @param {Places} places
  */
-export function slope({ on, lean }, places) {
+export function slideAngle({ on, lean }, places) {
   const [a, b] = on.map((name) => places[name]);
   return a && b ? lean + Math.atan2(b[1] - a[1], b[0] - a[0]) : lean;
 }
 
 /** What puts something that is drawn about the origin to a place of the picture. @param {Point} place */
-export function placed([u, v]) {
+export function translateTo([u, v]) {
   return `translate(${u.toFixed(2)} ${v.toFixed(2)})`;
 }
 
-export class Linkage {
+export class LinkageDrawing {
   /**
    * @param {View} view
    * @param {Skeleton} skeleton
@@ -52,18 +52,18 @@ export class Linkage {
       .filter((link) => link.name !== "ground")
       .map((link) => ({
         joints: link.joints,
-        path: svg("path", {
+        path: createSvg("path", {
           class: `link ${link.name === skeleton.input_link ? "input" : ""} ${classes[link.name] ?? ""}`,
         }),
       }));
-    this.slides = (skeleton.slides ?? []).map((slide) => this.slide(skeleton, slide));
-    this.pins = drawn(skeleton).map((name) => {
-      const dot = svg("circle", { class: name === "P" ? "point" : "pin" });
-      const text = names && svg("text", { dx: "0.6em", dy: "-0.55em" }, name);
-      return { name, dot, node: svg("g", { class: "joined" }, dot, text) };
+    this.slides = (skeleton.slides ?? []).map((slide) => this.createSlide(skeleton, slide));
+    this.pins = drawnJoints(skeleton).map((name) => {
+      const dot = createSvg("circle", { class: name === "P" ? "point" : "pin" });
+      const text = names && createSvg("text", { dx: "0.6em", dy: "-0.55em" }, name);
+      return { name, dot, node: createSvg("g", { class: "joined" }, dot, text) };
     });
-    const still = grounded(skeleton).map((name) => this.pivot(skeleton.joints[name]));
-    this.node = svg(
+    const still = groundedJoints(skeleton).map((name) => this.createPivot(skeleton.joints[name]));
+    this.node = createSvg(
       "g",
       { class: faint ? "faint" : "live" },
       ...this.slides.map((one) => one.rail),
@@ -75,9 +75,13 @@ export class Linkage {
   }
 
   /** @param {Point | undefined} at */
-  pivot(at) {
+  createPivot(at) {
     if (!at) return null;
-    return svg("g", { transform: placed(this.view.at(...at)) }, svg("path", { class: "ground", d: "M0 0l-9 15h18Z" }));
+    return createSvg(
+      "g",
+      { transform: translateTo(this.view.toPicture(...at)) },
+      createSvg("path", { class: "ground", d: "M0 0l-9 15h18Z" }),
+    );
   }
 
   /**
@@ -85,23 +89,27 @@ export class Linkage {
    * @param {Skeleton} skeleton
    * @param {Schemas["Slide"]} slide
    */
-  slide(skeleton, slide) {
+  createSlide(skeleton, slide) {
     const angle = (slide.angle * Math.PI) / 180;
     const link = skeleton.links.find((one) => one.name === slide.link);
     const on = slide.link === "ground" ? [] : (link?.joints ?? []);
-    const rail = svg("line", { class: "rail" });
-    const block = svg("g", {}, svg("rect", { class: "block", x: -12, y: -7, width: 24, height: 14, rx: 2 }));
+    const rail = createSvg("line", { class: "rail" });
+    const block = createSvg(
+      "g",
+      {},
+      createSvg("rect", { class: "block", x: -12, y: -7, width: 24, height: 14, rx: 2 }),
+    );
     const [a, b] = on.map((/** @type {string} */ name) => skeleton.joints[name]);
     const lean = b ? angle - Math.atan2(b[1] - a[1], b[0] - a[0]) : angle;
     return { joint: slide.joint, on, lean, rail, block };
   }
 
   /** @param {Places} places */
-  show(places) {
+  moveTo(places) {
     for (const { joints, path } of this.links) {
       const points = joints.map((name) => places[name]).filter((one) => !!one);
       const known = points.length === joints.length;
-      path.setAttribute("d", known ? `${this.view.path(points)}${points.length > 2 ? "Z" : ""}` : "");
+      path.setAttribute("d", known ? `${this.view.pathData(points)}${points.length > 2 ? "Z" : ""}` : "");
     }
     for (const { joint, on, lean, rail, block } of this.slides) {
       const at = places[joint];
@@ -109,17 +117,17 @@ export class Linkage {
       block.toggleAttribute("hidden", !at);
       rail.toggleAttribute("hidden", !at);
       if (!at) continue;
-      const angle = a && !b ? Math.atan2(at[1] - a[1], at[0] - a[0]) : slope({ on, lean }, places);
-      const [u, v] = this.view.at(...at);
+      const angle = a && !b ? Math.atan2(at[1] - a[1], at[0] - a[0]) : slideAngle({ on, lean }, places);
+      const [u, v] = this.view.toPicture(...at);
       const [c, s] = [900 * Math.cos(angle), -900 * Math.sin(angle)];
       for (const [name, value] of Object.entries({ x1: u - c, y1: v - s, x2: u + c, y2: v + s }))
         rail.setAttribute(name, String(value));
-      block.setAttribute("transform", `${placed([u, v])} rotate(${((-angle * 180) / Math.PI).toFixed(1)})`);
+      block.setAttribute("transform", `${translateTo([u, v])} rotate(${((-angle * 180) / Math.PI).toFixed(1)})`);
     }
     for (const { name, node } of this.pins) {
       const point = places[name];
       node.toggleAttribute("hidden", !point);
-      if (point) node.setAttribute("transform", placed(this.view.at(...point)));
+      if (point) node.setAttribute("transform", translateTo(this.view.toPicture(...point)));
     }
   }
 }

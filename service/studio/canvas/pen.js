@@ -1,21 +1,21 @@
 /** The pen: draws one area on a picture with mouse, finger or keys. */
 
-import { svg } from "../core/dom.js";
-import { hatched, outline } from "./area_hatching.js";
+import { createSvg } from "../core/dom.js";
+import { createHatch, outlinePath } from "./area_hatching.js";
 import { t } from "../core/messages.js";
 
 /** @typedef {[number, number]} Point */
 /** @typedef {import("./workspace.js").Zone} Zone */
 
 /** How near to the first corner a polygon closes, pixels of the picture: a finger is less exact. */
-const CLOSE = 12;
-const CLOSE_BY_TOUCH = 28;
+const CLOSING_DISTANCE = 12;
+const TOUCH_CLOSING_DISTANCE = 28;
 
 /** What is drawn smaller than this was a click. */
-const CLICK = 4;
+const MIN_DRAG = 4;
 
 /** Of the picture's height, what is put down by keys alone. */
-const SHARE = 0.3;
+const KEYBOARD_SHARE = 0.3;
 
 export class Pen {
   /**
@@ -33,13 +33,13 @@ export class Pen {
     /** @type {Point[]} */
     this.corners = [];
     this.gone = new AbortController();
-    this.shape = hatched(role, "");
-    this.dots = svg("path", { class: "pen-dots" });
-    this.sheet = svg("rect", { class: "pen-sheet", width: view.width, height: view.height });
-    this.node = svg("g", {}, this.shape, this.dots, this.sheet);
+    this.shape = createHatch(role, "");
+    this.dots = createSvg("path", { class: "pen-dots" });
+    this.sheet = createSvg("rect", { class: "pen-sheet", width: view.width, height: view.height });
+    this.node = createSvg("g", {}, this.shape, this.dots, this.sheet);
     picture.append(this.node);
     this.listen();
-    this.hint();
+    this.describeState();
   }
 
   listen() {
@@ -49,63 +49,65 @@ export class Pen {
     on("pointerdown", (event) => {
       event.stopPropagation();
       this.sheet.setPointerCapture(event.pointerId);
-      if (this.tool !== "polygon") this.corners = [this.at(event)];
+      if (this.tool !== "polygon") this.corners = [this.snapPointer(event)];
     });
-    on("pointermove", (event) => this.show(this.at(event)));
-    on("pointerup", (event) => (this.tool === "polygon" ? this.corner(event) : this.finish(this.at(event))));
+    on("pointermove", (event) => this.show(this.snapPointer(event)));
+    on("pointerup", (event) =>
+      this.tool === "polygon" ? this.addCorner(event) : this.finish(this.snapPointer(event)),
+    );
     this.sheet.addEventListener("dblclick", (event) => event.stopPropagation(), { signal });
     // Wherever the focus is, but for a field in which somebody types.
-    document.addEventListener("keydown", (event) => this.key(event), { signal, capture: true });
+    document.addEventListener("keydown", (event) => this.handleKey(event), { signal, capture: true });
   }
 
   /** @param {PointerEvent} event @returns {Point} */
-  at(event) {
-    const [x, y] = this.view.under(this.picture, event);
-    return [this.view.rounded(x), this.view.rounded(y)];
+  snapPointer(event) {
+    const [x, y] = this.view.toPlaneFromPointer(this.picture, event);
+    return [this.view.roundToGrid(x), this.view.roundToGrid(y)];
   }
 
   /** How far apart on the picture. @param {Point} one @param {Point} other */
-  far(one, other) {
+  pictureDistance(one, other) {
     return this.view.scale * Math.hypot(one[0] - other[0], one[1] - other[1]);
   }
 
   /** @param {PointerEvent} event */
-  corner(event) {
-    const at = this.at(event);
-    const near = event.pointerType === "touch" ? CLOSE_BY_TOUCH : CLOSE;
+  addCorner(event) {
+    const at = this.snapPointer(event);
+    const near = event.pointerType === "touch" ? TOUCH_CLOSING_DISTANCE : CLOSING_DISTANCE;
     const { corners } = this;
-    if (corners.length >= 3 && this.far(at, corners[0]) < near) return this.finish();
+    if (corners.length >= 3 && this.pictureDistance(at, corners[0]) < near) return this.finish();
     // The second click of a double one ends the polygon too.
-    if (corners.length && this.far(at, corners[corners.length - 1]) < CLICK)
+    if (corners.length && this.pictureDistance(at, corners[corners.length - 1]) < MIN_DRAG)
       return corners.length >= 3 ? this.finish() : undefined;
     corners.push(at);
     this.show(at);
-    this.hint();
+    this.describeState();
   }
 
   /** @param {KeyboardEvent} event */
-  key(event) {
+  handleKey(event) {
     if (event.target instanceof HTMLElement && event.target.matches("input, textarea, select")) return;
     if (event.key === "Escape") this.on.left();
-    else if (event.key === "Enter") this.enter();
+    else if (event.key === "Enter") this.handleEnter();
     else if (event.key === "Backspace" && this.corners.length) {
       this.corners.pop();
       this.show(this.corners.at(-1) ?? null);
-      this.hint();
+      this.describeState();
     } else return;
     event.preventDefault();
     event.stopPropagation();
   }
 
   /** Enter closes a polygon; before anything is drawn it puts an area into the middle. */
-  enter() {
+  handleEnter() {
     if (this.tool === "polygon" && this.corners.length) {
       if (this.corners.length >= 3) this.finish();
       return;
     }
     const { view } = this;
-    const [x, y] = view.middle.map((one) => view.rounded(one));
-    const half = view.rounded((0.5 * SHARE * view.height) / view.scale);
+    const [x, y] = view.middle.map((one) => view.roundToGrid(one));
+    const half = view.roundToGrid((0.5 * KEYBOARD_SHARE * view.height) / view.scale);
     this.on.done(
       this.tool === "circle"
         ? { circle: { center: [x, y], radius: half } }
@@ -124,7 +126,7 @@ export class Pen {
   finish(last) {
     if (this.tool === "polygon") return this.on.done({ polygon: this.corners });
     if (!this.corners.length || !last) return;
-    const zone = this.spanned(this.corners[0], last);
+    const zone = this.spanZone(this.corners[0], last);
     this.corners = [];
     if (zone) this.on.done(zone);
     else this.show(null);
@@ -136,13 +138,13 @@ export class Pen {
    * @param {Point} to
    * @returns {Zone | null}
    */
-  spanned(from, to) {
+  spanZone(from, to) {
     const [width, height] = [Math.abs(to[0] - from[0]), Math.abs(to[1] - from[1])];
     if (this.tool === "circle") {
       const radius = Number(Math.hypot(width, height).toPrecision(4));
-      return radius * this.view.scale < CLICK ? null : { circle: { center: from, radius } };
+      return radius * this.view.scale < MIN_DRAG ? null : { circle: { center: from, radius } };
     }
-    if (Math.min(width, height) * this.view.scale < CLICK) return null;
+    if (Math.min(width, height) * this.view.scale < MIN_DRAG) return null;
     const [left, low] = [Math.min(from[0], to[0]), Math.min(from[1], to[1])];
     const [right, high] = [Math.max(from[0], to[0]), Math.max(from[1], to[1])];
     return {
@@ -158,36 +160,37 @@ export class Pen {
   /** What is drawn so far, up to where the pointer is. @param {Point | null} at */
   show(at) {
     const { view, corners } = this;
-    const zone = at && corners.length && this.tool !== "polygon" ? this.spanned(corners[0], at) : null;
+    const zone = at && corners.length && this.tool !== "polygon" ? this.spanZone(corners[0], at) : null;
     const line = this.tool === "polygon" ? [...corners, ...(at ? [at] : [])] : (zone?.polygon ?? []);
     const circle = zone?.circle ?? null;
     this.shape.setAttribute(
       "d",
       circle || (zone && line.length)
-        ? outline(view, { circle, corners: line })
+        ? outlinePath(view, { circle, corners: line })
         : corners.length && line.length > 1
-          ? view.path(line)
+          ? view.pathData(line)
           : "",
     );
     this.dots.setAttribute(
       "d",
       (this.tool === "polygon" ? corners : [])
         .map((corner) => {
-          const [u, v] = view.at(...corner);
+          const [u, v] = view.toPicture(...corner);
           return `M${u - 4} ${v}a4 4 0 1 0 8 0a4 4 0 1 0 -8 0Z`;
         })
         .join(""),
     );
     if (circle) this.on.tell(t`Radius ${circle.radius}`);
-    else if (zone) this.on.tell(`${view.rounded(line[2][0] - line[0][0])} × ${view.rounded(line[2][1] - line[0][1])}`);
-    else if (at && corners.length) this.on.tell(`x ${at[0]}, y ${at[1]}. ${this.how()}`);
+    else if (zone)
+      this.on.tell(`${view.roundToGrid(line[2][0] - line[0][0])} × ${view.roundToGrid(line[2][1] - line[0][1])}`);
+    else if (at && corners.length) this.on.tell(`x ${at[0]}, y ${at[1]}. ${this.describeTool()}`);
   }
 
-  hint() {
-    this.on.tell(this.how());
+  describeState() {
+    this.on.tell(this.describeTool());
   }
 
-  how() {
+  describeTool() {
     if (this.tool === "rectangle") return t`Drag from corner to corner. Enter puts one into the middle, Escape ends.`;
     if (this.tool === "circle") return t`Drag from the centre outward. Enter puts one into the middle, Escape ends.`;
     if (!this.corners.length) return t`Click its corners. Enter puts one into the middle, Escape ends.`;

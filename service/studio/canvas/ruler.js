@@ -1,14 +1,14 @@
 /** A ruler on a picture of the plane: two ends that are dragged, and how far apart they are, and in which direction. */
 
-import { el, shown, svg } from "../core/dom.js";
-import { brief } from "../design/design_metrics.js";
-import { Grip, keyed, led } from "./grip.js";
+import { createElement, formatNumber, createSvg } from "../core/dom.js";
+import { formatBriefly } from "../design/design_metrics.js";
+import { Grip, moveWithKeys, dragWithPointer } from "./grip.js";
 import { t } from "../core/messages.js";
 
 /** @typedef {[number, number]} Point */
 
 /** How near to something an end is caught by it, pixels. */
-const CATCH = 10;
+const CATCH_DISTANCE = 10;
 
 export class Ruler {
   /**
@@ -22,18 +22,18 @@ export class Ruler {
     this.unit = unit;
     this.points = points;
     this.memory = memory;
-    this.line = svg("line", { class: "ruler-line" });
-    this.text = svg("text", { class: "ruler-text", "text-anchor": "middle" });
-    this.title = svg("title");
-    this.grips = [0, 1].map((k) => this.grip(k));
-    this.node = svg(
+    this.line = createSvg("line", { class: "ruler-line" });
+    this.text = createSvg("text", { class: "ruler-text", "text-anchor": "middle" });
+    this.title = createSvg("title");
+    this.grips = [0, 1].map((k) => this.createGrip(k));
+    this.node = createSvg(
       "g",
       { class: "ruler" },
       this.line,
-      svg("g", {}, this.title, this.text),
+      createSvg("g", {}, this.title, this.text),
       ...this.grips.map((one) => one.node),
     );
-    this.button = el(
+    this.button = createElement(
       "button",
       {
         type: "button",
@@ -41,7 +41,7 @@ export class Ruler {
         "aria-pressed": "false",
         title: t`Ruler: drag its ends (R)`,
         "data-tool": "ruler",
-        onclick: () => this.turn(),
+        onclick: () => this.toggle(),
       },
       t`Ruler`,
     );
@@ -49,32 +49,35 @@ export class Ruler {
   }
 
   /** Lay it on the picture, or take it away. */
-  turn() {
+  toggle() {
     const [width, height] = [this.view.width / this.view.scale, this.view.height / this.view.scale];
     const [x, y] = this.view.middle;
     this.memory.ends = this.memory.ends
       ? null
-      : [this.caught([x - 0.2 * width, y - 0.2 * height]), this.caught([x + 0.2 * width, y - 0.2 * height])];
+      : [
+          this.snapToTarget([x - 0.2 * width, y - 0.2 * height]),
+          this.snapToTarget([x + 0.2 * width, y - 0.2 * height]),
+        ];
     this.show();
     if (this.memory.ends) this.grips[1].node.focus({ preventScroll: true });
   }
 
   /** @param {number} k */
-  grip(k) {
+  createGrip(k) {
     const grip = new Grip({ kind: "grip", dot: "ruler-end", radius: 5, key: `ruler${k}` });
-    grip.call(t`End ${k + 1} of the ruler`);
+    grip.setLabel(t`End ${k + 1} of the ruler`);
     const put = (/** @type {Point} */ at) => {
       if (this.memory.ends) this.memory.ends[k] = at;
       this.show();
     };
-    led(grip.node, this.picture, this.view, { led: (at) => put(this.caught(at)) });
-    keyed(grip.node, this.view, {
+    dragWithPointer(grip.node, this.picture, this.view, { led: (at) => put(this.snapToTarget(at)) });
+    moveWithKeys(grip.node, this.view, {
       moved: ([dx, dy]) => {
         const end = this.memory.ends?.[k];
-        if (end) put([this.view.fine(end[0] + dx), this.view.fine(end[1] + dy)]);
+        if (end) put([this.view.roundToPixel(end[0] + dx), this.view.roundToPixel(end[1] + dy)]);
       },
       removed: () => {
-        this.turn();
+        this.toggle();
         this.button.focus();
       },
     });
@@ -82,12 +85,12 @@ export class Ruler {
   }
 
   /** A place, or what is so near to it that it is meant. @param {Point} place @returns {Point} */
-  caught(place) {
+  snapToTarget(place) {
     const far = (/** @type {Point} */ [x, y]) => this.view.scale * Math.hypot(x - place[0], y - place[1]);
     const near = this.points()
-      .filter((one) => far(one) < CATCH)
+      .filter((one) => far(one) < CATCH_DISTANCE)
       .sort((one, other) => far(one) - far(other))[0];
-    return near ? [...near] : [this.view.fine(place[0]), this.view.fine(place[1])];
+    return near ? [...near] : [this.view.roundToPixel(place[0]), this.view.roundToPixel(place[1])];
   }
 
   show() {
@@ -96,21 +99,21 @@ export class Ruler {
     if (!ends) return this.node.remove();
     // Laid on once: what is put anew while it is dragged lets the pointer go.
     if (!this.node.parentNode) this.picture.append(this.node);
-    const [[x, y], [u, v]] = ends.map((end) => this.view.at(...end));
+    const [[x, y], [u, v]] = ends.map((end) => this.view.toPicture(...end));
     for (const [name, value] of Object.entries({ x1: x, y1: y, x2: u, y2: v }))
       this.line.setAttribute(name, String(value));
     const [dx, dy] = [ends[1][0] - ends[0][0], ends[1][1] - ends[0][1]];
     const [length, angle] = [Math.hypot(dx, dy), (Math.atan2(dy, dx) * 180) / Math.PI];
     const unit = this.unit && ` ${this.unit}`;
-    this.text.textContent = `${brief(length)}${unit}, ${brief(Number(angle.toFixed(1)))}°`;
+    this.text.textContent = `${formatBriefly(length)}${unit}, ${formatBriefly(Number(angle.toFixed(1)))}°`;
     this.title.textContent = t`${length}${unit}, ${angle}°; across ${dx}${unit}, up ${dy}${unit}`;
     this.text.setAttribute("x", String((x + u) / 2));
     this.text.setAttribute("y", String((y + v) / 2 - 9));
     const keys = t`it measures ${this.text.textContent}. Arrow keys move it, Delete takes the ruler away.`;
     this.grips.forEach((grip, k) => {
       const [ex, ey] = ends[k];
-      grip.put(this.view.at(ex, ey));
-      grip.call(`${t`End ${k + 1} of the ruler`}: x ${shown(ex)}, y ${shown(ey)}; ${keys}`);
+      grip.moveTo(this.view.toPicture(ex, ey));
+      grip.setLabel(`${t`End ${k + 1} of the ruler`}: x ${formatNumber(ex)}, y ${formatNumber(ey)}; ${keys}`);
     });
   }
 }

@@ -2,16 +2,16 @@
  * The stage in the middle of the window: a statement is drawn on it, a design moves on it, a linkage is explored on it.
  */
 
-import { byId, el, remade, svg } from "../core/dom.js";
+import { byId, createElement, rebuild, createSvg } from "../core/dom.js";
 import { Zoom } from "./zoom.js";
 
 /** @typedef {"state" | "watch" | "explore"} Mode */
 
 /** Room of a picture where the window gives none, pixels. */
-const LEAST = [320, 220];
+const MIN_SIZE = [320, 220];
 
 /** Height that the clock below a picture has, pixels. */
-export const CLOCK = 48;
+export const CLOCK_HEIGHT = 48;
 
 /**
  * What a view of a mechanism consists of.
@@ -40,39 +40,39 @@ export class Frame {
    * @param {number} [less]
    * @returns {[number, number]}
    */
-  size(less = 0) {
-    return roomOf(this.board, CLOCK + less);
+  availableSize(less = 0) {
+    return boardSize(this.board, CLOCK_HEIGHT + less);
   }
 
   /** @param {View} view */
   fill({ picture, tools = [], clock, below = [], beside = [], plots = [] }) {
     this.zoom = picture instanceof SVGSVGElement ? new Zoom(picture) : null;
     this.zoom?.buttons.prepend(...tools);
-    const stage = el("div", { class: "stage" }, picture, this.zoom?.buttons, ...below);
-    this.wait(false);
-    remade([this.board, this.beside, this.plots], () => {
+    const stage = createElement("div", { class: "stage" }, picture, this.zoom?.buttons, ...below);
+    this.markWaiting(false);
+    rebuild([this.board, this.beside, this.plots], () => {
       this.board.replaceChildren(stage, ...(clock ? [clock] : []));
-      this.beside.replaceChildren(el("div", { class: "beside" }, ...beside));
+      this.beside.replaceChildren(createElement("div", { class: "beside" }, ...beside));
       this.plots.replaceChildren(...plots.filter((one) => one instanceof Node));
     });
   }
 
   /** What is shown is of the design before, until the motion of the next one is there. @param {boolean} is */
-  wait(is) {
+  markWaiting(is) {
     for (const place of [this.board, this.beside, this.plots]) place.classList.toggle("waiting", is);
   }
 
   /** Say something in the place of a picture. @param {...(Node | string)} said */
-  say(...said) {
+  showMessage(...said) {
     this.zoom = null;
-    this.wait(false);
-    this.board.replaceChildren(el("div", { class: "said" }, ...said));
+    this.markWaiting(false);
+    this.board.replaceChildren(createElement("div", { class: "said" }, ...said));
     this.beside.replaceChildren();
     this.plots.replaceChildren();
   }
 
   /** Whether nothing is shown: a picture stays until the next one is there. */
-  get idle() {
+  get isIdle() {
     return !this.board.querySelector(".stage");
   }
 }
@@ -87,9 +87,9 @@ export class Frame {
  * @param {boolean} [use.whole] whether it goes to the edges of its room, as a grid does, and not of what points take
  * @returns {SVGSVGElement}
  */
-export function scene(view, label, drawn, { held = false, whole = false } = {}) {
-  const { x, y, width, height } = whole ? view.room : view.box;
-  return svg(
+export function createScene(view, label, drawn, { held = false, whole = false } = {}) {
+  const { x, y, width, height } = whole ? view.bounds : view.box;
+  return createSvg(
     "svg",
     {
       viewBox: `${x} ${y} ${width} ${height}`,
@@ -107,10 +107,10 @@ export function scene(view, label, drawn, { held = false, whole = false } = {}) 
  * @param {number} less
  * @returns {[number, number]}
  */
-export function roomOf(board, less) {
+export function boardSize(board, less) {
   const boards = board.parentElement ?? board;
   const halves = boards.classList.contains("split") ? 2 : 1;
-  return [Math.max(LEAST[0], boards.clientWidth / halves), Math.max(LEAST[1], boards.clientHeight - less)];
+  return [Math.max(MIN_SIZE[0], boards.clientWidth / halves), Math.max(MIN_SIZE[1], boards.clientHeight - less)];
 }
 
 export class Stage {
@@ -121,8 +121,8 @@ export class Stage {
     this.buttons = { state: byId("mode-state"), watch: byId("mode-watch", HTMLButtonElement) };
     /** Whether there is anything to watch. */
     this.watching = false;
-    this.buttons.state.addEventListener("click", () => this.show("state"));
-    this.buttons.watch.addEventListener("click", () => this.show("watch"));
+    this.buttons.state.addEventListener("click", () => this.showMode("state"));
+    this.buttons.watch.addEventListener("click", () => this.showMode("watch"));
     /** Told whenever something else is shown. @type {(mode: Mode) => void} */
     this.changed = () => {};
   }
@@ -133,7 +133,7 @@ export class Stage {
   }
 
   /** @param {Mode} mode */
-  show(mode) {
+  showMode(mode) {
     if (mode !== "state" && !this.watching) mode = "state";
     const before = this.mode;
     this.place.dataset.mode = mode;
@@ -143,10 +143,10 @@ export class Stage {
   }
 
   /** Say whether there is a mechanism to be watched. @param {boolean} is @param {string} [caption] */
-  offer(is, caption = "") {
+  offerMotion(is, caption = "") {
     this.watching = is;
     this.buttons.watch.disabled = !is;
     this.caption.textContent = caption;
-    if (!is) this.show("state");
+    if (!is) this.showMode("state");
   }
 }

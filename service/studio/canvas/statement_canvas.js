@@ -2,56 +2,56 @@
  * A statement on a canvas: what it places in the plane is dragged, turned, added and removed, and curves are sketched.
  */
 
-import { el, shown, svg } from "../core/dom.js";
-import { stroke } from "./freehand.js";
-import { grid, snapping } from "./grid.js";
-import { Grip, keyed, led } from "./grip.js";
-import { chosenPivots, matched, opened, stated } from "./handles.js";
+import { createElement, formatNumber, createSvg } from "../core/dom.js";
+import { drawStroke } from "./freehand.js";
+import { drawGrid, snapSpacing } from "./grid.js";
+import { Grip, moveWithKeys, dragWithPointer } from "./grip.js";
+import { fixedPivotHandles, isMatchedCurve, isOpenCurve, findHandles } from "./handles.js";
 import { t, term } from "../core/messages.js";
-import { at } from "../core/pointer.js";
-import { areas } from "./workspace.js";
-import { RoomEditor } from "./workspace_editor.js";
+import { readPointer } from "../core/pointer.js";
+import { listAreas } from "./workspace.js";
+import { WorkspaceEditor } from "./workspace_editor.js";
 import { Ruler } from "./ruler.js";
-import { within } from "../form/form_state.js";
-import { roomOf, scene } from "./stage.js";
+import { statementPointer } from "../form/form_state.js";
+import { boardSize, createScene } from "./stage.js";
 import { View } from "../core/view.js";
 import { Zoom } from "./zoom.js";
 
 /** @import { Problem } from "../types/values.js" */
 
 /** @typedef {import("./handles.js").Handle} Handle */
-/** @typedef {import("./handles.js").Stated} Stated */
+/** @typedef {import("./handles.js").Handles} Stated */
 /** @typedef {import("../core/store.js").Store} Store */
 
 /** Height of the tools below a canvas, pixels. */
-const TOOLS = 117;
+const TOOLS_HEIGHT = 117;
 
 /** The same of a row of buttons that stands without a picture. */
-const BUTTONS = 52;
+const BUTTONS_HEIGHT = 52;
 
-const ARM = 44;
+const KNOB_ARM = 44;
 
 /** What angles snap to, degrees. */
-const SNAP_TURN = 15;
+const SNAP_ANGLE = 15;
 
 /** What somebody has chosen of the tools; it outlives every canvas. */
-const tools = { grid: true, snap: false };
+const toolChoices = { grid: true, snap: false };
 
 /**
  * What of a canvas outlives its being made anew.
- * @typedef {object} Kept
+ * @typedef {object} CanvasState
  * @property {number} origin of the statement whose view it is
  * @property {View | null} view
  * @property {boolean} led whether somebody has led the view somewhere; otherwise all is to be seen
- * @property {import("./workspace_editor.js").Memory} room
+ * @property {import("./workspace_editor.js").EditorState} room
  * @property {{ends: [[number, number], [number, number]] | null}} ruler
  */
 
 /** Where the statement cannot be read there is nothing to hold. @type {Stated} */
-const NOTHING = { handles: [], lines: () => [], offers: [] };
+const NO_HANDLES = { handles: [], lines: () => [], offers: [] };
 
-/** @type {WeakMap<HTMLElement, Kept>} */
-const kept = new WeakMap();
+/** @type {WeakMap<HTMLElement, CanvasState>} */
+const canvasState = new WeakMap();
 
 /**
  * Draw what is stated on the canvas.
@@ -59,28 +59,28 @@ const kept = new WeakMap();
  * @param {Store} store
  * @param {import("./backdrop.js").Backdrop} backdrop what lies behind it
  */
-export function canvas(place, store, backdrop) {
-  const { problem, origin, roomy } = store;
-  const found = readable(problem);
-  const before = kept.get(place);
+export function drawCanvas(place, store, backdrop) {
+  const { problem, origin, hasWorkspace: roomy } = store;
+  const found = readHandles(problem);
+  const before = canvasState.get(place);
   const memory =
     before && before.origin === origin
       ? before
       : { origin, view: null, led: false, room: { role: before?.room.role }, ruler: { ends: null } };
   before?.room.pen?.leave();
-  kept.set(place, memory);
+  canvasState.set(place, memory);
   const graph = problem.kind === "function";
   const grip = place.contains(document.activeElement) ? document.activeElement?.getAttribute("data-grip") : null;
   const both = graph && roomy && found && (found.handles.length > 0 || found.add);
   const buttons = graph && roomy && found && !both;
-  const [width, height] = roomOf(place, TOOLS + (buttons ? BUTTONS : 0));
+  const [width, height] = boardSize(place, TOOLS_HEIGHT + (buttons ? BUTTONS_HEIGHT : 0));
   /** @type {[number, number]} */
   const size = [both ? width / 2 : width, height];
-  const redrawn = () => canvas(place, store, backdrop);
+  const redrawn = () => drawCanvas(place, store, backdrop);
   place.replaceChildren(
-    ...(found ? [drawnPlane(redrawn, store, readable, roomy && !graph, memory, graph ? null : backdrop, size)] : []),
+    ...(found ? [drawPlane(redrawn, store, readHandles, roomy && !graph, memory, graph ? null : backdrop, size)] : []),
     // The graph of a function is not the plane in which its linkage lies.
-    ...(graph && roomy ? [drawnPlane(redrawn, store, bare, true, memory, backdrop, size)] : []),
+    ...(graph && roomy ? [drawPlane(redrawn, store, bareHandles, true, memory, backdrop, size)] : []),
   );
   if (grip)
     /** @type {SVGElement | null} */ (place.querySelector(`[data-grip="${CSS.escape(grip)}"]`))?.focus({
@@ -93,8 +93,8 @@ export function canvas(place, store, backdrop) {
  * @param {Problem} problem
  * @returns {Stated}
  */
-function bare(problem) {
-  return { handles: chosenPivots(problem), lines: () => [], offers: [] };
+function bareHandles(problem) {
+  return { handles: fixedPivotHandles(problem), lines: () => [], offers: [] };
 }
 
 /**
@@ -103,39 +103,39 @@ function bare(problem) {
  * @param {Store} store
  * @param {(problem: Problem) => Stated | null} of what of a statement is held in it
  * @param {boolean} roomy
- * @param {Kept} memory
+ * @param {CanvasState} memory
  * @param {import("./backdrop.js").Backdrop | null} backdrop
  * @param {[number, number]} room pixels
  * @returns {HTMLElement}
  */
-function drawnPlane(redrawn, store, of, roomy, memory, backdrop, room) {
+function drawPlane(redrawn, store, of, roomy, memory, backdrop, room) {
   const { problem } = store;
   /** What is held now. @type {Stated} */
-  let found = NOTHING;
-  const look = () => (found = of(store.problem) ?? NOTHING);
+  let found = NO_HANDLES;
+  const look = () => (found = of(store.problem) ?? NO_HANDLES);
   const { handles, word, add, offers, freehand, shapes = [] } = look();
   /** @param {(found: Stated, statement: Problem) => void} act @param {import("../core/store.js").Editor | null} [by] */
   const change = (act, by) => {
-    store.change((statement) => act(of(statement) ?? NOTHING, statement), by);
+    store.change((statement) => act(of(statement) ?? NO_HANDLES, statement), by);
     look();
   };
-  const corners = roomy ? areas(problem.space).flatMap((area) => area.extent) : [];
+  const corners = roomy ? listAreas(problem.space).flatMap((area) => area.extent) : [];
   const points = [...handles.flatMap(({ get, name }) => (name === "ground" ? [] : [get()])), ...corners];
-  const fits = memory.view?.width === room[0] && memory.view.height === room[1] && memory.view.suits(points);
+  const fits = memory.view?.width === room[0] && memory.view.height === room[1] && memory.view.fits(points);
   const view =
     roomy && memory.view && (memory.led || fits)
       ? memory.view
       : new View(points, ...room, corners.length ? 40 : 0.2 * Math.min(...room));
   if (roomy) memory.view = view;
-  view.snap = tools.snap ? snapping(view) : 0;
-  const picture = scene(view, t`The problem in the plane`, [], { held: true, whole: true });
-  const trail = svg("path", { class: "trail" });
-  const pen = svg("path", { class: "pen" });
-  const areasOf = roomy ? new RoomEditor(picture, view, store, memory.room) : null;
+  view.snap = toolChoices.snap ? snapSpacing(view) : 0;
+  const picture = createScene(view, t`The problem in the plane`, [], { held: true, whole: true });
+  const trail = createSvg("path", { class: "trail" });
+  const pen = createSvg("path", { class: "pen" });
+  const areasOf = roomy ? new WorkspaceEditor(picture, view, store, memory.room) : null;
   picture.append(
-    svg("rect", { class: "paper", ...view.room }),
-    ...(backdrop?.drawn(view, picture) ?? []),
-    ...(tools.grid ? grid(view) : []),
+    createSvg("rect", { class: "paper", ...view.bounds }),
+    ...(backdrop?.draw(view, picture) ?? []),
+    ...(toolChoices.grid ? drawGrid(view) : []),
     ...(areasOf ? [areasOf.node] : []),
     trail,
     pen,
@@ -145,7 +145,7 @@ function drawnPlane(redrawn, store, of, roomy, memory, backdrop, room) {
       "d",
       found
         .lines()
-        .map((line) => view.path(line))
+        .map((line) => view.pathData(line))
         .join(""),
     );
   const show = () => {
@@ -153,15 +153,15 @@ function drawnPlane(redrawn, store, of, roomy, memory, backdrop, room) {
     redraw();
   };
   const drawn = handles.map((_, k) =>
-    held(`${word ?? "handle"}${k}`, view, picture, {
+    createHandle(`${word ?? "handle"}${k}`, view, picture, {
       handle: () => found.handles[k],
       change: (act) => {
         change(({ handles }) => act(handles[k]), "canvas");
-        told(store.problem, found.handles[k].path);
+        updateFields(store.problem, found.handles[k].path);
         show();
       },
       remove: () => change(({ handles }) => handles[k].remove?.()),
-      left: () => store.settle(),
+      left: () => store.notifySettled(),
     }),
   );
   picture.append(...drawn.map((one) => one.group));
@@ -178,69 +178,73 @@ function drawnPlane(redrawn, store, of, roomy, memory, backdrop, room) {
           memory.ruler,
         );
   const toggle = (/** @type {"grid" | "snap"} */ name, /** @type {string} */ text, /** @type {string} */ title) =>
-    el(
+    createElement(
       "button",
       {
         type: "button",
         class: "small",
         title,
-        "aria-pressed": String(tools[name]),
+        "aria-pressed": String(toolChoices[name]),
         "data-tool": name,
         onclick: () => {
-          tools[name] = !tools[name];
+          toolChoices[name] = !toolChoices[name];
           redrawn();
         },
       },
       text,
     );
-  const chosen = el(
+  const chosen = createElement(
     "div",
     { class: "canvas-tools", role: "group", "aria-label": t`Tools of the canvas` },
     ...shapes.map(({ text, title }, k) =>
-      el(
+      createElement(
         "button",
         {
           type: "button",
           class: "small",
           title,
-          onclick: () => change(({ shapes = [] }) => shapes[k].make((value) => view.fine(value))),
+          onclick: () => change(({ shapes = [] }) => shapes[k].make((value) => view.roundToPixel(value))),
         },
         text,
       ),
     ),
     toggle("grid", t`Grid`, t`Lines at round coordinates`),
-    toggle("snap", t`Snap`, t`Places snap to ${shown(snapping(view))}, angles to ${SNAP_TURN}°; Alt lets them be`),
+    toggle(
+      "snap",
+      t`Snap`,
+      t`Places snap to ${formatNumber(snapSpacing(view))}, angles to ${SNAP_ANGLE}°; Alt lets them be`,
+    ),
     ruler?.button,
   );
 
-  const mode = el("input", { type: "checkbox", id: "freehand" });
+  const mode = createElement("input", { type: "checkbox", id: "freehand" });
   // Somewhere else the plane is drawn anew: its lines, and what coordinates are rounded to, are those of the new scale.
   const zoom =
     roomy && backdrop
       ? new Zoom(picture, {
           busy: () => mode.checked,
           settled: (seen) => {
-            if (seen) view.look(seen.middle, seen.nearness);
+            if (seen) view.zoomTo(seen.middle, seen.nearness);
             Object.assign(memory, { view: seen && view, led: seen !== null });
             redrawn();
           },
         })
       : null;
   const put = (/** @type {[number, number]} */ [x, y]) => {
-    change(({ add }) => add?.(view.rounded(x), view.rounded(y)));
+    change(({ add }) => add?.(view.roundToGrid(x), view.roundToGrid(y)));
   };
   if (add) {
     picture.addEventListener("dblclick", (/** @type {MouseEvent} */ event) => {
-      if (!mode.checked) put(view.under(picture, event));
+      if (!mode.checked) put(view.toPlaneFromPointer(picture, event));
     });
   }
   picture.addEventListener("pointerdown", (/** @type {PointerEvent} */ event) => {
     if (!mode.checked) return;
-    stroke(event, view, picture, pen, (way, closed) => {
+    drawStroke(event, view, picture, pen, (way, closed) => {
       change((_, statement) => {
         statement.points = way.map(([x, y]) => ({ x, y }));
-        if (closed) matched(statement);
-        else opened(statement);
+        if (closed) isMatchedCurve(statement);
+        else isOpenCurve(statement);
       });
     });
   });
@@ -256,39 +260,39 @@ function drawnPlane(redrawn, store, of, roomy, memory, backdrop, room) {
   // An empty plane says nothing: what may be placed in it stands below.
   picture.toggleAttribute("hidden", !handles.length && !add && !roomy);
   if (picture.hasAttribute("hidden")) chosen.hidden = true;
-  return el(
+  return createElement(
     "div",
     { class: "plane" },
-    el("div", { class: "stage" }, picture, chosen),
-    el(
+    createElement("div", { class: "stage" }, picture, chosen),
+    createElement(
       "div",
       { class: "bar" },
-      el(
+      createElement(
         "div",
         { class: "row" },
         add &&
-          el(
+          createElement(
             "button",
             { type: "button", class: "small", onclick: () => put([last[0] + 40 / view.scale, last[1]]) },
             t`Add a ${term(word ?? "")}`,
           ),
         ...offers.map(({ text }, k) =>
-          el(
+          createElement(
             "button",
             {
               type: "button",
               class: "small",
               onclick: () => {
-                const middle = /** @type {[number, number]} */ (view.middle.map((one) => view.rounded(one)));
-                change(({ offers }) => offers[k].make(middle, view.rounded(size)));
+                const middle = /** @type {[number, number]} */ (view.middle.map((one) => view.roundToGrid(one)));
+                change(({ offers }) => offers[k].make(middle, view.roundToGrid(size)));
               },
             },
             text,
           ),
         ),
-        freehand && el("label", { class: "flag", for: "freehand" }, mode, t`Draw freehand`),
+        freehand && createElement("label", { class: "flag", for: "freehand" }, mode, t`Draw freehand`),
         zoom?.buttons,
-        handles.length > 0 && el("span", { class: "note", title: how }, how),
+        handles.length > 0 && createElement("span", { class: "note", title: how }, how),
       ),
       areasOf?.tools,
     ),
@@ -296,9 +300,9 @@ function drawnPlane(redrawn, store, of, roomy, memory, backdrop, room) {
 }
 
 /** What can be held; nothing while the JSON is not what its kind has. @param {Problem} problem */
-function readable(problem) {
+function readHandles(problem) {
   try {
-    const found = stated(problem);
+    const found = findHandles(problem);
     found?.lines();
     return found;
   } catch (error) {
@@ -308,10 +312,10 @@ function readable(problem) {
 }
 
 /** The fields of the form go along with what is led. @param {Problem} problem @param {string | undefined} path */
-function told(problem, path) {
+function updateFields(problem, path) {
   for (const field of path ? ["x", "y", "angle"] : []) {
     const box = document.querySelector(`[data-path="${path}/${field}"]`);
-    const value = at(problem, within(`${path}/${field}`));
+    const value = readPointer(problem, statementPointer(`${path}/${field}`));
     if (box instanceof HTMLInputElement && value !== undefined) box.value = String(value);
   }
 }
@@ -325,27 +329,27 @@ function told(problem, path) {
  * @param {() => void} on.remove
  * @param {() => void} on.left it is let go
  */
-function held(key, view, picture, { handle, change, remove, left }) {
+function createHandle(key, view, picture, { handle, change, remove, left }) {
   const { name, label, turn, remove: removable } = handle();
   const grip = new Grip({ name, beside: [12, 20], radius: 8, key });
   const group = grip.node;
-  const line = svg("line", { class: "arm" });
+  const line = createSvg("line", { class: "arm" });
   const [end, knob] = turn
-    ? [svg("circle", { class: "hit", r: 12 }), svg("circle", { class: "knob", r: 7 })]
+    ? [createSvg("circle", { class: "hit", r: 12 }), createSvg("circle", { class: "knob", r: 7 })]
     : [null, null];
   group.prepend(line);
   if (end && knob) group.append(end, knob);
   const show = () => {
     const { get, turn } = handle();
     const [x, y] = get();
-    const [u, v] = view.at(x, y);
-    grip.put([u, v]);
-    const turned = turn ? `, ${t`angle ${shown(turn.get())}°`}` : "";
+    const [u, v] = view.toPicture(x, y);
+    grip.moveTo([u, v]);
+    const turned = turn ? `, ${t`angle ${formatNumber(turn.get())}°`}` : "";
     const keys = [t`Arrow keys move it`, turn && t`page keys turn it`, removable && t`Delete removes it`];
-    grip.call(`${label}: x ${shown(x)}, y ${shown(y)}${turned}. ${keys.filter(Boolean).join(", ")}.`);
+    grip.setLabel(`${label}: x ${formatNumber(x)}, y ${formatNumber(y)}${turned}. ${keys.filter(Boolean).join(", ")}.`);
     if (!knob || !end || !turn) return;
     const angle = (turn.get() * Math.PI) / 180;
-    const [ku, kv] = [u + ARM * Math.cos(angle), v - ARM * Math.sin(angle)];
+    const [ku, kv] = [u + KNOB_ARM * Math.cos(angle), v - KNOB_ARM * Math.sin(angle)];
     for (const one of [knob, end]) {
       one.setAttribute("cx", String(ku));
       one.setAttribute("cy", String(kv));
@@ -355,25 +359,26 @@ function held(key, view, picture, { handle, change, remove, left }) {
   };
   /** @param {SVGElement} part @param {(handle: Handle, at: [number, number]) => void} moved */
   const lead = (part, moved) =>
-    led(part, picture, view, {
-      led: (at, now) => view.freely(() => change((one) => moved(one, at)), now.altKey),
+    dragWithPointer(part, picture, view, {
+      led: (at, now) => view.withoutSnapping(() => change((one) => moved(one, at)), now.altKey),
       left,
     });
-  for (const one of [grip.dot, grip.hit]) lead(one, (handle, [x, y]) => handle.put(view.rounded(x), view.rounded(y)));
+  for (const one of [grip.dot, grip.hit])
+    lead(one, (handle, [x, y]) => handle.put(view.roundToGrid(x), view.roundToGrid(y)));
   if (knob && end) {
     for (const one of [knob, end]) {
       lead(one, ({ get, turn }, [x, y]) => {
         const [px, py] = get();
-        const step = view.snap ? SNAP_TURN : 1;
+        const step = view.snap ? SNAP_ANGLE : 1;
         turn?.set(step * Math.round((Math.atan2(y - py, x - px) * 180) / Math.PI / step));
       });
     }
   }
-  keyed(group, view, {
+  moveWithKeys(group, view, {
     moved: ([dx, dy]) =>
       change(({ get, put }) => {
         const [x, y] = get();
-        put(view.fine(x + dx), view.fine(y + dy));
+        put(view.roundToPixel(x + dx), view.roundToPixel(y + dy));
       }),
     turned: turn && ((by) => change(({ turn }) => turn?.set(turn.get() + by))),
     removed: removable && remove,

@@ -4,7 +4,7 @@
 
 import { t } from "../core/messages.js";
 
-import { group, put } from "../core/pointer.js";
+import { ensureObject, writePointer } from "../core/pointer.js";
 
 /** @import { Problem } from "../types/values.js" */
 
@@ -67,7 +67,7 @@ export const ROLES = [
 ];
 
 /** The roles that areas of a problem can have: only a body that is carried has an outline. @param {Problem} problem */
-export function rolesOf(problem) {
+export function availableRoles(problem) {
   return ROLES.filter((role) => role.name !== "body" || problem.kind === "motion");
 }
 
@@ -136,7 +136,7 @@ export class Area {
    * Where its name stands: the corner that is farthest up, and of those to the left; of a circle its highest point.
    * @returns {Point}
    */
-  get top() {
+  get labelPoint() {
     const { circle, corners } = this;
     if (circle) return [circle.center[0], circle.center[1] + circle.radius];
     return corners.reduce((best, corner) =>
@@ -145,12 +145,12 @@ export class Area {
   }
 
   /** Whether more corners make sense. */
-  get free() {
+  get hasFreeCorners() {
     return this.role.name !== "box" && !this.circle;
   }
 
   /** Put a corner elsewhere. @param {number} k @param {Point} point */
-  put(k, [x, y]) {
+  moveCorner(k, [x, y]) {
     if (this.role.name !== "box") {
       this.corners[k] = [x, y];
       return;
@@ -162,13 +162,13 @@ export class Area {
   }
 
   /** Another corner behind the corner `k`. @param {number} k @param {Point} point */
-  insert(k, point) {
+  insertCorner(k, point) {
     this.corners.splice(k + 1, 0, point);
   }
 
   /** @param {number} k */
-  drop(k) {
-    if (this.free && this.corners.length > 3) this.corners.splice(k, 1);
+  removeCorner(k) {
+    if (this.hasFreeCorners && this.corners.length > 3) this.corners.splice(k, 1);
   }
 
   /** Move all of it. @param {Point} by @param {(value: number) => number} rounded */
@@ -190,8 +190,8 @@ export class Area {
     } = this;
     if (Array.isArray(owner)) {
       owner.splice(Number(this.key), 1);
-      if (inner && owner.length === 1) put(space, [outer, inner], owner[0]);
-      else if (!owner.length) put(space, inner ? [outer, inner] : [outer], undefined);
+      if (inner && owner.length === 1) writePointer(space, [outer, inner], owner[0]);
+      else if (!owner.length) writePointer(space, inner ? [outer, inner] : [outer], undefined);
     } else delete owner[this.key];
     if (inner && space[outer] && Object.values(space[outer]).every((one) => (one ?? null) === null))
       delete space[outer];
@@ -203,7 +203,7 @@ export class Area {
  * @param {Role} role
  * @param {Shape | null | undefined} value
  */
-function drawable(role, value) {
+function isDrawable(role, value) {
   const point = (/** @type {unknown} */ one) => Array.isArray(one) && one.length === 2 && one.every(Number.isFinite);
   if (role.name === "box") return Array.isArray(value) && value.length === 2 && value.every(point);
   const corners = Array.isArray(value) ? value : value?.polygon;
@@ -217,8 +217,8 @@ function drawable(role, value) {
  * @param {Problem["space"]} stated
  * @returns {Area[]}
  */
-export function areas(stated) {
-  if (!group(stated)) return [];
+export function listAreas(stated) {
+  if (!ensureObject(stated)) return [];
   const space = /** @type {Block} */ (/** @type {unknown} */ (stated));
   const drawn = ["box", "obstacle", "body"];
   const order = [...drawn, ...ROLES.map(({ name }) => name).filter((name) => !drawn.includes(name))];
@@ -233,10 +233,10 @@ export function areas(stated) {
     const path = `/problem/space/${role.field.join("/")}`;
     if (!owner || !value) return [];
     if (!Array.isArray(value) || name === "box" || name === "body")
-      return drawable(role, value) ? [new Area(space, role, path, owner, key, 0)] : [];
+      return isDrawable(role, value) ? [new Area(space, role, path, owner, key, 0)] : [];
     const zones = /** @type {Owner} */ (/** @type {unknown} */ (value));
     return Object.entries(zones).flatMap(([k, zone]) =>
-      drawable(role, zone) ? [new Area(space, role, `${path}/${k}`, zones, k, Number(k) + 1)] : [],
+      isDrawable(role, zone) ? [new Area(space, role, `${path}/${k}`, zones, k, Number(k) + 1)] : [],
     );
   });
 }

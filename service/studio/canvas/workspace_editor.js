@@ -3,57 +3,57 @@
  * keys.
  */
 
-import { lines } from "../form/controls.js";
-import { el, shown, svg, words } from "../core/dom.js";
+import { formatPoints } from "../form/controls.js";
+import { createElement, formatNumber, createSvg, toWords } from "../core/dom.js";
 import { DrawingImport } from "./drawing_import.js";
-import { Grip, keyed, led } from "./grip.js";
-import { hatched, legend, outline } from "./area_hatching.js";
+import { Grip, moveWithKeys, dragWithPointer } from "./grip.js";
+import { createHatch, createLegend, outlinePath } from "./area_hatching.js";
 import { t } from "../core/messages.js";
 import { Pen } from "./pen.js";
-import { areas, rolesOf, stateArea } from "./workspace.js";
+import { listAreas, availableRoles, stateArea } from "./workspace.js";
 
 /** @typedef {[number, number]} Point */
 /** @typedef {import("./workspace.js").Area} Area */
 /** @typedef {import("./workspace.js").Tool} Tool */
 
 /** What is dragged by less, pixels of the picture, is not moved. */
-const CLICK = 3;
+const MIN_DRAG = 3;
 
 const TOOLS = /** @type {Tool[]} */ (["polygon", "rectangle", "circle"]);
 
 /**
  * What outlives a canvas that is made anew.
- * @typedef {object} Memory
+ * @typedef {object} EditorState
  * @property {string} [chosen] JSON pointer of the area that is chosen
  * @property {string} [role] that is drawn next
  * @property {Pen | null} [pen]
  * @property {DrawingImport} [drawing] that is being imported
  */
 
-export class RoomEditor {
+export class WorkspaceEditor {
   /**
    * @param {SVGSVGElement} picture @param {import("../core/view.js").View} view @param
    *   {import("../core/store.js").Store} store
-   * @param {Memory} memory
+   * @param {EditorState} memory
    */
   constructor(picture, view, store, memory) {
     this.picture = picture;
     this.view = view;
     this.store = store;
     this.memory = memory;
-    this.areas = areas(store.problem.space);
+    this.areas = listAreas(store.problem.space);
     memory.pen?.leave();
     memory.pen = null;
-    this.node = svg("g", { class: "room" }, ...this.areas.map((area) => this.held(area)));
-    this.said = el("p", { class: "note", role: "status" });
+    this.node = createSvg("g", { class: "room" }, ...this.areas.map((area) => this.createAreaHandle(area)));
+    this.said = createElement("p", { class: "note", role: "status" });
     // What was found in a drawing stands there until it is placed; it speaks to the canvas as it is then.
     this.drawing = memory.drawing ??= new DrawingImport(store, () => {});
     this.drawing.placed = (path) => {
       memory.chosen = path;
-      this.rest();
+      this.putPenAway();
     };
-    this.tools = this.bar();
-    this.rest();
+    this.tools = this.createToolbar();
+    this.putPenAway();
   }
 
   get chosen() {
@@ -61,7 +61,7 @@ export class RoomEditor {
   }
 
   /** An area as it is now. @param {string} path @returns {Area} */
-  at(path) {
+  findArea(path) {
     return /** @type {Area} */ (this.areas.find((one) => one.path === path));
   }
 
@@ -72,32 +72,32 @@ export class RoomEditor {
    */
   change(path, act, by = null) {
     this.store.change((statement) => {
-      const area = areas(statement.space).find((one) => one.path === path);
+      const area = listAreas(statement.space).find((one) => one.path === path);
       if (area) act(area);
     }, by);
-    this.areas = areas(this.store.problem.space);
+    this.areas = listAreas(this.store.problem.space);
   }
 
   /** What draws: the role first, then the shape. */
-  bar() {
+  createToolbar() {
     const { memory } = this;
-    const roles = rolesOf(this.store.problem);
+    const roles = availableRoles(this.store.problem);
     const role = () => roles.find((one) => one.name === pick.value) ?? roles[0];
-    const pick = el(
+    const pick = createElement(
       "select",
       {
         id: "room-role",
         onchange: () => {
           memory.role = pick.value;
-          this.rest();
+          this.putPenAway();
           fit();
         },
       },
-      ...roles.map((one) => el("option", { value: one.name }, one.text)),
+      ...roles.map((one) => createElement("option", { value: one.name }, one.text)),
     );
     pick.value = (roles.find((one) => one.name === memory.role) ?? roles[0]).name;
     const buttons = TOOLS.map((tool) =>
-      el(
+      createElement(
         "button",
         {
           type: "button",
@@ -106,16 +106,16 @@ export class RoomEditor {
           "data-tool": tool,
           onclick: () => {
             const again = memory.pen?.tool === tool;
-            this.rest();
-            if (!again) this.take(role(), tool);
+            this.putPenAway();
+            if (!again) this.takePen(role(), tool);
           },
         },
-        words(tool),
+        toWords(tool),
       ),
     );
     const fit = () => buttons.forEach((button, k) => (button.disabled = !role().tools.includes(TOOLS[k])));
     fit();
-    this.remover = el(
+    this.remover = createElement(
       "button",
       {
         type: "button",
@@ -128,35 +128,35 @@ export class RoomEditor {
       t`Delete`,
     );
     const used = roles.filter((one) => this.areas.some((area) => area.role === one));
-    return el(
+    return createElement(
       "fieldset",
       { class: "choice", id: "room-tools" },
-      el("legend", {}, t`Room`),
-      el(
+      createElement("legend", {}, t`Room`),
+      createElement(
         "div",
         { class: "row" },
-        el("label", { for: "room-role" }, t`Draw`),
+        createElement("label", { for: "room-role" }, t`Draw`),
         pick,
-        el("div", { class: "row", role: "group", "aria-label": t`Shape` }, ...buttons),
+        createElement("div", { class: "row", role: "group", "aria-label": t`Shape` }, ...buttons),
         this.remover,
         this.drawing.button,
       ),
       this.said,
       this.drawing.node,
-      used.length > 0 && legend(used),
+      used.length > 0 && createLegend(used),
     );
   }
 
   /** Take the pen. @param {import("./workspace.js").Role} role @param {Tool} tool */
-  take(role, tool) {
+  takePen(role, tool) {
     this.memory.pen = new Pen(this.picture, this.view, role.name, tool, {
       tell: (text) => (this.said.textContent = text),
-      left: () => this.rest(),
+      left: () => this.putPenAway(),
       done: (zone) => {
         // It is chosen, and the pen away, when the canvas is made anew.
         this.store.change((statement) => {
           this.memory.chosen = stateArea(statement, role, zone);
-          this.rest();
+          this.putPenAway();
         });
       },
     });
@@ -167,20 +167,20 @@ export class RoomEditor {
   }
 
   /** Put the pen away. */
-  rest() {
+  putPenAway() {
     this.memory.pen?.leave();
     this.memory.pen = null;
     this.picture.classList.remove("drawing");
-    this.hint();
+    this.describeActions();
     for (const button of this.tools.querySelectorAll("[data-tool]")) button.setAttribute("aria-pressed", "false");
   }
 
   /** What can be done now. */
-  hint() {
+  describeActions() {
     const { chosen } = this;
     const ways = [
       chosen?.circle ? t`drag it or its radius` : t`drag it or its corners`,
-      chosen?.free && t`double-click a side for another corner`,
+      chosen?.hasFreeCorners && t`double-click a side for another corner`,
     ];
     this.said.textContent = !chosen
       ? t`Say what is drawn, choose a shape, and draw it in the picture.`
@@ -191,9 +191,9 @@ export class RoomEditor {
   choose(area) {
     if (this.memory.chosen === area.path) return;
     this.memory.chosen = area.path;
-    this.node.replaceChildren(...this.areas.map((one) => this.held(one)));
+    this.node.replaceChildren(...this.areas.map((one) => this.createAreaHandle(one)));
     if (this.remover) this.remover.disabled = false;
-    this.hint();
+    this.describeActions();
   }
 
   /** @param {Area} area */
@@ -203,52 +203,53 @@ export class RoomEditor {
   }
 
   /** An area that can be taken hold of, with its corners where it is chosen. @param {Area} area */
-  held(area) {
+  createAreaHandle(area) {
     const { path } = area;
     const chosen = path === this.memory.chosen;
-    const shape = hatched(area.role.name);
-    const mark = svg("text", { class: `area-mark ${area.role.name}` }, area.role.mark);
-    const body = svg(
+    const shape = createHatch(area.role.name);
+    const mark = createSvg("text", { class: `area-mark ${area.role.name}` }, area.role.mark);
+    const body = createSvg(
       "g",
       { class: `held ${chosen ? "chosen" : ""}`, tabindex: 0, role: "button", "data-grip": path },
       shape,
       mark,
     );
-    const grips = chosen ? this.grips(area, () => show()) : [];
+    const grips = chosen ? this.createGrips(area, () => show()) : [];
     const show = () => {
-      const { circle, corners, label, top } = this.at(path);
-      shape.setAttribute("d", outline(this.view, { circle, corners }));
-      const [u, v] = this.view.at(...top);
+      const { circle, corners, label, labelPoint: top } = this.findArea(path);
+      shape.setAttribute("d", outlinePath(this.view, { circle, corners }));
+      const [u, v] = this.view.toPicture(...top);
       mark.setAttribute("x", String(u));
       mark.setAttribute("y", String(v));
-      const what = circle ? t`circle of radius ${shown(circle.radius)}` : t`${corners.length} corners`;
+      const what = circle ? t`circle of radius ${formatNumber(circle.radius)}` : t`${corners.length} corners`;
       body.setAttribute("aria-label", `${label}, ${what}. ${t`Arrow keys move it, Delete removes it.`}`);
       for (const grip of grips) grip.show();
     };
     const shift = (/** @type {Point} */ by) => {
-      this.change(path, (one) => one.shift(by, (value) => this.view.fine(value)), "canvas");
-      this.tell(this.at(path));
+      this.change(path, (one) => one.shift(by, (value) => this.view.roundToPixel(value)), "canvas");
+      this.updateFields(this.findArea(path));
       show();
     };
-    this.dragged(body, () => this.choose(area), shift, path);
+    this.followPointer(body, () => this.choose(area), shift, path);
     body.addEventListener("focus", () => {
       if (!body.matches(":focus-visible") || this.memory.chosen === path) return;
       this.choose(area);
       this.focus(path);
     });
-    if (area.free) body.addEventListener("dblclick", (/** @type {MouseEvent} */ event) => this.split(area, event));
-    this.keyed(body, shift, () => this.remove(area));
+    if (area.hasFreeCorners)
+      body.addEventListener("dblclick", (/** @type {MouseEvent} */ event) => this.splitSide(area, event));
+    this.followKeys(body, shift, () => this.remove(area));
     show();
-    return svg("g", {}, body, ...grips.map((one) => one.node));
+    return createSvg("g", {}, body, ...grips.map((one) => one.node));
   }
 
   /** The fields of the form go with what is moved. @param {Area} area */
-  tell(area) {
+  updateFields(area) {
     const { path, circle } = area;
     const shape = ["box", "body"].includes(area.role.name) ? "" : "/polygon";
     const says = circle
       ? { [`${path}/circle/center`]: circle.center.join(", "), [`${path}/circle/radius`]: String(circle.radius) }
-      : { [path + shape]: lines(area.role.name === "box" ? area.value : area.corners) };
+      : { [path + shape]: formatPoints(area.role.name === "box" ? area.value : area.corners) };
     for (const [field, text] of Object.entries(says)) {
       const box = document.querySelector(`[data-path="${field}"]`);
       if (box instanceof HTMLInputElement || box instanceof HTMLTextAreaElement) box.value = text;
@@ -256,14 +257,14 @@ export class RoomEditor {
   }
 
   /** A double click on a side makes another corner. @param {Area} area @param {MouseEvent} event */
-  split(area, event) {
+  splitSide(area, event) {
     event.stopPropagation();
-    const at = this.view.under(this.picture, event);
+    const at = this.view.toPlaneFromPointer(this.picture, event);
     const { corners } = area;
-    const away = corners.map((corner, k) => distance(at, corner, corners[(k + 1) % corners.length]));
+    const away = corners.map((corner, k) => distanceToSide(at, corner, corners[(k + 1) % corners.length]));
     const k = away.indexOf(Math.min(...away));
     if (this.view.scale * away[k] > 10) return;
-    this.change(area.path, (one) => one.insert(k, [this.view.rounded(at[0]), this.view.rounded(at[1])]));
+    this.change(area.path, (one) => one.insertCorner(k, [this.view.roundToGrid(at[0]), this.view.roundToGrid(at[1])]));
   }
 
   /**
@@ -271,7 +272,7 @@ export class RoomEditor {
    * @param {Area} area
    * @param {() => void} all shows all of it
    */
-  grips({ path, circle, corners, free, label }, all) {
+  createGrips({ path, circle, corners, hasFreeCorners: free, label }, all) {
     const { view } = this;
     /** @type {{name: string, get: (area: Area) => Point, put: (area: Area, point: Point) => void}[]} */
     const places = circle
@@ -289,28 +290,28 @@ export class RoomEditor {
       : corners.map((_, k) => ({
           name: t`Corner ${k + 1} of ${label}`,
           get: (area) => area.corners[k],
-          put: (area, point) => area.put(k, point),
+          put: (area, point) => area.moveCorner(k, point),
         }));
     return places.map(({ name, get, put }, k) => {
       const key = `${path}#${k}`;
       const grip = new Grip({ kind: "grip", dot: "corner", radius: 5, key });
       const show = () => {
-        const [x, y] = get(this.at(path));
-        grip.put(view.at(x, y));
+        const [x, y] = get(this.findArea(path));
+        grip.moveTo(view.toPicture(x, y));
         const more = free && corners.length > 3 ? t`Arrow keys move it, Delete removes it.` : t`Arrow keys move it.`;
-        grip.call(`${name}: x ${shown(x)}, y ${shown(y)}. ${more}`);
+        grip.setLabel(`${name}: x ${formatNumber(x)}, y ${formatNumber(y)}. ${more}`);
       };
       const move = (/** @type {Point} */ [dx, dy]) => {
         const moved = (/** @type {Area} */ area) => {
           const [x, y] = get(area);
-          put(area, [view.rounded(x + dx), view.rounded(y + dy)]);
+          put(area, [view.roundToGrid(x + dx), view.roundToGrid(y + dy)]);
         };
         this.change(path, moved, "canvas");
-        this.tell(this.at(path));
+        this.updateFields(this.findArea(path));
         all();
       };
-      this.dragged(grip.node, () => {}, move, key);
-      this.keyed(grip.node, move, () => this.change(path, (area) => area.drop(k)));
+      this.followPointer(grip.node, () => {}, move, key);
+      this.followKeys(grip.node, move, () => this.change(path, (area) => area.removeCorner(k)));
       return { node: grip.node, show };
     });
   }
@@ -322,35 +323,35 @@ export class RoomEditor {
    * @param {(by: Point) => void} move
    * @param {string} key
    */
-  dragged(grip, taken, move, key) {
+  followPointer(grip, taken, move, key) {
     const { picture, view } = this;
     /** @type {Point} */
     let before = [0, 0];
     let moved = false;
-    led(grip, picture, view, {
+    dragWithPointer(grip, picture, view, {
       taken: (at) => {
         before = at;
         moved = false;
       },
       led: (at, now) => {
-        const by = /** @type {Point} */ ([at[0] - before[0], at[1] - before[1]].map((one) => view.rounded(one)));
-        if (!moved && view.scale * Math.hypot(...by) < CLICK) return;
+        const by = /** @type {Point} */ ([at[0] - before[0], at[1] - before[1]].map((one) => view.roundToGrid(one)));
+        if (!moved && view.scale * Math.hypot(...by) < MIN_DRAG) return;
         moved = true;
         before = [before[0] + by[0], before[1] + by[1]];
-        view.freely(() => move(by), now.altKey);
+        view.withoutSnapping(() => move(by), now.altKey);
       },
       left: () => {
         taken();
-        if (moved) this.store.settle();
+        if (moved) this.store.notifySettled();
         else this.focus(key);
       },
     });
   }
 
   /** @param {SVGElement} grip @param {(by: Point) => void} move @param {() => void} remove */
-  keyed(grip, move, remove) {
-    keyed(grip, this.view, {
-      moved: (by) => this.view.freely(() => move(by)),
+  followKeys(grip, move, remove) {
+    moveWithKeys(grip, this.view, {
+      moved: (by) => this.view.withoutSnapping(() => move(by)),
       removed: remove,
     });
   }
@@ -364,7 +365,7 @@ export class RoomEditor {
 }
 
 /** From a point to the side between two corners. @param {Point} point @param {Point} from @param {Point} to */
-function distance([x, y], [ax, ay], [bx, by]) {
+function distanceToSide([x, y], [ax, ay], [bx, by]) {
   const [dx, dy] = [bx - ax, by - ay];
   const share = Math.min(1, Math.max(0, ((x - ax) * dx + (y - ay) * dy) / (dx * dx + dy * dy || 1)));
   return Math.hypot(x - ax - share * dx, y - ay - share * dy);

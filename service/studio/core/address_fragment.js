@@ -4,19 +4,19 @@
  */
 
 import { t } from "./messages.js";
-import { misfit } from "./schema.js";
+import { findMismatch } from "./schema.js";
 
 /** @import { Linked, Problem } from "../types/values.js" */
 
-const MARK = "#statement=";
+const FRAGMENT_PREFIX = "#statement=";
 
 /** What an address may hold, characters, and what may come out of it, bytes. */
-const MOST = 100_000;
-const MOST_UNPACKED = 1_000_000;
+const MAX_ADDRESS_LENGTH = 100_000;
+const MAX_STATEMENT_LENGTH = 1_000_000;
 
 /**
  * What an address holds: no claim on the linkage, which is driven where the address is opened.
- * @typedef {object} Sent
+ * @typedef {object} SharedContent
  * @property {Problem} problem
  * @property {string} label of the task
  * @property {Linked | null} mechanism
@@ -25,31 +25,33 @@ const MOST_UNPACKED = 1_000_000;
  */
 
 /** Why an address cannot be read. */
-export class Unreadable extends Error {}
+export class UnreadableAddress extends Error {}
 
-/** The address of this page that holds something. @param {Sent} sent @returns {Promise<string>} */
-export async function addressOf(sent) {
+/** The address of this page that holds something. @param {SharedContent} sent @returns {Promise<string>} */
+export async function encodeAddress(sent) {
   const stream = new Blob([JSON.stringify(sent)]).stream().pipeThrough(new CompressionStream("deflate-raw"));
   const bytes = new Uint8Array(await new Response(stream).arrayBuffer());
   let text = "";
   for (const byte of bytes) text += String.fromCharCode(byte);
   const coded = btoa(text).replaceAll("+", "-").replaceAll("/", "_").replaceAll("=", "");
-  return `${location.origin}${location.pathname}${MARK}${coded}`;
+  return `${location.origin}${location.pathname}${FRAGMENT_PREFIX}${coded}`;
 }
 
 /** Whether a fragment holds something. @param {string} fragment */
-export function holds(fragment) {
-  return fragment.startsWith(MARK);
+export function holdsStatement(fragment) {
+  return fragment.startsWith(FRAGMENT_PREFIX);
 }
 
 /**
  * What a fragment holds. Nothing is taken on trust but that it is of the right form: the service judges what is stated.
- * @param {string} fragment @param {import("./api.js").Kind[]} kinds @returns {Promise<Sent>}
+ * @param {string} fragment @param {import("./api.js").Kind[]} kinds @returns {Promise<SharedContent>}
  */
-export async function sentIn(fragment, kinds) {
-  if (fragment.length > MOST)
-    throw new Unreadable(t`The address is longer than ${MOST} characters, which no statement needs.`);
-  const text = await unpacked(fragment.slice(MARK.length));
+export async function decodeFragment(fragment, kinds) {
+  if (fragment.length > MAX_ADDRESS_LENGTH)
+    throw new UnreadableAddress(
+      t`The address is longer than ${MAX_ADDRESS_LENGTH} characters, which no statement needs.`,
+    );
+  const text = await unpack(fragment.slice(FRAGMENT_PREFIX.length));
   /**
    * What it should be: whoever made the address may have written what they liked.
    * @type {{problem?: Problem, label?: unknown, mechanism?: Linked | null, placed?: unknown} | null}
@@ -58,25 +60,26 @@ export async function sentIn(fragment, kinds) {
   try {
     told = JSON.parse(text);
   } catch {
-    throw new Unreadable(t`The address holds no statement: what comes out of it is no JSON.`);
+    throw new UnreadableAddress(t`The address holds no statement: what comes out of it is no JSON.`);
   }
   const { problem, label = "", mechanism = null, placed = false } = told ?? {};
   const kind = kinds.find((one) => one.kind === problem?.kind);
-  if (!problem || !kind) throw new Unreadable(t`The address states a kind of problem that this service does not know.`);
-  const wrong = misfit(problem, kind.schema, kind.schema);
+  if (!problem || !kind)
+    throw new UnreadableAddress(t`The address states a kind of problem that this service does not know.`);
+  const wrong = findMismatch(problem, kind.schema, kind.schema);
   if (wrong !== null)
-    throw new Unreadable(
+    throw new UnreadableAddress(
       t`The address states ${wrong.slice(1, 100) || t`something`} in a way that this service does not know.`,
     );
   if (typeof label !== "string" || typeof placed !== "boolean")
-    throw new Unreadable(t`The address holds more than a statement and a linkage.`);
+    throw new UnreadableAddress(t`The address holds more than a statement and a linkage.`);
   if (mechanism !== null && typeof mechanism?.skeleton !== "object")
-    throw new Unreadable(t`The design in the address is no linkage.`);
+    throw new UnreadableAddress(t`The design in the address is no linkage.`);
   return { problem, label: label.slice(0, 200), mechanism, placed };
 }
 
 /** @param {string} coded */
-async function unpacked(coded) {
+async function unpack(coded) {
   try {
     const bytes = Uint8Array.from(atob(coded.replaceAll("-", "+").replaceAll("_", "/")), (one) => one.charCodeAt(0));
     const reader = new Blob([bytes])
@@ -87,16 +90,16 @@ async function unpacked(coded) {
     let text = "";
     for (let part; !(part = await reader.read()).done;) {
       text += part.value;
-      if (text.length <= MOST_UNPACKED) continue;
+      if (text.length <= MAX_STATEMENT_LENGTH) continue;
       await reader.cancel();
-      throw new Unreadable(
-        t`The statement in the address is longer than ${MOST_UNPACKED} characters, which no problem needs.`,
+      throw new UnreadableAddress(
+        t`The statement in the address is longer than ${MAX_STATEMENT_LENGTH} characters, which no problem needs.`,
       );
     }
     return text;
   } catch (error) {
-    if (error instanceof Unreadable) throw error;
-    throw new Unreadable(
+    if (error instanceof UnreadableAddress) throw error;
+    throw new UnreadableAddress(
       t`The address holds no statement that can be read: it is cut short, or was changed on its way.`,
     );
   }

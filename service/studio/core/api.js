@@ -1,7 +1,7 @@
 /** The public API of the service, and nothing else: all that the studio knows comes through here. */
 
-import { t, translated } from "./messages.js";
-import { ofTheTab } from "./storage.js";
+import { t, translate } from "./messages.js";
+import { tabStore } from "./storage.js";
 
 /** @import { Analysis, LinkageAnalysis, Mechanism, Problem, Question, Schemas } from "../types/values.js" */
 
@@ -16,14 +16,15 @@ import { ofTheTab } from "./storage.js";
  */
 /**
  * @typedef {{element: string, id: string | null, name: string | null, layer: string | null, polygon: [number, number][]
- *   | null, circle: {center: [number, number], radius: number} | null, area: number, joined: number}} Drawn
+ *   | null, circle: {center: [number, number], radius: number} | null, area: number, joined: number}} DrawnOutline
  */
 /**
- * @typedef {{element: string, id: string | null, name: string | null, layer: string | null, reason: string}} LeftOut
+ * @typedef {{element: string, id: string | null, name: string | null, layer: string | null, reason: string}}
+ *   SkippedElement
  */
 /**
  * @typedef {{millimetres_per_unit: number | null, length_unit: string | null, scale: number, tolerance: number,
- *   outlines: Drawn[], left_out: LeftOut[], left_out_count: number}} Outlines
+ *   outlines: DrawnOutline[], left_out: SkippedElement[], left_out_count: number}} Outlines
  */
 
 /**
@@ -32,10 +33,10 @@ import { ofTheTab } from "./storage.js";
  */
 /**
  * @typedef {{format: string, millimetres_per_unit: number | null, length_unit: string | null, scale: number, curves:
- *   Curve[], left_out: LeftOut[], left_out_count: number}} Curves
+ *   Curve[], left_out: SkippedElement[], left_out_count: number}} Curves
  */
 
-const KEY = "mechsynth.key";
+const KEY_STORAGE = "mechsynth.key";
 const RECONNECT_MS = 1000;
 
 /** How often a busy service is asked, and how long after each time. */
@@ -43,28 +44,28 @@ const BUSY_TRIES = 4;
 const BUSY_MS = 5000;
 
 /** An answer that says what went wrong (problem+json). */
-export class Refused extends Error {
+export class Refusal extends Error {
   /** @param {Partial<Schemas["ProblemDetails"]>} problem @param {number} status */
   constructor(problem, status) {
-    super(problem.detail ? translated(problem.detail) : t`The service answered ${status}.`);
+    super(problem.detail ? translate(problem.detail) : t`The service answered ${status}.`);
     this.status = status;
-    this.title = problem.title ? translated(problem.title) : t`Error`;
+    this.title = problem.title ? translate(problem.title) : t`Error`;
     /** @type {FieldError[]} */
     this.errors = (problem.errors ?? []).map((/** @type {FieldError} */ one) => ({
       ...one,
-      detail: translated(one.detail),
+      detail: translate(one.detail),
     }));
   }
 }
 
 /** The key is kept for this tab only. */
-export function key() {
-  return ofTheTab.read(KEY) ?? "";
+export function readKey() {
+  return tabStore.read(KEY_STORAGE) ?? "";
 }
 
 /** @param {string} value */
-export function useKey(value) {
-  ofTheTab.write(KEY, value || null);
+export function writeKey(value) {
+  tabStore.write(KEY_STORAGE, value || null);
 }
 
 /**
@@ -73,9 +74,9 @@ export function useKey(value) {
  */
 async function ask(path, options = {}) {
   const headers = new Headers(options.headers);
-  if (key()) headers.set("Authorization", `Bearer ${key()}`);
+  if (readKey()) headers.set("Authorization", `Bearer ${readKey()}`);
   const answer = await fetch(path, { ...options, headers });
-  if (!answer.ok) throw new Refused(await answer.json().catch(() => ({})), answer.status);
+  if (!answer.ok) throw new Refusal(await answer.json().catch(() => ({})), answer.status);
   return answer;
 }
 
@@ -83,12 +84,12 @@ async function ask(path, options = {}) {
  * Ask again where the service is busy with other analyses (503), as long after as it says.
  * @template T @param {() => Promise<T>} asked @param {AbortSignal} [signal] @returns {Promise<T>}
  */
-async function patiently(asked, signal) {
+async function retryWhileBusy(asked, signal) {
   for (let left = BUSY_TRIES; ; left--) {
     try {
       return await asked();
     } catch (error) {
-      if (!(error instanceof Refused) || error.status !== 503 || left <= 1 || signal?.aborted) throw error;
+      if (!(error instanceof Refusal) || error.status !== 503 || left <= 1 || signal?.aborted) throw error;
       await new Promise((done) => setTimeout(done, BUSY_MS));
     }
   }
@@ -101,44 +102,44 @@ function post(path, body, signal) {
 }
 
 /** @type {Kind[]} */
-let told = [];
+let knownKinds = [];
 
-let solids = false;
+let servesSolids = false;
 
 /** @type {string[]} */
-let built = [];
+let mechanismsWithParts = [];
 
 /** @returns {Promise<Kind[]>} */
-export async function kinds() {
+export async function fetchKinds() {
   const answer = await (await ask("/v1/problems")).json();
-  told = answer.problems;
-  solids = answer.solids;
-  built = answer.parts;
-  return told;
+  knownKinds = answer.problems;
+  servesSolids = answer.solids;
+  mechanismsWithParts = answer.parts;
+  return knownKinds;
 }
 
 /** What the numbers of the designs of a kind measure, by their names. @param {string} kind */
-export function measures(kind) {
-  return told.find((one) => one.kind === kind)?.measures ?? {};
+export function metricDimensions(kind) {
+  return knownKinds.find((one) => one.kind === kind)?.measures ?? {};
 }
 
 /** Whether the service makes solids of parts, and not their outlines alone. */
 export function makesSolids() {
-  return solids;
+  return servesSolids;
 }
 
 /** Whether designs of a mechanism are had as parts. @param {Mechanism} mechanism */
 export function hasParts(mechanism) {
-  return Boolean(mechanism.skeleton) || built.includes(mechanism.type);
+  return Boolean(mechanism.skeleton) || mechanismsWithParts.includes(mechanism.type);
 }
 
 /**
  * The parts of a design as a zip, as something that a download can refer to; whoever gets it revokes it.
  * @param {string} id @param {number} design @param {Record<string, string>} sizes what they are made of
  */
-export async function parts(id, design, sizes) {
+export async function downloadParts(id, design, sizes) {
   const path = `/v1/jobs/${encodeURIComponent(id)}/designs/${design}/parts?${new URLSearchParams(sizes)}`;
-  return URL.createObjectURL(await (await patiently(() => ask(path))).blob());
+  return URL.createObjectURL(await (await retryWhileBusy(() => ask(path))).blob());
 }
 
 /**
@@ -149,10 +150,10 @@ export async function parts(id, design, sizes) {
  * @param {string} form
  * @param {Record<string, string>} sizes
  */
-export async function part(id, design, item, form, sizes) {
+export async function downloadPart(id, design, item, form, sizes) {
   const parts = `/v1/jobs/${encodeURIComponent(id)}/designs/${design}/parts`;
   const path = `${parts}/${encodeURIComponent(item)}.${form}?${new URLSearchParams(sizes)}`;
-  return URL.createObjectURL(await (await patiently(() => ask(path))).blob());
+  return URL.createObjectURL(await (await retryWhileBusy(() => ask(path))).blob());
 }
 
 /**
@@ -163,9 +164,9 @@ export async function part(id, design, item, form, sizes) {
  * @param {AbortSignal} signal
  * @returns {Promise<import("../assembly/assembly_view.js").Assembly>}
  */
-export async function assembly(id, design, query, signal) {
+export async function fetchAssembly(id, design, query, signal) {
   const path = `/v1/jobs/${encodeURIComponent(id)}/designs/${design}/assembly?${new URLSearchParams(query)}`;
-  return (await patiently(() => ask(path, { signal }), signal)).json();
+  return (await retryWhileBusy(() => ask(path, { signal }), signal)).json();
 }
 
 /**
@@ -174,27 +175,27 @@ export async function assembly(id, design, query, signal) {
  * @param {string} mechanism
  * @returns {string[]}
  */
-export function files(kind, mechanism) {
-  return told.find((one) => one.kind === kind)?.files[mechanism] ?? [];
+export function fileFormats(kind, mechanism) {
+  return knownKinds.find((one) => one.kind === kind)?.files[mechanism] ?? [];
 }
 
 /** Where PMKS+ opens a design of linkages. @param {string} id @param {number} design @returns {Promise<string>} */
-export async function pmks(id, design) {
+export async function fetchPmksAddress(id, design) {
   return (await (await ask(`/v1/jobs/${encodeURIComponent(id)}/designs/${design}/pmks`)).json()).url;
 }
 
 /** Where the report of a job is, with its assemblies. @param {string} id */
-export function reportAt(id) {
+export function reportAddress(id) {
   return `/v1/jobs/${encodeURIComponent(id)}/report.html?assemblies=true`;
 }
 
 /** The report of a job, as something that a download can refer to; whoever gets it revokes it. @param {string} id */
-export async function report(id) {
-  return URL.createObjectURL(await (await patiently(() => ask(reportAt(id)))).blob());
+export async function downloadReport(id) {
+  return URL.createObjectURL(await (await retryWhileBusy(() => ask(reportAddress(id)))).blob());
 }
 
 /** @param {Problem} problem @param {string | null} label @returns {Promise<Job>} */
-export async function solve(problem, label) {
+export async function submitJob(problem, label) {
   return (await post("/v1/jobs", { problem, label })).json();
 }
 
@@ -205,13 +206,13 @@ export async function solve(problem, label) {
  * @param {AbortSignal} signal
  * @returns {Promise<Job>}
  */
-export async function solved(problem, label, signal) {
+export async function solveNow(problem, label, signal) {
   const headers = { "Content-Type": "application/json", Prefer: "wait=20" };
   return (await ask("/v1/jobs", { method: "POST", headers, body: JSON.stringify({ problem, label }), signal })).json();
 }
 
 /** @param {string} id @returns {Promise<Job>} */
-export async function job(id) {
+export async function fetchJob(id) {
   return (await ask(`/v1/jobs/${encodeURIComponent(id)}`)).json();
 }
 
@@ -220,7 +221,7 @@ export async function job(id) {
  * @param {string | null} cursor
  * @returns {Promise<{jobs: JobItem[], next_cursor: string | null}>}
  */
-export async function jobs(kind, cursor) {
+export async function listJobs(kind, cursor) {
   const query = new URLSearchParams({ limit: "20" });
   if (kind) query.set("kind", kind);
   if (cursor) query.set("cursor", cursor);
@@ -228,7 +229,7 @@ export async function jobs(kind, cursor) {
 }
 
 /** Cancels an unfinished job and removes a finished one. @param {string} id */
-export async function remove(id) {
+export async function removeJob(id) {
   await ask(`/v1/jobs/${encodeURIComponent(id)}`, { method: "DELETE" });
 }
 
@@ -236,9 +237,9 @@ export async function remove(id) {
  * @param {string} id @param {number} design @param {number} steps @param {AbortSignal} [signal]
  * @returns {Promise<Analysis>}
  */
-export async function motion(id, design, steps, signal) {
+export async function fetchMotion(id, design, steps, signal) {
   const path = `/v1/jobs/${encodeURIComponent(id)}/designs/${design}/motion?steps=${steps}`;
-  return (await patiently(() => ask(path, { signal }), signal)).json();
+  return (await retryWhileBusy(() => ask(path, { signal }), signal)).json();
 }
 
 /**
@@ -250,18 +251,18 @@ export async function motion(id, design, steps, signal) {
  * @param {AbortSignal} signal
  * @returns {Promise<LinkageAnalysis>}
  */
-export async function forces(id, design, steps, block, signal) {
+export async function fetchForces(id, design, steps, block, signal) {
   const path = `/v1/jobs/${encodeURIComponent(id)}/designs/${design}/forces?steps=${steps}`;
   const asked = () => (block === null ? ask(path, { signal }) : post(path, { dynamics: block }, signal));
-  return (await patiently(asked, signal)).json();
+  return (await retryWhileBusy(asked, signal)).json();
 }
 
 /**
  * @template {Analysis} [Answer=LinkageAnalysis] as that of a linkage, where nothing else is asked about
  * @param {Question} question @param {AbortSignal} signal @returns {Promise<Answer>}
  */
-export async function analysis(question, signal) {
-  return (await patiently(() => post("/v1/analyses", question, signal), signal)).json();
+export async function analyse(question, signal) {
+  return (await retryWhileBusy(() => post("/v1/analyses", question, signal), signal)).json();
 }
 
 /**
@@ -270,11 +271,11 @@ export async function analysis(question, signal) {
  * @param {string} unit of the answer, where the drawing states its own
  * @returns {Promise<Outlines>}
  */
-export async function outlines(drawing, unit) {
+export async function importOutlines(drawing, unit) {
   const headers = { "Content-Type": "application/octet-stream" };
   const asked = () =>
     ask(`/v1/outlines?${new URLSearchParams({ length_unit: unit })}`, { method: "POST", headers, body: drawing });
-  return (await patiently(asked)).json();
+  return (await retryWhileBusy(asked)).json();
 }
 
 /**
@@ -284,18 +285,18 @@ export async function outlines(drawing, unit) {
  * @param {number} most points of a curve
  * @returns {Promise<Curves>}
  */
-export async function curves(file, unit, most) {
+export async function importCurves(file, unit, most) {
   // Some systems know no type for a table.
   const headers = { "Content-Type": "application/octet-stream" };
   const query = new URLSearchParams({ length_unit: unit, max_points: String(most) });
-  return (await patiently(() => ask(`/v1/imports?${query}`, { method: "POST", headers, body: file }))).json();
+  return (await retryWhileBusy(() => ask(`/v1/imports?${query}`, { method: "POST", headers, body: file }))).json();
 }
 
 /**
  * A file of a design, as something that a picture or a download can refer to; whoever gets it revokes it.
  * @param {string} id @param {number} design @param {string} form @param {AbortSignal} [signal]
  */
-export async function file(id, design, form, signal) {
+export async function downloadFile(id, design, form, signal) {
   const answer = await ask(`/v1/jobs/${encodeURIComponent(id)}/designs/${design}.${form}`, { signal });
   return URL.createObjectURL(await answer.blob());
 }
@@ -308,7 +309,7 @@ export async function file(id, design, form, signal) {
  * @param {(event: string, data: Job & Partial<Progress>) => void} tell
  * @param {AbortSignal} signal
  */
-export async function follow(id, tell, signal) {
+export async function followJob(id, tell, signal) {
   let last = "";
   let ended = false;
   while (!ended && !signal.aborted) {
@@ -322,7 +323,7 @@ export async function follow(id, tell, signal) {
         const blocks = text.split("\n\n");
         text = blocks.pop() ?? "";
         for (const block of blocks) {
-          const event = parsed(block);
+          const event = parseEvent(block);
           if (!event) continue;
           last = event.id || last;
           ended ||= event.name === "removed" || ["succeeded", "failed", "cancelled"].includes(event.data.status);
@@ -331,14 +332,14 @@ export async function follow(id, tell, signal) {
       }
     } catch (error) {
       if (signal.aborted) return;
-      if (error instanceof Refused && error.status !== 503) throw error;
+      if (error instanceof Refusal && error.status !== 503) throw error;
     }
     if (!ended) await new Promise((done) => setTimeout(done, RECONNECT_MS));
   }
 }
 
 /** @param {string} block */
-function parsed(block) {
+function parseEvent(block) {
   const event = { name: "message", id: "", text: "" };
   for (const line of block.split("\n")) {
     const [, field, value] = /^(\w+): ?(.*)$/.exec(line) ?? [];

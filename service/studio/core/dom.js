@@ -3,7 +3,7 @@
  * says can be read as HTML.
  */
 
-import { number, term } from "./messages.js";
+import { localizeNumber, term } from "./messages.js";
 
 /** @typedef {Node | string | number | null | undefined | false} Child */
 /** Listeners say themselves of which sort their event is. @typedef {(event: never) => void} Listener */
@@ -18,7 +18,7 @@ const SVG = "http://www.w3.org/2000/svg";
  * @param {Child[]} children
  * @returns {T}
  */
-function furnished(element, attributes, children) {
+function addContent(element, attributes, children) {
   for (const [name, value] of Object.entries(attributes)) {
     if (value === false || value === null || value === undefined) continue;
     if (typeof value === "function") element.addEventListener(name.slice(2), /** @type {EventListener} */ (value));
@@ -39,8 +39,8 @@ function furnished(element, attributes, children) {
  * @param {Attributes} [attributes]
  * @param {...Child} children
  */
-export function el(tag, attributes = {}, ...children) {
-  return furnished(document.createElement(tag), attributes, children);
+export function createElement(tag, attributes = {}, ...children) {
+  return addContent(document.createElement(tag), attributes, children);
 }
 
 /**
@@ -50,8 +50,8 @@ export function el(tag, attributes = {}, ...children) {
  * @param {Attributes} [attributes]
  * @param {...Child} children
  */
-export function svg(tag, attributes = {}, ...children) {
-  return furnished(document.createElementNS(SVG, tag), attributes, children);
+export function createSvg(tag, attributes = {}, ...children) {
+  return addContent(document.createElementNS(SVG, tag), attributes, children);
 }
 
 /**
@@ -68,7 +68,7 @@ export function byId(id, type) {
 }
 
 /** What stands for an element that is made anew: its id, or what it is called. @param {Element} one */
-function called(one) {
+function focusKey(one) {
   return one.id || one.getAttribute("data-grip") || one.getAttribute("aria-label") || one.textContent;
 }
 
@@ -79,14 +79,14 @@ function called(one) {
  * @param {HTMLElement[]} places
  * @param {() => void} make
  */
-export function remade(places, make) {
+export function rebuild(places, make) {
   const before = document.activeElement;
   const place = before ? places.find((one) => one.contains(before)) : undefined;
-  const name = before && called(before);
+  const name = before && focusKey(before);
   make();
   if (!place || !before || before.isConnected) return;
   const all = [...place.querySelectorAll("a, button, input, select, summary, [tabindex]")];
-  const again = all.find((one) => one.tagName === before.tagName && called(one) === name);
+  const again = all.find((one) => one.tagName === before.tagName && focusKey(one) === name);
   if (!again && !place.hasAttribute("tabindex")) place.tabIndex = -1;
   /** @type {HTMLElement} */ (again ?? place).focus({ preventScroll: true });
 }
@@ -95,7 +95,7 @@ export function remade(places, make) {
  * `min_transmission_angle` as words: `Min transmission angle`.
  * @param {string} name
  */
-export function words(name) {
+export function toWords(name) {
   const text = term(name);
   return text.charAt(0).toUpperCase() + text.slice(1);
 }
@@ -104,12 +104,13 @@ export function words(name) {
  * A number for reading: six digits at most, small ones as powers of ten.
  * @param {number | null | undefined} value
  */
-export function shown(value) {
+export function formatNumber(value) {
   if (value === null || value === undefined || !Number.isFinite(value)) return "–";
-  if (Number.isInteger(value) && Math.abs(value) < 1e7) return number(value).replace("-", "−");
+  if (Number.isInteger(value) && Math.abs(value) < 1e7) return localizeNumber(value).replace("-", "−");
   const digits = Number(value.toPrecision(5));
-  if (digits === 0 || (Math.abs(digits) >= 1e-4 && Math.abs(digits) < 1e7)) return number(digits).replaceAll("-", "−");
+  if (digits === 0 || (Math.abs(digits) >= 1e-4 && Math.abs(digits) < 1e7))
+    return localizeNumber(digits).replaceAll("-", "−");
   const [factor, power] = digits.toExponential().split("e");
   const raised = [...power.replace("+", "")].map((one) => "⁻⁰¹²³⁴⁵⁶⁷⁸⁹"["-0123456789".indexOf(one)]);
-  return `${number(factor).replace("-", "−")}·10${raised.join("")}`;
+  return `${localizeNumber(factor).replace("-", "−")}·10${raised.join("")}`;
 }

@@ -3,35 +3,35 @@
  * keeps them.
  */
 
-import { lasting } from "./storage.js";
+import { localStore } from "./storage.js";
 
 /** @import { Problem } from "../types/values.js" */
 
-const NAME = "mechsynth.draft";
+const STORAGE_PREFIX = "mechsynth.draft";
 
 /** How much of the steps is kept, characters: statements of the usual size by the dozen. */
-const STEPS = 60_000;
+const MAX_STEPS_LENGTH = 60_000;
 
 /** @typedef {{problem: Problem, label: string, job: string}} Draft `job` has the answers beside which it was edited */
 /** @typedef {import("./undo.js").Steps} Steps */
 
 /** The last statement of a kind, where one was left. @param {string} kind @returns {Draft | null} */
-export function draftOf(kind) {
-  const draft = read(`${NAME}.${kind}`);
+export function readDraft(kind) {
+  const draft = readStored(`${STORAGE_PREFIX}.${kind}`);
   return draft?.problem?.kind === kind
     ? { problem: draft.problem, label: String(draft.label ?? ""), job: String(draft.job ?? "") }
     : null;
 }
 
 /** The kind of the statement that was edited last; empty where there is none. */
-export function lastKind() {
-  const kind = read(NAME)?.kind;
-  return typeof kind === "string" && draftOf(kind) ? kind : "";
+export function readLastKind() {
+  const kind = readStored(STORAGE_PREFIX)?.kind;
+  return typeof kind === "string" && readDraft(kind) ? kind : "";
 }
 
 /** The steps that led to it. @returns {Steps} */
-export function lastSteps() {
-  const { past, future } = read(NAME) ?? {};
+export function readLastSteps() {
+  const { past, future } = readStored(STORAGE_PREFIX) ?? {};
   const texts = (/** @type {unknown} */ listed) =>
     Array.isArray(listed) ? listed.filter((one) => typeof one === "string") : [];
   return { past: texts(past), future: texts(future) };
@@ -42,19 +42,22 @@ export function lastSteps() {
  * @param {string} job whose answers stand beside it; empty where there are none
  */
 export function keepDraft(problem, label, { past, future }, job) {
-  lasting.write(`${NAME}.${problem.kind}`, JSON.stringify({ problem, label, job }));
-  lasting.write(NAME, JSON.stringify({ kind: problem.kind, past: newest(past), future: newest(future) }));
+  localStore.write(`${STORAGE_PREFIX}.${problem.kind}`, JSON.stringify({ problem, label, job }));
+  localStore.write(
+    STORAGE_PREFIX,
+    JSON.stringify({ kind: problem.kind, past: newestThatFit(past), future: newestThatFit(future) }),
+  );
 }
 
 /** @param {string} kind */
 export function forgetDraft(kind) {
-  lasting.write(`${NAME}.${kind}`, null);
-  if (read(NAME)?.kind === kind) lasting.write(NAME, null);
+  localStore.write(`${STORAGE_PREFIX}.${kind}`, null);
+  if (readStored(STORAGE_PREFIX)?.kind === kind) localStore.write(STORAGE_PREFIX, null);
 }
 
 /** As many of the newest as are kept. @param {string[]} texts */
-function newest(texts) {
-  let room = STEPS;
+function newestThatFit(texts) {
+  let room = MAX_STEPS_LENGTH;
   const from = texts.findLastIndex((text) => (room -= text.length) < 0);
   return texts.slice(from + 1);
 }
@@ -64,9 +67,9 @@ function newest(texts) {
  * @param {string} name
  * @returns {Partial<Record<"label" | "job" | "kind" | "past" | "future", unknown> & {problem: Problem}> | null}
  */
-function read(name) {
+function readStored(name) {
   try {
-    return JSON.parse(lasting.read(name) ?? "null");
+    return JSON.parse(localStore.read(name) ?? "null");
   } catch {
     return null;
   }

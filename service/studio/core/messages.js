@@ -7,23 +7,23 @@
  * for none.
  */
 
-import { lasting } from "./storage.js";
+import { localStore } from "./storage.js";
 
 /** The language of the sources. */
-const SOURCE = "en";
+const SOURCE_LANGUAGE = "en";
 
 /** Under which name the choice is kept. */
-const KEPT = "mechsynth.language";
+const STORAGE_NAME = "mechsynth.language";
 
 /** What the person reads of an element that is no text of its own. */
-const READ = ["aria-label", "title", "placeholder", "content"];
+const TEXT_ATTRIBUTES = ["aria-label", "title", "placeholder", "content"];
 
 /**
  * The languages that the page has: the head of the page lists them.
  * @type {Record<string, {name: string, messages: string}>}
  */
 export const languages = {
-  [SOURCE]: { name: "English", messages: "" },
+  [SOURCE_LANGUAGE]: { name: "English", messages: "" },
   ...Object.fromEntries(
     [.../** @type {NodeListOf<HTMLLinkElement>} */ (document.querySelectorAll("link[hreflang]"))].map((link) => [
       link.hreflang,
@@ -33,32 +33,33 @@ export const languages = {
 };
 
 /** The language that the page speaks. */
-export const language = chosen();
+export const language = chooseLanguage();
 
 /** What separates whole numbers from fractions in that language. */
-const POINT = new Intl.NumberFormat(language).formatToParts(0.5).find((part) => part.type === "decimal")?.value ?? ".";
+const DECIMAL_SEPARATOR =
+  new Intl.NumberFormat(language).formatToParts(0.5).find((part) => part.type === "decimal")?.value ?? ".";
 
 /** What separates the numbers of a list: a comma may be a decimal one. */
-export const BETWEEN = POINT === "," ? "; " : ", ";
+export const LIST_SEPARATOR = DECIMAL_SEPARATOR === "," ? "; " : ", ";
 
 /** Counts from here on have their digits in groups of three. */
-const GROUPED = 10_000;
+const MIN_GROUPED = 10_000;
 
 /** A number in English prose: what stands in its place is a number too. */
-const NUMBER = /(?<![\w{])[-−]?\d+(?:\u202f\d{3})*(?:\.\d+)?(?:e[-+]?\d+)?(?![\w}])/g;
+const NUMBER_PATTERN = /(?<![\w{])[-−]?\d+(?:\u202f\d{3})*(?:\.\d+)?(?:e[-+]?\d+)?(?![\w}])/g;
 
 /** Texts by what they are in English; of English itself none. @type {Record<string, string>} */
-const messages = language === SOURCE ? {} : await fetched(languages[language].messages);
+const messages = language === SOURCE_LANGUAGE ? {} : await fetchMessages(languages[language].messages);
 
 /** What was chosen, or the first of the languages of the browser that there is. */
-function chosen() {
-  const wanted = [lasting.read(KEPT) ?? "", ...navigator.languages.map((one) => one.split("-")[0])];
-  return wanted.find((one) => one in languages) ?? SOURCE;
+function chooseLanguage() {
+  const wanted = [localStore.read(STORAGE_NAME) ?? "", ...navigator.languages.map((one) => one.split("-")[0])];
+  return wanted.find((one) => one in languages) ?? SOURCE_LANGUAGE;
 }
 
 /** The page is then read anew: texts are looked up as they are written. @param {string} code */
-export function choose(code) {
-  lasting.write(KEPT, code);
+export function switchLanguage(code) {
+  localStore.write(STORAGE_NAME, code);
   location.reload();
 }
 
@@ -67,7 +68,7 @@ export function choose(code) {
  * @param {string} address
  * @returns {Promise<Record<string, string>>}
  */
-async function fetched(address) {
+async function fetchMessages(address) {
   try {
     return await (await fetch(address)).json();
   } catch {
@@ -81,14 +82,14 @@ async function fetched(address) {
  */
 export function t(parts, ...values) {
   const key = parts.reduce((text, part, k) => `${text}{${k - 1}}${part}`);
-  return filled(
+  return fillPlaces(
     messages[key] ?? key,
-    values.map((one) => (typeof one === "number" ? number(one) : String(one))),
+    values.map((one) => (typeof one === "number" ? localizeNumber(one) : String(one))),
   );
 }
 
 /** @param {string} message @param {string[]} values */
-function filled(message, values) {
+function fillPlaces(message, values) {
   return values.length ? message.replace(/\{(\d+)\}/g, (place, k) => values[Number(k)] ?? place) : message;
 }
 
@@ -96,41 +97,41 @@ function filled(message, values) {
  * A text of the service in the language of the page. It may have numbers in it: `72 starts` is found as `{0} starts`.
  * @param {string} text
  */
-export function translated(text) {
-  if (language === SOURCE || text in messages) return messages[text] ?? text;
+export function translate(text) {
+  if (language === SOURCE_LANGUAGE || text in messages) return messages[text] ?? text;
   /** @type {string[]} */
   const values = [];
-  const message = messages[text.replace(NUMBER, (one) => `{${values.push(number(one)) - 1}}`)];
-  return message === undefined ? text : filled(message, values);
+  const message = messages[text.replace(NUMBER_PATTERN, (one) => `{${values.push(localizeNumber(one)) - 1}}`)];
+  return message === undefined ? text : fillPlaces(message, values);
 }
 
 /** The language of a text of the service, where it is not that of the page. @param {string} text */
-export function foreign(text) {
-  return language !== SOURCE && translated(text) === text ? SOURCE : null;
+export function foreignLanguage(text) {
+  return language !== SOURCE_LANGUAGE && translate(text) === text ? SOURCE_LANGUAGE : null;
 }
 
 /** The first paragraph of a description, as prose. @param {string | undefined} description */
-export function prose(description = "") {
-  const said = translated(description.split("\n\n")[0].replaceAll("`", "").replaceAll("\n", " "));
+export function firstParagraph(description = "") {
+  const said = translate(description.split("\n\n")[0].replaceAll("`", "").replaceAll("\n", " "));
   // Names of fields, as they stand at them.
   return said.replace(/\b[a-z]{2,}(_[a-z]+)+\b/g, (name) => term(name));
 }
 
 /** What follows a number after a space, and stays with it. */
-const UNITS = /(\d) (%|mm|cm|m|in|kg|g|J|W|N|s)(?![\p{L}\p{N}])/gu;
+const UNIT_PATTERN = /(\d) (%|mm|cm|m|in|kg|g|J|W|N|s)(?![\p{L}\p{N}])/gu;
 
 /**
  * A text of the service with numbers as the page writes them: 2.34e-06 is 2.34·10⁻⁶, 2 ° is 2°, and 5 % and 5 mm are
  * not divided at the end of a line.
  * @param {string} text
  */
-export function readable(text) {
+export function formatText(text) {
   const begun =
     text.charAt(0).toUpperCase() +
     text
       .slice(1)
       .replace(/(\d) °/g, "$1°")
-      .replace(UNITS, "$1\u00a0$2");
+      .replace(UNIT_PATTERN, "$1\u00a0$2");
   return begun.replace(/(\d)e([+-])0*(\d+)\b/g, (_, digit, sign, power) => {
     const raised = [...power].map((one) => "⁰¹²³⁴⁵⁶⁷⁸⁹"[Number(one)]).join("");
     return `${digit}·10${sign === "-" ? "⁻" : ""}${raised}`;
@@ -138,7 +139,7 @@ export function readable(text) {
 }
 
 /** What is not called as it is written. @type {Record<string, string>} */
-const CALLED = {
+const SPECIAL_TERMS = {
   "watt 1": "Watt I",
   "watt 2": "Watt II",
   "stephenson 1": "Stephenson I",
@@ -152,36 +153,36 @@ const CALLED = {
 /** `min_transmission_angle` as it stands within a sentence: `min transmission angle`. @param {string} name */
 export function term(name) {
   const plain = name.replaceAll("_", " ");
-  return messages[plain] ?? CALLED[plain] ?? plain;
+  return messages[plain] ?? SPECIAL_TERMS[plain] ?? plain;
 }
 
 /** A whole number in a sentence, its digits in groups of three, as the service writes it. @param {number} value */
-export function grouped(value) {
+export function groupDigits(value) {
   const digits = String(value);
-  return value < GROUPED ? digits : digits.replace(/\B(?=(\d{3})+$)/g, "\u202f");
+  return value < MIN_GROUPED ? digits : digits.replace(/\B(?=(\d{3})+$)/g, "\u202f");
 }
 
 /** A number as the language writes it; its digits are those that it has. @param {number | string} value */
-export function number(value) {
-  return POINT === "." ? String(value) : String(value).replace(".", POINT);
+export function localizeNumber(value) {
+  return DECIMAL_SEPARATOR === "." ? String(value) : String(value).replace(".", DECIMAL_SEPARATOR);
 }
 
 /** Put what stands in the page from the beginning into its language. */
 export function translatePage() {
   document.documentElement.lang = language;
-  if (language === SOURCE) return;
+  if (language === SOURCE_LANGUAGE) return;
   const walker = document.createTreeWalker(document.documentElement, NodeFilter.SHOW_TEXT | NodeFilter.SHOW_ELEMENT);
   while (walker.nextNode()) {
     const node = walker.currentNode;
     if (node instanceof Element) {
-      for (const name of READ)
-        if (node.hasAttribute(name)) node.setAttribute(name, read(String(node.getAttribute(name))));
-    } else if (node.textContent) node.textContent = read(node.textContent);
+      for (const name of TEXT_ATTRIBUTES)
+        if (node.hasAttribute(name)) node.setAttribute(name, translateMarkup(String(node.getAttribute(name))));
+    } else if (node.textContent) node.textContent = translateMarkup(node.textContent);
   }
 }
 
 /** A text of the page's markup; the space around it stays. @param {string} text */
-function read(text) {
+function translateMarkup(text) {
   const bare = text.trim();
   return text.replace(bare, () => messages[bare.replace(/\s+/g, " ")] ?? bare);
 }

@@ -1,13 +1,13 @@
 /** Designs that somebody likes, by their jobs: kept in this browser. */
 
-const KEPT = "mechsynth.pins";
+const STORAGE_NAME = "mechsynth.pins";
 
 /** Jobs whose pins are kept, the newest. */
-const MOST = 100;
+const MAX_JOBS = 100;
 
 /** @returns {[string, number[]][]} jobs, the oldest first */
-function all() {
-  const kept = JSON.parse(localStorage.getItem(KEPT) ?? "[]");
+function readPins() {
+  const kept = JSON.parse(localStorage.getItem(STORAGE_NAME) ?? "[]");
   return Array.isArray(kept) ? kept : [];
 }
 
@@ -16,8 +16,8 @@ function all() {
  * @param {string} job
  * @returns {number[]}
  */
-export function pinned(job) {
-  return all().find(([id]) => id === job)?.[1] ?? [];
+export function listPinned(job) {
+  return readPins().find(([id]) => id === job)?.[1] ?? [];
 }
 
 /**
@@ -27,11 +27,11 @@ export function pinned(job) {
  * @param {boolean} is
  * @returns {number[]} all that are pinned then
  */
-export function pin(job, n, is) {
-  const others = pinned(job).filter((one) => one !== n);
+export function setPinned(job, n, is) {
+  const others = listPinned(job).filter((one) => one !== n);
   const now = is ? [...others, n] : others;
-  const jobs = all().filter(([id]) => id !== job);
+  const jobs = readPins().filter(([id]) => id !== job);
   if (now.length) jobs.push([job, now]);
-  localStorage.setItem(KEPT, JSON.stringify(jobs.slice(-MOST)));
+  localStorage.setItem(STORAGE_NAME, JSON.stringify(jobs.slice(-MAX_JOBS)));
   return now;
 }

@@ -1,13 +1,13 @@
 /** The clock of a motion: play and pause, speed, a scrubber, and the reading beside it. One motion plays at a time. */
 
-import { el } from "./dom.js";
+import { createElement } from "./dom.js";
 import { t } from "./messages.js";
 
 /** Seconds that a cycle takes at speed 1. */
-const CYCLE_S = 4;
+const CYCLE_SECONDS = 4;
 
 /** Between numbers that are told while it plays, milliseconds: those of every frame cannot be read. */
-const TOLD_MS = 100;
+const READING_INTERVAL_MS = 100;
 
 /**
  * @typedef {object} Moved
@@ -36,7 +36,7 @@ export class Player {
     this.last = moved.count - 1;
     /** Told the share of the way whenever it changes. @type {Set<(share: number, told: boolean) => void>} */
     this.followers = new Set();
-    this.button = el(
+    this.button = createElement(
       "button",
       {
         type: "button",
@@ -46,38 +46,38 @@ export class Player {
       },
       t`Play`,
     );
-    this.slider = el("input", {
+    this.slider = createElement("input", {
       type: "range",
       id: scrub,
       min: 0,
       max: this.last,
       step: "any",
       value: 0,
-      oninput: () => this.lead(this.slider.valueAsNumber),
+      oninput: () => this.leadTo(this.slider.valueAsNumber),
       onkeydown: (/** @type {KeyboardEvent} */ event) => {
         const by = { ArrowLeft: -1, ArrowDown: -1, ArrowRight: 1, ArrowUp: 1, PageUp: 10, PageDown: -10 }[event.key];
         // It stands still there, also where it is there already.
         const to = by === undefined ? { Home: 0, End: this.last }[event.key] : Math.round(this.at) + by;
         if (to === undefined) return;
         event.preventDefault();
-        this.lead(to);
+        this.leadTo(to);
       },
     });
-    const speed = el(
+    const speed = createElement(
       "select",
       { id: speeds, onchange: () => (this.rate = Number(speed.value)) },
-      ...[0.25, 0.5, 1, 2, 4].map((rate) => el("option", { value: rate }, `${rate}×`)),
+      ...[0.25, 0.5, 1, 2, 4].map((rate) => createElement("option", { value: rate }, `${rate}×`)),
     );
     speed.value = "1";
-    this.reading = el("output", { for: scrub, class: "reading" });
-    this.row = el(
+    this.reading = createElement("output", { for: scrub, class: "reading" });
+    this.row = createElement(
       "div",
       { class: "row player" },
       this.button,
-      el("label", { for: scrub }, moved.label),
+      createElement("label", { for: scrub }, moved.label),
       this.slider,
       this.reading,
-      el("label", { for: speeds }, t`Speed`),
+      createElement("label", { for: speeds }, t`Speed`),
       speed,
     );
   }
@@ -90,7 +90,7 @@ export class Player {
   }
 
   /** Somebody leads the motion to a place: it stands still there. @param {number} at */
-  lead(at) {
+  leadTo(at) {
     this.stop();
     this.seek(Math.min(this.last, Math.max(0, at)));
   }
@@ -99,16 +99,16 @@ export class Player {
    * Keep to a part of the motion, and play it: where the motion comes back, the part may lie beyond its ends.
    * @param {[number, number] | null} range
    */
-  keep(range) {
+  restrictTo(range) {
     this.range = range;
     if (range) this.begin();
-    else this.at = within(this.at, this.last);
+    else this.at = clampIndex(this.at, this.last);
   }
 
   /** @param {number} at @param {boolean} [told] whether numbers are told of it */
   seek(at, told = true) {
     this.at = at;
-    if (!this.moved.endless) at = within(at, this.last);
+    if (!this.moved.endless) at = clampIndex(at, this.last);
     this.slider.value = String(this.moved.endless && at > this.last ? at % this.last : at);
     if (told) {
       const reading = this.moved.reading(at);
@@ -123,12 +123,12 @@ export class Player {
     if (this.playing) return;
     this.playing = true;
     this.button.textContent = t`Pause`;
-    if (this.range) this.at = this.range[0] + within(this.at - this.range[0], this.last);
+    if (this.range) this.at = this.range[0] + clampIndex(this.at - this.range[0], this.last);
     let before = performance.now();
     let toldAt = before;
     const step = (/** @type {number} */ now) => {
       if (!this.playing) return;
-      let at = this.at + (this.sense * this.rate * this.last * Math.max(0, now - before)) / 1000 / CYCLE_S;
+      let at = this.at + (this.sense * this.rate * this.last * Math.max(0, now - before)) / 1000 / CYCLE_SECONDS;
       before = now;
       const [from, to] = this.range ?? [0, this.last];
       if (this.moved.endless) at = Math.max(0, at);
@@ -137,7 +137,7 @@ export class Player {
         this.sense = at > to ? -1 : 1;
         at = Math.min(to, Math.max(from, at));
       }
-      const told = now - toldAt >= TOLD_MS;
+      const told = now - toldAt >= READING_INTERVAL_MS;
       if (told) toldAt = now;
       this.seek(at, told);
       this.frame = requestAnimationFrame(step);
@@ -156,7 +156,7 @@ export class Player {
 }
 
 /** A place beyond the arrays of a motion that comes back, within them. @param {number} at @param {number} last */
-export function within(at, last) {
+export function clampIndex(at, last) {
   return at >= 0 && at <= last ? at : at - last * Math.floor(at / last);
 }
 
@@ -164,7 +164,7 @@ export function within(at, last) {
  * A series at a place between two samples, on a straight line; null where either is unknown.
  * @param {(number | null)[]} series @param {number} at @returns {number | null}
  */
-export function between(series, at) {
+export function interpolate(series, at) {
   const k = Math.min(Math.max(0, Math.floor(at)), series.length - 2);
   const [one, next] = [series[k], series[k + 1]];
   return one === null || next === null ? null : one + (at - k) * (next - one);

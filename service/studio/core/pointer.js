@@ -3,7 +3,7 @@
 /** @import { Json } from "../types/values.js" */
 
 /** The names of a pointer. @param {string} pointer */
-export function names(pointer) {
+export function pointerNames(pointer) {
   return pointer
     .split("/")
     .slice(1)
@@ -11,14 +11,14 @@ export function names(pointer) {
 }
 
 /** A name as a pointer has it. @param {string} name */
-export function escaped(name) {
+export function escapeName(name) {
   return name.replaceAll("~", "~0").replaceAll("/", "~1");
 }
 
 /** What stands at a place; undefined where nothing does. @param {object} root @param {string[]} path */
-export function at(root, path) {
+export function readPointer(root, path) {
   return path.reduce(
-    (inner, name) => (group(inner) ? inner[name] : undefined),
+    (inner, name) => (ensureObject(inner) ? inner[name] : undefined),
     /** @type {Json | undefined} */ (/** @type {unknown} */ (root)),
   );
 }
@@ -29,11 +29,11 @@ export function at(root, path) {
  * @param {string[]} path
  * @param {Json | undefined} value
  */
-export function put(root, path, value) {
+export function writePointer(root, path, value) {
   let inner = /** @type {Record<string, Json | undefined>} */ (root);
   for (const name of path.slice(0, -1)) {
     const next = inner[name];
-    if (group(next)) inner = next;
+    if (ensureObject(next)) inner = next;
     else if (value === undefined) return;
     else inner = inner[name] = {};
   }
@@ -48,6 +48,6 @@ export function put(root, path, value) {
  * @param {Json | undefined} value
  * @returns {value is Record<string, Json | undefined>}
  */
-export function group(value) {
+export function ensureObject(value) {
   return typeof value === "object" && value !== null;
 }

@@ -1,6 +1,6 @@
 /** What a JSON schema says of a field, as far as a form needs to know it. */
 
-import { group } from "./pointer.js";
+import { ensureObject } from "./pointer.js";
 
 /** @import { Json, Problem } from "../types/values.js" */
 
@@ -29,7 +29,7 @@ import { group } from "./pointer.js";
 
 /**
  * Of one field: which control states it.
- * @typedef {object} Kinded
+ * @typedef {object} ClassifiedField
  * @property {"choice" | "choices" | "flag" | "number" | "numbers" | "points" | "text" | "stock" | "object" | "union" |
  *   "table" | "map" | "shapes" | "json" | "fixed"} control
  * @property {Schema[]} options what the value may be, null apart
@@ -44,14 +44,14 @@ export function propertiesOf(schema) {
   return schema.properties ?? {};
 }
 
-/** @typedef {{name: string, schema: Schema, kinded: Kinded, required: boolean}} Column of a table */
+/** @typedef {{name: string, schema: Schema, kinded: ClassifiedField, required: boolean}} Column of a table */
 
 /** The schema that a reference names. @param {Schema} schema @param {Schema} root @returns {Schema} */
-export function resolved(schema, root) {
+export function resolveReference(schema, root) {
   if (!schema.$ref) return schema;
   const { $ref, ...more } = schema;
   const target = root.$defs?.[$ref.slice($ref.lastIndexOf("/") + 1)] ?? {};
-  return { ...resolved(target, root), ...more };
+  return { ...resolveReference(target, root), ...more };
 }
 
 /**
@@ -61,18 +61,18 @@ export function resolved(schema, root) {
  * @returns {Schema[]}
  */
 export function alternatives(schema, root) {
-  const open = resolved(schema, root);
+  const open = resolveReference(schema, root);
   const several = open.anyOf ?? open.oneOf;
   return several ? several.flatMap((/** @type {Schema} */ one) => alternatives(one, root)) : [open];
 }
 
 /** @param {Schema} schema */
-function numeric(schema) {
+function isNumeric(schema) {
   return schema.type === "number" || schema.type === "integer";
 }
 
 /** A thing and how many there are of it. @param {Schema} schema */
-function counted(schema) {
+function isCounted(schema) {
   return (
     schema.type === "object" &&
     Object.keys(propertiesOf(schema)).length === 2 &&
@@ -81,19 +81,19 @@ function counted(schema) {
 }
 
 /** A list or tuple of numbers, some of which may be left open. @param {Schema} schema @param {Schema} root */
-function listOfNumbers(schema, root) {
+function isListOfNumbers(schema, root) {
   if (schema.type !== "array") return false;
   const parts = schema.prefixItems ?? (schema.items ? [schema.items] : []);
   return (
     parts.length > 0 &&
     parts.every((/** @type {Schema} */ part) =>
-      alternatives(part, root).every((one) => numeric(one) || one.type === "null"),
+      alternatives(part, root).every((one) => isNumeric(one) || one.type === "null"),
     )
   );
 }
 
 /** The name of the property that tells alternatives of an object apart. @param {Schema[]} options */
-export function discriminator(options) {
+export function findDiscriminator(options) {
   const names = Object.keys(options[0] ? propertiesOf(options[0]) : {});
   const constant = (/** @type {Schema} */ one, /** @type {string} */ name) =>
     one.properties?.[name]?.const !== undefined || one.properties?.[name]?.enum !== undefined;
@@ -105,10 +105,10 @@ export function discriminator(options) {
 }
 
 /** The option that a discriminated value belongs to. @param {Schema[]} options @param {Json | undefined} value */
-export function optionOf(options, value) {
-  const name = discriminator(options);
-  if (!name || !group(value)) return options[0];
-  return options.find((one) => tagsOf(one, name).includes(String(value[name]))) ?? options[0];
+export function findOption(options, value) {
+  const name = findDiscriminator(options);
+  if (!name || !ensureObject(value)) return options[0];
+  return options.find((one) => listTags(one, name).includes(String(value[name]))) ?? options[0];
 }
 
 /**
@@ -117,29 +117,29 @@ export function optionOf(options, value) {
  * @param {string} name
  * @returns {string[]}
  */
-export function tagsOf(option, name) {
+export function listTags(option, name) {
   const property = propertiesOf(option)[name];
   return property.enum ?? [String(property.const)];
 }
 
-/** Which control states a field. @param {Schema} schema @param {Schema} root @returns {Kinded} */
-export function kinded(schema, root) {
+/** Which control states a field. @param {Schema} schema @param {Schema} root @returns {ClassifiedField} */
+export function classifyField(schema, root) {
   const all = alternatives(schema, root);
   const options = all.filter((one) => one.type !== "null");
   const nullable = options.length < all.length;
-  /** @param {Kinded["control"]} control @param {Partial<Kinded>} [more] */
+  /** @param {ClassifiedField["control"]} control @param {Partial<ClassifiedField>} [more] */
   const is = (control, more = {}) => ({ control, options, nullable, ...more });
   if (options.length === 1 && options[0].const !== undefined) return is("fixed");
   if (options.every((one) => one.enum || one.const !== undefined)) {
     return is("choice", { choices: options.flatMap((one) => one.enum ?? [String(one.const)]) });
   }
-  const shapes = new Set(options.map((one) => (numeric(one) ? "number" : one.type)));
+  const shapes = new Set(options.map((one) => (isNumeric(one) ? "number" : one.type)));
   if (shapes.size > 1 && shapes.has("object")) return is("shapes");
   if (options.some((one) => one.type === "boolean")) return is("flag");
-  const lists = options.filter((one) => listOfNumbers(one, root));
-  if (lists.length && options.every((one) => numeric(one) || listOfNumbers(one, root))) return is("numbers");
-  if (options.every(numeric)) return is("number");
-  if (options.every((one) => numeric(one) || one.type === "string")) return is("text");
+  const lists = options.filter((one) => isListOfNumbers(one, root));
+  if (lists.length && options.every((one) => isNumeric(one) || isListOfNumbers(one, root))) return is("numbers");
+  if (options.every(isNumeric)) return is("number");
+  if (options.every((one) => isNumeric(one) || one.type === "string")) return is("text");
   const array = options.find((one) => one.type === "array");
   if (array) {
     const rows = array.prefixItems ?? (array.items ? [array.items] : []);
@@ -147,48 +147,51 @@ export function kinded(schema, root) {
     if (members.length && members.every((/** @type {Schema} */ one) => one.type === "object")) {
       return is("table", { item: rows[0], count: array.prefixItems?.length });
     }
-    if (members.length && members.every((/** @type {Schema} */ one) => listOfNumbers(one, root))) return is("points");
+    if (members.length && members.every((/** @type {Schema} */ one) => isListOfNumbers(one, root))) return is("points");
     if (members.length && members.every((/** @type {Schema} */ one) => one.enum))
       return is("choices", { choices: members[0].enum });
-    if (members.some(counted)) return is("stock");
+    if (members.some(isCounted)) return is("stock");
   }
   const objects = options.filter((one) => one.type === "object" && one.properties);
   if (objects.length === 1 && options.length === 1) return is("object");
-  if (objects.length === options.length && discriminator(objects)) return is("union");
+  if (objects.length === options.length && findDiscriminator(objects)) return is("union");
   if (options.length === 1 && typeof options[0].additionalProperties === "object")
     return is("map", { item: options[0].additionalProperties });
   return is("json");
 }
 
 /** A first value for a field that must be stated. @param {Schema} schema @param {Schema} root @returns {Json} */
-export function initial(schema, root) {
+export function initialValue(schema, root) {
   if (schema.default !== undefined && schema.default !== null) return structuredClone(schema.default);
   const [option] = alternatives(schema, root).filter((one) => one.type !== "null");
   if (option.default !== undefined && option.default !== null) return structuredClone(option.default);
   if (option.const !== undefined) return option.const;
   if (option.enum) return option.enum[0];
-  if (numeric(option)) return Math.max(option.minimum ?? 0, option.exclusiveMinimum === undefined ? 0 : 1);
+  if (isNumeric(option)) return Math.max(option.minimum ?? 0, option.exclusiveMinimum === undefined ? 0 : 1);
   if (option.type === "array") {
-    if (option.prefixItems) return option.prefixItems.map((/** @type {Schema} */ one) => initial(one, root));
+    if (option.prefixItems) return option.prefixItems.map((/** @type {Schema} */ one) => initialValue(one, root));
     return [];
   }
   if (option.type === "object") {
     return Object.fromEntries(
-      (option.required ?? []).map((/** @type {string} */ name) => [name, initial(propertiesOf(option)[name], root)]),
+      (option.required ?? []).map((/** @type {string} */ name) => [
+        name,
+        initialValue(propertiesOf(option)[name], root),
+      ]),
     );
   }
   return option.type === "string" ? "" : false;
 }
 
 /** The option that a value is an instance of. @param {Schema[]} options @param {unknown} value */
-export function shapeOf(options, value) {
+export function findShape(options, value) {
   const type = Array.isArray(value) ? "array" : value === null ? "null" : typeof value;
-  return options.find((one) => (numeric(one) ? "number" : one.type) === type);
+  return options.find((one) => (isNumeric(one) ? "number" : one.type) === type);
 }
 
-/** A field that is a number, or something else: a word, or something more. @param {Kinded} what */
-function perhapsNumber(what) {
-  return what.control === "number" || (["shapes", "text"].includes(what.control) && what.options.some(numeric));
+/** A field that is a number, or something else: a word, or something more. @param {ClassifiedField} what */
+function mayBeNumber(what) {
+  return what.control === "number" || (["shapes", "text"].includes(what.control) && what.options.some(isNumeric));
 }
 
 /**
@@ -196,19 +199,19 @@ function perhapsNumber(what) {
  * @param {Schema} item @param {Schema} root
  * @returns {Column[]}
  */
-export function columns(item, root) {
+export function listColumns(item, root) {
   const options = alternatives(item, root);
-  const tag = options.length > 1 ? discriminator(options) : undefined;
+  const tag = options.length > 1 ? findDiscriminator(options) : undefined;
   /** @type {Map<string, Column>} */
   const found = new Map();
   for (const option of options) {
     for (const [name, schema] of Object.entries(propertiesOf(option))) {
-      const here = kinded(schema, root);
+      const here = classifyField(schema, root);
       const required = options.every((one) => one.required?.includes(name));
       if (name === tag) {
-        const choices = options.flatMap((one) => tagsOf(one, name));
+        const choices = options.flatMap((one) => listTags(one, name));
         found.set(name, { name, schema, required, kinded: { ...here, control: "choice", choices } });
-      } else if ((["flag", "choice"].includes(here.control) || perhapsNumber(here)) && !found.has(name)) {
+      } else if ((["flag", "choice"].includes(here.control) || mayBeNumber(here)) && !found.has(name)) {
         found.set(name, { name, schema, required, kinded: here });
       }
     }
@@ -222,10 +225,10 @@ export function columns(item, root) {
  * @param {Schema} root
  * @returns {string[]}
  */
-export function beyond(option, root) {
+export function listOtherFields(option, root) {
   return Object.entries(propertiesOf(option))
     .filter(([, schema]) =>
-      ["shapes", "table", "object", "union", "map", "points", "json"].includes(kinded(schema, root).control),
+      ["shapes", "table", "object", "union", "map", "points", "json"].includes(classifyField(schema, root).control),
     )
     .map(([name]) => name);
 }
@@ -235,8 +238,8 @@ export function beyond(option, root) {
  * words.
  * @param {unknown} value @param {Schema} schema @param {Schema} root @param {string} [path] @returns {string | null}
  */
-export function misfit(value, schema, root, path = "") {
-  const found = alternatives(schema, root).map((one) => misfitIn(value, one, root, path));
+export function findMismatch(value, schema, root, path = "") {
+  const found = alternatives(schema, root).map((one) => findMismatchInObject(value, one, root, path));
   // Of what might have been meant that which goes along with it farthest.
   return found.includes(null)
     ? null
@@ -250,9 +253,9 @@ export function misfit(value, schema, root, path = "") {
  * @param {string} path
  * @returns {string | null}
  */
-function misfitIn(value, schema, root, path) {
-  const form = formOf(value);
-  const wanted = schema.type ?? formOf(schema.const ?? schema.enum?.[0] ?? value);
+function findMismatchInObject(value, schema, root, path) {
+  const form = valueType(value);
+  const wanted = schema.type ?? valueType(schema.const ?? schema.enum?.[0] ?? value);
   if (form !== (wanted === "integer" ? "number" : wanted)) return path;
   if (typeof value !== "object" || value === null) return null;
   for (const [name, inner] of Object.entries(value)) {
@@ -262,7 +265,7 @@ function misfitIn(value, schema, root, path) {
         ? (schema.prefixItems?.[Number(name)] ?? schema.items)
         : (schema.properties?.[name] ?? schema.additionalProperties);
     // `true` takes anything.
-    const wrong = of === true ? null : of ? misfit(inner, of, root, at) : at;
+    const wrong = of === true ? null : of ? findMismatch(inner, of, root, at) : at;
     if (wrong !== null) return wrong;
   }
   return null;
@@ -273,21 +276,21 @@ function misfitIn(value, schema, root, path) {
  * @param {Json | undefined} value @param {Schema} schema @param {Schema} root @returns {Json | undefined}
  */
 function withoutDefaults(value, schema, root) {
-  const options = alternatives(schema, root).filter((one) => one.type === formOf(value));
+  const options = alternatives(schema, root).filter((one) => one.type === valueType(value));
   if (!options.length) return value;
   if (Array.isArray(value))
     return value.map((one, k) => {
       const inside = options[0].prefixItems?.[k] ?? options[0].items;
       return inside ? (withoutDefaults(one, inside, root) ?? null) : one;
     });
-  if (!group(value)) return value;
+  if (!ensureObject(value)) return value;
   const { properties = {}, additionalProperties } =
-    options.length > 1 && options.every((one) => one.properties) ? optionOf(options, value) : options[0];
+    options.length > 1 && options.every((one) => one.properties) ? findOption(options, value) : options[0];
   return Object.fromEntries(
     Object.entries(value).flatMap(([name, inner]) => {
       const of = properties[name] ?? additionalProperties;
       if (typeof of !== "object") return [[name, inner]];
-      const open = resolved(of, root);
+      const open = resolveReference(of, root);
       // What tells alternatives apart is needed.
       return (open.const === undefined || options.length === 1) &&
         JSON.stringify(open.default) === JSON.stringify(inner)
@@ -298,12 +301,12 @@ function withoutDefaults(value, schema, root) {
 }
 
 /** What JSON calls it. @param {unknown} value */
-function formOf(value) {
+function valueType(value) {
   return value === null ? "null" : Array.isArray(value) ? "array" : typeof value;
 }
 
 /** A statement without defaults. @param {Problem} statement @param {Schema | undefined} schema @returns {Problem} */
-export function plainly(statement, schema) {
+export function removeDefaults(statement, schema) {
   if (!schema) return statement;
   // Only what the service holds for stated anyway is left out.
   const plain = /** @type {unknown} */ (
@@ -317,9 +320,9 @@ export function plainly(statement, schema) {
  * groups in which the form has room for fields.
  * @param {Problem} statement @param {Schema | undefined} schema
  */
-export function spelling(statement, schema) {
+export function canonicalText(statement, schema) {
   const named = (/** @type {unknown} */ value) => typeof value === "object" && value !== null && !Array.isArray(value);
-  return JSON.stringify(plainly(statement, schema), (_, value) =>
+  return JSON.stringify(removeDefaults(statement, schema), (_, value) =>
     named(value)
       ? Object.fromEntries(
           Object.entries(value)

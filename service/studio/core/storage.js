@@ -33,5 +33,5 @@ export class Storage {
 }
 
 /** For good, and until the tab is closed. */
-export const lasting = new Storage(() => localStorage);
-export const ofTheTab = new Storage(() => sessionStorage);
+export const localStore = new Storage(() => localStorage);
+export const tabStore = new Storage(() => sessionStorage);

@@ -1,6 +1,6 @@
 /** The statement that is being made, what was posted and what was answered, and the steps between which one goes. */
 
-import { misfit, plainly, propertiesOf, spelling } from "./schema.js";
+import { findMismatch, removeDefaults, propertiesOf, canonicalText } from "./schema.js";
 import { Undo } from "./undo.js";
 
 /** @import { Problem } from "../types/values.js" */
@@ -46,22 +46,22 @@ export class Store {
   }
 
   /** @param {Partial<Change>} change */
-  tell({ stated = true, by = null, edited = false, begun = false }) {
+  notify({ stated = true, by = null, edited = false, begun = false }) {
     for (const listener of this.listeners) listener({ stated, by, edited, begun });
   }
 
   /** The kind of the statement. */
   get kind() {
-    return this.kindOf(this.problem) ?? this.kinds[0];
+    return this.findKind(this.problem) ?? this.kinds[0];
   }
 
   /** @param {Problem} statement */
-  kindOf(statement) {
+  findKind(statement) {
     return this.kinds.find((one) => one.kind === statement.kind);
   }
 
   /** Whether the statement may say what room there is. */
-  get roomy() {
+  get hasWorkspace() {
     return "space" in propertiesOf(this.kind.schema);
   }
 
@@ -72,33 +72,33 @@ export class Store {
 
   /** The number of the example that is stated; -1 where none is. */
   get example() {
-    const now = this.spelt(this.problem);
-    return this.examples.findIndex((one) => this.spelt(one) === now);
+    const now = this.canonicalText(this.problem);
+    return this.examples.findIndex((one) => this.canonicalText(one) === now);
   }
 
   /** Whether the answers that are shown are not those to the statement as it is now. */
   get stale() {
-    return this.answered !== null && this.spelt(this.answered) !== this.spelt(this.problem);
+    return this.answered !== null && this.canonicalText(this.answered) !== this.canonicalText(this.problem);
   }
 
   /** A statement as it is compared with others. @param {Problem} statement */
-  spelt(statement) {
+  canonicalText(statement) {
     const known = this.spellings.get(statement);
     if (known !== undefined) return known;
-    const text = spelling(statement, this.kindOf(statement)?.schema);
+    const text = canonicalText(statement, this.findKind(statement)?.schema);
     this.spellings.set(statement, text);
     return text;
   }
 
   /** A statement without what the service has written out. @param {Problem} statement @returns {Problem} */
-  plain(statement) {
-    return plainly(statement, this.kindOf(statement)?.schema);
+  removeDefaults(statement) {
+    return removeDefaults(statement, this.findKind(statement)?.schema);
   }
 
   /** Whether a statement has the form of its kind: it may be of another version of the service. @param {Problem} one */
-  fits(one) {
-    const schema = this.kindOf(one)?.schema;
-    return schema !== undefined && misfit(one, schema, schema) === null;
+  matchesSchema(one) {
+    const schema = this.findKind(one)?.schema;
+    return schema !== undefined && findMismatch(one, schema, schema) === null;
   }
 
   /**
@@ -109,22 +109,22 @@ export class Store {
   change(change, by = null) {
     const statement = structuredClone(this.problem);
     change(statement);
-    this.problem = frozen(statement);
-    this.past.note(this.problem);
-    this.tell({ by, edited: true });
+    this.problem = deepFreeze(statement);
+    this.past.record(this.problem);
+    this.notify({ by, edited: true });
   }
 
   /** What was led on the canvas is let go: all that shows it is made anew. */
-  settle() {
-    this.tell({ edited: true });
+  notifySettled() {
+    this.notify({ edited: true });
   }
 
   /** Have what was written in place of the statement. @param {Problem} statement @param {Editor} by */
-  write(statement, by) {
+  replace(statement, by) {
     const begun = statement.kind !== this.problem.kind;
-    this.take(statement);
-    this.past.note(this.problem);
-    this.tell({ by, edited: true, begun });
+    this.adopt(statement);
+    this.past.record(this.problem);
+    this.notify({ by, edited: true, begun });
   }
 
   /**
@@ -133,55 +133,55 @@ export class Store {
    * @param {Steps} [steps] that have led to it, on a page before
    */
   begin(statement, steps) {
-    this.take(statement);
-    this.past.note(this.problem, true);
+    this.adopt(statement);
+    this.past.record(this.problem, true);
     if (steps) this.past.resume(steps);
-    this.tell({ begun: true });
+    this.notify({ begun: true });
   }
 
   undo() {
-    this.step(this.past.back());
+    this.step(this.past.undo());
   }
 
   redo() {
-    this.step(this.past.forth());
+    this.step(this.past.redo());
   }
 
   /** @param {Problem | null} statement */
   step(statement) {
     if (!statement) return;
     const begun = statement.kind !== this.problem.kind;
-    this.take(statement);
-    this.tell({ edited: true, begun });
+    this.adopt(statement);
+    this.notify({ edited: true, begun });
   }
 
   /** @param {Problem} statement */
-  take(statement) {
-    this.problem = frozen(structuredClone(statement));
+  adopt(statement) {
+    this.problem = deepFreeze(structuredClone(statement));
     this.origin += 1;
   }
 
   /** @param {string} id of the job @param {Problem} problem */
-  post(id, problem) {
+  recordSubmission(id, problem) {
     this.posted = { id, problem };
   }
 
   /** The answers of a job are shown: to what was posted, or to what its address has just brought. @param {string} id */
-  answer(id) {
+  recordAnswer(id) {
     this.answered = this.posted.id === id ? this.posted.problem : this.problem;
-    this.tell({ stated: false });
+    this.notify({ stated: false });
   }
 
   /** No answers are shown any more. */
-  forget() {
+  forgetAnswer() {
     this.posted = { id: "", problem: null };
     this.answered = null;
-    this.tell({ stated: false });
+    this.notify({ stated: false });
   }
 }
 
 /** @template T @param {T} value @returns {T} of which nothing can be changed any more */
-function frozen(value) {
-  if (typeof value === "object" && value !== null) Object.values(Object.freeze(value)).forEach(frozen);
+function deepFreeze(value) {
+  if (typeof value === "object" && value !== null) Object.values(Object.freeze(value)).forEach(deepFreeze);
   return value;
 }

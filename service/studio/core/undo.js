@@ -6,7 +6,7 @@
 const BURST_MS = 700;
 
 /** Steps that are kept. */
-const MOST = 200;
+const MAX_STEPS = 200;
 
 /** Statements as JSON, the oldest first in both. @typedef {{past: string[], future: string[]}} Steps */
 
@@ -25,11 +25,11 @@ export class Undo {
    * @param {Problem} statement
    * @param {boolean} [apart] whether it is a step of its own however soon it follows
    */
-  note(statement, apart = false) {
+  record(statement, apart = false) {
     const text = JSON.stringify(statement);
     if (text === this.now) return;
     const time = performance.now();
-    if (this.now && (apart || time - this.noted > BURST_MS)) this.past = [...this.past, this.now].slice(-MOST);
+    if (this.now && (apart || time - this.noted > BURST_MS)) this.past = [...this.past, this.now].slice(-MAX_STEPS);
     this.noted = apart ? -Infinity : time;
     this.now = text;
     this.future = [];
@@ -47,12 +47,12 @@ export class Undo {
   }
 
   /** The statement before; null where there is none. */
-  back() {
+  undo() {
     return this.step(this.past, this.future);
   }
 
   /** The statement that was gone back from; null where there is none. */
-  forth() {
+  redo() {
     return this.step(this.future, this.past);
   }
 

@@ -6,7 +6,7 @@
 /** @import { Problem } from "../types/values.js" */
 
 /** @param {Problem} problem */
-function symbols(problem) {
+function unitSymbols(problem) {
   const length = problem.length_unit ?? "mm";
   const arm = problem.kind === "indexing" || String(problem.follower?.type ?? "").startsWith("oscillating");
   const slides =
@@ -64,8 +64,8 @@ function symbols(problem) {
  * @param {string | undefined} dimension
  * @param {Problem} problem
  */
-export function symbolOf(dimension, problem) {
-  return dimension === undefined ? "" : (symbols(problem)[dimension] ?? "");
+export function unitSymbol(dimension, problem) {
+  return dimension === undefined ? "" : (unitSymbols(problem)[dimension] ?? "");
 }
 
 /**
@@ -73,6 +73,6 @@ export function symbolOf(dimension, problem) {
  * @param {import("./schema.js").Schema} schema
  * @param {Problem} problem
  */
-export function unitOf(schema, problem) {
-  return symbolOf(schema["x-dimension"], problem);
+export function fieldUnit(schema, problem) {
+  return unitSymbol(schema["x-dimension"], problem);
 }

@@ -34,8 +34,8 @@ export class View {
   }
 
   /** Whether points lie in the picture, and fill a fair part of it. @param {Point[]} points */
-  suits(points) {
-    const places = points.map((point) => this.at(...point)).filter((place) => place.every(Number.isFinite));
+  fits(points) {
+    const places = points.map((point) => this.toPicture(...point)).filter((place) => place.every(Number.isFinite));
     const us = places.map(([u]) => u);
     const vs = places.map(([, v]) => v);
     const [west, east, north, south] = [Math.min(...us), Math.max(...us), Math.min(...vs), Math.max(...vs)];
@@ -55,12 +55,12 @@ export class View {
   }
 
   /** All of the picture. @returns {Box} */
-  get room() {
+  get bounds() {
     return { x: 0, y: 0, width: this.width, height: this.height };
   }
 
   /** @param {number} x @param {number} y @returns {Point} */
-  at(x, y) {
+  toPicture(x, y) {
     return [this.width / 2 + this.scale * (x - this.middle[0]), this.height / 2 - this.scale * (y - this.middle[1])];
   }
 
@@ -70,41 +70,41 @@ export class View {
    * @param {{clientX: number, clientY: number}} pointer
    * @returns {Point}
    */
-  under(picture, pointer) {
+  toPlaneFromPointer(picture, pointer) {
     const matrix = picture.getScreenCTM();
     if (!matrix) return [NaN, NaN];
     const { x, y } = new DOMPoint(pointer.clientX, pointer.clientY).matrixTransform(matrix.inverse());
-    return this.of(x, y);
+    return this.toPlane(x, y);
   }
 
   /** The point of the plane at a place of the picture. @param {number} u @param {number} v @returns {Point} */
-  of(u, v) {
+  toPlane(u, v) {
     return [this.middle[0] + (u - this.width / 2) / this.scale, this.middle[1] - (v - this.height / 2) / this.scale];
   }
 
   /** Look at a place of the picture, from so much nearer. @param {number[]} place pixels @param {number} nearness */
-  look([u, v], nearness) {
-    this.middle = this.of(u, v);
+  zoomTo([u, v], nearness) {
+    this.middle = this.toPlane(u, v);
     this.scale *= nearness;
   }
 
   /** A round step of about `pixels`. @param {number} pixels */
-  step(pixels) {
+  roundStep(pixels) {
     return 10 ** Math.round(Math.log10(pixels / this.scale));
   }
 
   /** A value rounded to what can be told apart on the screen, or to what it snaps to. @param {number} value */
-  rounded(value) {
-    return this.snap ? nearest(value, this.snap) : this.fine(value);
+  roundToGrid(value) {
+    return this.snap ? nearestMultiple(value, this.snap) : this.roundToPixel(value);
   }
 
   /** A value rounded to what can be told apart on the screen. @param {number} value */
-  fine(value) {
-    return nearest(value, this.step(0.5));
+  roundToPixel(value) {
+    return nearestMultiple(value, this.roundStep(0.5));
   }
 
   /** Do something that snaps to nothing. @param {() => void} act @param {boolean} [really] */
-  freely(act, really = true) {
+  withoutSnapping(act, really = true) {
     const { snap } = this;
     if (really) this.snap = 0;
     act();
@@ -112,7 +112,7 @@ export class View {
   }
 
   /** Points as the data of a path; where one is unknown the line is broken. @param {Point[]} points */
-  path(points) {
+  pathData(points) {
     let pen = "M";
     let data = "";
     for (const [x, y] of points) {
@@ -120,7 +120,7 @@ export class View {
         pen = "M";
         continue;
       }
-      const [u, v] = this.at(x, y);
+      const [u, v] = this.toPicture(x, y);
       data += `${pen}${u.toFixed(1)} ${v.toFixed(1)}`;
       pen = "L";
     }
@@ -129,6 +129,6 @@ export class View {
 }
 
 /** The multiple of a step that is nearest. @param {number} value @param {number} step */
-function nearest(value, step) {
+function nearestMultiple(value, step) {
   return Number((Math.round(value / step) * step).toPrecision(12));
 }

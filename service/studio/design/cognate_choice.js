@@ -1,8 +1,8 @@
 /** The fourbars that trace the same coupler curve (Roberts, Chebyshev), to be switched in place. */
 
 import * as api from "../core/api.js";
-import { el, shown, words } from "../core/dom.js";
-import { foreign, t, translated } from "../core/messages.js";
+import { createElement, formatNumber, toWords } from "../core/dom.js";
+import { foreignLanguage, t, translate } from "../core/messages.js";
 
 /** @import { Design, Mechanism, Metrics, Problem, Question, Schemas } from "../types/values.js" */
 
@@ -12,16 +12,16 @@ import { foreign, t, translated } from "../core/messages.js";
  */
 
 /** Kinds whose answer is the curve of P and not the turning of the body. */
-const BY_CURVE = ["path", "straight_line"];
+const CURVE_KINDS = ["path", "straight_line"];
 
 /**
  * The design and its cognates; one choice only where there are none.
  * @param {Design} design @param {Problem} problem @param {AbortSignal} signal @returns {Promise<Choice[]>}
  */
-export async function cognates(design, problem, signal) {
+export async function fetchCognates(design, problem, signal) {
   const { mechanism } = design;
   const own = { name: t`Design`, mechanism, note: design.cognate_choice ?? "", metrics: design.metrics ?? {} };
-  if (mechanism.type !== "fourbar" || !BY_CURVE.includes(problem.kind)) return [own];
+  if (mechanism.type !== "fourbar" || !CURVE_KINDS.includes(problem.kind)) return [own];
   if (design.cognates?.length) {
     return [
       own,
@@ -30,7 +30,7 @@ export async function cognates(design, problem, signal) {
         return {
           name: side === "left" ? t`Left cognate` : t`Right cognate`,
           mechanism: its,
-          note: told(cognate),
+          note: describeCognate(cognate),
           metrics: /** @type {Partial<Metrics>} */ (metrics),
         };
       }),
@@ -38,7 +38,7 @@ export async function cognates(design, problem, signal) {
   }
   /** @type {Question} */
   const question = { mechanism, motion: { at: Number(mechanism.reference_input_angle) }, include: ["cognates"] };
-  const pair = await api.analysis(question, signal).then(
+  const pair = await api.analyse(question, signal).then(
     (answer) => answer.fourbar?.cognates,
     () => null,
   );
@@ -61,29 +61,32 @@ export async function cognates(design, problem, signal) {
 }
 
 /** @param {Schemas["PathCognate"]} one a cognate as measured */
-function told(one) {
+function describeCognate(one) {
+  const angle = formatNumber(Math.round(10 * one.min_transmission_angle) / 10);
   const able = [
-    t`${words(one.grashof)}, transmits at ${shown(Math.round(10 * one.min_transmission_angle) / 10)}° at least`,
+    t`${toWords(one.grashof)}, transmits at ${angle}° at least`,
     one.same_timing ? t`keeps the crank angles` : t`has other crank angles`,
     one.same_branch ? t`passes all targets without a toggle` : t`passes a toggle between the targets`,
-    t`traces the curve within ${shown(Number(one.deviation.toPrecision(2)))}`,
+    t`traces the curve within ${formatNumber(Number(one.deviation.toPrecision(2)))}`,
   ];
   return `${able.join("; ")}.`;
 }
 
 /** @param {Choice[]} choices @param {(choice: Choice) => void} choose */
-export function picker(choices, choose) {
+export function createPicker(choices, choose) {
   // Of the design the service tells, of the others the page.
   const notes = choices.map((one, k) =>
-    k ? el("span", {}, one.note) : el("span", { lang: foreign(one.note) }, translated(one.note)),
+    k
+      ? createElement("span", {}, one.note)
+      : createElement("span", { lang: foreignLanguage(one.note) }, translate(one.note)),
   );
-  const note = el("span", { class: "note" }, notes[0]);
-  return el(
+  const note = createElement("span", { class: "note" }, notes[0]);
+  return createElement(
     "fieldset",
     { id: "cognates", class: "row choice" },
-    el("legend", {}, t`The same curve by`),
+    createElement("legend", {}, t`The same curve by`),
     ...choices.map((one, k) => {
-      const box = el("input", {
+      const box = createElement("input", {
         type: "radio",
         name: "cognate",
         id: `cognate-${k}`,
@@ -93,7 +96,7 @@ export function picker(choices, choose) {
         },
       });
       box.checked = k === 0;
-      return el("label", { class: "flag", for: `cognate-${k}` }, box, one.name);
+      return createElement("label", { class: "flag", for: `cognate-${k}` }, box, one.name);
     }),
     note,
   );

@@ -2,22 +2,29 @@
 
 import * as api from "../core/api.js";
 import { AssemblyView } from "../assembly/assembly_view.js";
-import { Burmester } from "../canvas/burmester_curves.js";
-import { cognates, picker } from "./cognate_choice.js";
-import { overTheCycle, withSkeleton } from "../motion/cycle.js";
-import { el } from "../core/dom.js";
-import { downloads } from "./design_files.js";
+import { BurmesterCurves } from "../canvas/burmester_curves.js";
+import { fetchCognates, createPicker } from "./cognate_choice.js";
+import { fetchCycle, addSkeleton } from "../motion/cycle.js";
+import { createElement } from "../core/dom.js";
+import { createDownloads } from "./design_files.js";
 import { Explorer } from "../explorer/explorer.js";
-import { Forces } from "../forces/forces.js";
-import { checks, dimensions, figures, made, table, typeOf } from "./design_metrics.js";
+import { ForcesPane } from "../forces/forces.js";
+import {
+  createChecks,
+  createDimensions,
+  listFigures,
+  createTolerances,
+  createTable,
+  typeName,
+} from "./design_metrics.js";
 import { t } from "../core/messages.js";
-import { Mover, demanded } from "../motion/linkage_motion.js";
-import { thumbnail } from "../motion/thumbnail.js";
-import { STEPS, TURN_STEPS, VIEWS } from "../motion/motion_views.js";
+import { LinkageMotion, listTargets } from "../motion/linkage_motion.js";
+import { createThumbnail } from "../motion/thumbnail.js";
+import { STEP_COUNT, TURN_STEP_COUNT, VIEWS } from "../motion/motion_views.js";
 
 /** @import { Design, LinkageAnalysis, Linked, LinkedDesign, Problem, Question, Solved } from "../types/values.js" */
 
-const OF_THE_DESIGN = t`Checks, drawing and files are those of the design: choose it above the numbers to see them.`;
+const DESIGN_TITLE = t`Checks, drawing and files are those of the design: choose it above the numbers to see them.`;
 
 /** @typedef {import("../motion/motion_views.js").Moving} Moving */
 /**
@@ -25,9 +32,9 @@ const OF_THE_DESIGN = t`Checks, drawing and files are those of the design: choos
  *   LinkageAnalysis | null}} Film
  */
 
-export class Shown {
+export class DesignView {
   /**
-   * @param {import("./workbench.js").Desk} desk
+   * @param {import("./workbench.js").Workbench} desk
    * @param {Solved} job
    * @param {number} n
    * @param {(problem: Problem, solved?: boolean) => void} state begins another statement
@@ -36,7 +43,7 @@ export class Shown {
   constructor(desk, job, n, state, before = null) {
     this.desk = desk;
     this.state = state;
-    /** @type {Burmester | null} */
+    /** @type {BurmesterCurves | null} */
     this.curves = null;
     this.gone = new AbortController();
     this.url = "";
@@ -51,85 +58,91 @@ export class Shown {
     this.again = () => {};
     /** @type {Explorer | null} */
     this.explorer = null;
-    /** @type {Forces | null} */
+    /** @type {ForcesPane | null} */
     this.forces = null;
     /** @type {AssemblyView | null} */
     this.assembly = null;
     /** Whether another design has taken its place. */
     this.ended = false;
     this.forced = desk.forced;
-    this.drawing = el("figure", { class: "drawing" });
+    this.drawing = createElement("figure", { class: "drawing" });
     this.job = job;
     this.n = n;
     this.design = job.result.designs[n];
-    this.burmester(job, n);
-    this.present(job, n, t`Design ${n + 1}`);
+    this.showBurmester(job, n);
+    this.showDesign(job, n, t`Design ${n + 1}`);
   }
 
   /** Show a design of a job. @param {Solved} job @param {number} n @param {string} title */
-  present(job, n, title) {
+  showDesign(job, n, title) {
     this.leave();
     this.job = job;
     this.n = n;
     this.design = job.result.designs[n];
     this.gone = new AbortController();
-    this.drawing = el("figure", { class: "drawing" });
-    const named = `${title}: ${typeOf(this.design)}`;
+    this.drawing = createElement("figure", { class: "drawing" });
+    const named = `${title}: ${typeName(this.design)}`;
     this.desk.title.replaceChildren(named);
     this.desk.shown = this.design;
-    this.desk.stage.offer(true, named);
-    this.desk.stage.show("watch");
+    this.desk.stage.offerMotion(true, named);
+    this.desk.stage.showMode("watch");
     this.desk.before.replaceChildren();
-    this.explored(this.design);
-    this.forced.replaceChildren(...this.borne());
-    this.desk.numbers.replaceChildren(...this.tabulated());
-    this.desk.files.replaceChildren(...this.taken());
-    this.assembled();
-    this.move(this.gone.signal);
-    this.draw(this.gone.signal);
+    this.createExplorer(this.design);
+    this.forced.replaceChildren(...this.showForces());
+    this.desk.numbers.replaceChildren(...this.showNumbers());
+    this.desk.files.replaceChildren(...this.showFiles());
+    this.showAssembly();
+    this.showMotion(this.gone.signal);
+    this.drawStill(this.gone.signal);
   }
 
   /** The numbers of the design. */
-  tabulated() {
+  showNumbers() {
     const { design, job } = this;
     return [
-      el(
+      createElement(
         "div",
         { class: "columns" },
-        checks(design, job.problem),
-        table(t`Quantities`, figures(design), job.problem),
-        ...made(design, job.problem),
-        dimensions(design, job.problem),
+        createChecks(design, job.problem),
+        createTable(t`Quantities`, listFigures(design), job.problem),
+        ...createTolerances(design, job.problem),
+        createDimensions(design, job.problem),
       ),
     ];
   }
 
   /** Its files, and its drawing. */
-  taken() {
-    return [downloads(this.job, this.n, this.drawing), this.drawing];
+  showFiles() {
+    return [createDownloads(this.job, this.n, this.drawing), this.drawing];
   }
 
   /** @param {AbortSignal} gone */
-  async draw(gone) {
-    const url = await api.file(this.job.id, this.n, "svg", gone).catch((error) => {
-      if (!gone.aborted) this.drawing.replaceChildren(el("figcaption", {}, error.message));
+  async drawStill(gone) {
+    const url = await api.downloadFile(this.job.id, this.n, "svg", gone).catch((error) => {
+      if (!gone.aborted) this.drawing.replaceChildren(createElement("figcaption", {}, error.message));
     });
     if (!url) return;
     if (gone.aborted) return URL.revokeObjectURL(url);
     this.url = url;
-    this.drawing.replaceChildren(el("img", { src: url, alt: t`Drawing of design ${this.n + 1} with its dimensions` }));
+    this.drawing.replaceChildren(
+      createElement("img", { src: url, alt: t`Drawing of design ${this.n + 1} with its dimensions` }),
+    );
   }
 
   /** @param {AbortSignal} gone */
-  async move(gone) {
+  async showMotion(gone) {
     const { mechanism } = this.design;
     const { frame } = this.desk;
-    if (!frame.idle) frame.wait(true);
-    else frame.say(thumbnail(this.design) ?? "", el("p", { class: "note" }, t`The motion is being computed …`));
+    if (!frame.isIdle) frame.markWaiting(true);
+    else
+      frame.showMessage(
+        createThumbnail(this.design) ?? "",
+        createElement("p", { class: "note" }, t`The motion is being computed …`),
+      );
     try {
       const View = VIEWS[mechanism.type];
       if (View) {
-        const turning = await api.motion(this.job.id, this.n, TURN_STEPS, gone);
+        const turning = await api.fetchMotion(this.job.id, this.n, TURN_STEP_COUNT, gone);
         if (gone.aborted) return;
         this.again = () => this.show(() => new View(frame, this.design, turning, this.job.problem));
         return this.again();
@@ -142,16 +155,17 @@ export class Shown {
         include: ["branches"],
       };
       // One after the other: the service analyses for others too.
-      const motion = /** @type {LinkageAnalysis} */ (await api.motion(this.job.id, this.n, STEPS, gone));
+      const motion = /** @type {LinkageAnalysis} */ (await api.fetchMotion(this.job.id, this.n, STEP_COUNT, gone));
       // Without other circuits the motion is still worth seeing.
-      const circuits = await api.analysis(question, gone).catch(() => null);
-      const choices = await cognates(this.design, this.job.problem, gone);
+      const circuits = await api.analyse(question, gone).catch(() => null);
+      const choices = await fetchCognates(this.design, this.job.problem, gone);
       /** @type {(Film | null)[]} */
       const films = [{ choice: choices[0], design: /** @type {LinkedDesign} */ (this.design), motion, circuits }];
-      for (const choice of choices.slice(1)) films.push(await this.film(choice));
-      if (!gone.aborted) this.offer(films.filter((one) => one !== null));
+      for (const choice of choices.slice(1)) films.push(await this.fetchFilm(choice));
+      if (!gone.aborted) this.offerFilms(films.filter((one) => one !== null));
     } catch (error) {
-      if (!gone.aborted) frame.say(el("p", { class: "error" }, /** @type {Error} */ (error).message));
+      if (!gone.aborted)
+        frame.showMessage(createElement("p", { class: "error" }, /** @type {Error} */ (error).message));
     }
   }
 
@@ -169,7 +183,7 @@ export class Shown {
 
   /** The design in motion, where it is a linkage whose motion is shown. */
   get mover() {
-    return this.moving instanceof Mover && !this.forced.hidden ? this.moving : null;
+    return this.moving instanceof LinkageMotion && !this.forced.hidden ? this.moving : null;
   }
 
   /**
@@ -177,14 +191,14 @@ export class Shown {
    * its own.
    * @param {import("./cognate_choice.js").Choice} choice @returns {Promise<Film | null>}
    */
-  async film(choice) {
-    const cycle = await overTheCycle(choice.mechanism, STEPS, this.gone.signal).catch(() => null);
+  async fetchFilm(choice) {
+    const cycle = await fetchCycle(choice.mechanism, STEP_COUNT, this.gone.signal).catch(() => null);
     return (
       cycle && {
         ...cycle,
         choice,
         design: {
-          mechanism: withSkeleton(choice.mechanism, cycle.motion),
+          mechanism: addSkeleton(choice.mechanism, cycle.motion),
           metrics: choice.metrics,
           placement: this.design.placement,
         },
@@ -196,7 +210,7 @@ export class Shown {
    * Show the design, with its cognates to switch to: all in one frame, so that the curve stays where it is.
    * @param {Film[]} films
    */
-  offer(films) {
+  offerFilms(films) {
     const around =
       films.length < 2
         ? []
@@ -209,7 +223,7 @@ export class Shown {
       this.again = () =>
         this.show(
           () =>
-            new Mover(this.desk.frame, film.design, film.motion, this.job.problem, film.circuits, [
+            new LinkageMotion(this.desk.frame, film.design, film.motion, this.job.problem, film.circuits, [
               ...around,
               ...this.around,
             ]),
@@ -220,18 +234,18 @@ export class Shown {
     show(films[0]);
     if (films.length > 1) {
       this.desk.before.replaceChildren(
-        picker(
+        createPicker(
           films.map((film) => film.choice),
           (choice) => {
             const film = films.find((one) => one.choice === choice) ?? films[0];
             show(film);
             this.desk.shown = film.design;
-            this.explored(film.design);
+            this.createExplorer(film.design);
             this.desk.numbers.replaceChildren(
-              ...(film === films[0] ? this.tabulated() : cognateNumbers(film, this.job.problem)),
+              ...(film === films[0] ? this.showNumbers() : createCognateNumbers(film, this.job.problem)),
             );
             this.desk.files.replaceChildren(
-              ...(film === films[0] ? this.taken() : [el("p", { class: "note" }, OF_THE_DESIGN)]),
+              ...(film === films[0] ? this.showFiles() : [createElement("p", { class: "note" }, DESIGN_TITLE)]),
             );
           },
         ),
@@ -243,13 +257,13 @@ export class Shown {
    * The place where a linkage's pins are dragged.
    * @param {LinkedDesign | Design} design the design or a cognate of it
    */
-  explored(design) {
+  createExplorer(design) {
     const { mechanism } = design;
     const { problem } = this.job;
     const { drawer, stage, exploring, explore } = this.desk;
     this.leaveExplorer();
-    this.desk.explored(Boolean(mechanism.skeleton));
-    drawer.on(
+    this.desk.offerExploring(Boolean(mechanism.skeleton));
+    drawer.setReaction(
       "explore",
       mechanism.skeleton
         ? {
@@ -257,20 +271,20 @@ export class Shown {
               // Two motions at once are one too many, for the eye and for the display.
               this.moving?.pause?.();
               this.leaveExplorer();
-              stage.show("explore");
+              stage.showMode("explore");
               this.explorer = this.desk.explorer = new Explorer(
                 exploring,
                 explore,
                 /** @type {Linked} */ (mechanism),
                 problem,
-                demanded(problem, design),
+                listTargets(problem, design),
                 this.state,
               );
             },
             closed: () => {
               this.leaveExplorer();
               exploring.replaceChildren();
-              if (stage.mode === "explore") stage.show("watch");
+              if (stage.mode === "explore") stage.showMode("watch");
             },
           }
         : null,
@@ -278,37 +292,37 @@ export class Shown {
   }
 
   /** The place of a linkage's forces: open where the problem states what it weighs and carries. */
-  borne() {
+  showForces() {
     const { design, job, n } = this;
     if (VIEWS[design.mechanism.type] || !design.mechanism.skeleton) return [];
-    const inside = el("div");
-    const details = el(
+    const inside = createElement("div");
+    const details = createElement(
       "details",
       {
         id: "forces",
         open: Boolean(job.problem.dynamics ?? design.dynamics),
         ontoggle: () => {
           this.forces?.stop();
-          this.forces = details.open && details.isConnected ? new Forces(inside, job, n, this.mover) : null;
+          this.forces = details.open && details.isConnected ? new ForcesPane(inside, job, n, this.mover) : null;
         },
       },
-      el("summary", {}, t`Forces: what it bears, and what drives it`),
+      createElement("summary", {}, t`Forces: what it bears, and what drives it`),
       inside,
     );
     return [details];
   }
 
   /** The place of a design's parts in three dimensions, beside what moves; they are made when it is opened. */
-  assembled() {
+  showAssembly() {
     const { drawer, stage, built, assembly } = this.desk;
     const there = api.hasParts(this.design.mechanism);
-    drawer.on(
+    drawer.setReaction(
       "assembly",
       there
         ? {
             opened: () => {
               this.assembly?.stop();
-              stage.show("watch");
+              stage.showMode("watch");
               built.hidden = false;
               built.parentElement?.classList.add("split");
               this.assembly = new AssemblyView(
@@ -330,11 +344,11 @@ export class Shown {
           }
         : null,
     );
-    drawer.offer("assembly", there);
+    drawer.setAvailable("assembly", there);
   }
 
   /** Burmester's curves, where the job has them. @param {Solved} job @param {number} n */
-  burmester(job, n) {
+  showBurmester(job, n) {
     const { mechanism } = job.result.designs[n];
     const { drawer, curves } = this.desk;
     const there = Boolean(job.result.curves?.length) && mechanism.type === "fourbar";
@@ -342,14 +356,14 @@ export class Shown {
       curves.hidden = !is;
       curves.parentElement?.classList.toggle("split", is);
     };
-    drawer.on(
+    drawer.setReaction(
       "curves",
       there
         ? {
             opened: () => {
               split(true);
-              this.curves = new Burmester(curves, job, job.result.designs[n], (solved) =>
-                this.present(solved, 0, t`On these pivots`),
+              this.curves = new BurmesterCurves(curves, job, job.result.designs[n], (solved) =>
+                this.showDesign(solved, 0, t`On these pivots`),
               );
             },
             closed: () => {
@@ -357,12 +371,12 @@ export class Shown {
               this.curves?.stop();
               this.curves = null;
               curves.replaceChildren();
-              if (this.job !== job && !this.ended) this.present(job, n, t`Design ${n + 1}`);
+              if (this.job !== job && !this.ended) this.showDesign(job, n, t`Design ${n + 1}`);
             },
           }
         : null,
     );
-    drawer.offer("curves", there);
+    drawer.setAvailable("curves", there);
   }
 
   leaveExplorer() {
@@ -386,9 +400,9 @@ export class Shown {
 
   stop() {
     this.ended = true;
-    this.desk.drawer.on("explore", null);
-    this.desk.drawer.on("curves", null);
-    this.desk.drawer.on("assembly", null);
+    this.desk.drawer.setReaction("explore", null);
+    this.desk.drawer.setReaction("curves", null);
+    this.desk.drawer.setReaction("assembly", null);
     this.told = () => {};
     this.leave();
   }
@@ -399,20 +413,20 @@ export class Shown {
  * @param {Film} film
  * @param {Problem} problem
  */
-function cognateNumbers({ choice, design }, problem) {
-  const measured = figures(design);
+function createCognateNumbers({ choice, design }, problem) {
+  const measured = listFigures(design);
   return [
-    el("p", { class: "note" }, OF_THE_DESIGN),
-    el(
+    createElement("p", { class: "note" }, DESIGN_TITLE),
+    createElement(
       "div",
       { class: "columns" },
       measured.length > 0 &&
-        table(
+        createTable(
           t`Quantities of the ${`${choice.name.charAt(0).toLowerCase()}${choice.name.slice(1)}`}`,
           measured,
           problem,
         ),
-      dimensions(design, problem),
+      createDimensions(design, problem),
     ),
   ];
 }

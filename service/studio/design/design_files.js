@@ -1,13 +1,13 @@
 /** The files of a design, to take home. */
 
 import * as api from "../core/api.js";
-import { el } from "../core/dom.js";
+import { createElement } from "../core/dom.js";
 import { t } from "../core/messages.js";
 
 /** @import { Solved } from "../types/values.js" */
 
 /** @type {Record<string, [string, string]>} */
-const SIMULATIONS = {
+const SIMULATION_FORMATS = {
   mjcf: ["MuJoCo", t`A model of MuJoCo: loops closed, the input driven`],
   urdf: ["URDF", t`A tree of links and joints for robotics programs, its loops beside it`],
   mo: ["Modelica", t`A model of Modelica's MultiBody library`],
@@ -15,15 +15,15 @@ const SIMULATIONS = {
 };
 
 /** @param {Solved} job @param {number} n @param {HTMLElement} drawing where the labelled drawing stands */
-export function downloads(job, n, drawing) {
-  const place = el(
+export function createDownloads(job, n, drawing) {
+  const place = createElement(
     "div",
     { class: "row", id: "downloads", role: "group", "aria-label": t`Files to take home` },
-    el("span", {}, t`Take home`),
+    createElement("span", {}, t`Take home`),
   );
-  const fault = el("span", { class: "error", role: "alert" });
+  const fault = createElement("span", { class: "error", role: "alert" });
   const button = (/** @type {string} */ title, /** @type {string} */ name, /** @type {() => Promise<string>} */ make) =>
-    el(
+    createElement(
       "button",
       {
         type: "button",
@@ -35,11 +35,11 @@ export function downloads(job, n, drawing) {
           try {
             const done = await make();
             if (done) {
-              saved(done, name);
+              saveFile(done, name);
               place.dataset.taken = title;
             }
           } catch (error) {
-            const reasons = error instanceof api.Refused ? error.errors.map((one) => one.detail) : [];
+            const reasons = error instanceof api.Refusal ? error.errors.map((one) => one.detail) : [];
             fault.replaceChildren(reasons.join(" ") || /** @type {Error} */ (error).message);
           }
           pressed.disabled = false;
@@ -48,26 +48,28 @@ export function downloads(job, n, drawing) {
       title,
     );
   place.append(
-    ...api.files(job.kind, job.result.designs[n].mechanism.type).map((form) => {
-      const [title, told] = SIMULATIONS[form] ?? [form.toUpperCase(), ""];
-      const one = button(title, `${job.kind}-${n + 1}.${form}`, () => api.file(job.id, n, form));
+    ...api.fileFormats(job.kind, job.result.designs[n].mechanism.type).map((form) => {
+      const [title, told] = SIMULATION_FORMATS[form] ?? [form.toUpperCase(), ""];
+      const one = button(title, `${job.kind}-${n + 1}.${form}`, () => api.downloadFile(job.id, n, form));
       if (told) one.title = told;
       return one;
     }),
     button("PNG", `${job.kind}-${n + 1}.png`, async () => {
       const image = drawing.querySelector("img");
       if (!image) throw new Error(t`The drawing is not there yet.`);
-      return raster(image);
+      return rasterize(image);
     }),
     button("JSON", `${job.kind}.json`, async () => {
       const parts = [JSON.stringify({ problem: job.problem, result: job.result }, null, 1)];
       return URL.createObjectURL(new Blob(parts, { type: "application/json" }));
     }),
-    ...(api.hasParts(job.result.designs[n].mechanism) ? made(job, n, button) : []),
-    ...(job.result.designs[n].mechanism.skeleton ? [opened(job, n, button)] : []),
-    button(t`Report`, `${job.kind}.html`, () => api.report(job.id)),
+    ...(api.hasParts(job.result.designs[n].mechanism) ? createPartsFields(job, n, button) : []),
+    ...(job.result.designs[n].mechanism.skeleton ? [createPmksButton(job, n, button)] : []),
+    button(t`Report`, `${job.kind}.html`, () => api.downloadReport(job.id)),
     // A link cannot send a key.
-    api.key() ? "" : el("a", { href: api.reportAt(job.id), target: "_blank", rel: "noopener" }, t`Open the report`),
+    api.readKey()
+      ? ""
+      : createElement("a", { href: api.reportAddress(job.id), target: "_blank", rel: "noopener" }, t`Open the report`),
     fault,
   );
   return place;
@@ -78,11 +80,13 @@ export function downloads(job, n, drawing) {
  * @param {Solved} job @param {number} n
  * @param {(title: string, name: string, make: () => Promise<string>) => HTMLElement} button
  */
-function made(job, n, button) {
-  const cut = button(t`Parts`, `${job.kind}-${n + 1}-parts.zip`, () => api.parts(job.id, n, { process: "laser" }));
+function createPartsFields(job, n, button) {
+  const cut = button(t`Parts`, `${job.kind}-${n + 1}-parts.zip`, () =>
+    api.downloadParts(job.id, n, { process: "laser" }),
+  );
   cut.title = t`Plates to be cut, with what joins them, a drawing of the assembly and a bill`;
   const printed = button(t`Printed parts`, `${job.kind}-${n + 1}-printed.zip`, () =>
-    api.parts(job.id, n, { process: "print" }),
+    api.downloadParts(job.id, n, { process: "print" }),
   );
   printed.title = t`STL and 3MF files of all parts, and their assembly`;
   if (!api.makesSolids()) {
@@ -97,10 +101,10 @@ function made(job, n, button) {
  * @param {Solved} job @param {number} n
  * @param {(title: string, name: string, make: () => Promise<string>) => HTMLElement} button
  */
-function opened(job, n, button) {
+function createPmksButton(job, n, button) {
   const there = button("PMKS+", "", async () => {
-    const url = await api.pmks(job.id, n);
-    el("a", { href: url, target: "_blank", rel: "noopener noreferrer" }).click();
+    const url = await api.fetchPmksAddress(job.id, n);
+    createElement("a", { href: url, target: "_blank", rel: "noopener noreferrer" }).click();
     return "";
   });
   there.title = t`Open it in PMKS+, whose models are in their addresses: app.pmksplus.com is told all of it`;
@@ -108,9 +112,9 @@ function opened(job, n, button) {
 }
 
 /** The drawing in pixels, two for one of its own. @param {HTMLImageElement} image @returns {Promise<string>} */
-async function raster(image) {
+async function rasterize(image) {
   await image.decode();
-  const canvas = el("canvas", { width: 2 * image.naturalWidth, height: 2 * image.naturalHeight });
+  const canvas = createElement("canvas", { width: 2 * image.naturalWidth, height: 2 * image.naturalHeight });
   const pen = /** @type {CanvasRenderingContext2D} */ (canvas.getContext("2d"));
   pen.fillStyle = "white";
   pen.fillRect(0, 0, canvas.width, canvas.height);
@@ -121,7 +125,7 @@ async function raster(image) {
 }
 
 /** Hand a file over to who looks at the page. @param {string} url @param {string} name */
-export function saved(url, name) {
-  el("a", { href: url, download: name }).click();
+export function saveFile(url, name) {
+  createElement("a", { href: url, download: name }).click();
   setTimeout(() => URL.revokeObjectURL(url), 10000);
 }

@@ -1,14 +1,14 @@
 /** The numbers of a design: its metrics, its dimensions, and the checks that it has passed. */
 
 import * as api from "../core/api.js";
-import { el, shown, words } from "../core/dom.js";
-import { BETWEEN, number, t, term, translated } from "../core/messages.js";
-import { symbolOf } from "../core/units.js";
+import { createElement, formatNumber, toWords } from "../core/dom.js";
+import { LIST_SEPARATOR, localizeNumber, t, term, translate } from "../core/messages.js";
+import { unitSymbol } from "../core/units.js";
 
 /** @import { Design, Problem, Schemas } from "../types/values.js" */
 
 /** What a card shows first of a design's metrics, where the design has it. */
-const FIRST = [
+const LEADING_METRICS = [
   "quality",
   "min_transmission_angle",
   "rms_residual",
@@ -29,7 +29,7 @@ const FIRST = [
 ];
 
 /** What is measured against something else: of that rounding leaves it this much, which is nothing. */
-const AGAINST = /** @type {Record<string, string>} */ ({
+const ROUNDING_RESIDUES = /** @type {Record<string, string>} */ ({
   drive: "unbalanced_drive",
   rms_drive: "unbalanced_rms_drive",
   entry_speed: "peak_velocity",
@@ -40,14 +40,15 @@ const AGAINST = /** @type {Record<string, string>} */ ({
  * @param {Partial<Design>} design
  * @returns {[string, string | number | boolean][]}
  */
-export function figures(design) {
+export function listFigures(design) {
   const metrics = /** @type {Record<string, unknown>} */ (design.metrics ?? {});
   const all = Object.entries(metrics).flatMap(([name, value]) => {
     if (typeof value !== "number" && typeof value !== "string" && typeof value !== "boolean") return [];
-    const nil = typeof value === "number" && nothing(value, Number(metrics[AGAINST[name]]));
+    const nil = typeof value === "number" && isRounding(value, Number(metrics[ROUNDING_RESIDUES[name]]));
     return [/** @type {[string, string | number | boolean]} */ ([name, nil ? 0 : value])];
   });
-  const rank = (/** @type {string} */ name) => (FIRST.includes(name) ? FIRST.indexOf(name) : FIRST.length);
+  const rank = (/** @type {string} */ name) =>
+    LEADING_METRICS.includes(name) ? LEADING_METRICS.indexOf(name) : LEADING_METRICS.length;
   return all.sort(([a], [b]) => rank(a) - rank(b));
 }
 
@@ -57,29 +58,29 @@ export function figures(design) {
 const DIGITS = 3;
 
 /** What only misses something by rounding, of its size. */
-const ROUNDING = 1e-9;
+const ROUNDING_TOLERANCE = 1e-9;
 
 /** Names of what measures by how much something is missed. */
-const MISSES = new RegExp(
+const MISS_PATTERN = new RegExp(
   "^(reaches|meets|keeps|reproduces)_|(residual|error)$" +
     "|^(dials|ratio|rotation|value|sum_of_squares|(rms|max|curve)_distance)$",
 );
 
 /** A limit of a check that is no demand: it bounds what rounding may leave. */
-const TOLERANCE = 1e-6;
+const MAX_TOLERANCE = 1e-6;
 
 /** What has no scale of its own, so that it says by itself whether it is rounding alone. */
-const BARE = [undefined, "angle", "percent"];
+const SCALE_FREE = [undefined, "angle", "percent"];
 
 /** A number for reading, with few digits: a whole one has all of its digits. @param {number} value */
-export function brief(value) {
-  if (!Number.isFinite(value) || Number.isInteger(value)) return shown(value);
-  return shown(Math.abs(value) >= 10 ** DIGITS ? Math.round(value) : Number(value.toPrecision(DIGITS)));
+export function formatBriefly(value) {
+  if (!Number.isFinite(value) || Number.isInteger(value)) return formatNumber(value);
+  return formatNumber(Math.abs(value) >= 10 ** DIGITS ? Math.round(value) : Number(value.toPrecision(DIGITS)));
 }
 
 /** Whether what is left of something is but the rounding of the computer. @param {number} left @param {number} of */
-export function nothing(left, of) {
-  return Math.abs(left) <= ROUNDING * Math.abs(of);
+export function isRounding(left, of) {
+  return Math.abs(left) <= ROUNDING_TOLERANCE * Math.abs(of);
 }
 
 /**
@@ -89,10 +90,12 @@ export function nothing(left, of) {
  * @param {string | undefined} dimension
  * @param {number} [size] of the mechanism, where lengths are asked for
  */
-export function exact(name, value, dimension, size = 0) {
-  if (typeof value !== "number" || !MISSES.test(name)) return false;
-  const whole = ROUNDING * size;
-  const least = BARE.includes(dimension) ? ROUNDING : ({ length: whole, area: whole * whole }[dimension ?? ""] ?? 0);
+export function isExact(name, value, dimension, size = 0) {
+  if (typeof value !== "number" || !MISS_PATTERN.test(name)) return false;
+  const whole = ROUNDING_TOLERANCE * size;
+  const least = SCALE_FREE.includes(dimension)
+    ? ROUNDING_TOLERANCE
+    : ({ length: whole, area: whole * whole }[dimension ?? ""] ?? 0);
   return least > 0 && Math.abs(value) <= least;
 }
 
@@ -104,32 +107,35 @@ export function exact(name, value, dimension, size = 0) {
  * @param {number} [size] of the mechanism
  * @returns {{text: string, title: string | null}}
  */
-export function figure(name, value, problem, size) {
-  const unit = problem ? unitFor(name, problem) : "";
-  if (typeof value !== "number") return { text: text(value), title: null };
-  const plain = problem && exact(name, value, api.measures(problem.kind)[name], size);
-  return { text: plain ? t`exact` : beside(brief(value), unit), title: beside(number(value), unit) };
+export function formatFigure(name, value, problem, size) {
+  const unit = problem ? metricUnit(name, problem) : "";
+  if (typeof value !== "number") return { text: formatWithUnit(value), title: null };
+  const plain = problem && isExact(name, value, api.metricDimensions(problem.kind)[name], size);
+  return {
+    text: plain ? t`exact` : joinUnit(formatBriefly(value), unit),
+    title: joinUnit(localizeNumber(value), unit),
+  };
 }
 
 /** The type of a design as a person reads it. @param {Partial<Design>} design */
-export function typeOf({ mechanism, springs }) {
-  if (mechanism?.type !== "skeleton") return words(String(mechanism?.type));
+export function typeName({ mechanism, springs }) {
+  if (mechanism?.type !== "skeleton") return toWords(String(mechanism?.type));
   return springs?.length ? t`Sprung linkage` : t`Linkage`;
 }
 
 /** What is written short. @type {Record<string, string>} */
-const SHORT = { cw: t`clockwise`, ccw: t`counterclockwise` };
+const ABBREVIATIONS = { cw: t`clockwise`, ccw: t`counterclockwise` };
 
 /** @param {unknown} value @param {string} [unit] beside a number */
-export function text(value, unit = "") {
-  if (typeof value === "string" && value in SHORT) return SHORT[value];
+export function formatWithUnit(value, unit = "") {
+  if (typeof value === "string" && value in ABBREVIATIONS) return ABBREVIATIONS[value];
   return typeof value === "number"
-    ? beside(shown(value), unit)
+    ? joinUnit(formatNumber(value), unit)
     : typeof value === "boolean"
       ? value
         ? t`yes`
         : t`no`
-      : words(String(value));
+      : toWords(String(value));
 }
 
 /**
@@ -137,12 +143,12 @@ export function text(value, unit = "") {
  * @param {string} name
  * @param {Problem} problem
  */
-export function unitFor(name, problem) {
-  return symbolOf(api.measures(problem.kind)[name], problem);
+export function metricUnit(name, problem) {
+  return unitSymbol(api.metricDimensions(problem.kind)[name], problem);
 }
 
 /** A number with its unit. @param {string} number @param {string} unit */
-export function beside(number, unit) {
+export function joinUnit(number, unit) {
   return `${number}${unit === "" || unit === "°" ? unit : ` ${unit}`}`;
 }
 
@@ -152,8 +158,8 @@ export function beside(number, unit) {
  * @param {Pick<Schemas["Check"], "dimension">} check
  * @param {Problem} problem
  */
-export function amount(value, check, problem) {
-  return beside(shown(value), symbolOf(check.dimension ?? undefined, problem));
+export function formatAmount(value, check, problem) {
+  return joinUnit(formatNumber(value), unitSymbol(check.dimension ?? undefined, problem));
 }
 
 /**
@@ -161,41 +167,41 @@ export function amount(value, check, problem) {
  * @param {Schemas["Check"]} check
  * @param {Problem} problem
  */
-function measured(check, problem) {
+function formatCheck(check, problem) {
   const { name, passed, dimension } = check;
   const value = Number(check.value);
-  const unit = symbolOf(dimension ?? undefined, problem);
+  const unit = unitSymbol(dimension ?? undefined, problem);
   const limit = typeof check.limit === "number" ? check.limit : null;
-  const rounded = limit !== null && Math.abs(limit) <= TOLERANCE && Math.abs(value) <= ROUNDING;
-  const close = !passed || (limit !== null && brief(value) === brief(limit));
+  const rounded = limit !== null && Math.abs(limit) <= MAX_TOLERANCE && Math.abs(value) <= ROUNDING_TOLERANCE;
+  const close = !passed || (limit !== null && formatBriefly(value) === formatBriefly(limit));
   const told = (/** @type {(value: number) => string} */ as) =>
-    `${beside(as(value), unit)}${limit === null ? "" : `, ${t`limit ${beside(as(limit), unit)}`}`}`;
-  return el(
+    `${joinUnit(as(value), unit)}${limit === null ? "" : `, ${t`limit ${joinUnit(as(limit), unit)}`}`}`;
+  return createElement(
     "span",
-    { class: "note", title: told(number) },
-    passed && (exact(name, value, dimension ?? undefined) || rounded)
+    { class: "note", title: told(localizeNumber) },
+    passed && (isExact(name, value, dimension ?? undefined) || rounded)
       ? ` ${t`exact`}`
-      : ` ${told(close ? shown : brief)}`,
+      : ` ${told(close ? formatNumber : formatBriefly)}`,
   );
 }
 
 /** @param {Partial<Design>} design @param {Problem} problem */
-export function checks(design, problem) {
-  return el(
+export function createChecks(design, problem) {
+  return createElement(
     "section",
     {},
-    el("h4", {}, t`Checks`),
-    el(
+    createElement("h4", {}, t`Checks`),
+    createElement(
       "ul",
       { class: "checks" },
       ...(design.verification?.checks ?? []).map((check) =>
-        el(
+        createElement(
           "li",
           { class: check.passed ? "good" : "bad" },
-          el("span", {}, check.passed ? "✓ " : "✗ "),
-          words(check.name),
-          typeof check.value === "number" && measured(check, problem),
-          el("span", { class: "hidden" }, " ", check.passed ? t`passed` : t`failed`),
+          createElement("span", {}, check.passed ? "✓ " : "✗ "),
+          toWords(check.name),
+          typeof check.value === "number" && formatCheck(check, problem),
+          createElement("span", { class: "hidden" }, " ", check.passed ? t`passed` : t`failed`),
         ),
       ),
     ),
@@ -207,28 +213,33 @@ export function checks(design, problem) {
  * @param {[string, unknown][]} rows
  * @param {Problem | null} [problem] whose units stand beside the numbers
  */
-export function table(title, rows, problem = null) {
+export function createTable(title, rows, problem = null) {
   const size = Number(rows.find(([name]) => name === "size")?.[1]) || undefined;
-  return rowed(
+  return createNumberTable(
     title,
-    rows.map(([name, value]) => [name, figure(name, value, problem, size)]),
+    rows.map(([name, value]) => [name, formatFigure(name, value, problem, size)]),
   );
 }
 
 /** @param {string} title @param {[string, {text: string, title: string | null}][]} rows */
-function rowed(title, rows) {
-  return el(
+function createNumberTable(title, rows) {
+  return createElement(
     "section",
     {},
-    el("h4", {}, title),
-    el(
+    createElement("h4", {}, title),
+    createElement(
       "table",
       { class: "figures" },
-      el(
+      createElement(
         "tbody",
         {},
         ...rows.map(([name, told]) =>
-          el("tr", {}, el("th", { scope: "row" }, words(name)), el("td", { title: told.title }, told.text)),
+          createElement(
+            "tr",
+            {},
+            createElement("th", { scope: "row" }, toWords(name)),
+            createElement("td", { title: told.title }, told.text),
+          ),
         ),
       ),
     ),
@@ -241,12 +252,12 @@ function rowed(title, rows) {
  * @param {Problem} problem whose units stand beside the numbers
  * @returns {HTMLElement[]}
  */
-export function made(design, problem) {
+export function createTolerances(design, problem) {
   const told = design.manufacture;
   if (!told) return [];
   const share = design.metrics?.yield;
   const { worst_case: worst, cost } = told;
-  const [length, angle] = [symbolOf("length", problem), symbolOf("angle", problem)];
+  const [length, angle] = [unitSymbol("length", problem), unitSymbol("angle", problem)];
   /** @type {[string, unknown, string?][]} */
   const rows = [
     [t`yield`, share?.value],
@@ -257,7 +268,7 @@ export function made(design, problem) {
     [t`tolerances that matter`, told.matter?.join(", ") || undefined],
     [t`rounding cost, rms residual`, cost?.rms_residual],
     [t`rounding cost, error`, cost?.max_error, length],
-    [t`remark`, translated(told.remark ?? "") || undefined],
+    [t`remark`, translate(told.remark ?? "") || undefined],
     ...Object.entries(told.dimensions ?? {}).map(
       ([name, value]) =>
         /** @type {[string, unknown, string]} */ ([t`made: ${name.split(".").map(term).join(" ")}`, value, length]),
@@ -265,13 +276,13 @@ export function made(design, problem) {
   ];
   const stated = rows.filter(([, value]) => value !== undefined && value !== null);
   return [
-    rowed(
+    createNumberTable(
       t`As it is made`,
       stated.map(([name, value, unit = ""]) => [
         name,
         typeof value === "number"
-          ? { text: beside(brief(value), unit), title: beside(number(value), unit) }
-          : { text: text(value), title: null },
+          ? { text: joinUnit(formatBriefly(value), unit), title: joinUnit(localizeNumber(value), unit) }
+          : { text: formatWithUnit(value), title: null },
       ]),
     ),
   ];
@@ -282,9 +293,9 @@ export function made(design, problem) {
  * @param {Partial<Design>} design
  * @param {Problem} problem
  */
-export function dimensions(design, problem) {
-  const rows = dimensionRows(design, problem);
-  return rows.length > 0 && rowed(t`Dimensions`, rows);
+export function createDimensions(design, problem) {
+  const rows = listDimensions(design, problem);
+  return rows.length > 0 && createNumberTable(t`Dimensions`, rows);
 }
 
 /**
@@ -293,13 +304,16 @@ export function dimensions(design, problem) {
  * @param {Problem} problem
  * @returns {[string, {text: string, title: string | null}][]}
  */
-export function dimensionRows(design, problem) {
+export function listDimensions(design, problem) {
   /** @type {[string, {text: string, title: string | null}][]} */
   const rows = [];
   const row = (/** @type {string} */ name, /** @type {number[]} */ all, /** @type {string} */ unit) =>
     rows.push([
       name,
-      { text: beside(all.map(shown).join(BETWEEN), unit), title: beside(all.map(number).join(BETWEEN), unit) },
+      {
+        text: joinUnit(all.map(formatNumber).join(LIST_SEPARATOR), unit),
+        title: joinUnit(all.map(localizeNumber).join(LIST_SEPARATOR), unit),
+      },
     ]);
   const walk = (/** @type {string} */ name, /** @type {unknown} */ value, /** @type {string} */ unit) => {
     if (Array.isArray(value)) {
@@ -309,9 +323,9 @@ export function dimensionRows(design, problem) {
         value.forEach((one, k) => walk(`${name} ${k + 1}`, one, unit));
     } else if (value && typeof value === "object") {
       for (const [inner, one] of Object.entries(value))
-        walk(name ? `${name} ${term(inner)}` : term(inner), one, unitFor(inner, problem) || unit);
+        walk(name ? `${name} ${term(inner)}` : term(inner), one, metricUnit(inner, problem) || unit);
     } else if (typeof value === "number") row(name, [value], unit);
-    else if (value !== null) rows.push([name, { text: text(value), title: null }]);
+    else if (value !== null) rows.push([name, { text: formatWithUnit(value), title: null }]);
   };
   // Springs are numbered as they stand.
   walk(
@@ -321,6 +335,6 @@ export function dimensionRows(design, problem) {
   );
   for (const [name, value] of Object.entries(design.mechanism ?? {}))
     if (!["type", "skeleton", "profile", "pitch_curve", "program", "outer_wall"].includes(name))
-      walk(term(name), value, unitFor(name, problem));
+      walk(term(name), value, metricUnit(name, problem));
   return rows;
 }

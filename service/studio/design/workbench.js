@@ -1,13 +1,13 @@
 /** The parts of the window in which a design is shown: the stage, the drawer beside it, and what stands in both. */
 
-import { byId, el } from "../core/dom.js";
+import { byId, createElement } from "../core/dom.js";
 import { Drawer } from "../page/drawer.js";
 import { t } from "../core/messages.js";
 import { Stage } from "../canvas/stage.js";
 
 /** @import { Mechanism } from "../types/values.js" */
 
-export class Desk {
+export class Workbench {
   constructor() {
     /** The design that is shown, if one is. @type {{mechanism: Mechanism, placement?: unknown} | null} */
     this.shown = null;
@@ -44,7 +44,7 @@ export class Desk {
       jobs: t`Jobs`,
     };
     for (const [name, text] of Object.entries(tabs)) this.drawer.add(name, text, byId(`pane-${name}`));
-    for (const name of ["compare", "curves", "assembly"]) this.drawer.offer(name, false);
+    for (const name of ["compare", "curves", "assembly"]) this.drawer.setAvailable(name, false);
   }
 
   get frame() {
@@ -55,7 +55,7 @@ export class Desk {
   clear() {
     this.shown = null;
     this.title.replaceChildren();
-    this.frame.say();
+    this.frame.showMessage();
     this.before.replaceChildren();
     this.forced.replaceChildren();
     for (const [place, text] of /** @type {[HTMLElement, string][]} */ ([
@@ -63,15 +63,15 @@ export class Desk {
       [this.frame.plots, t`The plots of a design stand here when there is one.`],
       [this.files, t`The files of a design stand here when there is one.`],
     ])) {
-      place.replaceChildren(el("p", { class: "note" }, text));
+      place.replaceChildren(createElement("p", { class: "note" }, text));
     }
-    this.explored(false);
+    this.offerExploring(false);
   }
 
   /** Say whether a linkage can be explored. @param {boolean} is */
-  explored(is) {
+  offerExploring(is) {
     this.exploring.replaceChildren();
     const note = t`Linkages are explored: their pins are dragged, and what they do then is told here.`;
-    this.explore.replaceChildren(...(is ? [] : [el("p", { class: "note" }, note)]));
+    this.explore.replaceChildren(...(is ? [] : [createElement("p", { class: "note" }, note)]));
   }
 }

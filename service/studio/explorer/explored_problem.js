@@ -1,15 +1,15 @@
 /** Statements that begin with a linkage as it was dragged. */
 
-import { telling } from "../motion/circuits.js";
+import { findTracedJoint } from "../motion/circuits.js";
 import { t } from "../core/messages.js";
 
 /** @import { LinkageAnalysis, Problem, Schemas, Skeleton } from "../types/values.js" */
 
 /** How many points of a curve a statement takes. */
-const POINTS = 24;
+const POINT_COUNT = 24;
 
 /** @typedef {[number, number]} Point */
-/** @typedef {{text: string, statement: () => Problem, solved?: boolean}} Beginning solved at once */
+/** @typedef {{text: string, statement: () => Problem, solved?: boolean}} StartingPoint solved at once */
 
 /**
  * @param {Problem} problem that the linkage answered
@@ -17,10 +17,10 @@ const POINTS = 24;
  * @param {LinkageAnalysis} motion over the cycle
  * @param {import("../motion/linkage_motion.js").Target[]} targets
  * @param {boolean} held whether dimensions are held, which a fit does not know
- * @returns {Beginning[]}
+ * @returns {StartingPoint[]}
  */
-export function beginnings(problem, skeleton, motion, targets, held) {
-  /** @type {Beginning[]} */
+export function listStartingPoints(problem, skeleton, motion, targets, held) {
+  /** @type {StartingPoint[]} */
   const found = [];
   const { O2, O4, A, B, P } = skeleton.joints;
   const free = problem.timing !== "prescribed" && !problem.stance && !problem.placement_free?.length;
@@ -43,13 +43,13 @@ export function beginnings(problem, skeleton, motion, targets, held) {
         method: "least_squares",
         mechanism: "fourbar",
         mechanisms: null,
-        start: { O2: rounded(O2), A: rounded(A), B: rounded(B), O4: rounded(O4), P: rounded(P) },
+        start: { O2: roundPoint(O2), A: roundPoint(A), B: roundPoint(B), O4: roundPoint(O4), P: roundPoint(P) },
       }),
     });
   if (O2 && O4 && problem.kind === "motion") {
     const side = (/** @type {Partial<Schemas["DyadChoices"]> | undefined} */ choices, /** @type {Point} */ at) => ({
       dyad: choices?.dyad,
-      fixed_pivot: rounded(at),
+      fixed_pivot: roundPoint(at),
     });
     found.push({
       text: t`Begin a statement with these fixed pivots`,
@@ -64,23 +64,23 @@ export function beginnings(problem, skeleton, motion, targets, held) {
   if (O2 && O4 && "fixed_pivots" in problem && problem.kind === "path") {
     found.push({
       text: t`Begin a statement with these fixed pivots`,
-      statement: () => ({ ...problem, fixed_pivots: { input: rounded(O2), output: rounded(O4) } }),
+      statement: () => ({ ...problem, fixed_pivots: { input: roundPoint(O2), output: roundPoint(O4) } }),
     });
   }
   if (problem.kind === "motion" && "P" in skeleton.joints) {
     found.push({
       text: t`Begin a statement with the positions that it takes`,
-      statement: () => ({ ...problem, positions: taken(problem, skeleton, motion, targets) }),
+      statement: () => ({ ...problem, positions: describePositions(problem, skeleton, motion, targets) }),
     });
   }
-  const known = curve(motion, telling(skeleton));
+  const known = coupledCurve(motion, findTracedJoint(skeleton));
   if (known.length > 3) {
     found.push({
       text: t`Begin a path statement with its curve`,
       statement: () => ({
         kind: "path",
         length_unit: problem.length_unit,
-        points: spread(known, motion.valid.every(Boolean)),
+        points: spreadEvenly(known, motion.valid.every(Boolean)),
         closed: motion.valid.every(Boolean),
       }),
     });
@@ -89,17 +89,17 @@ export function beginnings(problem, skeleton, motion, targets, held) {
 }
 
 /** @param {Point} point @returns {Point} */
-function rounded([x, y]) {
-  return [round(x), round(y)];
+function roundPoint([x, y]) {
+  return [roundValue(x), roundValue(y)];
 }
 
 /** @param {number} value */
-function round(value) {
+function roundValue(value) {
   return Number(value.toPrecision(6));
 }
 
 /** @param {LinkageAnalysis} motion @param {string} name @returns {Point[]} */
-function curve(motion, name) {
+function coupledCurve(motion, name) {
   const { x, y } = motion.joints[name];
   return x.flatMap((one, k) => (one === null ? [] : [/** @type {Point} */ ([one, y[k]])]));
 }
@@ -109,11 +109,11 @@ function curve(motion, name) {
  * @param {Point[]} known
  * @param {boolean} closed whose last point is the first again
  */
-function spread(known, closed) {
+function spreadEvenly(known, closed) {
   const last = known.length - 1;
-  return Array.from({ length: POINTS }, (_, k) => {
-    const [x, y] = known[Math.round((k * last) / (closed ? POINTS : POINTS - 1))];
-    return { x: round(x), y: round(y) };
+  return Array.from({ length: POINT_COUNT }, (_, k) => {
+    const [x, y] = known[Math.round((k * last) / (closed ? POINT_COUNT : POINT_COUNT - 1))];
+    return { x: roundValue(x), y: roundValue(y) };
   });
 }
 
@@ -124,7 +124,7 @@ function spread(known, closed) {
  * @param {LinkageAnalysis} motion
  * @param {import("../motion/linkage_motion.js").Target[]} targets
  */
-function taken(problem, skeleton, motion, targets) {
+function describePositions(problem, skeleton, motion, targets) {
   const body = skeleton.links.find((link) => link.joints.includes("P"))?.name ?? "";
   const { x, y } = motion.joints.P;
   const { angle } = motion.links[body];
@@ -138,9 +138,9 @@ function taken(problem, skeleton, motion, targets) {
     });
     const turned = first + Number(angle[best]) - Number(angle[0]);
     return {
-      x: round(Number(x[best])),
-      y: round(Number(y[best])),
-      angle: round(turned + 360 * Math.round(((target.angle ?? 0) - turned) / 360)),
+      x: roundValue(Number(x[best])),
+      y: roundValue(Number(y[best])),
+      angle: roundValue(turned + 360 * Math.round(((target.angle ?? 0) - turned) / 360)),
     };
   });
 }

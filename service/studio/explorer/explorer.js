@@ -1,22 +1,22 @@
 /** A linkage whose pins are dragged: what it does then, as the analysis core says, while it is dragged. */
 
 import * as api from "../core/api.js";
-import { stands } from "../motion/cycle.js";
-import { el, shown, svg, words } from "../core/dom.js";
-import { curveOf, driven } from "../motion/linkage_facts.js";
-import { Grip, keyed, led } from "../canvas/grip.js";
-import { Linkage, drawn, placed } from "../canvas/linkage_drawing.js";
-import { Player, between } from "../core/player.js";
-import { Sizes } from "./dimension_table.js";
-import { beginnings } from "./explored_problem.js";
+import { inputAngle } from "../motion/cycle.js";
+import { createElement, formatNumber, createSvg, toWords } from "../core/dom.js";
+import { couplerCurve, createFacts } from "../motion/linkage_facts.js";
+import { Grip, moveWithKeys, dragWithPointer } from "../canvas/grip.js";
+import { LinkageDrawing, drawnJoints, translateTo } from "../canvas/linkage_drawing.js";
+import { Player, interpolate } from "../core/player.js";
+import { DimensionTable } from "./dimension_table.js";
+import { listStartingPoints } from "./explored_problem.js";
 import { t } from "../core/messages.js";
-import { CLOCK, roomOf, scene } from "../canvas/stage.js";
+import { CLOCK_HEIGHT, boardSize, createScene } from "../canvas/stage.js";
 import { View } from "../core/view.js";
 import { Zoom } from "../canvas/zoom.js";
 
 /** @import { LinkageAnalysis, Linked, Problem, Skeleton } from "../types/values.js" */
 
-const STEPS = 180;
+const STEP_COUNT = 180;
 
 /** What follows so soon is the same step: a pin that is dragged. */
 const BURST_MS = 700;
@@ -33,14 +33,14 @@ export class Explorer {
    * @param {(problem: Problem, solved?: boolean) => void} state called to begin a statement, and to solve it
    */
   constructor(board, place, mechanism, problem, targets, state) {
-    const [width, height] = roomOf(board, CLOCK);
+    const [width, height] = boardSize(board, CLOCK_HEIGHT);
     this.type = mechanism.type;
     this.unit = problem.length_unit ?? "mm";
     this.problem = problem;
     this.skeleton = structuredClone(mechanism.skeleton);
     /** @type {Record<string, Point>} */
     this.joints = this.skeleton.joints;
-    this.anchors = anchors(this.skeleton);
+    this.anchors = slideAnchors(this.skeleton);
     const { P, ...others } = this.joints;
     /** The joint on which P lies, where it is no point of its own. */
     this.doubled = P && Object.keys(others).find((name) => others[name][0] === P[0] && others[name][1] === P[1]);
@@ -56,7 +56,7 @@ export class Explorer {
     this.future = /** @type {Record<string, Point>[]} */ ([]);
     this.noted = -Infinity;
     const step = (/** @type {string} */ name, /** @type {string} */ text, /** @type {() => void} */ act) =>
-      el(
+      createElement(
         "button",
         { type: "button", class: "small", disabled: true, title: name, "aria-label": name, onclick: act },
         text,
@@ -67,63 +67,70 @@ export class Explorer {
     };
     const around = Object.values(this.joints).concat(targets.map((one) => [one.x, one.y]));
     this.view = new View(around, width, height, Math.min(110, 0.2 * Math.min(width, height)));
-    this.curve = svg("path", { class: "curve" });
-    this.linkage = new Linkage(this.view, this.skeleton, { names: false });
-    this.ghost = new Linkage(this.view, this.skeleton, { names: false, faint: true });
-    this.picture = scene(
+    this.curve = createSvg("path", { class: "curve" });
+    this.linkage = new LinkageDrawing(this.view, this.skeleton, { names: false });
+    this.ghost = new LinkageDrawing(this.view, this.skeleton, { names: false, faint: true });
+    this.picture = createScene(
       this.view,
       t`The linkage, its pins to be dragged`,
       [
         this.curve,
         ...targets.map((one) =>
-          svg("g", { class: "goal", transform: placed(this.view.at(one.x, one.y)) }, svg("circle", {})),
+          createSvg(
+            "g",
+            { class: "goal", transform: translateTo(this.view.toPicture(one.x, one.y)) },
+            createSvg("circle", {}),
+          ),
         ),
         this.ghost.node,
         this.linkage.node,
       ],
       { held: true },
     );
-    this.handles = drawn(this.skeleton).map((name) => this.handle(name));
+    this.handles = drawnJoints(this.skeleton).map((name) => this.createHandle(name));
     this.picture.append(...this.handles.map(({ grip }) => grip.node));
     this.player = new Player({
-      count: STEPS + 1,
+      count: STEP_COUNT + 1,
       closed: true,
       name: "explore-",
       label: t`Input`,
-      reading: (at) => this.reading(at),
-      show: (at) => this.move(at),
+      reading: (at) => this.describePosition(at),
+      show: (at) => this.moveTo(at),
     });
-    this.sizes = new Sizes(
+    this.sizes = new DimensionTable(
       this.skeleton,
       this.unit,
-      (places, apart) => this.put(places, apart),
-      () => this.offer(),
+      (places, apart) => this.moveJoints(places, apart),
+      () => this.offerStatements(),
     );
-    this.facts = el("dl", { class: "facts", "aria-live": "polite" });
-    this.checks = el("ul", { class: "checks" });
-    this.buttons = el("p", { class: "row" });
+    this.facts = createElement("dl", { class: "facts", "aria-live": "polite" });
+    this.checks = createElement("ul", { class: "checks" });
+    this.buttons = createElement("p", { class: "row" });
     place.replaceChildren(
-      el(
+      createElement(
         "p",
         { class: "note" },
         t`Drag a pin, move it with the arrow keys, or type a dimension: curve, motion and figures are those of the linkage as it is then. What is held stays, whichever pin is dragged.`,
       ),
-      el("p", { class: "row" }, this.steps.back, this.steps.forth),
+      createElement("p", { class: "row" }, this.steps.back, this.steps.forth),
       this.sizes.node,
-      el("div", { class: "columns" }, this.facts, this.checks),
+      createElement("div", { class: "columns" }, this.facts, this.checks),
       this.buttons,
     );
-    board.replaceChildren(el("div", { class: "stage" }, this.picture, new Zoom(this.picture).buttons), this.player.row);
+    board.replaceChildren(
+      createElement("div", { class: "stage" }, this.picture, new Zoom(this.picture).buttons),
+      this.player.row,
+    );
     this.draw();
-    this.ask().then(() => this.motion && this.player.begin());
+    this.requestMotion().then(() => this.motion && this.player.begin());
   }
 
   /** @param {string} name */
-  handle(name) {
+  createHandle(name) {
     const grip = new Grip({ name, dot: name === "P" ? "dot point" : "dot" });
-    const put = (/** @type {Point} */ at) => this.sizes.draw(name, at);
+    const put = (/** @type {Point} */ at) => this.sizes.dragJoint(name, at);
     let goesOn = false;
-    led(grip.node, this.picture, this.view, {
+    dragWithPointer(grip.node, this.picture, this.view, {
       // While a pin is led the picture has that to follow; the motion goes on when it is let go.
       taken: () => {
         goesOn = this.player.playing;
@@ -134,7 +141,9 @@ export class Explorer {
         if (goesOn && !this.gone.signal.aborted) this.player.play();
       },
     });
-    keyed(grip.node, this.view, { moved: ([dx, dy]) => put([this.joints[name][0] + dx, this.joints[name][1] + dy]) });
+    moveWithKeys(grip.node, this.view, {
+      moved: ([dx, dy]) => put([this.joints[name][0] + dx, this.joints[name][1] + dy]),
+    });
     return { name, grip };
   }
 
@@ -143,51 +152,51 @@ export class Explorer {
    * @param {Record<string, Point>} places
    * @param {boolean} apart whether that is a step of its own
    */
-  put(places, apart) {
+  moveJoints(places, apart) {
     const now = performance.now();
     if (apart || now - this.noted > BURST_MS) {
       this.past.push(structuredClone(this.joints));
       this.future = [];
     }
     this.noted = apart ? -Infinity : now;
-    this.place(places);
+    this.placeJoints(places);
   }
 
   /** Take the last step back. @returns {boolean} whether there was one */
   undo() {
-    return this.go(this.past, this.future);
+    return this.restoreStep(this.past, this.future);
   }
 
   /** Do it again. @returns {boolean} whether there was one */
   redo() {
-    return this.go(this.future, this.past);
+    return this.restoreStep(this.future, this.past);
   }
 
   /** @param {Record<string, Point>[]} from @param {Record<string, Point>[]} to */
-  go(from, to) {
+  restoreStep(from, to) {
     const places = from.pop();
     if (!places) return false;
     to.push(structuredClone(this.joints));
     this.noted = -Infinity;
-    this.sizes.take(places);
-    this.place(places);
+    this.sizes.moveJoints(places);
+    this.placeJoints(places);
     return true;
   }
 
   /** @param {Record<string, Point>} places */
-  place(places) {
+  placeJoints(places) {
     Object.assign(this.joints, places);
     this.steps.back.disabled = !this.past.length;
     this.steps.forth.disabled = !this.future.length;
     const on = this.doubled;
     if (on) this.joints.P = [...this.joints[on]];
-    this.carry();
+    this.carrySlides();
     this.draw();
-    this.ask();
+    this.requestMotion();
   }
 
   /** Lines of slides go with the joints that they pass: turned about the pivot that they pass too, or shifted. */
-  carry() {
+  carrySlides() {
     this.skeleton.slides?.forEach((slide, /** @type {number} */ k) => {
       const [x, y] = this.joints[slide.joint];
       const through = this.anchors[k] && this.joints[this.anchors[k]];
@@ -199,16 +208,16 @@ export class Explorer {
   }
 
   draw() {
-    this.linkage.show(this.joints);
+    this.linkage.moveTo(this.joints);
     for (const { name, grip } of this.handles) {
       const [x, y] = this.joints[name];
-      grip.put(this.view.at(x, y));
-      grip.call(`${name}: x ${shown(x)}, y ${shown(y)}. ${t`Arrow keys move it.`}`);
+      grip.moveTo(this.view.toPicture(x, y));
+      grip.setLabel(`${name}: x ${formatNumber(x)}, y ${formatNumber(y)}. ${t`Arrow keys move it.`}`);
     }
   }
 
   /** Ask for the motion; while an answer is awaited only the newest question is kept. */
-  async ask() {
+  async requestMotion() {
     // What is written beneath is of the linkage before, until the answer is there.
     for (const place of [this.facts, this.checks]) place.setAttribute("aria-busy", "true");
     if (this.asking) {
@@ -218,11 +227,11 @@ export class Explorer {
     this.asking = true;
     do {
       this.stale = false;
-      const from = stands(this.skeleton);
-      const motion = from === null ? {} : { motion: { from, to: from + 360, steps: STEPS } };
+      const from = inputAngle(this.skeleton);
+      const motion = from === null ? {} : { motion: { from, to: from + 360, steps: STEP_COUNT } };
       try {
-        this.tell(
-          await api.analysis({ mechanism: { type: this.type, skeleton: this.skeleton }, ...motion }, this.gone.signal),
+        this.showAnswer(
+          await api.analyse({ mechanism: { type: this.type, skeleton: this.skeleton }, ...motion }, this.gone.signal),
         );
       } catch (error) {
         if (this.gone.signal.aborted) return;
@@ -230,11 +239,11 @@ export class Explorer {
         this.motion = null;
         this.curve.removeAttribute("d");
         this.ghost.node.setAttribute("hidden", "");
-        const refused = /** @type {api.Refused} */ (error);
+        const refused = /** @type {api.Refusal} */ (error);
         for (const one of [this.facts, this.checks, this.buttons]) delete one.dataset.said;
         this.facts.replaceChildren(
-          el("dt", {}, t`Refused`),
-          el("dd", {}, refused.errors?.[0]?.detail ?? refused.message),
+          createElement("dt", {}, t`Refused`),
+          createElement("dd", {}, refused.errors?.[0]?.detail ?? refused.message),
         );
         this.checks.replaceChildren();
         this.buttons.replaceChildren();
@@ -245,27 +254,30 @@ export class Explorer {
   }
 
   /** @param {LinkageAnalysis} answer */
-  tell(answer) {
+  showAnswer(answer) {
     this.motion = answer;
-    this.curve.setAttribute("d", this.view.path(curveOf(answer, this.skeleton)));
-    const { facts, turns, least, grashof, missed } = driven(answer, this.skeleton, this.targets, this.unit);
-    renewed(this.facts, Object.entries(facts), ([name, value]) => [el("dt", {}, name), el("dd", {}, value)]);
-    this.judge(turns, least, grashof, missed);
-    this.offer();
-    this.move(this.player.at);
+    this.curve.setAttribute("d", this.view.pathData(couplerCurve(answer, this.skeleton)));
+    const { facts, turns, least, grashof, missed } = createFacts(answer, this.skeleton, this.targets, this.unit);
+    renewContent(this.facts, Object.entries(facts), ([name, value]) => [
+      createElement("dt", {}, name),
+      createElement("dd", {}, value),
+    ]);
+    this.showChecks(turns, least, grashof, missed);
+    this.offerStatements();
+    this.moveTo(this.player.at);
   }
 
   /** Buttons of the statements that begin with the linkage as it is. */
-  offer() {
+  offerStatements() {
     const { motion } = this;
     if (!motion) return;
     const held = this.sizes.demands.length > 0;
-    const offered = () => beginnings(this.problem, this.skeleton, this.motion ?? motion, this.targets, held);
-    renewed(
+    const offered = () => listStartingPoints(this.problem, this.skeleton, this.motion ?? motion, this.targets, held);
+    renewContent(
       this.buttons,
       offered().map(({ text }) => text),
       (text) => [
-        el(
+        createElement(
           "button",
           {
             type: "button",
@@ -288,7 +300,7 @@ export class Explorer {
    * @param {string | null} grashof
    * @param {number[]} missed
    */
-  judge(turns, least, grashof, missed) {
+  showChecks(turns, least, grashof, missed) {
     const wanted = this.problem.constraints ?? {};
     const size = Math.max(
       ...Object.values(this.joints).map(([x, y]) => Math.hypot(x - this.joints.O2?.[0], y - this.joints.O2?.[1])),
@@ -298,52 +310,52 @@ export class Explorer {
     // The curve is known at so many places only: nearer than their distance nothing can be told.
     if (missed.length)
       checks.push([
-        t`Passes the targets within ${`${shown(Number((0.01 * size).toPrecision(2)))} ${this.unit}`}`,
+        t`Passes the targets within ${`${formatNumber(Number((0.01 * size).toPrecision(2)))} ${this.unit}`}`,
         Math.max(...missed) <= 0.01 * size,
       ]);
     if (wanted.full_rotation) checks.push([t`Full rotation`, turns]);
     if (wanted.min_transmission_angle)
       checks.push([
-        t`Transmission angle of ${shown(wanted.min_transmission_angle)}° in the whole motion`,
+        t`Transmission angle of ${formatNumber(wanted.min_transmission_angle)}° in the whole motion`,
         least !== null && least >= wanted.min_transmission_angle,
       ]);
     if (wanted.grashof && wanted.grashof !== "any" && grashof) {
       checks.push([
-        words(wanted.grashof),
+        toWords(wanted.grashof),
         wanted.grashof === "non_grashof" ? grashof === "rocker_rocker" : grashof === wanted.grashof,
       ]);
     }
-    renewed(this.checks, checks, ([name, passed]) => [
-      el(
+    renewContent(this.checks, checks, ([name, passed]) => [
+      createElement(
         "li",
         { class: passed ? "good" : "bad" },
-        el("span", {}, passed ? "✓ " : "✗ "),
+        createElement("span", {}, passed ? "✓ " : "✗ "),
         name,
-        el("span", { class: "hidden" }, " ", passed ? t`passed` : t`failed`),
+        createElement("span", { class: "hidden" }, " ", passed ? t`passed` : t`failed`),
       ),
     ]);
   }
 
   /** @param {number} at */
-  move(at) {
+  moveTo(at) {
     const { motion } = this;
     this.ghost.node.toggleAttribute("hidden", !motion);
     if (!motion) return;
-    this.ghost.show(
+    this.ghost.moveTo(
       Object.fromEntries(
         Object.entries(motion.joints).map(([name, track]) => {
-          const x = between(track.x, at);
-          return [name, x === null ? null : [x, Number(between(track.y, at))]];
+          const x = interpolate(track.x, at);
+          return [name, x === null ? null : [x, Number(interpolate(track.y, at))]];
         }),
       ),
     );
   }
 
   /** @param {number} at */
-  reading(at) {
-    const input = this.motion && between(this.motion.input_angle, Math.min(at, this.motion.input_angle.length - 1));
-    const unit = stands(this.skeleton) === null ? ` ${this.unit}` : "°";
-    return input === null ? "–" : `${shown(Math.round(10 * input) / 10)}${unit}`;
+  describePosition(at) {
+    const input = this.motion && interpolate(this.motion.input_angle, Math.min(at, this.motion.input_angle.length - 1));
+    const unit = inputAngle(this.skeleton) === null ? ` ${this.unit}` : "°";
+    return input === null ? "–" : `${formatNumber(Math.round(10 * input) / 10)}${unit}`;
   }
 
   stop() {
@@ -356,7 +368,7 @@ export class Explorer {
  * Fill a place anew where it is to say something else; otherwise the page need not be laid out again.
  * @template T @param {HTMLElement} place @param {T[]} said @param {(one: T) => Element[]} make
  */
-function renewed(place, said, make) {
+function renewContent(place, said, make) {
   const now = JSON.stringify(said);
   if (place.dataset.said === now) return;
   place.dataset.said = now;
@@ -368,7 +380,7 @@ function renewed(place, said, make) {
  * @param {Skeleton} skeleton
  * @returns {(string | null)[]}
  */
-function anchors(skeleton) {
+function slideAnchors(skeleton) {
   const places = /** @type {Point[]} */ (Object.values(skeleton.joints));
   const size = Math.max(...places.map(([x, y]) => Math.hypot(x - places[0][0], y - places[0][1])));
   return (skeleton.slides ?? []).map((slide) => {

@@ -16,13 +16,13 @@
  * @property {string[]} joints two of a length; three of an angle: where it is, from where, to where
  */
 
-const STEPS = 40;
+const MAX_STEPS = 40;
 
 /** What is missed by less, of the linkage's size, is kept. */
-const KEPT = 1e-9;
+const RESIDUAL_TOLERANCE = 1e-9;
 
 /** Changes of coordinates from which slopes are taken, of the linkage's size. */
-const CHANGE = 1e-6;
+const DIFFERENCE_STEP = 1e-6;
 
 /** Keeps what is stated twice solvable, of the greatest slope squared. */
 const DAMPING = 1e-12;
@@ -32,7 +32,7 @@ const DAMPING = 1e-12;
  * @param {Skeleton} skeleton
  * @returns {Dimension[]}
  */
-export function dimensionsOf({ links, joints }) {
+export function listDimensions({ links, joints }) {
   return links.flatMap(({ name, joints: [first, second, ...others] }) => {
     if (second === undefined) return [];
     const apart = others.filter((one) => distance(joints[first], joints[one]) > 0);
@@ -47,7 +47,7 @@ export function dimensionsOf({ links, joints }) {
 }
 
 /** Its value: a length, or an angle in degrees. @param {Dimension} dimension @param {Joints} places */
-export function valueOf({ joints: [at, from, to] }, places) {
+export function dimensionValue({ joints: [at, from, to] }, places) {
   if (to === undefined) return distance(places[at], places[from]);
   const turned = direction(places[at], places[to]) - direction(places[at], places[from]);
   return (Math.atan2(Math.sin(turned), Math.cos(turned)) * 180) / Math.PI;
@@ -65,24 +65,24 @@ export function valueOf({ joints: [at, from, to] }, places) {
  * @param {string[]} still joints that stay where they are
  * @returns {Joints | null}
  */
-export function settled(places, demands, still) {
+export function solveDemands(places, demands, still) {
   const names = Object.keys(places).filter((name) => !still.includes(name));
   const found = structuredClone(places);
   const all = Object.values(places);
   const size = Math.max(...all.map((one) => distance(one, all[0])));
-  const missed = () => demands.map((demand) => miss(demand, found));
-  for (let step = 0; step <= STEPS; step++) {
+  const missed = () => demands.map((demand) => demandResidual(demand, found));
+  for (let step = 0; step <= MAX_STEPS; step++) {
     const now = missed();
-    if (now.every((one) => Math.abs(one) <= KEPT * size)) return found;
+    if (now.every((one) => Math.abs(one) <= RESIDUAL_TOLERANCE * size)) return found;
     const slopes = names.flatMap((name) =>
       [0, 1].map((axis) => {
-        found[name][axis] += CHANGE * size;
+        found[name][axis] += DIFFERENCE_STEP * size;
         const changed = missed();
-        found[name][axis] -= CHANGE * size;
-        return changed.map((one, k) => (one - now[k]) / (CHANGE * size));
+        found[name][axis] -= DIFFERENCE_STEP * size;
+        return changed.map((one, k) => (one - now[k]) / (DIFFERENCE_STEP * size));
       }),
     );
-    const shares = solved(
+    const shares = solveSymmetric(
       now.map((_, i) => now.map((_, j) => slopes.reduce((sum, column) => sum + column[i] * column[j], 0))),
       now,
     );
@@ -99,9 +99,9 @@ export function settled(places, demands, still) {
 }
 
 /** By how much a demand is missed, as a length. @param {Demand} demand @param {Joints} places */
-function miss({ dimension, value, other }, places) {
-  const wanted = other ? valueOf(other, places) : Number(value);
-  const away = valueOf(dimension, places) - wanted;
+function demandResidual({ dimension, value, other }, places) {
+  const wanted = other ? dimensionValue(other, places) : Number(value);
+  const away = dimensionValue(dimension, places) - wanted;
   if (dimension.joints.length === 2) return away;
   const [at, , to] = dimension.joints;
   const turned = (away * Math.PI) / 180;
@@ -113,7 +113,7 @@ function miss({ dimension, value, other }, places) {
  * @param {number[][]} matrix
  * @param {number[]} right
  */
-function solved(matrix, right) {
+function solveSymmetric(matrix, right) {
   const most = Math.max(...matrix.map((row, k) => row[k]));
   const rows = matrix.map((row, i) => [...row.map((one, j) => one + (i === j ? DAMPING * most : 0)), right[i]]);
   rows.forEach((pivot, k) => {

@@ -6,45 +6,45 @@
  * moment, or the same force on an arm as long as the linkage.
  */
 
-import { nothing } from "../design/design_metrics.js";
+import { isRounding } from "../design/design_metrics.js";
 
 /** @import { LinkageAnalysis, Schemas, Skeleton } from "../types/values.js" */
 
-/** @typedef {LinkageAnalysis & {dynamics: Schemas["DynamicsAnswer"]}} Forced */
+/** @typedef {LinkageAnalysis & {dynamics: Schemas["DynamicsAnswer"]}} ForceAnswer */
 /** @typedef {(number | null)[]} Series */
 
 /** Length units in metres. @type {Record<string, number>} */
 const METRES = { mm: 1e-3, cm: 1e-2, m: 1, in: 0.0254 };
 
 /** How far apart joints are. @param {Skeleton} skeleton */
-function reach({ joints }) {
+function linkageSize({ joints }) {
   const [xs, ys] = [0, 1].map((axis) => Object.values(joints).map((at) => at[axis]));
   return Math.hypot(Math.max(...xs) - Math.min(...xs), Math.max(...ys) - Math.min(...ys));
 }
 
 /** @param {(number | null | undefined)[]} values */
-function greatest(values) {
+function greatestMagnitude(values) {
   return Math.max(0, ...values.map((one) => Math.abs(one ?? 0)));
 }
 
 /**
  * An answer in which what is rounding alone is 0.
- * @param {Forced} answer
+ * @param {ForceAnswer} answer
  * @param {Skeleton} skeleton
  * @param {boolean} sliding whether a force drives, and no torque
- * @returns {Forced}
+ * @returns {ForceAnswer}
  */
-export function cleared(answer, skeleton, sliding) {
+export function clearRounding(answer, skeleton, sliding) {
   const { dynamics } = answer;
   const { extremes, joints, shaking, power } = dynamics;
   const { drive, shaking_force: frame, shaking_moment: moment } = extremes;
   const drives = [drive.max, drive.min];
   const pins = Object.values(extremes.joints).map(({ max }) => max);
-  const force = greatest([...pins, frame.max, ...(sliding ? drives : [])]);
+  const force = greatestMagnitude([...pins, frame.max, ...(sliding ? drives : [])]);
   const metre = dynamics.units === "si" ? (METRES[dynamics.length_unit ?? "mm"] ?? 1) : 1;
-  const torque = greatest([moment.max, force * metre * reach(skeleton), ...(sliding ? [] : drives)]);
+  const torque = greatestMagnitude([moment.max, force * metre * linkageSize(skeleton), ...(sliding ? [] : drives)]);
   const against = (/** @type {number} */ of) => {
-    const one = (/** @type {number | null} */ value) => (value !== null && nothing(value, of) ? 0 : value);
+    const one = (/** @type {number | null} */ value) => (value !== null && isRounding(value, of) ? 0 : value);
     return { one, all: (/** @type {Series} */ series) => series.map(one) };
   };
   const [forces, torques] = [against(force), against(torque)];

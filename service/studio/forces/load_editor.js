@@ -3,27 +3,27 @@
  * or by lists.
  */
 
-import { Refused } from "../core/api.js";
-import { choice, numberBox } from "../form/controls.js";
-import { el, words } from "../core/dom.js";
+import { Refusal } from "../core/api.js";
+import { createChoice, createNumberBox } from "../form/controls.js";
+import { createElement, toWords } from "../core/dom.js";
 import * as faults from "../form/field_errors.js";
 import { t, term } from "../core/messages.js";
-import { at, put } from "../core/pointer.js";
-import { symbolOf } from "../core/units.js";
+import { readPointer, writePointer } from "../core/pointer.js";
+import { unitSymbol } from "../core/units.js";
 
 /** @import { Json, Problem, Schemas, Skeleton } from "../types/values.js" */
 
 /** How near to a pin a click means it, pixels of the picture. */
-const NEAR = 22;
+const PIN_REACH = 22;
 
 /** What is edited here; all else of a stated block is kept. */
-const EDITED = ["units", "gravity", "speed_rpm", "speed", "links", "point_masses", "loads"];
+const EDITED_FIELDS = ["units", "gravity", "speed_rpm", "speed", "links", "point_masses", "loads"];
 
-/** @typedef {import("../motion/linkage_motion.js").Mover} Mover */
+/** @typedef {import("../motion/linkage_motion.js").LinkageMotion} Mover */
 /** @typedef {Schemas["DesignForcesBlock"]} Block */
 /** A mass that is being stated: its number may be missing yet. @typedef {Partial<Schemas["PointMass"]>} Mass */
 /** @typedef {Schemas["StatedLoad"]} Load */
-/** @typedef {{select: HTMLSelectElement, button: HTMLElement}} Placed */
+/** @typedef {{select: HTMLSelectElement, button: HTMLElement}} PlacedRow */
 
 let ids = 0;
 
@@ -47,18 +47,18 @@ export class LoadEditor {
     };
     /** @type {Mover | null} */
     this.mover = null;
-    /** The row whose joint the next click on the drawing chooses. @type {Placed | null} */
+    /** The row whose joint the next click on the drawing chooses. @type {PlacedRow | null} */
     this.placing = null;
     /** Whether forces are shown. */
     this.answered = Boolean(problem.dynamics);
-    this.rows = el("div", { class: "fields loads" });
-    this.hint = el("p", { class: "note", role: "status" });
-    this.faults = el("div", { role: "alert" });
-    this.button = el("button", { type: "submit", class: "main" }, t`Show the forces`);
+    this.rows = createElement("div", { class: "fields loads" });
+    this.hint = createElement("p", { class: "note", role: "status" });
+    this.faults = createElement("div", { role: "alert" });
+    this.button = createElement("button", { type: "submit", class: "main" }, t`Show the forces`);
     const kept = Object.entries(this.block)
-      .filter(([name, value]) => !EDITED.includes(name) && Object.keys(value ?? {}).length)
+      .filter(([name, value]) => !EDITED_FIELDS.includes(name) && Object.keys(value ?? {}).length)
       .map(([name]) => name);
-    this.form = el(
+    this.form = createElement(
       "form",
       {
         novalidate: true,
@@ -68,12 +68,18 @@ export class LoadEditor {
           this.submit();
         },
         onkeydown: (/** @type {KeyboardEvent} */ event) => {
-          if (event.key === "Escape") this.place(null);
+          if (event.key === "Escape") this.startPlacing(null);
         },
       },
-      el("div", { class: "fields" }, this.speed(), ...this.gravity(), this.material()),
+      createElement(
+        "div",
+        { class: "fields" },
+        this.createSpeedField(),
+        ...this.createGravityFields(),
+        this.createMaterialFields(),
+      ),
       this.rows,
-      el(
+      createElement(
         "div",
         { class: "row" },
         ...[
@@ -81,26 +87,31 @@ export class LoadEditor {
           ["force", () => this.loads.push({ joint: this.joints[0], force: { constant: [0, 0] } })],
           ["torque", () => this.loads.push({ link: this.links[0], torque: { constant: 0 } })],
         ].map(([name, add]) =>
-          el(
+          createElement(
             "button",
-            { type: "button", class: "small", onclick: () => this.add(/** @type {() => void} */ (add), String(name)) },
+            {
+              type: "button",
+              class: "small",
+              onclick: () => this.createAddButton(/** @type {() => void} */ (add), String(name)),
+            },
             t`Add a ${term(String(name))}`,
           ),
         ),
       ),
       this.hint,
-      kept.length > 0 && el("p", { class: "note" }, t`Kept as the problem states it: ${kept.map(term).join(", ")}.`),
+      kept.length > 0 &&
+        createElement("p", { class: "note" }, t`Kept as the problem states it: ${kept.map(term).join(", ")}.`),
       this.faults,
-      el("div", { class: "row" }, this.button),
+      createElement("div", { class: "row" }, this.button),
     );
-    this.node = el(
+    this.node = createElement(
       "details",
-      { class: "load-editor", open: !problem.dynamics, ontoggle: () => this.node.open || this.place(null) },
-      el("summary", {}, t`State masses and loads`),
+      { class: "load-editor", open: !problem.dynamics, ontoggle: () => this.node.open || this.startPlacing(null) },
+      createElement("summary", {}, t`State masses and loads`),
       this.form,
     );
-    this.click = (/** @type {PointerEvent} */ event) => this.choose(event);
-    this.list();
+    this.click = (/** @type {PointerEvent} */ event) => this.chooseJoint(event);
+    this.createLists();
   }
 
   get joints() {
@@ -131,39 +142,39 @@ export class LoadEditor {
    * @param {(value: Json | undefined) => void} set
    * @param {string} [note]
    */
-  number(path, name, unit, value, set, note) {
-    const box = numberBox(value, undefined, set);
+  createNumberField(path, name, unit, value, set, note) {
+    const box = createNumberBox(value, undefined, set);
     box.id = `load${++ids}`;
     box.setAttribute("data-path", path);
-    return el(
+    return createElement(
       "div",
       { class: "field" },
-      el("label", { for: box.id }, name, unit && el("span", { class: "unit" }, ` (${unit})`)),
+      createElement("label", { for: box.id }, name, unit && createElement("span", { class: "unit" }, ` (${unit})`)),
       box,
-      el("p", { class: "error" }),
-      note && el("p", { class: "note" }, note),
+      createElement("p", { class: "error" }),
+      note && createElement("p", { class: "note" }, note),
     );
   }
 
   /** @param {string} dimension */
-  unit(dimension) {
-    return symbolOf(dimension, this.problem);
+  formatUnit(dimension) {
+    return unitSymbol(dimension, this.problem);
   }
 
-  speed() {
+  createSpeedField() {
     const name = this.sliding ? "speed" : "speed_rpm";
-    const unit = this.sliding ? `${this.unit("length")}/s` : this.unit("rotational speed");
-    return this.number(
+    const unit = this.sliding ? `${this.formatUnit("length")}/s` : this.formatUnit("rotational speed");
+    return this.createNumberField(
       `/dynamics/${name}`,
       t`Speed of the input`,
       unit,
       this.block[name],
-      (value) => put(this.block, [name], value),
+      (value) => writePointer(this.block, [name], value),
       t`0 is statics.`,
     );
   }
 
-  gravity() {
+  createGravityFields() {
     const pull = {
       magnitude: undefined,
       angle: undefined,
@@ -175,44 +186,50 @@ export class LoadEditor {
       else this.block.gravity = pull.angle === undefined ? { magnitude: pull.magnitude } : { ...pull };
     };
     return [
-      this.number(
+      this.createNumberField(
         "/dynamics/gravity/magnitude",
         t`Gravity`,
-        this.unit("gravity"),
+        this.formatUnit("gravity"),
         pull.magnitude,
         set("magnitude"),
         t`Empty: none.`,
       ),
-      this.number("/dynamics/gravity/angle", t`Gravity pulls towards`, "°", pull.angle, set("angle")),
+      this.createNumberField("/dynamics/gravity/angle", t`Gravity pulls towards`, "°", pull.angle, set("angle")),
     ];
   }
 
-  material() {
+  createMaterialFields() {
     const { block } = this;
     const field = (/** @type {string} */ name, /** @type {string} */ dimension) =>
-      this.number(`/dynamics/links/${name}`, words(name), this.unit(dimension), at(block, ["links", name]), (value) => {
-        put(block, ["links", name], value);
-        if (!Object.keys(block.links ?? {}).length) delete block.links;
-      });
-    return el(
+      this.createNumberField(
+        `/dynamics/links/${name}`,
+        toWords(name),
+        this.formatUnit(dimension),
+        readPointer(block, ["links", name]),
+        (value) => {
+          writePointer(block, ["links", name], value);
+          if (!Object.keys(block.links ?? {}).length) delete block.links;
+        },
+      );
+    return createElement(
       "fieldset",
       { class: "field member", "data-path": "/dynamics/links", tabindex: -1 },
-      el("legend", {}, t`Material of all links`),
-      el(
+      createElement("legend", {}, t`Material of all links`),
+      createElement(
         "div",
         { class: "fields" },
         field("density", "density"),
         field("thickness", "length"),
         field("width", "length"),
       ),
-      el("p", { class: "error" }),
+      createElement("p", { class: "error" }),
     );
   }
 
   /** @param {() => void} make @param {string} name */
-  add(make, name) {
+  createAddButton(make, name) {
     make();
-    this.list();
+    this.createLists();
     const rows = [...this.rows.querySelectorAll("fieldset")].filter((one) => one.dataset.sort === name);
     const row = rows[rows.length - 1];
     row?.querySelector("select")?.focus();
@@ -220,18 +237,22 @@ export class LoadEditor {
   }
 
   /** All masses and loads, each with its place and its strength. */
-  list() {
-    this.place(null);
+  createLists() {
+    this.startPlacing(null);
     this.rows.replaceChildren(
       ...this.masses.map((mass, k) =>
-        this.row(
+        this.createRow(
           this.masses,
           k,
           `/dynamics/point_masses/${k}`,
           "point mass",
-          this.on(mass, `/dynamics/point_masses/${k}/joint`),
-          this.number(`/dynamics/point_masses/${k}/mass`, t`Mass`, this.unit("mass"), mass.mass, (value) =>
-            put(mass, ["mass"], value),
+          this.createJointField(mass, `/dynamics/point_masses/${k}/joint`),
+          this.createNumberField(
+            `/dynamics/point_masses/${k}/mass`,
+            t`Mass`,
+            this.formatUnit("mass"),
+            mass.mass,
+            (value) => writePointer(mass, ["mass"], value),
           ),
         ),
       ),
@@ -239,33 +260,45 @@ export class LoadEditor {
         const path = `/dynamics/loads/${k}`;
         if (load.joint !== undefined && load.force?.constant) {
           const axis = (/** @type {number} */ n) =>
-            this.number(
+            this.createNumberField(
               `${path}/force/constant/${n}`,
               t`Force ${"xy"[n]}`,
-              this.unit("force"),
-              at(load, ["force", "constant", String(n)]),
-              (value) => put(load, ["force", "constant", String(n)], value ?? null),
+              this.formatUnit("force"),
+              readPointer(load, ["force", "constant", String(n)]),
+              (value) => writePointer(load, ["force", "constant", String(n)], value ?? null),
             );
-          return this.row(this.loads, k, path, "force", this.on(load, `${path}/joint`), axis(0), axis(1));
+          return this.createRow(
+            this.loads,
+            k,
+            path,
+            "force",
+            this.createJointField(load, `${path}/joint`),
+            axis(0),
+            axis(1),
+          );
         }
         if (load.link !== undefined && load.torque && "constant" in load.torque) {
-          return this.row(
+          return this.createRow(
             this.loads,
             k,
             path,
             "torque",
-            this.named(this.links, load, "link", `${path}/link`),
-            this.number(`${path}/torque/constant`, t`Torque`, this.unit("torque"), load.torque.constant, (value) =>
-              put(load, ["torque", "constant"], value ?? null),
+            this.createNameField(this.links, load, "link", `${path}/link`),
+            this.createNumberField(
+              `${path}/torque/constant`,
+              t`Torque`,
+              this.formatUnit("torque"),
+              load.torque.constant,
+              (value) => writePointer(load, ["torque", "constant"], value ?? null),
             ),
           );
         }
-        return this.row(
+        return this.createRow(
           this.loads,
           k,
           path,
           "load",
-          el("p", { class: "note" }, t`On ${load.joint ?? load.link}, kept as it is stated.`),
+          createElement("p", { class: "note" }, t`On ${load.joint ?? load.link}, kept as it is stated.`),
         );
       }),
     );
@@ -278,14 +311,14 @@ export class LoadEditor {
    * @param {string} sort
    * @param {...HTMLElement} controls
    */
-  row(all, k, path, sort, ...controls) {
-    return el(
+  createRow(all, k, path, sort, ...controls) {
+    return createElement(
       "fieldset",
       { class: "field member", "data-path": path, "data-sort": sort, tabindex: -1 },
-      el("legend", {}, words(sort)),
-      el("div", { class: "fields" }, ...controls),
-      el("p", { class: "error" }),
-      el(
+      createElement("legend", {}, toWords(sort)),
+      createElement("div", { class: "fields" }, ...controls),
+      createElement("p", { class: "error" }),
+      createElement(
         "button",
         {
           type: "button",
@@ -293,7 +326,7 @@ export class LoadEditor {
           "aria-label": t`Remove ${`${term(sort)} ${k + 1}`}`,
           onclick: () => {
             all.splice(k, 1);
-            this.list();
+            this.createLists();
           },
         },
         t`Remove`,
@@ -302,11 +335,17 @@ export class LoadEditor {
   }
 
   /** @param {string[]} names @param {Mass | Load} row @param {string} key @param {string} path */
-  named(names, row, key, path) {
-    const box = choice(names, at(row, [key]), false, (value) => put(row, [key], value));
+  createNameField(names, row, key, path) {
+    const box = createChoice(names, readPointer(row, [key]), false, (value) => writePointer(row, [key], value));
     box.id = `load${++ids}`;
     box.setAttribute("data-path", path);
-    return el("div", { class: "field" }, el("label", { for: box.id }, words(key)), box, el("p", { class: "error" }));
+    return createElement(
+      "div",
+      { class: "field" },
+      createElement("label", { for: box.id }, toWords(key)),
+      box,
+      createElement("p", { class: "error" }),
+    );
   }
 
   /**
@@ -314,16 +353,16 @@ export class LoadEditor {
    * @param {Mass | Load} row
    * @param {string} path
    */
-  on(row, path) {
-    const field = this.named(this.joints, row, "joint", path);
+  createJointField(row, path) {
+    const field = this.createNameField(this.joints, row, "joint", path);
     const select = /** @type {HTMLSelectElement} */ (field.querySelector("select"));
-    const button = el(
+    const button = createElement(
       "button",
       {
         type: "button",
         class: "small",
         "aria-pressed": "false",
-        onclick: () => this.place(this.placing?.button === button ? null : { select, button }),
+        onclick: () => this.startPlacing(this.placing?.button === button ? null : { select, button }),
       },
       t`Choose on the drawing`,
     );
@@ -331,8 +370,8 @@ export class LoadEditor {
     return field;
   }
 
-  /** @param {Placed | null} placed */
-  place(placed) {
+  /** @param {PlacedRow | null} placed */
+  startPlacing(placed) {
     this.placing?.button.setAttribute("aria-pressed", "false");
     this.placing = placed;
     placed?.button.setAttribute("aria-pressed", "true");
@@ -344,20 +383,20 @@ export class LoadEditor {
   }
 
   /** @param {PointerEvent} event */
-  choose(event) {
+  chooseJoint(event) {
     const { mover, placing } = this;
     if (!mover || !placing) return;
-    const [x, y] = mover.view.under(mover.picture, event);
-    const now = mover.now();
+    const [x, y] = mover.view.toPlaneFromPointer(mover.picture, event);
+    const now = mover.currentInput();
     const away = mover.linkage.pins.map(({ name }) => {
       const at = now[name];
       return [name, at ? mover.view.scale * Math.hypot(at[0] - x, at[1] - y) : Infinity];
     });
     const [name, distance] = away.sort(([, one], [, other]) => Number(one) - Number(other))[0];
-    if (!(Number(distance) < NEAR)) return;
+    if (!(Number(distance) < PIN_REACH)) return;
     placing.select.value = String(name);
     placing.select.dispatchEvent(new Event("change"));
-    this.place(null);
+    this.startPlacing(null);
   }
 
   /** @param {Mover | null} mover */
@@ -370,31 +409,33 @@ export class LoadEditor {
   }
 
   async submit() {
-    this.place(null);
+    this.startPlacing(null);
     this.button.disabled = true;
-    faults.clear(this.form, this.faults);
+    faults.clearErrors(this.form, this.faults);
     try {
       await this.ask(this.block);
       this.answered = true;
     } catch (error) {
-      this.tell(error);
+      this.showError(error);
     } finally {
       this.button.disabled = false;
     }
   }
 
   /** @param {unknown} error */
-  tell(error) {
-    if (error instanceof Refused && error.errors.length) {
+  showError(error) {
+    if (error instanceof Refusal && error.errors.length) {
       // That a speed is missing is said of the block as a whole.
       const speed = `/dynamics/${this.sliding ? "speed" : "speed_rpm"}`;
-      faults.tell(this.form, this.faults, {
+      faults.showErrors(this.form, this.faults, {
         message: error.message,
         errors: error.errors.map(({ path, detail }) => ({ path: path === "/dynamics" ? speed : path, detail })),
       });
     } else if (error instanceof Error && error.name !== "AbortError")
-      this.faults.replaceChildren(el("p", { class: "error" }, error.message));
+      this.faults.replaceChildren(createElement("p", { class: "error" }, error.message));
     if (this.answered)
-      this.faults.append(el("p", { class: "note" }, t`The forces below are those of what was stated before.`));
+      this.faults.append(
+        createElement("p", { class: "note" }, t`The forces below are those of what was stated before.`),
+      );
   }
 }

@@ -1,6 +1,6 @@
 /** Controls of a single value, as forms and tables have them. */
 
-import { el, words } from "../core/dom.js";
+import { createElement, toWords } from "../core/dom.js";
 import { t, term } from "../core/messages.js";
 
 /** @import { Json, Schemas } from "../types/values.js" */
@@ -11,20 +11,20 @@ import { t, term } from "../core/messages.js";
  * @param {boolean} nullable
  * @param {(value: Json | undefined) => void} set
  */
-export function choice(choices, value, nullable, set) {
+export function createChoice(choices, value, nullable, set) {
   const names = nullable ? ["", ...choices] : choices;
-  const box = el(
+  const box = createElement(
     "select",
     { onchange: () => set(box.value === "" ? undefined : box.value) },
-    ...names.map((one) => el("option", { value: one }, one === "" ? "–" : term(String(one)))),
+    ...names.map((one) => createElement("option", { value: one }, one === "" ? "–" : term(String(one)))),
   );
   box.value = String(value ?? names[0]);
   return box;
 }
 
 /** @param {unknown} value @param {unknown} fallback @param {(value: Json | undefined) => void} set */
-export function numberBox(value, fallback, set) {
-  const box = el("input", {
+export function createNumberBox(value, fallback, set) {
+  const box = createElement("input", {
     type: "number",
     step: "any",
     inputmode: "decimal",
@@ -41,10 +41,10 @@ export function numberBox(value, fallback, set) {
  * @param {(value: Json | undefined) => void} set
  * @param {(text: string) => Json} read
  */
-export function textBox(value, fallback, set, read) {
+export function createTextBox(value, fallback, set, read) {
   const written = (/** @type {unknown} */ one) =>
     Array.isArray(one) ? one.map((part) => part ?? "open").join(", ") : String(one ?? "");
-  const box = el("input", {
+  const box = createElement("input", {
     type: "text",
     spellcheck: "false",
     placeholder: written(fallback),
@@ -55,7 +55,7 @@ export function textBox(value, fallback, set, read) {
 }
 
 /** Points as text, one to a line. @param {unknown} points */
-export function lines(points) {
+export function formatPoints(points) {
   return Array.isArray(points)
     ? points.map((point) => (Array.isArray(point) ? point.join(", ") : String(point))).join("\n")
     : "";
@@ -65,8 +65,8 @@ export function lines(points) {
  * Points of the plane, one to a line: `120, 35`. What is no number stays as it is written, and the service says so.
  * @param {unknown} value @param {(value: Json | undefined) => void} set
  */
-export function pointsBox(value, set) {
-  const box = el("textarea", {
+export function createPointsBox(value, set) {
+  const box = createElement("textarea", {
     rows: 4,
     spellcheck: "false",
     placeholder: "0, 0\n100, 0\n100, 50",
@@ -81,13 +81,13 @@ export function pointsBox(value, set) {
               line
                 .split(/[,;\s]+/)
                 .filter(Boolean)
-                .map(plain),
+                .map(parseNumber),
             )
           : undefined,
       );
     },
   });
-  box.value = lines(value);
+  box.value = formatPoints(value);
   return box;
 }
 
@@ -95,8 +95,8 @@ export function pointsBox(value, set) {
  * What a statement has as an analysis has it, such as a mechanism: its JSON. Nothing is set while the text is none.
  * @param {unknown} value @param {(value: Json | undefined) => void} set
  */
-export function jsonBox(value, set) {
-  const box = el("textarea", {
+export function createJsonBox(value, set) {
+  const box = createElement("textarea", {
     rows: 8,
     spellcheck: "false",
     placeholder: "{ }",
@@ -115,7 +115,7 @@ export function jsonBox(value, set) {
 }
 
 /** A number where the text is one. @param {string} text */
-export function plain(text) {
+export function parseNumber(text) {
   const value = Number(text);
   return Number.isFinite(value) ? value : text;
 }
@@ -131,9 +131,9 @@ let ids = 0;
  * @param {string[]} value
  * @param {(value: Json | undefined) => void} set
  */
-export function choices(name, note, path, all, value, set) {
+export function createChoices(name, note, path, all, value, set) {
   const boxes = all.map((one) => {
-    const box = el("input", {
+    const box = createElement("input", {
       type: "checkbox",
       id: `c${++ids}`,
       onchange: () => {
@@ -144,13 +144,13 @@ export function choices(name, note, path, all, value, set) {
     box.checked = value.includes(one);
     return box;
   });
-  return el(
+  return createElement(
     "fieldset",
     { class: "field", "data-path": path, tabindex: -1 },
-    el("legend", {}, words(name)),
-    ...boxes.map((box, k) => el("label", { class: "flag", for: box.id }, box, term(all[k]))),
-    el("p", { class: "error" }),
-    note && el("p", { class: "note" }, note),
+    createElement("legend", {}, toWords(name)),
+    ...boxes.map((box, k) => createElement("label", { class: "flag", for: box.id }, box, term(all[k]))),
+    createElement("p", { class: "error" }),
+    note && createElement("p", { class: "note" }, note),
   );
 }
 
@@ -159,10 +159,10 @@ export function choices(name, note, path, all, value, set) {
  * @param {unknown} value
  * @param {(value: Json | undefined) => void} set
  */
-export function stockBox(value, set) {
+export function createStockBox(value, set) {
   const written = (/** @type {string | number | Schemas["StockedGear"]} */ one) =>
     typeof one === "object" && one !== null ? `${one.teeth} × ${one.count ?? 1}` : String(one);
-  const box = el("input", {
+  const box = createElement("input", {
     type: "text",
     spellcheck: "false",
     oninput: () => {
@@ -170,7 +170,7 @@ export function stockBox(value, set) {
         .split(/[,;\n\t]+/)
         .map((/** @type {string} */ part) => part.trim())
         .filter(Boolean);
-      set(parts.length ? parts.map(stocked) : undefined);
+      set(parts.length ? parts.map(parseStock) : undefined);
     },
   });
   if (Array.isArray(value)) box.value = value.map(written).join(", ");
@@ -178,7 +178,7 @@ export function stockBox(value, set) {
 }
 
 /** What is no number stays as it is written, and the service says so. @param {string} part */
-function stocked(part) {
+function parseStock(part) {
   const [, teeth, count] = /^(\d+)\s*[×x*]\s*(\d+)$/.exec(part) ?? [];
   if (teeth) return { teeth: Number(teeth), count: Number(count) };
   return Number.isFinite(Number(part)) ? Number(part) : part;

@@ -1,12 +1,12 @@
 /** What is wrong with a statement, said at the fields it belongs to. */
 
-import { el } from "../core/dom.js";
-import { foreign, t, term } from "../core/messages.js";
+import { createElement } from "../core/dom.js";
+import { foreignLanguage, t, term } from "../core/messages.js";
 
-let said_ids = 0;
+let error_ids = 0;
 
 /** @param {HTMLElement} form @param {HTMLElement} list */
-export function clear(form, list) {
+export function clearErrors(form, list) {
   list.replaceChildren();
   for (const slot of form.querySelectorAll(".error")) slot.replaceChildren();
   for (const control of form.querySelectorAll("[aria-invalid]")) {
@@ -19,13 +19,13 @@ export function clear(form, list) {
  * @param {HTMLElement} form @param {HTMLElement} list
  * @param {{message: string, errors: import("../core/api.js").FieldError[]}} refusal
  */
-export function tell(form, list, refusal) {
-  clear(form, list);
+export function showErrors(form, list, refusal) {
+  clearErrors(form, list);
   /** @type {HTMLElement | null} */
   let first = null;
   const lost = [];
   for (const fault of refusal.errors) {
-    const place = nearest(form, fault.path);
+    const place = nearestControl(form, fault.path);
     if (!place) {
       lost.push(fault);
       continue;
@@ -35,11 +35,11 @@ export function tell(form, list, refusal) {
     const [row, name] = fault.path.split("/").slice(-2);
     const cell = place.control.parentElement?.matches("td") && /^\d+$/.test(row);
     const where = cell ? `${t`Row ${Number(row) + 1}, ${term(name)}`}: ` : rest ? `${rest}: ` : "";
-    const said = el(
+    const said = createElement(
       "span",
-      { id: `fault${++said_ids}` },
+      { id: `fault${++error_ids}` },
       where,
-      el("span", { lang: foreign(fault.detail) }, `${fault.detail} `),
+      createElement("span", { lang: foreignLanguage(fault.detail) }, `${fault.detail} `),
     );
     place.slot?.append(said);
     if (cell) {
@@ -52,9 +52,15 @@ export function tell(form, list, refusal) {
     first ??= place.control;
   }
   list.append(
-    el("p", { class: "error", lang: foreign(refusal.message) }, refusal.message),
+    createElement("p", { class: "error", lang: foreignLanguage(refusal.message) }, refusal.message),
     ...(lost.length
-      ? [el("ul", {}, ...lost.map((fault) => el("li", {}, `${fault.path || t`the statement`}: ${fault.detail}`)))]
+      ? [
+          createElement(
+            "ul",
+            {},
+            ...lost.map((fault) => createElement("li", {}, `${fault.path || t`the statement`}: ${fault.detail}`)),
+          ),
+        ]
       : []),
   );
   first?.focus();
@@ -66,7 +72,7 @@ export function tell(form, list, refusal) {
  * @param {HTMLElement} form
  * @param {string} pointer
  */
-function nearest(form, pointer) {
+function nearestControl(form, pointer) {
   // Groups have their controls only when they are open.
   const parts = pointer.split("/");
   for (let k = 3; k <= parts.length; k++) {

@@ -5,24 +5,42 @@
  * JSON pointer as `data-path`, by which errors find it.
  */
 
-import { choice, choices, jsonBox, numberBox, plain, pointsBox, stockBox, textBox } from "./controls.js";
-import { el, words } from "../core/dom.js";
-import { prose, t } from "../core/messages.js";
-import { escaped, group as structured } from "../core/pointer.js";
-import { discriminator, initial, kinded, optionOf, propertiesOf, resolved, shapeOf, tagsOf } from "../core/schema.js";
-import { ROOT, Sheet } from "./form_state.js";
-import { table } from "./object_table.js";
-import { unitOf } from "../core/units.js";
+import {
+  createChoice,
+  createChoices,
+  createJsonBox,
+  createNumberBox,
+  parseNumber,
+  createPointsBox,
+  createStockBox,
+  createTextBox,
+} from "./controls.js";
+import { createElement, toWords } from "../core/dom.js";
+import { firstParagraph, t } from "../core/messages.js";
+import { escapeName, ensureObject as structured } from "../core/pointer.js";
+import {
+  findDiscriminator,
+  initialValue,
+  classifyField,
+  findOption,
+  propertiesOf,
+  resolveReference,
+  findShape,
+  listTags,
+} from "../core/schema.js";
+import { STATEMENT_POINTER, FormState } from "./form_state.js";
+import { createTable } from "./object_table.js";
+import { fieldUnit } from "../core/units.js";
 
 /** @import { Json } from "../types/values.js" */
 
 /** @typedef {import("../core/schema.js").Schema} Schema */
 
 /** Fields of every problem that few people touch; they come last. */
-const LAST = ["length_unit", "rank_by", "max_designs", "include_failed", "seed"];
+const LAST_FIELDS = ["length_unit", "rank_by", "max_designs", "include_failed", "seed"];
 
 /** Fewer fields than these that nobody has stated need not be folded away. */
-const FOLDED = 3;
+const MIN_FOLDED = 3;
 
 let ids = 0;
 
@@ -30,139 +48,146 @@ let ids = 0;
  * Fill `form` with the controls of what a store states.
  * @param {HTMLElement} form @param {import("../core/store.js").Store} store
  */
-export function fill(form, store) {
-  const sheet = new Sheet(store);
+export function fillForm(form, store) {
+  const sheet = new FormState(store);
   const { root } = sheet;
   const names = Object.keys(propertiesOf(root));
   const must = names.filter((name) => root.required?.includes(name));
-  const may = names.filter((name) => !must.includes(name) && !LAST.includes(name));
-  const order = [...must, ...may, ...LAST.filter((name) => names.includes(name))];
+  const may = names.filter((name) => !must.includes(name) && !LAST_FIELDS.includes(name));
+  const order = [...must, ...may, ...LAST_FIELDS.filter((name) => names.includes(name))];
   const opened = [...form.querySelectorAll("details[open]")].map((one) => one.getAttribute("data-path"));
   const focused = form.contains(document.activeElement) ? document.activeElement?.getAttribute("data-path") : null;
-  form.replaceChildren(...folded(sheet, root, ROOT, order));
+  form.replaceChildren(...foldControls(sheet, root, STATEMENT_POINTER, order));
   for (const path of opened) form.querySelector(`details[data-path="${path}"]`)?.setAttribute("open", "");
   /** @type {HTMLElement | null} */ (focused && form.querySelector(`[data-path="${focused}"]`))?.focus();
 }
 
-/** @param {Sheet} sheet @param {Schema} schema @param {string} path @param {string[]} [order] */
-function controls(sheet, schema, path, order = Object.keys(propertiesOf(schema))) {
+/** @param {FormState} sheet @param {Schema} schema @param {string} path @param {string[]} [order] */
+function createControls(sheet, schema, path, order = Object.keys(propertiesOf(schema))) {
   return order.map((name) => {
     const required = schema.required?.includes(name) ?? false;
-    return field(sheet, propertiesOf(schema)[name], name, `${path}/${name}`, required);
+    return createField(sheet, propertiesOf(schema)[name], name, `${path}/${name}`, required);
   });
 }
 
 /**
  * What is stated, and what must be; the rest is one click away.
- * @param {Sheet} sheet @param {Schema} schema @param {string} path @param {string[]} [order]
+ * @param {FormState} sheet @param {Schema} schema @param {string} path @param {string[]} [order]
  * @returns {Node[]}
  */
-function folded(sheet, schema, path, order = Object.keys(propertiesOf(schema))) {
+function foldControls(sheet, schema, path, order = Object.keys(propertiesOf(schema))) {
   const used = (/** @type {string} */ name) => {
-    const value = sheet.at(`${path}/${name}`);
-    return schema.required?.includes(name) || (value !== undefined && value !== null && !empty(value));
+    const value = sheet.readValue(`${path}/${name}`);
+    return schema.required?.includes(name) || (value !== undefined && value !== null && !isEmpty(value));
   };
   const made = (/** @type {string[]} */ names) =>
-    /** @type {Node[]} */ (controls(sheet, schema, path, names).filter((one) => one !== null));
+    /** @type {Node[]} */ (createControls(sheet, schema, path, names).filter((one) => one !== null));
   const [first, rest] = [made(order.filter(used)), made(order.filter((name) => !used(name)))];
-  if (rest.length < FOLDED) return [...first, ...rest];
-  const more = el(
+  if (rest.length < MIN_FOLDED) return [...first, ...rest];
+  const more = createElement(
     "details",
     { class: "more", "data-path": `${path}/*`, onreveal: () => (more.open = true) },
-    el("summary", {}, `${path === ROOT ? t`More` : t`More limits`} (${rest.length})`),
-    el("div", { class: "fields" }, ...rest),
+    createElement("summary", {}, `${path === STATEMENT_POINTER ? t`More` : t`More limits`} (${rest.length})`),
+    createElement("div", { class: "fields" }, ...rest),
   );
   return [...first, more];
 }
 
 /**
  * The control of one property of an object.
- * @param {Sheet} sheet @param {Schema} schema @param {string} name @param {string} path
+ * @param {FormState} sheet @param {Schema} schema @param {string} name @param {string} path
  * @param {boolean} required
  * @returns {Node | null}
  */
-function field(sheet, schema, name, path, required) {
-  const what = kinded(schema, sheet.root);
+function createField(sheet, schema, name, path, required) {
+  const what = classifyField(schema, sheet.root);
   // The units beside the other fields are those of the length unit, or of the mechanism that is asked for.
   const set = (/** @type {Json | undefined} */ value) =>
-    sheet.put(path, value, name === "length_unit" || (name === "mechanism" && typeof value === "string"));
-  const value = sheet.at(path);
-  const unit = unitOf(schema, sheet.problem);
+    sheet.writeValue(path, value, name === "length_unit" || (name === "mechanism" && typeof value === "string"));
+  const value = sheet.readValue(path);
+  const unit = fieldUnit(schema, sheet.problem);
   const about =
-    schema.description ?? (what.options.length === 1 ? resolved(what.options[0], sheet.root).description : "");
-  const note = prose(about);
+    schema.description ?? (what.options.length === 1 ? resolveReference(what.options[0], sheet.root).description : "");
+  const note = firstParagraph(about);
   const fallback = schema.default ?? null;
   switch (what.control) {
     case "fixed":
       return null;
     case "choice":
-      return labelled(
+      return createLabel(
         name,
         "",
         note,
         path,
         required,
-        choice(what.choices ?? [], value ?? fallback, what.nullable, set),
+        createChoice(what.choices ?? [], value ?? fallback, what.nullable, set),
       );
     case "choices":
-      return choices(name, note, path, what.choices ?? [], strings(value ?? fallback), set);
+      return createChoices(name, note, path, what.choices ?? [], formatStrings(value ?? fallback), set);
     case "flag":
-      return flag(name, note, path, value ?? fallback, set);
+      return createFlag(name, note, path, value ?? fallback, set);
     case "number":
-      if (what.nullable && fallback !== null) return shapes(sheet, what, schema, name, note, path, required);
-      return labelled(name, unit, note, path, required, numberBox(value, fallback, set));
+      if (what.nullable && fallback !== null) return createShapes(sheet, what, schema, name, note, path, required);
+      return createLabel(name, unit, note, path, required, createNumberBox(value, fallback, set));
     case "text":
-      return labelled(name, unit, note, path, required, textBox(value, fallback, set, plain));
+      return createLabel(name, unit, note, path, required, createTextBox(value, fallback, set, parseNumber));
     case "numbers":
-      return labelled(
+      return createLabel(
         name,
         unit,
         note,
         path,
         required,
-        textBox(value, fallback, set, (text) => numbers(text, what.options)),
+        createTextBox(value, fallback, set, (text) => parseNumbers(text, what.options)),
       );
     case "points":
-      return labelled(
+      return createLabel(
         name,
         unit,
         note ? t`${note} One point to a line, as in 120, 35.` : t`One point to a line, as in 120, 35.`,
         path,
         required,
-        pointsBox(value, set),
+        createPointsBox(value, set),
       );
     case "stock":
-      return labelled(name, unit, t`${note} As in 20, 24 × 3, 30.`, path, required, stockBox(value, set));
+      return createLabel(name, unit, t`${note} As in 20, 24 × 3, 30.`, path, required, createStockBox(value, set));
     case "table":
-      return group(sheet, schema, name, note, path, required || !what.nullable, () => [
-        table(sheet.looking(path, []), what.item ?? {}, path, controls, what.count),
+      return createGroup(sheet, schema, name, note, path, required || !what.nullable, () => [
+        createTable(sheet.preview(path, []), what.item ?? {}, path, createControls, what.count),
       ]);
     case "object":
-      return group(sheet, schema, name, note, path, required || !what.nullable, () =>
-        folded(sheet, what.options[0], path),
+      return createGroup(sheet, schema, name, note, path, required || !what.nullable, () =>
+        foldControls(sheet, what.options[0], path),
       );
     case "union":
-      return group(sheet, schema, name, note, path, required || !what.nullable, () =>
-        union(sheet.looking(path, initial(what.options[0], sheet.root)), what.options, path),
+      return createGroup(sheet, schema, name, note, path, required || !what.nullable, () =>
+        createUnion(sheet.preview(path, initialValue(what.options[0], sheet.root)), what.options, path),
       );
     case "map":
-      return group(sheet, schema, name, note, path, required || !what.nullable, () =>
-        members(sheet, what.item ?? {}, path),
+      return createGroup(sheet, schema, name, note, path, required || !what.nullable, () =>
+        createMembers(sheet, what.item ?? {}, path),
       );
     case "shapes":
-      return shapes(sheet, what, schema, name, note, path, required);
+      return createShapes(sheet, what, schema, name, note, path, required);
     default:
       if (what.options.every((one) => one.type === "array" && one.items?.type === "string"))
-        return labelled(
+        return createLabel(
           name,
           "",
           t`${note} As in input, output.`,
           path,
           required,
-          textBox(value, fallback, set, named),
+          createTextBox(value, fallback, set, parseNames),
         );
       // A mechanism as an analysis has it, or the corners of a shape, each in one of several ways.
-      return labelled(name, unit, note ? t`${note} As JSON.` : t`As JSON.`, path, required, jsonBox(value, set));
+      return createLabel(
+        name,
+        unit,
+        note ? t`${note} As JSON.` : t`As JSON.`,
+        path,
+        required,
+        createJsonBox(value, set),
+      );
   }
 }
 
@@ -183,55 +208,59 @@ function shapeName(option) {
  * A value that is stated in one of several ways, as a number or a range: the way is chosen first.
  *
  * A word that stands for itself, and null where leaving the field out means something else, have nothing below them.
- * @param {Sheet} sheet
- * @param {import("../core/schema.js").Kinded} what
+ * @param {FormState} sheet
+ * @param {import("../core/schema.js").ClassifiedField} what
  * @param {Schema} schema
  * @param {string} name
  * @param {string} note
  * @param {string} path @param {boolean} required
  * @returns {HTMLElement}
  */
-function shapes(sheet, what, schema, name, note, path, required) {
+function createShapes(sheet, what, schema, name, note, path, required) {
   const options =
     what.nullable && (schema.default ?? null) !== null ? [...what.options, { type: "null" }] : what.options;
-  const stated = sheet.at(path);
+  const stated = sheet.readValue(path);
   const value = stated === undefined ? schema.default : stated;
-  const now = shapeOf(options, value) ?? options[0];
+  const now = findShape(options, value) ?? options[0];
   const dimension = schema["x-dimension"];
   const ways = options.map(shapeName);
-  const way = choice(ways, shapeName(now), false, (chosen) => {
+  const way = createChoice(ways, shapeName(now), false, (chosen) => {
     const option = options[ways.indexOf(String(chosen))];
-    sheet.put(path, option.type === "null" ? null : initial(option, sheet.root), true);
+    sheet.writeValue(path, option.type === "null" ? null : initialValue(option, sheet.root), true);
   });
-  if (now.const !== undefined || now.type === "null") return labelled(name, "", note, path, required, way);
-  way.setAttribute("aria-label", t`${words(name)}: how it is stated`);
+  if (now.const !== undefined || now.type === "null") return createLabel(name, "", note, path, required, way);
+  way.setAttribute("aria-label", t`${toWords(name)}: how it is stated`);
   const one = { ...now, ...(dimension ? { "x-dimension": dimension } : {}) };
   const inside =
-    now.type === "object" || kinded(now, sheet.root).control === "table"
-      ? group(sheet, { ...one, default: schema.default }, name, note, path, true, () => {
+    now.type === "object" || classifyField(now, sheet.root).control === "table"
+      ? createGroup(sheet, { ...one, default: schema.default }, name, note, path, true, () => {
           const first =
-            schema.default !== undefined && shapeOf([now], schema.default) ? schema.default : initial(now, sheet.root);
-          const here = sheet.looking(path, first);
-          return now.type === "array" ? [table(here, now.items ?? {}, path, controls)] : controls(here, now, path);
+            schema.default !== undefined && findShape([now], schema.default)
+              ? schema.default
+              : initialValue(now, sheet.root);
+          const here = sheet.preview(path, first);
+          return now.type === "array"
+            ? [createTable(here, now.items ?? {}, path, createControls)]
+            : createControls(here, now, path);
         })
-      : field(sheet, { ...one, default: schema.default, description: note }, name, path, required);
+      : createField(sheet, { ...one, default: schema.default, description: note }, name, path, required);
   if (inside instanceof HTMLDetailsElement) {
     inside.querySelector("summary")?.after(way);
-    if (shapeOf([now], stated)) inside.dispatchEvent(new Event("reveal"));
+    if (findShape([now], stated)) inside.dispatchEvent(new Event("reveal"));
   } else /** @type {HTMLElement} */ (inside)?.querySelector(":scope > .error")?.before(way);
   return /** @type {HTMLElement} */ (inside);
 }
 
 /**
  * Objects by names that are given to them.
- * @param {Sheet} sheet
+ * @param {FormState} sheet
  * @param {Schema} item
  * @param {string} path
  */
-function members(sheet, item, path) {
-  const found = sheet.at(path) ?? {};
-  const name = el("input", { type: "text", "aria-label": t`Name of another one`, spellcheck: "false" });
-  const add = el(
+function createMembers(sheet, item, path) {
+  const found = sheet.readValue(path) ?? {};
+  const name = createElement("input", { type: "text", "aria-label": t`Name of another one`, spellcheck: "false" });
+  const add = createElement(
     "button",
     {
       type: "button",
@@ -239,70 +268,73 @@ function members(sheet, item, path) {
       onclick: () => {
         const stated = name.value.trim();
         if (!stated) return name.focus();
-        const one = `${path}/${escaped(stated)}`;
-        sheet.put(one, sheet.at(one) ?? initial(item, sheet.root), true);
+        const one = `${path}/${escapeName(stated)}`;
+        sheet.writeValue(one, sheet.readValue(one) ?? initialValue(item, sheet.root), true);
       },
     },
     t`Add`,
   );
   return [
     ...Object.keys(found).flatMap((key) => [
-      el(
+      createElement(
         "div",
         { class: "row member" },
-        el("strong", {}, key),
-        el(
+        createElement("strong", {}, key),
+        createElement(
           "button",
           {
             type: "button",
             class: "small",
             "aria-label": t`Remove ${key}`,
-            onclick: () => sheet.put(`${path}/${escaped(key)}`, undefined, true),
+            onclick: () => sheet.writeValue(`${path}/${escapeName(key)}`, undefined, true),
           },
           "×",
         ),
       ),
-      ...controls(sheet, resolved(item, sheet.root), `${path}/${escaped(key)}`),
+      ...createControls(sheet, resolveReference(item, sheet.root), `${path}/${escapeName(key)}`),
     ]),
-    el("div", { class: "row member" }, name, add),
+    createElement("div", { class: "row member" }, name, add),
   ];
 }
 
 /**
- * @param {Sheet} sheet that looks at the first of them where none is stated
+ * @param {FormState} sheet that looks at the first of them where none is stated
  * @param {Schema[]} options @param {string} path
  */
-function union(sheet, options, path) {
-  const tag = discriminator(options) ?? "";
-  const option = optionOf(options, sheet.at(path));
-  const pick = choice(
-    options.flatMap((one) => tagsOf(one, tag)),
-    sheet.at(`${path}/${tag}`) ?? propertiesOf(option)[tag].default,
+function createUnion(sheet, options, path) {
+  const tag = findDiscriminator(options) ?? "";
+  const option = findOption(options, sheet.readValue(path));
+  const pick = createChoice(
+    options.flatMap((one) => listTags(one, tag)),
+    sheet.readValue(`${path}/${tag}`) ?? propertiesOf(option)[tag].default,
     false,
     (value) => {
-      const next = initial(options.find((one) => tagsOf(one, tag).includes(String(value))) ?? options[0], sheet.root);
-      sheet.put(path, { ...(structured(next) ? next : {}), [tag]: value }, true);
+      const next = initialValue(
+        options.find((one) => listTags(one, tag).includes(String(value))) ?? options[0],
+        sheet.root,
+      );
+      sheet.writeValue(path, { ...(structured(next) ? next : {}), [tag]: value }, true);
     },
   );
   const others = Object.keys(propertiesOf(option)).filter((one) => one !== tag);
-  return [labelled(tag, "", "", `${path}/${tag}`, true, pick), ...controls(sheet, option, path, others)];
+  return [createLabel(tag, "", "", `${path}/${tag}`, true, pick), ...createControls(sheet, option, path, others)];
 }
 
 /**
  * A group of fields that opens; what may be absent is stated by a flag.
- * @param {Sheet} sheet @param {Schema} schema @param {string} name @param {string} note @param {string} path
+ * @param {FormState} sheet @param {Schema} schema @param {string} name @param {string} note @param {string} path
  * @param {boolean} always @param {() => (Node | null)[]} inside
  */
-function group(sheet, schema, name, note, path, always, inside) {
-  const value = sheet.at(path);
+function createGroup(sheet, schema, name, note, path, always, inside) {
+  const value = sheet.readValue(path);
   const stated = value !== undefined && value !== null;
   const required = sheet.root.required?.includes(name) && path.split("/").length === 3;
-  const body = el("div", { class: "fields" });
+  const body = createElement("div", { class: "fields" });
   const fillBody = () => {
     if (!body.childElementCount) body.append(...inside().filter((one) => one !== null));
   };
   const open = stated && (required || Object.keys(value).length > 0);
-  const details = el(
+  const details = createElement(
     "details",
     {
       class: "field group",
@@ -315,21 +347,21 @@ function group(sheet, schema, name, note, path, always, inside) {
       ontoggle: () => {
         if (details.open && (always || stated)) fillBody();
         // A group whose fields are all left out says nothing.
-        else if (!details.open && empty(sheet.at(path)) && !required) sheet.put(path, undefined);
+        else if (!details.open && isEmpty(sheet.readValue(path)) && !required) sheet.writeValue(path, undefined);
       },
     },
-    el("summary", {}, words(name)),
-    el("p", { class: "error" }),
+    createElement("summary", {}, toWords(name)),
+    createElement("p", { class: "error" }),
   );
-  if (note) details.append(el("p", { class: "note" }, note));
+  if (note) details.append(createElement("p", { class: "note" }, note));
   if (!always) {
-    const box = el("input", {
+    const box = createElement("input", {
       type: "checkbox",
       id: `f${++ids}`,
-      onchange: () => sheet.put(path, box.checked ? initial(schema, sheet.root) : undefined, true),
+      onchange: () => sheet.writeValue(path, box.checked ? initialValue(schema, sheet.root) : undefined, true),
     });
     box.checked = stated;
-    details.append(el("label", { class: "flag", for: box.id }, box, t`State it`));
+    details.append(createElement("label", { class: "flag", for: box.id }, box, t`State it`));
   }
   details.append(body);
   if (open) fillBody();
@@ -337,7 +369,7 @@ function group(sheet, schema, name, note, path, always, inside) {
 }
 
 /** @param {unknown} value */
-function empty(value) {
+function isEmpty(value) {
   return value !== undefined && value !== null && typeof value === "object" && Object.keys(value).length === 0;
 }
 
@@ -345,25 +377,25 @@ function empty(value) {
  * @param {string} name @param {string} unit @param {string} note @param {string} path @param {boolean} required
  * @param {HTMLElement} control
  */
-function labelled(name, unit, note, path, required, control) {
+function createLabel(name, unit, note, path, required, control) {
   const id = `f${++ids}`;
   control.id = id;
   control.setAttribute("data-path", path);
   control.setAttribute("aria-describedby", `${id}e${note ? ` ${id}n` : ""}`);
   if (required) control.setAttribute("aria-required", "true");
-  return el(
+  return createElement(
     "div",
     { class: "field" },
-    el(
+    createElement(
       "label",
       { for: id },
-      words(name),
-      unit && el("span", { class: "unit" }, ` (${unit})`),
-      required && el("span", { class: "required", title: t`required` }, " *"),
+      toWords(name),
+      unit && createElement("span", { class: "unit" }, ` (${unit})`),
+      required && createElement("span", { class: "required", title: t`required` }, " *"),
     ),
     control,
-    el("p", { class: "error", id: `${id}e` }),
-    note && el("p", { class: "note", id: `${id}n` }, note),
+    createElement("p", { class: "error", id: `${id}e` }),
+    note && createElement("p", { class: "note", id: `${id}n` }, note),
   );
 }
 
@@ -374,9 +406,9 @@ function labelled(name, unit, note, path, required, control) {
  * @param {Json} value
  * @param {(value: Json | undefined) => void} set
  */
-function flag(name, note, path, value, set) {
+function createFlag(name, note, path, value, set) {
   const id = `f${++ids}`;
-  const box = el("input", {
+  const box = createElement("input", {
     type: "checkbox",
     id,
     "data-path": path,
@@ -384,22 +416,22 @@ function flag(name, note, path, value, set) {
     onchange: () => set(box.checked),
   });
   box.checked = Boolean(value);
-  return el(
+  return createElement(
     "div",
     { class: "field" },
-    el("label", { class: "flag", for: id }, box, words(name)),
-    el("p", { class: "error", id: `${id}e` }),
-    el("p", { class: "note", id: `${id}n` }, note),
+    createElement("label", { class: "flag", for: id }, box, toWords(name)),
+    createElement("p", { class: "error", id: `${id}e` }),
+    createElement("p", { class: "note", id: `${id}n` }, note),
   );
 }
 
 /** Words of a list. @param {Json} value */
-function strings(value) {
+function formatStrings(value) {
   return Array.isArray(value) ? value.map(String) : [];
 }
 
 /** Names between commas. @param {string} text */
-function named(text) {
+function parseNames(text) {
   return text
     .split(",")
     .map((one) => one.trim())
@@ -411,10 +443,10 @@ function named(text) {
  * @param {string} text
  * @param {Schema[]} options
  */
-function numbers(text, options) {
+function parseNumbers(text, options) {
   const parts = text
     .split(/[,;\s]+/)
     .filter((part) => part !== "")
-    .map((part) => (["open", "null", "-", "–"].includes(part) ? null : plain(part)));
+    .map((part) => (["open", "null", "-", "–"].includes(part) ? null : parseNumber(part)));
   return parts.length === 1 && options.some((one) => one.type !== "array") ? parts[0] : parts;
 }

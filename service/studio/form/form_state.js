@@ -1,15 +1,15 @@
 /** What the controls of a form share: the statement as they show it, and how they change it. */
 
-import { at, names, put } from "../core/pointer.js";
+import { readPointer, pointerNames, writePointer } from "../core/pointer.js";
 
 /** @import { Json, Problem } from "../types/values.js" */
 /** @import { Schema } from "../core/schema.js" */
 /** @import { Store } from "../core/store.js" */
 
 /** The path of the statement itself, which all pointers begin with, as in what the service says of faults. */
-export const ROOT = "/problem";
+export const STATEMENT_POINTER = "/problem";
 
-export class Sheet {
+export class FormState {
   /**
    * @param {Store} store
    * @param {{path: string, value: Json}[]} [looked] what is shown where nothing is stated, and stated with the first
@@ -28,19 +28,21 @@ export class Sheet {
   /** The statement as it is shown. @returns {Problem} */
   get problem() {
     const { problem } = this.store;
-    return this.looked.some(({ path }) => missing(problem, path)) ? this.whole(structuredClone(problem)) : problem;
+    return this.looked.some(({ path }) => isMissing(problem, path))
+      ? this.fillPreviews(structuredClone(problem))
+      : problem;
   }
 
   /** @param {Problem} statement changed in place */
-  whole(statement) {
+  fillPreviews(statement) {
     for (const { path, value } of this.looked)
-      if (missing(statement, path)) put(statement, within(path), structuredClone(value));
+      if (isMissing(statement, path)) writePointer(statement, statementPointer(path), structuredClone(value));
     return statement;
   }
 
   /** What stands at a pointer. @param {string} path */
-  at(path) {
-    return at(this.problem, within(path));
+  readValue(path) {
+    return readPointer(this.problem, statementPointer(path));
   }
 
   /**
@@ -49,34 +51,35 @@ export class Sheet {
    * @param {Json | undefined} value
    * @param {boolean} [remade] whether the form has other controls then
    */
-  put(path, value, remade = false) {
+  writeValue(path, value, remade = false) {
     // Nothing is stated by leaving something out.
-    if (value === undefined) this.store.change((statement) => put(statement, within(path), value), by(remade));
-    else this.change((statement) => put(statement, within(path), value), remade);
+    if (value === undefined)
+      this.store.change((statement) => writePointer(statement, statementPointer(path), value), editorFor(remade));
+    else this.change((statement) => writePointer(statement, statementPointer(path), value), remade);
   }
 
   /** @param {(statement: Problem) => void} change @param {boolean} [remade] */
   change(change, remade = false) {
-    this.store.change((statement) => change(this.whole(statement)), by(remade));
+    this.store.change((statement) => change(this.fillPreviews(statement)), editorFor(remade));
   }
 
   /** The same with a value that is looked at where none is stated. @param {string} path @param {Json} value */
-  looking(path, value) {
-    return new Sheet(this.store, [...this.looked, { path, value }]);
+  preview(path, value) {
+    return new FormState(this.store, [...this.looked, { path, value }]);
   }
 }
 
 /** @param {boolean} remade */
-function by(remade) {
+function editorFor(remade) {
   return remade ? null : "form";
 }
 
 /** The place of a pointer in the statement. @param {string} path */
-export function within(path) {
-  return names(path).slice(1);
+export function statementPointer(path) {
+  return pointerNames(path).slice(1);
 }
 
 /** @param {Problem} statement @param {string} path */
-function missing(statement, path) {
-  return (at(statement, within(path)) ?? null) === null;
+function isMissing(statement, path) {
+  return (readPointer(statement, statementPointer(path)) ?? null) === null;
 }

@@ -1,82 +1,82 @@
 /** A list of objects as a table; rows can be pasted from a spreadsheet. */
 
-import { choice, numberBox, plain, textBox } from "./controls.js";
-import { el, words } from "../core/dom.js";
-import { prose, t, term } from "../core/messages.js";
-import { at, group } from "../core/pointer.js";
+import { createChoice, createNumberBox, parseNumber, createTextBox } from "./controls.js";
+import { createElement, toWords } from "../core/dom.js";
+import { firstParagraph, t, term } from "../core/messages.js";
+import { readPointer, ensureObject } from "../core/pointer.js";
 import {
   alternatives,
-  beyond,
-  columns,
-  discriminator,
-  initial,
-  kinded,
-  optionOf,
+  listOtherFields,
+  listColumns,
+  findDiscriminator,
+  initialValue,
+  classifyField,
+  findOption,
   propertiesOf,
 } from "../core/schema.js";
-import { within } from "./form_state.js";
-import { unitOf } from "../core/units.js";
+import { statementPointer } from "./form_state.js";
+import { fieldUnit } from "../core/units.js";
 
 /** @import { Json, Problem } from "../types/values.js" */
 /** @import { Column, Schema } from "../core/schema.js" */
-/** @import { Sheet } from "./form_state.js" */
+/** @import { FormState } from "./form_state.js" */
 
 /** @typedef {Record<string, Json | undefined>} Row */
-/** @typedef {(sheet: Sheet, schema: Schema, path: string, names: string[]) => (Node | null)[]} Controls */
+/** @typedef {(sheet: FormState, schema: Schema, path: string, names: string[]) => (Node | null)[]} Controls */
 
 /** Columns that stay at least where others are folded away. */
-const FEWEST = 2;
+const MIN_COLUMNS = 2;
 
 /** Columns that rows have in one line, where nothing of them is chosen. */
-const ONE_LINE = 3;
+const MAX_ONE_LINE_COLUMNS = 3;
 
 /** Tables of which all columns have been asked for. @type {Set<string>} */
-const wide = new Set();
+const unfoldedTables = new Set();
 
 /** Whether nobody has stated a value. @param {unknown} value */
-function empty(value) {
+function isEmpty(value) {
   return value === undefined || value === null || value === false;
 }
 
 /**
- * @param {Sheet} sheet that looks at an empty list where none is stated @param {Schema} item schema of a row
+ * @param {FormState} sheet that looks at an empty list where none is stated @param {Schema} item schema of a row
  * @param {string} path JSON pointer of the list
  * @param {Controls} controls of what a cell cannot state
  * @param {number} [count] where there are always so many rows
  */
-export function table(sheet, item, path, controls, count) {
-  const rows = rowsAt(sheet.problem, path);
-  const heads = columns(item, sheet.root);
-  const seldom = heads.filter((head) => !head.required && rows.every((row) => empty(row[head.name])));
+export function createTable(sheet, item, path, controls, count) {
+  const rows = readRows(sheet.problem, path);
+  const heads = listColumns(item, sheet.root);
+  const seldom = heads.filter((head) => !head.required && rows.every((row) => isEmpty(row[head.name])));
   // One column alone says too little of a row.
-  const folded = heads.length - seldom.length >= FEWEST ? seldom : [];
+  const folded = heads.length - seldom.length >= MIN_COLUMNS ? seldom : [];
   const chosen = (/** @type {{kinded: {control: string}}} */ head) => head.kinded.control === "choice";
   const kept = (/** @type {(typeof heads)[number]} */ head) =>
     [folded.some((one) => one.name === head.name) && "seldom", chosen(head) && "choice-of"].filter(Boolean).join(" ");
   const line = (/** @type {Row} */ row, /** @type {number} */ k) => [
-    el(
+    createElement(
       "tr",
       {},
-      el("th", { scope: "row" }, k + 1),
-      ...heads.map((head) => el("td", { class: kept(head) }, cell(sheet, head, row, path, k, item))),
-      el(
+      createElement("th", { scope: "row" }, k + 1),
+      ...heads.map((head) => createElement("td", { class: kept(head) }, createCell(sheet, head, row, path, k, item))),
+      createElement(
         "td",
         { class: "acts" },
-        ...inDetail(sheet, item, row, `${path}/${k}`, k),
+        ...createDetailButtons(sheet, item, row, `${path}/${k}`, k),
         count === undefined &&
-          el(
+          createElement(
             "button",
             {
               type: "button",
               class: "small",
               "aria-label": t`Remove row ${k + 1}`,
-              onclick: () => sheet.put(`${path}/${k}`, undefined, true),
+              onclick: () => sheet.writeValue(`${path}/${k}`, undefined, true),
             },
             "×",
           ),
       ),
     ),
-    ...more(sheet, item, row, `${path}/${k}`, controls, heads.length + 2, k),
+    ...createRowDetails(sheet, item, row, `${path}/${k}`, controls, heads.length + 2, k),
   ];
   const onpaste = (/** @type {ClipboardEvent} */ event) => {
     const text = event.clipboardData?.getData("text/plain") ?? "";
@@ -89,71 +89,77 @@ export function table(sheet, item, path, controls, count) {
       0,
       heads.findIndex((head) => head.name === column),
     );
-    const pasted = paste(text, rowsAt(sheet.problem, path), Number(first), heads.slice(from), blank(item, sheet.root));
-    sheet.put(path, pasted, true);
+    const pasted = pasteCells(
+      text,
+      readRows(sheet.problem, path),
+      Number(first),
+      heads.slice(from),
+      createBlankRow(item, sheet.root),
+    );
+    sheet.writeValue(path, pasted, true);
   };
   const columned = `${sheet.problem.kind}${path}`;
-  const lined = (/** @type {number} */ seen) => heads.some(chosen) || seen > ONE_LINE;
-  const view = el(
+  const lined = (/** @type {number} */ seen) => heads.some(chosen) || seen > MAX_ONE_LINE_COLUMNS;
+  const view = createElement(
     "div",
     {
       class: [
         "table",
-        folded.length && !wide.has(columned) && "brief",
-        lined(heads.length - (wide.has(columned) ? 0 : folded.length)) && "lined",
+        folded.length && !unfoldedTables.has(columned) && "brief",
+        lined(heads.length - (unfoldedTables.has(columned) ? 0 : folded.length)) && "lined",
       ]
         .filter(Boolean)
         .join(" "),
       onpaste,
     },
-    el(
+    createElement(
       "table",
       {},
-      el(
+      createElement(
         "thead",
         {},
-        el(
+        createElement(
           "tr",
           {},
-          el("th", { scope: "col" }, "#"),
+          createElement("th", { scope: "col" }, "#"),
           ...heads.map((head) =>
-            el(
+            createElement(
               "th",
-              { scope: "col", class: kept(head), title: prose(head.schema.description) },
-              words(head.name),
-              unitOf(head.schema, sheet.problem) &&
-                el("span", { class: "unit" }, ` (${unitOf(head.schema, sheet.problem)})`),
+              { scope: "col", class: kept(head), title: firstParagraph(head.schema.description) },
+              toWords(head.name),
+              fieldUnit(head.schema, sheet.problem) &&
+                createElement("span", { class: "unit" }, ` (${fieldUnit(head.schema, sheet.problem)})`),
             ),
           ),
-          el("td"),
+          createElement("td"),
         ),
       ),
-      el("tbody", {}, ...rows.flatMap(line)),
+      createElement("tbody", {}, ...rows.flatMap(line)),
     ),
-    el(
+    createElement(
       "div",
       { class: "row" },
       count === undefined &&
-        el(
+        createElement(
           "button",
           {
             type: "button",
             class: "small",
             onclick: () => {
-              const last = rowsAt(sheet.problem, path).at(-1);
-              sheet.put(`${path}/${rows.length}`, last ?? blank(item, sheet.root), true);
+              const last = readRows(sheet.problem, path).at(-1);
+              sheet.writeValue(`${path}/${rows.length}`, last ?? createBlankRow(item, sheet.root), true);
             },
           },
           t`Add a row`,
         ),
       folded.length > 0 &&
-        el(
+        createElement(
           "button",
           {
             type: "button",
             class: "small more-columns",
             onclick: () => {
-              wide.add(columned);
+              unfoldedTables.add(columned);
               view.classList.remove("brief");
               view.classList.toggle("lined", lined(heads.length));
               const first = `${path}/0/${folded[0].name}`;
@@ -162,75 +168,75 @@ export function table(sheet, item, path, controls, count) {
           },
           t`With ${folded.map((head) => term(head.name)).join(", ")}`,
         ),
-      el("span", { class: "note" }, t`Paste rows from a spreadsheet into any cell.`),
+      createElement("span", { class: "note" }, t`Paste rows from a spreadsheet into any cell.`),
     ),
   );
   return view;
 }
 
 /** The rows of a list in a statement. @param {Problem} statement @param {string} path @returns {Row[]} */
-function rowsAt(statement, path) {
-  const found = at(statement, within(path));
-  return Array.isArray(found) ? found.map((one) => (group(one) ? one : {})) : [];
+function readRows(statement, path) {
+  const found = readPointer(statement, statementPointer(path));
+  return Array.isArray(found) ? found.map((one) => (ensureObject(one) ? one : {})) : [];
 }
 
 /** A row that is begun. @param {Schema} item @param {Schema} root @returns {Row} */
-function blank(item, root) {
-  const first = initial(item, root);
-  return group(first) ? first : {};
+function createBlankRow(item, root) {
+  const first = initialValue(item, root);
+  return ensureObject(first) ? first : {};
 }
 
 /**
- * @param {Sheet} sheet
+ * @param {FormState} sheet
  * @param {Column} head
  * @param {Row} row
  * @param {string} list its pointer
  * @param {number} k
  * @param {Schema} item
  */
-function cell(sheet, head, row, list, k, item) {
+function createCell(sheet, head, row, list, k, item) {
   const options = alternatives(item, sheet.root);
-  const option = options.length > 1 ? optionOf(options, row) : options[0];
+  const option = options.length > 1 ? findOption(options, row) : options[0];
   const { name } = head;
   const path = `${list}/${k}`;
   if (!propertiesOf(option)[name]) return "";
-  const tells = options.length > 1 && name === discriminator(options);
+  const tells = options.length > 1 && name === findDiscriminator(options);
   const set = (/** @type {Json | undefined} */ value) => {
-    if (!tells) return sheet.put(`${path}/${name}`, value);
+    if (!tells) return sheet.writeValue(`${path}/${name}`, value);
     // Another alternative has other fields: what it does not know goes.
-    const before = { ...rowsAt(sheet.problem, list)[k], [name]: value };
-    const now = optionOf(options, before);
+    const before = { ...readRows(sheet.problem, list)[k], [name]: value };
+    const now = findOption(options, before);
     const known = Object.entries(before).filter(([one]) => propertiesOf(now)[one]);
     const must = (now.required ?? []).filter((one) => (before[one] ?? null) === null);
-    const begun = must.map((one) => [one, initial(propertiesOf(now)[one], sheet.root)]);
-    sheet.put(path, Object.fromEntries([...known, ...begun]), true);
+    const begun = must.map((one) => [one, initialValue(propertiesOf(now)[one], sheet.root)]);
+    sheet.writeValue(path, Object.fromEntries([...known, ...begun]), true);
   };
   const value = row[name];
   let control;
   if (head.kinded.control === "choice") {
-    control = choice(head.kinded.choices ?? [], value ?? head.schema.default, head.kinded.nullable, set);
+    control = createChoice(head.kinded.choices ?? [], value ?? head.schema.default, head.kinded.nullable, set);
   } else if (head.kinded.control === "flag") {
-    const box = el("input", { type: "checkbox", onchange: () => set(box.checked) });
+    const box = createElement("input", { type: "checkbox", onchange: () => set(box.checked) });
     box.checked = Boolean(value ?? head.schema.default);
     control = box;
   } else if (head.kinded.control === "text") {
-    control = textBox(value, head.schema.default, set, plain);
+    control = createTextBox(value, head.schema.default, set, parseNumber);
   } else if (typeof value === "object" && value !== null) return t`below`;
-  else control = numberBox(value, head.schema.default, set);
+  else control = createNumberBox(value, head.schema.default, set);
   control.setAttribute("data-path", `${path}/${name}`);
-  control.setAttribute("aria-label", t`${words(name)}, row ${k + 1}`);
+  control.setAttribute("aria-label", t`${toWords(name)}, row ${k + 1}`);
   return control;
 }
 
-/** @param {Sheet} sheet @param {Schema} item @param {Row} row */
-function optionAt(sheet, item, row) {
+/** @param {FormState} sheet @param {Schema} item @param {Row} row */
+function findRowOption(sheet, item, row) {
   const options = alternatives(item, sheet.root);
-  return options.length > 1 ? optionOf(options, row) : options[0];
+  return options.length > 1 ? findOption(options, row) : options[0];
 }
 
 /**
  * What of a row is more than a cell can state, in a row below it that opens.
- * @param {Sheet} sheet
+ * @param {FormState} sheet
  * @param {Schema} item
  * @param {Row} row
  * @param {string} path
@@ -238,22 +244,22 @@ function optionAt(sheet, item, row) {
  * @param {number} width columns
  * @param {number} k
  */
-function more(sheet, item, row, path, controls, width, k) {
-  const option = optionAt(sheet, item, row);
+function createRowDetails(sheet, item, row, path, controls, width, k) {
+  const option = findRowOption(sheet, item, row);
   // What a cell can state as a number stands here only where it is stated in detail.
-  const names = beyond(option, sheet.root).filter(
-    (name) => kinded(propertiesOf(option)[name], sheet.root).control !== "shapes" || group(row[name]),
+  const names = listOtherFields(option, sheet.root).filter(
+    (name) => classifyField(propertiesOf(option)[name], sheet.root).control !== "shapes" || ensureObject(row[name]),
   );
   if (!names.length) return [];
   const stated = names.some((name) => {
     const value = row[name];
-    return Array.isArray(value) ? value.length > 0 : group(value);
+    return Array.isArray(value) ? value.length > 0 : ensureObject(value);
   });
-  const inside = el("div", { class: "fields" });
+  const inside = createElement("div", { class: "fields" });
   const fill = () => {
     if (!inside.childElementCount) inside.append(...controls(sheet, option, path, names).filter((one) => one !== null));
   };
-  const details = el(
+  const details = createElement(
     "details",
     {
       "data-path": `${path}/`,
@@ -264,29 +270,29 @@ function more(sheet, item, row, path, controls, width, k) {
         fill();
       },
     },
-    el("summary", {}, t`Row ${k + 1}: ${names.map(term).join(", ")}`),
+    createElement("summary", {}, t`Row ${k + 1}: ${names.map(term).join(", ")}`),
     inside,
   );
   if (stated) fill();
-  return [el("tr", { class: "more" }, el("td", { colspan: width }, details))];
+  return [createElement("tr", { class: "more" }, createElement("td", { colspan: width }, details))];
 }
 
 /**
  * Buttons that begin to state in detail what a cell states as a number.
- * @param {Sheet} sheet
+ * @param {FormState} sheet
  * @param {Schema} item
  * @param {Row} row
  * @param {string} path
  * @param {number} k
  */
-function inDetail(sheet, item, row, path, k) {
-  const option = optionAt(sheet, item, row);
-  return beyond(option, sheet.root).flatMap((name) => {
-    const what = kinded(propertiesOf(option)[name], sheet.root);
-    if (what.control !== "shapes" || group(row[name])) return [];
-    const title = t`${words(name)} of row ${k + 1} in detail`;
+function createDetailButtons(sheet, item, row, path, k) {
+  const option = findRowOption(sheet, item, row);
+  return listOtherFields(option, sheet.root).flatMap((name) => {
+    const what = classifyField(propertiesOf(option)[name], sheet.root);
+    if (what.control !== "shapes" || ensureObject(row[name])) return [];
+    const title = t`${toWords(name)} of row ${k + 1} in detail`;
     return [
-      el(
+      createElement(
         "button",
         {
           type: "button",
@@ -294,9 +300,9 @@ function inDetail(sheet, item, row, path, k) {
           title,
           "aria-label": title,
           onclick: () =>
-            sheet.put(
+            sheet.writeValue(
               `${path}/${name}`,
-              initial(what.options.find((one) => one.type === "object") ?? {}, sheet.root),
+              initialValue(what.options.find((one) => one.type === "object") ?? {}, sheet.root),
               true,
             ),
         },
@@ -312,7 +318,7 @@ function inDetail(sheet, item, row, path, k) {
  * @param {Row[]} rows @param {number} first @param {Column[]} heads @param {Row} blank a row that is begun
  * @returns {Row[]}
  */
-function paste(text, rows, first, heads, blank) {
+function pasteCells(text, rows, first, heads, blank) {
   const all = [...rows];
   const lines = text.trim().split(/\r?\n/);
   lines.forEach((line, k) => {

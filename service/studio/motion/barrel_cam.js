@@ -1,16 +1,16 @@
 /** A barrel cam: its groove, unrolled, passes the roller, which moves along the axis. */
 
-import { Cammed } from "./cam.js";
-import { svg } from "../core/dom.js";
+import { CamView } from "./cam.js";
+import { createSvg } from "../core/dom.js";
 import { t } from "../core/messages.js";
-import { between } from "../core/player.js";
+import { interpolate } from "../core/player.js";
 import { View } from "../core/view.js";
 
 /** @import { Schemas } from "../types/values.js" */
 
 /** @typedef {[number, number]} Point */
 
-export class Barrel extends Cammed {
+export class BarrelCamView extends CamView {
   get label() {
     return t`The groove of the barrel, unrolled, passing the roller`;
   }
@@ -44,18 +44,18 @@ export class Barrel extends Cammed {
           (/** @type {number} */ x, /** @type {number} */ k) => /** @type {Point} */ ([x + n * this.turn, curve.y[k]]),
         ),
       );
-    this.groove = svg(
+    this.groove = createSvg(
       "g",
       { class: "cam" },
-      ...[lower, upper].map((wall) => svg("path", { class: "wall", d: view.path(thrice(wall)) })),
-      svg("path", { class: "pitch", d: view.path(thrice(pitch)) }),
+      ...[lower, upper].map((wall) => createSvg("path", { class: "wall", d: view.pathData(thrice(wall)) })),
+      createSvg("path", { class: "pitch", d: view.pathData(thrice(pitch)) }),
     );
-    const [u, top] = view.at(0, ceiling);
-    const [, bottom] = view.at(0, floor);
-    const [west] = view.at(-this.turn / 2, 0);
-    const [east] = view.at(this.turn / 2, 0);
-    this.roller = svg("circle", { class: "tyre", cx: u, r: view.scale * follower.roller_radius });
-    const clip = svg(
+    const [u, top] = view.toPicture(0, ceiling);
+    const [, bottom] = view.toPicture(0, floor);
+    const [west] = view.toPicture(-this.turn / 2, 0);
+    const [east] = view.toPicture(this.turn / 2, 0);
+    this.roller = createSvg("circle", { class: "tyre", cx: u, r: view.scale * follower.roller_radius });
+    const clip = createSvg(
       "svg",
       {
         x: west,
@@ -67,17 +67,17 @@ export class Barrel extends Cammed {
       this.groove,
     );
     return [
-      svg("rect", { class: "drum", x: west, y: top, width: east - west, height: bottom - top }),
+      createSvg("rect", { class: "drum", x: west, y: top, width: east - west, height: bottom - top }),
       clip,
-      svg("line", { class: "rail", x1: u, y1: top, x2: u, y2: bottom }),
+      createSvg("line", { class: "rail", x1: u, y1: top, x2: u, y2: bottom }),
       this.roller,
     ];
   }
 
   /** @param {number} at @param {number} angle */
   put(at, angle) {
-    const height = Number(between(this.displacement, at));
+    const height = Number(interpolate(this.displacement, at));
     this.groove?.setAttribute("transform", `translate(${(-this.view.scale * this.turn * angle) / (2 * Math.PI)} 0)`);
-    this.roller?.setAttribute("cy", String(this.view.at(0, height)[1]));
+    this.roller?.setAttribute("cy", String(this.view.toPicture(0, height)[1]));
   }
 }

@@ -3,20 +3,20 @@
  * it.
  */
 
-import { el, shown, svg } from "../core/dom.js";
-import { beside, nothing } from "../design/design_metrics.js";
-import { Gauge } from "../plots/gauge.js";
+import { createElement, formatNumber, createSvg } from "../core/dom.js";
+import { joinUnit, isRounding } from "../design/design_metrics.js";
+import { AngleGauge } from "../plots/gauge.js";
 import { t } from "../core/messages.js";
-import { between } from "../core/player.js";
-import { along } from "../plots/plotted_quantities.js";
-import { scene } from "../canvas/stage.js";
-import { Turning } from "./rotary_view.js";
+import { interpolate } from "../core/player.js";
+import { resampleCurve } from "../plots/plotted_quantities.js";
+import { createScene } from "../canvas/stage.js";
+import { RotaryView } from "./rotary_view.js";
 import { View } from "../core/view.js";
 
 /** @import { Merged, Problem, Schemas } from "../types/values.js" */
 
 /** Length of a follower's stem beyond its roller or face, as a share of the base radius. */
-const STEM = 0.8;
+const STEM_LENGTH = 0.8;
 
 /** @typedef {[number, number]} Point */
 /** @typedef {Merged<Schemas["CamMechanism"] | Schemas["BarrelCamMechanism"]>} Cam */
@@ -27,14 +27,14 @@ const STEM = 0.8;
  * @param {Cam} mechanism
  * @param {CamMotion} motion
  * @param {Problem} problem
- * @returns {import("../plots/plots.js").Plotted[]}
+ * @returns {import("../plots/plots.js").PlotData[]}
  */
-export function diagrams(mechanism, motion, problem) {
+export function createDiagrams(mechanism, motion, problem) {
   const { program } = mechanism;
   // A turn of the cam comes back to its beginning.
   const angles = [...program.angle, 360];
   const over = (/** @type {"s" | "v" | "a" | "j"} */ name) =>
-    along(angles, [...program[name], program[name][0]], motion.input_angle);
+    resampleCurve(angles, [...program[name], program[name][0]], motion.input_angle);
   const swings = mechanism.follower.type.startsWith("oscillating");
   const unit = problem.length_unit;
   const rate = swings ? "rad" : unit;
@@ -62,7 +62,7 @@ export function diagrams(mechanism, motion, problem) {
 }
 
 /** What a disc cam and a barrel have in common: gauge and diagrams. */
-export class Cammed extends Turning {
+export class CamView extends RotaryView {
   /**
    * @param {import("../canvas/stage.js").Frame} frame
    * @param {Schemas["CamDesign"] | Schemas["BarrelCamDesign"]} design
@@ -83,15 +83,18 @@ export class Cammed extends Turning {
     this.turn = 0;
     /** @type {number[]} */
     this.spin = [];
-    const plotted = diagrams(this.mechanism, motion, problem);
+    const plotted = createDiagrams(this.mechanism, motion, problem);
     this.displacement = plotted[0].lines[""];
     const drawn = this.drawn();
     // A flat face that only moves along has none.
     this.gauge = motion.pressure_angle.some((one) => Number(one) > 0.01)
-      ? new Gauge(t`Pressure angle`, motion.pressure_angle, { limit: problem.limits?.pressure_angle, atMost: true })
+      ? new AngleGauge(t`Pressure angle`, motion.pressure_angle, {
+          limit: problem.limits?.pressure_angle,
+          atMost: true,
+        })
       : null;
-    this.facts = el("dl", { class: "facts" });
-    this.fill(scene(this.view, this.label, drawn), [this.gauge?.node, this.facts], plotted);
+    this.facts = createElement("dl", { class: "facts" });
+    this.fill(createScene(this.view, this.label, drawn), [this.gauge?.node, this.facts], plotted);
   }
 
   /** What the picture shows, in words. */
@@ -109,13 +112,13 @@ export class Cammed extends Turning {
 
   /** @param {number} at @param {boolean} told */
   show(at, told) {
-    const degrees = Number(between(this.motion.input_angle, at));
+    const degrees = Number(interpolate(this.motion.input_angle, at));
     this.put(at, (degrees * Math.PI) / 180);
-    this.gauge?.show(between(this.motion.pressure_angle, at), told);
+    this.gauge?.show(interpolate(this.motion.pressure_angle, at), told);
   }
 }
 
-export class Disc extends Cammed {
+export class DiscCamView extends CamView {
   get disc() {
     return /** @type {Schemas["CamMechanism"]} */ (this.mechanism);
   }
@@ -131,47 +134,49 @@ export class Disc extends Cammed {
     this.rolls = follower.type.endsWith("roller");
     this.swings = follower.type.startsWith("oscillating");
     this.base = this.disc.base_radius ?? Number(this.disc.prime_radius) - this.radius;
-    const outline = ring(profile);
+    const outline = curvePoints(profile);
     const far = Math.max(
       ...outline.map(([x, y]) => Math.hypot(x, y)),
-      ...(wall ? ring(wall).map(([x, y]) => Math.hypot(x, y)) : []),
+      ...(wall ? curvePoints(wall).map(([x, y]) => Math.hypot(x, y)) : []),
     );
     const high = Math.max(
       ...pitch.x.map((/** @type {number} */ x, /** @type {number} */ k) => Math.hypot(x, pitch.y[k])),
     );
     const reach = this.swings
       ? [(follower.pivot_distance ?? 0) + 0.1 * this.base, 0.2 * this.base]
-      : [high + this.radius + STEM * this.base, 0];
-    const beside = second ? Math.max(...ring(second.pitch_curve).map(([x, y]) => Math.hypot(x, y))) + this.radius : 0;
+      : [high + this.radius + STEM_LENGTH * this.base, 0];
+    const beside = second
+      ? Math.max(...curvePoints(second.pitch_curve).map(([x, y]) => Math.hypot(x, y))) + this.radius
+      : 0;
     const wide = Math.max(far, high, beside);
     this.view = new View([[-wide, -wide], [wide, wide], /** @type {Point} */ (reach)], ...this.size, 32);
     const { view } = this;
-    const [u, v] = view.at(0, 0);
+    const [u, v] = view.toPicture(0, 0);
     const circle = (/** @type {string} */ kind, /** @type {number} */ radius) =>
-      svg("circle", { class: kind, cx: u, cy: v, r: view.scale * radius });
-    this.cam = svg(
+      createSvg("circle", { class: kind, cx: u, cy: v, r: view.scale * radius });
+    this.cam = createSvg(
       "g",
       { class: "cam" },
-      wall && svg("circle", { class: "disc", cx: u, cy: v, r: 1.06 * view.scale * far }),
-      wall && svg("path", { class: "hollow", d: `${view.path(ring(wall))}Z` }),
-      svg("path", { class: "profile", d: `${view.path(outline)}Z` }),
-      second && svg("path", { class: "conjugate", d: `${view.path(ring(second.profile))}Z` }),
-      this.rolls && svg("path", { class: "pitch", d: `${view.path(ring(pitch))}Z` }),
-      svg("path", {
+      wall && createSvg("circle", { class: "disc", cx: u, cy: v, r: 1.06 * view.scale * far }),
+      wall && createSvg("path", { class: "hollow", d: `${view.pathData(curvePoints(wall))}Z` }),
+      createSvg("path", { class: "profile", d: `${view.pathData(outline)}Z` }),
+      second && createSvg("path", { class: "conjugate", d: `${view.pathData(curvePoints(second.profile))}Z` }),
+      this.rolls && createSvg("path", { class: "pitch", d: `${view.pathData(curvePoints(pitch))}Z` }),
+      createSvg("path", {
         class: "spoke",
-        d: view.path([
+        d: view.pathData([
           [0, 0],
           [0.5 * this.base, 0],
         ]),
       }),
     );
-    this.spin = this.rolling();
-    this.wheel = svg(
+    this.spin = this.computeRolling();
+    this.wheel = createSvg(
       "g",
       { class: "roller" },
-      svg("circle", { class: "tyre", r: Math.max(2, view.scale * this.radius) }),
+      createSvg("circle", { class: "tyre", r: Math.max(2, view.scale * this.radius) }),
       this.radius > 0 &&
-        svg("path", {
+        createSvg("path", {
           d: [0, 60, 120]
             .map((turn) => {
               const [c, s] = [
@@ -183,16 +188,17 @@ export class Disc extends Cammed {
             .join(""),
         }),
     );
-    this.holder = svg("path", { class: "holder" });
-    this.other = svg(
+    this.holder = createSvg("path", { class: "holder" });
+    this.other = createSvg(
       "g",
       { class: "roller" },
-      svg("circle", { class: "tyre", r: Math.max(2, view.scale * this.radius) }),
+      createSvg("circle", { class: "tyre", r: Math.max(2, view.scale * this.radius) }),
     );
-    this.touch = svg("circle", { class: "touch", r: 3.5 });
-    this.normal = svg("line", { class: "normal" });
+    this.touch = createSvg("circle", { class: "touch", r: 3.5 });
+    this.normal = createSvg("line", { class: "normal" });
     const pivot =
-      this.swings && svg("circle", { class: "pin", r: 5, cx: view.at(follower.pivot_distance ?? 0, 0)[0], cy: v });
+      this.swings &&
+      createSvg("circle", { class: "pin", r: 5, cx: view.toPicture(follower.pivot_distance ?? 0, 0)[0], cy: v });
     return [
       circle("rim", this.base),
       this.cam,
@@ -210,7 +216,7 @@ export class Disc extends Cammed {
    * How far the roller has turned at each sample: its contact has gone along it as far as along the profile.
    * @returns {number[]} radians
    */
-  rolling() {
+  computeRolling() {
     const { x, y } = this.contact;
     if (!this.rolls || !(this.radius > 0)) return [];
     let travelled = 0;
@@ -218,7 +224,7 @@ export class Disc extends Cammed {
     return x.map(Number).map((one, k) => {
       if (k > 0) travelled += Math.hypot(one - Number(x[k - 1]), Number(y[k]) - Number(y[k - 1]));
       const angle = (this.motion.input_angle[k] * Math.PI) / 180;
-      const [[cx, cy], [tx, ty]] = [this.centre(angle), turned([one, Number(y[k])], this.sense * angle)];
+      const [[cx, cy], [tx, ty]] = [this.followerCentre(angle), rotatePoint([one, Number(y[k])], this.sense * angle)];
       let toward = Math.atan2(ty - cy, tx - cx);
       toward += 2 * Math.PI * Math.round((before - toward) / (2 * Math.PI));
       before = toward;
@@ -227,7 +233,7 @@ export class Disc extends Cammed {
   }
 
   /** Of the roller, in the ground's frame. @param {number} angle @returns {Point} */
-  centre(angle) {
+  followerCentre(angle) {
     const { angle: at, x, y } = this.mechanism.pitch_curve;
     const past = (/** @type {number} */ from, /** @type {number} */ to) =>
       to - from - 360 * Math.floor((to - from) / 360);
@@ -241,7 +247,7 @@ export class Disc extends Cammed {
     }
     const next = (k + 1) % at.length;
     const share = past(at[k], degrees) / (past(at[k], at[next]) || 360);
-    return turned([x[k] + share * (x[next] - x[k]), y[k] + share * (y[next] - y[k])], this.sense * angle);
+    return rotatePoint([x[k] + share * (x[next] - x[k]), y[k] + share * (y[next] - y[k])], this.sense * angle);
   }
 
   /** @param {number} at @param {number} angle */
@@ -250,18 +256,18 @@ export class Disc extends Cammed {
       view,
       mechanism: { follower },
     } = this;
-    const [u, v] = view.at(0, 0);
+    const [u, v] = view.toPicture(0, 0);
     this.cam?.setAttribute("transform", `rotate(${(-this.sense * angle * 180) / Math.PI} ${u} ${v})`);
-    const [across, up] = [between(this.contact.x, at), between(this.contact.y, at)];
+    const [across, up] = [interpolate(this.contact.x, at), interpolate(this.contact.y, at)];
     if (across === null || up === null) return;
-    const touching = turned([across, up], this.sense * angle);
-    const [tu, tv] = view.at(...touching);
+    const touching = rotatePoint([across, up], this.sense * angle);
+    const [tu, tv] = view.toPicture(...touching);
     this.touch?.setAttribute("cx", String(tu));
     this.touch?.setAttribute("cy", String(tv));
     if (this.rolls) {
-      const centre = this.centre(angle);
-      const [cu, cv] = view.at(...centre);
-      const spin = this.spin.length ? Number(between(this.spin, at)) : 0;
+      const centre = this.followerCentre(angle);
+      const [cu, cv] = view.toPicture(...centre);
+      const spin = this.spin.length ? Number(interpolate(this.spin, at)) : 0;
       this.wheel?.setAttribute(
         "transform",
         `translate(${cu.toFixed(2)} ${cv.toFixed(2)}) rotate(${((-spin * 180) / Math.PI).toFixed(2)})`,
@@ -269,24 +275,26 @@ export class Disc extends Cammed {
       for (const [name, value] of Object.entries({ x1: tu, y1: tv, x2: 3 * cu - 2 * tu, y2: 3 * cv - 2 * tv }))
         this.normal?.setAttribute(name, String(value));
       const end = /** @type {Point} */ (
-        this.swings ? [follower.pivot_distance ?? 0, 0] : [centre[0] + this.radius + STEM * (this.base ?? 0), centre[1]]
+        this.swings
+          ? [follower.pivot_distance ?? 0, 0]
+          : [centre[0] + this.radius + STEM_LENGTH * (this.base ?? 0), centre[1]]
       );
-      const other = this.opposite(centre);
+      const other = this.oppositeCentre(centre);
       this.holder?.setAttribute(
         "d",
-        view.path(other ? [...(this.swings ? [centre, end, other] : [other, centre, end])] : [centre, end]),
+        view.pathData(other ? [...(this.swings ? [centre, end, other] : [other, centre, end])] : [centre, end]),
       );
       if (other)
         this.other?.setAttribute(
           "transform",
           `translate(${view
-            .at(...other)
+            .toPicture(...other)
             .map((one) => one.toFixed(2))
             .join(" ")})`,
         );
-    } else this.holder?.setAttribute("d", this.face(touching));
+    } else this.holder?.setAttribute("d", this.facePath(touching));
     const what = this.swings ? t`Arm` : t`Follower`;
-    this.facts?.replaceChildren(el("dt", {}, what), el("dd", {}, this.place(at)));
+    this.facts?.replaceChildren(createElement("dt", {}, what), createElement("dd", {}, this.followerDisplacement(at)));
   }
 
   /**
@@ -294,11 +302,11 @@ export class Disc extends Cammed {
    * @param {Point} centre
    * @returns {Point | null}
    */
-  opposite([x, y]) {
+  oppositeCentre([x, y]) {
     const { second, follower } = this.mechanism;
     if (!second) return null;
     if (!this.swings) return [x - (second.roller_distance ?? 0), y];
-    const [u, v] = turned(
+    const [u, v] = rotatePoint(
       [x - (follower.pivot_distance ?? 0), y],
       (-this.sense * (follower.sense ?? 1) * ((second.arm_angle ?? 0) * Math.PI)) / 180,
     );
@@ -306,16 +314,16 @@ export class Disc extends Cammed {
   }
 
   /** Displacement of the follower. @param {number} at */
-  place(at) {
+  followerDisplacement(at) {
     const { s } = this.mechanism.program;
-    const value = Number(between(this.displacement, at));
+    const value = Number(interpolate(this.displacement, at));
     const lift = Math.max(...s) - Math.min(...s);
-    const told = shown(nothing(value, lift) ? 0 : Number(value.toPrecision(4)));
-    return beside(told, this.swings ? "°" : String(this.problem.length_unit ?? "mm"));
+    const told = formatNumber(isRounding(value, lift) ? 0 : Number(value.toPrecision(4)));
+    return joinUnit(told, this.swings ? "°" : String(this.problem.length_unit ?? "mm"));
   }
 
   /** A flat face through the contact, with what carries it. @param {Point} touching */
-  face(touching) {
+  facePath(touching) {
     const {
       view,
       mechanism: { follower },
@@ -325,13 +333,13 @@ export class Disc extends Cammed {
     if (!this.swings) {
       const half = Math.max(0.45 * base, 1.1 * Math.abs(y));
       return (
-        view.path([
+        view.pathData([
           [x, -half],
           [x, half],
         ]) +
-        view.path([
+        view.pathData([
           [x, 0],
-          [x + STEM * base, 0],
+          [x + STEM_LENGTH * base, 0],
         ])
       );
     }
@@ -345,19 +353,19 @@ export class Disc extends Cammed {
     const near = rx * ax + ry * ay;
     const start = /** @type {Point} */ ([x - near * ax, y - near * ay]);
     return (
-      view.path([start, [x + 0.35 * base * ax, y + 0.35 * base * ay]]) +
-      view.path([start, [follower.pivot_distance ?? 0, 0]])
+      view.pathData([start, [x + 0.35 * base * ax, y + 0.35 * base * ay]]) +
+      view.pathData([start, [follower.pivot_distance ?? 0, 0]])
     );
   }
 }
 
 /** @param {Point} point @param {number} angle @returns {Point} */
-function turned([x, y], angle) {
+function rotatePoint([x, y], angle) {
   const [c, s] = [Math.cos(angle), Math.sin(angle)];
   return [c * x - s * y, s * x + c * y];
 }
 
 /** @param {{x: number[], y: number[]}} curve @returns {Point[]} */
-function ring({ x, y }) {
+function curvePoints({ x, y }) {
   return x.map((one, k) => [one, y[k]]);
 }

@@ -1,7 +1,7 @@
 /** The circuits of a linkage: where its joints are on the branches that it does not move on, drawn faint. */
 
-import { el, svg } from "../core/dom.js";
-import { Linkage, drawn, grounded } from "../canvas/linkage_drawing.js";
+import { createElement, createSvg } from "../core/dom.js";
+import { LinkageDrawing, drawnJoints, groundedJoints } from "../canvas/linkage_drawing.js";
 import { t } from "../core/messages.js";
 
 /** @import { LinkageAnalysis, Skeleton } from "../types/values.js" */
@@ -17,7 +17,7 @@ import { t } from "../core/messages.js";
  * @param {LinkageAnalysis | null} [motion] with `branches` included
  * @returns {Branch[]}
  */
-export function others(motion) {
+export function otherBranches(motion) {
   return (motion?.circuits ?? []).flatMap((circuit, n) =>
     circuit.branches.flatMap(({ joints, ...branch }) =>
       !branch.reference && joints ? [{ ...branch, joints, circuit: n }] : [],
@@ -26,19 +26,19 @@ export function others(motion) {
 }
 
 /** The joint whose path tells the most: P, or the last pin that moves. @param {Skeleton} skeleton */
-export function telling(skeleton) {
-  const still = grounded(skeleton);
-  const names = drawn(skeleton).filter((name) => !still.includes(name));
+export function findTracedJoint(skeleton) {
+  const still = groundedJoints(skeleton);
+  const names = drawnJoints(skeleton).filter((name) => !still.includes(name));
   return names.includes("P") ? "P" : (names.at(-1) ?? "");
 }
 
 /** @param {Branch} branch @param {string} name @returns {Point[]} */
-export function track(branch, name) {
+export function branchTrack(branch, name) {
   const { x, y } = branch.joints[name] ?? { x: [], y: [] };
   return x.map((one, k) => (one === null ? [NaN, NaN] : [one, Number(y[k])]));
 }
 
-export class Circuits {
+export class OtherCircuits {
   /**
    * @param {import("../core/view.js").View} view
    * @param {Skeleton} skeleton
@@ -46,20 +46,22 @@ export class Circuits {
    */
   constructor(view, skeleton, motion) {
     const circuits = motion?.circuits ?? [];
-    this.branches = others(motion);
-    const name = telling(skeleton);
+    this.branches = otherBranches(motion);
+    const name = findTracedJoint(skeleton);
     const own = circuits.findIndex((one) => one.branches.some((branch) => branch.reference));
     this.ghosts = this.branches.map((branch) => ({
       branch,
-      linkage: new Linkage(view, skeleton, { names: false, faint: true }),
+      linkage: new LinkageDrawing(view, skeleton, { names: false, faint: true }),
     }));
-    this.node = svg(
+    this.node = createSvg(
       "g",
       { class: "others" },
-      ...this.branches.map((branch) => svg("path", { class: "curve other", d: view.path(track(branch, name)) })),
+      ...this.branches.map((branch) =>
+        createSvg("path", { class: "curve other", d: view.pathData(branchTrack(branch, name)) }),
+      ),
       ...this.ghosts.map((ghost) => ghost.linkage.node),
     );
-    const box = el("input", {
+    const box = createElement("input", {
       type: "checkbox",
       id: "circuits",
       onchange: () => this.node.toggleAttribute("hidden", !box.checked),
@@ -85,8 +87,8 @@ export class Circuits {
             .filter(Boolean)
             .join(": ");
     this.control = this.branches.length
-      ? el("label", { class: "flag", for: "circuits" }, box, text)
-      : circuits.length === 1 && el("span", { class: "note" }, t`It has one circuit, without toggles.`);
+      ? createElement("label", { class: "flag", for: "circuits" }, box, text)
+      : circuits.length === 1 && createElement("span", { class: "note" }, t`It has one circuit, without toggles.`);
   }
 
   /**
@@ -104,7 +106,7 @@ export class Circuits {
       if (!(share >= 0 && share <= 1)) continue;
       // Between toggles the places lie closer together at the ends.
       if (!branch.full) share = Math.acos(1 - 2 * share) / Math.PI;
-      linkage.show(
+      linkage.moveTo(
         Object.fromEntries(
           Object.entries(branch.joints).map(([name, { x, y }]) => {
             const at = share * (x.length - 1);

@@ -1,7 +1,7 @@
 /** The cycle of any linkage, by analyses: a full turn of a crank, or from toggle to toggle. */
 
 import * as api from "../core/api.js";
-import { grounded } from "../canvas/linkage_drawing.js";
+import { groundedJoints } from "../canvas/linkage_drawing.js";
 
 /** @import { LinkageAnalysis, Linked, Mechanism, Skeleton } from "../types/values.js" */
 
@@ -10,12 +10,12 @@ import { grounded } from "../canvas/linkage_drawing.js";
  * @param {Skeleton} skeleton
  * @returns {number | null}
  */
-export function stands(skeleton) {
+export function inputAngle(skeleton) {
   const link = skeleton.links.find((one) => one.name === skeleton.input_link);
   const [one, other] = link?.joints.map((/** @type {string} */ name) => skeleton.joints[name]) ?? [];
   if (!link || !one || !other) return null;
   // The input angle is that of the line from the fixed pivot.
-  const back = !grounded(skeleton).includes(link.joints[0]);
+  const back = !groundedJoints(skeleton).includes(link.joints[0]);
   const sign = back ? -1 : 1;
   return (Math.atan2(sign * (other[1] - one[1]), sign * (other[0] - one[0])) * 180) / Math.PI;
 }
@@ -25,17 +25,17 @@ export function stands(skeleton) {
  * @param {Mechanism} mechanism @param {number} steps @param {AbortSignal} signal
  * @returns {Promise<{motion: LinkageAnalysis, circuits: LinkageAnalysis}>}
  */
-export async function overTheCycle(mechanism, steps, signal) {
-  const at = mechanism.reference_input_angle ?? (mechanism.skeleton ? stands(mechanism.skeleton) : null);
+export async function fetchCycle(mechanism, steps, signal) {
+  const at = mechanism.reference_input_angle ?? (mechanism.skeleton ? inputAngle(mechanism.skeleton) : null);
   if (at === null || mechanism.driven_by === "slider") {
-    const motion = await api.analysis({ mechanism, include: ["branches"] }, signal);
+    const motion = await api.analyse({ mechanism, include: ["branches"] }, signal);
     return { motion, circuits: motion };
   }
-  const circuits = await api.analysis({ mechanism, motion: { at }, include: ["branches"] }, signal);
+  const circuits = await api.analyse({ mechanism, motion: { at }, include: ["branches"] }, signal);
   const here = circuits.circuits.flatMap((one) => one.branches).find((one) => one.reference);
   const from = here && !here.full ? at - (at - here.from - 360 * Math.floor((at - here.from) / 360)) : at;
   const to = from + (here ? here.to - here.from : 360);
-  return { motion: await api.analysis({ mechanism, motion: { from, to, steps } }, signal), circuits };
+  return { motion: await api.analyse({ mechanism, motion: { from, to, steps } }, signal), circuits };
 }
 
 /**
@@ -44,7 +44,7 @@ export async function overTheCycle(mechanism, steps, signal) {
  * @param {LinkageAnalysis} motion
  * @returns {Linked}
  */
-export function withSkeleton(mechanism, motion) {
+export function addSkeleton(mechanism, motion) {
   if (mechanism.skeleton) return /** @type {Linked} */ (mechanism);
   const k = motion.valid.indexOf(true);
   const joints = Object.fromEntries(

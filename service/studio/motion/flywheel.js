@@ -1,18 +1,18 @@
 /** A flywheel that turns, with a spoke that shows how far; faster and slower as its shaft does. */
 
-import { el, shown, svg } from "../core/dom.js";
+import { createElement, formatNumber, createSvg } from "../core/dom.js";
 import { t } from "../core/messages.js";
-import { between } from "../core/player.js";
-import { scene } from "../canvas/stage.js";
-import { Turning } from "./rotary_view.js";
-import { symbolOf } from "../core/units.js";
+import { interpolate } from "../core/player.js";
+import { createScene } from "../canvas/stage.js";
+import { RotaryView } from "./rotary_view.js";
+import { unitSymbol } from "../core/units.js";
 import { View } from "../core/view.js";
 
 /** @import { Problem, Schemas } from "../types/values.js" */
 
 /** @typedef {{angle: number[], torque: number[], speed: number[]}} Course */
 
-export class Flywheel extends Turning {
+export class FlywheelView extends RotaryView {
   /**
    * @param {import("../canvas/stage.js").Frame} frame
    * @param {Schemas["FlywheelDesign"]} design
@@ -22,24 +22,24 @@ export class Flywheel extends Turning {
   constructor(frame, design, _motion, problem) {
     const { mechanism, course } = design;
     // Places of the player are equal times.
-    const angles = turned(course);
+    const angles = anglesOverTime(course);
     super(frame, t`Shaft`, angles);
     const { radius, inner_radius: inner } = mechanism;
-    const [speed, torque] = [symbolOf("rotational speed", problem), symbolOf("torque", problem)];
+    const [speed, torque] = [unitSymbol("rotational speed", problem), unitSymbol("torque", problem)];
     this.told = [
       {
         name: t`Speed`,
         unit: speed,
         values: course.speed,
-        series: inTime(course, angles, course.speed),
-        said: el("dd", {}),
+        series: valuesOverTime(course, angles, course.speed),
+        said: createElement("dd", {}),
       },
       {
         name: t`Torque`,
         unit: torque,
         values: course.torque,
-        series: inTime(course, angles, course.torque),
-        said: el("dd", {}),
+        series: valuesOverTime(course, angles, course.torque),
+        said: createElement("dd", {}),
       },
     ];
     const view = new View(
@@ -50,25 +50,31 @@ export class Flywheel extends Turning {
       ...this.size,
       40,
     );
-    this.middle = view.at(0, 0);
+    this.middle = view.toPicture(0, 0);
     const [cx, cy] = this.middle;
     const circle = (/** @type {number} */ far, /** @type {string} */ name) =>
-      svg("circle", { class: name, cx, cy, r: view.scale * far });
-    this.spoke = svg("path", {
+      createSvg("circle", { class: name, cx, cy, r: view.scale * far });
+    this.spoke = createSvg("path", {
       class: "spoke",
       d: `M${(view.scale * inner).toFixed(1)} 0H${(view.scale * radius).toFixed(1)}`,
     });
-    const wheel = svg(
+    const wheel = createSvg(
       "g",
       { class: "wheel t0" },
       circle(radius, "teeth"),
       inner > 0 && circle(inner, "hollow"),
       this.spoke,
-      svg("circle", { class: "pin", cx, cy, r: 3.5 }),
+      createSvg("circle", { class: "pin", cx, cy, r: 3.5 }),
     );
     this.fill(
-      scene(view, t`The flywheel, turning`, [wheel]),
-      [el("dl", { class: "facts speeds" }, ...this.told.flatMap(({ name, said }) => [el("dt", {}, name), said]))],
+      createScene(view, t`The flywheel, turning`, [wheel]),
+      [
+        createElement(
+          "dl",
+          { class: "facts speeds" },
+          ...this.told.flatMap(({ name, said }) => [createElement("dt", {}, name), said]),
+        ),
+      ],
       this.told.map(({ name, unit, values, series }) => ({
         title: unit ? `${name} (${unit})` : name,
         lines: { "": series },
@@ -82,16 +88,16 @@ export class Flywheel extends Turning {
     const [u, v] = this.middle;
     this.spoke.setAttribute(
       "transform",
-      `translate(${u.toFixed(2)} ${v.toFixed(2)}) rotate(${(-Number(between(this.angles, at))).toFixed(3)})`,
+      `translate(${u.toFixed(2)} ${v.toFixed(2)}) rotate(${(-Number(interpolate(this.angles, at))).toFixed(3)})`,
     );
     if (!told) return;
     for (const { unit, series, said } of this.told)
-      said.textContent = `${shown(Number(Number(between(series, at)).toPrecision(4)))} ${unit}`.trim();
+      said.textContent = `${formatNumber(Number(Number(interpolate(series, at)).toPrecision(4)))} ${unit}`.trim();
   }
 }
 
 /** Angles at equal times over the cycle, degrees. @param {Course} course @returns {number[]} */
-function turned({ angle, speed }) {
+function anglesOverTime({ angle, speed }) {
   const times = [0];
   for (let k = 1; k < angle.length; k++)
     times.push(times[k - 1] + (angle[k] - angle[k - 1]) / (0.5 * (speed[k] + speed[k - 1])));
@@ -111,7 +117,7 @@ function turned({ angle, speed }) {
  * @param {number[]} angles
  * @param {number[]} values
  */
-function inTime({ angle }, angles, values) {
+function valuesOverTime({ angle }, angles, values) {
   const step = (angle[angle.length - 1] - angle[0]) / (angle.length - 1);
-  return angles.map((at) => Number(between(values, Math.min(values.length - 1, (at - angle[0]) / step))));
+  return angles.map((at) => Number(interpolate(values, Math.min(values.length - 1, (at - angle[0]) / step))));
 }

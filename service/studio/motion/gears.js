@@ -1,17 +1,17 @@
 /** Gears that turn: pitch circles and teeth, each at its own speed; of gearboxes with the gear that is engaged. */
 
 import * as api from "../core/api.js";
-import { el, shown, svg, words } from "../core/dom.js";
+import { createElement, formatNumber, createSvg, toWords } from "../core/dom.js";
 import { t, term } from "../core/messages.js";
-import { scene } from "../canvas/stage.js";
-import { wheels } from "./train_layout.js";
-import { Turning } from "./rotary_view.js";
+import { createScene } from "../canvas/stage.js";
+import { layOutWheels } from "./train_layout.js";
+import { RotaryView } from "./rotary_view.js";
 import { View } from "../core/view.js";
-import { drawn, place, radius } from "./toothed_wheels.js";
+import { createWheel, placeWheel, pitchRadius } from "./toothed_wheels.js";
 
 /** @import { Design, Merged, Problem, Schemas, TrainMotion } from "../types/values.js" */
 
-export class Gears extends Turning {
+export class GearsView extends RotaryView {
   /**
    * @param {import("../canvas/stage.js").Frame} frame
    * @param {Design} design
@@ -25,24 +25,24 @@ export class Gears extends Turning {
     /** @type {Merged<TrainMotion>} */
     this.motion = motion;
     this.gone = new AbortController();
-    this.facts = el("dl", { class: "facts speeds" });
+    this.facts = createElement("dl", { class: "facts speeds" });
     this.view = new View([], ...this.size);
-    /** @type {ReturnType<typeof drawn>[]} */
+    /** @type {ReturnType<typeof createWheel>[]} */
     this.drawings = [];
     /** @type {{wheel: import("./toothed_wheels.js").Wheel, line: SVGLineElement}[]} */
     this.arms = [];
     const note = t`Circles are pitch circles. Each gear turns as fast as the analysis says, one turn of the input in four seconds at speed 1.`;
-    this.fill(this.build(), [this.facts, el("p", { class: "note" }, note)], [], [this.engaging()]);
+    this.fill(this.build(), [this.facts, createElement("p", { class: "note" }, note)], [], [this.createGearChoice()]);
   }
 
   /** Draw the gears of the motion as it is, and tell their speeds. */
   build() {
     const { mechanism } = this.design;
-    const listed = wheels(mechanism, /** @type {TrainMotion} */ (this.motion), this.design, this.problem);
+    const listed = layOutWheels(mechanism, /** @type {TrainMotion} */ (this.motion), this.design, this.problem);
     const corners = listed.flatMap((wheel) =>
       [0, 1, 2, 3].flatMap((quarter) => {
-        const far = radius(wheel) + (wheel.internal ? 3 : 1) * wheel.module;
-        const [x, y] = place(wheel, wheel.orbit ? (quarter * Math.PI) / 2 / wheel.orbit : 0);
+        const far = pitchRadius(wheel) + (wheel.internal ? 3 : 1) * wheel.module;
+        const [x, y] = placeWheel(wheel, wheel.orbit ? (quarter * Math.PI) / 2 / wheel.orbit : 0);
         return /** @type {[number, number][]} */ ([
           [x - far, y - far],
           [x + far, y + far],
@@ -52,31 +52,36 @@ export class Gears extends Turning {
     const view = new View(corners, ...this.size, 40);
     // Rings lie behind, and what is not engaged behind those.
     const order = [...listed].sort((one, other) => Number(other.internal ?? false) - Number(one.internal ?? false));
-    this.drawings = order.map((wheel) => drawn(view, wheel));
+    this.drawings = order.map((wheel) => createWheel(view, wheel));
     const arms = listed.filter(
       (wheel) => wheel.orbit !== undefined && (wheel.centre[0] !== (wheel.axis?.[0] ?? 0) || wheel.centre[1]),
     );
-    this.arms = arms.map((wheel) => ({ wheel, line: svg("line", { class: "arm" }) }));
+    this.arms = arms.map((wheel) => ({ wheel, line: createSvg("line", { class: "arm" }) }));
     this.view = view;
-    this.facts.replaceChildren(...this.speeds().flatMap(([name, speed]) => [el("dt", {}, name), el("dd", {}, speed)]));
-    return scene(view, t`The gears, turning`, [
+    this.facts.replaceChildren(
+      ...this.createSpeedTable().flatMap(([name, speed]) => [
+        createElement("dt", {}, name),
+        createElement("dd", {}, speed),
+      ]),
+    );
+    return createScene(view, t`The gears, turning`, [
       ...this.drawings.map((one) => one.node),
       ...this.arms.map((one) => one.line),
     ]);
   }
 
   /** @returns {[string, string][]} */
-  speeds() {
+  createSpeedTable() {
     const { bodies, shafts = [], gears = [] } = this.motion;
     const told = (/** @type {number | null | undefined} */ ratio) =>
-      ratio === null || ratio === undefined ? t`open` : t`${shown(Number(ratio.toPrecision(6)))} × input`;
-    if (bodies) return bodies.map((body) => [words(body.name), body.speed === 0 ? t`held` : told(body.speed)]);
+      ratio === null || ratio === undefined ? t`open` : t`${formatNumber(Number(ratio.toPrecision(6)))} × input`;
+    if (bodies) return bodies.map((body) => [toWords(body.name), body.speed === 0 ? t`held` : told(body.speed)]);
     if (this.motion.units)
       return shafts.map((shaft, k) => [
         k === 0 ? t`Input` : k === shafts.length - 1 ? t`Output` : t`Shaft ${k + 1}`,
         told(shaft.speed_ratio),
       ]);
-    if (shafts?.[0]?.name) return shafts.map((shaft) => [words(String(shaft.name)), told(shaft.speed_ratio)]);
+    if (shafts?.[0]?.name) return shafts.map((shaft) => [toWords(String(shaft.name)), told(shaft.speed_ratio)]);
     return gears.map((gear) => [
       t`Stage ${gear.stage} ${term(gear.role)}, ${gear.teeth} teeth`,
       told(gear.speed_ratio),
@@ -84,7 +89,7 @@ export class Gears extends Turning {
   }
 
   /** Of a gearbox: which gear is engaged, in the drawing and in the assembly beside it. */
-  engaging() {
+  createGearChoice() {
     const { mechanism } = this.design;
     const { speeds } = this.motion;
     if (!speeds?.[0]?.engaged) return null;
@@ -95,15 +100,24 @@ export class Gears extends Turning {
         : one.engaged[0] === mechanism.gears?.length
           ? t`reverse`
           : t`gear ${one.engaged[0] + 1}`;
-    const pick = el(
+    const pick = createElement(
       "select",
       { id: "engaged", onchange: () => this.engage(speeds[Number(pick.value)].engaged) },
       ...speeds.map((one, k) =>
-        el("option", { value: k }, t`${name(one)}: ${shown(Number(one.speed_ratio.toPrecision(4)))} × input`),
+        createElement(
+          "option",
+          { value: k },
+          t`${name(one)}: ${formatNumber(Number(one.speed_ratio.toPrecision(4)))} × input`,
+        ),
       ),
     );
     pick.value = String(speeds.findIndex((one) => String(one.engaged) === String(this.motion.engaged)));
-    return el("div", { class: "row engaging" }, el("label", { for: "engaged" }, t`Engaged`), pick);
+    return createElement(
+      "div",
+      { class: "row engaging" },
+      createElement("label", { for: "engaged" }, t`Engaged`),
+      pick,
+    );
   }
 
   /** @param {number[]} engaged */
@@ -114,8 +128,9 @@ export class Gears extends Turning {
         ? { engaged }
         : { gear: engaged[0] === mechanism.gears?.length ? "reverse" : engaged[0] + 1 };
     const motion = { from: 0, to: 360, steps: this.motion.input_angle.length - 1 };
-    const found = await api.analysis({ mechanism, motion, ...which }, this.gone.signal).catch((error) => {
-      if (!this.gone.signal.aborted) this.facts.replaceChildren(el("dt", {}, t`Refused`), el("dd", {}, error.message));
+    const found = await api.analyse({ mechanism, motion, ...which }, this.gone.signal).catch((error) => {
+      if (!this.gone.signal.aborted)
+        this.facts.replaceChildren(createElement("dt", {}, t`Refused`), createElement("dd", {}, error.message));
     });
     if (!found || this.gone.signal.aborted) return;
     this.motion = found;
@@ -125,12 +140,12 @@ export class Gears extends Turning {
 
   /** @param {number} at */
   show(at) {
-    const input = (this.over(this.angles, at) * Math.PI) / 180;
+    const input = (this.interpolateSeries(this.angles, at) * Math.PI) / 180;
     for (const { turn } of this.drawings) turn(input);
     for (const { wheel, line } of this.arms) {
       const [[u, v], [x, y]] = [
-        this.view.at(...(wheel.axis ?? /** @type {[number, number]} */ ([0, 0]))),
-        this.view.at(...place(wheel, input)),
+        this.view.toPicture(...(wheel.axis ?? /** @type {[number, number]} */ ([0, 0]))),
+        this.view.toPicture(...placeWheel(wheel, input)),
       ];
       for (const [name, value] of Object.entries({ x1: u, y1: v, x2: x, y2: y }))
         line.setAttribute(name, value.toFixed(2));

@@ -1,22 +1,22 @@
 /** A Geneva drive that turns: its wheel by steps, the crank with its locking disc and rollers steadily. */
 
-import { el, shown, svg } from "../core/dom.js";
+import { createElement, formatNumber, createSvg } from "../core/dom.js";
 import { t } from "../core/messages.js";
-import { scene } from "../canvas/stage.js";
-import { Turning } from "./rotary_view.js";
+import { createScene } from "../canvas/stage.js";
+import { RotaryView } from "./rotary_view.js";
 import { View } from "../core/view.js";
 
 /** @import { Merged, Schemas } from "../types/values.js" */
 
 /** Steps of a drawn arc. */
-const STEPS = 48;
+const ARC_STEPS = 48;
 
 /** From the wheel's axis to where the crank of a spherical drive is shown, in radii of the sphere. */
-const BESIDE = 2.4;
+const CRANK_DISTANCE = 2.4;
 
 /** @typedef {[number, number]} Point */
 
-export class Geneva extends Turning {
+export class GenevaView extends RotaryView {
   /**
    * @param {import("../canvas/stage.js").Frame} frame
    * @param {Merged<Schemas["IndexingDesign"]>} design
@@ -39,9 +39,9 @@ export class Geneva extends Turning {
       crank: (external ? 180 : spherical ? 90 : 0) - half,
     };
     const { disc, rollers, reach, centre } = spherical
-      ? cap(/** @type {Schemas["SphericalGenevaMechanism"]} */ (mechanism))
-      : crank(/** @type {Schemas["GenevaMechanism"]} */ (mechanism));
-    const wheel = ring(mechanism.profile);
+      ? sphericalCap(/** @type {Schemas["SphericalGenevaMechanism"]} */ (mechanism))
+      : crankOutline(/** @type {Schemas["GenevaMechanism"]} */ (mechanism));
+    const wheel = curvePoints(mechanism.profile);
     const outside = mechanism.ring_radius ?? Math.max(...wheel.map(([x, y]) => Math.hypot(x, y)));
     const far = reach + mechanism.roller_diameter / 2;
     /** Before the crank, where that is not the input. */
@@ -65,37 +65,52 @@ export class Geneva extends Turning {
       40,
     );
     this.view = view;
-    this.bars = svg("path", { class: "link" });
-    this.axes = [view.at(0, 0), view.at(centre, 0)];
+    this.bars = createSvg("path", { class: "link" });
+    this.axes = [view.toPicture(0, 0), view.toPicture(centre, 0)];
     const [[u, v]] = this.axes;
-    this.wheel = svg("path", { class: "teeth", d: `${view.path(wheel)}Z` });
-    const pins = rollers.map(([x, y]) => view.at(x + centre, y));
-    this.crank = svg(
+    this.wheel = createSvg("path", { class: "teeth", d: `${view.pathData(wheel)}Z` });
+    const pins = rollers.map(([x, y]) => view.toPicture(x + centre, y));
+    this.crank = createSvg(
       "g",
       {},
-      svg("path", { class: "teeth", d: `${view.path(disc.map(([x, y]) => /** @type {Point} */ ([x + centre, y])))}Z` }),
-      svg("path", { class: "spoke", d: pins.map((pin) => `M${this.axes[1].join(" ")}L${pin.join(" ")}`).join("") }),
+      createSvg("path", {
+        class: "teeth",
+        d: `${view.pathData(disc.map(([x, y]) => /** @type {Point} */ ([x + centre, y])))}Z`,
+      }),
+      createSvg("path", {
+        class: "spoke",
+        d: pins.map((pin) => `M${this.axes[1].join(" ")}L${pin.join(" ")}`).join(""),
+      }),
       ...pins.map(([cx, cy]) =>
-        svg("circle", { class: "tyre", cx, cy, r: (view.scale * mechanism.roller_diameter) / 2 }),
+        createSvg("circle", { class: "tyre", cx, cy, r: (view.scale * mechanism.roller_diameter) / 2 }),
       ),
     );
-    const picture = scene(view, t`The Geneva drive, turning`, [
+    const picture = createScene(view, t`The Geneva drive, turning`, [
       mechanism.ring_radius &&
-        svg(
+        createSvg(
           "g",
           { class: "wheel t0" },
-          svg("circle", { class: "pitch", cx: u, cy: v, r: view.scale * mechanism.ring_radius }),
+          createSvg("circle", { class: "pitch", cx: u, cy: v, r: view.scale * mechanism.ring_radius }),
         ),
-      svg("g", { class: "wheel t0" }, this.wheel),
-      svg("g", { class: "wheel t1" }, this.crank),
+      createSvg("g", { class: "wheel t0" }, this.wheel),
+      createSvg("g", { class: "wheel t1" }, this.crank),
       this.link && this.bars,
-      ...this.axes.map(([cx, cy]) => svg("circle", { class: "pin", cx, cy, r: 3.5 })),
+      ...this.axes.map(([cx, cy]) => createSvg("circle", { class: "pin", cx, cy, r: 3.5 })),
     ]);
-    this.angle = el("dd", {});
-    this.state = el("dd", {});
+    this.angle = createElement("dd", {});
+    this.state = createElement("dd", {});
     this.fill(
       picture,
-      [el("dl", { class: "facts speeds" }, el("dt", {}, t`Wheel`), this.angle, el("dt", {}, t`Motion`), this.state)],
+      [
+        createElement(
+          "dl",
+          { class: "facts speeds" },
+          createElement("dt", {}, t`Wheel`),
+          this.angle,
+          createElement("dt", {}, t`Motion`),
+          this.state,
+        ),
+      ],
       [
         { title: t`Wheel turned (°)`, lines: { "": motion.angle } },
         { title: t`Velocity v (${"rad"}/rad)`, lines: { "": motion.omega } },
@@ -107,13 +122,18 @@ export class Geneva extends Turning {
   /** @param {number} at */
   show(at) {
     const { motion, begin, sense } = this;
-    const turned = this.over(motion.angle, at);
-    const turns = [begin.wheel + sense * turned, begin.crank + this.over(motion.crank, at)];
+    const turned = this.interpolateSeries(motion.angle, at);
+    const turns = [begin.wheel + sense * turned, begin.crank + this.interpolateSeries(motion.crank, at)];
     if (this.link)
       this.bars.setAttribute(
         "d",
-        this.view.path(
-          bars(this.link, this.centre, this.link.entry_angle + this.over(motion.input_angle, at), turns[1]),
+        this.view.pathData(
+          chainBars(
+            this.link,
+            this.centre,
+            this.link.entry_angle + this.interpolateSeries(motion.input_angle, at),
+            turns[1],
+          ),
         ),
       );
     [this.wheel, this.crank].forEach((part, k) => {
@@ -122,8 +142,8 @@ export class Geneva extends Turning {
         `rotate(${(-turns[k]).toFixed(3)} ${this.axes[k][0].toFixed(2)} ${this.axes[k][1].toFixed(2)})`,
       );
     });
-    this.angle.textContent = `${shown(Math.round(10 * turned) / 10)}°`;
-    this.state.textContent = motion.moves[Math.round(this.within(at))] ? t`turns` : t`rests, locked`;
+    this.angle.textContent = `${formatNumber(Math.round(10 * turned) / 10)}°`;
+    this.state.textContent = motion.moves[Math.round(this.clampPosition(at))] ? t`turns` : t`rests, locked`;
   }
 }
 
@@ -131,11 +151,11 @@ export class Geneva extends Turning {
  * Disc and rollers of a plane drive, about the crank's axis, with the first roller along x.
  * @param {Schemas["GenevaMechanism"]} mechanism
  */
-function crank(mechanism) {
+function crankOutline(mechanism) {
   const { angle, outer_radius: outer, inner_radius: inner } = mechanism.disc;
-  const edge = (/** @type {number[]} */ radii) => radii.map((radius, k) => polar(radius, angle[k]));
+  const edge = (/** @type {number[]} */ radii) => radii.map((radius, k) => fromPolar(radius, angle[k]));
   const rollers = Array.from({ length: mechanism.rollers }, (_, k) =>
-    polar(mechanism.crank_radius, (360 * k) / mechanism.rollers),
+    fromPolar(mechanism.crank_radius, (360 * k) / mechanism.rollers),
   );
   const disc = inner.some((/** @type {number} */ radius) => radius > 0)
     ? [...edge(outer), ...edge(inner).reverse()]
@@ -151,10 +171,10 @@ function crank(mechanism) {
  * @param {number} crank degrees
  * @returns {Point[]}
  */
-function bars(link, centre, input, crank) {
+function chainBars(link, centre, input, crank) {
   const [x, y] = link.input_pivot;
-  const [u, v] = polar(link.input, input + 180);
-  const [s, t] = polar(link.output, crank - link.crank_offset);
+  const [u, v] = fromPolar(link.input, input + 180);
+  const [s, t] = fromPolar(link.output, crank - link.crank_offset);
   return [
     [x, y],
     [x + u, y + v],
@@ -167,21 +187,28 @@ function bars(link, centre, input, crank) {
  * Cap and roller of a spherical drive, seen along the crank's axis, with the roller along x.
  * @param {Schemas["SphericalGenevaMechanism"]} mechanism
  */
-function cap(mechanism) {
+function sphericalCap(mechanism) {
   const radius = mechanism.sphere_radius * Math.sin((mechanism.cap_angle * Math.PI) / 180);
   const end = 90 + (Math.asin(Math.min(1, mechanism.cap_offset / radius)) * 180) / Math.PI;
-  const disc = Array.from({ length: STEPS + 1 }, (_, k) => polar(radius, end + ((360 - 2 * end) * k) / STEPS));
+  const disc = Array.from({ length: ARC_STEPS + 1 }, (_, k) =>
+    fromPolar(radius, end + ((360 - 2 * end) * k) / ARC_STEPS),
+  );
   const reach = mechanism.sphere_radius * Math.sin((mechanism.cone_angle * Math.PI) / 180);
-  return { disc, rollers: [/** @type {Point} */ ([reach, 0])], reach, centre: BESIDE * mechanism.sphere_radius };
+  return {
+    disc,
+    rollers: [/** @type {Point} */ ([reach, 0])],
+    reach,
+    centre: CRANK_DISTANCE * mechanism.sphere_radius,
+  };
 }
 
 /** @param {number} radius @param {number} degrees @returns {Point} */
-function polar(radius, degrees) {
+function fromPolar(radius, degrees) {
   const angle = (degrees * Math.PI) / 180;
   return [radius * Math.cos(angle), radius * Math.sin(angle)];
 }
 
 /** @param {{x: number[], y: number[]}} curve @returns {Point[]} */
-function ring({ x, y }) {
+function curvePoints({ x, y }) {
   return x.map((one, k) => [one, y[k]]);
 }

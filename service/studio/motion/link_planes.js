@@ -1,31 +1,31 @@
 /** The planes in which a linkage is built: from the side, beneath its motion, with what clashes. */
 
-import { el, shown, svg, words } from "../core/dom.js";
-import { grounded } from "../canvas/linkage_drawing.js";
-import { foreign, t, term, translated } from "../core/messages.js";
-import { symbolOf } from "../core/units.js";
+import { createElement, formatNumber, createSvg, toWords } from "../core/dom.js";
+import { groundedJoints } from "../canvas/linkage_drawing.js";
+import { foreignLanguage, t, term, translate } from "../core/messages.js";
+import { unitSymbol } from "../core/units.js";
 
 /** @import { Layout, Problem, Schemas, Skeleton } from "../types/values.js" */
 
 /** @typedef {[number, number]} Point */
 /** @typedef {import("../canvas/linkage_drawing.js").Places} Places */
 
-const HEIGHT = 210;
-const TOP = 12;
-const FOOT = 44;
+const PLANE_HEIGHT = 210;
+const TOP_MARGIN = 12;
+const FOOT_HEIGHT = 44;
 
 /** Height of a base, pixels. */
-const BASE = 14;
+const BASE_LINE = 14;
 
 /** Planes are never drawn thicker than so many pixels: the side view is not to scale upward. */
-const THICKEST = 26;
+const MAX_THICKNESS = 26;
 
 /** The colours that there are; with more planes they begin again. */
-const COLOURS = 8;
+const COLOUR_COUNT = 8;
 
 /** @param {number} plane */
 export function planeClass(plane) {
-  return `plane p${((plane - 1) % COLOURS) + 1}`;
+  return `plane p${((plane - 1) % COLOUR_COUNT) + 1}`;
 }
 
 /**
@@ -33,8 +33,8 @@ export function planeClass(plane) {
  * @param {Skeleton} skeleton
  * @returns {Record<string, {centre: Point, radius: number}>}
  */
-function wheels(skeleton) {
-  const still = grounded(skeleton);
+function wheelBodies(skeleton) {
+  const still = groundedJoints(skeleton);
   return Object.fromEntries(
     (skeleton.gears ?? []).flatMap(({ links, ratio }) => {
       const [o, q] = links
@@ -60,7 +60,7 @@ function wheels(skeleton) {
   );
 }
 
-export class Planes {
+export class LinkPlanes {
   /**
    * @param {import("../core/view.js").View} view of the linkage: both pictures stand one above the other
    * @param {Skeleton} skeleton
@@ -71,7 +71,7 @@ export class Planes {
    */
   constructor(view, skeleton, layout, problem, stated, lead) {
     this.view = view;
-    this.floor = HEIGHT - FOOT - BASE;
+    this.floor = PLANE_HEIGHT - FOOT_HEIGHT - BASE_LINE;
     /** Pixels for a length unit upward. */
     this.scale = 1;
     /** @type {{name: string, bar: SVGElement}[]} */
@@ -80,16 +80,16 @@ export class Planes {
     this.pins = [];
     /** @type {SVGElement | null} */
     this.side = null;
-    this.wheels = wheels(skeleton);
+    this.wheels = wheelBodies(skeleton);
     this.layout = layout;
     this.skeleton = skeleton;
     this.stated = stated;
-    const unit = symbolOf("length", problem);
+    const unit = unitSymbol("length", problem);
     const listed = Object.entries(layout.planes).sort(([, one], [, other]) => other - one);
-    this.node = el(
+    this.node = createElement(
       "section",
       { class: "planes", "aria-label": t`Planes` },
-      el(
+      createElement(
         "h3",
         { class: "minor" },
         layout.remark
@@ -97,73 +97,78 @@ export class Planes {
           : [
               layout.count === 1 ? t`1 plane` : t`${layout.count} planes`,
               layout.least && t`the fewest there are`,
-              t`${shown(Number(layout.height.toPrecision(4)))} ${unit} high`,
+              t`${formatNumber(Number(layout.height.toPrecision(4)))} ${unit} high`,
             ]
               .filter(Boolean)
               .join(", "),
       ),
-      layout.remark && el("p", { class: "note", lang: foreign(layout.remark) }, translated(layout.remark)),
-      listed.length > 0 && this.picture(),
+      layout.remark &&
+        createElement("p", { class: "note", lang: foreignLanguage(layout.remark) }, translate(layout.remark)),
+      listed.length > 0 && this.createPicture(),
       listed.length > 0 &&
-        el(
+        createElement(
           "ul",
           { class: "legend", "aria-label": t`Links by plane` },
           ...listed.map(([name, plane]) =>
-            el(
+            createElement(
               "li",
               {},
-              svg(
+              createSvg(
                 "svg",
                 { viewBox: "0 0 26 16", width: 26, height: 16, "aria-hidden": "true" },
-                svg("rect", { class: `slab ${planeClass(plane)}`, x: 1, y: 1, width: 24, height: 14, rx: 3 }),
-                svg("text", { class: "plane-number", x: 13, y: 12.5 }, plane),
+                createSvg("rect", { class: `slab ${planeClass(plane)}`, x: 1, y: 1, width: 24, height: 14, rx: 3 }),
+                createSvg("text", { class: "plane-number", x: 13, y: 12.5 }, plane),
               ),
-              el("span", { class: "hidden" }, t`Plane ${plane}`, ": "),
-              words(name),
+              createElement("span", { class: "hidden" }, t`Plane ${plane}`, ": "),
+              toWords(name),
             ),
           ),
         ),
       listed.length > 0 &&
-        el("p", { class: "note" }, t`Across it is in line with the picture above; upward it is not to scale.`),
+        createElement(
+          "p",
+          { class: "note" },
+          t`Across it is in line with the picture above; upward it is not to scale.`,
+        ),
       layout.stub_shafts.length > 0 &&
-        el(
+        createElement(
           "p",
           { class: "note" },
           t`Stub shafts at ${layout.stub_shafts.join(", ")}: no shaft can pass all planes there.`,
         ),
-      ...this.clashes(unit, lead),
+      ...this.createClashes(unit, lead),
     );
   }
 
   /** @param {string} unit @param {(input: number) => void} lead */
-  clashes(unit, lead) {
+  createClashes(unit, lead) {
     const { clashes, free_range: range, free_stroke: stroke } = this.layout;
     if (!clashes.length)
-      return [el("p", { class: "good" }, `✓ ${t`Nothing clashes over the motion that is looked at.`}`)].filter(
-        () => !this.layout.remark,
-      );
-    const rounded = (/** @type {number} */ value) => shown(Math.round(10 * value) / 10);
+      return [
+        createElement("p", { class: "good" }, `✓ ${t`Nothing clashes over the motion that is looked at.`}`),
+      ].filter(() => !this.layout.remark);
+    const rounded = (/** @type {number} */ value) => formatNumber(Math.round(10 * value) / 10);
     const free = range
       ? t`${`${rounded(range[0])}°`} to ${`${rounded(range[1])}°`}`
       : stroke
-        ? t`${shown(stroke[0])} to ${`${shown(stroke[1])} ${unit}`}`
+        ? t`${formatNumber(stroke[0])} to ${`${formatNumber(stroke[1])} ${unit}`}`
         : "";
     return [
-      el(
+      createElement(
         "ul",
         { class: "clashes" },
         ...clashes.map(({ parts, distance, input_angle: angle, input_place: place }) => {
           const at = angle ?? place ?? NaN;
-          return el(
+          return createElement(
             "li",
             {},
-            el("span", { class: "bad" }, `✗ ${t`${words(parts[0])} and ${term(parts[1])}`}: `),
+            createElement("span", { class: "bad" }, `✗ ${t`${toWords(parts[0])} and ${term(parts[1])}`}: `),
             distance < 0
-              ? t`${shown(Number((-distance).toPrecision(3)))} ${unit} into each other`
-              : t`${shown(Number(distance.toPrecision(3)))} ${unit} apart`,
+              ? t`${formatNumber(Number((-distance).toPrecision(3)))} ${unit} into each other`
+              : t`${formatNumber(Number(distance.toPrecision(3)))} ${unit} apart`,
             " ",
             Number.isFinite(at) &&
-              el(
+              createElement(
                 "button",
                 { type: "button", class: "small", onclick: () => lead(at) },
                 t`Go to ${`${rounded(at)}${angle === undefined ? ` ${unit}` : "°"}`}`,
@@ -171,7 +176,7 @@ export class Planes {
           );
         }),
       ),
-      el(
+      createElement(
         "p",
         { class: "note" },
         free ? t`Nothing clashes from ${free}.` : t`No part of the motion is free of clashes.`,
@@ -180,58 +185,62 @@ export class Planes {
   }
 
   /** The empty picture with its bases; links and pins come with the motion. */
-  picture() {
+  createPicture() {
     const { layout, stated, view } = this;
     const pitch = stated.thickness + (stated.gap ?? 0);
     const second = Object.values(layout.pins).some(([, high]) => high > layout.count);
-    const room = HEIGHT - TOP - FOOT - BASE * (second ? 2 : 1);
+    const room = PLANE_HEIGHT - TOP_MARGIN - FOOT_HEIGHT - BASE_LINE * (second ? 2 : 1);
     this.scale = Math.min(
-      THICKEST / stated.thickness,
+      MAX_THICKNESS / stated.thickness,
       room / (layout.count * pitch + (second ? (stated.gap ?? 0) : 0)),
     );
     const ceiling = this.floor - this.scale * (layout.count * pitch + (stated.gap ?? 0));
     const base = (/** @type {number} */ y) =>
-      svg("rect", { class: "base", x: 30, y, width: view.width - 60, height: BASE });
+      createSvg("rect", { class: "base", x: 30, y, width: view.width - 60, height: BASE_LINE });
     this.bars = Object.entries(layout.planes).map(([name, plane]) => ({
       name,
-      bar: svg("rect", {
+      bar: createSvg("rect", {
         class: `slab ${planeClass(plane)}`,
-        y: this.below(plane) - this.scale * stated.thickness,
+        y: this.planeTop(plane) - this.scale * stated.thickness,
         height: this.scale * stated.thickness,
         rx: 3,
       }),
     }));
     this.pins = Object.entries(layout.pins).map(([name, [low, high]], k) => {
-      const bottom = low === 0 ? this.floor + BASE : this.below(low);
-      const top = high > layout.count ? ceiling - BASE : this.below(high) - this.scale * stated.thickness;
+      const bottom = low === 0 ? this.floor + BASE_LINE : this.planeTop(low);
+      const top = high > layout.count ? ceiling - BASE_LINE : this.planeTop(high) - this.scale * stated.thickness;
       const width = Math.max(4, view.scale * stated.pin_diameter);
       return {
         name,
         width,
-        bar: svg("rect", {
+        bar: createSvg("rect", {
           class: `shaft ${layout.stub_shafts.includes(name) ? "stub" : ""}`,
           y: top,
           height: bottom - top,
           width,
         }),
-        text: svg("text", { class: "joint", y: HEIGHT - (k % 2 ? 6 : 24) }, name),
+        text: createSvg("text", { class: "joint", y: PLANE_HEIGHT - (k % 2 ? 6 : 24) }, name),
       };
     });
-    this.side = svg(
+    this.side = createSvg(
       "svg",
       {
-        viewBox: `0 0 ${view.width} ${HEIGHT}`,
+        viewBox: `0 0 ${view.width} ${PLANE_HEIGHT}`,
         class: "canvas side",
         role: "img",
         "aria-label": second
           ? t`The linkage from the side: ${layout.count} planes between two bases`
           : t`The linkage from the side: ${layout.count} planes on a base`,
       },
-      svg("rect", { class: "paper", width: view.width, height: HEIGHT }),
+      createSvg("rect", { class: "paper", width: view.width, height: PLANE_HEIGHT }),
       base(this.floor),
-      second && base(ceiling - BASE),
+      second && base(ceiling - BASE_LINE),
       ...Array.from({ length: layout.count }, (_, k) =>
-        svg("text", { class: "tick", x: 10, y: this.below(k + 1) - 0.5 * this.scale * stated.thickness + 4 }, k + 1),
+        createSvg(
+          "text",
+          { class: "tick", x: 10, y: this.planeTop(k + 1) - 0.5 * this.scale * stated.thickness + 4 },
+          k + 1,
+        ),
       ),
       ...this.bars.map(({ bar }) => bar),
       ...this.pins.flatMap(({ bar, text }) => [bar, text]),
@@ -242,12 +251,12 @@ export class Planes {
   /** Stay in line with the picture above where it shows more on either side. @param {number} more pixels */
   widen(more) {
     const frame = { x: -more, width: this.view.width + 2 * more };
-    this.side?.setAttribute("viewBox", `${frame.x} 0 ${frame.width} ${HEIGHT}`);
+    this.side?.setAttribute("viewBox", `${frame.x} 0 ${frame.width} ${PLANE_HEIGHT}`);
     for (const [name, value] of Object.entries(frame)) this.side?.firstElementChild?.setAttribute(name, String(value));
   }
 
   /** Where a plane begins, pixels from above. @param {number} plane */
-  below(plane) {
+  planeTop(plane) {
     const { thickness, gap = 0 } = this.stated;
     return this.floor - this.scale * ((plane - 1) * (thickness + gap) + gap);
   }
@@ -259,19 +268,23 @@ export class Planes {
       const wheel = this.wheels[name];
       const xs = wheel
         ? [wheel.centre[0] - wheel.radius + half, wheel.centre[0] + wheel.radius - half]
-        : this.on(name).map((joint) => places[joint]?.[0] ?? NaN);
-      span(bar, this.view.at(Math.min(...xs) - half, 0)[0], this.view.at(Math.max(...xs) + half, 0)[0]);
+        : this.linkSpan(name).map((joint) => places[joint]?.[0] ?? NaN);
+      barSpan(
+        bar,
+        this.view.toPicture(Math.min(...xs) - half, 0)[0],
+        this.view.toPicture(Math.max(...xs) + half, 0)[0],
+      );
     }
     for (const { name, width, bar, text } of this.pins) {
-      const [u] = this.view.at(places[name]?.[0] ?? NaN, 0);
-      span(bar, u - width / 2, u + width / 2);
+      const [u] = this.view.toPicture(places[name]?.[0] ?? NaN, 0);
+      barSpan(bar, u - width / 2, u + width / 2);
       text.toggleAttribute("hidden", !Number.isFinite(u));
       if (Number.isFinite(u)) text.setAttribute("x", u.toFixed(1));
     }
   }
 
   /** The joints that a plate takes in, those in its slots among them. @param {string} name @returns {string[]} */
-  on(name) {
+  linkSpan(name) {
     const link = this.skeleton.links.find((one) => one.name === name);
     const slots = (this.skeleton.slides ?? []).filter((slide) => slide.link === name).map((slide) => slide.joint);
     return [...(link?.joints ?? []), ...slots];
@@ -279,7 +292,7 @@ export class Planes {
 }
 
 /** @param {SVGElement} bar @param {number} from @param {number} to */
-function span(bar, from, to) {
+function barSpan(bar, from, to) {
   const known = Number.isFinite(from) && Number.isFinite(to);
   bar.toggleAttribute("hidden", !known);
   if (!known) return;

@@ -1,8 +1,8 @@
 /** What an analysis tells of a linkage, as facts for reading. */
 
-import { telling } from "./circuits.js";
-import { shown, words } from "../core/dom.js";
-import { degrees } from "../plots/gauge.js";
+import { findTracedJoint } from "./circuits.js";
+import { formatNumber, toWords } from "../core/dom.js";
+import { formatDegrees } from "../plots/gauge.js";
 import { t } from "../core/messages.js";
 
 /** @import { LinkageAnalysis, Skeleton } from "../types/values.js" */
@@ -15,8 +15,8 @@ import { t } from "../core/messages.js";
  * @param {Skeleton} skeleton
  * @returns {Point[]}
  */
-export function curveOf(answer, skeleton) {
-  const { x, y } = answer.joints[telling(skeleton)];
+export function couplerCurve(answer, skeleton) {
+  const { x, y } = answer.joints[findTracedJoint(skeleton)];
   return x.map((one, k) => (one === null ? [NaN, NaN] : [one, Number(y[k])]));
 }
 
@@ -26,7 +26,7 @@ export function curveOf(answer, skeleton) {
  * @param {Point} from
  * @param {Point} to
  */
-function away({ x, y }, [px, py], [qx, qy]) {
+function distanceToLine({ x, y }, [px, py], [qx, qy]) {
   const [dx, dy] = [qx - px, qy - py];
   const share = Math.min(1, Math.max(0, ((x - px) * dx + (y - py) * dy) / (dx * dx + dy * dy || 1)));
   const far = Math.hypot(px + share * dx - x, py + share * dy - y);
@@ -34,7 +34,7 @@ function away({ x, y }, [px, py], [qx, qy]) {
 }
 
 /**
- * @typedef {object} Driven
+ * @typedef {object} LinkageFacts
  * @property {Record<string, string>} facts
  * @property {boolean} turns whether the input turns through
  * @property {number | null} least transmission angle, degrees
@@ -47,16 +47,16 @@ function away({ x, y }, [px, py], [qx, qy]) {
  * @param {Skeleton} skeleton
  * @param {{x: number, y: number}[]} targets
  * @param {string} unit of lengths
- * @returns {Driven}
+ * @returns {LinkageFacts}
  */
-export function driven(answer, skeleton, targets, unit) {
-  const curve = curveOf(answer, skeleton);
+export function createFacts(answer, skeleton, targets, unit) {
+  const curve = couplerCurve(answer, skeleton);
   const angles = answer.transmission_angle.filter((/** @type {number | null} */ one) => one !== null);
   const least = angles.length ? Math.min(...angles) : null;
   const missed =
     "P" in skeleton.joints
       ? targets.map((target) =>
-          curve.slice(1).reduce((least, to, k) => Math.min(least, away(target, curve[k], to)), Infinity),
+          curve.slice(1).reduce((least, to, k) => Math.min(least, distanceToLine(target, curve[k], to)), Infinity),
         )
       : [];
   const turns = answer.valid.every(Boolean);
@@ -67,13 +67,13 @@ export function driven(answer, skeleton, targets, unit) {
     grashof,
     missed,
     facts: {
-      ...(grashof ? { [t`Grashof`]: words(grashof) } : {}),
+      ...(grashof ? { [t`Grashof`]: toWords(grashof) } : {}),
       [t`Input turns through`]: turns ? t`yes` : t`no`,
-      [t`Least transmission angle`]: degrees(least),
+      [t`Least transmission angle`]: formatDegrees(least),
       ...(missed.length
-        ? { [t`Farthest target from the curve`]: `${shown(Number(Math.max(...missed).toPrecision(3)))} ${unit}` }
+        ? { [t`Farthest target from the curve`]: `${formatNumber(Number(Math.max(...missed).toPrecision(3)))} ${unit}` }
         : {}),
-      [t`Circuits`]: shown(answer.circuits.length),
+      [t`Circuits`]: formatNumber(answer.circuits.length),
     },
   };
 }

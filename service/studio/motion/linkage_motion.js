@@ -1,26 +1,26 @@
 /** A linkage in motion: the arrays of its cycle, drawn at the display's own rate. */
 
-import { Circuits, others, telling, track } from "./circuits.js";
-import { el, shown, svg } from "../core/dom.js";
-import { Gauge } from "../plots/gauge.js";
-import { led } from "../canvas/grip.js";
-import { Linkage, drawn, grounded, placed } from "../canvas/linkage_drawing.js";
+import { OtherCircuits, otherBranches, findTracedJoint, branchTrack } from "./circuits.js";
+import { createElement, formatNumber, createSvg } from "../core/dom.js";
+import { AngleGauge } from "../plots/gauge.js";
+import { dragWithPointer } from "../canvas/grip.js";
+import { LinkageDrawing, drawnJoints, groundedJoints, translateTo } from "../canvas/linkage_drawing.js";
 import { t } from "../core/messages.js";
-import { Planes, planeClass } from "./link_planes.js";
-import { Player, between, within } from "../core/player.js";
-import { plots } from "../plots/plots.js";
-import { judged, moved, partName, parts } from "../plots/plotted_quantities.js";
-import { RoomView } from "../assembly/workspace_view.js";
+import { LinkPlanes, planeClass } from "./link_planes.js";
+import { Player, interpolate, clampIndex } from "../core/player.js";
+import { createPlots } from "../plots/plots.js";
+import { qualityPlots, partPlots, partName, listParts } from "../plots/plotted_quantities.js";
+import { WorkspaceView } from "../assembly/workspace_view.js";
 import { Ruler } from "../canvas/ruler.js";
-import { scene } from "../canvas/stage.js";
-import { Springs, anchored, springsOf } from "./springs.js";
-import { Sweep, jointsAt, placeOf, rangeOf } from "./swept_area.js";
+import { createScene } from "../canvas/stage.js";
+import { SpringDrawings, springAnchors, listSprings } from "./springs.js";
+import { SweptArea, jointPositions, findPosition, usedRange } from "./swept_area.js";
 import { View } from "../core/view.js";
 
 /** @import { Design, LinkageAnalysis, LinkedDesign, Problem, Schemas, Skeleton } from "../types/values.js" */
 
 /** Height of the side view beneath a linkage in planes, with what stands below it, pixels. */
-const PLANES = 300;
+const PLANES_HEIGHT = 300;
 
 /** @typedef {[number, number]} Point */
 /** @typedef {{x: (number | null)[], y: (number | null)[]}} Track */
@@ -35,7 +35,7 @@ const PLANES = 300;
  *   whether numbers are told of it
  */
 
-export class Mover {
+export class LinkageMotion {
   /**
    * @param {import("../canvas/stage.js").Frame} frame
    * @param {LinkedDesign} design
@@ -48,90 +48,92 @@ export class Mover {
     this.frame = frame;
     const stated = /** @type {Schemas["StatedLayout"] | null | undefined} */ (problem.layout);
     const layered = design.layout && stated;
-    this.size = frame.size(layered ? PLANES : 0);
+    this.size = frame.availableSize(layered ? PLANES_HEIGHT : 0);
     this.motion = motion;
     this.skeleton = design.mechanism.skeleton;
     this.count = motion.input_angle.length;
     this.unit = problem.length_unit ?? "mm";
     /** Whether a slide drives. */
     this.slides = this.skeleton.links.every((link) => link.name !== this.skeleton.input_link);
-    this.targets = demanded(problem, design);
-    const name = telling(this.skeleton);
-    this.room = new RoomView(problem, design.mechanism);
+    this.targets = listTargets(problem, design);
+    const name = findTracedJoint(this.skeleton);
+    this.room = new WorkspaceView(problem, design.mechanism);
     const points = [
       ...around,
-      ...anchored(springsOf(design, problem)),
+      ...springAnchors(listSprings(design, problem)),
       ...this.room.extent,
-      ...Object.keys(motion.joints).flatMap((joint) => this.track(joint)),
+      ...Object.keys(motion.joints).flatMap((joint) => this.jointTrack(joint)),
       ...this.targets.map((one) => /** @type {Point} */ ([one.x, one.y])),
-      ...others(circuits).flatMap((branch) => track(branch, name)),
+      ...otherBranches(circuits).flatMap((branch) => branchTrack(branch, name)),
     ];
     this.view = new View(points, ...this.size, 44);
     const planes = design.layout?.planes ?? {};
-    this.linkage = new Linkage(this.view, this.skeleton, {
+    this.linkage = new LinkageDrawing(this.view, this.skeleton, {
       classes: Object.fromEntries(Object.entries(planes).map(([name, plane]) => [name, planeClass(Number(plane))])),
     });
-    this.circuits = new Circuits(this.view, this.skeleton, circuits);
-    const closed = returns(motion, this.count);
+    this.circuits = new OtherCircuits(this.view, this.skeleton, circuits);
+    const closed = returnsToStart(motion, this.count);
     this.player = new Player({
       count: this.count,
       closed,
       label: t`Input`,
-      reading: (at) => this.reading(at),
+      reading: (at) => this.describePosition(at),
       show: (at, told) => this.show(at, told),
     });
-    const range = rangeOf(
+    const range = usedRange(
       motion,
       this.room.cycle ? null : (design.metrics?.used_range ?? design.metrics?.used_stroke),
       closed,
     );
-    this.sweep = new Sweep(
+    this.sweep = new SweptArea(
       this.view,
       this.skeleton,
       this.room,
-      (at) => jointsAt(motion, at),
+      (at) => jointPositions(motion, at),
       range,
-      () => this.player.keep(this.sweep.on ? range : null),
+      () => this.player.restrictTo(this.sweep.isShown ? range : null),
     );
     this.closed = closed;
     this.planes =
       design.layout && stated
-        ? new Planes(this.view, this.skeleton, design.layout, problem, stated, (input) => this.lead(input))
+        ? new LinkPlanes(this.view, this.skeleton, design.layout, problem, stated, (input) => this.lead(input))
         : null;
     this.gauge = motion.transmission_angle?.some((one) => one !== null)
-      ? new Gauge(t`Transmission angle`, motion.transmission_angle, {
+      ? new AngleGauge(t`Transmission angle`, motion.transmission_angle, {
           limit: problem.constraints?.min_transmission_angle,
-          used: partly(design) ? design.metrics?.min_transmission_angle : null,
+          used: missesPart(design) ? design.metrics?.min_transmission_angle : null,
         })
       : null;
-    /** @type {import("../plots/plots.js").Mark[]} */
+    /** @type {import("../plots/plots.js").PlotMark[]} */
     this.marks = [];
     /** @type {Companion | null} */
     this.companion = null;
-    this.springs = new Springs(this.view, this.skeleton, springsOf(design, problem));
-    this.picture = this.drawn();
+    this.springs = new SpringDrawings(this.view, this.skeleton, listSprings(design, problem));
+    this.picture = this.createPicture();
     this.build(design, problem);
     this.player.begin();
   }
 
   /** @param {string} name @returns {Point[]} */
-  track(name) {
+  jointTrack(name) {
     const { x, y } = this.motion.joints[name];
     return x.map((one, k) => (one === null ? [NaN, NaN] : [one, Number(y[k])]));
   }
 
   /** Everything on the stage, one thing over the other. */
-  drawn() {
+  createPicture() {
     const { view, skeleton } = this;
-    const still = grounded(skeleton);
-    const moving = drawn(skeleton).filter((name) => !still.includes(name));
-    return scene(view, t`The linkage in motion`, [
+    const still = groundedJoints(skeleton);
+    const moving = drawnJoints(skeleton).filter((name) => !still.includes(name));
+    return createScene(view, t`The linkage in motion`, [
       this.sweep.node,
       this.room.draw(view),
       this.circuits.node,
-      ...moving.map((name) => svg("path", { class: name === "P" ? "curve" : "trail", d: view.path(this.track(name)) })),
-      ...this.toggles(),
-      ...this.targets.map((one, k) => this.target(one, k)),
+      ...moving.map((name) =>
+        createSvg("path", { class: name === "P" ? "curve" : "trail", d: view.pathData(this.jointTrack(name)) }),
+      ),
+      ...this.describeToggles(),
+      ...this.targets.map((one, k) => this.createTarget(one, k)),
       this.springs.node,
       this.linkage.node,
     ]);
@@ -140,24 +142,24 @@ export class Mover {
   /** @param {LinkedDesign} design @param {Problem} problem */
   build(design, problem) {
     const { view, skeleton } = this;
-    this.drags(grounded(skeleton));
+    this.dragInput(groundedJoints(skeleton));
     const { slides, unit } = this;
     const along = slides ? ` ${unit}` : "°";
-    const ruler = new Ruler(this.picture, view, unit, () => this.places());
-    const plotted = (/** @type {import("../plots/plots.js").Plotted[]} */ wanted) =>
-      plots(wanted, this.motion.input_angle, (at) => this.player.lead(at), along);
-    const force = plotted(judged(this.motion, design, problem));
-    const box = el("div", { class: "plots" });
-    const choices = parts(this.motion, skeleton);
+    const ruler = new Ruler(this.picture, view, unit, () => this.currentPlaces());
+    const plotted = (/** @type {import("../plots/plots.js").PlotData[]} */ wanted) =>
+      createPlots(wanted, this.motion.input_angle, (at) => this.player.leadTo(at), along);
+    const force = plotted(qualityPlots(this.motion, design, problem));
+    const box = createElement("div", { class: "plots" });
+    const choices = listParts(this.motion, skeleton);
     const choose = (/** @type {string} */ part) => {
-      this.marks = [...force, ...plotted(moved(this.motion, part, unit, slides))];
+      this.marks = [...force, ...plotted(partPlots(this.motion, part, unit, slides))];
       box.replaceChildren(...this.marks.map((mark) => mark.figure));
       for (const mark of this.marks) mark.show(this.player.at, true);
     };
-    const pick = el(
+    const pick = createElement(
       "select",
       { id: "part", onchange: () => choose(pick.value) },
-      ...choices.map((part) => el("option", { value: part }, partName(part))),
+      ...choices.map((part) => createElement("option", { value: part }, partName(part))),
     );
     this.frame.fill({
       picture: this.picture,
@@ -166,12 +168,12 @@ export class Mover {
       below: [this.planes?.node],
       beside: [this.gauge?.node, this.sweep.control, this.circuits.control, ...this.room.legend],
       plots: [
-        el(
+        createElement(
           "div",
           { class: "row" },
-          el("label", { for: "part" }, t`Plots of`),
+          createElement("label", { for: "part" }, t`Plots of`),
           pick,
-          el(
+          createElement(
             "span",
             { class: "note" },
             slides
@@ -186,44 +188,44 @@ export class Mover {
   }
 
   /** The crank, or the slider, can be taken by its pin and led along its way. @param {string[]} still */
-  drags(still) {
-    const name = inputPin(this.skeleton, still);
+  dragInput(still) {
+    const name = findInputPin(this.skeleton, still);
     const pin = this.linkage.pins.find((one) => one.name === name);
     if (!pin) return;
     pin.dot.classList.add("led");
     // A finger is less exact than what is drawn.
-    const hit = svg("circle", { class: "hit" });
+    const hit = createSvg("circle", { class: "hit" });
     pin.dot.before(hit);
     const { x, y } = this.motion.joints[pin.name];
     for (const grip of [pin.dot, hit]) {
-      led(grip, this.picture, this.view, {
+      dragWithPointer(grip, this.picture, this.view, {
         taken: () => this.player.stop(),
-        led: (at) => this.player.lead(nearest(x, y, at, this.player.at)),
+        led: (at) => this.player.leadTo(nearestIndex(x, y, at, this.player.at)),
       });
     }
   }
 
   /** The linkage at the toggles that end its branch, and the crank's pin at those of every circuit. */
-  toggles() {
+  describeToggles() {
     const { motion, skeleton, view } = this;
-    const ends = this.endings().map((k) => {
-      const ghost = new Linkage(view, skeleton, { names: false, faint: true });
-      ghost.show(
+    const ends = this.describeRange().map((k) => {
+      const ghost = new LinkageDrawing(view, skeleton, { names: false, faint: true });
+      ghost.moveTo(
         Object.fromEntries(
           Object.keys(motion.joints).map((name) => [
             name,
-            motion.joints[name].x[k] === null ? null : this.track(name)[k],
+            motion.joints[name].x[k] === null ? null : this.jointTrack(name)[k],
           ]),
         ),
       );
       ghost.node.setAttribute("class", "faint toggle");
       return ghost.node;
     });
-    const still = grounded(skeleton);
+    const still = groundedJoints(skeleton);
     const link = skeleton.links.find((one) => one.name === skeleton.input_link);
     const [pivot, pin] = [
       link?.joints.find((/** @type {string} */ one) => still.includes(one)),
-      inputPin(skeleton, still),
+      findInputPin(skeleton, still),
     ];
     if (!pivot || !pin || !link) return ends;
     const [[ox, oy], [ax, ay]] = [skeleton.joints[pivot], skeleton.joints[pin]];
@@ -232,43 +234,43 @@ export class Mover {
       ...ends,
       ...motion.toggles.map((/** @type {number} */ degrees) => {
         const angle = (degrees * Math.PI) / 180;
-        const place = view.at(ox + crank * Math.cos(angle), oy + crank * Math.sin(angle));
-        return svg(
+        const place = view.toPicture(ox + crank * Math.cos(angle), oy + crank * Math.sin(angle));
+        return createSvg(
           "g",
-          { class: "stop", transform: placed(place) },
-          svg("title", {}, t`Toggle at ${shown(Math.round(10 * degrees) / 10)}°`),
-          svg("path", { d: "M-5 -5l10 10m0 -10l-10 10" }),
+          { class: "stop", transform: translateTo(place) },
+          createSvg("title", {}, t`Toggle at ${formatNumber(Math.round(10 * degrees) / 10)}°`),
+          createSvg("path", { d: "M-5 -5l10 10m0 -10l-10 10" }),
         );
       }),
     ];
   }
 
   /** Samples at which the motion ends at a toggle. @returns {number[]} */
-  endings() {
+  describeRange() {
     const here = this.motion.circuits.flatMap((one) => one.branches).find((one) => one.reference);
     return here && !here.full ? [0, this.count - 1] : [];
   }
 
   /** @param {Target} one @param {number} k */
-  target(one, k) {
+  createTarget(one, k) {
     const angle = ((one.angle ?? 0) * Math.PI) / 180;
-    return svg(
+    return createSvg(
       "g",
-      { class: "goal", transform: placed(this.view.at(one.x, one.y)) },
-      svg("circle", {}),
-      one.angle !== undefined && svg("line", { x2: 26 * Math.cos(angle), y2: -26 * Math.sin(angle) }),
-      this.targets.length <= 12 && svg("text", { dx: "0.6em", dy: "1.15em" }, k + 1),
+      { class: "goal", transform: translateTo(this.view.toPicture(one.x, one.y)) },
+      createSvg("circle", {}),
+      one.angle !== undefined && createSvg("line", { x2: 26 * Math.cos(angle), y2: -26 * Math.sin(angle) }),
+      this.targets.length <= 12 && createSvg("text", { dx: "0.6em", dy: "1.15em" }, k + 1),
     );
   }
 
   /** Where all joints are now. @returns {Point[]} */
-  places() {
-    return Object.values(this.now()).filter((one) => one !== null);
+  currentPlaces() {
+    return Object.values(this.currentInput()).filter((one) => one !== null);
   }
 
   /** The same by the joints' names. */
-  now() {
-    return jointsAt(this.motion, this.player.at);
+  currentInput() {
+    return jointPositions(this.motion, this.player.at);
   }
 
   /**
@@ -277,27 +279,27 @@ export class Mover {
    * @param {boolean} [told] whether numbers are told of it
    */
   show(at, told = true) {
-    const now = jointsAt(this.motion, at);
-    this.linkage.show(now);
+    const now = jointPositions(this.motion, at);
+    this.linkage.moveTo(now);
     this.springs.show(now);
     this.room.show(now);
     this.planes?.show(now);
-    this.circuits.show(between(this.motion.input_angle, at));
-    this.gauge?.show(between(this.motion.transmission_angle, at), told);
-    this.companion?.show(Number(between(this.motion.input_angle, at)), now, told);
+    this.circuits.show(interpolate(this.motion.input_angle, at));
+    this.gauge?.show(interpolate(this.motion.transmission_angle, at), told);
+    this.companion?.show(Number(interpolate(this.motion.input_angle, at)), now, told);
     for (const mark of this.marks) mark.show(at, told);
   }
 
   /** Lead the motion to an input. @param {number} input */
   lead(input) {
-    this.player.lead(within(placeOf(this.motion.input_angle, input, this.closed), this.count - 1));
+    this.player.leadTo(clampIndex(findPosition(this.motion.input_angle, input, this.closed), this.count - 1));
   }
 
   /**
    * Draw something into the picture that goes with the motion, or nothing any more.
    * @param {Companion | null} companion
    */
-  accompany(companion) {
+  addCompanion(companion) {
     this.companion?.node.remove();
     this.companion = companion;
     if (companion) this.picture.append(companion.node);
@@ -312,9 +314,9 @@ export class Mover {
   }
 
   /** @param {number} at */
-  reading(at) {
-    const input = Number(between(this.motion.input_angle, at));
-    return `${shown(Math.round(10 * input) / 10)}${this.slides ? ` ${this.unit}` : "°"}`;
+  describePosition(at) {
+    const input = Number(interpolate(this.motion.input_angle, at));
+    return `${formatNumber(Math.round(10 * input) / 10)}${this.slides ? ` ${this.unit}` : "°"}`;
   }
 
   pause() {
@@ -332,7 +334,7 @@ export class Mover {
  * @param {string[]} still
  * @returns {string | undefined}
  */
-function inputPin(skeleton, still) {
+function findInputPin(skeleton, still) {
   const link = skeleton.links.find((one) => one.name === skeleton.input_link);
   return link ? link.joints.find((/** @type {string} */ one) => !still.includes(one)) : skeleton.input_link;
 }
@@ -343,7 +345,7 @@ function inputPin(skeleton, still) {
  * @param {Partial<Design> | null} design
  * @returns {Target[]}
  */
-export function demanded(problem, design) {
+export function listTargets(problem, design) {
   const listed = (problem.positions ?? problem.points ?? []).filter((one) => Number.isFinite(one?.x));
   const placed = design?.placement;
   if (!placed) return listed;
@@ -360,7 +362,7 @@ export function demanded(problem, design) {
  * uses.
  * @param {LinkedDesign} design
  */
-function partly(design) {
+function missesPart(design) {
   return (
     Number.isFinite(design.metrics?.min_transmission_angle) &&
     (design.targets === undefined || design.targets.length > 1)
@@ -368,7 +370,7 @@ function partly(design) {
 }
 
 /** Whether the last configuration is the first again. @param {LinkageAnalysis} motion @param {number} count */
-function returns(motion, count) {
+function returnsToStart(motion, count) {
   const tracks = Object.values(/** @type {Record<string, Track>} */ (motion.joints));
   const spread = Math.max(
     ...tracks.map((track) => Math.max(...track.x.map(Number)) - Math.min(...track.x.map(Number))),
@@ -387,7 +389,7 @@ function returns(motion, count) {
  * hand.
  * @param {(number | null)[]} x @param {(number | null)[]} y @param {Point} point @param {number} at
  */
-function nearest(x, y, point, at) {
+function nearestIndex(x, y, point, at) {
   const away = x.map((one, k) => (one === null ? Infinity : Math.hypot(one - point[0], Number(y[k]) - point[1])));
   const least = Math.min(...away);
   let best = away.indexOf(least);

@@ -1,17 +1,17 @@
 /** A ratchet wheel that turns on under its pawls. */
 
-import { el, svg } from "../core/dom.js";
+import { createElement, createSvg } from "../core/dom.js";
 import { t } from "../core/messages.js";
-import { between } from "../core/player.js";
-import { scene } from "../canvas/stage.js";
-import { Turning } from "./rotary_view.js";
+import { interpolate } from "../core/player.js";
+import { createScene } from "../canvas/stage.js";
+import { RotaryView } from "./rotary_view.js";
 import { View } from "../core/view.js";
 
 /** @import { Schemas } from "../types/values.js" */
 
 /** @typedef {[number, number]} Point */
 
-export class Ratchet extends Turning {
+export class RatchetView extends RotaryView {
   /**
    * @param {import("../canvas/stage.js").Frame} frame
    * @param {Schemas["RatchetDesign"]} design
@@ -27,20 +27,23 @@ export class Ratchet extends Turning {
     const radius = mechanism.wheel_radius;
     const pivots = mechanism.pawls.map((pawl) => pawl.pivot);
     const view = new View([[-radius, -radius], [radius, radius], ...pivots], ...this.size, 40);
-    this.axis = view.at(0, 0);
-    this.wheel = svg("path", { class: "teeth", d: `${view.path(teeth)}Z` });
+    this.axis = view.toPicture(0, 0);
+    this.wheel = createSvg("path", { class: "teeth", d: `${view.pathData(teeth)}Z` });
     this.pawls = mechanism.pawls.map((pawl) => {
-      const [u, v] = view.at(pawl.pivot[0], pawl.pivot[1]);
+      const [u, v] = view.toPicture(pawl.pivot[0], pawl.pivot[1]);
       return {
         at: [u, v],
-        bar: svg("path", { class: "link", d: view.path([pawl.pivot, over(pawl, mechanism.tooth_height), pawl.nose]) }),
+        bar: createSvg("path", {
+          class: "link",
+          d: view.pathData([pawl.pivot, noseAtHeight(pawl, mechanism.tooth_height), pawl.nose]),
+        }),
       };
     });
-    const picture = scene(view, t`The ratchet, turning`, [
-      svg("g", { class: "wheel t0" }, this.wheel),
+    const picture = createScene(view, t`The ratchet, turning`, [
+      createSvg("g", { class: "wheel t0" }, this.wheel),
       ...this.pawls.map((pawl) => pawl.bar),
       ...[this.axis, ...this.pawls.map((pawl) => pawl.at)].map(([cx, cy]) =>
-        svg("circle", { class: "pin", cx, cy, r: 3.5 }),
+        createSvg("circle", { class: "pin", cx, cy, r: 3.5 }),
       ),
     ]);
     const lifts = Object.fromEntries(
@@ -48,7 +51,7 @@ export class Ratchet extends Turning {
     );
     this.fill(
       picture,
-      [el("p", { class: "note" }, t`The wheel turns on; turning back it is held at the next stop.`)],
+      [createElement("p", { class: "note" }, t`The wheel turns on; turning back it is held at the next stop.`)],
       [{ title: t`Lift of pawls (°)`, lines: lifts }],
     );
   }
@@ -58,10 +61,10 @@ export class Ratchet extends Turning {
     const [u, v] = this.axis;
     this.wheel.setAttribute(
       "transform",
-      `rotate(${(-Number(between(this.motion.input_angle, at))).toFixed(3)} ${u.toFixed(2)} ${v.toFixed(2)})`,
+      `rotate(${(-Number(interpolate(this.motion.input_angle, at))).toFixed(3)} ${u.toFixed(2)} ${v.toFixed(2)})`,
     );
     this.pawls.forEach((pawl, /** @type {number} */ k) => {
-      const lift = Number(between(this.motion.pawls[k].lift, at));
+      const lift = Number(interpolate(this.motion.pawls[k].lift, at));
       pawl.bar.setAttribute(
         "transform",
         `rotate(${lift.toFixed(3)} ${pawl.at[0].toFixed(2)} ${pawl.at[1].toFixed(2)})`,
@@ -76,7 +79,7 @@ export class Ratchet extends Turning {
  * @param {number} height
  * @returns {Point}
  */
-function over({ nose: [x, y] }, height) {
+function noseAtHeight({ nose: [x, y] }, height) {
   const share = 1 + (1.9 * height) / Math.hypot(x, y);
   return [share * x, share * y];
 }

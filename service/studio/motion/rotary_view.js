@@ -1,11 +1,11 @@
 /** What turns: its clock, which tells the angle of what drives it, its picture, and plots that go with them. */
 
-import { el, shown } from "../core/dom.js";
+import { createElement, formatNumber } from "../core/dom.js";
 import { t } from "../core/messages.js";
-import { Player, between } from "../core/player.js";
-import { plots } from "../plots/plots.js";
+import { Player, interpolate } from "../core/player.js";
+import { createPlots } from "../plots/plots.js";
 
-export class Turning {
+export class RotaryView {
   /**
    * @param {import("../canvas/stage.js").Frame} frame
    * @param {string} label of what drives it
@@ -14,21 +14,21 @@ export class Turning {
    */
   constructor(frame, label, angles, { endless = false } = {}) {
     this.frame = frame;
-    this.size = frame.size();
+    this.size = frame.availableSize();
     this.angles = angles;
     /** What is on the stage. @type {SVGSVGElement | null} */
     this.picture = null;
-    /** @type {import("../plots/plots.js").Mark[]} */
+    /** @type {import("../plots/plots.js").PlotMark[]} */
     this.marks = [];
     this.player = new Player({
       count: angles.length,
       closed: true,
       endless,
       label,
-      reading: (at) => `${shown(Math.round(10 * this.over(angles, at)) / 10)}°`,
+      reading: (at) => `${formatNumber(Math.round(10 * this.interpolateSeries(angles, at)) / 10)}°`,
       show: (at, told) => {
         this.show(at, told);
-        for (const mark of this.marks) mark.show(this.within(at), told);
+        for (const mark of this.marks) mark.show(this.clampPosition(at), told);
       },
     });
   }
@@ -37,12 +37,12 @@ export class Turning {
    * Take the stage, and begin.
    * @param {SVGSVGElement} picture
    * @param {(Node | null | false | undefined)[]} beside
-   * @param {import("../plots/plots.js").Plotted[]} [plotted] over the angles
+   * @param {import("../plots/plots.js").PlotData[]} [plotted] over the angles
    * @param {(Node | null)[]} [below] on the stage, beneath the picture
    */
   fill(picture, beside, plotted = [], below = []) {
     this.picture = picture;
-    this.marks = plots(plotted, this.angles, (at) => this.player.lead(at));
+    this.marks = createPlots(plotted, this.angles, (at) => this.player.leadTo(at));
     this.frame.fill({
       picture,
       clock: this.player.row,
@@ -50,22 +50,22 @@ export class Turning {
       beside,
       plots: [
         this.marks.length > 0
-          ? el("div", { class: "plots" }, ...this.marks.map((mark) => mark.figure))
-          : el("p", { class: "note" }, t`Everything of this turns evenly: there is nothing to plot.`),
+          ? createElement("div", { class: "plots" }, ...this.marks.map((mark) => mark.figure))
+          : createElement("p", { class: "note" }, t`Everything of this turns evenly: there is nothing to plot.`),
       ],
     });
     this.player.begin();
   }
 
   /** A value that grows turn after turn by as much as over one. @param {number[]} series @param {number} at */
-  over(series, at) {
+  interpolateSeries(series, at) {
     const last = series.length - 1;
     const turns = Math.floor(at / last);
-    return turns * (series[last] - series[0]) + Number(between(series, at - turns * last));
+    return turns * (series[last] - series[0]) + Number(interpolate(series, at - turns * last));
   }
 
   /** A place of the arrays within the first turn. @param {number} at */
-  within(at) {
+  clampPosition(at) {
     const last = this.angles.length - 1;
     return this.player.moved.endless ? at - last * Math.floor(at / last) : at;
   }

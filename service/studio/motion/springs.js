@@ -1,6 +1,6 @@
 /** The springs of a linkage, drawn as coils between the links that they join. */
 
-import { svg } from "../core/dom.js";
+import { createSvg } from "../core/dom.js";
 
 /** @import { LinkedDesign, Problem, Schemas, Skeleton } from "../types/values.js" */
 
@@ -9,9 +9,9 @@ import { svg } from "../core/dom.js";
 /** Of a spring that pulls along a line; one that turns has none. @typedef {[End, End]} Ends */
 
 /** Turns of a coil, its half width, and the straight part at either end, pixels. */
-const TURNS = 6;
-const HALF = 5;
-const STRAIGHT = 10;
+const COIL_TURNS = 6;
+const COIL_HALF_WIDTH = 5;
+const STRAIGHT_LENGTH = 10;
 
 /**
  * The springs of a design: those that were found for it, or stated with its loads.
@@ -19,7 +19,7 @@ const STRAIGHT = 10;
  * @param {Problem} problem
  * @returns {Ends[]}
  */
-export function springsOf(design, problem) {
+export function listSprings(design, problem) {
   const all = /** @type {{ends?: Ends | null}[]} */ (
     design.springs ?? design.dynamics?.springs ?? problem.dynamics?.springs ?? []
   );
@@ -27,33 +27,33 @@ export function springsOf(design, problem) {
 }
 
 /** Where springs are fixed to the ground. @param {Ends[]} springs @returns {Point[]} */
-export function anchored(springs) {
+export function springAnchors(springs) {
   return springs.flatMap((ends) =>
     ends.flatMap(({ link, point }) => (link === "ground" && Array.isArray(point) ? [point] : [])),
   );
 }
 
-export class Springs {
+export class SpringDrawings {
   /** @param {import("../core/view.js").View} view @param {Skeleton} skeleton @param {Ends[]} springs */
   constructor(view, skeleton, springs) {
     this.view = view;
     this.skeleton = skeleton;
     this.springs = springs.map((ends) => ({
       ends,
-      coil: svg("path", { class: "spring" }),
-      hooks: ends.map(() => svg("circle", { class: "hook", r: 3 })),
+      coil: createSvg("path", { class: "spring" }),
+      hooks: ends.map(() => createSvg("circle", { class: "hook", r: 3 })),
     }));
-    this.node = svg("g", { class: "springs" }, ...this.springs.flatMap(({ coil, hooks }) => [coil, ...hooks]));
+    this.node = createSvg("g", { class: "springs" }, ...this.springs.flatMap(({ coil, hooks }) => [coil, ...hooks]));
   }
 
   /** @param {import("../canvas/linkage_drawing.js").Places} places */
   show(places) {
     for (const { ends, coil, hooks } of this.springs) {
-      const [from, to] = ends.map((end) => this.carried(end, places));
+      const [from, to] = ends.map((end) => this.carriedPoint(end, places));
       for (const one of [coil, ...hooks]) one.toggleAttribute("hidden", !from || !to);
       if (!from || !to) continue;
-      const [start, end] = [this.view.at(...from), this.view.at(...to)];
-      coil.setAttribute("d", coiled(start, end));
+      const [start, end] = [this.view.toPicture(...from), this.view.toPicture(...to)];
+      coil.setAttribute("d", coilPath(start, end));
       [start, end].forEach(([u, v], k) => {
         hooks[k].setAttribute("cx", u.toFixed(1));
         hooks[k].setAttribute("cy", v.toFixed(1));
@@ -67,7 +67,7 @@ export class Springs {
    * @param {import("../canvas/linkage_drawing.js").Places} places
    * @returns {Point | null}
    */
-  carried({ link, point }, places) {
+  carriedPoint({ link, point }, places) {
     if (link === "ground") return Array.isArray(point) ? point : null;
     const [one, other] = this.skeleton.links.find(({ name }) => name === link)?.joints ?? [];
     const [a, b] = [places[one], places[other]];
@@ -86,13 +86,15 @@ export class Springs {
 }
 
 /** A zigzag from one place of the picture to another. @param {Point} from @param {Point} to */
-function coiled([u, v], [x, y]) {
+function coilPath([u, v], [x, y]) {
   const length = Math.hypot(x - u, y - v);
   const [c, s] = [(x - u) / (length || 1), (y - v) / (length || 1)];
-  const ends = Math.min(STRAIGHT, 0.2 * length);
-  const step = (length - 2 * ends) / (2 * TURNS);
+  const ends = Math.min(STRAIGHT_LENGTH, 0.2 * length);
+  const step = (length - 2 * ends) / (2 * COIL_TURNS);
   const place = (/** @type {number} */ along, /** @type {number} */ aside) =>
     `${(u + c * along - s * aside).toFixed(1)} ${(v + s * along + c * aside).toFixed(1)}`;
-  const turns = Array.from({ length: 2 * TURNS }, (_, k) => place(ends + (k + 0.5) * step, k % 2 ? HALF : -HALF));
+  const turns = Array.from({ length: 2 * COIL_TURNS }, (_, k) =>
+    place(ends + (k + 0.5) * step, k % 2 ? COIL_HALF_WIDTH : -COIL_HALF_WIDTH),
+  );
   return `M${[place(0, 0), place(ends, 0), ...turns, place(length - ends, 0), place(length, 0)].join("L")}`;
 }

@@ -3,30 +3,30 @@
  * once.
  */
 
-import { el, svg } from "../core/dom.js";
-import { outline } from "../canvas/area_hatching.js";
+import { createElement, createSvg } from "../core/dom.js";
+import { outlinePath } from "../canvas/area_hatching.js";
 import { t } from "../core/messages.js";
-import { between, within } from "../core/player.js";
-import { plateOf } from "../assembly/workspace_view.js";
+import { interpolate, clampIndex } from "../core/player.js";
+import { findPlatePose } from "../assembly/workspace_view.js";
 
 /** @import { LinkageAnalysis, Skeleton } from "../types/values.js" */
 
 /** @typedef {[number, number]} Point */
 
 /** Places of the motion that make up the swept area, and of them those that have an outline: one in so many. */
-const PLACES = 120;
-const OUTLINED = 12;
+const POSITION_COUNT = 120;
+const MAX_OUTLINES = 12;
 
-export class Sweep {
+export class SweptArea {
   /**
    * @param {import("../core/view.js").View} view @param {Skeleton} skeleton @param
-   *   {import("../assembly/workspace_view.js").RoomView} room
+   *   {import("../assembly/workspace_view.js").WorkspaceView} room
    * @param {(at: number) => import("../canvas/linkage_drawing.js").Places} places joints at a place of the motion
    * @param {[number, number]} range of the motion, places of its arrays @param {() => void} toggled
    */
   constructor(view, skeleton, room, places, range, toggled) {
     this.range = range;
-    this.box = el("input", {
+    this.box = createElement("input", {
       type: "checkbox",
       id: "sweep",
       onchange: () => {
@@ -35,8 +35,8 @@ export class Sweep {
         toggled();
       },
     });
-    this.node = svg("g", { class: "sweep", hidden: true });
-    this.control = el(
+    this.node = createSvg("g", { class: "sweep", hidden: true });
+    this.control = createElement(
       "label",
       { class: "flag", for: "sweep" },
       this.box,
@@ -44,37 +44,43 @@ export class Sweep {
     );
   }
 
-  get on() {
+  get isShown() {
     return this.box.checked;
   }
 
   /**
    * @param {import("../core/view.js").View} view
    * @param {Skeleton} skeleton
-   * @param {import("../assembly/workspace_view.js").RoomView} room
+   * @param {import("../assembly/workspace_view.js").WorkspaceView} room
    * @param {(at: number) => import("../canvas/linkage_drawing.js").Places} places
    */
   draw(view, skeleton, room, places) {
     const [from, to] = this.range;
-    const stands = Array.from({ length: PLACES + 1 }, (_, k) => places(from + ((to - from) * k) / PLACES));
+    const stands = Array.from({ length: POSITION_COUNT + 1 }, (_, k) =>
+      places(from + ((to - from) * k) / POSITION_COUNT),
+    );
     const names = skeleton.links.map((link) => link.name).filter((/** @type {string} */ name) => name !== "ground");
     const links = room.links.map((joints, k) => ({
       name: names[k],
       width: room.width,
-      shapes: stands.map((now) => plateOf(view, joints, now)),
+      shapes: stands.map((now) => findPlatePose(view, joints, now)),
     }));
     const body = stands.map((now) => {
-      const corners = room.carried(now);
-      return corners ? outline(view, { circle: null, corners }) : "";
+      const corners = room.createCarriedBody(now);
+      return corners ? outlinePath(view, { circle: null, corners }) : "";
     });
     for (const { name, width, shapes } of [...links, { name: "body", width: 0, shapes: body }]) {
       const part = name === "body" ? "body" : name === skeleton.input_link ? "input" : "";
       this.node.append(
-        svg("path", { class: `swept ${part}`, d: shapes.join(""), "stroke-width": Math.max(view.scale * width, 1) }),
-        svg("path", {
+        createSvg("path", {
+          class: `swept ${part}`,
+          d: shapes.join(""),
+          "stroke-width": Math.max(view.scale * width, 1),
+        }),
+        createSvg("path", {
           class: `ghosts ${part}`,
           d: shapes
-            .filter((/** @type {string} */ _, /** @type {number} */ k) => k % (PLACES / OUTLINED) === 0)
+            .filter((/** @type {string} */ _, /** @type {number} */ k) => k % (POSITION_COUNT / MAX_OUTLINES) === 0)
             .join(""),
         }),
       );
@@ -89,14 +95,16 @@ export class Sweep {
  * @param {boolean} closed
  * @returns {[number, number]}
  */
-export function rangeOf(motion, used, closed) {
+export function usedRange(motion, used, closed) {
   const last = motion.input_angle.length - 1;
-  const places = used?.map((value) => placeOf(motion.input_angle, value, closed)).sort((one, other) => one - other);
+  const places = used
+    ?.map((value) => findPosition(motion.input_angle, value, closed))
+    .sort((one, other) => one - other);
   return places ? [places[0], places[1]] : [0, last];
 }
 
 /** The place at which a motion has an input. @param {number[]} input @param {number} value @param {boolean} closed */
-export function placeOf(input, value, closed) {
+export function findPosition(input, value, closed) {
   const last = input.length - 1;
   const period = input[last] - input[0];
   const turns = closed ? Math.floor((value - input[0]) / period) : 0;
@@ -117,12 +125,12 @@ export function placeOf(input, value, closed) {
  * @param {number} place
  * @returns {import("../canvas/linkage_drawing.js").Places}
  */
-export function jointsAt(motion, place) {
-  const at = within(place, motion.input_angle.length - 1);
+export function jointPositions(motion, place) {
+  const at = clampIndex(place, motion.input_angle.length - 1);
   return Object.fromEntries(
     Object.entries(motion.joints).map(([name, track]) => {
-      const x = between(track.x, at);
-      return [name, x === null ? null : [x, Number(between(track.y, at))]];
+      const x = interpolate(track.x, at);
+      return [name, x === null ? null : [x, Number(interpolate(track.y, at))]];
     }),
   );
 }

@@ -1,6 +1,6 @@
 /** A design as a small picture, from its dimensions alone. */
 
-import { svg } from "../core/dom.js";
+import { createSvg } from "../core/dom.js";
 import { View } from "../core/view.js";
 
 /** @import { Design, Metrics, OneMechanism, Skeleton } from "../types/values.js" */
@@ -18,24 +18,25 @@ const HEIGHT = 84;
 /** @typedef {{stages: Stage[], idlers?: {stage: number, teeth: number}[]}} Train */
 
 /** @param {Design} design @param {Point[]} [curve] the path of a linkage's telling point */
-export function thumbnail(design, curve = []) {
-  const drawing = drawn(design, curve);
+export function createThumbnail(design, curve = []) {
+  const drawing = thumbnailShapes(design, curve);
   return (
-    drawing && svg("svg", { viewBox: `0 0 ${WIDTH} ${HEIGHT}`, class: "thumbnail", "aria-hidden": "true" }, ...drawing)
+    drawing &&
+    createSvg("svg", { viewBox: `0 0 ${WIDTH} ${HEIGHT}`, class: "thumbnail", "aria-hidden": "true" }, ...drawing)
   );
 }
 
 /** @param {Design} design @param {Point[]} curve @returns {Element[] | null} */
-function drawn({ mechanism, metrics }, curve) {
-  if (mechanism.skeleton?.joints) return linkage(mechanism.skeleton, curve);
+function thumbnailShapes({ mechanism, metrics }, curve) {
+  if (mechanism.skeleton?.joints) return linkageShapes(mechanism.skeleton, curve);
   if (mechanism.profile)
-    return outlines(
+    return outlineShapes(
       [mechanism.profile, mechanism.outer_wall, mechanism.second?.profile].flatMap((curve) => curve ?? []),
       true,
     );
   if (mechanism.lower_wall && mechanism.upper_wall)
-    return outlines([mechanism.lower_wall, mechanism.upper_wall], false);
-  const listed = circles(/** @type {OneMechanism} */ (mechanism), metrics);
+    return outlineShapes([mechanism.lower_wall, mechanism.upper_wall], false);
+  const listed = circleShapes(/** @type {OneMechanism} */ (mechanism), metrics);
   if (!listed.length) return null;
   const view = new View(
     listed.flatMap(
@@ -50,46 +51,46 @@ function drawn({ mechanism, metrics }, curve) {
     4,
   );
   return listed.map(({ centre, radius }) => {
-    const [u, v] = view.at(...centre);
-    return svg("circle", { class: "link", cx: u, cy: v, r: view.scale * radius });
+    const [u, v] = view.toPicture(...centre);
+    return createSvg("circle", { class: "link", cx: u, cy: v, r: view.scale * radius });
   });
 }
 
 /** In its first position. @param {Skeleton} skeleton @param {Point[]} curve */
-function linkage(skeleton, curve) {
+function linkageShapes(skeleton, curve) {
   const view = new View([...Object.values(skeleton.joints), ...curve], WIDTH, HEIGHT, curve.length ? 6 : 12);
-  const path = view.path(curve);
+  const path = view.pathData(curve);
   return [
-    ...(path ? [svg("path", { class: "curve", d: path })] : []),
+    ...(path ? [createSvg("path", { class: "curve", d: path })] : []),
     ...skeleton.links
       .filter((link) => link.name !== "ground")
       .map((link) =>
-        svg("path", {
+        createSvg("path", {
           class: `link ${link.name === skeleton.input_link ? "input" : ""}`,
           d:
-            view.path(link.joints.map((/** @type {string} */ name) => skeleton.joints[name])) +
+            view.pathData(link.joints.map((/** @type {string} */ name) => skeleton.joints[name])) +
             (link.joints.length > 2 ? "Z" : ""),
         }),
       ),
     ...Object.values(skeleton.joints).map(([x, y]) => {
-      const [u, v] = view.at(x, y);
-      return svg("circle", { class: "pin", r: 2.5, cx: u, cy: v });
+      const [u, v] = view.toPicture(x, y);
+      return createSvg("circle", { class: "pin", r: 2.5, cx: u, cy: v });
     }),
   ];
 }
 
 /** Contours of a cam, or the walls of a groove. @param {{x: number[], y: number[]}[]} curves @param {boolean} closed */
-function outlines(curves, closed) {
+function outlineShapes(curves, closed) {
   const lines = curves.map((curve) =>
     curve.x.map((/** @type {number} */ x, /** @type {number} */ k) => /** @type {Point} */ ([x, curve.y[k]])),
   );
   const view = new View([...lines.flat(), .../** @type {Point[]} */ (closed ? [[0, 0]] : [])], WIDTH, HEIGHT, 6);
-  const [u, v] = view.at(0, 0);
+  const [u, v] = view.toPicture(0, 0);
   return [
     ...lines.map((line) =>
-      svg("path", { class: closed ? "link" : "link input", d: `${view.path(line)}${closed ? "Z" : ""}` }),
+      createSvg("path", { class: closed ? "link" : "link input", d: `${view.pathData(line)}${closed ? "Z" : ""}` }),
     ),
-    ...(closed ? [svg("circle", { class: "pin", r: 2.5, cx: u, cy: v })] : []),
+    ...(closed ? [createSvg("circle", { class: "pin", r: 2.5, cx: u, cy: v })] : []),
   ];
 }
 
@@ -99,7 +100,7 @@ function outlines(curves, closed) {
  * @param {Partial<Metrics> | undefined} metrics
  * @returns {Circle[]}
  */
-function circles(mechanism, metrics) {
+function circleShapes(mechanism, metrics) {
   const module = "module" in mechanism ? mechanism.module : NaN;
   if (mechanism.type === "rotor") {
     const reach = Math.max(...mechanism.corrections.map((one) => one.radius ?? one.unbalance), 1e-300);
@@ -173,7 +174,7 @@ function circles(mechanism, metrics) {
   if ("units" in mechanism) {
     let right = 0;
     return mechanism.units.flatMap((unit, /** @type {number} */ n) => {
-      const own = circles(unit, metrics?.units?.[n]);
+      const own = circleShapes(unit, metrics?.units?.[n]);
       const left = Math.min(...own.map((one) => one.centre[0] - one.radius));
       const aside = right - left;
       right = 1.1 * (Math.max(...own.map((one) => one.centre[0] + one.radius)) + aside);

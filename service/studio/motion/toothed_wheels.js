@@ -1,6 +1,6 @@
 /** Toothed wheels, and where they stand: the shafts of a train in the plane, teeth in mesh. */
 
-import { svg } from "../core/dom.js";
+import { createSvg } from "../core/dom.js";
 import { t } from "../core/messages.js";
 
 /** @typedef {[number, number]} Point */
@@ -21,7 +21,7 @@ import { t } from "../core/messages.js";
  */
 
 /** Pitch radius. @param {Wheel} wheel */
-export function radius(wheel) {
+export function pitchRadius(wheel) {
   return 0.5 * wheel.module * wheel.teeth;
 }
 
@@ -31,7 +31,7 @@ export function radius(wheel) {
  * direction `ahead` of the centre of `one`.
  * @param {Wheel} one @param {Wheel} other @param {number} ahead
  */
-export function facing(one, other, ahead) {
+export function phaseFacing(one, other, ahead) {
   const pitch = (2 * Math.PI) / one.teeth;
   const off = one.tooth - ahead;
   const past = ((off - pitch * Math.round(off / pitch)) * one.teeth) / other.teeth;
@@ -45,7 +45,7 @@ export function facing(one, other, ahead) {
  * @param {Wheel} wheel
  * @param {number} scale
  */
-function outline(wheel, scale) {
+function toothOutline(wheel, scale) {
   const m = scale * wheel.module;
   const r = (m * wheel.teeth) / 2;
   const out = wheel.internal ? -1 : 1;
@@ -69,23 +69,23 @@ function outline(wheel, scale) {
 }
 
 /** A wheel as a drawing, and what turns it. @param {import("../core/view.js").View} view @param {Wheel} wheel */
-export function drawn(view, wheel) {
-  const r = view.scale * radius(wheel);
+export function createWheel(view, wheel) {
+  const r = view.scale * pitchRadius(wheel);
   const spoke = wheel.internal
     ? [r + view.scale * 1.4 * wheel.module, r + view.scale * 2.9 * wheel.module]
     : [0, 0.8 * r];
-  const node = svg(
+  const node = createSvg(
     "g",
     { class: `wheel t${wheel.tone % 4}${wheel.idle ? " idle" : ""}` },
-    svg("title", {}, t`${wheel.name}: ${wheel.teeth} teeth`),
-    !wheel.idle && svg("path", { class: "teeth", "fill-rule": "evenodd", d: outline(wheel, view.scale) }),
-    svg("circle", { class: "pitch", r }),
-    !wheel.idle && svg("path", { class: "spoke", d: `M${spoke[0]} 0H${spoke[1]}` }),
-    !wheel.internal && svg("circle", { class: "pin", r: 3.5 }),
+    createSvg("title", {}, t`${wheel.name}: ${wheel.teeth} teeth`),
+    !wheel.idle && createSvg("path", { class: "teeth", "fill-rule": "evenodd", d: toothOutline(wheel, view.scale) }),
+    createSvg("circle", { class: "pitch", r }),
+    !wheel.idle && createSvg("path", { class: "spoke", d: `M${spoke[0]} 0H${spoke[1]}` }),
+    !wheel.internal && createSvg("circle", { class: "pin", r: 3.5 }),
   );
   const turn = (/** @type {number} */ input) => {
-    const [x, y] = place(wheel, input);
-    const [u, v] = view.at(x, y);
+    const [x, y] = placeWheel(wheel, input);
+    const [u, v] = view.toPicture(x, y);
     const angle = wheel.tooth + wheel.speed * input;
     node.setAttribute(
       "transform",
@@ -96,7 +96,7 @@ export function drawn(view, wheel) {
 }
 
 /** Where a wheel's centre is. @param {Wheel} wheel @param {number} input radians @returns {Point} */
-export function place(wheel, input) {
+export function placeWheel(wheel, input) {
   const [x, y] = wheel.centre;
   if (!wheel.orbit) return [x, y];
   const [c, s] = [Math.cos(wheel.orbit * input), Math.sin(wheel.orbit * input)];

@@ -1,7 +1,7 @@
 /** Where the gears of each type of train stand, from its teeth and the speeds that the analysis gives. */
 
 import { t, term } from "../core/messages.js";
-import { facing, radius } from "./toothed_wheels.js";
+import { phaseFacing, pitchRadius } from "./toothed_wheels.js";
 
 /** @import { Design, Mechanism, Problem, Schemas, TrainMotion } from "../types/values.js" */
 
@@ -16,30 +16,30 @@ import { facing, radius } from "./toothed_wheels.js";
  * @param {Pick<Problem, "reverted" | "units">} problem
  * @returns {Wheel[]}
  */
-export function wheels(mechanism, motion, design, problem) {
+export function layOutWheels(mechanism, motion, design, problem) {
   switch (mechanism.type) {
     case "gear_train":
-      return ordinary(/** @type {Schemas["GearTrainAnalysis"]} */ (motion), problem);
+      return layOutOrdinary(/** @type {Schemas["GearTrainAnalysis"]} */ (motion), problem);
     case "planetary_train":
-      return planetary(
+      return layOutPlanetary(
         /** @type {Schemas["PlanetaryMechanism"]} */ (mechanism),
         /** @type {Schemas["PlanetaryAnalysis"]} */ (motion),
         /** @type {Schemas["PlanetaryMetrics"]} */ (design.metrics),
       );
     case "train_series":
-      return series(
+      return layOutSeries(
         /** @type {Schemas["TrainSeriesMechanism"]} */ (mechanism),
         /** @type {Schemas["TrainSeriesAnalysis"]} */ (motion),
         /** @type {Schemas["TrainSeriesMetrics"]} */ (design.metrics),
         problem,
       );
     case "gearbox":
-      return gearbox(
+      return layOutGearbox(
         /** @type {Schemas["GearboxMechanism"]} */ (mechanism),
         /** @type {Schemas["GearboxAnalysis"]} */ (motion),
       );
     default:
-      return layshaft(
+      return layOutLayshaft(
         /** @type {Schemas["LayshaftMechanism"]} */ (mechanism),
         /** @type {Schemas["GearboxAnalysis"]} */ (motion),
       );
@@ -53,16 +53,16 @@ export function wheels(mechanism, motion, design, problem) {
  * @param {Schemas["TrainSeriesMetrics"]} metrics
  * @param {Pick<Problem, "reverted" | "units">} problem
  */
-function series(mechanism, motion, metrics, problem) {
+function layOutSeries(mechanism, motion, metrics, problem) {
   /** @type {Wheel[]} */
   const found = [];
   let right = 0;
   const stated = Array.isArray(problem.units) ? problem.units : [];
   mechanism.units.forEach((unit, /** @type {number} */ n) => {
-    const own = wheels(unit, motion.units[n], { metrics: metrics.units[n] }, stated[n] ?? {});
+    const own = layOutWheels(unit, motion.units[n], { metrics: metrics.units[n] }, stated[n] ?? {});
     const ends = own.map((wheel) => [
-      wheel.centre[0] - radius(wheel) - wheel.module,
-      wheel.centre[0] + radius(wheel) + wheel.module,
+      wheel.centre[0] - pitchRadius(wheel) - wheel.module,
+      wheel.centre[0] + pitchRadius(wheel) + wheel.module,
     ]);
     const [low, high] = [Math.min(...ends.map(([end]) => end)), Math.max(...ends.map(([, end]) => end))];
     const aside = n ? right + 0.15 * (high - low) - low : 0;
@@ -87,7 +87,7 @@ function series(mechanism, motion, metrics, problem) {
  * @param {Schemas["GearTrainAnalysis"]} motion
  * @param {Pick<Problem, "reverted" | "units">} problem
  */
-function ordinary(motion, problem) {
+function layOutOrdinary(motion, problem) {
   const distances = motion.centre_distances;
   const stages = distances.length;
   const back = problem.reverted && Math.max(...distances) - Math.min(...distances) <= 1e-9 * Math.max(...distances);
@@ -124,9 +124,11 @@ function ordinary(motion, problem) {
         ...(kind === "worm" && gear.role === "driver" ? { module: gear.pitch_diameter / gear.teeth, idle: true } : {}),
       };
       if (before) {
-        const far = inside ? Math.abs(radius(before) - radius(wheel)) : radius(before) + radius(wheel);
+        const far = inside
+          ? Math.abs(pitchRadius(before) - pitchRadius(wheel))
+          : pitchRadius(before) + pitchRadius(wheel);
         wheel.centre = [before.centre[0] + far * Math.cos(ahead), before.centre[1] + far * Math.sin(ahead)];
-        wheel.tooth = facing(before, wheel, contact);
+        wheel.tooth = phaseFacing(before, wheel, contact);
       }
       found.push(wheel);
       before = wheel;
@@ -142,7 +144,7 @@ function ordinary(motion, problem) {
  * @param {Schemas["PlanetaryAnalysis"]} motion
  * @param {Schemas["PlanetaryMetrics"]} metrics
  */
-function planetary(mechanism, motion, metrics) {
+function layOutPlanetary(mechanism, motion, metrics) {
   /** @type {PlanetMesh[]} */
   const meshes = metrics.meshes.map((mesh, k) => ({
     gears: mesh.gears,
@@ -158,7 +160,7 @@ function planetary(mechanism, motion, metrics) {
   const carrierOf = Object.fromEntries(
     meshes.flatMap((mesh) => mesh.bodies.filter((body) => bodies[body].planet).map((body) => [body, mesh.carrier])),
   );
-  const pins = pinsOf(meshes, bodies);
+  const pins = carrierPins(meshes, bodies);
   const names = Object.keys(mechanism.teeth).filter((name) => name in bodyOf);
   /** @type {Record<string, Wheel>} */
   const first = Object.fromEntries(
@@ -190,7 +192,7 @@ function planetary(mechanism, motion, metrics) {
       const known = /** @type {string} */ (waiting.pop());
       for (const mate of mates(known)) {
         if (!Number.isNaN(first[mate].tooth)) continue;
-        first[mate].tooth = facing(first[known], first[mate], toward(first[known], first[mate]));
+        first[mate].tooth = phaseFacing(first[known], first[mate], meshDirection(first[known], first[mate]));
         waiting.push(mate);
       }
     }
@@ -201,10 +203,10 @@ function planetary(mechanism, motion, metrics) {
     const { divisions, steps } = mechanism.places[body] ?? { divisions: 1, steps: [0] };
     return steps.map((/** @type {number} */ step, /** @type {number} */ copy) => {
       const turn = (2 * Math.PI * step) / divisions;
-      const wheel = { ...first[name], name: `${name} ${copy + 1}`, centre: rotated(first[name].centre, turn) };
+      const wheel = { ...first[name], name: `${name} ${copy + 1}`, centre: rotatePoint(first[name].centre, turn) };
       wheel.tooth =
         first[name].tooth +
-        aside(
+        chooseSide(
           names.filter((one) => bodyOf[one] === body),
           first,
           mates,
@@ -222,7 +224,7 @@ function planetary(mechanism, motion, metrics) {
  * @param {(gear: string) => string[]} mates
  * @param {number} turn
  */
-function aside(own, first, mates, turn) {
+function chooseSide(own, first, mates, turn) {
   const pairs = own.flatMap((gear) =>
     mates(gear)
       .filter((mate) => first[mate].centre[0] === 0 && first[mate].centre[1] === 0)
@@ -230,8 +232,8 @@ function aside(own, first, mates, turn) {
   );
   if (!pairs.length) return turn;
   const wanted = ([gear, mate] = pairs[0]) => {
-    const there = { ...first[gear], centre: rotated(first[gear].centre, turn) };
-    return facing(first[mate], there, toward(first[mate], there)) - first[gear].tooth;
+    const there = { ...first[gear], centre: rotatePoint(first[gear].centre, turn) };
+    return phaseFacing(first[mate], there, meshDirection(first[mate], there)) - first[gear].tooth;
   };
   const base = wanted();
   const pitch = (2 * Math.PI) / first[pairs[0][0]].teeth;
@@ -254,7 +256,7 @@ function aside(own, first, mates, turn) {
  * @param {Record<string, {planet: boolean}>} bodies
  * @returns {Record<string, Point>}
  */
-function pinsOf(meshes, bodies) {
+function carrierPins(meshes, bodies) {
   /** @type {Record<string, number>} */
   const far = {};
   for (const {
@@ -282,7 +284,7 @@ function pinsOf(meshes, bodies) {
 }
 
 /** Direction from the centre of one gear to its contact with another. @param {Wheel} one @param {Wheel} other */
-function toward(one, other) {
+function meshDirection(one, other) {
   const [[x, y], [u, v]] = [one.centre, other.centre];
   // With internal teeth the contact lies beyond the planet, as seen from the axis.
   if (one.internal || other.internal) return x || y ? Math.atan2(y, x) : Math.atan2(v, u);
@@ -294,7 +296,7 @@ function toward(one, other) {
  * @param {Schemas["GearboxMechanism"]} mechanism
  * @param {Schemas["GearboxAnalysis"]} motion
  */
-function gearbox(mechanism, motion) {
+function layOutGearbox(mechanism, motion) {
   /** @type {Wheel[]} */
   const found = [];
   let at = 0;
@@ -321,7 +323,7 @@ function gearbox(mechanism, motion) {
         tooth: 0,
         speed: motion.shafts[n + 1].speed_ratio,
       };
-      other.tooth = facing(one, other, 0);
+      other.tooth = phaseFacing(one, other, 0);
       found.push(one, other);
     });
     at = to;
@@ -334,7 +336,7 @@ function gearbox(mechanism, motion) {
  * @param {Schemas["LayshaftMechanism"]} mechanism
  * @param {Schemas["GearboxAnalysis"]} motion
  */
-function layshaft(mechanism, motion) {
+function layOutLayshaft(mechanism, motion) {
   const { head, gears, reverse, module } = mechanism;
   const [input, lay, main] = motion.shafts.map((shaft) => shaft.speed_ratio);
   const distance = mechanism.centre_distance;
@@ -353,7 +355,11 @@ function layshaft(mechanism, motion) {
       /** @type {Wheel} */
       const wheel = { name: `${name}, ${shaft}`, teeth, module, centre, tooth: 0, speed, tone, idle };
       if (before)
-        wheel.tooth = facing(before, wheel, Math.atan2(centre[1] - before.centre[1], centre[0] - before.centre[0]));
+        wheel.tooth = phaseFacing(
+          before,
+          wheel,
+          Math.atan2(centre[1] - before.centre[1], centre[0] - before.centre[0]),
+        );
       found.push(wheel);
       before = wheel;
     }
@@ -391,7 +397,7 @@ function layshaft(mechanism, motion) {
 }
 
 /** @param {Point} point @param {number} angle @returns {Point} */
-function rotated([x, y], angle) {
+function rotatePoint([x, y], angle) {
   const [c, s] = [Math.cos(angle), Math.sin(angle)];
   return [c * x - s * y, s * x + c * y];
 }

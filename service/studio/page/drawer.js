@@ -2,11 +2,11 @@
  * The tabs beside the stage: what is shown of the chosen design. On a phone they are a sheet, with task and answers.
  */
 
-import { el } from "../core/dom.js";
+import { createElement } from "../core/dom.js";
 
 /** Where the tabs are a sheet below the stage, and where they lie over it and are shut. */
-const PHONE = matchMedia("(max-width: 860px)");
-const MIDDLE = matchMedia("(min-width: 861px) and (max-width: 1279px)");
+const PHONE_LAYOUT = matchMedia("(max-width: 860px)");
+const OVERLAY_LAYOUT = matchMedia("(min-width: 861px) and (max-width: 1279px)");
 
 /** @typedef {{opened?: () => void, closed?: () => void}} Reaction */
 /**
@@ -26,10 +26,10 @@ export class Drawer {
     /** The pane of the drawer that is shown, and what a phone's sheet shows. */
     this.pane = "";
     this.sheet = "task";
-    for (const query of [PHONE, MIDDLE]) query.addEventListener("change", () => this.tell());
-    list.addEventListener("keydown", (event) => this.keyed(event));
+    for (const query of [PHONE_LAYOUT, OVERLAY_LAYOUT]) query.addEventListener("change", () => this.showSelection());
+    list.addEventListener("keydown", (event) => this.handleKey(event));
     document.addEventListener("keydown", (event) => {
-      if (event.key === "Escape") this.shut();
+      if (event.key === "Escape") this.close();
     });
   }
 
@@ -40,7 +40,7 @@ export class Drawer {
    * @param {boolean} [sheet] whether it is a phone's only
    */
   add(name, text, pane, sheet = false) {
-    const tab = el(
+    const tab = createElement(
       "button",
       {
         type: "button",
@@ -48,7 +48,7 @@ export class Drawer {
         id: `tab-${name}`,
         class: sheet ? "tab sheet" : "tab",
         "aria-controls": pane.id,
-        onclick: () => this.press(name),
+        onclick: () => this.pressTab(name),
       },
       text,
     );
@@ -61,7 +61,7 @@ export class Drawer {
     this.tabs.push({ name, text, pane, sheet, tab });
     this.list.append(tab);
     if (!this.pane && !sheet) this.pane = name;
-    this.tell();
+    this.showSelection();
   }
 
   /**
@@ -69,7 +69,7 @@ export class Drawer {
    * @param {string} name
    * @param {Reaction | null} reaction null where it has nothing to show
    */
-  on(name, reaction) {
+  setReaction(name, reaction) {
     const before = this.reactions[name];
     if (this.pane === name && before !== reaction) before?.closed?.();
     if (reaction) this.reactions[name] = reaction;
@@ -78,30 +78,30 @@ export class Drawer {
   }
 
   /** Whether a tab is there at all. @param {string} name @param {boolean} is */
-  offer(name, is) {
-    this.of(name).tab.hidden = !is;
-    if (!is && this.pane === name) this.select("numbers");
+  setAvailable(name, is) {
+    this.findTab(name).tab.hidden = !is;
+    if (!is && this.pane === name) this.selectTab("numbers");
   }
 
   /** @param {string} name */
-  of(name) {
+  findTab(name) {
     return /** @type {Tab} */ (this.tabs.find((one) => one.name === name));
   }
 
   /** A tab is pressed: where the drawer lies over the stage, the one that is open shuts it. @param {string} name */
-  press(name) {
-    if (MIDDLE.matches && this.place.classList.contains("open") && this.pane === name) return this.shut();
-    this.select(name);
+  pressTab(name) {
+    if (OVERLAY_LAYOUT.matches && this.place.classList.contains("open") && this.pane === name) return this.close();
+    this.selectTab(name);
     this.place.classList.add("open");
   }
 
-  shut() {
+  close() {
     this.place.classList.remove("open");
   }
 
   /** @param {string} name */
-  select(name) {
-    const { sheet } = this.of(name);
+  selectTab(name) {
+    const { sheet } = this.findTab(name);
     this.sheet = sheet ? name : "drawer";
     if (!sheet && name !== this.pane) {
       const before = this.pane;
@@ -109,30 +109,30 @@ export class Drawer {
       this.reactions[before]?.closed?.();
       this.reactions[name]?.opened?.();
     }
-    this.tell();
+    this.showSelection();
   }
 
   /** Show what is chosen. */
-  tell() {
+  showSelection() {
     document.body.dataset.sheet = this.sheet;
-    const chosen = PHONE.matches && this.sheet !== "drawer" ? this.sheet : this.pane;
+    const chosen = PHONE_LAYOUT.matches && this.sheet !== "drawer" ? this.sheet : this.pane;
     for (const { name, pane, sheet, tab } of this.tabs) {
       tab.setAttribute("aria-selected", String(name === chosen));
       tab.tabIndex = name === chosen ? 0 : -1;
       if (!sheet) pane.hidden = name !== this.pane;
     }
-    if (PHONE.matches) this.of(chosen)?.tab.scrollIntoView({ block: "nearest", inline: "nearest" });
+    if (PHONE_LAYOUT.matches) this.findTab(chosen)?.tab.scrollIntoView({ block: "nearest", inline: "nearest" });
   }
 
   /** Arrow keys, Home and End go from tab to tab. @param {KeyboardEvent} event */
-  keyed(event) {
+  handleKey(event) {
     const shown = this.tabs.filter(({ tab }) => !tab.hidden && tab.offsetParent);
     const at = shown.findIndex(({ tab }) => tab === document.activeElement);
     const to = { ArrowRight: at + 1, ArrowLeft: at - 1, Home: 0, End: shown.length - 1 }[event.key];
     if (at < 0 || to === undefined) return;
     event.preventDefault();
     const next = shown[(to + shown.length) % shown.length];
-    this.select(next.name);
+    this.selectTab(next.name);
     next.tab.focus();
   }
 }

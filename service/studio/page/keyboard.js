@@ -3,11 +3,11 @@
  * be switched off.
  */
 
-import { byId, el } from "../core/dom.js";
+import { byId, createElement } from "../core/dom.js";
 import { t } from "../core/messages.js";
-import { lasting } from "../core/storage.js";
+import { localStore } from "../core/storage.js";
 
-const OFF = "mechsynth.letters-off";
+const DISABLED_STORAGE = "mechsynth.letters-off";
 
 /**
  * @typedef {object} Binding
@@ -18,23 +18,25 @@ const OFF = "mechsynth.letters-off";
  * @property {boolean} [everywhere] in fields, too
  */
 
-export class Keys {
+export class Keyboard {
   /** @param {Binding[]} bindings */
   constructor(bindings) {
     this.bindings = bindings;
     this.sheet = byId("keys", HTMLDialogElement);
     const letters = byId("letters", HTMLInputElement);
-    letters.checked = lasting.read(OFF) === null;
-    letters.addEventListener("change", () => lasting.write(OFF, letters.checked ? null : "1"));
+    letters.checked = localStore.read(DISABLED_STORAGE) === null;
+    letters.addEventListener("change", () => localStore.write(DISABLED_STORAGE, letters.checked ? null : "1"));
     this.letters = letters;
-    const cap = (/** @type {string} */ one) => (one === t`or` ? ` ${one} ` : el("kbd", {}, one));
+    const cap = (/** @type {string} */ one) => (one === t`or` ? ` ${one} ` : createElement("kbd", {}, one));
     const caps = (/** @type {string} */ shown) => shown.split(" ").map(cap);
     byId("keys-list").replaceChildren(
       ...bindings
         .filter(({ shown }) => shown)
-        .map(({ shown, text }) => el("div", {}, el("dt", {}, ...caps(shown)), el("dd", {}, text))),
+        .map(({ shown, text }) =>
+          createElement("div", {}, createElement("dt", {}, ...caps(shown)), createElement("dd", {}, text)),
+        ),
     );
-    document.addEventListener("keydown", (event) => this.pressed(event));
+    document.addEventListener("keydown", (event) => this.handleKey(event));
   }
 
   open() {
@@ -42,18 +44,18 @@ export class Keys {
   }
 
   /** @param {KeyboardEvent} event */
-  pressed(event) {
-    const name = named(event);
+  handleKey(event) {
+    const name = keyName(event);
     const found = this.bindings.find((one) => one.keys.includes(name));
     if (!found || event.defaultPrevented || event.altKey) return;
-    if (!found.everywhere && (busy(event.target) || !this.letters.checked)) return;
+    if (!found.everywhere && (takesKeys(event.target) || !this.letters.checked)) return;
     event.preventDefault();
     found.act(event);
   }
 }
 
 /** As bindings have it; of what is typed alone Shift is no part. @param {KeyboardEvent} event */
-function named(event) {
+function keyName(event) {
   const ctrl = event.ctrlKey || event.metaKey;
   const typed = event.key.length === 1;
   const shift = event.shiftKey && (ctrl || !typed);
@@ -61,31 +63,31 @@ function named(event) {
 }
 
 /** What has a use of its own for keys. */
-const TAKEN = "input, select, textarea, button, a, summary, .target, .held, .grip, [role=tab]";
+const KEY_TAKERS = "input, select, textarea, button, a, summary, .target, .held, .grip, [role=tab]";
 
 /** Whether what has the focus has a use of its own for keys, or a dialog is open. @param {EventTarget | null} target */
-function busy(target) {
+function takesKeys(target) {
   if (document.querySelector("dialog[open]")) return true;
-  const taken = target instanceof Element ? target.closest(TAKEN) : null;
+  const taken = target instanceof Element ? target.closest(KEY_TAKERS) : null;
   // What stands in a dialog that has been closed may have the focus for a moment.
   return taken !== null && taken.getClientRects().length > 0;
 }
 
 /** The first of some elements that is shown. @param {string} selector @returns {HTMLElement | null} */
-export function visible(selector) {
+export function findVisible(selector) {
   const all = /** @type {NodeListOf<HTMLElement>} */ (document.querySelectorAll(selector));
   return [...all].find((one) => one.getClientRects().length) ?? null;
 }
 
 /** The scrubber that is shown. */
-function scrubber() {
-  const slider = visible(".player input[type=range]");
+function findScrubber() {
+  const slider = findVisible(".player input[type=range]");
   return slider instanceof HTMLInputElement ? slider : null;
 }
 
 /** Degrees on, or back, on the scrubber that is shown. @param {number} by share of a step of a degree */
-export function scrub(by) {
-  const slider = scrubber();
+export function scrubBy(by) {
+  const slider = findScrubber();
   if (!slider) return;
   const most = Number(slider.max);
   slider.value = String(Math.min(most, Math.max(0, slider.valueAsNumber + (by * most) / 360)));
@@ -94,7 +96,7 @@ export function scrub(by) {
 
 /** Lead the motion that is shown to a share of its way. @param {number} share */
 export function scrubTo(share) {
-  const slider = scrubber();
+  const slider = findScrubber();
   if (!slider) return;
   slider.value = String(share * Number(slider.max));
   slider.dispatchEvent(new Event("input"));

@@ -1,29 +1,29 @@
 /** The keys of the page, as the sheet of keys shows them. */
 
 import { byId } from "../core/dom.js";
-import { scrub, scrubTo, visible } from "./keyboard.js";
+import { scrubBy, scrubTo, findVisible } from "./keyboard.js";
 import { t } from "../core/messages.js";
 
-/** @import { Desk } from "../design/workbench.js" */
-/** @import { Link } from "./copy_link.js" */
+/** @import { Workbench } from "../design/workbench.js" */
+/** @import { CopyLink } from "./copy_link.js" */
 /** @import { Store } from "../core/store.js" */
 
 /** @param {string} name of a button on the board that is shown */
-const press = (name) => () => visible(`.board button[aria-label="${name}"]`)?.click();
+const pressButton = (name) => () => findVisible(`.board button[aria-label="${name}"]`)?.click();
 
 /**
  * What the keys do, in the order of the sheet; one without a text belongs to the one before.
  * @param {object} page
  * @param {typeof import("../answers/answers.js")} page.answers
- * @param {Desk} page.desk
+ * @param {Workbench} page.desk
  * @param {Store} page.store
  * @param {() => void} page.solve
  * @param {() => void} page.browse shows the gallery
- * @param {Link} page.link
+ * @param {CopyLink} page.link
  * @param {() => void} page.sheet shows these keys
  * @returns {import("./keyboard.js").Binding[]}
  */
-export function keymap({ answers, desk, store, solve, browse, link, sheet }) {
+export function listBindings({ answers, desk, store, solve, browse, link, sheet }) {
   return [
     {
       keys: ["Ctrl+Enter"],
@@ -48,38 +48,38 @@ export function keymap({ answers, desk, store, solve, browse, link, sheet }) {
       everywhere: true,
       act: () => desk.explorer?.redo() || store.redo(),
     },
-    { keys: [" "], shown: t`Space`, text: t`Play and pause`, act: () => visible(".player button")?.click() },
-    { keys: ["ArrowLeft"], shown: t`← or →`, text: t`One degree back or on; ten with Shift`, act: () => scrub(-1) },
-    { keys: ["ArrowRight"], shown: "", text: "", act: () => scrub(1) },
-    { keys: ["Shift+ArrowLeft"], shown: "", text: "", act: () => scrub(-10) },
-    { keys: ["Shift+ArrowRight"], shown: "", text: "", act: () => scrub(10) },
+    { keys: [" "], shown: t`Space`, text: t`Play and pause`, act: () => findVisible(".player button")?.click() },
+    { keys: ["ArrowLeft"], shown: t`← or →`, text: t`One degree back or on; ten with Shift`, act: () => scrubBy(-1) },
+    { keys: ["ArrowRight"], shown: "", text: "", act: () => scrubBy(1) },
+    { keys: ["Shift+ArrowLeft"], shown: "", text: "", act: () => scrubBy(-10) },
+    { keys: ["Shift+ArrowRight"], shown: "", text: "", act: () => scrubBy(10) },
     { keys: ["Home"], shown: t`Home or End`, text: t`Beginning and end of the motion`, act: () => scrubTo(0) },
     { keys: ["End"], shown: "", text: "", act: () => scrubTo(1) },
     {
       keys: [..."123456789"],
       shown: "1 … 9",
       text: t`Choose a design`,
-      act: (event) => answers.select(Number(event.key)),
+      act: (event) => answers.selectDesign(Number(event.key)),
     },
-    { keys: ["["], shown: t`[ or ]`, text: t`The design before, the next one`, act: () => answers.further(-1) },
-    { keys: ["]"], shown: "", text: "", act: () => answers.further(1) },
-    { keys: ["c"], shown: "C", text: t`Compare designs`, act: () => desk.drawer.press("compare") },
-    { keys: ["k"], shown: "K", text: t`Pin the chosen design, or unpin it`, act: () => answers.pin() },
-    { keys: ["+", "="], shown: t`+ or −`, text: t`Nearer, farther`, act: press(t`Nearer`) },
-    { keys: ["-"], shown: "", text: "", act: press(t`Farther`) },
-    { keys: ["f"], shown: "F", text: t`Fit everything`, act: press(t`Fit everything`) },
-    { keys: ["r"], shown: "R", text: t`Ruler`, act: () => visible('[data-tool="ruler"]')?.click() },
-    { keys: ["s"], shown: t`S or W`, text: t`The stage states, or watches`, act: () => desk.stage.show("state") },
-    { keys: ["w"], shown: "", text: "", act: () => desk.stage.show("watch") },
+    { keys: ["["], shown: t`[ or ]`, text: t`The design before, the next one`, act: () => answers.moveSelection(-1) },
+    { keys: ["]"], shown: "", text: "", act: () => answers.moveSelection(1) },
+    { keys: ["c"], shown: "C", text: t`Compare designs`, act: () => desk.drawer.pressTab("compare") },
+    { keys: ["k"], shown: "K", text: t`Pin the chosen design, or unpin it`, act: () => answers.togglePin() },
+    { keys: ["+", "="], shown: t`+ or −`, text: t`Nearer, farther`, act: pressButton(t`Nearer`) },
+    { keys: ["-"], shown: "", text: "", act: pressButton(t`Farther`) },
+    { keys: ["f"], shown: "F", text: t`Fit everything`, act: pressButton(t`Fit everything`) },
+    { keys: ["r"], shown: "R", text: t`Ruler`, act: () => findVisible('[data-tool="ruler"]')?.click() },
+    { keys: ["s"], shown: t`S or W`, text: t`The stage states, or watches`, act: () => desk.stage.showMode("state") },
+    { keys: ["w"], shown: "", text: "", act: () => desk.stage.showMode("watch") },
     {
       keys: ["t"],
       shown: "T",
       text: t`Fold the task, where there is little room`,
-      act: () => visible("#fold")?.click(),
+      act: () => findVisible("#fold")?.click(),
     },
-    { keys: ["n"], shown: "N", text: t`Numbers`, act: () => desk.drawer.press("numbers") },
-    { keys: ["p"], shown: "P", text: t`Plots`, act: () => desk.drawer.press("plots") },
-    { keys: ["e"], shown: "E", text: t`Explore`, act: () => desk.drawer.press("explore") },
+    { keys: ["n"], shown: "N", text: t`Numbers`, act: () => desk.drawer.pressTab("numbers") },
+    { keys: ["p"], shown: "P", text: t`Plots`, act: () => desk.drawer.pressTab("plots") },
+    { keys: ["e"], shown: "E", text: t`Explore`, act: () => desk.drawer.pressTab("explore") },
     {
       keys: ["l"],
       shown: "L",

@@ -1,6 +1,6 @@
 /** A gauge of an angle from 0° to 90°: a needle where it is now, a mark at the least, and the limit that was set. */
 
-import { el, shown, svg } from "../core/dom.js";
+import { createElement, formatNumber, createSvg } from "../core/dom.js";
 import { t } from "../core/messages.js";
 
 const WIDTH = 190;
@@ -8,23 +8,23 @@ const RADIUS = 70;
 const CENTRE = [92, 82];
 
 /** @param {number} degrees @param {number} radius @returns {[number, number]} */
-function at(degrees, radius) {
+function dialPoint(degrees, radius) {
   const turn = Math.PI * (1 - degrees / 90);
   return [CENTRE[0] + radius * Math.cos(turn), CENTRE[1] - radius * Math.sin(turn)];
 }
 
 /** An arc from one angle to another. @param {number} from @param {number} to @param {string} kind */
-function arc(from, to, kind) {
-  const [[x, y], [u, v]] = [at(from, RADIUS), at(to, RADIUS)];
-  return svg("path", { class: kind, d: `M${x} ${y}A${RADIUS} ${RADIUS} 0 0 1 ${u} ${v}` });
+function arcPath(from, to, kind) {
+  const [[x, y], [u, v]] = [dialPoint(from, RADIUS), dialPoint(to, RADIUS)];
+  return createSvg("path", { class: kind, d: `M${x} ${y}A${RADIUS} ${RADIUS} 0 0 1 ${u} ${v}` });
 }
 
 /** @param {number | null} angle */
-export function degrees(angle) {
-  return angle === null ? "–" : `${shown(Math.round(10 * angle) / 10)}°`;
+export function formatDegrees(angle) {
+  return angle === null ? "–" : `${formatNumber(Math.round(10 * angle) / 10)}°`;
 }
 
-export class Gauge {
+export class AngleGauge {
   /**
    * @param {string} title @param {(number | null)[]} series over the motion
    * @param {{limit: number | null | undefined, used?: number | null, atMost?: boolean}} bound which the angle keeps
@@ -35,57 +35,58 @@ export class Gauge {
     const known = /** @type {number[]} */ (series.filter((one) => one !== null));
     const whole = atMost ? Math.max(...known) : Math.min(...known);
     const extreme = used ?? whole;
-    const told = atMost ? t`most ${degrees(extreme)}` : t`least ${degrees(extreme)}`;
+    const told = atMost ? t`most ${formatDegrees(extreme)}` : t`least ${formatDegrees(extreme)}`;
     const partly = Math.abs(whole - extreme) > 0.5;
-    this.needle = svg("path", { class: "needle" });
-    const [x, y] = at(Math.min(90, extreme), RADIUS + 9);
-    const [u, v] = at(Math.min(90, extreme), RADIUS - 9);
-    this.now = el("output", { class: "reading" });
+    this.needle = createSvg("path", { class: "needle" });
+    const [x, y] = dialPoint(Math.min(90, extreme), RADIUS + 9);
+    const [u, v] = dialPoint(Math.min(90, extreme), RADIUS - 9);
+    this.now = createElement("output", { class: "reading" });
     this.limit = limit;
     this.atMost = atMost;
     const bad =
       typeof limit === "number" &&
       limit > 0 &&
       limit < 90 &&
-      (atMost ? arc(limit, 90, "dial beyond") : arc(0, limit, "dial beyond"));
-    this.node = el(
+      (atMost ? arcPath(limit, 90, "dial beyond") : arcPath(0, limit, "dial beyond"));
+    this.node = createElement(
       "figure",
       { class: "gauge" },
-      el("figcaption", {}, title, this.now),
-      svg(
+      createElement("figcaption", {}, title, this.now),
+      createSvg(
         "svg",
         {
           viewBox: `0 0 ${WIDTH} 104`,
           role: "img",
           "aria-label": [
             `${title}: ${told}`,
-            partly && t`between the targets; ${degrees(whole)} in the whole motion`,
-            typeof limit === "number" && t`limit ${degrees(limit)}`,
+            partly && t`between the targets; ${formatDegrees(whole)} in the whole motion`,
+            typeof limit === "number" && t`limit ${formatDegrees(limit)}`,
           ]
             .filter(Boolean)
             .join(", "),
         },
-        arc(0, 90, "dial"),
+        arcPath(0, 90, "dial"),
         bad,
-        svg("line", { class: "least", x1: x, y1: y, x2: u, y2: v }),
+        createSvg("line", { class: "least", x1: x, y1: y, x2: u, y2: v }),
         this.needle,
-        svg("circle", { class: "pin", r: 3.5, cx: CENTRE[0], cy: CENTRE[1] }),
+        createSvg("circle", { class: "pin", r: 3.5, cx: CENTRE[0], cy: CENTRE[1] }),
         ...[0, 30, 60, 90].map((mark) => {
-          const [tx, ty] = at(mark, RADIUS - 15);
-          return svg("text", { class: "tick", x: tx, y: ty + 3, "text-anchor": "middle" }, mark);
+          const [tx, ty] = dialPoint(mark, RADIUS - 15);
+          return createSvg("text", { class: "tick", x: tx, y: ty + 3, "text-anchor": "middle" }, mark);
         }),
-        svg("text", { x: CENTRE[0], y: 101, "text-anchor": "middle" }, told),
+        createSvg("text", { x: CENTRE[0], y: 101, "text-anchor": "middle" }, told),
       ),
-      partly && el("p", { class: "note" }, t`between the targets; ${degrees(whole)} in the whole motion`),
+      partly &&
+        createElement("p", { class: "note" }, t`between the targets; ${formatDegrees(whole)} in the whole motion`),
     );
   }
 
   /** @param {number | null} angle @param {boolean} told whether its number is told */
   show(angle, told) {
-    if (told) this.now.value = degrees(angle);
+    if (told) this.now.value = formatDegrees(angle);
     this.needle.toggleAttribute("hidden", angle === null);
     if (angle === null) return;
-    const [x, y] = at(Math.min(90, Math.max(0, angle)), RADIUS - 4);
+    const [x, y] = dialPoint(Math.min(90, Math.max(0, angle)), RADIUS - 4);
     this.needle.setAttribute("d", `M${CENTRE[0]} ${CENTRE[1]}L${x.toFixed(1)} ${y.toFixed(1)}`);
     const beyond =
       typeof this.limit === "number" && (this.atMost ? angle > this.limit + 1e-6 : angle < this.limit - 1e-6);

@@ -1,8 +1,8 @@
 /** The hodograph of a force: its components against each other over the motion, with a mark where the motion stands. */
 
-import { el, shown, svg } from "../core/dom.js";
+import { createElement, formatNumber, createSvg } from "../core/dom.js";
 import { t } from "../core/messages.js";
-import { between } from "../core/player.js";
+import { interpolate } from "../core/player.js";
 import { View } from "../core/view.js";
 
 const SIZE = 300;
@@ -32,34 +32,34 @@ export class Hodograph {
       SIZE,
       MARGIN,
     );
-    const [u, v] = this.view.at(0, 0);
-    this.ray = svg("line", { class: "mark", x1: u, y1: v });
-    this.dot = svg("circle", { class: "hodograph-now", r: 4.5 });
-    this.reading = el("span", { class: "reading" });
+    const [u, v] = this.view.toPicture(0, 0);
+    this.ray = createSvg("line", { class: "mark", x1: u, y1: v });
+    this.dot = createSvg("circle", { class: "hodograph-now", r: 4.5 });
+    this.reading = createElement("span", { class: "reading" });
     this.unit = unit;
-    this.figure = el(
+    this.figure = createElement(
       "figure",
       { class: "plot hodograph" },
-      el("figcaption", {}, el("span", {}, title), this.reading),
-      svg(
+      createElement("figcaption", {}, createElement("span", {}, title), this.reading),
+      createSvg(
         "svg",
         {
           viewBox: `0 0 ${SIZE} ${SIZE}`,
           role: "img",
-          "aria-label": t`${title}: up to ${shown(Number(peak.toPrecision(4)))} ${unit}`,
+          "aria-label": t`${title}: up to ${formatNumber(Number(peak.toPrecision(4)))} ${unit}`,
         },
-        svg("rect", { class: "paper", width: SIZE, height: SIZE }),
-        svg("circle", { class: "grid round", cx: u, cy: v, r: SIZE / 2 - MARGIN }),
-        svg("line", { class: "zero", x1: MARGIN, x2: SIZE - MARGIN, y1: v, y2: v }),
-        svg("line", { class: "zero", y1: MARGIN, y2: SIZE - MARGIN, x1: u, x2: u }),
-        svg("text", { class: "tick", x: SIZE - 4, y: v - 5, "text-anchor": "end" }, "x"),
-        svg("text", { class: "tick", x: u + 6, y: 14 }, "y"),
-        svg(
+        createSvg("rect", { class: "paper", width: SIZE, height: SIZE }),
+        createSvg("circle", { class: "grid round", cx: u, cy: v, r: SIZE / 2 - MARGIN }),
+        createSvg("line", { class: "zero", x1: MARGIN, x2: SIZE - MARGIN, y1: v, y2: v }),
+        createSvg("line", { class: "zero", y1: MARGIN, y2: SIZE - MARGIN, x1: u, x2: u }),
+        createSvg("text", { class: "tick", x: SIZE - 4, y: v - 5, "text-anchor": "end" }, "x"),
+        createSvg("text", { class: "tick", x: u + 6, y: 14 }, "y"),
+        createSvg(
           "text",
           { class: "tick", x: 6, y: SIZE - 8 },
-          t`Circle: ${shown(Number(peak.toPrecision(3)))} ${unit}`.trim(),
+          t`Circle: ${formatNumber(Number(peak.toPrecision(3)))} ${unit}`.trim(),
         ),
-        svg("path", { class: "series s0", d: this.view.path(points) }),
+        createSvg("path", { class: "series s0", d: this.view.pathData(points) }),
         this.ray,
         this.dot,
       ),
@@ -68,16 +68,16 @@ export class Hodograph {
 
   /** @param {number | null} at a place of the series @param {boolean} told whether its numbers are told */
   show(at, told) {
-    const [x, y] = at === null ? [null, null] : [between(this.x, at), between(this.y, at)];
+    const [x, y] = at === null ? [null, null] : [interpolate(this.x, at), interpolate(this.y, at)];
     const known = x !== null && y !== null;
     this.ray.toggleAttribute("hidden", !known);
     this.dot.toggleAttribute("hidden", !known);
     if (told)
       this.reading.textContent = known
-        ? `x ${shown(Number(x.toPrecision(3)))}, y ${shown(Number(y.toPrecision(3)))} ${this.unit}`
+        ? `x ${formatNumber(Number(x.toPrecision(3)))}, y ${formatNumber(Number(y.toPrecision(3)))} ${this.unit}`
         : "–";
     if (!known) return;
-    const [u, v] = this.view.at(x, y);
+    const [u, v] = this.view.toPicture(x, y);
     for (const [name, value] of Object.entries({ x2: u, y2: v })) this.ray.setAttribute(name, String(value));
     for (const [name, value] of Object.entries({ cx: u, cy: v })) this.dot.setAttribute(name, String(value));
   }

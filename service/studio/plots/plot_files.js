@@ -3,10 +3,10 @@
 import { t } from "../core/messages.js";
 
 /** Pixels of a picture for one of the plot. */
-const SCALE = 4;
+const PICTURE_SCALE = 4;
 
 /** What a picture has of the styles of the page. */
-const STYLES = [
+const COPIED_STYLES = [
   "fill",
   "stroke",
   "stroke-width",
@@ -24,7 +24,7 @@ const STYLES = [
  * @param {number[] | undefined} input
  * @param {string} unit of the input
  */
-export function comma(title, lines, input, unit) {
+export function exportCsv(title, lines, input, unit) {
   const quoted = (/** @type {string} */ text) => `"${text.replaceAll('"', '""')}"`;
   const names = Object.keys(lines);
   const heads = [
@@ -44,31 +44,31 @@ export function comma(title, lines, input, unit) {
  * A plot in pixels, as it stands on the page, with its title above it.
  * @param {SVGSVGElement} picture @param {string} title @returns {Promise<string>}
  */
-export async function pictured(picture, title) {
+export async function exportPicture(picture, title) {
   const { width, height } = picture.viewBox.baseVal;
   const copy = /** @type {SVGSVGElement} */ (picture.cloneNode(true));
   const [drawn, copied] = [picture, copy].map((one) => [...one.querySelectorAll("*")]);
   drawn.forEach((one, k) => {
     const styles = getComputedStyle(one);
-    for (const name of STYLES) copied[k].setAttribute(name, styles.getPropertyValue(name));
+    for (const name of COPIED_STYLES) copied[k].setAttribute(name, styles.getPropertyValue(name));
   });
   copy.querySelector(".cursor")?.remove();
-  copy.setAttribute("width", String(SCALE * width));
-  copy.setAttribute("height", String(SCALE * height));
+  copy.setAttribute("width", String(PICTURE_SCALE * width));
+  copy.setAttribute("height", String(PICTURE_SCALE * height));
   const image = new Image();
   image.src = URL.createObjectURL(new Blob([new XMLSerializer().serializeToString(copy)], { type: "image/svg+xml" }));
   await image.decode().finally(() => URL.revokeObjectURL(image.src));
   const canvas = document.createElement("canvas");
-  const head = 20 * SCALE;
-  Object.assign(canvas, { width: SCALE * width, height: SCALE * height + head });
+  const head = 20 * PICTURE_SCALE;
+  Object.assign(canvas, { width: PICTURE_SCALE * width, height: PICTURE_SCALE * height + head });
   const pen = canvas.getContext("2d");
   if (!pen) throw new Error(t`This browser draws no pictures.`);
   const style = getComputedStyle(document.body);
   pen.fillStyle = style.getPropertyValue("--sheet");
   pen.fillRect(0, 0, canvas.width, canvas.height);
   pen.fillStyle = style.color;
-  pen.font = `${13 * SCALE}px ${style.fontFamily}`;
-  pen.fillText(title, 8 * SCALE, 15 * SCALE);
+  pen.font = `${13 * PICTURE_SCALE}px ${style.fontFamily}`;
+  pen.fillText(title, 8 * PICTURE_SCALE, 15 * PICTURE_SCALE);
   pen.drawImage(image, 0, head);
   const blob = /** @type {Blob | null} */ (await new Promise((done) => canvas.toBlob(done, "image/png")));
   if (!blob) throw new Error(t`The picture could not be made.`);

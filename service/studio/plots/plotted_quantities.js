@@ -1,11 +1,11 @@
 /** What is worth a plot in the motion of a linkage: force, error, and how one chosen part moves. */
 
-import { drawn, grounded } from "../canvas/linkage_drawing.js";
+import { drawnJoints, groundedJoints } from "../canvas/linkage_drawing.js";
 import { t, term } from "../core/messages.js";
 
 /** @import { Design, LinkageAnalysis, Problem, Skeleton } from "../types/values.js" */
 
-/** @typedef {import("./plots.js").Plotted} Plotted */
+/** @typedef {import("./plots.js").PlotData} Plotted */
 /** @typedef {(number | null)[]} Series */
 
 /**
@@ -14,9 +14,9 @@ import { t, term } from "../core/messages.js";
  * @param {Skeleton} skeleton
  * @returns {string[]}
  */
-export function parts(motion, skeleton) {
-  const still = grounded(skeleton);
-  const joints = drawn(skeleton)
+export function listParts(motion, skeleton) {
+  const still = groundedJoints(skeleton);
+  const joints = drawnJoints(skeleton)
     .filter((name) => !still.includes(name))
     .map((name) => `point ${name}`);
   const links = Object.keys(motion.links ?? {})
@@ -42,31 +42,31 @@ export function partName(part) {
  * @param {boolean} slides whether the input slides, so that rates are by a length
  * @returns {Plotted[]}
  */
-export function moved(motion, part, unit, slides) {
+export function partPlots(motion, part, unit, slides) {
   const per = slides ? unit : "rad";
   const [kind, ...rest] = part.split(" ");
   const name = rest.join(" ");
   const what = kind !== "link" ? name : term(name);
   if (kind === "point") {
     const { x, y, vx, vy, ax, ay } = motion.joints[name];
-    const size = extent(x, y);
+    const size = trackExtent(x, y);
     return [
       { title: t`Position of ${what} (${unit})`, lines: { x, y }, least: size },
       {
         title: t`Velocity of ${what} (${unit}/${per})`,
-        lines: { [t`total`]: length(vx, vy), x: vx, y: vy },
+        lines: { [t`total`]: magnitudes(vx, vy), x: vx, y: vy },
         least: size,
       },
       {
         title: t`Acceleration of ${what} (${unit}/${per}²)`,
-        lines: { [t`total`]: length(ax, ay), x: ax, y: ay },
+        lines: { [t`total`]: magnitudes(ax, ay), x: ax, y: ay },
         least: size,
       },
     ];
   }
   if (kind === "slide") {
     const { position, velocity, acceleration } = motion.slides[name];
-    const size = extent(position, position);
+    const size = trackExtent(position, position);
     return [
       { title: t`Position of ${what} on its line (${unit})`, lines: { "": position }, least: size },
       { title: t`Velocity of ${what} (${unit}/${per})`, lines: { "": velocity }, least: size },
@@ -88,17 +88,17 @@ export function moved(motion, part, unit, slides) {
  * @param {Problem} problem
  * @returns {Plotted[]}
  */
-export function judged(motion, design, problem) {
+export function qualityPlots(motion, design, problem) {
   /** @type {Plotted[]} */
   const found = [];
-  const error = errorCurve(design, problem.length_unit ?? "mm");
+  const error = structuralError(design, problem.length_unit ?? "mm");
   if (error)
     found.push({
       title: error.title,
-      lines: { "": along(error.at, error.values, motion.input_angle) },
+      lines: { "": resampleCurve(error.at, error.values, motion.input_angle) },
       values: error.values,
     });
-  const used = usedRange(design, motion.input_angle);
+  const used = usedSamples(design, motion.input_angle);
   found.push({
     title: t`Transmission angle (°)`,
     lines: { "": motion.transmission_angle ?? [] },
@@ -114,7 +114,7 @@ export function judged(motion, design, problem) {
  * @param {NonNullable<Design["targets"]>[number]} target
  * @returns {number}
  */
-function inputOf(target) {
+function targetInput(target) {
   return target.input_angle ?? target.input_place ?? NaN;
 }
 
@@ -124,8 +124,8 @@ function inputOf(target) {
  * @param {number[]} inputs
  * @returns {boolean[] | undefined}
  */
-function usedRange(design, inputs) {
-  const at = (design.targets ?? []).map(inputOf);
+function usedSamples(design, inputs) {
+  const at = (design.targets ?? []).map(targetInput);
   if (at.length < 2 || !at.every(Number.isFinite)) return undefined;
   const [low, high] = [Math.min(...at), Math.max(...at)];
   const past = (/** @type {number} */ input) => input - low - 360 * Math.floor((input - low) / 360);
@@ -138,7 +138,7 @@ function usedRange(design, inputs) {
  * @param {string} unit of lengths
  * @returns {{title: string, at: number[], values: number[]} | null}
  */
-function errorCurve(design, unit) {
+function structuralError(design, unit) {
   const structural = design.structural_error;
   if (structural?.curve) {
     return {
@@ -149,10 +149,14 @@ function errorCurve(design, unit) {
   }
   const targets = design.targets ?? [];
   const errors = targets.map((one) => one.error ?? NaN);
-  if (targets.length > 2 && errors.every(Number.isFinite) && targets.every((one) => Number.isFinite(inputOf(one)))) {
+  if (
+    targets.length > 2 &&
+    errors.every(Number.isFinite) &&
+    targets.every((one) => Number.isFinite(targetInput(one)))
+  ) {
     return {
       title: t`Steering error (°)`,
-      at: targets.map(inputOf),
+      at: targets.map(targetInput),
       values: errors,
     };
   }
@@ -163,7 +167,7 @@ function errorCurve(design, unit) {
  * A curve over some range, at the samples of a motion; full turns aside, and unknown outside of its range.
  * @param {number[]} at @param {number[]} values @param {number[]} inputs @returns {Series}
  */
-export function along(at, values, inputs) {
+export function resampleCurve(at, values, inputs) {
   const order = at.map((_, k) => k).sort((one, other) => at[one] - at[other]);
   const [xs, ys] = [order.map((k) => at[k]), order.map((k) => values[k])];
   const end = xs[xs.length - 1];
@@ -177,12 +181,12 @@ export function along(at, values, inputs) {
 }
 
 /** @param {Series} x @param {Series} y @returns {Series} */
-function length(x, y) {
+function magnitudes(x, y) {
   return x.map((one, k) => (one === null || y[k] === null ? null : Math.hypot(one, Number(y[k]))));
 }
 
 /** How far a track reaches. @param {Series} x @param {Series} y */
-function extent(x, y) {
+function trackExtent(x, y) {
   const known = /** @type {number[]} */ ([...x, ...y].filter((one) => one !== null));
   return known.reduce((most, one) => Math.max(most, Math.abs(one)), 0);
 }

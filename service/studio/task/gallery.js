@@ -1,14 +1,14 @@
 /** All examples with their names and pictures, grouped by what a person wants; a click states one and solves it. */
 
-import { byId, el, svg } from "../core/dom.js";
-import { translated } from "../core/messages.js";
+import { byId, createElement, createSvg } from "../core/dom.js";
+import { translate } from "../core/messages.js";
 
 /** @import { Problem } from "../types/values.js" */
 
 /** @typedef {{kind: string, n: number, name: string, group: string, line: string, problem: Problem}} Example */
 
 /** In the order of the service. @param {import("../core/api.js").Kind[]} kinds @returns {Example[]} */
-export function listed(kinds) {
+export function listExamples(kinds) {
   return kinds.flatMap(({ kind, schema, example, examples }) =>
     /** @type {Problem[]} */ (schema.examples ?? [example]).map((problem, n) => ({
       kind,
@@ -28,21 +28,30 @@ export class Gallery {
     /** @type {Promise<Document> | null} */
     this.drawn = null;
     this.pictured = false;
-    const examples = listed(kinds);
+    const examples = listExamples(kinds);
     const groups = [...new Set(examples.map((one) => one.group))];
-    const order = ORDER.concat(groups.filter((one) => !ORDER.includes(one))).filter((one) => groups.includes(one));
+    const order = PURPOSE_ORDER.concat(groups.filter((one) => !PURPOSE_ORDER.includes(one))).filter((one) =>
+      groups.includes(one),
+    );
     this.place.replaceChildren(
       ...order.map((group) => {
-        const cards = examples.filter((one) => one.group === group).map((one) => el("li", {}, this.card(one)));
-        return el("section", {}, el("h3", {}, translated(group)), el("ul", { class: "gallery-cards" }, ...cards));
+        const cards = examples
+          .filter((one) => one.group === group)
+          .map((one) => createElement("li", {}, this.createCard(one)));
+        return createElement(
+          "section",
+          {},
+          createElement("h3", {}, translate(group)),
+          createElement("ul", { class: "gallery-cards" }, ...cards),
+        );
       }),
     );
   }
 
   /** @param {Example} example */
-  card(example) {
+  createCard(example) {
     const { kind, n, name, line } = example;
-    return el(
+    return createElement(
       "button",
       {
         type: "button",
@@ -53,20 +62,20 @@ export class Gallery {
           this.choose(example);
         },
       },
-      el("span", { class: "gallery-picture" }),
-      el("strong", {}, translated(name)),
-      el("span", { class: "note" }, translated(line)),
+      createElement("span", { class: "gallery-picture" }),
+      createElement("strong", {}, translate(name)),
+      createElement("span", { class: "note" }, translate(line)),
     );
   }
 
   open() {
     if (this.dialog.open) return;
     this.dialog.showModal();
-    if (!this.pictured) this.pictures().catch(() => {});
+    if (!this.pictured) this.fillPictures().catch(() => {});
   }
 
   /** All pictures come in one file, and take the colours of the page. @returns {Promise<Document>} */
-  async file() {
+  async fetchPictures() {
     const answer = await fetch("/studio/gallery.svg");
     if (!answer.ok) throw new Error("there are no pictures");
     return new DOMParser().parseFromString(await answer.text(), "image/svg+xml");
@@ -77,20 +86,20 @@ export class Gallery {
    * @param {string} key
    * @returns {Promise<SVGElement | null>}
    */
-  async picture(key) {
-    this.drawn ??= this.file();
+  async findPicture(key) {
+    this.drawn ??= this.fetchPictures();
     const drawn = await this.drawn.catch(() => (this.drawn = null));
     const symbol = drawn?.getElementById(key);
     if (!symbol) return null;
     const viewBox = symbol.getAttribute("viewBox");
-    const picture = svg("svg", { viewBox, class: "thumbnail", "aria-hidden": "true" });
+    const picture = createSvg("svg", { viewBox, class: "thumbnail", "aria-hidden": "true" });
     picture.append(...[...symbol.children].map((one) => document.importNode(one, true)));
     return picture;
   }
 
-  async pictures() {
+  async fillPictures() {
     for (const card of this.place.querySelectorAll("[data-example]")) {
-      const picture = await this.picture(card.getAttribute("data-example") ?? "");
+      const picture = await this.findPicture(card.getAttribute("data-example") ?? "");
       if (!picture) return;
       card.querySelector(".gallery-picture")?.replaceChildren(picture);
     }
@@ -99,7 +108,7 @@ export class Gallery {
 }
 
 /** What a person may want, the most wanted first. */
-const ORDER = [
+const PURPOSE_ORDER = [
   "Carry a body",
   "Draw a curve",
   "Make an output follow",

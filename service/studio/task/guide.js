@@ -1,6 +1,6 @@
 /** Leads through a task step by step: a note beside the thing that a step speaks of, which can be left at any time. */
 
-import { byId, el } from "../core/dom.js";
+import { byId, createElement } from "../core/dom.js";
 import { GUIDES } from "./guide_steps.js";
 import { t } from "../core/messages.js";
 
@@ -9,10 +9,10 @@ import { t } from "../core/messages.js";
 /** @typedef {import("./guide_steps.js").Guide} Guide */
 
 /** How often it is looked whether a step is done and where its thing stands, milliseconds. */
-const LOOK_MS = 200;
+const POLL_MS = 200;
 
 /** Between the note and what it speaks of, pixels. */
-const GAP = 12;
+const NOTE_GAP = 12;
 
 /**
  * What a guide has of the page.
@@ -20,10 +20,10 @@ const GAP = 12;
  * @property {(kind: string, example: string) => void} state begins with an example by its name
  * @property {() => Problem} problem as it is stated
  * @property {() => boolean} answered whether there are answers to what is stated
- * @property {import("../design/workbench.js").Desk} desk
+ * @property {import("../design/workbench.js").Workbench} desk
  */
 
-export class Leader {
+export class GuideRunner {
   /** @param {Page} page */
   constructor(page) {
     this.page = page;
@@ -36,11 +36,19 @@ export class Leader {
     this.timer = 0;
     /** @type {Element | null} */
     this.thing = null;
-    this.count = el("span", { class: "note" });
-    this.text = el("p", { role: "status" });
-    this.there = el("button", { type: "button", class: "small", onclick: () => this.go() }, t`Go there`);
-    this.on = el("button", { type: "button", class: "small", onclick: () => this.step(this.n + 1) }, t`Skip`);
-    this.note = el(
+    this.count = createElement("span", { class: "note" });
+    this.text = createElement("p", { role: "status" });
+    this.there = createElement(
+      "button",
+      { type: "button", class: "small", onclick: () => this.goToTarget() },
+      t`Go there`,
+    );
+    this.on = createElement(
+      "button",
+      { type: "button", class: "small", onclick: () => this.showStep(this.n + 1) },
+      t`Skip`,
+    );
+    this.note = createElement(
       "section",
       {
         id: "guide",
@@ -55,12 +63,12 @@ export class Leader {
       },
       this.count,
       this.text,
-      el(
+      createElement(
         "div",
         { class: "row" },
         this.there,
         this.on,
-        el("button", { type: "button", class: "small", onclick: () => this.leave() }, t`Leave`),
+        createElement("button", { type: "button", class: "small", onclick: () => this.leave() }, t`Leave`),
       ),
     );
     // Before the panels, so that the keys come to it first.
@@ -68,9 +76,9 @@ export class Leader {
   }
 
   /** The guided tasks as buttons. @param {() => void} begun */
-  list(begun) {
+  createButtons(begun) {
     return GUIDES.map((guide) =>
-      el(
+      createElement(
         "button",
         {
           type: "button",
@@ -80,8 +88,8 @@ export class Leader {
             this.begin(guide);
           },
         },
-        el("strong", {}, guide.name),
-        el("span", { class: "note" }, guide.line),
+        createElement("strong", {}, guide.name),
+        createElement("span", { class: "note" }, guide.line),
       ),
     );
   }
@@ -92,13 +100,13 @@ export class Leader {
     this.page.state(guide.kind, guide.example);
     this.guide = guide;
     this.note.hidden = false;
-    this.step(0);
+    this.showStep(0);
     this.there.focus();
-    this.timer = setInterval(() => this.look(), LOOK_MS);
+    this.timer = setInterval(() => this.checkStep(), POLL_MS);
   }
 
   /** @param {number} n */
-  step(n) {
+  showStep(n) {
     const { guide, page } = this;
     if (!guide) return;
     if (n > guide.steps.length) return this.leave();
@@ -110,13 +118,13 @@ export class Leader {
     this.text.textContent = step?.text ?? t`That is all: everything can be undone, changed, and solved again.`;
     this.there.hidden = !step;
     this.on.textContent = step ? t`Skip` : t`Done`;
-    if (step?.stage) page.desk.stage.show(step.stage);
-    if (step && ["task", "answers"].includes(step.tab)) page.desk.drawer.select(step.tab);
-    this.look();
+    if (step?.stage) page.desk.stage.showMode(step.stage);
+    if (step && ["task", "answers"].includes(step.tab)) page.desk.drawer.selectTab(step.tab);
+    this.checkStep();
   }
 
   /** Go on where the step is done; otherwise stand beside its thing, wherever that is now. */
-  look() {
+  checkStep() {
     const step = this.guide?.steps[this.n];
     if (
       step?.done({
@@ -126,10 +134,10 @@ export class Leader {
         chosen: this.chosen,
       })
     )
-      return this.step(this.n + 1);
+      return this.showStep(this.n + 1);
     const thing = step
       ? ([...document.querySelectorAll(step.at)]
-          .sort((a, b) => rank(step.at, a) - rank(step.at, b))
+          .sort((a, b) => selectorRank(step.at, a) - selectorRank(step.at, b))
           .find((one) => one.getClientRects().length) ?? null)
       : null;
     if (thing !== this.thing) {
@@ -138,11 +146,11 @@ export class Leader {
       thing?.classList.add("guided");
       thing?.scrollIntoView({ block: "nearest", inline: "nearest" });
     }
-    this.place();
+    this.placeNote();
   }
 
   /** Beside the thing, where there is room. */
-  place() {
+  placeNote() {
     const box = this.thing?.getBoundingClientRect();
     const { offsetWidth: width, offsetHeight: height } = this.note;
     // A small screen has it over the part that the step is not about.
@@ -151,28 +159,28 @@ export class Leader {
       this.note.style.left = this.note.style.top = "";
       return;
     }
-    const [right, left] = [box.right + GAP + width <= innerWidth, box.left - GAP - width >= 0];
+    const [right, left] = [box.right + NOTE_GAP + width <= innerWidth, box.left - NOTE_GAP - width >= 0];
     const x = right
-      ? box.right + GAP
+      ? box.right + NOTE_GAP
       : left
-        ? box.left - GAP - width
-        : Math.min(innerWidth - width - GAP, Math.max(GAP, box.left));
+        ? box.left - NOTE_GAP - width
+        : Math.min(innerWidth - width - NOTE_GAP, Math.max(NOTE_GAP, box.left));
     const y =
       right || left
         ? box.top + (box.height - height) / 2
-        : box.top - GAP - height >= 0
-          ? box.top - GAP - height
-          : box.bottom + GAP;
+        : box.top - NOTE_GAP - height >= 0
+          ? box.top - NOTE_GAP - height
+          : box.bottom + NOTE_GAP;
     this.note.style.left = `${Math.round(x)}px`;
-    this.note.style.top = `${Math.round(Math.min(innerHeight - height - GAP, Math.max(GAP, y)))}px`;
+    this.note.style.top = `${Math.round(Math.min(innerHeight - height - NOTE_GAP, Math.max(NOTE_GAP, y)))}px`;
   }
 
   /** To what the step speaks of: its tab is opened, and it has the focus. */
-  go() {
+  goToTarget() {
     const step = this.guide?.steps[this.n];
     if (!step) return;
-    if (!["task", "answers"].includes(step.tab)) this.page.desk.drawer.press(step.tab);
-    this.look();
+    if (!["task", "answers"].includes(step.tab)) this.page.desk.drawer.pressTab(step.tab);
+    this.checkStep();
     const within = "button:not([disabled]), input, select, [tabindex='0']";
     const thing = this.thing?.matches(within) ? this.thing : (this.thing?.querySelector(within) ?? this.thing);
     /** @type {HTMLElement | null} */ (thing)?.focus();
@@ -190,6 +198,6 @@ export class Leader {
 }
 
 /** Which of the selectors of a list an element answers to. @param {string} list @param {Element} one */
-function rank(list, one) {
+function selectorRank(list, one) {
   return list.split(", ").findIndex((selector) => one.matches(selector));
 }

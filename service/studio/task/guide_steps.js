@@ -6,7 +6,7 @@ import { t } from "../core/messages.js";
 
 /**
  * What a step is judged by.
- * @typedef {object} Now
+ * @typedef {object} StepContext
  * @property {Problem} problem as it is stated
  * @property {Problem} before as it was when the step began
  * @property {boolean} answered whether there are answers to what is stated
@@ -20,19 +20,19 @@ import { t } from "../core/messages.js";
  * @property {"task" | "answers" | "compare" | "plots" | "files"} tab what a phone shows, and a drawer that lies over
  *   the stage
  * @property {"state" | "watch"} [stage]
- * @property {(now: Now) => boolean} done
+ * @property {(now: StepContext) => boolean} done
  */
 
 /** @typedef {{name: string, line: string, kind: string, example: string, steps: Step[]}} Guide */
 
-const shown = (/** @type {string} */ selector) =>
+const isShown = (/** @type {string} */ selector) =>
   [...document.querySelectorAll(selector)].some((one) => one.getClientRects().length > 0);
-const differs = (/** @type {unknown} */ one, /** @type {unknown} */ other) =>
+const hasChanged = (/** @type {unknown} */ one, /** @type {unknown} */ other) =>
   JSON.stringify(one) !== JSON.stringify(other);
-const chosen = () => document.querySelector('.card[aria-pressed="true"]')?.getAttribute("data-design") ?? "";
+const chosenNumber = () => document.querySelector('.card[aria-pressed="true"]')?.getAttribute("data-design") ?? "";
 
 /** @type {Step} */
-const SOLVE = {
+const SOLVE_STEP = {
   at: "#solve, #progress",
   tab: "task",
   text: t`Solve it: every design that is shown is driven and measured first.`,
@@ -52,7 +52,7 @@ export const GUIDES = [
         tab: "task",
         stage: "state",
         text: t`Position 3 is the open lid. Drag it farther, or move it with the arrow keys; its end turns it.`,
-        done: ({ problem, before }) => differs(problem.positions, before.positions),
+        done: ({ problem, before }) => hasChanged(problem.positions, before.positions),
       },
       {
         at: "#room-tools",
@@ -61,13 +61,13 @@ export const GUIDES = [
         text: t`Say where the hinges may be: with “Zone for O2” chosen, press Rectangle and drag a generous one below the lid.`,
         done: ({ problem }) => Boolean(problem.space?.fixed_pivots?.input ?? problem.space?.fixed_pivots?.output),
       },
-      SOLVE,
+      SOLVE_STEP,
       {
         at: "#choosing .scatter, #tab-compare, #answers",
         tab: "compare",
         stage: "watch",
         text: t`Compare shows all designs by two numbers. Choose the smallest: a click, or the arrow keys.`,
-        done: (now) => (shown("#choosing .scatter") && chosen() !== now.chosen) || shown("#miss"),
+        done: (now) => (isShown("#choosing .scatter") && chosenNumber() !== now.chosen) || isShown("#miss"),
       },
     ],
   },
@@ -82,16 +82,16 @@ export const GUIDES = [
         tab: "task",
         stage: "state",
         text: t`The path of a foot: flat below, lifted above. Switch “Draw freehand” on and draw your own, back to where it began; or move its points by the arrow keys.`,
-        done: ({ problem, before }) => differs(problem.points, before.points),
+        done: ({ problem, before }) => hasChanged(problem.points, before.points),
       },
-      SOLVE,
+      SOLVE_STEP,
       {
         at: "#compare-with, #tab-compare",
         tab: "compare",
         stage: "watch",
         text: t`Under Compare, choose a second design: the numbers that differ are marked.`,
         done: ({ answered }) =>
-          shown("#choosing .side-by-side") || (answered && document.querySelectorAll(".card").length < 2),
+          isShown("#choosing .side-by-side") || (answered && document.querySelectorAll(".card").length < 2),
       },
       {
         at: "#downloads, #tab-files",
@@ -114,22 +114,22 @@ export const GUIDES = [
         stage: "state",
         text: t`How far the valve opens. Give the rise another lift, in the first row, as 8 mm, and the fall below it the same.`,
         done: ({ problem, before }) =>
-          differs(problem.segments, before.segments) && problem.segments?.[0]?.lift === problem.segments?.[1]?.lift,
+          hasChanged(problem.segments, before.segments) && problem.segments?.[0]?.lift === problem.segments?.[1]?.lift,
       },
       {
         at: '[data-path="/problem/limits/min_radius"], [data-path="/problem/limits"]',
         tab: "task",
         stage: "state",
         text: t`How sharply the cam may be curved, against wear. Ask for a greater radius: the cam becomes larger.`,
-        done: ({ problem, before }) => differs(problem.limits, before.limits),
+        done: ({ problem, before }) => hasChanged(problem.limits, before.limits),
       },
-      SOLVE,
+      SOLVE_STEP,
       {
         at: "#plots .plot, #tab-plots",
         tab: "plots",
         stage: "watch",
         text: t`Plots shows what the follower does. The jerk is the last of its rates: it is what shakes.`,
-        done: () => shown("#plots .plot"),
+        done: () => isShown("#plots .plot"),
       },
     ],
   },

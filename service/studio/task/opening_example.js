@@ -1,16 +1,16 @@
 /** What moves when the page opens: an example with its answer, made of the service's own by `tools/studio`. */
 
-import { byId, el } from "../core/dom.js";
-import { checks, figures, table } from "../design/design_metrics.js";
-import { foreign, t, term, translated } from "../core/messages.js";
-import { Mover } from "../motion/linkage_motion.js";
+import { byId, createElement } from "../core/dom.js";
+import { createChecks, listFigures, createTable } from "../design/design_metrics.js";
+import { foreignLanguage, t, term, translate } from "../core/messages.js";
+import { LinkageMotion } from "../motion/linkage_motion.js";
 
-export class Opening {
-  /** @param {import("../design/workbench.js").Desk} desk @param {string} name of the example */
+export class OpeningExample {
+  /** @param {import("../design/workbench.js").Workbench} desk @param {string} name of the example */
   constructor(desk, name) {
     this.desk = desk;
     this.name = name;
-    /** @type {Mover | null} */
+    /** @type {LinkageMotion | null} */
     this.moving = null;
     this.gone = new AbortController();
     /** @type {(() => void) | null} */
@@ -26,28 +26,37 @@ export class Opening {
     );
     if (!answer || gone.signal.aborted) return;
     const { problem, design, motion, circuits, found, summary } = answer;
-    desk.stage.offer(true, t`Example: ${translated(this.name)}`);
-    desk.stage.show("watch");
+    desk.stage.offerMotion(true, t`Example: ${translate(this.name)}`);
+    desk.stage.showMode("watch");
     desk.shown = design;
-    this.moving = new Mover(desk.frame, design, motion, problem, circuits);
-    desk.title.replaceChildren(t`Example: ${`${translated(this.name)}, ${term(design.mechanism.type)}`}`);
+    this.moving = new LinkageMotion(desk.frame, design, motion, problem, circuits);
+    desk.title.replaceChildren(t`Example: ${`${translate(this.name)}, ${term(design.mechanism.type)}`}`);
     this.tabulate = () =>
       desk.numbers.replaceChildren(
-        el(
+        createElement(
           "p",
           { class: "note" },
           t`The best of ${found}.`,
           " ",
-          el("span", { lang: foreign(summary) }, translated(summary)),
+          createElement("span", { lang: foreignLanguage(summary) }, translate(summary)),
         ),
-        el("p", { class: "note" }, t`Solve it to have all of them, with drawings and files; or state something else.`),
-        el("div", { class: "columns" }, checks(design, problem), table(t`Quantities`, figures(design), problem)),
+        createElement(
+          "p",
+          { class: "note" },
+          t`Solve it to have all of them, with drawings and files; or state something else.`,
+        ),
+        createElement(
+          "div",
+          { class: "columns" },
+          createChecks(design, problem),
+          createTable(t`Quantities`, listFigures(design), problem),
+        ),
       );
     this.tabulate();
   }
 
   /** The service has told what numbers measure: their units stand beside them now. */
-  measured() {
+  addUnits() {
     if (!this.gone.signal.aborted) this.tabulate?.();
   }
 
@@ -58,6 +67,6 @@ export class Opening {
     this.moving?.stop();
     this.moving = null;
     this.desk.clear();
-    this.desk.stage.offer(false);
+    this.desk.stage.offerMotion(false);
   }
 }

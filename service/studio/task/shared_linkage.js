@@ -1,22 +1,22 @@
 /** A linkage that came in an address: driven by the service that opens it, and told as far as that shows it. */
 
 import * as api from "../core/api.js";
-import { overTheCycle, stands } from "../motion/cycle.js";
-import { el } from "../core/dom.js";
-import { driven } from "../motion/linkage_facts.js";
+import { fetchCycle, inputAngle } from "../motion/cycle.js";
+import { createElement } from "../core/dom.js";
+import { createFacts } from "../motion/linkage_facts.js";
 import { Explorer } from "../explorer/explorer.js";
 import { t, term } from "../core/messages.js";
-import { Mover, demanded } from "../motion/linkage_motion.js";
+import { LinkageMotion, listTargets } from "../motion/linkage_motion.js";
 
 /** @import { Problem } from "../types/values.js" */
 
 /** Samples of its cycle. */
-const STEPS = 240;
+const STEP_COUNT = 240;
 
-export class SentLinkage {
+export class SharedLinkage {
   /**
-   * @param {import("../design/workbench.js").Desk} desk
-   * @param {import("../core/address_fragment.js").Sent} sent
+   * @param {import("../design/workbench.js").Workbench} desk
+   * @param {import("../core/address_fragment.js").SharedContent} sent
    * @param {(problem: Problem, solved?: boolean) => void} state begins another statement
    */
   constructor(desk, sent, state) {
@@ -24,7 +24,7 @@ export class SentLinkage {
     this.sent = sent;
     this.state = state;
     this.gone = new AbortController();
-    /** @type {Mover | null} */
+    /** @type {LinkageMotion | null} */
     this.moving = null;
     /** @type {Explorer | null} */
     this.explorer = null;
@@ -35,45 +35,48 @@ export class SentLinkage {
     const { desk, gone, sent } = this;
     const { mechanism } = sent;
     if (!mechanism) return;
-    const { motion, circuits } = await overTheCycle(mechanism, STEPS, gone.signal);
+    const { motion, circuits } = await fetchCycle(mechanism, STEP_COUNT, gone.signal);
     // The motion that is shown ends where a toggle ends it; whether the input turns through a whole turn says.
-    const from = stands(mechanism.skeleton);
+    const from = inputAngle(mechanism.skeleton);
     const turn =
       from === null
         ? motion
-        : await api.analysis({ mechanism, motion: { from, to: from + 360, steps: STEPS } }, gone.signal);
+        : await api.analyse({ mechanism, motion: { from, to: from + 360, steps: STEP_COUNT } }, gone.signal);
     if (gone.signal.aborted) return;
     const named = t`From the address: ${term(mechanism.type)}`;
     const problem = sent.placed ? { ...sent.problem, positions: [], points: [] } : sent.problem;
-    desk.stage.offer(true, named);
-    desk.stage.show("watch");
+    desk.stage.offerMotion(true, named);
+    desk.stage.showMode("watch");
     desk.shown = { mechanism, placement: sent.placed };
     desk.title.replaceChildren(named);
-    this.moving = new Mover(desk.frame, { mechanism }, motion, problem, circuits);
-    const { facts } = driven(turn, mechanism.skeleton, demanded(problem, null), problem.length_unit ?? "mm");
+    this.moving = new LinkageMotion(desk.frame, { mechanism }, motion, problem, circuits);
+    const { facts } = createFacts(turn, mechanism.skeleton, listTargets(problem, null), problem.length_unit ?? "mm");
     desk.numbers.replaceChildren(
-      el(
+      createElement(
         "p",
         { class: "note" },
         t`This linkage came in the address. What is told of it here this service has found by driving it; whether it does what is stated, Solve says.`,
       ),
-      el(
+      createElement(
         "dl",
         { class: "facts" },
-        ...Object.entries(facts).flatMap(([name, value]) => [el("dt", {}, name), el("dd", {}, value)]),
+        ...Object.entries(facts).flatMap(([name, value]) => [
+          createElement("dt", {}, name),
+          createElement("dd", {}, value),
+        ]),
       ),
     );
-    desk.explored(true);
-    desk.drawer.on("explore", {
+    desk.offerExploring(true);
+    desk.drawer.setReaction("explore", {
       opened: () => {
         this.moving?.pause();
-        desk.stage.show("explore");
+        desk.stage.showMode("explore");
         this.explorer = desk.explorer = new Explorer(
           desk.exploring,
           desk.explore,
           mechanism,
           problem,
-          demanded(problem, null),
+          listTargets(problem, null),
           this.state,
         );
       },
@@ -81,7 +84,7 @@ export class SentLinkage {
         this.explorer?.stop();
         this.explorer = desk.explorer = null;
         desk.exploring.replaceChildren();
-        if (desk.stage.mode === "explore") desk.stage.show("watch");
+        if (desk.stage.mode === "explore") desk.stage.showMode("watch");
       },
     });
   }
@@ -91,10 +94,10 @@ export class SentLinkage {
     if (this.gone.signal.aborted) return;
     this.gone.abort();
     if (!this.moving) return;
-    this.desk.drawer.on("explore", null);
+    this.desk.drawer.setReaction("explore", null);
     this.desk.explorer = null;
     this.moving.stop();
     this.desk.clear();
-    this.desk.stage.offer(false);
+    this.desk.stage.offerMotion(false);
   }
 }
