@@ -124,7 +124,7 @@ async function solveStatement() {
     const job = await api.submitJob(statement, jobLabel.value || null);
     store.recordSubmission(job.id, statement);
     workbench.drawer.selectTab("answers");
-    const note = createElement("p", { class: "note" }, t`Designs stand here as soon as they are found.`);
+    const note = createElement("p", { class: "note" }, t`Designs appear here as soon as they are found.`);
     if (store.answered === null) byId("result").replaceChildren(note);
     location.hash = `job=${job.id}`;
   } catch (error) {
@@ -159,7 +159,7 @@ async function openFragment() {
     store.begin(sent.problem);
     jobLabel.value = sent.label;
     byId("result").replaceChildren(
-      createElement("p", { class: "note" }, t`This statement came in the address. Solve finds its answers.`),
+      createElement("p", { class: "note" }, t`This problem came in the address. Press Solve to find designs.`),
     );
     workbench.stage.showMode("state");
     const linkage = new SharedLinkage(workbench, sent, beginStatement);
@@ -239,7 +239,7 @@ function leaveJob() {
   answers.clearAnswers(byId("result"), workbench);
   workbench.stage.offerMotion(false);
   byId("result").replaceChildren(
-    createElement("p", { class: "note" }, t`State a problem, or take an example, and solve it.`),
+    createElement("p", { class: "note" }, t`Enter a problem or choose an example, then solve it.`),
   );
   window.history.replaceState(null, "", location.pathname);
 }
@@ -277,7 +277,7 @@ async function start() {
     },
   });
   byId("guides").replaceChildren(
-    createElement("p", { class: "note" }, t`Guided, a minute each`),
+    createElement("p", { class: "note" }, t`Guided tasks of one minute`),
     ...leader.createButtons(() => gallery?.dialog.close()),
   );
   if (galleryWanted) gallery.open();

@@ -72,8 +72,8 @@ export function showAnswer(place, desk, job, state, solve) {
   place.append(
     createElement(
       "div",
-      { class: "known", tabindex: 0, role: "group", "aria-label": t`What is known` },
-      createElement("p", { class: "warn outdated" }, t`Answers to an earlier statement.`),
+      { class: "known", tabindex: 0, role: "group", "aria-label": t`Search summary` },
+      createElement("p", { class: "warn outdated" }, t`Answers to an earlier problem.`),
       count,
       ...describeSearch(search, designs.length, summary),
       createElement("p", { class: "note summary", lang: foreignLanguage(summary) }, formatText(translate(summary))),
@@ -87,7 +87,7 @@ export function showAnswer(place, desk, job, state, solve) {
   );
   desk.drawer.setAvailable("compare", choice !== null);
   if (designs.length) return;
-  desk.stage.offerMotion(true, nearest_miss ? t`None found; this comes nearest` : t`None found`);
+  desk.stage.offerMotion(true, nearest_miss ? t`No design found; the nearest miss` : t`No design found`);
   desk.frame.showMessage(
     ...(nearest_miss
       ? [describeNearMiss(nearest_miss, job.problem, solve)]
@@ -126,14 +126,14 @@ function describeSearch(search, found, summary) {
     .map(([why, n]) => `${term(why)} ${groupDigits(n)}`);
   const sure = search.complete
     ? found
-      ? t`Complete: the search has left out nothing that the problem allows; the best are shown.`
+      ? t`Complete: the search covered everything that the problem allows; the best designs are shown.`
       : t`Complete: no design exists.`
     : found
-      ? t`Not complete: there may be others.`
-      : t`None found; that is no proof that none exists.`;
+      ? t`Not complete: there may be other designs.`
+      : t`No design found; this does not prove that none exists.`;
   const told = counted.length > 0 && !summary.includes("Rejected:");
   return [
     createElement("p", { class: "verdict" }, sure),
-    told && createElement("p", { class: "note" }, t`Left out: ${counted.join(", ")}.`),
+    told && createElement("p", { class: "note" }, t`Rejected: ${counted.join(", ")}.`),
   ].filter((one) => one !== false);
 }

@@ -119,13 +119,7 @@ export class Comparison {
     other.parentElement?.classList.toggle("split", is);
     other.replaceChildren(
       ...(is
-        ? [
-            createElement(
-              "div",
-              { class: "said" },
-              createElement("p", { class: "note" }, t`The motion is being computed …`),
-            ),
-          ]
+        ? [createElement("div", { class: "said" }, createElement("p", { class: "note" }, t`Computing the motion …`))]
         : []),
     );
   }

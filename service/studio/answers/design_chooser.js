@@ -108,7 +108,7 @@ export class DesignChooser {
             createElement(
               "p",
               { class: "note" },
-              t`Ringed: no other design beats it in all of ${this.listObjectives().join(", ")}.`,
+              t`Ringed: no other design is better in all of ${this.listObjectives().join(", ")}.`,
             ),
           ]
         : []),
@@ -179,7 +179,7 @@ export class DesignChooser {
     });
     this.table.replaceChildren(
       other === null
-        ? createElement("p", { class: "note" }, t`Choose a second design: what differs is marked.`)
+        ? createElement("p", { class: "note" }, t`Choose a second design; differences are marked.`)
         : compareNumbers(designs, [strip.chosen, other], this.job.problem),
     );
     if (other === null || manner === null || !shown || (manner === "over" && !both)) return;

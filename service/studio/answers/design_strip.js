@@ -32,7 +32,7 @@ export class DesignStrip {
           type: "button",
           class: "pin-button",
           "aria-label": t`Pin design ${n + 1}`,
-          title: t`Pin it: it then comes first`,
+          title: t`Pin it to list it first`,
           "aria-pressed": "false",
           onclick: () => this.pin(n),
         },

@@ -70,7 +70,7 @@ export class MetricBounds {
     const sense = createElement(
       "select",
       {
-        "aria-label": t`${quantity.text}: which side`,
+        "aria-label": t`${quantity.text}: direction of the bound`,
         onchange: () => {
           least = sense.value === "≥";
           slider.value = String(least ? 0 : SLIDER_STEPS);

@@ -96,11 +96,11 @@ export function describeNearMiss(miss, problem, solve) {
         { class: "bad" },
         `✗ ${toWords(gap.check)}`,
         typeof gap.value === "number" && ` ${formatAmount(gap.value, gap, problem)}`,
-        typeof gap.limit === "number" && `, ${t`demanded ${formatAmount(gap.limit, gap, problem)}`}`,
+        typeof gap.limit === "number" && `, ${t`required ${formatAmount(gap.limit, gap, problem)}`}`,
       ),
     ),
     within.length > 0 &&
-      createElement("span", { class: "note" }, t`Within reach beside all other demands: ${within.join("; ")}.`),
+      createElement("span", { class: "note" }, t`Reachable with all other constraints: ${within.join("; ")}.`),
     ...listOffers(problem, miss).map(({ text, statement }, k) =>
       createElement("button", { type: "button", class: k ? "small" : "main", onclick: () => solve(statement) }, text),
     ),

@@ -133,7 +133,7 @@ export class ScatterPlot {
     const says = [
       t`Design ${n + 1}`,
       ...[up, across].map((one) => `${one.text} ${formatQuantity(one, Number(one.values[n]))}`),
-      ...(now.front.includes(n) ? [t`no other beats it`] : []),
+      ...(now.front.includes(n) ? [t`no other is better`] : []),
       ...(now.pinned.includes(n) ? [t`pinned`] : []),
     ].join(", ");
     const marks = [now.chosen === n && "chosen", !now.kept[n] && "beyond", now.pinned.includes(n) && "pinned"]

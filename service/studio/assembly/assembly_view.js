@@ -121,7 +121,7 @@ export class AssemblyView {
       field("pin", t`Pin (${unit})`, number(t`what fits`)),
       field("width", t`Width (${unit})`, number(t`2.5 pins`)),
       field("scale", t`Scale`, number("1")),
-      createElement("button", { type: "submit", class: "small" }, t`Make them so`),
+      createElement("button", { type: "submit", class: "small" }, t`Apply`),
     );
     this.fault.id = "assembly-fault";
     return form;
@@ -153,10 +153,10 @@ export class AssemblyView {
     this.asked?.abort();
     const asked = (this.asked = new AbortController());
     this.engaged = this.engagedSpeed();
-    this.words.textContent = t`The parts are being made …`;
+    this.words.textContent = t`Making the parts …`;
     this.body.setAttribute("aria-busy", "true");
     this.clearErrors();
-    if (!this.scene) this.showNote(t`The parts are being made …`);
+    if (!this.scene) this.showNote(t`Making the parts …`);
     try {
       const query = this.readSizes();
       const [assembly, drawing] = await Promise.all([
@@ -170,7 +170,7 @@ export class AssemblyView {
       if (asked.signal.aborted || this.gone.signal.aborted) return;
       this.words.replaceChildren();
       this.body.hidden = true;
-      this.showNote(t`There are no such parts.`);
+      this.showNote(t`These parts cannot be made.`);
       this.scene?.stop();
       this.scene = null;
       this.showRefusal(error);
@@ -228,14 +228,14 @@ export class AssemblyView {
     this.words.textContent =
       [
         t`${assembly.parts.length} parts of ${kinds.size} kinds`,
-        assembly.scale !== 1 && t`${formatNumber(assembly.scale)} times the design`,
+        assembly.scale !== 1 && t`${formatNumber(assembly.scale)} times the size of the design`,
       ]
         .filter(Boolean)
         .join(", ") + ".";
     this.list = this.listParts(assembly, query);
     this.body.hidden = false;
     if (!this.drawing) {
-      const reason = t`This browser does not draw in three dimensions (WebGL 2 is missing or switched off). The parts are listed, and their files are there.`;
+      const reason = t`This browser cannot draw in three dimensions (WebGL 2 is missing or switched off). The parts are listed with their files.`;
       this.showNote(reason);
       this.body.replaceChildren(this.list);
       return;
@@ -261,7 +261,7 @@ export class AssemblyView {
         createElement(
           "p",
           { class: "note", id: "assembly-keys" },
-          t`Drag to turn, with the right button or two fingers to move, the wheel or + and − to zoom; arrow keys turn, with Shift they move; Home shows all.`,
+          t`Drag to turn; drag with the right button or two fingers to move; use the wheel or + and − to zoom. Arrow keys turn, with Shift they move; Home shows everything.`,
         ),
         this.beyond,
         ...assembly.notes.map((note) =>
@@ -409,7 +409,7 @@ export class AssemblyView {
         createElement(
           "p",
           { class: "note" },
-          t`Outlines of plates are there. For solids the service needs its extra cad.`,
+          t`Outlines of the plates are available. For solids, the service needs its extra cad.`,
         ),
     );
   }
@@ -551,7 +551,7 @@ export class AssemblyView {
     const unit = quantity === "angle" ? "°" : ` ${unitSymbol("length", this.job.problem)}`;
     this.beyond.hidden = within;
     const [from, to] = [low, high].map((end) => formatNumber(Number(end.toFixed(2))) + unit);
-    this.beyond.textContent = t`The parts are made for inputs from ${from} to ${to}; the drawing is beyond, and they wait at the end.`;
+    this.beyond.textContent = t`The parts are shown for inputs from ${from} to ${to}. The drawing is outside this range, so they wait at its end.`;
   }
 
   stop() {

@@ -42,7 +42,7 @@ export class Backdrop {
       await image.decode();
     } catch {
       URL.revokeObjectURL(url);
-      throw new Error(t`${file.name} is no picture that a browser can show.`);
+      throw new Error(t`${file.name} is not a picture that a browser can show.`);
     }
     this.clear();
     this.unit = unit;
@@ -160,27 +160,25 @@ export class Backdrop {
             { class: "row" },
             createElement("label", { for: "backdrop-width" }, t`Its width (${unit})`),
             width,
-            button("backdrop-pick", picked ? t`Leave` : t`Scale by two points`, () => {
+            button("backdrop-pick", picked ? t`Cancel` : t`Scale by two points`, () => {
               this.picked = picked ? null : [];
               this.show();
             }),
-            button("backdrop-clear", t`Take it away`, () => this.clear()),
+            button("backdrop-clear", t`Remove picture`, () => this.clear()),
           ),
           createElement(
             "p",
             { class: "note", role: "status" },
             !picked
-              ? t`A pixel is ${formatNumber(placed?.scale)} ${unit}.`
-              : [t`Click one end of a length that you know.`, t`Click its other end.`, t`State how long it is.`][
-                  picked.length
-                ],
+              ? t`One pixel is ${formatNumber(placed?.scale)} ${unit}.`
+              : [t`Click one end of a known length.`, t`Click the other end.`, t`Enter the length.`][picked.length],
           ),
           picked?.length === 2 &&
             apart > 0 &&
             createElement(
               "div",
               { class: "row" },
-              createElement("label", { for: "backdrop-distance" }, t`From one point to the other (${unit})`),
+              createElement("label", { for: "backdrop-distance" }, t`Distance between the points (${unit})`),
               distance,
               button("backdrop-set", t`Set`, set),
             ),

@@ -49,7 +49,7 @@ export class BurmesterCurves {
     this.lines = SIDE_NAMES.map((_, k) => createSvg("line", { class: k ? "arm" : "arm input" }));
     this.picture = createScene(
       this.view,
-      t`Burmester's curves, pivots to be drawn along them`,
+      t`Burmester curves with draggable pivots`,
       [
         ...this.branches.flatMap((branch) => [
           createSvg("path", {
@@ -74,7 +74,7 @@ export class BurmesterCurves {
     this.told = createElement(
       "p",
       { class: "note", role: "status" },
-      t`Draw a pivot along its curve, or move it with the arrow keys: the linkage on these pivots is solved.`,
+      t`Drag a pivot along its curve, or move it with the arrow keys; the linkage on these pivots is then solved.`,
     );
     this.keep = createElement(
       "button",
@@ -96,7 +96,7 @@ export class BurmesterCurves {
         { class: "note" },
         createElement("span", { class: "key circle-key" }, t`Circle points`),
         ": ",
-        t`where the moving pivots may be in the first position`,
+        t`possible moving pivots in the first position`,
         "; ",
         createElement("span", { class: "key centre-key" }, t`centre points`),
         ": ",
@@ -202,11 +202,11 @@ export class BurmesterCurves {
         { moving_pivot: this.branches[this.dyads[k].branch].circle_points[this.dyads[k].at] },
       ]),
     );
-    this.told.replaceChildren(t`The linkage on these pivots is being solved …`);
+    this.told.replaceChildren(t`Solving the linkage on these pivots …`);
     try {
       const job = await api.solveNow(
         { ...this.problem, ...chosen, include_failed: true, max_designs: 1 },
-        t`Pivots on Burmester's curves`,
+        t`Pivots on the Burmester curves`,
         asking.signal,
       );
       if (asking.signal.aborted || this.gone.signal.aborted) {
@@ -216,14 +216,14 @@ export class BurmesterCurves {
       const before = this.trial;
       this.trial = job.id;
       this.keep.hidden = false;
-      if (!job.result) this.told.replaceChildren(t`The job is ${term(job.status)}; open it to follow it.`);
+      if (!job.result) this.told.replaceChildren(t`The job is ${term(job.status)}; open it to see its progress.`);
       else {
         const found = job.result.designs.length;
         this.told.replaceChildren(
           found
             ? job.result.designs[0].verification.passed
               ? t`Solved: it passes all checks.`
-              : t`Solved: it fails a check; see below which.`
+              : t`Solved: it fails a check, listed below.`
             : translate(job.result.summary),
         );
         if (found) this.showSolved(/** @type {Solved} */ (job));

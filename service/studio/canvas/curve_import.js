@@ -243,20 +243,20 @@ export class CurveImport {
     for (const { use } of rows) use.addEventListener("change", told);
     const states =
       found.format === "png" && found.length_unit === null
-        ? t`the picture states no scale, and a pixel is taken as ${formatNumber(found.scale)} ${unit}`
+        ? t`the picture states no scale; one pixel is taken as ${formatNumber(found.scale)} ${unit}`
         : found.length_unit === null
-          ? t`the file states no unit, and its numbers are taken as ${unit}`
-          : t`a unit of the file is ${formatNumber(found.millimetres_per_unit)} mm`;
+          ? t`the file states no unit; its numbers are taken as ${unit}`
+          : t`one unit of the file is ${formatNumber(found.millimetres_per_unit)} mm`;
     const counted = found.curves.length === 1 ? t`1 curve` : t`${found.curves.length} curves`;
     this.said.textContent = `${file.name}: ${counted}; ${states}.`;
-    if (!uses.length) this.said.append(" ", t`Problems of this kind take no curve.`);
+    if (!uses.length) this.said.append(" ", t`This kind of problem takes no curves.`);
     this.list.replaceChildren(
       createElement(
         "div",
         { class: "row" },
-        createElement("label", { for: "curve-scale" }, t`Scale (${unit} in a unit of the file)`),
+        createElement("label", { for: "curve-scale" }, t`Scale (${unit} per unit of the file)`),
         scale,
-        createElement("label", { for: "curve-points" }, t`Points at most`),
+        createElement("label", { for: "curve-points" }, t`Maximum number of points`),
         count,
       ),
       createElement("ul", { class: "drawn", "aria-label": t`Curves in ${file.name}` }, ...rows.map(({ node }) => node)),

@@ -106,18 +106,18 @@ export class DrawingImport {
     for (const { use } of rows) use.addEventListener("change", told);
     const states =
       found.millimetres_per_unit === null
-        ? t`the drawing states no unit, and its numbers are taken as ${unit}`
-        : t`a unit of the drawing is ${formatNumber(found.millimetres_per_unit)} mm`;
+        ? t`the drawing states no unit; its numbers are taken as ${unit}`
+        : t`one unit of the drawing is ${formatNumber(found.millimetres_per_unit)} mm`;
     const counted = found.outlines.length === 1 ? t`1 closed outline` : t`${found.outlines.length} closed outlines`;
-    const rounded = t`Curves are polygons within ${formatBriefly(found.tolerance)} ${unit}.`;
+    const rounded = t`Curves are approximated by polygons within ${formatBriefly(found.tolerance)} ${unit}.`;
     this.said.textContent = `${name}: ${counted}; ${states}. ${rounded}`;
     this.list.replaceChildren(
       createElement(
         "div",
         { class: "row" },
-        createElement("label", { for: "drawing-scale" }, t`Scale (${unit} in a unit of the drawing)`),
+        createElement("label", { for: "drawing-scale" }, t`Scale (${unit} per unit of the drawing)`),
         scale,
-        rows.length > 1 && createElement("label", { for: "drawing-all" }, t`All as`),
+        rows.length > 1 && createElement("label", { for: "drawing-all" }, t`Use all as`),
         rows.length > 1 && all,
       ),
       createElement("ul", { class: "drawn", "aria-label": t`Outlines in ${name}` }, ...rows.map((row) => row.node)),
@@ -215,7 +215,7 @@ export class DrawingImport {
     const { last, store } = this;
     if (!last) return;
     if (serializeSpace(store.problem.space) !== last.after) {
-      this.said.textContent = t`The room has been changed since; choose what is to go, and delete it.`;
+      this.said.textContent = t`The workspace has changed since; select the areas to remove and delete them.`;
       return;
     }
     const before = JSON.parse(last.before);
@@ -259,7 +259,7 @@ export function listSkipped({ left_out, left_out_count }) {
   return createElement(
     "details",
     {},
-    createElement("summary", {}, t`${left_out_count} left out`),
+    createElement("summary", {}, t`${left_out_count} skipped`),
     createElement(
       "ul",
       { class: "reasons" },

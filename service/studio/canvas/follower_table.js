@@ -27,15 +27,15 @@ export function fitSegments(points, unit) {
   const [first, last] = [points[0], points[points.length - 1]];
   const span = last[0] - first[0];
   const ordered = span < 0 ? [...points].reverse() : points;
-  if (points.length < 4) throw new Error(t`A motion takes four points at least.`);
+  if (points.length < 4) throw new Error(t`A motion needs at least four points.`);
   if (ordered.some(([x], k) => k > 0 && !(x > ordered[k - 1][0])))
-    throw new Error(t`The curve turns back: a motion has one displacement at each angle.`);
+    throw new Error(t`The curve turns back; a motion needs exactly one displacement at each angle.`);
   const heights = ordered.map(([, y]) => y);
   const low = Math.min(...heights);
   const travel = Math.max(...heights) - low;
   if (!(travel > 0)) throw new Error(t`The follower never moves.`);
   if (Math.abs(last[1] - first[1]) > CLOSING_SHARE * travel)
-    throw new Error(t`The motion must end at the displacement at which it began: a cam goes around.`);
+    throw new Error(t`The motion must end at its initial displacement, because a cam turns around.`);
   const angles = ordered.map(([x]) => roundAngle((TURN_DEGREES * (x - ordered[0][0])) / Math.abs(span)));
   const lifts = heights.slice(0, -1).map((y) => roundAngle(y - low));
   const widths = lifts.map((_, k) => angles[k + 1] - angles[k]);

@@ -170,10 +170,10 @@ function pathHandles(problem) {
     add: (x, y) => problem.points.push({ x, y }),
     offers: [
       ...(problem.closed && problem.method === "curve_match"
-        ? [{ text: t`Keep it open`, make: () => isOpenCurve(problem) }]
+        ? [{ text: t`Leave it free`, make: () => isOpenCurve(problem) }]
         : []),
       pivots
-        ? { text: t`Leave the pivots open`, make: () => Object.assign(problem, { fixed_pivots: null }) }
+        ? { text: t`Leave the pivots free`, make: () => Object.assign(problem, { fixed_pivots: null }) }
         : {
             text: t`Choose the fixed pivots`,
             make: (/** @type {Point} */ [x, y], /** @type {number} */ size) =>
@@ -204,7 +204,7 @@ function curveTools(problem) {
       );
     };
   return [
-    { text: t`Smooth`, title: t`Make the curve smoother; once more, smoother still`, make: by(smoothCurve) },
+    { text: t`Smooth`, title: t`Make the curve smoother; press again for more`, make: by(smoothCurve) },
     {
       text: t`Symmetric`,
       title: t`Make the curve symmetric about the line that mirrors it best`,
@@ -230,7 +230,7 @@ function quickReturnHandles(problem) {
   const offers = [];
   if (!problem.positions) {
     offers.push({
-      text: t`State both limit positions`,
+      text: t`Add both limit positions`,
       make: (/** @type {Point} */ [x, y], /** @type {number} */ size) => {
         // They say how far the output swings; a swing or a stroke beside them would say it twice.
         Object.assign(problem, {
@@ -268,7 +268,7 @@ function quickReturnHandles(problem) {
       ? [
           ...offers,
           {
-            text: t`Leave the positions open`,
+            text: t`Leave the positions free`,
             make: () => Object.assign(problem, { positions: null, rotopole: null, swing: 45 }),
           },
         ]
@@ -342,7 +342,7 @@ function steeringHandles(problem) {
   return {
     offers: problem.track
       ? []
-      : [{ text: t`State the track`, make: () => (problem.track = digits(1.2 * problem.pivot_distance)) }],
+      : [{ text: t`Add the track`, make: () => (problem.track = digits(1.2 * problem.pivot_distance)) }],
     lines: () => [
       [
         [-half(), 0],
@@ -502,7 +502,7 @@ function functionHandles(problem) {
       ? []
       : [
           {
-            text: t`State pairs instead`,
+            text: t`Use pairs instead`,
             make: () => {
               for (const name of /** @type {const} */ ([
                 "function",

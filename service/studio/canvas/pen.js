@@ -191,12 +191,13 @@ export class Pen {
   }
 
   describeTool() {
-    if (this.tool === "rectangle") return t`Drag from corner to corner. Enter puts one into the middle, Escape ends.`;
-    if (this.tool === "circle") return t`Drag from the centre outward. Enter puts one into the middle, Escape ends.`;
-    if (!this.corners.length) return t`Click its corners. Enter puts one into the middle, Escape ends.`;
+    if (this.tool === "rectangle")
+      return t`Drag from corner to corner. Enter places one in the middle, Escape cancels.`;
+    if (this.tool === "circle") return t`Drag outward from the centre. Enter places one in the middle, Escape cancels.`;
+    if (!this.corners.length) return t`Click the corners. Enter places one in the middle, Escape cancels.`;
     return this.corners.length < 3
-      ? t`Click the next corner. Backspace takes one back, Escape ends.`
-      : t`Click the first corner, or press Enter, to close it. Backspace takes one back.`;
+      ? t`Click the next corner. Backspace removes the last one, Escape cancels.`
+      : t`Click the first corner or press Enter to close it. Backspace removes the last one.`;
   }
 
   leave() {

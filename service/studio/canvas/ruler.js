@@ -109,7 +109,7 @@ export class Ruler {
     this.title.textContent = t`${length}${unit}, ${angle}°; across ${dx}${unit}, up ${dy}${unit}`;
     this.text.setAttribute("x", String((x + u) / 2));
     this.text.setAttribute("y", String((y + v) / 2 - 9));
-    const keys = t`it measures ${this.text.textContent}. Arrow keys move it, Delete takes the ruler away.`;
+    const keys = t`it measures ${this.text.textContent}. Arrow keys move it, Delete removes the ruler.`;
     this.grips.forEach((grip, k) => {
       const [ex, ey] = ends[k];
       grip.moveTo(this.view.toPicture(ex, ey));

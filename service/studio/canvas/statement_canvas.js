@@ -212,7 +212,7 @@ function drawPlane(redrawn, store, of, roomy, memory, backdrop, room) {
     toggle(
       "snap",
       t`Snap`,
-      t`Places snap to ${formatNumber(snapSpacing(view))}, angles to ${SNAP_ANGLE}°; Alt lets them be`,
+      t`Coordinates snap to ${formatNumber(snapSpacing(view))}, angles to ${SNAP_ANGLE}°; hold Alt to disable`,
     ),
     ruler?.button,
   );
@@ -251,9 +251,9 @@ function drawPlane(redrawn, store, of, roomy, memory, backdrop, room) {
   const last = handles.at(-1)?.get() ?? [0, 0];
   const size = (0.4 * Math.min(view.width, 640)) / view.scale;
   const how = [
-    freehand && problem.closed && t`Closed: the whole curve is matched.`,
+    freehand && problem.closed && t`Closed: the designs match the whole curve.`,
     handles.some((one) => one.turn) ? t`Drag to move, drag the end to turn.` : t`Drag to move.`,
-    add && t`A double click adds one.`,
+    add && t`Double-click to add one.`,
   ]
     .filter(Boolean)
     .join(" ");
@@ -345,7 +345,7 @@ function createHandle(key, view, picture, { handle, change, remove, left }) {
     const [u, v] = view.toPicture(x, y);
     grip.moveTo([u, v]);
     const turned = turn ? `, ${t`angle ${formatNumber(turn.get())}°`}` : "";
-    const keys = [t`Arrow keys move it`, turn && t`page keys turn it`, removable && t`Delete removes it`];
+    const keys = [t`Arrow keys move it`, turn && t`Page keys turn it`, removable && t`Delete removes it`];
     grip.setLabel(`${label}: x ${formatNumber(x)}, y ${formatNumber(y)}${turned}. ${keys.filter(Boolean).join(", ")}.`);
     if (!knob || !end || !turn) return;
     const angle = (turn.get() * Math.PI) / 180;

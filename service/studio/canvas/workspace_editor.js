@@ -131,7 +131,7 @@ export class WorkspaceEditor {
     return createElement(
       "fieldset",
       { class: "choice", id: "room-tools" },
-      createElement("legend", {}, t`Room`),
+      createElement("legend", {}, t`Workspace`),
       createElement(
         "div",
         { class: "row" },
@@ -183,7 +183,7 @@ export class WorkspaceEditor {
       chosen?.hasFreeCorners && t`double-click a side for another corner`,
     ];
     this.said.textContent = !chosen
-      ? t`Say what is drawn, choose a shape, and draw it in the picture.`
+      ? t`Choose what to draw and a shape, then draw it in the picture.`
       : `${chosen.label}: ${ways.filter(Boolean).join("; ")}.`;
   }
 

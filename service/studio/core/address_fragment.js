@@ -49,7 +49,7 @@ export function holdsStatement(fragment) {
 export async function decodeFragment(fragment, kinds) {
   if (fragment.length > MAX_ADDRESS_LENGTH)
     throw new UnreadableAddress(
-      t`The address is longer than ${MAX_ADDRESS_LENGTH} characters, which no statement needs.`,
+      t`The address is longer than ${MAX_ADDRESS_LENGTH} characters; no problem needs that many.`,
     );
   const text = await unpack(fragment.slice(FRAGMENT_PREFIX.length));
   /**
@@ -60,21 +60,21 @@ export async function decodeFragment(fragment, kinds) {
   try {
     told = JSON.parse(text);
   } catch {
-    throw new UnreadableAddress(t`The address holds no statement: what comes out of it is no JSON.`);
+    throw new UnreadableAddress(t`The address contains no problem: its content is not JSON.`);
   }
   const { problem, label = "", mechanism = null, placed = false } = told ?? {};
   const kind = kinds.find((one) => one.kind === problem?.kind);
   if (!problem || !kind)
-    throw new UnreadableAddress(t`The address states a kind of problem that this service does not know.`);
+    throw new UnreadableAddress(t`The address contains a kind of problem that this service does not know.`);
   const wrong = findMismatch(problem, kind.schema, kind.schema);
   if (wrong !== null)
     throw new UnreadableAddress(
-      t`The address states ${wrong.slice(1, 100) || t`something`} in a way that this service does not know.`,
+      t`The address contains an invalid value at ${wrong.slice(1, 100) || t`an unknown place`}.`,
     );
   if (typeof label !== "string" || typeof placed !== "boolean")
-    throw new UnreadableAddress(t`The address holds more than a statement and a linkage.`);
+    throw new UnreadableAddress(t`The address contains more than a problem and a linkage.`);
   if (mechanism !== null && typeof mechanism?.skeleton !== "object")
-    throw new UnreadableAddress(t`The design in the address is no linkage.`);
+    throw new UnreadableAddress(t`The design in the address is not a linkage.`);
   return { problem, label: label.slice(0, 200), mechanism, placed };
 }
 
@@ -93,14 +93,12 @@ async function unpack(coded) {
       if (text.length <= MAX_STATEMENT_LENGTH) continue;
       await reader.cancel();
       throw new UnreadableAddress(
-        t`The statement in the address is longer than ${MAX_STATEMENT_LENGTH} characters, which no problem needs.`,
+        t`The problem in the address is longer than ${MAX_STATEMENT_LENGTH} characters; no problem needs that many.`,
       );
     }
     return text;
   } catch (error) {
     if (error instanceof UnreadableAddress) throw error;
-    throw new UnreadableAddress(
-      t`The address holds no statement that can be read: it is cut short, or was changed on its way.`,
-    );
+    throw new UnreadableAddress(t`The address cannot be read: it is truncated or was altered.`);
   }
 }

@@ -47,7 +47,7 @@ const BUSY_MS = 5000;
 export class Refusal extends Error {
   /** @param {Partial<Schemas["ProblemDetails"]>} problem @param {number} status */
   constructor(problem, status) {
-    super(problem.detail ? translate(problem.detail) : t`The service answered ${status}.`);
+    super(problem.detail ? translate(problem.detail) : t`The service answered with status ${status}.`);
     this.status = status;
     this.title = problem.title ? translate(problem.title) : t`Error`;
     /** @type {FieldError[]} */

@@ -64,7 +64,7 @@ export async function fetchCognates(design, problem, signal) {
 function describeCognate(one) {
   const angle = formatNumber(Math.round(10 * one.min_transmission_angle) / 10);
   const able = [
-    t`${toWords(one.grashof)}, transmits at ${angle}° at least`,
+    t`${toWords(one.grashof)}, minimum transmission angle ${angle}°`,
     one.same_timing ? t`keeps the crank angles` : t`has other crank angles`,
     one.same_branch ? t`passes all targets without a toggle` : t`passes a toggle between the targets`,
     t`traces the curve within ${formatNumber(Number(one.deviation.toPrecision(2)))}`,
@@ -84,7 +84,7 @@ export function createPicker(choices, choose) {
   return createElement(
     "fieldset",
     { id: "cognates", class: "row choice" },
-    createElement("legend", {}, t`The same curve by`),
+    createElement("legend", {}, t`Same curve from`),
     ...choices.map((one, k) => {
       const box = createElement("input", {
         type: "radio",

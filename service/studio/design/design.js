@@ -24,7 +24,7 @@ import { STEP_COUNT, TURN_STEP_COUNT, VIEWS } from "../motion/motion_views.js";
 
 /** @import { Design, LinkageAnalysis, Linked, LinkedDesign, Problem, Question, Solved } from "../types/values.js" */
 
-const DESIGN_TITLE = t`Checks, drawing and files are those of the design: choose it above the numbers to see them.`;
+const DESIGN_TITLE = t`Checks, drawing and files belong to the design; choose it above the numbers to see them.`;
 
 /** @typedef {import("../motion/motion_views.js").Moving} Moving */
 /**
@@ -137,7 +137,7 @@ export class DesignView {
     else
       frame.showMessage(
         createThumbnail(this.design) ?? "",
-        createElement("p", { class: "note" }, t`The motion is being computed …`),
+        createElement("p", { class: "note" }, t`Computing the motion …`),
       );
     try {
       const View = VIEWS[mechanism.type];
@@ -306,7 +306,7 @@ export class DesignView {
           this.forces = details.open && details.isConnected ? new ForcesPane(inside, job, n, this.mover) : null;
         },
       },
-      createElement("summary", {}, t`Forces: what it bears, and what drives it`),
+      createElement("summary", {}, t`Forces: loads and drive`),
       inside,
     );
     return [details];

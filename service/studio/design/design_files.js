@@ -8,18 +8,18 @@ import { t } from "../core/messages.js";
 
 /** @type {Record<string, [string, string]>} */
 const SIMULATION_FORMATS = {
-  mjcf: ["MuJoCo", t`A model of MuJoCo: loops closed, the input driven`],
-  urdf: ["URDF", t`A tree of links and joints for robotics programs, its loops beside it`],
-  mo: ["Modelica", t`A model of Modelica's MultiBody library`],
-  "sim.py": [t`Simulation`, t`A Python script that runs the design in MuJoCo and compares it with the analysis`],
+  mjcf: ["MuJoCo", t`MuJoCo model with closed loops and a driven input`],
+  urdf: ["URDF", t`Tree of links and joints for robotics programs; loops are listed separately`],
+  mo: ["Modelica", t`Model for Modelica's MultiBody library`],
+  "sim.py": [t`Simulation`, t`Python script that runs the design in MuJoCo and compares it with the analysis`],
 };
 
 /** @param {Solved} job @param {number} n @param {HTMLElement} drawing where the labelled drawing stands */
 export function createDownloads(job, n, drawing) {
   const place = createElement(
     "div",
-    { class: "row", id: "downloads", role: "group", "aria-label": t`Files to take home` },
-    createElement("span", {}, t`Take home`),
+    { class: "row", id: "downloads", role: "group", "aria-label": t`Files` },
+    createElement("span", {}, t`Download`),
   );
   const fault = createElement("span", { class: "error", role: "alert" });
   const button = (/** @type {string} */ title, /** @type {string} */ name, /** @type {() => Promise<string>} */ make) =>
@@ -56,7 +56,7 @@ export function createDownloads(job, n, drawing) {
     }),
     button("PNG", `${job.kind}-${n + 1}.png`, async () => {
       const image = drawing.querySelector("img");
-      if (!image) throw new Error(t`The drawing is not there yet.`);
+      if (!image) throw new Error(t`The drawing is not ready yet.`);
       return rasterize(image);
     }),
     button("JSON", `${job.kind}.json`, async () => {
@@ -84,14 +84,14 @@ function createPartsFields(job, n, button) {
   const cut = button(t`Parts`, `${job.kind}-${n + 1}-parts.zip`, () =>
     api.downloadParts(job.id, n, { process: "laser" }),
   );
-  cut.title = t`Plates to be cut, with what joins them, a drawing of the assembly and a bill`;
+  cut.title = t`Plates to cut, fasteners, an assembly drawing and a bill of materials`;
   const printed = button(t`Printed parts`, `${job.kind}-${n + 1}-printed.zip`, () =>
     api.downloadParts(job.id, n, { process: "print" }),
   );
   printed.title = t`STL and 3MF files of all parts, and their assembly`;
   if (!api.makesSolids()) {
     printed.setAttribute("disabled", "");
-    printed.title = t`This service makes no solids: it runs without its extra cad (MECHSYNTH_CAD=1 make serve)`;
+    printed.title = t`This service cannot make solids; it runs without its extra cad (MECHSYNTH_CAD=1 make serve)`;
   }
   return [cut, printed];
 }
@@ -107,7 +107,7 @@ function createPmksButton(job, n, button) {
     createElement("a", { href: url, target: "_blank", rel: "noopener noreferrer" }).click();
     return "";
   });
-  there.title = t`Open it in PMKS+, whose models are in their addresses: app.pmksplus.com is told all of it`;
+  there.title = t`Open it in PMKS+. The link contains the whole design and sends it to app.pmksplus.com`;
   return there;
 }
 
@@ -120,7 +120,7 @@ async function rasterize(image) {
   pen.fillRect(0, 0, canvas.width, canvas.height);
   pen.drawImage(image, 0, 0, canvas.width, canvas.height);
   const blob = /** @type {Blob | null} */ (await new Promise((done) => canvas.toBlob(done, "image/png")));
-  if (!blob) throw new Error(t`The drawing is too large for a picture in pixels; the SVG has it whole.`);
+  if (!blob) throw new Error(t`The drawing is too large for a PNG; use the SVG.`);
   return URL.createObjectURL(blob);
 }
 

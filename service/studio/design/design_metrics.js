@@ -263,21 +263,25 @@ export function createTolerances(design, problem) {
     [t`yield`, share?.value],
     [t`yield, at least`, share?.low],
     [t`yield, at most`, share?.high],
-    [t`worst error`, worst?.max_error, length],
-    [t`worst angle error`, worst?.max_angle_error, angle],
-    [t`tolerances that matter`, told.matter?.join(", ") || undefined],
-    [t`rounding cost, rms residual`, cost?.rms_residual],
-    [t`rounding cost, error`, cost?.max_error, length],
+    [t`largest error`, worst?.max_error, length],
+    [t`largest angle error`, worst?.max_angle_error, angle],
+    [t`critical tolerances`, told.matter?.join(", ") || undefined],
+    [t`error growth by rounding, rms residual`, cost?.rms_residual],
+    [t`error growth by rounding`, cost?.max_error, length],
     [t`remark`, translate(told.remark ?? "") || undefined],
     ...Object.entries(told.dimensions ?? {}).map(
       ([name, value]) =>
-        /** @type {[string, unknown, string]} */ ([t`made: ${name.split(".").map(term).join(" ")}`, value, length]),
+        /** @type {[string, unknown, string]} */ ([
+          t`manufactured: ${name.split(".").map(term).join(" ")}`,
+          value,
+          length,
+        ]),
     ),
   ];
   const stated = rows.filter(([, value]) => value !== undefined && value !== null);
   return [
     createNumberTable(
-      t`As it is made`,
+      t`As manufactured`,
       stated.map(([name, value, unit = ""]) => [
         name,
         typeof value === "number"

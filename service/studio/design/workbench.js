@@ -59,9 +59,9 @@ export class Workbench {
     this.before.replaceChildren();
     this.forced.replaceChildren();
     for (const [place, text] of /** @type {[HTMLElement, string][]} */ ([
-      [this.numbers, t`The numbers of a design stand here when there is one.`],
-      [this.frame.plots, t`The plots of a design stand here when there is one.`],
-      [this.files, t`The files of a design stand here when there is one.`],
+      [this.numbers, t`The numbers of a design appear here.`],
+      [this.frame.plots, t`The plots of a design appear here.`],
+      [this.files, t`The files of a design appear here.`],
     ])) {
       place.replaceChildren(createElement("p", { class: "note" }, text));
     }
@@ -71,7 +71,7 @@ export class Workbench {
   /** Say whether a linkage can be explored. @param {boolean} is */
   offerExploring(is) {
     this.exploring.replaceChildren();
-    const note = t`Linkages are explored: their pins are dragged, and what they do then is told here.`;
+    const note = t`Only linkages can be explored by dragging their pins.`;
     this.explore.replaceChildren(...(is ? [] : [createElement("p", { class: "note" }, note)]));
   }
 }

@@ -143,7 +143,7 @@ export class DimensionTable {
 
   /** @param {Joints | null} found @param {boolean} [apart] whether it is a step of its own */
   applySolution(found, apart = false) {
-    this.told.textContent = found ? "" : t`No linkage near this one has these dimensions together.`;
+    this.told.textContent = found ? "" : t`No linkage near this one has all these dimensions.`;
     if (!found) return this.show(this.places);
     this.places = found;
     this.show(found);

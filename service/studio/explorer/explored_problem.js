@@ -36,7 +36,7 @@ export function listStartingPoints(problem, skeleton, motion, targets, held) {
     P
   )
     found.push({
-      text: held ? t`Optimise from here, what is held let go` : t`Optimise from here`,
+      text: held ? t`Optimise from here, with held dimensions free` : t`Optimise from here`,
       solved: true,
       statement: () => ({
         ...problem,
@@ -52,7 +52,7 @@ export function listStartingPoints(problem, skeleton, motion, targets, held) {
       fixed_pivot: roundPoint(at),
     });
     found.push({
-      text: t`Begin a statement with these fixed pivots`,
+      text: t`Start a problem with these fixed pivots`,
       statement: () => ({
         ...problem,
         input_side: side(problem.input_side, O2),
@@ -63,20 +63,20 @@ export function listStartingPoints(problem, skeleton, motion, targets, held) {
   }
   if (O2 && O4 && "fixed_pivots" in problem && problem.kind === "path") {
     found.push({
-      text: t`Begin a statement with these fixed pivots`,
+      text: t`Start a problem with these fixed pivots`,
       statement: () => ({ ...problem, fixed_pivots: { input: roundPoint(O2), output: roundPoint(O4) } }),
     });
   }
   if (problem.kind === "motion" && "P" in skeleton.joints) {
     found.push({
-      text: t`Begin a statement with the positions that it takes`,
+      text: t`Start a problem with the positions it reaches`,
       statement: () => ({ ...problem, positions: describePositions(problem, skeleton, motion, targets) }),
     });
   }
   const known = coupledCurve(motion, findTracedJoint(skeleton));
   if (known.length > 3) {
     found.push({
-      text: t`Begin a path statement with its curve`,
+      text: t`Start a path problem with its curve`,
       statement: () => ({
         kind: "path",
         length_unit: problem.length_unit,

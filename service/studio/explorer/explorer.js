@@ -62,8 +62,8 @@ export class Explorer {
         text,
       );
     this.steps = {
-      back: step(t`Undo the last change of the linkage`, "↶", () => this.undo()),
-      forth: step(t`Do it again`, "↷", () => this.redo()),
+      back: step(t`Undo the last change to the linkage`, "↶", () => this.undo()),
+      forth: step(t`Redo the change`, "↷", () => this.redo()),
     };
     const around = Object.values(this.joints).concat(targets.map((one) => [one.x, one.y]));
     this.view = new View(around, width, height, Math.min(110, 0.2 * Math.min(width, height)));
@@ -72,7 +72,7 @@ export class Explorer {
     this.ghost = new LinkageDrawing(this.view, this.skeleton, { names: false, faint: true });
     this.picture = createScene(
       this.view,
-      t`The linkage, its pins to be dragged`,
+      t`The linkage with draggable pins`,
       [
         this.curve,
         ...targets.map((one) =>
@@ -110,7 +110,7 @@ export class Explorer {
       createElement(
         "p",
         { class: "note" },
-        t`Drag a pin, move it with the arrow keys, or type a dimension: curve, motion and figures are those of the linkage as it is then. What is held stays, whichever pin is dragged.`,
+        t`Drag a pin, move it with the arrow keys, or type a dimension; the curve, the motion and the numbers follow. Held dimensions stay the same.`,
       ),
       createElement("p", { class: "row" }, this.steps.back, this.steps.forth),
       this.sizes.node,
@@ -316,7 +316,7 @@ export class Explorer {
     if (wanted.full_rotation) checks.push([t`Full rotation`, turns]);
     if (wanted.min_transmission_angle)
       checks.push([
-        t`Transmission angle of ${formatNumber(wanted.min_transmission_angle)}° in the whole motion`,
+        t`Transmission angle of at least ${formatNumber(wanted.min_transmission_angle)}° over the whole motion`,
         least !== null && least >= wanted.min_transmission_angle,
       ]);
     if (wanted.grashof && wanted.grashof !== "any" && grashof) {

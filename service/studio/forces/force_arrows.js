@@ -113,7 +113,7 @@ export class ForceArrows {
     this.choice = createElement(
       "select",
       { id: "force-on", onchange: () => this.chooseLink(this.choice.value) },
-      createElement("option", { value: "" }, t`a link of each joint`),
+      createElement("option", { value: "" }, t`one link per joint`),
       ...[...new Set(forces.map(({ on }) => on))]
         .filter((on) => !on.startsWith("pin "))
         .map((on) => createElement("option", { value: on }, term(on))),
@@ -172,7 +172,7 @@ export class ForceArrows {
   /** An arrow of a round number, and what it stands for. @param {string} unit */
   createLegend(unit) {
     const [x, y] = [this.extent.x + 12, this.extent.y + this.extent.height - 12];
-    if (!this.peak) return createSvg("text", { class: "force-scale", x, y }, t`No joint bears a force.`);
+    if (!this.peak) return createSvg("text", { class: "force-scale", x, y }, t`No joint carries a force.`);
     const power = 10 ** Math.floor(Math.log10(this.peak));
     const value = power * ([5, 2, 1].find((one) => one * power <= this.peak) ?? 1);
     const length = this.scale * value;

@@ -22,12 +22,12 @@ const MAX_LINES = 4;
 
 /** Why numbers are missing, or are to be read with care, by the status of a position. @type {Record<string, string>} */
 const STATUS_REASONS = {
-  not_assembled: t`the linkage does not close there`,
+  not_assembled: t`the linkage cannot be assembled there`,
   dead_centre: t`dead centre: the forces are not determined`,
-  load_undetermined: t`the ends of a spring meet, and its force has no direction`,
-  friction_jam: t`it jams by friction`,
-  stick: t`something with friction stands still: the numbers are those without its friction`,
-  statically_indeterminate: t`statically indeterminate: constraints are redundant, and where no number stands the force is not unique`,
+  load_undetermined: t`the ends of a spring coincide, so its force has no direction`,
+  friction_jam: t`friction jams it`,
+  stick: t`a joint with friction stands still; its friction is not included`,
+  statically_indeterminate: t`statically indeterminate: constraints are redundant; missing forces are not unique`,
 };
 
 /** @typedef {(number | null)[]} Series */
@@ -75,14 +75,14 @@ export class ForcesPane {
         createElement("p", { class: "error" }, t`The design has no forces: ${forces.remark}.`),
       );
     else if (job.problem.dynamics ?? this.design.dynamics) {
-      this.pictures.replaceChildren(createElement("p", { class: "note" }, t`The forces are being computed …`));
+      this.pictures.replaceChildren(createElement("p", { class: "note" }, t`Computing the forces …`));
       this.requestForces(null).catch((error) => this.showFailure(error));
     } else
       this.pictures.replaceChildren(
         createElement(
           "p",
           { class: "note" },
-          t`The problem does not state what the linkage weighs and carries: its forces are not known until that is stated above.`,
+          t`The problem states no masses and loads. Add them above to see the forces.`,
         ),
       );
   }
@@ -312,8 +312,8 @@ export class ForcesPane {
     const [force, torque] = [this.formatUnit("force"), this.formatUnit("torque")];
     /** @type {[string, number | null, number | null, string, Series | null][]} */
     const rows = [
-      [t`${name}, greatest`, extremes.drive.max, extremes.drive.at, unit, drive ?? null],
-      [t`${name}, least`, extremes.drive.min, extremes.drive.at_min, unit, null],
+      [t`${name}, maximum`, extremes.drive.max, extremes.drive.at, unit, drive ?? null],
+      [t`${name}, minimum`, extremes.drive.min, extremes.drive.at_min, unit, null],
       ...Object.entries(extremes.joints).map(
         ([joint, peak]) =>
           /** @type {[string, number | null, number | null, string, Series | null]} */ ([
@@ -410,7 +410,7 @@ export class ForcesPane {
     const [first, last] = [inputs[0], inputs[inputs.length - 1]].map((end) => this.formatInput(end));
     const said =
       at === null
-        ? t`Forces are known from ${first} to ${last}, the range that the design was verified along.`
+        ? t`Forces are available from ${first} to ${last}, the range in which the design was verified.`
         : (STATUS_REASONS[status] ?? "");
     if (this.outside.textContent !== said) this.outside.textContent = said;
   }

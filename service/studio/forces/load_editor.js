@@ -99,15 +99,14 @@ export class LoadEditor {
         ),
       ),
       this.hint,
-      kept.length > 0 &&
-        createElement("p", { class: "note" }, t`Kept as the problem states it: ${kept.map(term).join(", ")}.`),
+      kept.length > 0 && createElement("p", { class: "note" }, t`Kept from the problem: ${kept.map(term).join(", ")}.`),
       this.faults,
       createElement("div", { class: "row" }, this.button),
     );
     this.node = createElement(
       "details",
       { class: "load-editor", open: !problem.dynamics, ontoggle: () => this.node.open || this.startPlacing(null) },
-      createElement("summary", {}, t`State masses and loads`),
+      createElement("summary", {}, t`Add masses and loads`),
       this.form,
     );
     this.click = (/** @type {PointerEvent} */ event) => this.chooseJoint(event);
@@ -170,7 +169,7 @@ export class LoadEditor {
       unit,
       this.block[name],
       (value) => writePointer(this.block, [name], value),
-      t`0 is statics.`,
+      t`0 means statics.`,
     );
   }
 
@@ -298,7 +297,7 @@ export class LoadEditor {
           k,
           path,
           "load",
-          createElement("p", { class: "note" }, t`On ${load.joint ?? load.link}, kept as it is stated.`),
+          createElement("p", { class: "note" }, t`On ${load.joint ?? load.link}, kept unchanged.`),
         );
       }),
     );
@@ -364,7 +363,7 @@ export class LoadEditor {
         "aria-pressed": "false",
         onclick: () => this.startPlacing(this.placing?.button === button ? null : { select, button }),
       },
-      t`Choose on the drawing`,
+      t`Pick on the drawing`,
     );
     field.append(button);
     return field;
@@ -378,7 +377,7 @@ export class LoadEditor {
     this.mover?.picture.classList.toggle("placing", Boolean(placed));
     if (placed) this.mover?.pause();
     this.hint.textContent = placed
-      ? t`Click a joint in the drawing above, or choose it from the list. Escape leaves the drawing.`
+      ? t`Click a joint in the drawing above, or choose it from the list. Escape cancels.`
       : "";
   }
 
@@ -435,7 +434,7 @@ export class LoadEditor {
       this.faults.replaceChildren(createElement("p", { class: "error" }, error.message));
     if (this.answered)
       this.faults.append(
-        createElement("p", { class: "note" }, t`The forces below are those of what was stated before.`),
+        createElement("p", { class: "note" }, t`The forces below belong to the earlier masses and loads.`),
       );
   }
 }

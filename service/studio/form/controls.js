@@ -106,7 +106,7 @@ export function createJsonBox(value, set) {
         set(text === "" ? undefined : JSON.parse(text));
         box.setCustomValidity("");
       } catch {
-        box.setCustomValidity(t`This is no JSON yet.`);
+        box.setCustomValidity(t`This is not valid JSON yet.`);
       }
     },
   });

@@ -58,7 +58,7 @@ export function showErrors(form, list, refusal) {
           createElement(
             "ul",
             {},
-            ...lost.map((fault) => createElement("li", {}, `${fault.path || t`the statement`}: ${fault.detail}`)),
+            ...lost.map((fault) => createElement("li", {}, `${fault.path || t`the problem`}: ${fault.detail}`)),
           ),
         ]
       : []),

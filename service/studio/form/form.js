@@ -144,13 +144,20 @@ function createField(sheet, schema, name, path, required) {
       return createLabel(
         name,
         unit,
-        note ? t`${note} One point to a line, as in 120, 35.` : t`One point to a line, as in 120, 35.`,
+        note ? t`${note} One point per line, such as 120, 35.` : t`One point per line, such as 120, 35.`,
         path,
         required,
         createPointsBox(value, set),
       );
     case "stock":
-      return createLabel(name, unit, t`${note} As in 20, 24 × 3, 30.`, path, required, createStockBox(value, set));
+      return createLabel(
+        name,
+        unit,
+        t`${note} For example 20, 24 × 3, 30.`,
+        path,
+        required,
+        createStockBox(value, set),
+      );
     case "table":
       return createGroup(sheet, schema, name, note, path, required || !what.nullable, () => [
         createTable(sheet.preview(path, []), what.item ?? {}, path, createControls, what.count),
@@ -174,7 +181,7 @@ function createField(sheet, schema, name, path, required) {
         return createLabel(
           name,
           "",
-          t`${note} As in input, output.`,
+          t`${note} For example input, output.`,
           path,
           required,
           createTextBox(value, fallback, set, parseNames),
@@ -198,7 +205,7 @@ function shapeName(option) {
   if (option.type === "object")
     return names.length === 2 && names.every((one) => ["min", "max"].includes(one)) ? t`a range` : t`in detail`;
   return (
-    { boolean: t`yes or no`, array: t`a list`, string: t`a word`, null: t`left open` }[
+    { boolean: t`yes or no`, array: t`a list`, string: t`a word`, null: t`not given` }[
       /** @type {string} */ (option.type)
     ] ?? t`a number`
   );
@@ -229,7 +236,7 @@ function createShapes(sheet, what, schema, name, note, path, required) {
     sheet.writeValue(path, option.type === "null" ? null : initialValue(option, sheet.root), true);
   });
   if (now.const !== undefined || now.type === "null") return createLabel(name, "", note, path, required, way);
-  way.setAttribute("aria-label", t`${toWords(name)}: how it is stated`);
+  way.setAttribute("aria-label", t`${toWords(name)}: form of the value`);
   const one = { ...now, ...(dimension ? { "x-dimension": dimension } : {}) };
   const inside =
     now.type === "object" || classifyField(now, sheet.root).control === "table"
@@ -259,7 +266,7 @@ function createShapes(sheet, what, schema, name, note, path, required) {
  */
 function createMembers(sheet, item, path) {
   const found = sheet.readValue(path) ?? {};
-  const name = createElement("input", { type: "text", "aria-label": t`Name of another one`, spellcheck: "false" });
+  const name = createElement("input", { type: "text", "aria-label": t`Name of a new entry`, spellcheck: "false" });
   const add = createElement(
     "button",
     {
@@ -361,7 +368,7 @@ function createGroup(sheet, schema, name, note, path, always, inside) {
       onchange: () => sheet.writeValue(path, box.checked ? initialValue(schema, sheet.root) : undefined, true),
     });
     box.checked = stated;
-    details.append(createElement("label", { class: "flag", for: box.id }, box, t`State it`));
+    details.append(createElement("label", { class: "flag", for: box.id }, box, t`Set a value`));
   }
   details.append(body);
   if (open) fillBody();

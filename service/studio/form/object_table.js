@@ -166,7 +166,7 @@ export function createTable(sheet, item, path, controls, count) {
               /** @type {HTMLElement | null} */ (view.querySelector(`[data-path="${CSS.escape(first)}"]`))?.focus();
             },
           },
-          t`With ${folded.map((head) => term(head.name)).join(", ")}`,
+          t`Add ${folded.map((head) => term(head.name)).join(", ")}`,
         ),
       createElement("span", { class: "note" }, t`Paste rows from a spreadsheet into any cell.`),
     ),

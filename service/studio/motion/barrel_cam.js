@@ -12,7 +12,7 @@ import { View } from "../core/view.js";
 
 export class BarrelCamView extends CamView {
   get label() {
-    return t`The groove of the barrel, unrolled, passing the roller`;
+    return t`The unrolled groove of the barrel, moving past the roller`;
   }
 
   drawn() {

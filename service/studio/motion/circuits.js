@@ -73,13 +73,13 @@ export class OtherCircuits {
     const text =
       circuits.length === 1
         ? branches === 2
-          ? t`Other branch of its one circuit, faint`
-          : t`Other branches of its one circuit, faint`
+          ? t`The other branch of its only circuit is faint`
+          : t`The other branches of its only circuit are faint`
         : [
-            circuits.length > 2 ? t`Other circuits, faint` : t`Other circuit, faint`,
+            circuits.length > 2 ? t`Other circuits (faint)` : t`Other circuit (faint)`,
             [
               own >= 0 && t`it moves on circuit ${own + 1} of ${circuits.length}`,
-              branches > circuits.length && t`with ${branches} branches in all`,
+              branches > circuits.length && t`with ${branches} branches in total`,
             ]
               .filter(Boolean)
               .join(", "),
@@ -88,7 +88,7 @@ export class OtherCircuits {
             .join(": ");
     this.control = this.branches.length
       ? createElement("label", { class: "flag", for: "circuits" }, box, text)
-      : circuits.length === 1 && createElement("span", { class: "note" }, t`It has one circuit, without toggles.`);
+      : circuits.length === 1 && createElement("span", { class: "note" }, t`It has a single circuit without toggles.`);
   }
 
   /**

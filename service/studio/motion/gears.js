@@ -31,7 +31,7 @@ export class GearsView extends RotaryView {
     this.drawings = [];
     /** @type {{wheel: import("./toothed_wheels.js").Wheel, line: SVGLineElement}[]} */
     this.arms = [];
-    const note = t`Circles are pitch circles. Each gear turns as fast as the analysis says, one turn of the input in four seconds at speed 1.`;
+    const note = t`Circles are pitch circles. Gears turn at their computed speeds; at speed 1, the input takes four seconds per turn.`;
     this.fill(this.build(), [this.facts, createElement("p", { class: "note" }, note)], [], [this.createGearChoice()]);
   }
 

@@ -96,8 +96,8 @@ export class LinkPlanes {
           ? t`No layout`
           : [
               layout.count === 1 ? t`1 plane` : t`${layout.count} planes`,
-              layout.least && t`the fewest there are`,
-              t`${formatNumber(Number(layout.height.toPrecision(4)))} ${unit} high`,
+              layout.least && t`the minimum number`,
+              t`height ${formatNumber(Number(layout.height.toPrecision(4)))} ${unit}`,
             ]
               .filter(Boolean)
               .join(", "),
@@ -125,16 +125,12 @@ export class LinkPlanes {
           ),
         ),
       listed.length > 0 &&
-        createElement(
-          "p",
-          { class: "note" },
-          t`Across it is in line with the picture above; upward it is not to scale.`,
-        ),
+        createElement("p", { class: "note" }, t`Horizontally aligned with the picture above; vertically not to scale.`),
       layout.stub_shafts.length > 0 &&
         createElement(
           "p",
           { class: "note" },
-          t`Stub shafts at ${layout.stub_shafts.join(", ")}: no shaft can pass all planes there.`,
+          t`Stub shafts at ${layout.stub_shafts.join(", ")}: no shaft can pass through all planes there.`,
         ),
       ...this.createClashes(unit, lead),
     );
@@ -144,9 +140,9 @@ export class LinkPlanes {
   createClashes(unit, lead) {
     const { clashes, free_range: range, free_stroke: stroke } = this.layout;
     if (!clashes.length)
-      return [
-        createElement("p", { class: "good" }, `✓ ${t`Nothing clashes over the motion that is looked at.`}`),
-      ].filter(() => !this.layout.remark);
+      return [createElement("p", { class: "good" }, `✓ ${t`No collision in the motion checked.`}`)].filter(
+        () => !this.layout.remark,
+      );
     const rounded = (/** @type {number} */ value) => formatNumber(Math.round(10 * value) / 10);
     const free = range
       ? t`${`${rounded(range[0])}°`} to ${`${rounded(range[1])}°`}`
@@ -164,7 +160,7 @@ export class LinkPlanes {
             {},
             createElement("span", { class: "bad" }, `✗ ${t`${toWords(parts[0])} and ${term(parts[1])}`}: `),
             distance < 0
-              ? t`${formatNumber(Number((-distance).toPrecision(3)))} ${unit} into each other`
+              ? t`${formatNumber(Number((-distance).toPrecision(3)))} ${unit} overlap`
               : t`${formatNumber(Number(distance.toPrecision(3)))} ${unit} apart`,
             " ",
             Number.isFinite(at) &&
@@ -179,7 +175,7 @@ export class LinkPlanes {
       createElement(
         "p",
         { class: "note" },
-        free ? t`Nothing clashes from ${free}.` : t`No part of the motion is free of clashes.`,
+        free ? t`No collision from ${free}.` : t`No part of the motion is free of collisions.`,
       ),
     ];
   }

@@ -61,6 +61,7 @@ export function createFacts(answer, skeleton, targets, unit) {
       : [];
   const turns = answer.valid.every(Boolean);
   const { grashof } = answer.classification;
+  const farthest = `${formatNumber(Number(Math.max(...missed).toPrecision(3)))} ${unit}`;
   return {
     turns,
     least,
@@ -68,11 +69,9 @@ export function createFacts(answer, skeleton, targets, unit) {
     missed,
     facts: {
       ...(grashof ? { [t`Grashof`]: toWords(grashof) } : {}),
-      [t`Input turns through`]: turns ? t`yes` : t`no`,
-      [t`Least transmission angle`]: formatDegrees(least),
-      ...(missed.length
-        ? { [t`Farthest target from the curve`]: `${formatNumber(Number(Math.max(...missed).toPrecision(3)))} ${unit}` }
-        : {}),
+      [t`Full input rotation`]: turns ? t`yes` : t`no`,
+      [t`Minimum transmission angle`]: formatDegrees(least),
+      ...(missed.length ? { [t`Largest distance of a target from the curve`]: farthest } : {}),
       [t`Circuits`]: formatNumber(answer.circuits.length),
     },
   };

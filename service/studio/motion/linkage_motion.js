@@ -177,8 +177,8 @@ export class LinkageMotion {
             "span",
             { class: "note" },
             slides
-              ? t`Rates are by the way of the input; click in a plot to go there.`
-              : t`Rates are by the radian of the input; click in a plot to go there.`,
+              ? t`Rates are per unit of input travel. Click in a plot to move there.`
+              : t`Rates are per radian of the input. Click in a plot to move there.`,
           ),
         ),
         box,

@@ -63,11 +63,7 @@ export class PistonEngineView extends RotaryView {
             createElement("dd", {}, `${formatNumber(fires.angles[k])}°`),
           ]),
         ),
-        createElement(
-          "p",
-          { class: "note" },
-          t`The cylinders from the front to the back; each is seen with its own axis upwards.`,
-        ),
+        createElement("p", { class: "note" }, t`The cylinders from front to back, each with its own axis upwards.`),
       ],
       this.listPlots(problem.length_unit ?? "mm"),
     );

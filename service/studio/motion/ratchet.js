@@ -51,7 +51,13 @@ export class RatchetView extends RotaryView {
     );
     this.fill(
       picture,
-      [createElement("p", { class: "note" }, t`The wheel turns on; turning back it is held at the next stop.`)],
+      [
+        createElement(
+          "p",
+          { class: "note" },
+          t`The wheel advances; the pawl stops it from turning back past the next stop.`,
+        ),
+      ],
       [{ title: t`Lift of pawls (°)`, lines: lifts }],
     );
   }

@@ -51,7 +51,7 @@ export class RotaryView {
       plots: [
         this.marks.length > 0
           ? createElement("div", { class: "plots" }, ...this.marks.map((mark) => mark.figure))
-          : createElement("p", { class: "note" }, t`Everything of this turns evenly: there is nothing to plot.`),
+          : createElement("p", { class: "note" }, t`All speeds are constant; there is nothing to plot.`),
       ],
     });
     this.player.begin();

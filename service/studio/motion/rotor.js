@@ -63,7 +63,7 @@ export class RotorView extends RotaryView {
       ),
       [
         createElement("dl", { class: "facts" }, ...facts),
-        createElement("p", { class: "note" }, t`Filled: masses that are added. Open: masses that are taken away.`),
+        createElement("p", { class: "note" }, t`Filled: added masses. Open: removed masses.`),
       ],
       motion.bearings.length ? [{ title: unit ? `${title} (${unit})` : title, lines, least }] : [],
     );

@@ -23,10 +23,10 @@ export class CopyLink {
   async copy() {
     const sent = this.sent();
     const address = await encodeAddress(sent);
-    const held = sent.mechanism ? t`the statement and the linkage that is shown` : t`the statement`;
+    const held = sent.mechanism ? t`the problem and the linkage shown` : t`the problem`;
     try {
       await navigator.clipboard.writeText(address);
-      this.showNote(t`Link copied. It holds ${held}, and opens on any service.`);
+      this.showNote(t`Link copied. It contains ${held} and opens on any service.`);
       this.telling = setTimeout(() => this.showNote(), NOTE_MS);
     } catch {
       // Only pages of this machine and those by HTTPS may write there.
@@ -36,7 +36,7 @@ export class CopyLink {
         "aria-label": t`The link`,
         onblur: () => this.showNote(),
       });
-      this.showNote(t`Copy this link. It holds ${held}, and opens on any service.`, text);
+      this.showNote(t`Copy this link. It contains ${held} and opens on any service.`, text);
       text.select();
     }
   }

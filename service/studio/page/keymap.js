@@ -61,7 +61,7 @@ export function listBindings({ answers, desk, store, solve, browse, link, sheet 
       text: t`Choose a design`,
       act: (event) => answers.selectDesign(Number(event.key)),
     },
-    { keys: ["["], shown: t`[ or ]`, text: t`The design before, the next one`, act: () => answers.moveSelection(-1) },
+    { keys: ["["], shown: t`[ or ]`, text: t`Previous or next design`, act: () => answers.moveSelection(-1) },
     { keys: ["]"], shown: "", text: "", act: () => answers.moveSelection(1) },
     { keys: ["c"], shown: "C", text: t`Compare designs`, act: () => desk.drawer.pressTab("compare") },
     { keys: ["k"], shown: "K", text: t`Pin the chosen design, or unpin it`, act: () => answers.togglePin() },
@@ -69,12 +69,17 @@ export function listBindings({ answers, desk, store, solve, browse, link, sheet 
     { keys: ["-"], shown: "", text: "", act: pressButton(t`Farther`) },
     { keys: ["f"], shown: "F", text: t`Fit everything`, act: pressButton(t`Fit everything`) },
     { keys: ["r"], shown: "R", text: t`Ruler`, act: () => findVisible('[data-tool="ruler"]')?.click() },
-    { keys: ["s"], shown: t`S or W`, text: t`The stage states, or watches`, act: () => desk.stage.showMode("state") },
+    {
+      keys: ["s"],
+      shown: t`S or W`,
+      text: t`Show the problem, or the motion`,
+      act: () => desk.stage.showMode("state"),
+    },
     { keys: ["w"], shown: "", text: "", act: () => desk.stage.showMode("watch") },
     {
       keys: ["t"],
       shown: "T",
-      text: t`Fold the task, where there is little room`,
+      text: t`Fold the task in a narrow window`,
       act: () => findVisible("#fold")?.click(),
     },
     { keys: ["n"], shown: "N", text: t`Numbers`, act: () => desk.drawer.pressTab("numbers") },
@@ -83,11 +88,11 @@ export function listBindings({ answers, desk, store, solve, browse, link, sheet 
     {
       keys: ["l"],
       shown: "L",
-      text: t`Copy a link to the statement, and to the linkage that is shown`,
+      text: t`Copy a link to the problem and the linkage shown`,
       act: () => link.copy(),
     },
     { keys: ["g"], shown: "G", text: t`Gallery`, act: () => browse() },
     { keys: ["?"], shown: "?", text: t`These keys`, act: () => sheet() },
-    { keys: [], shown: t`Esc`, text: t`Close what lies over the stage; put the pen away`, act: () => {} },
+    { keys: [], shown: t`Esc`, text: t`Close a panel over the stage; put the pen away`, act: () => {} },
   ];
 }

@@ -35,7 +35,7 @@ export class AngleGauge {
     const known = /** @type {number[]} */ (series.filter((one) => one !== null));
     const whole = atMost ? Math.max(...known) : Math.min(...known);
     const extreme = used ?? whole;
-    const told = atMost ? t`most ${formatDegrees(extreme)}` : t`least ${formatDegrees(extreme)}`;
+    const told = atMost ? t`maximum ${formatDegrees(extreme)}` : t`minimum ${formatDegrees(extreme)}`;
     const partly = Math.abs(whole - extreme) > 0.5;
     this.needle = createSvg("path", { class: "needle" });
     const [x, y] = dialPoint(Math.min(90, extreme), RADIUS + 9);
@@ -59,7 +59,7 @@ export class AngleGauge {
           role: "img",
           "aria-label": [
             `${title}: ${told}`,
-            partly && t`between the targets; ${formatDegrees(whole)} in the whole motion`,
+            partly && t`between the targets; ${formatDegrees(whole)} over the whole motion`,
             typeof limit === "number" && t`limit ${formatDegrees(limit)}`,
           ]
             .filter(Boolean)
@@ -77,7 +77,7 @@ export class AngleGauge {
         createSvg("text", { x: CENTRE[0], y: 101, "text-anchor": "middle" }, told),
       ),
       partly &&
-        createElement("p", { class: "note" }, t`between the targets; ${formatDegrees(whole)} in the whole motion`),
+        createElement("p", { class: "note" }, t`between the targets; ${formatDegrees(whole)} over the whole motion`),
     );
   }
 

@@ -62,7 +62,7 @@ export async function exportPicture(picture, title) {
   const head = 20 * PICTURE_SCALE;
   Object.assign(canvas, { width: PICTURE_SCALE * width, height: PICTURE_SCALE * height + head });
   const pen = canvas.getContext("2d");
-  if (!pen) throw new Error(t`This browser draws no pictures.`);
+  if (!pen) throw new Error(t`This browser cannot draw pictures.`);
   const style = getComputedStyle(document.body);
   pen.fillStyle = style.getPropertyValue("--sheet");
   pen.fillRect(0, 0, canvas.width, canvas.height);
@@ -71,6 +71,6 @@ export async function exportPicture(picture, title) {
   pen.fillText(title, 8 * PICTURE_SCALE, 15 * PICTURE_SCALE);
   pen.drawImage(image, 0, head);
   const blob = /** @type {Blob | null} */ (await new Promise((done) => canvas.toBlob(done, "image/png")));
-  if (!blob) throw new Error(t`The picture could not be made.`);
+  if (!blob) throw new Error(t`The picture could not be created.`);
   return URL.createObjectURL(blob);
 }

@@ -255,16 +255,14 @@ function createPlot(plotted, input, lead, unit, { whole = false, range: looked }
   const more = createElement(
     "details",
     { class: "plot-more" },
-    createElement("summary", { "aria-label": t`More of: ${title}`, title: t`Look nearer, take it home` }, "⋯"),
+    createElement("summary", { "aria-label": t`More on: ${title}`, title: t`Zoom and download` }, "⋯"),
     createElement(
       "div",
       { class: "row" },
       small("−", t`Farther`, () => nearer(1 / ZOOM_SHARE), end - start >= samples),
-      small("+", t`Nearer to where the motion stands`, () => nearer(ZOOM_SHARE), end - start <= MIN_SAMPLES),
-      small("CSV", t`Take the numbers home as CSV`, () =>
-        saveFile(exportCsv(title, lines, input, unit), `${name}.csv`),
-      ),
-      small(t`Picture`, t`Take the picture home`, async () =>
+      small("+", t`Zoom in at the current position`, () => nearer(ZOOM_SHARE), end - start <= MIN_SAMPLES),
+      small("CSV", t`Download the numbers as CSV`, () => saveFile(exportCsv(title, lines, input, unit), `${name}.csv`)),
+      small(t`Picture`, t`Download the picture`, async () =>
         saveFile(await exportPicture(picture, title), `${name}.png`),
       ),
     ),

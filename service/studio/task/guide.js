@@ -68,7 +68,7 @@ export class GuideRunner {
         { class: "row" },
         this.there,
         this.on,
-        createElement("button", { type: "button", class: "small", onclick: () => this.leave() }, t`Leave`),
+        createElement("button", { type: "button", class: "small", onclick: () => this.leave() }, t`Cancel`),
       ),
     );
     // Before the panels, so that the keys come to it first.
@@ -115,7 +115,7 @@ export class GuideRunner {
     this.before = page.problem();
     this.chosen = document.querySelector('.card[aria-pressed="true"]')?.getAttribute("data-design") ?? "";
     this.count.textContent = step ? t`${guide.name}, ${n + 1} of ${guide.steps.length}` : guide.name;
-    this.text.textContent = step?.text ?? t`That is all: everything can be undone, changed, and solved again.`;
+    this.text.textContent = step?.text ?? t`That is all. Everything can be undone, changed and solved again.`;
     this.there.hidden = !step;
     this.on.textContent = step ? t`Skip` : t`Done`;
     if (step?.stage) page.desk.stage.showMode(step.stage);

@@ -35,7 +35,7 @@ const chosenNumber = () => document.querySelector('.card[aria-pressed="true"]')?
 const SOLVE_STEP = {
   at: "#solve, #progress",
   tab: "task",
-  text: t`Solve it: every design that is shown is driven and measured first.`,
+  text: t`Solve it. Every design shown has been simulated and verified.`,
   done: ({ answered }) => answered,
 };
 
@@ -43,7 +43,7 @@ const SOLVE_STEP = {
 export const GUIDES = [
   {
     name: t`A lid on a cabinet`,
-    line: t`Drag it open, fence the pivots, choose by size.`,
+    line: t`Open it, limit the pivots, choose by size.`,
     kind: "motion",
     example: "Hatch lid",
     steps: [
@@ -58,7 +58,7 @@ export const GUIDES = [
         at: "#room-tools",
         tab: "task",
         stage: "state",
-        text: t`Say where the hinges may be: with “Zone for O2” chosen, press Rectangle and drag a generous one below the lid.`,
+        text: t`Limit the hinges: with “Zone for O2” chosen, press Rectangle and drag a generous one below the lid.`,
         done: ({ problem }) => Boolean(problem.space?.fixed_pivots?.input ?? problem.space?.fixed_pivots?.output),
       },
       SOLVE_STEP,
@@ -66,14 +66,14 @@ export const GUIDES = [
         at: "#choosing .scatter, #tab-compare, #answers",
         tab: "compare",
         stage: "watch",
-        text: t`Compare shows all designs by two numbers. Choose the smallest: a click, or the arrow keys.`,
+        text: t`Compare plots all designs by two quantities. Choose the smallest by a click or the arrow keys.`,
         done: (now) => (isShown("#choosing .scatter") && chosenNumber() !== now.chosen) || isShown("#miss"),
       },
     ],
   },
   {
     name: t`A foot that walks`,
-    line: t`Draw a step, compare two legs, take one home.`,
+    line: t`Draw a step, compare two legs, download one.`,
     kind: "path",
     example: "Foot path",
     steps: [
@@ -81,7 +81,7 @@ export const GUIDES = [
         at: "#freehand",
         tab: "task",
         stage: "state",
-        text: t`The path of a foot: flat below, lifted above. Switch “Draw freehand” on and draw your own, back to where it began; or move its points by the arrow keys.`,
+        text: t`The path of a foot: flat below, lifted above. Switch on “Draw freehand” and draw your own closed path, or move its points with the arrow keys.`,
         done: ({ problem, before }) => hasChanged(problem.points, before.points),
       },
       SOLVE_STEP,
@@ -89,7 +89,7 @@ export const GUIDES = [
         at: "#compare-with, #tab-compare",
         tab: "compare",
         stage: "watch",
-        text: t`Under Compare, choose a second design: the numbers that differ are marked.`,
+        text: t`Under Compare, choose a second design; different numbers are marked.`,
         done: ({ answered }) =>
           isShown("#choosing .side-by-side") || (answered && document.querySelectorAll(".card").length < 2),
       },
@@ -97,14 +97,14 @@ export const GUIDES = [
         at: "#downloads, #tab-files",
         tab: "files",
         stage: "watch",
-        text: t`Files has the drawings. Take the DXF home.`,
+        text: t`Files lists the drawings. Download the DXF.`,
         done: () => document.querySelector("#downloads")?.getAttribute("data-taken") === "DXF",
       },
     ],
   },
   {
     name: t`A valve cam`,
-    line: t`A lift, a least radius, and the jerk that it costs.`,
+    line: t`A lift, a minimum radius, and the resulting jerk.`,
     kind: "cam",
     example: "Valve cam",
     steps: [
@@ -112,7 +112,7 @@ export const GUIDES = [
         at: '[data-path="/problem/segments/0/lift"]',
         tab: "task",
         stage: "state",
-        text: t`How far the valve opens. Give the rise another lift, in the first row, as 8 mm, and the fall below it the same.`,
+        text: t`This is the valve lift. Change the lift of the rise in the first row, for example to 8 mm, and that of the fall below it to the same value.`,
         done: ({ problem, before }) =>
           hasChanged(problem.segments, before.segments) && problem.segments?.[0]?.lift === problem.segments?.[1]?.lift,
       },
@@ -120,7 +120,7 @@ export const GUIDES = [
         at: '[data-path="/problem/limits/min_radius"], [data-path="/problem/limits"]',
         tab: "task",
         stage: "state",
-        text: t`How sharply the cam may be curved, against wear. Ask for a greater radius: the cam becomes larger.`,
+        text: t`This is the minimum radius of curvature, a limit against wear. Enter a larger radius; the cam becomes larger.`,
         done: ({ problem, before }) => hasChanged(problem.limits, before.limits),
       },
       SOLVE_STEP,
@@ -128,7 +128,7 @@ export const GUIDES = [
         at: "#plots .plot, #tab-plots",
         tab: "plots",
         stage: "watch",
-        text: t`Plots shows what the follower does. The jerk is the last of its rates: it is what shakes.`,
+        text: t`Plots shows the motion of the follower. The jerk is the last curve; it causes vibration.`,
         done: () => isShown("#plots .plot"),
       },
     ],

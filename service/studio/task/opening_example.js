@@ -43,7 +43,7 @@ export class OpeningExample {
         createElement(
           "p",
           { class: "note" },
-          t`Solve it to have all of them, with drawings and files; or state something else.`,
+          t`Solve it to see all designs with drawings and files, or enter another problem.`,
         ),
         createElement(
           "div",

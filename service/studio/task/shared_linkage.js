@@ -55,7 +55,7 @@ export class SharedLinkage {
       createElement(
         "p",
         { class: "note" },
-        t`This linkage came in the address. What is told of it here this service has found by driving it; whether it does what is stated, Solve says.`,
+        t`This linkage came in the address. This service has simulated it; press Solve to check it against the problem.`,
       ),
       createElement(
         "dl",

@@ -82,7 +82,7 @@ export class TaskPane {
       createElement(
         "p",
         { class: "note", id: "draft", hidden: true },
-        t`Your draft, as you left it.`,
+        t`Your draft.`,
         " ",
         createElement("button", { type: "button", class: "small", onclick: back }, t`Back to the example`),
       ),
@@ -97,7 +97,7 @@ export class TaskPane {
     this.introduced = kind.kind;
     byId("kind", HTMLSelectElement).value = kind.kind;
     byId("example").replaceChildren(
-      createElement("option", { value: "" }, t`as edited`),
+      createElement("option", { value: "" }, t`edited`),
       ...examples.map((_, n) => createElement("option", { value: n }, translate(kind.examples[n].name))),
     );
     byId("about").textContent = firstParagraph(kind.description);
@@ -133,7 +133,7 @@ export class TaskPane {
   async showExamplePicture() {
     const { store, page, sketch } = this;
     const { kind } = store.problem;
-    const note = t`Nothing of this is placed in the plane: it is stated beside the stage. Solve shows it in motion.`;
+    const note = t`This problem has no geometry to place. Enter it next to the stage; Solve shows the motion.`;
     const place = createElement("div", { class: "said" }, createElement("p", { class: "note" }, note));
     sketch.replaceChildren(place);
     const picture = await page.picture(`${kind}-${Math.max(store.example, 0)}`);
