@@ -1,4 +1,4 @@
-/** The answer of a job: what is known, the designs as cards, and the selected design in full. */
+/** Show the answer of a job: the search summary, the designs as cards, and the selected design in full. */
 
 import * as api from "../core/api.js";
 import { DesignChooser } from "./design_chooser.js";
@@ -16,7 +16,7 @@ let chooser = null;
 let strip = null;
 
 /**
- * Show nothing of the job before.
+ * Clear the answer of the previous job.
  * @param {HTMLElement} place
  * @param {import("../design/workbench.js").Workbench} desk
  */
@@ -96,25 +96,25 @@ export function showAnswer(place, desk, job, state, solve) {
   desk.stage.showMode("watch");
 }
 
-/** Choose a design by its number. @param {number} number */
+/** Select a design by its number. @param {number} number */
 export function selectDesign(number) {
   if (strip?.kept[number - 1]) strip.select(number - 1);
 }
 
-/** Choose the design that stands so many further in the row. @param {number} by */
+/** Select the design this many cards further. @param {number} by */
 export function moveSelection(by) {
   const shown = strip?.row.filter((n) => strip?.kept[n]) ?? [];
   const next = shown[shown.indexOf(strip?.chosen ?? -1) + by];
   if (next !== undefined) strip?.select(next);
 }
 
-/** Pin the chosen design, or take its pin away. */
+/** Pin or unpin the selected design. */
 export function togglePin() {
   if (strip && strip.chosen >= 0) strip.pin(strip.chosen);
 }
 
 /**
- * What the search has shown, in a sentence, and what it has left out, where the summary does not tell that.
+ * Describe the completeness of the search and the reasons for rejections, unless the summary contains them.
  * @param {Partial<Result["search"]> | undefined} search
  * @param {number} found
  * @param {string} summary

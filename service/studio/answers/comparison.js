@@ -1,4 +1,4 @@
-/** Two designs of an answer: side by side on the stage, or one over the other, and their numbers in one table. */
+/** Compare two designs: side by side on the stage or overlaid, with their numbers in one table. */
 
 import * as api from "../core/api.js";
 import { drawnJoints, LinkageDrawing } from "../canvas/linkage_drawing.js";
@@ -16,10 +16,10 @@ import { STEP_COUNT, TURN_STEP_COUNT, VIEWS } from "../motion/motion_views.js";
 /** @typedef {[number, number]} Point */
 /** @typedef {"beside" | "over"} Manner */
 
-/** Numbers that differ by less, of their size, differ by rounding. */
+/** Relative difference up to which two numbers differ by rounding only. */
 const ROUNDING_TOLERANCE = 1e-9;
 
-/** The second half of the stage: a picture that follows the clock of the first. */
+/** The second half of the stage: a picture that follows the player of the first. */
 class SecondFrame extends Frame {
   /** @param {HTMLElement} board @param {string} caption */
   constructor(board, caption) {
@@ -49,7 +49,7 @@ export class Comparison {
     this.gone = new AbortController();
     /** @type {import("../motion/motion_views.js").Moving | null} */
     this.moving = null;
-    /** What goes with the clock of the chosen design. @type {((share: number, told: boolean) => void) | null} */
+    /** Called at each step of the selected design's player. @type {((share: number, told: boolean) => void) | null} */
     this.follow = null;
     this.begin().catch((error) => {
       if (!this.gone.signal.aborted)
@@ -82,11 +82,11 @@ export class Comparison {
     player.stop();
     this.follow = (share, told) => player.seek(share * player.last, told);
     shown.told = () => this.syncWithFirst();
-    // It has half of the stage now.
+    // The selected design gets half of the stage.
     shown.again();
   }
 
-  /** Go with the clock of the chosen design. */
+  /** Follow the player of the selected design. */
   syncWithFirst() {
     const { follow } = this;
     const player = this.shown.moving?.player;
@@ -95,7 +95,7 @@ export class Comparison {
     follow(player.at / player.last, true);
   }
 
-  /** Draw the other one over the chosen one. @param {LinkageAnalysis} motion */
+  /** Draw the second design over the selected one. @param {LinkageAnalysis} motion */
   drawOverlay(motion) {
     const { mover } = this.shown;
     if (!mover) return;
@@ -141,7 +141,7 @@ function trackPoints({ x, y }) {
 }
 
 /**
- * The numbers of two designs beside each other; those that differ are marked.
+ * Create a table with the numbers of two designs; different numbers are marked.
  * @param {Design[]} designs
  * @param {[number, number]} which
  * @param {Problem} problem
@@ -160,7 +160,7 @@ export function compareNumbers(designs, which, problem) {
     names(maps).map((name) => {
       const [a, b] = maps.map((map) => map.get(name) ?? { text: "–", title: null });
       const differs = !cellsAgree(a, b);
-      // As many digits as it takes to tell the two apart.
+      // Use as many digits as distinguish the two.
       const close = differs && a.text === b.text;
       return createElement(
         "tr",
@@ -203,7 +203,7 @@ export function compareNumbers(designs, which, problem) {
 
 /** @typedef {{text: string, title: string | null}} Cell */
 
-/** Whether two cells say the same, but for rounding. @param {Cell} one @param {Cell} other */
+/** Return true if two cells are equal up to rounding. @param {Cell} one @param {Cell} other */
 function cellsAgree(one, other) {
   if (one.title === null || other.title === null || one.text === "exact") return one.text === other.text;
   const [a, b] = [one.title, other.title].map((text) => text.split(", ").map(parseFloat));

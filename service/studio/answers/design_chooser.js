@@ -1,4 +1,4 @@
-/** Choosing among the designs of an answer: by two quantities, by bounds, and by comparing two of them. */
+/** Choose among the designs of an answer by a scatter plot, by bounds and by comparison. */
 
 import { MetricBounds } from "./metric_bounds.js";
 import { Comparison, compareNumbers } from "./comparison.js";
@@ -9,7 +9,7 @@ import { ScatterPlot } from "./scatter_plot.js";
 
 /** @import { Solved } from "../types/values.js" */
 
-/** Of a front, the names of what stands in the metrics under another name. @type {Record<string, string>} */
+/** Names of metrics that differ from the names in the Pareto front. @type {Record<string, string>} */
 const FRONT_METRICS = { rms: "rms_residual" };
 
 export class DesignChooser {
@@ -31,7 +31,7 @@ export class DesignChooser {
     this.front = job.result.front?.designs ?? [];
     /** @type {import("../design/design.js").DesignView | null} */
     this.shown = null;
-    /** The design that the chosen one is compared with. @type {number | null} */
+    /** The design compared with the selected one. @type {number | null} */
     this.other = null;
     /** @type {import("./comparison.js").Manner | null} */
     this.manner = null;
@@ -76,7 +76,7 @@ export class DesignChooser {
   }
 
   /**
-   * Along the front where there is one, else by the first two quantities in which the designs differ.
+   * Choose the axes: the objectives of the Pareto front, or else the first two quantities that vary.
    * @returns {[number, number]}
    */
   chooseAxes() {
@@ -90,7 +90,7 @@ export class DesignChooser {
     return [across ?? up, up];
   }
 
-  /** What the designs of the front are not beaten in. @returns {string[]} */
+  /** List the objectives of the Pareto front. @returns {string[]} */
   listObjectives() {
     return (this.job.result.front?.quantities ?? []).map((/** @type {string} */ name) =>
       term(FRONT_METRICS[name] ?? name),
@@ -137,7 +137,7 @@ export class DesignChooser {
     this.place.replaceChildren();
   }
 
-  /** Another design is chosen. @param {import("../design/design.js").DesignView} shown */
+  /** Update after another design was selected. @param {import("../design/design.js").DesignView} shown */
   showChosen(shown) {
     this.endComparison();
     this.shown = shown;
@@ -152,7 +152,7 @@ export class DesignChooser {
     this.update();
   }
 
-  /** What is shown of all designs. */
+  /** Update the plot and the bounds. */
   update() {
     if (!this.open) return;
     const { chosen, pinned } = this.strip;
@@ -166,7 +166,7 @@ export class DesignChooser {
     this.pick.value = this.other === null ? "" : String(this.other);
   }
 
-  /** Compare the chosen design with another one, as it is asked for now. */
+  /** Compare the selected design with the second one in the chosen manner. */
   compare() {
     this.endComparison();
     if (!this.open) return;

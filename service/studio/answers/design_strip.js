@@ -1,4 +1,4 @@
-/** The designs of an answer in a row, best first, those that are pinned before the others. */
+/** The designs of an answer as a row of cards: pinned designs first, then best first. */
 
 import { createElement, toWords } from "../core/dom.js";
 import { formatFigure, listFigures, typeName } from "../design/design_metrics.js";
@@ -8,7 +8,7 @@ import { createThumbnail } from "../motion/thumbnail.js";
 
 /** @import { Design, Problem, Solved } from "../types/values.js" */
 
-/** How long keys must rest on a card before it is shown. */
+/** How long the keyboard must rest on a card before its design is shown. */
 const KEY_REST_MS = 150;
 
 export class DesignStrip {
@@ -52,7 +52,7 @@ export class DesignStrip {
     this.sortCards();
   }
 
-  /** Numbers of the designs in the order in which they stand. */
+  /** The numbers of the designs in their displayed order. */
   get row() {
     return [...this.pinned, ...this.cards.map((_, n) => n).filter((n) => !this.pinned.includes(n))];
   }
@@ -68,7 +68,7 @@ export class DesignStrip {
     if (focused instanceof HTMLElement && this.node.contains(focused)) focused.focus({ preventScroll: true });
   }
 
-  /** Choose a design. @param {number} n */
+  /** Select a design. @param {number} n */
   select(n) {
     this.chosen = n;
     this.cards.forEach((one, k) => one.setAttribute("aria-pressed", String(k === n)));
@@ -76,7 +76,7 @@ export class DesignStrip {
     this.choose(n);
   }
 
-  /** Pin a design, or take its pin away. @param {number} n */
+  /** Pin or unpin a design. @param {number} n */
   pin(n) {
     this.pinned = setPinned(this.job.id, n, !this.pinned.includes(n));
     this.sortCards();
@@ -84,13 +84,13 @@ export class DesignStrip {
     this.changed();
   }
 
-  /** Show what meets the bounds only. @param {boolean[]} kept */
+  /** Show only the designs within the bounds. @param {boolean[]} kept */
   filter(kept) {
     this.kept = kept;
     this.slots.forEach((slot, n) => slot.toggleAttribute("hidden", !kept[n]));
   }
 
-  /** Arrow keys, Home and End go from card to card and choose. @param {KeyboardEvent} event */
+  /** Select cards by the arrow keys, Home and End. @param {KeyboardEvent} event */
   handleKey(event) {
     const shown = this.row.filter((n) => this.kept[n]);
     const at = shown.findIndex((n) => this.cards[n] === document.activeElement);
@@ -106,7 +106,7 @@ export class DesignStrip {
     event.preventDefault();
     const n = shown[Math.min(shown.length - 1, Math.max(0, to))];
     this.cards[n].focus();
-    // A card that is only passed by is not shown.
+    // Do not show the designs that the selection only passes.
     clearTimeout(this.passing);
     this.passing = setTimeout(() => {
       if (this.cards[n] === document.activeElement && this.chosen !== n) this.select(n);

@@ -1,4 +1,4 @@
-/** Bounds of quantities, set by sliders: designs beyond them are hidden. */
+/** Sliders that bound metrics; designs outside the bounds are hidden. */
 
 import { createElement } from "../core/dom.js";
 import { valuesDiffer, valueRange, formatQuantity } from "./shared_metrics.js";
@@ -6,7 +6,7 @@ import { t } from "../core/messages.js";
 
 /** @typedef {import("./shared_metrics.js").Quantity} Quantity */
 
-/** Places of a slider. */
+/** Steps of a slider. */
 const SLIDER_STEPS = 100;
 
 export class MetricBounds {
@@ -42,7 +42,7 @@ export class MetricBounds {
     );
   }
 
-  /** Which designs meet all bounds. @returns {boolean[]} */
+  /** List which designs are within all bounds. @returns {boolean[]} */
   listKept() {
     return this.quantities[0].values.map((_, n) =>
       [...this.set].every(([k, { least, limit }]) => {
@@ -52,7 +52,7 @@ export class MetricBounds {
     );
   }
 
-  /** Sliders for some quantities, and for those that have a bound. @param {number[]} wanted */
+  /** Show sliders for the given quantities and for those already bounded. @param {number[]} wanted */
   show(wanted) {
     this.shown = wanted;
     const all = [...new Set([...wanted, ...this.set.keys()])].filter((k) => valuesDiffer(this.quantities[k].values));
@@ -94,7 +94,7 @@ export class MetricBounds {
       oninput: () => {
         const at = Number(slider.value);
         if (at === (least ? 0 : SLIDER_STEPS)) this.set.delete(k);
-        // A slider at its end is at the value that the last design has.
+        // At its end, a slider equals the extreme value of the designs.
         else this.set.set(k, { least, limit: at === 0 ? low : at === SLIDER_STEPS ? high : low + at * step });
         say();
         this.handleInput();
@@ -121,7 +121,7 @@ export class MetricBounds {
     this.changed();
   }
 
-  /** How many meet the bounds. */
+  /** Show how many designs are within the bounds. */
   showCount() {
     const kept = this.listKept();
     const some = kept.filter(Boolean).length;

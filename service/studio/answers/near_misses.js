@@ -1,4 +1,4 @@
-/** What comes nearest where no design satisfies all demands, and the same problem with what is within reach. */
+/** Report the nearest miss when no design is feasible, and offer the problem with reachable limits. */
 
 import { createElement, formatNumber, toWords } from "../core/dom.js";
 import { formatAmount, joinUnit, metricUnit } from "../design/design_metrics.js";
@@ -10,20 +10,20 @@ import { createThumbnail } from "../motion/thumbnail.js";
 
 /** @typedef {Schemas["Gap"]} Gap */
 /**
- * How a demand is eased.
+ * How to relax a constraint.
  * @typedef {object} Easing
  * @property {string} text after "Solve "
  * @property {(problem: Problem) => void} apply changes a statement
  */
 /** @typedef {{text: string, statement: Problem}} Offer */
 
-/** Between the last two of a list. */
+/** Separator between the last two items of a list. */
 const LAST_SEPARATOR = ` ${t`and`} `;
 
-/** Digits of a limit that is eased. */
+/** Digits of a relaxed limit. */
 const LIMIT_DIGITS = 4;
 
-/** Where the limit of a check is stated, if it has not the name of the check. @type {Record<string, string[]>} */
+/** Path of the limit of a check in the problem, where its name differs. @type {Record<string, string[]>} */
 const LIMIT_PATHS = {
   transmission_angle: ["constraints", "min_transmission_angle"],
   link_ratio: ["constraints", "max_link_ratio"],
@@ -41,7 +41,7 @@ const LIMIT_PATHS = {
 };
 
 /**
- * What has no measure, or no number that could be eased: it is left out.
+ * Constraints without a number to relax; they are removed instead.
  * @type {Record<string, {text: string, path: string[], value: Json}>}
  */
 const REMOVABLE_DEMANDS = {
@@ -53,7 +53,7 @@ const REMOVABLE_DEMANDS = {
   moving_pivot_zones: { text: t`without the zones of moving pivots`, path: ["space", "moving_pivots"], value: null },
 };
 
-/** Rectangles that are widened by as much as pivots lie outside of them. @type {Record<string, string[]>} */
+/** Rectangles that are widened by the distance of the pivots from them. @type {Record<string, string[]>} */
 const REGION_PATHS = {
   fixed_pivot_region: ["constraints", "fixed_pivot_region"],
   moving_pivot_region: ["constraints", "moving_pivot_region"],
@@ -61,7 +61,7 @@ const REGION_PATHS = {
 };
 
 /**
- * What is reached beside all other demands, by its name in the answer: the check that it is of.
+ * The check that each reachable value belongs to, by the name of the value in the answer.
  * @type {Record<string, string>}
  */
 const REACHABLE_CHECKS = {
@@ -108,8 +108,8 @@ export function describeNearMiss(miss, problem, solve) {
 }
 
 /**
- * The problem with what the nearest miss has, and with what can be reached of one demand beside all others; of two that
- * are the same the first.
+ * List the problem with the limits of the nearest miss, and with each constraint relaxed to its reachable value;
+ * duplicates are dropped.
  * @param {Problem} problem @param {NonNullable<Result["nearest_miss"]>} miss @returns {Offer[]}
  */
 export function listOffers(problem, { gaps, reachable }) {
@@ -130,10 +130,10 @@ export function listOffers(problem, { gaps, reachable }) {
 }
 
 /**
- * Ease a demand by as much as the nearest miss breaks it.
+ * Relax a constraint by the amount that the nearest miss violates it.
  * @param {Problem} problem
  * @param {Gap} gap
- * @returns {Easing | null} null where nothing of the statement says it
+ * @returns {Easing | null} null if the problem has no such field
  */
 function easeDemand(problem, gap) {
   const { check, value, limit } = gap;
@@ -151,7 +151,7 @@ function easeDemand(problem, gap) {
       },
     };
   }
-  // What lies in an obstacle has no clearance that could be demanded of it.
+  // A link inside an obstacle has no clearance to require.
   if (typeof value === "number" && typeof limit === "number" && !(check === "obstacles" && value <= 0)) {
     const path = LIMIT_PATHS[check] ?? findLimitPath(problem, check, limit);
     if (path && readPointer(problem, path) === limit)
@@ -170,7 +170,7 @@ function easeDemand(problem, gap) {
 }
 
 /**
- * Demand what is reached where all else holds.
+ * Relax a constraint to its reachable value.
  * @param {Problem} problem
  * @param {string} name
  * @param {number | number[] | null} value
@@ -192,13 +192,13 @@ function demandReachable(problem, name, value) {
   return changeLimit(path, check ?? name, value, value > limit, told);
 }
 
-/** The unit of what is reached. @param {string} name @param {Problem} problem */
+/** Return the unit of a reachable value. @param {string} name @param {Problem} problem */
 function reachedUnit(name, problem) {
   return metricUnit(name, problem) || (name.includes("angle") ? "°" : "");
 }
 
 /**
- * Another limit.
+ * Describe a changed limit.
  * @param {string[]} path
  * @param {string} check
  * @param {number} value
@@ -214,7 +214,7 @@ function changeLimit(path, check, value, up, told) {
   };
 }
 
-/** Rounded to the side on which it is reached. @param {number} value @param {boolean} up */
+/** Round a limit to its feasible side. @param {number} value @param {boolean} up */
 function roundOutwards(value, up) {
   if (Number.isInteger(value)) return value;
   const step = 10 ** (Math.floor(Math.log10(Math.abs(value) || 1)) + 1 - LIMIT_DIGITS);
@@ -222,7 +222,7 @@ function roundOutwards(value, up) {
 }
 
 /**
- * Where a statement has a limit under the name of its check.
+ * Find the path of a limit that has the name of its check.
  * @param {unknown} owner
  * @param {string} check
  * @param {number} limit

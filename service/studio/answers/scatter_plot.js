@@ -1,4 +1,4 @@
-/** Designs by two of their quantities: a click or the arrow keys choose one. */
+/** A scatter plot of the designs over two quantities; a click or the arrow keys select one. */
 
 import { createElement, rebuild, createSvg } from "../core/dom.js";
 import { formatBriefly } from "../design/design_metrics.js";
@@ -12,22 +12,22 @@ const WIDTH = 336;
 const HEIGHT = 236;
 const MARGIN = { left: 50, right: 14, top: 28, bottom: 38 };
 
-/** Between two ticks at least, pixels. */
+/** Minimum distance between two ticks, pixels. */
 const MIN_TICK_SPACING = [64, 40];
 
-/** Where values of one sign differ by more than this factor, equal factors are equally far apart. */
+/** Ratio of the extreme values from which an axis is logarithmic, if all values have one sign. */
 const MIN_LOGARITHMIC_RATIO = 1000;
 
-/** Up to so many designs have their numbers beside them. */
+/** Maximum number of designs with a label each. */
 const MAX_LABELLED = 24;
 
 /**
- * What is told of the designs.
+ * The states of the designs.
  * @typedef {object} DesignStates
  * @property {number} chosen
- * @property {boolean[]} kept what meets the bounds
+ * @property {boolean[]} kept designs within the bounds
  * @property {number[]} pinned
- * @property {number[]} front what no other beats
+ * @property {number[]} front designs on the Pareto front
  */
 
 export class ScatterPlot {
@@ -171,13 +171,13 @@ export class ScatterPlot {
     );
   }
 
-  /** The design at which the keys stop. @param {DesignStates} now */
+  /** Return the design that receives the keyboard focus. @param {DesignStates} now */
   findTabStop(now) {
     const there = (/** @type {number} */ n) => Boolean(this.places?.[n]);
     return there(now.chosen) ? now.chosen : (this.places?.findIndex((one) => one !== null) ?? -1);
   }
 
-  /** To the next design to the right, to the left, above or below. @param {KeyboardEvent} event */
+  /** Select the next design to the right, to the left, above or below. @param {KeyboardEvent} event */
   handleKey(event) {
     const way = { ArrowRight: [0, 1], ArrowLeft: [0, -1], ArrowUp: [1, -1], ArrowDown: [1, 1] }[event.key];
     const { now, places } = this;
@@ -197,7 +197,7 @@ export class ScatterPlot {
 }
 
 /**
- * Where values lie between two places of a picture, and the round ones among them.
+ * Create the scale of an axis and its round ticks.
  * @param {(number | null)[]} values @param {number} from @param {number} to @param {number} apart
  * @returns {{at: (value: number) => number, ticks: number[]}}
  */

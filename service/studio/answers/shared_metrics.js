@@ -1,4 +1,4 @@
-/** The numbers that the designs of an answer have in common: what they are chosen by. */
+/** Collect the quantities that all designs of an answer have, as axes and bounds. */
 
 import { toWords } from "../core/dom.js";
 import { formatBriefly, isExact, listFigures, metricUnit } from "../design/design_metrics.js";
@@ -11,14 +11,14 @@ import { unitSymbol } from "../core/units.js";
 /**
  * A quantity of all designs.
  * @typedef {object} Quantity
- * @property {string} name as the answer has it; of a check with `check:` before it
+ * @property {string} name name in the answer; checks have the prefix `check:`
  * @property {string} text
  * @property {string} unit
- * @property {(number | null)[]} values one for each design; what only misses by rounding is 0
- * @property {boolean} more whether more of it is better
+ * @property {(number | null)[]} values one for each design; misses within rounding are 0
+ * @property {boolean} more whether larger is better
  */
 
-/** Of what more is better; of all else less is. */
+/** Quantities for which larger is better; for all others smaller is. */
 const MORE_IS_BETTER = /^(quality|yield|min_.*|.*efficiency|.*_share|locking_angle|transmission_angle)$/;
 
 /** @param {Design[]} designs @param {Problem} problem @returns {Quantity[]} the telling ones first */
@@ -64,7 +64,7 @@ export function collectQuantities(designs, problem) {
         ),
       );
   }
-  // What all have alike is no choice.
+  // A quantity that is equal for all designs is no choice.
   return [...found.filter((one) => valuesDiffer(one.values)), ...found.filter((one) => !valuesDiffer(one.values))];
 }
 
@@ -79,7 +79,7 @@ function createQuantity(name, text, unit, values) {
   return { name, text, unit, values, more: MORE_IS_BETTER.test(name.replace("check:", "")) };
 }
 
-/** Every check with a number, once. @param {Design[]} designs @returns {Schemas["Check"][]} */
+/** Collect each check that has a value, once. @param {Design[]} designs @returns {Schemas["Check"][]} */
 function collectChecks(designs) {
   const all = designs
     .flatMap((design) => design.verification?.checks ?? [])
@@ -99,24 +99,28 @@ function clearRounding(name, value, dimension, size) {
   return isExact(name, value, dimension, size) ? 0 : value;
 }
 
-/** Whether there is a choice at all. @param {(number | null)[]} values */
+/** Return true if the values vary. @param {(number | null)[]} values */
 export function valuesDiffer(values) {
   const [low, high] = valueRange(values);
   return high - low > 1e-9 * Math.max(Math.abs(low), Math.abs(high));
 }
 
-/** Least and greatest of those that are known. @param {(number | null)[]} values @returns {[number, number]} */
+/**
+ * Return the minimum and the maximum of the known values.
+ * @param {(number | null)[]} values
+ * @returns {[number, number]}
+ */
 export function valueRange(values) {
   const known = values.filter((one) => one !== null);
   return known.length ? [known.reduce((a, b) => Math.min(a, b)), known.reduce((a, b) => Math.max(a, b))] : [0, 0];
 }
 
-/** A number with its unit, three digits. @param {Quantity} quantity @param {number} value */
+/** Format a value with its unit, with three digits. @param {Quantity} quantity @param {number} value */
 export function formatQuantity({ unit }, value) {
   return `${formatBriefly(value)}${unit === "" || unit === "°" ? unit : ` ${unit}`}`;
 }
 
-/** Its name with its unit. @param {Quantity} quantity */
+/** Return the name of a quantity with its unit. @param {Quantity} quantity */
 export function quantityTitle({ text, unit }) {
   return unit ? `${text} (${unit})` : text;
 }

@@ -1,4 +1,4 @@
-/** Where the parts of an assembly are at an input: between two of those that the service tells, on a straight line. */
+/** Interpolate the poses of the parts of an assembly between the inputs that the service computed. */
 
 /**
  * @typedef {{origins: number[][], along: number[][], normals: number[][]}} PlaneFrame
@@ -12,12 +12,12 @@ export class AssemblyMotion {
   constructor(inputs, carriers) {
     this.inputs = inputs;
     this.carriers = carriers;
-    /** How each goes round, where all do so evenly and without end. @type {Map<Carrier, Orbit>} */
+    /** The circle of each carrier, if all turn uniformly without end. @type {Map<Carrier, Orbit>} */
     this.orbits = new Map(inputs.endless ? carriers.map((carrier) => [carrier, findOrbit(carrier.places)]) : []);
   }
 
   /**
-   * The place of an input in the arrays, as a fraction; the nearest there is where the parts were not made for it.
+   * Find the fractional index of an input in the arrays, or the nearest one if the parts do not cover it.
    * @param {number} input @returns {{at: number, within: boolean}}
    */
   findIndex(input) {
@@ -31,7 +31,7 @@ export class AssemblyMotion {
     let value = input;
     if (round > 0) {
       value = low + ((((input - low) % round) + round) % round);
-      // What lies beyond a range that does not come back may be nearer to its beginning.
+      // An input beyond a range that does not return may be nearer to its start.
       if (!closed && value > high && low + round - value < value - high) value -= round;
       if (round - (value - low) < near) value = low;
     }
@@ -41,7 +41,7 @@ export class AssemblyMotion {
   }
 
   /**
-   * Where a carrier is: the angle by which it has turned, radians, and the place of its pivot.
+   * Return the pose of a carrier: its rotation, radians, and the position of its pivot.
    * @param {Carrier} carrier @param {number} at @returns {{angle: number, place: [number, number]}}
    */
   carrierPose(carrier, at) {
@@ -59,8 +59,7 @@ export class AssemblyMotion {
     const share = count > 1 ? at - k : 0;
     let ahead = angles[next];
     if (next < k) {
-      // After a cycle it is as it was, but for whole turns; a wheel that is turned by a slot goes on by as much as
-      // before.
+      // After a cycle the pose repeats up to whole turns; an indexed wheel advances by the same angle again.
       const step = angles[k] - angles[Math.max(0, k - 1)];
       const back = ahead + 360 * Math.round((angles[k] + step - ahead) / 360);
       ahead = Math.abs(angles[k] + step - back) < 1 + 2 * Math.abs(step) ? back : angles[k] + step;
@@ -76,7 +75,7 @@ export class AssemblyMotion {
 /** @typedef {{centre: [number, number], arm: [number, number], step: number}} Orbit */
 
 /**
- * The circle on which evenly spaced places lie, and by how much each is farther round than the one before.
+ * Fit the circle through evenly spaced points, and the angle between neighbours.
  * @param {[number, number][]} places
  * @returns {Orbit}
  */
@@ -88,7 +87,7 @@ function findOrbit(places) {
   const size = Math.max(...places.map(([x, y]) => Math.hypot(x - ax, y - ay)));
   if (size < 1e-9 * Math.max(1, Math.hypot(ax, ay))) return still;
   const step = Math.atan2(ux * vy - uy * vx, ux * vx + uy * vy);
-  // The middle of a chord, and as far from it as the angle over it says.
+  // The centre lies on the bisector of a chord, at the distance given by the central angle.
   const away = 0.5 / Math.tan(step / 2);
   const centre = /** @type {[number, number]} */ ([(ax + bx) / 2 - away * uy, (ay + by) / 2 + away * ux]);
   return { centre, arm: [ax - centre[0], ay - centre[1]], step };

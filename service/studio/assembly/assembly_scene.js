@@ -1,5 +1,5 @@
 /**
- * An assembly in three dimensions, drawn by three.js: nothing else knows it, and it is loaded when the first is shown.
+ * Draw an assembly in three dimensions with three.js. Only this module imports it, when the first assembly is shown.
  */
 
 import * as THREE from "../vendor/three.module.min.js";
@@ -16,16 +16,16 @@ import { Surface } from "./solids.js";
 /** Field of view, degrees. */
 const FIELD_OF_VIEW = 30;
 
-/** Milliseconds in which the camera goes to another place. */
+/** Duration of a camera movement, milliseconds. */
 const TRAVEL_MS = 350;
 
-/** Inputs at which it is seen how far it reaches. */
+/** Number of inputs at which the extent is measured. */
 const EXTENT_SAMPLES = 12;
 
-/** Directions from which it is looked at. @type {Record<string, [number, number, number]>} */
+/** Viewing directions. @type {Record<string, [number, number, number]>} */
 export const VIEWS = { Isometric: [1, -1, 0.9], Top: [0, -1e-4, 1], Front: [0, -1, 0], Side: [1, 0, 0] };
 
-/** Whether this browser can draw in three dimensions. */
+/** Return true if this browser can draw in three dimensions. */
 export function canDraw() {
   return document.createElement("canvas").getContext("webgl2") !== null;
 }
@@ -41,7 +41,7 @@ export class AssemblyScene {
     this.motion = new AssemblyMotion(assembly.input, assembly.carriers);
     this.at = 0;
     this.explosion = 0;
-    /** Whether it is looked at from where it was put, and nobody has turned it since. */
+    /** Whether the view is still fitted, not turned by the user. */
     this.fitted = true;
     this.dirty = true;
     /** @type {string | null} */
@@ -129,14 +129,14 @@ export class AssemblyScene {
     group.add(mesh, edges);
     this.carriers[part.carrier].add(group);
     geometry.computeBoundingBox();
-    // Parts of a plane of their own stand over others: the lowest are never among them.
+    // Parts in planes of their own lie above others; the lowest are never among them.
     const frame = this.motion.carriers[part.carrier].frame;
     const along = frame ? new THREE.Vector3(...frame.normals[0]) : new THREE.Vector3(0, 0, 1);
     const low = frame ? Infinity : (geometry.boundingBox?.min.z ?? 0);
     return { item: part.item, colour: part.colour, group, mesh, lift: part.lift, low, along };
   }
 
-  /** Light from above at the left, and from all around; shadows reach as far as the assembly goes. */
+  /** Add light from the upper left and ambient light; shadows cover the whole assembly. */
   addLights() {
     const { centre, radius } = this.reach;
     this.scene.add(new THREE.HemisphereLight(0xffffff, 0xc9d1da, 2.1));
@@ -161,7 +161,7 @@ export class AssemblyScene {
     this.scene.add(sun, sun.target, fill, fill.target);
   }
 
-  /** A grid below everything, a line every so many millimetres, and what catches shadows. @param {Assembly} assembly */
+  /** Add a grid below everything, and a plane that receives shadows. @param {Assembly} assembly */
   addFloor(assembly) {
     const { centre, radius } = this.reach;
     const step = roundStep((2 * radius) / 12);
@@ -183,11 +183,11 @@ export class AssemblyScene {
     return { group: ground, grid, step };
   }
 
-  /** What the assembly reaches over its whole motion. */
+  /** Measure the extent of the assembly over its whole motion. */
   measureExtent() {
     const count = this.motion.inputs.values.length;
     /**
-     * Corners of the boxes of all parts, and how far they go which way.
+     * Corners of the bounding boxes of all parts, and their travel.
      * @type {{place: THREE.Vector3, lift: number, along: THREE.Vector3}[]}
      */
     const corners = [];
@@ -209,7 +209,7 @@ export class AssemblyScene {
     return { corners, centre: sphere.center, radius: sphere.radius || 1 };
   }
 
-  /** The colours of the page. */
+  /** Apply the colours of the page. */
   applyColours() {
     const style = getComputedStyle(document.documentElement);
     const colour = (/** @type {string} */ name) => new THREE.Color(style.getPropertyValue(name).trim());
@@ -220,7 +220,7 @@ export class AssemblyScene {
     this.ground.grid.geometry.deleteAttribute("color");
     this.ground.grid.material = new THREE.LineBasicMaterial({ color: line });
     for (const { group, mesh, colour: own } of this.solids) {
-      // On a dark ground dark parts would not be seen.
+      // Lighten dark parts on a dark background.
       mesh.material.color.set(own).lerp(new THREE.Color(0xffffff), dark ? 0.05 : 0.015);
       const edges = /** @type {THREE.LineSegments<THREE.BufferGeometry, THREE.LineBasicMaterial>} */ (
         group.children[1]
@@ -242,7 +242,7 @@ export class AssemblyScene {
     this.dirty = true;
   }
 
-  /** Show it at a place of the arrays of its motion. @param {number} at */
+  /** Show the assembly at a fractional index of its motion. @param {number} at */
   show(at) {
     this.at = at;
     this.carriers.forEach((group, k) => {
@@ -259,7 +259,7 @@ export class AssemblyScene {
     this.dirty = true;
   }
 
-  /** Draw the planes apart: 0 as they are, 1 all apart. @param {number} share */
+  /** Separate the planes: 0 leaves them together, 1 separates them fully. @param {number} share */
   explode(share) {
     this.explosion = share;
     for (const { group, lift } of this.solids) group.position.z = share * lift;
@@ -297,12 +297,16 @@ export class AssemblyScene {
     this.dirty = true;
   }
 
-  /** Go to where it is seen whole from a direction. @param {string} name @param {boolean} [animated] */
+  /**
+   * Move the camera so that the whole assembly is visible from a direction.
+   * @param {string} name
+   * @param {boolean} [animated]
+   */
   lookFrom(name, animated = !matchMedia("(prefers-reduced-motion: reduce)").matches) {
     this.moveCamera(new THREE.Vector3(...VIEWS[name]), animated);
   }
 
-  /** See it whole, from where it is looked at now. @param {boolean} [animated] */
+  /** Fit the whole assembly into the current view. @param {boolean} [animated] */
   fit(animated = !matchMedia("(prefers-reduced-motion: reduce)").matches) {
     this.moveCamera(this.camera.position.clone().sub(this.controls.target), animated);
   }
@@ -322,7 +326,7 @@ export class AssemblyScene {
     };
     const aim = new THREE.Vector3();
     for (const way of [right, up, toward]) aim.addScaledVector(way, middle(way));
-    // The distance at which all corners lie in the picture.
+    // Distance at which all corners are inside the picture.
     const high = Math.tan((FIELD_OF_VIEW * Math.PI) / 360);
     const wide = high * this.camera.aspect;
     const away = corners.reduce((most, corner) => {
@@ -360,7 +364,7 @@ export class AssemblyScene {
     const share = Math.min(1, Math.max(0, (now - began) / TRAVEL_MS));
     const eased = share * share * (3 - 2 * share);
     this.controls.target.lerpVectors(target, aim, eased);
-    // About what is looked at, and not through it.
+    // Orbit around the target, never through it.
     const [one, other] = [from.clone().sub(target), to.clone().sub(aim)];
     const way = one.clone().normalize().lerp(other.clone().normalize(), eased).normalize();
     this.camera.position
@@ -374,7 +378,7 @@ export class AssemblyScene {
     this.dirty = true;
   }
 
-  /** Turn, zoom and move by keys; whether it was one of them. @param {KeyboardEvent} event */
+  /** Turn, zoom and move by keys; return true if the key was used. @param {KeyboardEvent} event */
   handleKey(event) {
     const by = { ArrowLeft: [1, 0], ArrowRight: [-1, 0], ArrowUp: [0, 1], ArrowDown: [0, -1] }[event.key];
     this.travel = null;
@@ -391,7 +395,7 @@ export class AssemblyScene {
     return true;
   }
 
-  /** What lies under the pointer is told, and chosen by a click; a drag is none. */
+  /** Report the part under the pointer and select it by a click; a drag does not select. */
   listenToPointer() {
     /** @type {[number, number] | null} */
     let down = null;
@@ -425,7 +429,7 @@ export class AssemblyScene {
     this.canvas.dataset.drawn = String(Number(this.canvas.dataset.drawn ?? 0) + 1);
   }
 
-  /** The picture as it is seen now. @returns {Promise<Blob>} */
+  /** Return the current view as a picture. @returns {Promise<Blob>} */
   takePicture() {
     this.draw();
     return new Promise((done, failed) =>
@@ -450,7 +454,7 @@ export class AssemblyScene {
 }
 
 /**
- * Where a plane is at a place of the arrays; it stands still between two of them.
+ * Return the matrix of a plane at an index of the arrays; it is not interpolated.
  * @param {import("./assembly_motion.js").PlaneFrame} frame
  * @param {number} at
  */
@@ -461,7 +465,7 @@ function createPlaneMatrix({ origins, along, normals }, at) {
   return new THREE.Matrix4().makeBasis(x, z.clone().cross(x), z).setPosition(of(origins));
 }
 
-/** A step of 1, 2 or 5 times a power of ten, not below so much. @param {number} least */
+/** Return 1, 2 or 5 times a power of ten, at least the given value. @param {number} least */
 export function roundStep(least) {
   const power = 10 ** Math.floor(Math.log10(least));
   return power * ([1, 2, 5, 10].find((one) => one * power >= least) ?? 10);

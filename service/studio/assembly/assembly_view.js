@@ -1,5 +1,6 @@
 /**
- * The assembly of a design: its parts in three dimensions, moving with the drawing, drawn apart, hidden and taken home.
+ * The assembly pane: the parts in three dimensions, moving with the drawing; they can be separated, hidden and
+ * downloaded.
  */
 
 import * as api from "../core/api.js";
@@ -20,7 +21,7 @@ import { unitSymbol } from "../core/units.js";
  *   import("./assembly_motion.js").Inputs, carriers: import("./assembly_motion.js").Carrier[], parts: Part[]}} Assembly
  */
 /**
- * What moves in the drawing.
+ * The motion in the drawing.
  * @typedef {{player: import("../core/player.js").Player, motion: {input_angle: (number | null)[], engaged?: number[]}}}
  *   LeadingMotion
  */
@@ -30,10 +31,10 @@ import { unitSymbol } from "../core/units.js";
  *   `names`
  */
 
-/** Inputs that are asked for. */
+/** Number of requested inputs. */
 const POSITION_COUNT = 144;
 
-/** The scale that a refusal says will do. */
+/** Extracts the feasible scale from an error message. */
 const SCALE_PATTERN = /fit at scale ([\d.e+]+) or more|; use at most scale ([\d.e+-]*\d)/;
 
 const PROCESSES = { laser: t`cut by laser`, print: t`printed`, mill: t`milled` };
@@ -56,7 +57,7 @@ export class AssemblyView {
     this.assembly = null;
     /** @type {import("./assembly_scene.js").AssemblyScene | null} */
     this.scene = null;
-    /** What is in the picture, if it can be. @type {typeof import("./assembly_scene.js") | null} */
+    /** The scene, if the browser can draw it. @type {typeof import("./assembly_scene.js") | null} */
     this.drawing = null;
     /** Names of parts. @type {Set<string>} */
     this.hidden = new Set();
@@ -64,14 +65,14 @@ export class AssemblyView {
     this.chosen = null;
     this.explosion = 0;
     this.frame = 0;
-    /** The speed of a gearbox that the parts are made for, from 1. @type {number | null} */
+    /** The gear of a gearbox for which the parts were made, from 1. @type {number | null} */
     this.engaged = null;
-    /** The place of the drawing's motion that is shown. @type {number} */
+    /** Index of the displayed motion. @type {number} */
     this.seen = NaN;
     this.list = createElement("div");
     this.fileFault = createElement("p", { class: "error", role: "alert" });
     this.beyond = createElement("p", { class: "note", hidden: true });
-    /** Of each kind of part: what shows all of it, and what shows each. @type {VisibilityBox[]} */
+    /** Checkboxes of each kind of part: one for all, and one for each part. @type {VisibilityBox[]} */
     this.shows = [];
     this.words = createElement("p", { class: "note", role: "status" });
     this.fault = createElement("div", { class: "fault", role: "alert" });
@@ -87,7 +88,7 @@ export class AssemblyView {
     this.frame = requestAnimationFrame(step);
   }
 
-  /** What the parts are made of, as the files are asked for. */
+  /** Create the fields for material and sizes. */
   createSizeFields() {
     const unit = unitSymbol("length", this.job.problem);
     const field = (/** @type {string} */ name, /** @type {string} */ title, /** @type {HTMLElement} */ box) => {
@@ -127,7 +128,7 @@ export class AssemblyView {
     return form;
   }
 
-  /** Of a gearbox: the number of the speed that is engaged in the drawing, from 1. @returns {number | null} */
+  /** Return the engaged gear of a gearbox, from 1. @returns {number | null} */
   engagedSpeed() {
     const { mechanism, metrics } = this.job.result.designs[this.n];
     if (mechanism.type !== "gearbox") return null;
@@ -142,7 +143,7 @@ export class AssemblyView {
     );
   }
 
-  /** The fields that are filled in. @returns {Record<string, string>} */
+  /** Read the fields that are filled in. @returns {Record<string, string>} */
   readSizes() {
     const boxes = /** @type {HTMLInputElement[]} */ ([...this.form.querySelectorAll("[name]")]);
     const filled = boxes.filter(({ value }) => value.trim() !== "").map(({ name, value }) => [name, value.trim()]);
@@ -178,18 +179,18 @@ export class AssemblyView {
     this.body.removeAttribute("aria-busy");
   }
 
-  /** Say something in the place of the picture. @param {string} what */
+  /** Show a note in place of the picture. @param {string} what */
   showNote(what) {
     this.board.replaceChildren(createElement("div", { class: "said" }, createElement("p", { class: "note" }, what)));
   }
 
-  /** Nothing is wrong any more. */
+  /** Clear all errors. */
   clearErrors() {
     this.fault.replaceChildren();
     for (const box of this.form.querySelectorAll("[aria-invalid]")) box.removeAttribute("aria-invalid");
   }
 
-  /** Say why there are no such parts, and offer what works. @param {unknown} error */
+  /** Show why the parts cannot be made, and offer sizes that work. @param {unknown} error */
   showRefusal(error) {
     const faults = error instanceof api.Refusal ? error.errors : [];
     const reason =
@@ -280,7 +281,7 @@ export class AssemblyView {
     this.follow();
   }
 
-  /** Where it is looked at from, and its picture. */
+  /** Create the buttons for views and for saving the picture. */
   createTools() {
     const button = (/** @type {string} */ title, /** @type {() => void} */ does) =>
       createElement("button", { type: "button", class: "small", onclick: does }, title);
@@ -298,7 +299,7 @@ export class AssemblyView {
     );
   }
 
-  /** How far its planes are apart; it moves with the drawing, whose clock stands beside it. */
+  /** Create the slider that separates the planes, next to the player of the drawing. */
   createSliders() {
     const apart = createElement("input", {
       type: "range",
@@ -335,7 +336,7 @@ export class AssemblyView {
   }
 
   /**
-   * The parts by kind: shown or hidden, chosen, and their files.
+   * List the parts by kind, with checkboxes and files.
    * @param {Assembly} assembly
    * @param {Record<string, string>} query
    */
@@ -440,7 +441,7 @@ export class AssemblyView {
     return button;
   }
 
-  /** What shows or hides parts. @param {string} id @param {string} called @param {string[]} names */
+  /** Create a checkbox that shows or hides parts. @param {string} id @param {string} called @param {string[]} names */
   createCheckbox(id, called, names) {
     const box = createElement("input", {
       type: "checkbox",
@@ -452,7 +453,7 @@ export class AssemblyView {
   }
 
   /**
-   * Of equal parts each at its place, behind a summary; one alone is shown by its row.
+   * List equal parts one by one under a summary; a single part has only its row.
    * @param {Part[]} equals
    * @returns {{node: HTMLElement | null, boxes: Map<string, HTMLInputElement>}}
    */
@@ -499,7 +500,7 @@ export class AssemblyView {
     this.updateList();
   }
 
-  /** The list says what is shown: of a kind all, some or none. */
+  /** Update the list: of each kind all, some or none are shown. */
   updateList() {
     for (const { all, names, each } of this.shows) {
       for (const [name, box] of each) box.checked = !this.hidden.has(name);
@@ -526,14 +527,14 @@ export class AssemblyView {
     }
   }
 
-  /** What moves in the drawing, where it has a player. @returns {LeadingMotion | null} */
+  /** Return the motion in the drawing, if it has a player. @returns {LeadingMotion | null} */
   leadingMotion() {
     const moving = this.moving();
     const { player, motion } = moving ?? {};
     return player && motion && (motion.input_angle?.length ?? 0) > 1 ? { player, motion } : null;
   }
 
-  /** Go where the drawing is. */
+  /** Follow the drawing. */
   follow() {
     const led = this.leadingMotion();
     if (led && this.engagedSpeed() !== this.engaged) this.load();
@@ -563,7 +564,7 @@ export class AssemblyView {
   }
 }
 
-/** The style sheet of the view comes with the first of them. */
+/** Load the style sheet with the first view. */
 function loadStyles() {
   if (document.querySelector('link[href="/studio/assembly.css"]')) return;
   document.head.append(createElement("link", { rel: "stylesheet", href: "/studio/assembly.css" }));

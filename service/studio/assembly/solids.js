@@ -1,7 +1,4 @@
-/**
- * Surfaces of parts from the shapes that the service tells: triangles with their normals, and the edges of what is
- * solid.
- */
+/** Triangulate parts from the shapes of the service: triangles with normals, and the edges of solids. */
 
 /** @typedef {[number, number]} Point */
 /**
@@ -14,33 +11,33 @@
  */
 
 /**
- * A straight piece of an outline, with the directions out of what it encloses at its ends.
+ * A straight piece of an outline, with its outward normals at both ends.
  * @typedef {{from: Point, to: Point, out: [Point, Point]}} Piece
  */
 
 /**
- * Divides a region into triangles, by numbers of the points of its outline and then of its holes.
+ * Triangulates a region; indices count the points of the outline, then those of the holes.
  * @typedef {(outer: Point[], holes: Point[][]) => number[][]} Triangulate
  */
 
-/** Pieces of a whole circle. */
+/** Number of pieces of a circle. */
 const CIRCLE_PIECES = 96;
 
-/** Turn of the normal from which on an edge is seen, radians. */
+/** Angle between normals from which an edge is drawn, radians. */
 const CREASE_ANGLE = 0.6;
 
-/** Turn of a twisted prism within one layer, radians. */
+/** Twist of a prism per layer, radians. */
 const LAYER_TWIST = 0.06;
 
 export class Surface {
   /** @param {Triangulate} triangulate */
   constructor(triangulate) {
     this.triangulate = triangulate;
-    /** Three corners of each triangle, three numbers each. @type {number[]} */
+    /** Three corners per triangle, three coordinates each. @type {number[]} */
     this.places = [];
     /** @type {number[]} */
     this.normals = [];
-    /** Two ends of each line. @type {number[]} */
+    /** Two ends per line. @type {number[]} */
     this.edges = [];
   }
 
@@ -53,7 +50,7 @@ export class Surface {
   }
 
   /**
-   * A prism, or one that turns by so much as it goes up.
+   * Add a prism, twisted by an angle over its height.
    * @param {Shape} shape
    * @param {number} twist
    * @param {Point} centre

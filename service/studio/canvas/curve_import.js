@@ -145,7 +145,7 @@ export class CurveImport {
       const [first] = this.listUses();
       await this.readCurves(first?.most ?? AREA_ROLES);
     }
-    // The same file may have been changed, and is read again when it is chosen again.
+    // Reset the input, so that a changed file can be chosen again.
     this.chooser.value = "";
   }
 
@@ -326,7 +326,7 @@ export class CurveImport {
 }
 
 /**
- * One curve: how it looks, what it is called, how large it is, and what it becomes.
+ * Create the row of a curve: thumbnail, name, size and use.
  * @param {Curve} curve
  * @param {number} k
  * @param {Use[]} uses

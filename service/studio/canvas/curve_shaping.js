@@ -1,4 +1,4 @@
-/** A curve of points made smoother, or symmetric. */
+/** Smooth a curve of points, or make it symmetric. */
 
 /** @typedef {[number, number]} Point */
 
@@ -6,11 +6,11 @@
 const SHRINK_STEP = 0.5;
 const EXPAND_STEP = -0.53;
 
-/** So many times for one press. */
+/** Number of passes for one press of the button. */
 const SMOOTHING_ROUNDS = 3;
 
 /**
- * Points made smoother; the ends of an open curve stay.
+ * Smooth the points; the ends of an open curve stay fixed.
  * @param {Point[]} points
  * @param {boolean} closed
  * @returns {Point[]}
@@ -60,7 +60,7 @@ export function makeSymmetric(points, closed) {
     if (size > best.size) best = { j, size, turn: size ? [re / size, im / size] : [1, 0] };
   }
   if (!closed) {
-    // Across the line between the ends.
+    // Mirror across the perpendicular bisector of the ends.
     const [x, y] = about[count - 1];
     const far = x * x + y * y || 1;
     best.turn = [(y * y - x * x) / far, (-2 * x * y) / far];

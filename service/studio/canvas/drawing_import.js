@@ -1,4 +1,4 @@
-/** A drawing that another program made: its outlines are listed, each is given a use, and they are placed as drawn. */
+/** Import a drawing: list its outlines, assign a role to each, and place them as drawn. */
 
 import * as api from "../core/api.js";
 import { createElement, formatNumber, createSvg } from "../core/dom.js";
@@ -14,7 +14,7 @@ import { View } from "../core/view.js";
 /** @typedef {import("./workspace.js").Role} Role */
 /** @typedef {import("../core/api.js").DrawnOutline} Drawn */
 
-/** Digits of a coordinate that is placed: more than any drawing is made to. */
+/** Digits of imported coordinates: more than any drawing is accurate to. */
 const COORDINATE_DIGITS = 9;
 
 export class DrawingImport {
@@ -41,7 +41,7 @@ export class DrawingImport {
     );
     this.said = createElement("p", { class: "note", role: "status" });
     this.list = createElement("div", {});
-    /** What is under the button, and outlives a canvas that is made anew. */
+    /** The content below the button; it outlives the canvas. */
     this.node = createElement("div", { id: "drawing" }, this.file, this.said, this.list);
     /** @type {{before: string, after: string} | null} the room before and after what was placed last */
     this.last = null;
@@ -64,12 +64,12 @@ export class DrawingImport {
       this.list.replaceChildren(...(why.length ? [createElement("ul", { class: "reasons" }, ...why)] : []));
     } finally {
       this.button.disabled = false;
-      // The same file may have been changed, and is read again when it is chosen again.
+      // Reset the input, so that a changed file can be chosen again.
       this.file.value = "";
     }
   }
 
-  /** The outlines, each with the choice of its use. @param {string} name @param {api.Outlines} found */
+  /** Show the outlines, each with a choice of its role. @param {string} name @param {api.Outlines} found */
   show(name, found) {
     const unit = this.store.problem.length_unit ?? "mm";
     const scale = createElement("input", {
@@ -133,7 +133,7 @@ export class DrawingImport {
   }
 
   /**
-   * One outline: how it looks, what it is called, how large it is, and what it becomes.
+   * Create the row of an outline: thumbnail, name, size and role.
    * @param {Drawn} one
    * @param {number} k
    */
@@ -210,7 +210,7 @@ export class DrawingImport {
     );
   }
 
-  /** The room as it was before; what was changed in it since then would be lost, so then it stays. */
+  /** Restore the previous workspace, unless it was changed since. */
   undo() {
     const { last, store } = this;
     if (!last) return;
@@ -235,7 +235,7 @@ export class DrawingImport {
   }
 }
 
-/** A room as text, without the empty groups in which the form has room for fields. @param {Problem["space"]} space */
+/** Serialize a workspace without the empty groups that the form adds. @param {Problem["space"]} space */
 function serializeSpace(space) {
   const empty = (/** @type {unknown} */ value) =>
     typeof value === "object" && value !== null && !Array.isArray(value) && !Object.keys(value).length;
@@ -251,7 +251,7 @@ function serializeSpace(space) {
 }
 
 /**
- * What was left out of a file, and why; nothing where all was taken.
+ * List the skipped elements of a file with reasons, if there are any.
  * @param {{left_out: import("../core/api.js").SkippedElement[], left_out_count: number}} found
  */
 export function listSkipped({ left_out, left_out_count }) {
@@ -274,7 +274,11 @@ export function describeElement({ element, id, name, layer }) {
   return layer === null ? own : t`${own} on ${layer}`;
 }
 
-/** Corners of the square around a circle. @param {{center: Point, radius: number}} circle @returns {Point[]} */
+/**
+ * Return the corners of the square around a circle.
+ * @param {{center: Point, radius: number}} circle
+ * @returns {Point[]}
+ */
 function boundingSquare({ center: [x, y], radius }) {
   return [
     [x - radius, y - radius],
@@ -300,7 +304,7 @@ export function roundCoordinate(value) {
   return Number(value.toPrecision(COORDINATE_DIGITS));
 }
 
-/** All digits that a coordinate has when it is placed. @param {number} value */
+/** Round a coordinate to the digits of imports. @param {number} value */
 export function roundToDigits(value) {
   return localizeNumber(roundCoordinate(value));
 }

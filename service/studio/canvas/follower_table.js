@@ -1,4 +1,4 @@
-/** A follower's motion that is tabulated, as segments of a cam: the cubic spline through the points, once around. */
+/** Convert a tabulated follower motion into cam segments by a periodic cubic spline. */
 
 import { t } from "../core/messages.js";
 
@@ -6,10 +6,10 @@ import { t } from "../core/messages.js";
 
 /** @typedef {[number, number]} Point */
 
-/** Degrees of a turn. */
+/** One turn, degrees. */
 const TURN_DEGREES = 360;
 
-/** What the last displacement may differ from the first by, as a share of the travel; it is then taken for the same. */
+/** Maximum gap between the last and the first displacement, relative to the travel, for a closed motion. */
 const CLOSING_SHARE = 0.02;
 
 /** @param {number} value */
@@ -70,7 +70,7 @@ function solvePeriodicSpline(widths, heights) {
     row[count] = 6 * ((heights[next] - height) / widths[k] - (height - heights[before]) / widths[before]);
     return row;
   });
-  // The diagonal outweighs its row, so that nothing need be exchanged.
+  // The matrix is diagonally dominant, so no pivoting is needed.
   for (let k = 0; k < count; k++) {
     for (let below = k + 1; below < count; below++) {
       const share = rows[below][k] / rows[k][k];

@@ -1,15 +1,15 @@
-/** A curve drawn freehand: a stroke of the pointer becomes the points of a path. */
+/** Draw a curve freehand: a stroke of the pointer becomes the points of a path. */
 
-/** How many points a stroke becomes. */
+/** Number of points of a stroke. */
 const POINT_COUNT = 24;
 
-/** Ends that lie nearer to each other than this share of the way are one: the curve is closed. */
+/** Maximum gap between the ends of a closed curve, relative to its length. */
 const CLOSING_SHARE = 0.1;
 
 /** @typedef {[number, number]} Point */
 
 /**
- * Draw from where the pointer went down to where it is let go.
+ * Draw a stroke from pointer down to pointer up.
  * @param {PointerEvent} event
  * @param {import("../core/view.js").View} view
  * @param {SVGSVGElement} picture
@@ -31,7 +31,7 @@ export function drawStroke(event, view, picture, pen, drawn) {
       picture.removeEventListener("pointermove", move);
       pen.removeAttribute("d");
       const closed = isClosed(way);
-      // Round and back to the first point, which is stated once.
+      // Close the curve; the first point is given once.
       const points = closed
         ? resample([...way, way[0]], POINT_COUNT + 1).slice(0, POINT_COUNT)
         : resample(way, POINT_COUNT);
@@ -45,14 +45,14 @@ export function drawStroke(event, view, picture, pen, drawn) {
   );
 }
 
-/** Whether a way comes back to where it began. @param {Point[]} way */
+/** Return true if a stroke is closed. @param {Point[]} way */
 function isClosed(way) {
   const far = (/** @type {Point} */ [x, y], /** @type {Point} */ [u, v]) => Math.hypot(u - x, v - y);
   const length = way.slice(1).reduce((sum, point, k) => sum + far(way[k], point), 0);
   return way.length > 3 && far(way[0], way[way.length - 1]) < CLOSING_SHARE * length;
 }
 
-/** Points at equal distances along a way. @param {Point[]} way @param {number} count @returns {Point[]} */
+/** Resample a stroke at equal distances. @param {Point[]} way @param {number} count @returns {Point[]} */
 function resample(way, count) {
   const along = [0];
   for (let k = 1; k < way.length; k++) {

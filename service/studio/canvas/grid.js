@@ -1,20 +1,20 @@
-/** Lines at round coordinates behind a picture of the plane. */
+/** Draw grid lines at round coordinates. */
 
 import { formatNumber, createSvg } from "../core/dom.js";
 
-/** Between two lines at least, pixels: their numbers have room, on a phone too. */
+/** Minimum distance between grid lines, pixels; the numbers fit, also on a phone. */
 const MIN_LINE_SPACING = 76;
 
-/** 1, 2 or 5 of a power of ten, not less than a length. @param {number} least */
+/** Return 1, 2 or 5 times a power of ten, at least the given length. @param {number} least */
 export function roundSpacing(least) {
   const power = 10 ** Math.floor(Math.log10(least));
   return ([1, 2, 5].find((digit) => digit * power >= least) ?? 10) * power;
 }
 
-/** Between two places that coordinates snap to, pixels. */
+/** Minimum distance between snap positions, pixels. */
 const SNAP_SPACING = 12;
 
-/** What coordinates of a picture snap to: a part of its grid. @param {import("../core/view.js").View} view */
+/** Return the snap spacing of a view, a fraction of its grid. @param {import("../core/view.js").View} view */
 export function snapSpacing(view) {
   return roundSpacing(SNAP_SPACING / view.scale);
 }

@@ -1,21 +1,20 @@
 /**
- * What is taken hold of on a picture: led by the pointer or moved by keys, as large as a finger needs it, and named for
- * who
- * hears the page.
+ * Grips on a picture: dragged by the pointer or moved by keys, large enough for a finger, and labelled for screen
+ * readers.
  */
 
 import { createSvg } from "../core/dom.js";
 
 /** @typedef {[number, number]} Point */
 
-/** How far around its middle a grip is taken hold of, pixels. */
+/** Radius of a grip, pixels. */
 const GRIP_RADIUS = 12;
 
-/** How far arrow keys move a grip, pixels: the nearest power of ten of the plane's units, and with Shift. */
+/** Step of the arrow keys, pixels, rounded to a power of ten of length units; the second value applies with Shift. */
 const KEY_STEP = 10;
 const FINE_KEY_STEP = 1;
 
-/** How far page keys turn a grip, degrees, and with Shift. */
+/** Rotation by the Page keys, degrees, without and with Shift. */
 const KEY_TURN = 5;
 const FINE_KEY_TURN = 1;
 
@@ -45,7 +44,7 @@ export class Grip {
     this.node = createSvg("g", { class: kind, tabindex: 0, role, "data-grip": key }, this.text, this.hit, this.dot);
   }
 
-  /** Put it at a place of the picture. @param {Point} place pixels */
+  /** Move the grip to a point of the picture. @param {Point} place pixels */
   moveTo([u, v]) {
     for (const one of [this.dot, this.hit]) setAttributes(one, { cx: u, cy: v });
     if (this.text) setAttributes(this.text, { x: u, y: v });
@@ -58,7 +57,7 @@ export class Grip {
 }
 
 /**
- * Something is led by the pointer, from where it is taken to where it is let go.
+ * Drag an element with the pointer, from pointer down to pointer up.
  * @param {Element} node
  * @param {SVGSVGElement} picture
  * @param {import("../core/view.js").View} view
@@ -71,7 +70,7 @@ export function dragWithPointer(node, picture, view, { taken, led: follow, left 
   node.addEventListener("pointerdown", (down) => {
     const event = /** @type {PointerEvent} */ (down);
     if (event.button !== 0) return;
-    // The picture behind it stays where it is.
+    // Do not pan the picture below.
     event.stopPropagation();
     node.setPointerCapture(event.pointerId);
     taken?.(view.toPlaneFromPointer(picture, event));
@@ -97,11 +96,11 @@ export function dragWithPointer(node, picture, view, { taken, led: follow, left 
 }
 
 /**
- * Something is moved by arrow keys, turned by page keys and removed by Delete or Backspace.
+ * Move an element by arrow keys, turn it by Page keys and remove it by Delete or Backspace.
  * @param {Element} node
  * @param {import("../core/view.js").View} view
  * @param {object} on
- * @param {(by: Point) => void} on.moved by so much of the plane's units
+ * @param {(by: Point) => void} on.moved distance in length units
  * @param {((degrees: number) => void) | null} [on.turned]
  * @param {(() => void) | null} [on.removed]
  */

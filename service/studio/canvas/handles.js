@@ -1,7 +1,7 @@
 /**
- * What of a statement can be taken hold of on the canvas, kind by kind: positions, points, pivots, lines and regions.
+ * Find the handles of a problem on the canvas, kind by kind: positions, points, pivots, lines and regions.
  *
- * Handles are of one statement: they tell where they are in it, and put, turned and removed they change it.
+ * Handles refer to one problem: they know their path in it, and moving, turning or removing them changes it.
  */
 
 import { t } from "../core/messages.js";
@@ -58,7 +58,7 @@ export function findHandles(problem) {
 const wholeNumber = (value) => Array.isArray(value) && value.length === 2 && value.every(Number.isFinite);
 
 /**
- * A point `[x, y]` of an object.
+ * Return a handle for a point `[x, y]` of an object.
  * @param {object | null | undefined} owner
  * @param {string} field
  * @param {string} name
@@ -80,7 +80,7 @@ function pointHandle(owner, field, name, label, removable = true) {
 }
 
 /**
- * Objects with x and y, and an angle where they turn.
+ * Return handles for objects with x and y, and with an angle if they turn.
  * @param {{x: number, y: number, angle?: number}[]} list
  * @param {string} field
  * @param {string} word
@@ -186,10 +186,10 @@ function pathHandles(problem) {
   };
 }
 
-/** Fewer points than these are no curve. */
+/** Minimum number of points of a curve. */
 const MIN_CURVE_POINTS = 5;
 
-/** What is done to the points of a path as a whole. @param {Schemas["PathProblem"]} problem */
+/** List the tools that change the whole curve of a path. @param {Schemas["PathProblem"]} problem */
 function curveTools(problem) {
   if (problem.points.length < MIN_CURVE_POINTS) return [];
   const by =
@@ -213,13 +213,13 @@ function curveTools(problem) {
   ];
 }
 
-/** A curve that is closed is matched as a whole; a curve has no timing. @param {Problem} problem */
+/** Return true if the whole curve is matched: it is closed and has no timing. @param {Problem} problem */
 export function isMatchedCurve(problem) {
   Object.assign(problem, { closed: true, method: "curve_match" });
   delete problem.timing;
 }
 
-/** A curve that ends somewhere else than it begins. @param {Problem} problem */
+/** Return true if the curve is open. @param {Problem} problem */
 export function isOpenCurve(problem) {
   delete problem.closed;
   if (problem.method === "curve_match") delete problem.method;
@@ -232,7 +232,7 @@ function quickReturnHandles(problem) {
     offers.push({
       text: t`Add both limit positions`,
       make: (/** @type {Point} */ [x, y], /** @type {number} */ size) => {
-        // They say how far the output swings; a swing or a stroke beside them would say it twice.
+        // Limit positions define the swing; a swing or a stroke would be redundant.
         Object.assign(problem, {
           swing: null,
           stroke: null,
@@ -331,7 +331,7 @@ function dwellHandles(problem) {
 }
 
 /**
- * A car from above: kingpins in front, the rear axle behind.
+ * Return the handles of a car seen from above: kingpins in front, rear axle behind.
  * @param {Schemas["SteeringProblem"]} problem
  * @returns {Handles}
  */
@@ -386,7 +386,7 @@ function steeringHandles(problem) {
 }
 
 /**
- * The fourbar whose curve is followed, held by its joints.
+ * Return handles for the joints of the fourbar whose curve is followed.
  * @param {Schemas["ParallelMotionProblem"]} problem
  * @returns {Handles | null}
  */
@@ -428,11 +428,11 @@ function parallelMotionHandles(problem) {
   };
 }
 
-/** What lengths are rounded to, as a share of them, with room for what it does to a square. */
+/** Relative rounding of lengths, with a margin for its effect on squares. */
 const ROUNDING_SHARE = 1e-7;
 
 /**
- * Joints of a fourbar at its reference, or where it can first be assembled.
+ * Return the joints of a fourbar at its reference input, or at the first input where it can be assembled.
  * @param {NonNullable<Schemas["ParallelMotionProblem"]["linkage"]>} linkage
  * @returns {Record<string, Point> | null}
  */
@@ -448,7 +448,7 @@ function assembleFourbar(linkage) {
     const [dx, dy] = [pivots.output[0] - A[0], pivots.output[1] - A[1]];
     const diagonal = Math.hypot(dx, dy);
     const along = (links.coupler ** 2 - links.output ** 2 + diagonal ** 2) / (2 * diagonal);
-    // In line with each other, joints that are rounded may be apart by that much more than links reach.
+    // Rounded joints in a straight line may be slightly farther apart than the links reach.
     const square = links.coupler ** 2 - along ** 2;
     const rounded = Math.abs(square) < ROUNDING_SHARE * links.coupler ** 2;
     const up = rounded ? 0 : Math.sqrt(square) * (assembly === "crossed" ? -1 : 1);
@@ -470,7 +470,7 @@ function assembleFourbar(linkage) {
 }
 
 /**
- * The fixed pivots of a function's linkage, where they are chosen: they lie in the plane and not in its graph.
+ * Return handles for given fixed pivots of a function's linkage; they lie in the plane, not in the graph.
  * @param {Problem} problem
  * @returns {Handle[]}
  */
@@ -482,7 +482,11 @@ export function fixedPivotHandles(problem) {
   ];
 }
 
-/** Pairs of a function as points of its graph. @param {Schemas["FunctionProblem"]} problem @returns {Handles} */
+/**
+ * Return handles for the pairs of a function, as points of its graph.
+ * @param {Schemas["FunctionProblem"]} problem
+ * @returns {Handles}
+ */
 function functionHandles(problem) {
   const pairs = problem.pairs ?? [];
   return {
@@ -525,7 +529,7 @@ function functionHandles(problem) {
   };
 }
 
-/** Rectangles in which pivots may lie, held by two corners. @param {Problem} problem @param {Handles} found */
+/** Add handles for the pivot regions: two corners each. @param {Problem} problem @param {Handles} found */
 function addRegionHandles(problem, found) {
   const { constraints } = problem;
   for (const [field, name] of /** @type {const} */ ([

@@ -1,4 +1,4 @@
-/** A linkage as a drawing: links, slides and pins, put where the joints are. */
+/** Draw a linkage: links, slides and pins at given joint positions. */
 
 import { createSvg } from "../core/dom.js";
 
@@ -8,13 +8,13 @@ import { createSvg } from "../core/dom.js";
 /** @typedef {Record<string, Point | null>} Places */
 /** @typedef {import("../core/view.js").View} View */
 
-/** Joints that stand still. @param {Skeleton} skeleton @returns {string[]} */
+/** Return the fixed joints. @param {Skeleton} skeleton @returns {string[]} */
 export function groundedJoints(skeleton) {
   return skeleton.links.find((link) => link.name === "ground")?.joints ?? [];
 }
 
 /**
- * Joints worth a drawing: a coupler point that nobody asked for lies on another joint.
+ * Return the joints to draw; an unrequested coupler point coincides with another joint.
  * @param {Skeleton} skeleton
  * @returns {string[]}
  */
@@ -25,7 +25,7 @@ export function drawnJoints(skeleton) {
 }
 
 /**
- * Where the line of a slide points, radians, from the joints of its link.
+ * Return the angle of a slide line, radians, from the joints of its link.
  * @param {{on: string[], lean: number}} slide
  * @param {Places} places
  */
@@ -34,7 +34,7 @@ export function slideAngle({ on, lean }, places) {
   return a && b ? lean + Math.atan2(b[1] - a[1], b[0] - a[0]) : lean;
 }
 
-/** What puts something that is drawn about the origin to a place of the picture. @param {Point} place */
+/** Return the transform that moves a drawing from the origin to a point of the picture. @param {Point} place */
 export function translateTo([u, v]) {
   return `translate(${u.toFixed(2)} ${v.toFixed(2)})`;
 }
@@ -85,7 +85,7 @@ export class LinkageDrawing {
   }
 
   /**
-   * A block on its line; a line of a moving link is known by two joints of it.
+   * Create the block and the line of a slide; the line of a moving link follows from two joints.
    * @param {Skeleton} skeleton
    * @param {Schemas["Slide"]} slide
    */

@@ -1,4 +1,4 @@
-/** The pen: draws one area on a picture with mouse, finger or keys. */
+/** Draw one area on a picture by mouse, finger or keys. */
 
 import { createSvg } from "../core/dom.js";
 import { createHatch, outlinePath } from "./area_hatching.js";
@@ -7,14 +7,14 @@ import { t } from "../core/messages.js";
 /** @typedef {[number, number]} Point */
 /** @typedef {import("./workspace.js").Zone} Zone */
 
-/** How near to the first corner a polygon closes, pixels of the picture: a finger is less exact. */
+/** Distance from the first corner at which a polygon closes, pixels; larger for a finger. */
 const CLOSING_DISTANCE = 12;
 const TOUCH_CLOSING_DISTANCE = 28;
 
-/** What is drawn smaller than this was a click. */
+/** Minimum size of a drag, pixels; less is a click. */
 const MIN_DRAG = 4;
 
-/** Of the picture's height, what is put down by keys alone. */
+/** Size of an area placed by keys, relative to the height of the picture. */
 const KEYBOARD_SHARE = 0.3;
 
 export class Pen {
@@ -56,7 +56,7 @@ export class Pen {
       this.tool === "polygon" ? this.addCorner(event) : this.finish(this.snapPointer(event)),
     );
     this.sheet.addEventListener("dblclick", (event) => event.stopPropagation(), { signal });
-    // Wherever the focus is, but for a field in which somebody types.
+    // Handle keys everywhere except in text fields.
     document.addEventListener("keydown", (event) => this.handleKey(event), { signal, capture: true });
   }
 
@@ -66,7 +66,7 @@ export class Pen {
     return [this.view.roundToGrid(x), this.view.roundToGrid(y)];
   }
 
-  /** How far apart on the picture. @param {Point} one @param {Point} other */
+  /** Return the distance of two points in the picture, pixels. @param {Point} one @param {Point} other */
   pictureDistance(one, other) {
     return this.view.scale * Math.hypot(one[0] - other[0], one[1] - other[1]);
   }
@@ -77,7 +77,7 @@ export class Pen {
     const near = event.pointerType === "touch" ? TOUCH_CLOSING_DISTANCE : CLOSING_DISTANCE;
     const { corners } = this;
     if (corners.length >= 3 && this.pictureDistance(at, corners[0]) < near) return this.finish();
-    // The second click of a double one ends the polygon too.
+    // A double click also ends the polygon.
     if (corners.length && this.pictureDistance(at, corners[corners.length - 1]) < MIN_DRAG)
       return corners.length >= 3 ? this.finish() : undefined;
     corners.push(at);
@@ -99,7 +99,7 @@ export class Pen {
     event.stopPropagation();
   }
 
-  /** Enter closes a polygon; before anything is drawn it puts an area into the middle. */
+  /** Close the polygon, or place an area in the middle if nothing is drawn yet. */
   handleEnter() {
     if (this.tool === "polygon" && this.corners.length) {
       if (this.corners.length >= 3) this.finish();
@@ -133,7 +133,7 @@ export class Pen {
   }
 
   /**
-   * The rectangle or circle between two points; null where it is none.
+   * Return the rectangle or circle between two points, or null if it is empty.
    * @param {Point} from
    * @param {Point} to
    * @returns {Zone | null}
@@ -157,7 +157,7 @@ export class Pen {
     };
   }
 
-  /** What is drawn so far, up to where the pointer is. @param {Point | null} at */
+  /** Show the unfinished area up to the pointer. @param {Point | null} at */
   show(at) {
     const { view, corners } = this;
     const zone = at && corners.length && this.tool !== "polygon" ? this.spanZone(corners[0], at) : null;

@@ -1,4 +1,4 @@
-/** A ruler on a picture of the plane: two ends that are dragged, and how far apart they are, and in which direction. */
+/** A ruler on a picture: two draggable ends with their distance and direction. */
 
 import { createElement, formatNumber, createSvg } from "../core/dom.js";
 import { formatBriefly } from "../design/design_metrics.js";
@@ -7,7 +7,7 @@ import { t } from "../core/messages.js";
 
 /** @typedef {[number, number]} Point */
 
-/** How near to something an end is caught by it, pixels. */
+/** Distance at which an end snaps to a target, pixels. */
 const CATCH_DISTANCE = 10;
 
 export class Ruler {
@@ -48,7 +48,7 @@ export class Ruler {
     this.show();
   }
 
-  /** Lay it on the picture, or take it away. */
+  /** Show or hide the ruler. */
   toggle() {
     const [width, height] = [this.view.width / this.view.scale, this.view.height / this.view.scale];
     const [x, y] = this.view.middle;
@@ -84,7 +84,7 @@ export class Ruler {
     return grip;
   }
 
-  /** A place, or what is so near to it that it is meant. @param {Point} place @returns {Point} */
+  /** Return the target near a point, or else the point itself. @param {Point} place @returns {Point} */
   snapToTarget(place) {
     const far = (/** @type {Point} */ [x, y]) => this.view.scale * Math.hypot(x - place[0], y - place[1]);
     const near = this.points()
@@ -97,7 +97,7 @@ export class Ruler {
     const { ends } = this.memory;
     this.button.setAttribute("aria-pressed", String(Boolean(ends)));
     if (!ends) return this.node.remove();
-    // Laid on once: what is put anew while it is dragged lets the pointer go.
+    // Append it once; moving the element during a drag would release the pointer.
     if (!this.node.parentNode) this.picture.append(this.node);
     const [[x, y], [u, v]] = ends.map((end) => this.view.toPicture(...end));
     for (const [name, value] of Object.entries({ x1: x, y1: y, x2: u, y2: v }))

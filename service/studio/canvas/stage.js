@@ -1,20 +1,18 @@
-/**
- * The stage in the middle of the window: a statement is drawn on it, a design moves on it, a linkage is explored on it.
- */
+/** The stage in the middle of the window: it shows the problem, the motion of a design, or the explored linkage. */
 
 import { byId, createElement, rebuild, createSvg } from "../core/dom.js";
 import { Zoom } from "./zoom.js";
 
 /** @typedef {"state" | "watch" | "explore"} Mode */
 
-/** Room of a picture where the window gives none, pixels. */
+/** Minimum size of a picture, pixels. */
 const MIN_SIZE = [320, 220];
 
-/** Height that the clock below a picture has, pixels. */
+/** Height of the player below a picture, pixels. */
 export const CLOCK_HEIGHT = 48;
 
 /**
- * What a view of a mechanism consists of.
+ * The parts of a view of a mechanism.
  * @typedef {object} View
  * @property {SVGSVGElement | HTMLElement} picture takes the stage
  * @property {HTMLElement[]} [tools] over the picture, before those that bring it nearer
@@ -24,7 +22,7 @@ export const CLOCK_HEIGHT = 48;
  * @property {(Node | string | null | undefined | false)[]} [plots] in the drawer, with the plots
  */
 
-/** Where a mechanism that moves is shown, whatever shows it. */
+/** The frame in which a moving mechanism is shown. */
 export class Frame {
   /** @param {HTMLElement} board of the stage @param {HTMLElement} beside @param {HTMLElement} plots */
   constructor(board, beside, plots) {
@@ -36,7 +34,7 @@ export class Frame {
   }
 
   /**
-   * Width and height that a picture has, pixels, as much less as something beneath it takes.
+   * Return width and height available for a picture, pixels, less the height of elements below it.
    * @param {number} [less]
    * @returns {[number, number]}
    */
@@ -57,12 +55,12 @@ export class Frame {
     });
   }
 
-  /** What is shown is of the design before, until the motion of the next one is there. @param {boolean} is */
+  /** Mark the picture as outdated while the next motion is loading. @param {boolean} is */
   markWaiting(is) {
     for (const place of [this.board, this.beside, this.plots]) place.classList.toggle("waiting", is);
   }
 
-  /** Say something in the place of a picture. @param {...(Node | string)} said */
+  /** Show a message in place of the picture. @param {...(Node | string)} said */
   showMessage(...said) {
     this.zoom = null;
     this.markWaiting(false);
@@ -71,16 +69,16 @@ export class Frame {
     this.plots.replaceChildren();
   }
 
-  /** Whether nothing is shown: a picture stays until the next one is there. */
+  /** Whether no picture is shown; a picture stays until the next one is ready. */
   get isIdle() {
     return !this.board.querySelector(".stage");
   }
 }
 
 /**
- * A picture of the plane: what its view shows, as large as there is room.
+ * Create a picture of the plane, as large as the available space.
  * @param {import("../core/view.js").View} view
- * @param {string} label what it shows, for who hears the page
+ * @param {string} label label for screen readers
  * @param {import("../core/dom.js").Child[]} drawn
  * @param {object} [use]
  * @param {boolean} [use.held] whether something in it is taken hold of
@@ -102,7 +100,7 @@ export function createScene(view, label, drawn, { held = false, whole = false } 
 }
 
 /**
- * The room that a board of the stage has for a picture, whether it is shown just now or not.
+ * Return the size available for a picture on a board, shown or hidden.
  * @param {HTMLElement} board
  * @param {number} less
  * @returns {[number, number]}
@@ -119,7 +117,7 @@ export class Stage {
     this.frame = new Frame(byId("watch"), byId("beside"), byId("plots"));
     this.caption = byId("caption");
     this.buttons = { state: byId("mode-state"), watch: byId("mode-watch", HTMLButtonElement) };
-    /** Whether there is anything to watch. */
+    /** Whether a motion is available. */
     this.watching = false;
     this.buttons.state.addEventListener("click", () => this.showMode("state"));
     this.buttons.watch.addEventListener("click", () => this.showMode("watch"));
@@ -142,7 +140,7 @@ export class Stage {
     if (before !== mode) this.changed(mode);
   }
 
-  /** Say whether there is a mechanism to be watched. @param {boolean} is @param {string} [caption] */
+  /** Set whether a motion is available. @param {boolean} is @param {string} [caption] */
   offerMotion(is, caption = "") {
     this.watching = is;
     this.buttons.watch.disabled = !is;

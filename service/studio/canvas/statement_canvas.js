@@ -1,6 +1,4 @@
-/**
- * A statement on a canvas: what it places in the plane is dragged, turned, added and removed, and curves are sketched.
- */
+/** Edit a problem on the canvas: drag, turn, add and remove its geometry, and sketch curves. */
 
 import { createElement, formatNumber, createSvg } from "../core/dom.js";
 import { drawStroke } from "./freehand.js";
@@ -23,22 +21,22 @@ import { Zoom } from "./zoom.js";
 /** @typedef {import("./handles.js").Handles} Stated */
 /** @typedef {import("../core/store.js").Store} Store */
 
-/** Height of the tools below a canvas, pixels. */
+/** Height of the toolbar below a canvas, pixels. */
 const TOOLS_HEIGHT = 117;
 
-/** The same of a row of buttons that stands without a picture. */
+/** Height of a row of buttons without a picture, pixels. */
 const BUTTONS_HEIGHT = 52;
 
 const KNOB_ARM = 44;
 
-/** What angles snap to, degrees. */
+/** Snap step of angles, degrees. */
 const SNAP_ANGLE = 15;
 
-/** What somebody has chosen of the tools; it outlives every canvas. */
+/** The chosen tools; they outlive the canvas. */
 const toolChoices = { grid: true, snap: false };
 
 /**
- * What of a canvas outlives its being made anew.
+ * State that outlives the canvas.
  * @typedef {object} CanvasState
  * @property {number} origin of the statement whose view it is
  * @property {View | null} view
@@ -47,14 +45,14 @@ const toolChoices = { grid: true, snap: false };
  * @property {{ends: [[number, number], [number, number]] | null}} ruler
  */
 
-/** Where the statement cannot be read there is nothing to hold. @type {Stated} */
+/** Handles of a problem that cannot be read. @type {Stated} */
 const NO_HANDLES = { handles: [], lines: () => [], offers: [] };
 
 /** @type {WeakMap<HTMLElement, CanvasState>} */
 const canvasState = new WeakMap();
 
 /**
- * Draw what is stated on the canvas.
+ * Draw the problem on the canvas.
  * @param {HTMLElement} place
  * @param {Store} store
  * @param {import("./backdrop.js").Backdrop} backdrop what lies behind it
@@ -79,7 +77,7 @@ export function drawCanvas(place, store, backdrop) {
   const redrawn = () => drawCanvas(place, store, backdrop);
   place.replaceChildren(
     ...(found ? [drawPlane(redrawn, store, readHandles, roomy && !graph, memory, graph ? null : backdrop, size)] : []),
-    // The graph of a function is not the plane in which its linkage lies.
+    // The graph of a function is not the plane of its linkage.
     ...(graph && roomy ? [drawPlane(redrawn, store, bareHandles, true, memory, backdrop, size)] : []),
   );
   if (grip)
@@ -89,7 +87,7 @@ export function drawCanvas(place, store, backdrop) {
 }
 
 /**
- * A plane in which nothing is placed but the fixed pivots, where they are chosen.
+ * Return the handles of a plane that contains only the given fixed pivots.
  * @param {Problem} problem
  * @returns {Stated}
  */

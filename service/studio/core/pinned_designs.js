@@ -21,7 +21,7 @@ export function listPinned(job) {
 }
 
 /**
- * Pin a design, or take its pin away.
+ * Pin or unpin a design.
  * @param {string} job
  * @param {number} n
  * @param {boolean} is

@@ -170,7 +170,7 @@ export class TaskPane {
     faults.showErrors(this.fields, this.faults, refusal);
   }
 
-  /** Nothing is wrong any more. */
+  /** Clear all errors. */
   clearErrors() {
     faults.clearErrors(this.fields, this.faults);
   }
