@@ -1,4 +1,4 @@
-/** The studio: state a problem, follow its job, look at the answers. A client of the public API only. */
+/** The studio: edit a problem, follow its job, inspect the answers. It uses the public API only. */
 
 import { UnreadableAddress, holdsStatement, decodeFragment } from "./core/address_fragment.js";
 import * as api from "./core/api.js";
@@ -105,7 +105,7 @@ function resume(kind, steps) {
   byId("draft").hidden = false;
 }
 
-/** Begin with another statement. @param {Problem} statement @param {boolean} [solved] at once */
+/** Start with another problem. @param {Problem} statement @param {boolean} [solved] at once */
 function beginStatement(statement, solved = false) {
   clearGuest();
   store.begin(statement);

@@ -89,7 +89,7 @@ export class WorkspaceView {
     const corners = this.createCarriedBody(places);
     this.path?.setAttribute("d", corners && this.view ? outlinePath(this.view, { circle: null, corners }) : "");
     this.plates?.forEach((plate, k) =>
-      plate.setAttribute("d", this.view ? findPlatePose(this.view, this.links[k], places) : ""),
+      plate.setAttribute("d", this.view ? linkPath(this.view, this.links[k], places) : ""),
     );
   }
 }
@@ -100,7 +100,7 @@ export class WorkspaceView {
  * @param {string[]} joints
  * @param {Places} places
  */
-export function findPlatePose(view, joints, places) {
+export function linkPath(view, joints, places) {
   const points = joints.map((name) => places[name]);
   return points.every(Boolean)
     ? `${view.pathData(/** @type {Point[]} */ (points))}${points.length > 2 ? "Z" : ""}`

@@ -11,16 +11,16 @@ import { Zoom } from "./zoom.js";
 /** @import { Design, Skeleton, Solved } from "../types/values.js" */
 
 /** Height of what stands above and below the curves, pixels. */
-const CURVE_NAMES = 84;
+const SURROUNDINGS_HEIGHT = 84;
 
 /** So long a pivot must stand before its linkage is solved, ms. */
-const RESTING_OPACITY = 150;
+const REST_MS = 150;
 
 /** @typedef {[number, number]} Point */
 /** @typedef {{circle_points: Point[], centre_points: Point[], closed: boolean}} Branch */
 /** A dyad: where on which branch. @typedef {{branch: number, at: number}} Dyad */
 
-const SIDE_NAMES = /** @type {const} */ ([
+const SIDES = /** @type {const} */ ([
   { side: "input_side", moving: "A", fixed: "O2" },
   { side: "output_side", moving: "B", fixed: "O4" },
 ]);
@@ -31,7 +31,7 @@ export class BurmesterCurves {
    * @param {(job: Solved) => void} show called with the job of the new linkage
    */
   constructor(place, job, design, show) {
-    const [width, height] = boardSize(place, CURVE_NAMES);
+    const [width, height] = boardSize(place, SURROUNDINGS_HEIGHT);
     this.problem = job.problem;
     /** @type {Branch[]} */
     this.branches = job.result.curves ?? [];
@@ -45,8 +45,8 @@ export class BurmesterCurves {
     const positions = job.problem.positions ?? [];
     const around = Object.values(joints).concat(positions.map((one) => [one.x, one.y]));
     this.view = new View(/** @type {Point[]} */ (around), width, height, Math.min(90, 0.2 * Math.min(width, height)));
-    this.dyads = SIDE_NAMES.map(({ moving }) => this.findNearest("circle_points", joints[moving]));
-    this.lines = SIDE_NAMES.map((_, k) => createSvg("line", { class: k ? "arm" : "arm input" }));
+    this.dyads = SIDES.map(({ moving }) => this.findNearest("circle_points", joints[moving]));
+    this.lines = SIDES.map((_, k) => createSvg("line", { class: k ? "arm" : "arm input" }));
     this.picture = createScene(
       this.view,
       t`Burmester curves with draggable pivots`,
@@ -66,7 +66,7 @@ export class BurmesterCurves {
       ],
       { held: true },
     );
-    this.handles = SIDE_NAMES.flatMap((names, k) => [
+    this.handles = SIDES.flatMap((names, k) => [
       this.createHandle(k, "circle_points", names.moving),
       this.createHandle(k, "centre_points", names.fixed),
     ]);
@@ -166,7 +166,7 @@ export class BurmesterCurves {
     this.draw();
     clearTimeout(this.timer);
     this.asking.abort();
-    this.timer = window.setTimeout(() => this.solve(), RESTING_OPACITY);
+    this.timer = window.setTimeout(() => this.solve(), REST_MS);
   }
 
   draw() {
@@ -197,7 +197,7 @@ export class BurmesterCurves {
   async solve() {
     const asking = (this.asking = new AbortController());
     const chosen = Object.fromEntries(
-      SIDE_NAMES.map(({ side }, k) => [
+      SIDES.map(({ side }, k) => [
         side,
         { moving_pivot: this.branches[this.dyads[k].branch].circle_points[this.dyads[k].at] },
       ]),

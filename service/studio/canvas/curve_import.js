@@ -24,10 +24,10 @@ import { View } from "../core/view.js";
 const ACCEPTED_FILES = ".svg,.dxf,.csv,.png,.jpg,.jpeg,image/svg+xml,image/vnd.dxf,text/csv,image/png,image/jpeg";
 
 /** Points that a path begins with: as many as a stroke that is drawn freehand. */
-const PATH_USES = 24;
+const PATH_POINT_COUNT = 24;
 /** Angles of a table for a cam. */
-const CAM_USES = 48;
-const AREA_ROLES = 1000;
+const CAM_POINT_COUNT = 48;
+const AREA_POINT_COUNT = 1000;
 
 /** Fewer points are asked for anew, from the file. */
 const MIN_POINTS = 3;
@@ -100,7 +100,7 @@ export class CurveImport {
         name: "points",
         text: t`Points of the path`,
         closed: null,
-        most: PATH_USES,
+        most: PATH_POINT_COUNT,
         state: (statement, points, closed) => {
           statement.points = points.map(([x, y]) => ({ x, y }));
           statement.closed = closed;
@@ -112,7 +112,7 @@ export class CurveImport {
         name: "motion",
         text: t`Motion of the follower`,
         closed: false,
-        most: CAM_USES,
+        most: CAM_POINT_COUNT,
         state: (statement, points) => {
           const swings = statement.follower?.type?.startsWith("oscillating");
           statement.segments = fitSegments(points, swings ? Math.PI / 180 : 1);
@@ -125,7 +125,7 @@ export class CurveImport {
           name: role.name,
           text: role.text,
           closed: true,
-          most: AREA_ROLES,
+          most: AREA_POINT_COUNT,
           state: (/** @type {Problem} */ statement, /** @type {Point[]} */ points) =>
             void stateArea(statement, role, { polygon: points }),
         })),
@@ -143,7 +143,7 @@ export class CurveImport {
       await this.layBehind(file);
     } else {
       const [first] = this.listUses();
-      await this.readCurves(first?.most ?? AREA_ROLES);
+      await this.readCurves(first?.most ?? AREA_POINT_COUNT);
     }
     // Reset the input, so that a changed file can be chosen again.
     this.chooser.value = "";
@@ -160,8 +160,8 @@ export class CurveImport {
       const found = await api.importCurves(file, unit, most);
       // An area is as it is drawn, however few points a path is to have.
       const areas =
-        most < AREA_ROLES && this.listUses().some(({ closed }) => closed)
-          ? await api.importCurves(file, unit, AREA_ROLES)
+        most < AREA_POINT_COUNT && this.listUses().some(({ closed }) => closed)
+          ? await api.importCurves(file, unit, AREA_POINT_COUNT)
           : found;
       if (file === this.file) this.show(file, found, areas, unit, most);
     } catch (error) {

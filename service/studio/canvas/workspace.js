@@ -4,7 +4,7 @@
 
 import { t } from "../core/messages.js";
 
-import { ensureObject, writePointer } from "../core/pointer.js";
+import { isContainer, writePointer } from "../core/pointer.js";
 
 /** @import { Problem } from "../types/values.js" */
 
@@ -218,7 +218,7 @@ function isDrawable(role, value) {
  * @returns {Area[]}
  */
 export function listAreas(stated) {
-  if (!ensureObject(stated)) return [];
+  if (!isContainer(stated)) return [];
   const space = /** @type {Block} */ (/** @type {unknown} */ (stated));
   const drawn = ["box", "obstacle", "body"];
   const order = [...drawn, ...ROLES.map(({ name }) => name).filter((name) => !drawn.includes(name))];

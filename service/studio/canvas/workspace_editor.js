@@ -16,7 +16,7 @@ import { listAreas, availableRoles, stateArea } from "./workspace.js";
 /** @typedef {import("./workspace.js").Area} Area */
 /** @typedef {import("./workspace.js").Tool} Tool */
 
-/** What is dragged by less, pixels of the picture, is not moved. */
+/** Minimum length of a drag, pixels. */
 const MIN_DRAG = 3;
 
 const TOOLS = /** @type {Tool[]} */ (["polygon", "rectangle", "circle"]);

@@ -1,32 +1,29 @@
-/**
- * A picture that is brought nearer and led along: by wheel and pinch at the pointer, by dragging where nothing lies, by
- * buttons.
- */
+/** Zoom and pan a picture by wheel, pinch, dragging of the background, and buttons. */
 
 import { createElement } from "../core/dom.js";
 import { t } from "../core/messages.js";
 
-/** How much nearer or farther a press of a button takes the picture, and a step of the wheel. */
+/** Zoom factor of a button press, and of a pixel of the wheel. */
 const BUTTON_FACTOR = 1.5;
 const WHEEL_FACTOR = 1.0015;
 
-/** When the wheel has stood still so long it has been turned. */
+/** Pause after which a turn of the wheel has ended. */
 const WHEEL_REST_MS = 200;
 
-/** What is led along by less, pixels, was a click. */
+/** Minimum length of a drag, pixels; less is a click. */
 const MIN_DRAG = 4;
 
-/** How far it can be brought nearer, and farther. */
+/** Limits of the zoom factor. */
 const MAX_ZOOM = 40;
 const MIN_ZOOM = 0.25;
 
 /** @typedef {import("../core/view.js").Box} Box */
 
-/** What takes the pointer itself. */
-const DRAGGABLE = ".led, .hit, .target, .grip, .held, .placing, a, button";
+/** Elements that handle the pointer themselves. */
+const POINTER_TAKERS = ".led, .hit, .target, .grip, .held, .placing, a, button";
 
 /**
- * What of a picture is seen, in its own pixels; null where all is to be seen.
+ * The visible part of a picture, in its own pixels; null for all of it.
  * @typedef {{middle: number[], nearness: number} | null} Seen
  */
 
@@ -44,13 +41,13 @@ export class Zoom {
     this.turning = 0;
     /** @type {Map<number, PointerEvent>} */
     this.fingers = new Map();
-    /** Whether they have led the picture somewhere. */
+    /** Whether the user has panned the picture. */
     this.led = false;
     this.nearness = 1;
-    /** What the picture has of the window, pixels: nothing while it is hidden. */
+    /** Size of the picture in the window, pixels; zero while it is hidden. */
     this.room = [0, 0];
     const { x, y, width, height } = picture.viewBox.baseVal;
-    /** All there is to be seen. @type {Box} */
+    /** The whole extent of the picture. @type {Box} */
     this.whole = { x, y, width, height };
     this.middle = [x + width / 2, y + height / 2];
     const button = (/** @type {string} */ text, /** @type {string} */ label, /** @type {() => void} */ act) =>
@@ -93,7 +90,7 @@ export class Zoom {
     }
   }
 
-  /** A button is pressed. @param {number} factor */
+  /** Zoom by the factor of a button. @param {number} factor */
   zoomByButton(factor) {
     this.zoomBy(factor);
     this.settle();
@@ -104,7 +101,7 @@ export class Zoom {
     this.settled({ middle: this.middle, nearness: this.nearness });
   }
 
-  /** All is to be seen, or something else is all. @param {Box} [whole] */
+  /** Show everything, or a new extent. @param {Box} [whole] */
   fit(whole = this.whole) {
     this.whole = whole;
     this.nearness = 1;
@@ -112,7 +109,7 @@ export class Zoom {
     this.show();
   }
 
-  /** Nearer by a factor, with a point that stays where it is. @param {number} factor @param {number[]} [still] */
+  /** Zoom by a factor about a fixed point. @param {number} factor @param {number[]} [still] */
   zoomBy(factor, still = this.middle) {
     const next = Math.min(MAX_ZOOM, Math.max(MIN_ZOOM, this.nearness * factor));
     const share = this.nearness / next;
@@ -128,13 +125,17 @@ export class Zoom {
     this.updateSizes();
   }
 
-  /** What keeps its size on the screen is told how much larger all else is. */
+  /** Update the size of elements that do not scale. */
   updateSizes() {
     const scale = Math.min(this.room[0] / this.whole.width, this.room[1] / this.whole.height) || 1;
     this.picture.style.setProperty("--nearness", String(this.nearness * scale));
   }
 
-  /** Where of the picture a pointer is. @param {{clientX: number, clientY: number}} pointer @returns {number[]} */
+  /**
+   * Return the position of a pointer in the picture.
+   * @param {{clientX: number, clientY: number}} pointer
+   * @returns {number[]}
+   */
   toPicture(pointer) {
     const matrix = this.picture.getScreenCTM();
     if (!matrix) return this.middle;
@@ -144,13 +145,13 @@ export class Zoom {
 
   /** @param {PointerEvent} event */
   takePointer(event) {
-    if (event.button !== 0 || this.busy() || (event.target instanceof Element && event.target.closest(DRAGGABLE)))
+    if (event.button !== 0 || this.busy() || (event.target instanceof Element && event.target.closest(POINTER_TAKERS)))
       return;
     this.fingers.set(event.pointerId, event);
     this.picture.setPointerCapture(event.pointerId);
   }
 
-  /** One finger leads the picture along, two bring it nearer as well. @param {PointerEvent} event */
+  /** Pan with one finger, pan and zoom with two. @param {PointerEvent} event */
   followPointers(event) {
     const before = this.fingers.get(event.pointerId);
     if (!before) return;

@@ -1,7 +1,4 @@
-/**
- * A statement, and a linkage that answers it, within the fragment of an address: deflated JSON in base64url (RFC 4648,
- * 5).
- */
+/** Encode a problem and a linkage in the fragment of an address: deflated JSON in base64url (RFC 4648, section 5). */
 
 import { t } from "./messages.js";
 import { findMismatch } from "./schema.js";
@@ -10,12 +7,12 @@ import { findMismatch } from "./schema.js";
 
 const FRAGMENT_PREFIX = "#statement=";
 
-/** What an address may hold, characters, and what may come out of it, bytes. */
+/** Maximum length of an address, and of the unpacked problem, characters. */
 const MAX_ADDRESS_LENGTH = 100_000;
 const MAX_STATEMENT_LENGTH = 1_000_000;
 
 /**
- * What an address holds: no claim on the linkage, which is driven where the address is opened.
+ * The content of an address. The linkage is not trusted: the page that opens the address simulates it.
  * @typedef {object} SharedContent
  * @property {Problem} problem
  * @property {string} label of the task
@@ -24,10 +21,10 @@ const MAX_STATEMENT_LENGTH = 1_000_000;
  *   not pass as stated
  */
 
-/** Why an address cannot be read. */
+/** An address that cannot be read; the message says why. */
 export class UnreadableAddress extends Error {}
 
-/** The address of this page that holds something. @param {SharedContent} sent @returns {Promise<string>} */
+/** Return the address of this page with a shared content. @param {SharedContent} sent @returns {Promise<string>} */
 export async function encodeAddress(sent) {
   const stream = new Blob([JSON.stringify(sent)]).stream().pipeThrough(new CompressionStream("deflate-raw"));
   const bytes = new Uint8Array(await new Response(stream).arrayBuffer());
@@ -37,13 +34,13 @@ export async function encodeAddress(sent) {
   return `${location.origin}${location.pathname}${FRAGMENT_PREFIX}${coded}`;
 }
 
-/** Whether a fragment holds something. @param {string} fragment */
+/** Return true if a fragment has a shared content. @param {string} fragment */
 export function holdsStatement(fragment) {
   return fragment.startsWith(FRAGMENT_PREFIX);
 }
 
 /**
- * What a fragment holds. Nothing is taken on trust but that it is of the right form: the service judges what is stated.
+ * Decode a fragment. Only its form is checked here; the service validates the problem.
  * @param {string} fragment @param {import("./api.js").Kind[]} kinds @returns {Promise<SharedContent>}
  */
 export async function decodeFragment(fragment, kinds) {

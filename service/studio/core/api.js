@@ -1,4 +1,4 @@
-/** The public API of the service, and nothing else: all that the studio knows comes through here. */
+/** Call the public API of the service. The studio has no other source of data. */
 
 import { t, translate } from "./messages.js";
 import { tabStore } from "./storage.js";
@@ -39,11 +39,11 @@ import { tabStore } from "./storage.js";
 const KEY_STORAGE = "mechsynth.key";
 const RECONNECT_MS = 1000;
 
-/** How often a busy service is asked, and how long after each time. */
+/** Number of tries while the service is busy, and the pause between them. */
 const BUSY_TRIES = 4;
 const BUSY_MS = 5000;
 
-/** An answer that says what went wrong (problem+json). */
+/** An error response of the service (problem+json). */
 export class Refusal extends Error {
   /** @param {Partial<Schemas["ProblemDetails"]>} problem @param {number} status */
   constructor(problem, status) {
@@ -58,7 +58,7 @@ export class Refusal extends Error {
   }
 }
 
-/** The key is kept for this tab only. */
+/** Return the API key; it is stored for this tab only. */
 export function readKey() {
   return tabStore.read(KEY_STORAGE) ?? "";
 }
@@ -81,7 +81,7 @@ async function ask(path, options = {}) {
 }
 
 /**
- * Ask again where the service is busy with other analyses (503), as long after as it says.
+ * Repeat a request while the service is busy (503).
  * @template T @param {() => Promise<T>} asked @param {AbortSignal} [signal] @returns {Promise<T>}
  */
 async function retryWhileBusy(asked, signal) {
@@ -118,23 +118,23 @@ export async function fetchKinds() {
   return knownKinds;
 }
 
-/** What the numbers of the designs of a kind measure, by their names. @param {string} kind */
+/** Return the dimensions of the metrics of a kind, by name. @param {string} kind */
 export function metricDimensions(kind) {
   return knownKinds.find((one) => one.kind === kind)?.measures ?? {};
 }
 
-/** Whether the service makes solids of parts, and not their outlines alone. */
+/** Return true if the service makes solids, not only outlines. */
 export function makesSolids() {
   return servesSolids;
 }
 
-/** Whether designs of a mechanism are had as parts. @param {Mechanism} mechanism */
+/** Return true if parts exist for a type of mechanism. @param {Mechanism} mechanism */
 export function hasParts(mechanism) {
   return Boolean(mechanism.skeleton) || mechanismsWithParts.includes(mechanism.type);
 }
 
 /**
- * The parts of a design as a zip, as something that a download can refer to; whoever gets it revokes it.
+ * Download the parts of a design as a zip; return an object URL, which the caller revokes.
  * @param {string} id @param {number} design @param {Record<string, string>} sizes what they are made of
  */
 export async function downloadParts(id, design, sizes) {
@@ -143,7 +143,7 @@ export async function downloadParts(id, design, sizes) {
 }
 
 /**
- * A file of one part of a design, likewise.
+ * Download a file of one part of a design; return an object URL, which the caller revokes.
  * @param {string} id
  * @param {number} design
  * @param {string} item
@@ -157,7 +157,7 @@ export async function downloadPart(id, design, item, form, sizes) {
 }
 
 /**
- * The parts of a design and how they move.
+ * Fetch the parts of a design and their motion.
  * @param {string} id
  * @param {number} design
  * @param {Record<string, string>} query sizes and positions
@@ -170,7 +170,7 @@ export async function fetchAssembly(id, design, query, signal) {
 }
 
 /**
- * The forms of files that there are of a type of mechanism.
+ * Return the file formats of a type of mechanism.
  * @param {string} kind
  * @param {string} mechanism
  * @returns {string[]}
@@ -179,17 +179,22 @@ export function fileFormats(kind, mechanism) {
   return knownKinds.find((one) => one.kind === kind)?.files[mechanism] ?? [];
 }
 
-/** Where PMKS+ opens a design of linkages. @param {string} id @param {number} design @returns {Promise<string>} */
+/**
+ * Fetch the address at which PMKS+ opens a linkage.
+ * @param {string} id
+ * @param {number} design
+ * @returns {Promise<string>}
+ */
 export async function fetchPmksAddress(id, design) {
   return (await (await ask(`/v1/jobs/${encodeURIComponent(id)}/designs/${design}/pmks`)).json()).url;
 }
 
-/** Where the report of a job is, with its assemblies. @param {string} id */
+/** Return the address of the report of a job, with assemblies. @param {string} id */
 export function reportAddress(id) {
   return `/v1/jobs/${encodeURIComponent(id)}/report.html?assemblies=true`;
 }
 
-/** The report of a job, as something that a download can refer to; whoever gets it revokes it. @param {string} id */
+/** Download the report of a job; return an object URL, which the caller revokes. @param {string} id */
 export async function downloadReport(id) {
   return URL.createObjectURL(await (await retryWhileBusy(() => ask(reportAddress(id)))).blob());
 }
@@ -200,7 +205,7 @@ export async function submitJob(problem, label) {
 }
 
 /**
- * Solve a small problem, and wait for its answer.
+ * Solve a small problem and wait for its answer.
  * @param {Problem} problem
  * @param {string} label
  * @param {AbortSignal} signal
@@ -228,7 +233,7 @@ export async function listJobs(kind, cursor) {
   return (await ask(`/v1/jobs?${query}`)).json();
 }
 
-/** Cancels an unfinished job and removes a finished one. @param {string} id */
+/** Cancel an unfinished job, or remove a finished one. @param {string} id */
 export async function removeJob(id) {
   await ask(`/v1/jobs/${encodeURIComponent(id)}`, { method: "DELETE" });
 }
@@ -243,7 +248,7 @@ export async function fetchMotion(id, design, steps, signal) {
 }
 
 /**
- * The motion of a design with its forces: by the block of its problem, or by one of the page's.
+ * Fetch the motion of a design with forces, for the `dynamics` of its problem or for the given block.
  * @param {string} id
  * @param {number} design
  * @param {number} steps
@@ -266,7 +271,7 @@ export async function analyse(question, signal) {
 }
 
 /**
- * The closed outlines of a drawing.
+ * Read the closed outlines of a drawing.
  * @param {Blob} drawing
  * @param {string} unit of the answer, where the drawing states its own
  * @returns {Promise<Outlines>}
@@ -279,7 +284,7 @@ export async function importOutlines(drawing, unit) {
 }
 
 /**
- * The curves of a drawing, a table or a picture.
+ * Read the curves of a drawing, a table or a picture.
  * @param {File} file
  * @param {string} unit of the answer, where the file states its own
  * @param {number} most points of a curve
@@ -293,7 +298,7 @@ export async function importCurves(file, unit, most) {
 }
 
 /**
- * A file of a design, as something that a picture or a download can refer to; whoever gets it revokes it.
+ * Download a file of a design; return an object URL, which the caller revokes.
  * @param {string} id @param {number} design @param {string} form @param {AbortSignal} [signal]
  */
 export async function downloadFile(id, design, form, signal) {
@@ -302,8 +307,8 @@ export async function downloadFile(id, design, form, signal) {
 }
 
 /**
- * Follow a job to its end by its server-sent events. They are read from a response and not by `EventSource`, which
- * cannot send a key; a stream that breaks is taken up again after the last event.
+ * Follow a job to its end by its server-sent events. The stream is read from a response, because `EventSource` cannot
+ * send a key; a broken stream is resumed after the last event.
  *
  * @param {string} id
  * @param {(event: string, data: Job & Partial<Progress>) => void} tell

@@ -1,6 +1,6 @@
 /**
- * Elements of the page, made without markup: every text becomes a text node, so that nothing the service or a user
- * says can be read as HTML.
+ * Create elements without markup: every text becomes a text node, so no text of the service or of a user is parsed as
+ * HTML.
  */
 
 import { localizeNumber, term } from "./messages.js";
@@ -33,7 +33,7 @@ function addContent(element, attributes, children) {
 }
 
 /**
- * An HTML element.
+ * Create an HTML element.
  * @template {keyof HTMLElementTagNameMap} Tag
  * @param {Tag} tag
  * @param {Attributes} [attributes]
@@ -44,7 +44,7 @@ export function createElement(tag, attributes = {}, ...children) {
 }
 
 /**
- * An SVG element.
+ * Create an SVG element.
  * @template {keyof SVGElementTagNameMap} Tag
  * @param {Tag} tag
  * @param {Attributes} [attributes]
@@ -55,7 +55,7 @@ export function createSvg(tag, attributes = {}, ...children) {
 }
 
 /**
- * The element of the page with this id.
+ * Return the element with an id.
  * @template {HTMLElement} [T = HTMLElement]
  * @param {string} id
  * @param {new () => T} [type] of which it is
@@ -67,15 +67,14 @@ export function byId(id, type) {
   return /** @type {T} */ (found);
 }
 
-/** What stands for an element that is made anew: its id, or what it is called. @param {Element} one */
+/** Return the key by which a rebuilt element is found: its id or its label. @param {Element} one */
 function focusKey(one) {
   return one.id || one.getAttribute("data-grip") || one.getAttribute("aria-label") || one.textContent;
 }
 
 /**
- * Make anew what stands in some places. What had the focus in one of them has it again, by its id or its name; where it
- * is
- * gone, the place itself has it: whoever goes by keys keeps the place.
+ * Rebuild the content of some elements and keep the focus: it returns to the element with the same id or label, or else
+ * to the container.
  * @param {HTMLElement[]} places
  * @param {() => void} make
  */
@@ -101,7 +100,7 @@ export function toWords(name) {
 }
 
 /**
- * A number for reading: six digits at most, small ones as powers of ten.
+ * Format a number with at most six digits; small ones as powers of ten.
  * @param {number | null | undefined} value
  */
 export function formatNumber(value) {

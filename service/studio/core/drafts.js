@@ -1,7 +1,4 @@
-/**
- * Statements that have been edited: the last one of each kind, and the steps that led to the last of all. The browser
- * keeps them.
- */
+/** Store drafts in the browser: the last problem of each kind, and the undo steps of the most recent one. */
 
 import { localStore } from "./storage.js";
 
@@ -9,13 +6,13 @@ import { localStore } from "./storage.js";
 
 const STORAGE_PREFIX = "mechsynth.draft";
 
-/** How much of the steps is kept, characters: statements of the usual size by the dozen. */
+/** Maximum size of the stored steps, characters: a few dozen problems of usual size. */
 const MAX_STEPS_LENGTH = 60_000;
 
 /** @typedef {{problem: Problem, label: string, job: string}} Draft `job` has the answers beside which it was edited */
 /** @typedef {import("./undo.js").Steps} Steps */
 
-/** The last statement of a kind, where one was left. @param {string} kind @returns {Draft | null} */
+/** Return the draft of a kind, if there is one. @param {string} kind @returns {Draft | null} */
 export function readDraft(kind) {
   const draft = readStored(`${STORAGE_PREFIX}.${kind}`);
   return draft?.problem?.kind === kind
@@ -23,13 +20,13 @@ export function readDraft(kind) {
     : null;
 }
 
-/** The kind of the statement that was edited last; empty where there is none. */
+/** Return the kind of the most recent draft, or an empty string. */
 export function readLastKind() {
   const kind = readStored(STORAGE_PREFIX)?.kind;
   return typeof kind === "string" && readDraft(kind) ? kind : "";
 }
 
-/** The steps that led to it. @returns {Steps} */
+/** Return the undo steps of the most recent draft. @returns {Steps} */
 export function readLastSteps() {
   const { past, future } = readStored(STORAGE_PREFIX) ?? {};
   const texts = (/** @type {unknown} */ listed) =>
@@ -55,7 +52,7 @@ export function forgetDraft(kind) {
   if (readStored(STORAGE_PREFIX)?.kind === kind) localStore.write(STORAGE_PREFIX, null);
 }
 
-/** As many of the newest as are kept. @param {string[]} texts */
+/** Return the newest steps that fit. @param {string[]} texts */
 function newestThatFit(texts) {
   let room = MAX_STEPS_LENGTH;
   const from = texts.findLastIndex((text) => (room -= text.length) < 0);
@@ -63,7 +60,7 @@ function newestThatFit(texts) {
 }
 
 /**
- * What is kept under a name: another version of the page may have kept it.
+ * Read a stored value; another version of the page may have written it.
  * @param {string} name
  * @returns {Partial<Record<"label" | "job" | "kind" | "past" | "future", unknown> & {problem: Problem}> | null}
  */

@@ -1,25 +1,24 @@
 /**
- * The language of the page: its texts, by what they are in English, and the numbers in them.
+ * Translate the texts of the page and format their numbers. The English text is the key.
  *
  * The sources say what they say in English. The tag t looks a text of the page up among the messages of the chosen
- * language,
- * and translated a text of the service; what is not found there stays English. English itself has no messages and waits
- * for none.
+ * language, and translated a text of the service; what is not found there stays English. English itself has no messages
+ * and waits for none.
  */
 
 import { localStore } from "./storage.js";
 
-/** The language of the sources. */
+/** Language of the texts in the sources. */
 const SOURCE_LANGUAGE = "en";
 
-/** Under which name the choice is kept. */
+/** Name under which the choice is stored. */
 const STORAGE_NAME = "mechsynth.language";
 
-/** What the person reads of an element that is no text of its own. */
+/** Attributes with text for the user. */
 const TEXT_ATTRIBUTES = ["aria-label", "title", "placeholder", "content"];
 
 /**
- * The languages that the page has: the head of the page lists them.
+ * The available languages, listed in the head of the page.
  * @type {Record<string, {name: string, messages: string}>}
  */
 export const languages = {
@@ -32,39 +31,39 @@ export const languages = {
   ),
 };
 
-/** The language that the page speaks. */
+/** The chosen language. */
 export const language = chooseLanguage();
 
-/** What separates whole numbers from fractions in that language. */
+/** Decimal separator of the language. */
 const DECIMAL_SEPARATOR =
   new Intl.NumberFormat(language).formatToParts(0.5).find((part) => part.type === "decimal")?.value ?? ".";
 
-/** What separates the numbers of a list: a comma may be a decimal one. */
+/** Separator of the numbers in a list; a comma may be the decimal separator. */
 export const LIST_SEPARATOR = DECIMAL_SEPARATOR === "," ? "; " : ", ";
 
-/** Counts from here on have their digits in groups of three. */
+/** Smallest number whose digits are grouped by three. */
 const MIN_GROUPED = 10_000;
 
-/** A number in English prose: what stands in its place is a number too. */
+/** Matches a number in an English text. */
 const NUMBER_PATTERN = /(?<![\w{])[-−]?\d+(?:\u202f\d{3})*(?:\.\d+)?(?:e[-+]?\d+)?(?![\w}])/g;
 
-/** Texts by what they are in English; of English itself none. @type {Record<string, string>} */
+/** Translations by English text; empty for English. @type {Record<string, string>} */
 const messages = language === SOURCE_LANGUAGE ? {} : await fetchMessages(languages[language].messages);
 
-/** What was chosen, or the first of the languages of the browser that there is. */
+/** Return the stored choice, or the first available language of the browser. */
 function chooseLanguage() {
   const wanted = [localStore.read(STORAGE_NAME) ?? "", ...navigator.languages.map((one) => one.split("-")[0])];
   return wanted.find((one) => one in languages) ?? SOURCE_LANGUAGE;
 }
 
-/** The page is then read anew: texts are looked up as they are written. @param {string} code */
+/** Switch the language and reload the page, because texts are looked up when they are written. @param {string} code */
 export function switchLanguage(code) {
   localStore.write(STORAGE_NAME, code);
   location.reload();
 }
 
 /**
- * Where they do not come, the page speaks English.
+ * Fetch the translations; if that fails, the page stays English.
  * @param {string} address
  * @returns {Promise<Record<string, string>>}
  */
@@ -77,7 +76,7 @@ async function fetchMessages(address) {
 }
 
 /**
- * A text of the page in its language, as the tag of a template; values stand as `{0}`, `{1}` in what is looked up.
+ * Translate a text of the page; a template tag. Values appear as `{0}`, `{1}` in the key.
  * @param {TemplateStringsArray} parts @param {...(string | number | null | undefined)} values
  */
 export function t(parts, ...values) {
@@ -94,7 +93,7 @@ function fillPlaces(message, values) {
 }
 
 /**
- * A text of the service in the language of the page. It may have numbers in it: `72 starts` is found as `{0} starts`.
+ * Translate a text of the service. Numbers become places: `72 starts` is looked up as `{0} starts`.
  * @param {string} text
  */
 export function translate(text) {
@@ -105,19 +104,19 @@ export function translate(text) {
   return message === undefined ? text : fillPlaces(message, values);
 }
 
-/** The language of a text of the service, where it is not that of the page. @param {string} text */
+/** Return the language of a text of the service if it has no translation. @param {string} text */
 export function foreignLanguage(text) {
   return language !== SOURCE_LANGUAGE && translate(text) === text ? SOURCE_LANGUAGE : null;
 }
 
-/** The first paragraph of a description, as prose. @param {string | undefined} description */
+/** Return the first paragraph of a description as plain text. @param {string | undefined} description */
 export function firstParagraph(description = "") {
   const said = translate(description.split("\n\n")[0].replaceAll("`", "").replaceAll("\n", " "));
-  // Names of fields, as they stand at them.
+  // Replace names of fields by their labels.
   return said.replace(/\b[a-z]{2,}(_[a-z]+)+\b/g, (name) => term(name));
 }
 
-/** What follows a number after a space, and stays with it. */
+/** Matches a number with a unit, which must not be separated. */
 const UNIT_PATTERN = /(\d) (%|mm|cm|m|in|kg|g|J|W|N|s)(?![\p{L}\p{N}])/gu;
 
 /**
@@ -138,7 +137,7 @@ export function formatText(text) {
   });
 }
 
-/** What is not called as it is written. @type {Record<string, string>} */
+/** Terms that differ from their names. @type {Record<string, string>} */
 const SPECIAL_TERMS = {
   "watt 1": "Watt I",
   "watt 2": "Watt II",
@@ -156,18 +155,18 @@ export function term(name) {
   return messages[plain] ?? SPECIAL_TERMS[plain] ?? plain;
 }
 
-/** A whole number in a sentence, its digits in groups of three, as the service writes it. @param {number} value */
+/** Group the digits of a whole number by three, as the service does. @param {number} value */
 export function groupDigits(value) {
   const digits = String(value);
   return value < MIN_GROUPED ? digits : digits.replace(/\B(?=(\d{3})+$)/g, "\u202f");
 }
 
-/** A number as the language writes it; its digits are those that it has. @param {number | string} value */
+/** Write a number with the decimal separator of the language. @param {number | string} value */
 export function localizeNumber(value) {
   return DECIMAL_SEPARATOR === "." ? String(value) : String(value).replace(".", DECIMAL_SEPARATOR);
 }
 
-/** Put what stands in the page from the beginning into its language. */
+/** Translate the static markup of the page. */
 export function translatePage() {
   document.documentElement.lang = language;
   if (language === SOURCE_LANGUAGE) return;
@@ -181,7 +180,7 @@ export function translatePage() {
   }
 }
 
-/** A text of the page's markup; the space around it stays. @param {string} text */
+/** Translate a text of the markup and keep its surrounding space. @param {string} text */
 function translateMarkup(text) {
   const bare = text.trim();
   return text.replace(bare, () => messages[bare.replace(/\s+/g, " ")] ?? bare);

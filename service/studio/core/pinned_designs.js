@@ -1,8 +1,8 @@
-/** Designs that somebody likes, by their jobs: kept in this browser. */
+/** Store the pinned designs of each job in this browser. */
 
 const STORAGE_NAME = "mechsynth.pins";
 
-/** Jobs whose pins are kept, the newest. */
+/** Maximum number of jobs whose pins are stored. */
 const MAX_JOBS = 100;
 
 /** @returns {[string, number[]][]} jobs, the oldest first */
@@ -12,7 +12,7 @@ function readPins() {
 }
 
 /**
- * Indices of the designs of a job that are pinned, in the order in which they were.
+ * Return the indices of the pinned designs of a job, in the order of pinning.
  * @param {string} job
  * @returns {number[]}
  */

@@ -1,12 +1,12 @@
-/** The clock of a motion: play and pause, speed, a scrubber, and the reading beside it. One motion plays at a time. */
+/** Play a motion: play and pause, speed, scrubber and reading. Only one motion plays at a time. */
 
 import { createElement } from "./dom.js";
 import { t } from "./messages.js";
 
-/** Seconds that a cycle takes at speed 1. */
+/** Duration of a cycle at speed 1, seconds. */
 const CYCLE_SECONDS = 4;
 
-/** Between numbers that are told while it plays, milliseconds: those of every frame cannot be read. */
+/** Interval between updates of the numbers during play, milliseconds; faster changes cannot be read. */
 const READING_INTERVAL_MS = 100;
 
 /**

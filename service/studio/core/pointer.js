@@ -1,8 +1,8 @@
-/** Places within JSON, by the names that lead to them, as a JSON pointer (RFC 6901) has them. */
+/** Read and write values in JSON by JSON pointers (RFC 6901). */
 
 /** @import { Json } from "../types/values.js" */
 
-/** The names of a pointer. @param {string} pointer */
+/** Split a pointer into names. @param {string} pointer */
 export function pointerNames(pointer) {
   return pointer
     .split("/")
@@ -10,21 +10,21 @@ export function pointerNames(pointer) {
     .map((one) => one.replaceAll("~1", "/").replaceAll("~0", "~"));
 }
 
-/** A name as a pointer has it. @param {string} name */
+/** Escape a name for a pointer. @param {string} name */
 export function escapeName(name) {
   return name.replaceAll("~", "~0").replaceAll("/", "~1");
 }
 
-/** What stands at a place; undefined where nothing does. @param {object} root @param {string[]} path */
+/** Return the value at a path, or undefined. @param {object} root @param {string[]} path */
 export function readPointer(root, path) {
   return path.reduce(
-    (inner, name) => (ensureObject(inner) ? inner[name] : undefined),
+    (inner, name) => (isContainer(inner) ? inner[name] : undefined),
     /** @type {Json | undefined} */ (/** @type {unknown} */ (root)),
   );
 }
 
 /**
- * Put something at a place, with groups on the way to it where there are none; undefined takes away what is there.
+ * Write a value at a path, and create missing objects on the way; undefined deletes the value.
  * @param {object} root changed in place
  * @param {string[]} path
  * @param {Json | undefined} value
@@ -33,7 +33,7 @@ export function writePointer(root, path, value) {
   let inner = /** @type {Record<string, Json | undefined>} */ (root);
   for (const name of path.slice(0, -1)) {
     const next = inner[name];
-    if (ensureObject(next)) inner = next;
+    if (isContainer(next)) inner = next;
     else if (value === undefined) return;
     else inner = inner[name] = {};
   }
@@ -44,10 +44,10 @@ export function writePointer(root, path, value) {
 }
 
 /**
- * Whether something stands within a value: of a list by its numbers.
+ * Return true if a value is an object or a list.
  * @param {Json | undefined} value
  * @returns {value is Record<string, Json | undefined>}
  */
-export function ensureObject(value) {
+export function isContainer(value) {
   return typeof value === "object" && value !== null;
 }

@@ -1,11 +1,11 @@
-/** What a JSON schema says of a field, as far as a form needs to know it. */
+/** Interpret the JSON schema of a field for the form. */
 
-import { ensureObject } from "./pointer.js";
+import { isContainer } from "./pointer.js";
 
 /** @import { Json, Problem } from "../types/values.js" */
 
 /**
- * What is read here of a JSON schema.
+ * The used part of a JSON schema.
  * @typedef {object} Schema
  * @property {string} [$ref]
  * @property {Record<string, Schema>} [$defs]
@@ -28,7 +28,7 @@ import { ensureObject } from "./pointer.js";
  */
 
 /**
- * Of one field: which control states it.
+ * A field with the control that edits it.
  * @typedef {object} ClassifiedField
  * @property {"choice" | "choices" | "flag" | "number" | "numbers" | "points" | "text" | "stock" | "object" | "union" |
  *   "table" | "map" | "shapes" | "json" | "fixed"} control
@@ -39,14 +39,14 @@ import { ensureObject } from "./pointer.js";
  * @property {number} [count] rows of a table that has always so many
  */
 
-/** What fields an object has, by their names. @param {Schema} schema */
+/** Return the fields of an object by name. @param {Schema} schema */
 export function propertiesOf(schema) {
   return schema.properties ?? {};
 }
 
 /** @typedef {{name: string, schema: Schema, kinded: ClassifiedField, required: boolean}} Column of a table */
 
-/** The schema that a reference names. @param {Schema} schema @param {Schema} root @returns {Schema} */
+/** Resolve a reference. @param {Schema} schema @param {Schema} root @returns {Schema} */
 export function resolveReference(schema, root) {
   if (!schema.$ref) return schema;
   const { $ref, ...more } = schema;
@@ -55,7 +55,7 @@ export function resolveReference(schema, root) {
 }
 
 /**
- * What a value may be, references followed and alternatives opened.
+ * List the alternatives of a schema, with references resolved.
  * @param {Schema} schema
  * @param {Schema} root
  * @returns {Schema[]}
@@ -92,7 +92,7 @@ function isListOfNumbers(schema, root) {
   );
 }
 
-/** The name of the property that tells alternatives of an object apart. @param {Schema[]} options */
+/** Return the name of the property that distinguishes alternatives. @param {Schema[]} options */
 export function findDiscriminator(options) {
   const names = Object.keys(options[0] ? propertiesOf(options[0]) : {});
   const constant = (/** @type {Schema} */ one, /** @type {string} */ name) =>
@@ -107,7 +107,7 @@ export function findDiscriminator(options) {
 /** The option that a discriminated value belongs to. @param {Schema[]} options @param {Json | undefined} value */
 export function findOption(options, value) {
   const name = findDiscriminator(options);
-  if (!name || !ensureObject(value)) return options[0];
+  if (!name || !isContainer(value)) return options[0];
   return options.find((one) => listTags(one, name).includes(String(value[name]))) ?? options[0];
 }
 
@@ -122,7 +122,7 @@ export function listTags(option, name) {
   return property.enum ?? [String(property.const)];
 }
 
-/** Which control states a field. @param {Schema} schema @param {Schema} root @returns {ClassifiedField} */
+/** Choose the control of a field. @param {Schema} schema @param {Schema} root @returns {ClassifiedField} */
 export function classifyField(schema, root) {
   const all = alternatives(schema, root);
   const options = all.filter((one) => one.type !== "null");
@@ -160,7 +160,7 @@ export function classifyField(schema, root) {
   return is("json");
 }
 
-/** A first value for a field that must be stated. @param {Schema} schema @param {Schema} root @returns {Json} */
+/** Return an initial value for a required field. @param {Schema} schema @param {Schema} root @returns {Json} */
 export function initialValue(schema, root) {
   if (schema.default !== undefined && schema.default !== null) return structuredClone(schema.default);
   const [option] = alternatives(schema, root).filter((one) => one.type !== "null");
@@ -234,7 +234,7 @@ export function listOtherFields(option, root) {
 }
 
 /**
- * The path of what is of another form than a schema has it; null where nothing is. Only the service judges numbers and
+ * Return the path of the first value that does not match the schema, or null. Only the service checks numbers and
  * words.
  * @param {unknown} value @param {Schema} schema @param {Schema} root @param {string} [path] @returns {string | null}
  */
@@ -283,7 +283,7 @@ function withoutDefaults(value, schema, root) {
       const inside = options[0].prefixItems?.[k] ?? options[0].items;
       return inside ? (withoutDefaults(one, inside, root) ?? null) : one;
     });
-  if (!ensureObject(value)) return value;
+  if (!isContainer(value)) return value;
   const { properties = {}, additionalProperties } =
     options.length > 1 && options.every((one) => one.properties) ? findOption(options, value) : options[0];
   return Object.fromEntries(
@@ -300,12 +300,17 @@ function withoutDefaults(value, schema, root) {
   );
 }
 
-/** What JSON calls it. @param {unknown} value */
+/** Return the JSON type of a value. @param {unknown} value */
 function valueType(value) {
   return value === null ? "null" : Array.isArray(value) ? "array" : typeof value;
 }
 
-/** A statement without defaults. @param {Problem} statement @param {Schema | undefined} schema @returns {Problem} */
+/**
+ * Return a problem without its default values.
+ * @param {Problem} statement
+ * @param {Schema | undefined} schema
+ * @returns {Problem}
+ */
 export function removeDefaults(statement, schema) {
   if (!schema) return statement;
   // Only what the service holds for stated anyway is left out.

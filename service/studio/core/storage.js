@@ -1,7 +1,4 @@
-/**
- * What the browser keeps for this page. Where it keeps nothing, as in some private windows, the page does until it is
- * closed.
- */
+/** Store values in the browser. If it refuses, as in some private windows, they are kept until the page is closed. */
 
 export class Storage {
   /** @param {() => globalThis.Storage} of which a browser may refuse */
@@ -32,6 +29,6 @@ export class Storage {
   }
 }
 
-/** For good, and until the tab is closed. */
+/** Permanent storage, and storage for this tab. */
 export const localStore = new Storage(() => localStorage);
 export const tabStore = new Storage(() => sessionStorage);

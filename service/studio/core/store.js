@@ -1,4 +1,4 @@
-/** The statement that is being made, what was posted and what was answered, and the steps between which one goes. */
+/** The store: the current problem, the submitted and the answered one, and the undo steps. */
 
 import { findMismatch, removeDefaults, propertiesOf, canonicalText } from "./schema.js";
 import { Undo } from "./undo.js";
@@ -18,20 +18,18 @@ import { Undo } from "./undo.js";
  * @property {boolean} begun whether it was begun with, and not made of the one before
  */
 
-/**
- * No statement is ever changed: each change makes another one, and those before stay as they were.
- */
+/** Problems are immutable: each change creates a new one. */
 export class Store {
   constructor() {
-    /** What the service can be asked. @type {Kind[]} */
+    /** The kinds of problems of the service. @type {Kind[]} */
     this.kinds = [];
-    /** Nothing is stated until the kinds are known. @type {Problem} */
+    /** The current problem; empty until the kinds are known. @type {Problem} */
     this.problem = /** @type {Problem} */ ({});
-    /** Counts the statements that were not made of the one before, as what is remembered of one is not of another. */
+    /** Counts the problems that do not derive from the previous one; remembered state belongs to one count. */
     this.origin = 0;
-    /** The statement that was posted last. @type {{id: string, problem: Problem | null}} */
+    /** The last submitted problem. @type {{id: string, problem: Problem | null}} */
     this.posted = { id: "", problem: null };
-    /** The statement whose answers are shown; null while there are none. @type {Problem | null} */
+    /** The problem whose answers are shown; null if there are none. @type {Problem | null} */
     this.answered = null;
     this.past = new Undo();
     /** @type {WeakMap<Problem, string>} */
@@ -50,7 +48,7 @@ export class Store {
     for (const listener of this.listeners) listener({ stated, by, edited, begun });
   }
 
-  /** The kind of the statement. */
+  /** Return the kind of the current problem. */
   get kind() {
     return this.findKind(this.problem) ?? this.kinds[0];
   }
@@ -60,28 +58,28 @@ export class Store {
     return this.kinds.find((one) => one.kind === statement.kind);
   }
 
-  /** Whether the statement may say what room there is. */
+  /** Whether the kind has a workspace. */
   get hasWorkspace() {
     return "space" in propertiesOf(this.kind.schema);
   }
 
-  /** The examples of the kind. @returns {Problem[]} */
+  /** Return the examples of the kind. @returns {Problem[]} */
   get examples() {
     return this.kind.schema.examples ?? [this.kind.example];
   }
 
-  /** The number of the example that is stated; -1 where none is. */
+  /** Return the index of the current example, or -1. */
   get example() {
     const now = this.canonicalText(this.problem);
     return this.examples.findIndex((one) => this.canonicalText(one) === now);
   }
 
-  /** Whether the answers that are shown are not those to the statement as it is now. */
+  /** Whether the shown answers belong to an earlier problem. */
   get stale() {
     return this.answered !== null && this.canonicalText(this.answered) !== this.canonicalText(this.problem);
   }
 
-  /** A statement as it is compared with others. @param {Problem} statement */
+  /** Return the text by which problems are compared. @param {Problem} statement */
   canonicalText(statement) {
     const known = this.spellings.get(statement);
     if (known !== undefined) return known;
@@ -90,19 +88,22 @@ export class Store {
     return text;
   }
 
-  /** A statement without what the service has written out. @param {Problem} statement @returns {Problem} */
+  /** Return a problem without the defaults that the service fills in. @param {Problem} statement @returns {Problem} */
   removeDefaults(statement) {
     return removeDefaults(statement, this.findKind(statement)?.schema);
   }
 
-  /** Whether a statement has the form of its kind: it may be of another version of the service. @param {Problem} one */
+  /**
+   * Return true if a problem matches the schema of its kind; another version of the service may have written it.
+   * @param {Problem} one
+   */
   matchesSchema(one) {
     const schema = this.findKind(one)?.schema;
     return schema !== undefined && findMismatch(one, schema, schema) === null;
   }
 
   /**
-   * Change the statement. Where `change` throws, it stays as it was.
+   * Change the problem. If `change` throws, the problem stays unchanged.
    * @param {(statement: Problem) => void} change is given a copy to work on
    * @param {Editor | null} [by]
    */
@@ -114,12 +115,12 @@ export class Store {
     this.notify({ by, edited: true });
   }
 
-  /** What was led on the canvas is let go: all that shows it is made anew. */
+  /** Notify all views after a drag on the canvas has ended. */
   notifySettled() {
     this.notify({ edited: true });
   }
 
-  /** Have what was written in place of the statement. @param {Problem} statement @param {Editor} by */
+  /** Replace the problem by an edited text. @param {Problem} statement @param {Editor} by */
   replace(statement, by) {
     const begun = statement.kind !== this.problem.kind;
     this.adopt(statement);
@@ -128,7 +129,7 @@ export class Store {
   }
 
   /**
-   * Begin with another statement.
+   * Start with another problem.
    * @param {Problem} statement
    * @param {Steps} [steps] that have led to it, on a page before
    */
@@ -166,13 +167,13 @@ export class Store {
     this.posted = { id, problem };
   }
 
-  /** The answers of a job are shown: to what was posted, or to what its address has just brought. @param {string} id */
+  /** Record that the answers of a job are shown. @param {string} id */
   recordAnswer(id) {
     this.answered = this.posted.id === id ? this.posted.problem : this.problem;
     this.notify({ stated: false });
   }
 
-  /** No answers are shown any more. */
+  /** Record that no answers are shown. */
   forgetAnswer() {
     this.posted = { id: "", problem: null };
     this.answered = null;

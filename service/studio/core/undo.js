@@ -1,11 +1,11 @@
-/** What has been stated, step by step, to go back and forth in. */
+/** Undo and redo the edits of the problem. */
 
 /** @import { Problem } from "../types/values.js" */
 
-/** Edits that follow one another so soon are one step: a number that is typed, a point that is dragged. */
+/** Edits within this time form one step, such as typing a number or dragging a point. */
 const BURST_MS = 700;
 
-/** Steps that are kept. */
+/** Maximum number of steps. */
 const MAX_STEPS = 200;
 
 /** Statements as JSON, the oldest first in both. @typedef {{past: string[], future: string[]}} Steps */
@@ -21,7 +21,7 @@ export class Undo {
   }
 
   /**
-   * Note the statement as it is now.
+   * Record the current problem as a step.
    * @param {Problem} statement
    * @param {boolean} [apart] whether it is a step of its own however soon it follows
    */
@@ -40,18 +40,18 @@ export class Undo {
     return { past: this.past, future: this.future };
   }
 
-  /** Go on from where another page has ended, with the same statement. @param {Steps} steps */
+  /** Restore the steps of an earlier page with the same problem. @param {Steps} steps */
   resume({ past, future }) {
     this.past = past;
     this.future = future;
   }
 
-  /** The statement before; null where there is none. */
+  /** Return the previous problem, or null. */
   undo() {
     return this.step(this.past, this.future);
   }
 
-  /** The statement that was gone back from; null where there is none. */
+  /** Return the problem that was undone last, or null. */
   redo() {
     return this.step(this.future, this.past);
   }

@@ -1,7 +1,4 @@
-/**
- * The symbol of what a number measures, in the units of the problem: schemas say it as `x-dimension`, a check as
- * `dimension`.
- */
+/** Return unit symbols of dimensions: schemas give them as `x-dimension`, checks as `dimension`. */
 
 /** @import { Problem } from "../types/values.js" */
 
@@ -16,7 +13,7 @@ function unitSymbols(problem) {
   const way = slides ? length : "rad";
   const [lift, rate] = arm ? ["°", "rad"] : [length, length];
   const inches = length === "in";
-  // Masses and loads come with units of their own, but for those of cams.
+  // Masses and loads have units of their own, except those of cams.
   const own = problem.kind === "cam" ? null : (problem.dynamics?.units ?? problem.units ?? "si");
   const force = inches && own === null ? "lbf" : "N";
   const forces =
@@ -60,7 +57,7 @@ function unitSymbols(problem) {
 }
 
 /**
- * The unit of a dimension; empty where there is none.
+ * Return the unit of a dimension, or an empty string.
  * @param {string | undefined} dimension
  * @param {Problem} problem
  */
@@ -69,7 +66,7 @@ export function unitSymbol(dimension, problem) {
 }
 
 /**
- * The unit of a field; empty for a pure number.
+ * Return the unit of a field, or an empty string for a pure number.
  * @param {import("./schema.js").Schema} schema
  * @param {Problem} problem
  */

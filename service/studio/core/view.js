@@ -1,11 +1,11 @@
-/** From the plane of a mechanism (y up, any unit) to a picture (y down, pixels), and back. */
+/** Map the plane of a mechanism (y up, any unit) to a picture (y down, pixels) and back. */
 
 /** @typedef {[number, number]} Point */
 /** @typedef {{x: number, y: number, width: number, height: number}} Box */
 
 export class View {
   /**
-   * The view that shows all points, with a margin.
+   * Create the view that shows all points with a margin.
    * @param {Point[]} points @param {number} width @param {number} height @param {number} [margin] pixels
    */
   constructor(points, width, height, margin = 40) {
@@ -29,11 +29,11 @@ export class View {
     /** What of the picture the points take with their margin, pixels: width and height about its middle. */
     this.taken =
       size > 0 ? [east - west, north - south].map((one) => Math.round(this.scale * one + 2 * margin)) : [width, height];
-    /** What coordinates snap to, length units; 0 where they do not. */
+    /** Snap step of coordinates, length units; 0 for none. */
     this.snap = 0;
   }
 
-  /** Whether points lie in the picture, and fill a fair part of it. @param {Point[]} points */
+  /** Return true if the points lie in the picture and fill enough of it. @param {Point[]} points */
   fits(points) {
     const places = points.map((point) => this.toPicture(...point)).filter((place) => place.every(Number.isFinite));
     const us = places.map(([u]) => u);
@@ -65,7 +65,7 @@ export class View {
   }
 
   /**
-   * Where in the plane the pointer is.
+   * Return the point of the plane under the pointer.
    * @param {SVGSVGElement} picture
    * @param {{clientX: number, clientY: number}} pointer
    * @returns {Point}
@@ -77,7 +77,7 @@ export class View {
     return this.toPlane(x, y);
   }
 
-  /** The point of the plane at a place of the picture. @param {number} u @param {number} v @returns {Point} */
+  /** Return the point of the plane at a point of the picture. @param {number} u @param {number} v @returns {Point} */
   toPlane(u, v) {
     return [this.middle[0] + (u - this.width / 2) / this.scale, this.middle[1] - (v - this.height / 2) / this.scale];
   }
@@ -93,17 +93,17 @@ export class View {
     return 10 ** Math.round(Math.log10(pixels / this.scale));
   }
 
-  /** A value rounded to what can be told apart on the screen, or to what it snaps to. @param {number} value */
+  /** Round a value to the snap step, or else to a pixel. @param {number} value */
   roundToGrid(value) {
     return this.snap ? nearestMultiple(value, this.snap) : this.roundToPixel(value);
   }
 
-  /** A value rounded to what can be told apart on the screen. @param {number} value */
+  /** Round a value to a pixel. @param {number} value */
   roundToPixel(value) {
     return nearestMultiple(value, this.roundStep(0.5));
   }
 
-  /** Do something that snaps to nothing. @param {() => void} act @param {boolean} [really] */
+  /** Run a function without snapping. @param {() => void} act @param {boolean} [really] */
   withoutSnapping(act, really = true) {
     const { snap } = this;
     if (really) this.snap = 0;
@@ -111,7 +111,7 @@ export class View {
     this.snap = snap;
   }
 
-  /** Points as the data of a path; where one is unknown the line is broken. @param {Point[]} points */
+  /** Return path data of points; unknown points break the line. @param {Point[]} points */
   pathData(points) {
     let pen = "M";
     let data = "";
@@ -128,7 +128,7 @@ export class View {
   }
 }
 
-/** The multiple of a step that is nearest. @param {number} value @param {number} step */
+/** Return the nearest multiple of a step. @param {number} value @param {number} step */
 function nearestMultiple(value, step) {
   return Number((Math.round(value / step) * step).toPrecision(12));
 }

@@ -1,4 +1,4 @@
-/** One design in full: its motion, its numbers, its checks, its drawing and its files. */
+/** Show one design in full: motion, numbers, checks, drawing and files. */
 
 import * as api from "../core/api.js";
 import { AssemblyView } from "../assembly/assembly_view.js";
@@ -96,7 +96,7 @@ export class DesignView {
     this.drawStill(this.gone.signal);
   }
 
-  /** The numbers of the design. */
+  /** Show the numbers of the design. */
   showNumbers() {
     const { design, job } = this;
     return [
@@ -111,7 +111,7 @@ export class DesignView {
     ];
   }
 
-  /** Its files, and its drawing. */
+  /** Show the files and the drawing. */
   showFiles() {
     return [createDownloads(this.job, this.n, this.drawing), this.drawing];
   }

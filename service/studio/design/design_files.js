@@ -1,4 +1,4 @@
-/** The files of a design, to take home. */
+/** Offer the files of a design for download. */
 
 import * as api from "../core/api.js";
 import { createElement } from "../core/dom.js";
@@ -76,7 +76,7 @@ export function createDownloads(job, n, drawing) {
 }
 
 /**
- * The parts of a design, to cut and to print.
+ * Create the fields for parts to cut and to print.
  * @param {Solved} job @param {number} n
  * @param {(title: string, name: string, make: () => Promise<string>) => HTMLElement} button
  */
@@ -97,7 +97,7 @@ function createPartsFields(job, n, button) {
 }
 
 /**
- * What opens a linkage in PMKS+.
+ * Create the button that opens a linkage in PMKS+.
  * @param {Solved} job @param {number} n
  * @param {(title: string, name: string, make: () => Promise<string>) => HTMLElement} button
  */
@@ -111,7 +111,7 @@ function createPmksButton(job, n, button) {
   return there;
 }
 
-/** The drawing in pixels, two for one of its own. @param {HTMLImageElement} image @returns {Promise<string>} */
+/** Rasterize the drawing at twice its size. @param {HTMLImageElement} image @returns {Promise<string>} */
 async function rasterize(image) {
   await image.decode();
   const canvas = createElement("canvas", { width: 2 * image.naturalWidth, height: 2 * image.naturalHeight });
@@ -124,7 +124,7 @@ async function rasterize(image) {
   return URL.createObjectURL(blob);
 }
 
-/** Hand a file over to who looks at the page. @param {string} url @param {string} name */
+/** Save a file. @param {string} url @param {string} name */
 export function saveFile(url, name) {
   createElement("a", { href: url, download: name }).click();
   setTimeout(() => URL.revokeObjectURL(url), 10000);

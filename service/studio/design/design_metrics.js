@@ -1,4 +1,4 @@
-/** The numbers of a design: its metrics, its dimensions, and the checks that it has passed. */
+/** Format the metrics, dimensions and checks of a design. */
 
 import * as api from "../core/api.js";
 import { createElement, formatNumber, toWords } from "../core/dom.js";
@@ -7,7 +7,7 @@ import { unitSymbol } from "../core/units.js";
 
 /** @import { Design, Problem, Schemas } from "../types/values.js" */
 
-/** What a card shows first of a design's metrics, where the design has it. */
+/** Metrics that a card shows first. */
 const LEADING_METRICS = [
   "quality",
   "min_transmission_angle",

@@ -1,4 +1,4 @@
-/** The parts of the window in which a design is shown: the stage, the drawer beside it, and what stands in both. */
+/** The parts of the window that show a design: the stage, the drawer, and their content. */
 
 import { byId, createElement } from "../core/dom.js";
 import { Drawer } from "../page/drawer.js";
@@ -51,7 +51,7 @@ export class Workbench {
     return this.stage.frame;
   }
 
-  /** Show no design any more. */
+  /** Clear the shown design. */
   clear() {
     this.shown = null;
     this.title.replaceChildren();
@@ -68,7 +68,7 @@ export class Workbench {
     this.offerExploring(false);
   }
 
-  /** Say whether a linkage can be explored. @param {boolean} is */
+  /** Set whether a linkage can be explored. @param {boolean} is */
   offerExploring(is) {
     this.exploring.replaceChildren();
     const note = t`Only linkages can be explored by dragging their pins.`;

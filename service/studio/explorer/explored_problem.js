@@ -1,4 +1,4 @@
-/** Statements that begin with a linkage as it was dragged. */
+/** Start problems from an explored linkage. */
 
 import { findTracedJoint } from "../motion/circuits.js";
 import { t } from "../core/messages.js";
@@ -73,7 +73,7 @@ export function listStartingPoints(problem, skeleton, motion, targets, held) {
       statement: () => ({ ...problem, positions: describePositions(problem, skeleton, motion, targets) }),
     });
   }
-  const known = coupledCurve(motion, findTracedJoint(skeleton));
+  const known = jointCurve(motion, findTracedJoint(skeleton));
   if (known.length > 3) {
     found.push({
       text: t`Start a path problem with its curve`,
@@ -99,7 +99,7 @@ function roundValue(value) {
 }
 
 /** @param {LinkageAnalysis} motion @param {string} name @returns {Point[]} */
-function coupledCurve(motion, name) {
+function jointCurve(motion, name) {
   const { x, y } = motion.joints[name];
   return x.flatMap((one, k) => (one === null ? [] : [/** @type {Point} */ ([one, y[k]])]));
 }

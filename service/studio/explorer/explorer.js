@@ -1,4 +1,4 @@
-/** A linkage whose pins are dragged: what it does then, as the analysis core says, while it is dragged. */
+/** Explore a linkage by dragging its pins; the service analyses it during the drag. */
 
 import * as api from "../core/api.js";
 import { inputAngle } from "../motion/cycle.js";

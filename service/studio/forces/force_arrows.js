@@ -1,4 +1,4 @@
-/** Forces as arrows on the linkage that moves: at every pin and slide, with the length that a force has. */
+/** Draw forces as arrows on the moving linkage, at every pin and slide. */
 
 import { createElement, formatNumber, createSvg } from "../core/dom.js";
 import { slideAngle } from "../canvas/linkage_drawing.js";

@@ -1,5 +1,5 @@
 /**
- * What forces and torques of a linkage are measured by: what rounding leaves of them beside that is nothing.
+ * Scales of forces and torques of a linkage; values below rounding of these scales are zero.
  *
  * A balanced linkage needs no drive, but the sum of what its loads ask for ends at 1e-15 and not at 0. The scale of
  * forces is the greatest that there is at a pin, or that shakes the frame; that of torques the greatest drive or

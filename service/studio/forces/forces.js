@@ -1,4 +1,4 @@
-/** What a linkage design bears: arrows on the linkage that moves, what drives it, plots, hodograph and peaks. */
+/** Show the forces of a linkage: arrows on the motion, drive, plots, hodograph and peaks. */
 
 import * as api from "../core/api.js";
 import { createElement, formatNumber, toWords } from "../core/dom.js";

@@ -1,7 +1,4 @@
-/**
- * Stating what a linkage design weighs and carries: material, masses, loads, gravity and speed, placed on the drawing
- * or by lists.
- */
+/** Edit the loads of a linkage: material, masses, loads, gravity and speed, on the drawing or in lists. */
 
 import { Refusal } from "../core/api.js";
 import { createChoice, createNumberBox } from "../form/controls.js";
@@ -386,7 +383,7 @@ export class LoadEditor {
     const { mover, placing } = this;
     if (!mover || !placing) return;
     const [x, y] = mover.view.toPlaneFromPointer(mover.picture, event);
-    const now = mover.currentInput();
+    const now = mover.currentJoints();
     const away = mover.linkage.pins.map(({ name }) => {
       const at = now[name];
       return [name, at ? mover.view.scale * Math.hypot(at[0] - x, at[1] - y) : Infinity];

@@ -1,4 +1,4 @@
-/** Controls of a single value, as forms and tables have them. */
+/** Create the controls of single values for forms and tables. */
 
 import { createElement, toWords } from "../core/dom.js";
 import { t, term } from "../core/messages.js";

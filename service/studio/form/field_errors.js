@@ -1,4 +1,4 @@
-/** What is wrong with a statement, said at the fields it belongs to. */
+/** Show the errors of a problem at their fields. */
 
 import { createElement } from "../core/dom.js";
 import { foreignLanguage, t, term } from "../core/messages.js";

@@ -1,5 +1,5 @@
 /**
- * A form made from the JSON schema of a problem.
+ * Create a form from the JSON schema of a problem.
  *
  * A field that is left empty is left out of the problem, so that the service's default holds. Each control carries its
  * JSON pointer as `data-path`, by which errors find it.
@@ -17,7 +17,7 @@ import {
 } from "./controls.js";
 import { createElement, toWords } from "../core/dom.js";
 import { firstParagraph, t } from "../core/messages.js";
-import { escapeName, ensureObject as structured } from "../core/pointer.js";
+import { escapeName, isContainer as structured } from "../core/pointer.js";
 import {
   findDiscriminator,
   initialValue,

@@ -1,4 +1,4 @@
-/** What the controls of a form share: the statement as they show it, and how they change it. */
+/** The state that the controls of a form share: the displayed problem and its changes. */
 
 import { readPointer, pointerNames, writePointer } from "../core/pointer.js";
 

@@ -1,9 +1,9 @@
-/** A list of objects as a table; rows can be pasted from a spreadsheet. */
+/** Edit a list of objects as a table; rows can be pasted from a spreadsheet. */
 
 import { createChoice, createNumberBox, parseNumber, createTextBox } from "./controls.js";
 import { createElement, toWords } from "../core/dom.js";
 import { firstParagraph, t, term } from "../core/messages.js";
-import { readPointer, ensureObject } from "../core/pointer.js";
+import { readPointer, isContainer } from "../core/pointer.js";
 import {
   alternatives,
   listOtherFields,
@@ -177,13 +177,13 @@ export function createTable(sheet, item, path, controls, count) {
 /** The rows of a list in a statement. @param {Problem} statement @param {string} path @returns {Row[]} */
 function readRows(statement, path) {
   const found = readPointer(statement, statementPointer(path));
-  return Array.isArray(found) ? found.map((one) => (ensureObject(one) ? one : {})) : [];
+  return Array.isArray(found) ? found.map((one) => (isContainer(one) ? one : {})) : [];
 }
 
 /** A row that is begun. @param {Schema} item @param {Schema} root @returns {Row} */
 function createBlankRow(item, root) {
   const first = initialValue(item, root);
-  return ensureObject(first) ? first : {};
+  return isContainer(first) ? first : {};
 }
 
 /**
@@ -248,12 +248,12 @@ function createRowDetails(sheet, item, row, path, controls, width, k) {
   const option = findRowOption(sheet, item, row);
   // What a cell can state as a number stands here only where it is stated in detail.
   const names = listOtherFields(option, sheet.root).filter(
-    (name) => classifyField(propertiesOf(option)[name], sheet.root).control !== "shapes" || ensureObject(row[name]),
+    (name) => classifyField(propertiesOf(option)[name], sheet.root).control !== "shapes" || isContainer(row[name]),
   );
   if (!names.length) return [];
   const stated = names.some((name) => {
     const value = row[name];
-    return Array.isArray(value) ? value.length > 0 : ensureObject(value);
+    return Array.isArray(value) ? value.length > 0 : isContainer(value);
   });
   const inside = createElement("div", { class: "fields" });
   const fill = () => {
@@ -289,7 +289,7 @@ function createDetailButtons(sheet, item, row, path, k) {
   const option = findRowOption(sheet, item, row);
   return listOtherFields(option, sheet.root).flatMap((name) => {
     const what = classifyField(propertiesOf(option)[name], sheet.root);
-    if (what.control !== "shapes" || ensureObject(row[name])) return [];
+    if (what.control !== "shapes" || isContainer(row[name])) return [];
     const title = t`${toWords(name)} of row ${k + 1} in detail`;
     return [
       createElement(

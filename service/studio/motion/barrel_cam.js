@@ -1,4 +1,4 @@
-/** A barrel cam: its groove, unrolled, passes the roller, which moves along the axis. */
+/** Animate a barrel cam: its unrolled groove passes the roller, which moves along the axis. */
 
 import { CamView } from "./cam.js";
 import { createSvg } from "../core/dom.js";

@@ -1,7 +1,4 @@
-/**
- * A cam that turns under its follower: the roller rolls on it, or the face slides; s v a j and pressure angle beside
- * it.
- */
+/** Animate a cam under its follower, with s v a j diagrams and the pressure angle. */
 
 import { createElement, formatNumber, createSvg } from "../core/dom.js";
 import { joinUnit, isRounding } from "../design/design_metrics.js";

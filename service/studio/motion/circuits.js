@@ -1,4 +1,4 @@
-/** The circuits of a linkage: where its joints are on the branches that it does not move on, drawn faint. */
+/** Draw the other circuits of a linkage faintly. */
 
 import { createElement, createSvg } from "../core/dom.js";
 import { LinkageDrawing, drawnJoints, groundedJoints } from "../canvas/linkage_drawing.js";

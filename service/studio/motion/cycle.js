@@ -1,4 +1,4 @@
-/** The cycle of any linkage, by analyses: a full turn of a crank, or from toggle to toggle. */
+/** Fetch the cycle of a linkage: a full turn of a crank, or from toggle to toggle. */
 
 import * as api from "../core/api.js";
 import { groundedJoints } from "../canvas/linkage_drawing.js";

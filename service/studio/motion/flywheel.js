@@ -1,4 +1,4 @@
-/** A flywheel that turns, with a spoke that shows how far; faster and slower as its shaft does. */
+/** Animate a flywheel with the varying speed of its shaft. */
 
 import { createElement, formatNumber, createSvg } from "../core/dom.js";
 import { t } from "../core/messages.js";

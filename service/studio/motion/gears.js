@@ -1,4 +1,4 @@
-/** Gears that turn: pitch circles and teeth, each at its own speed; of gearboxes with the gear that is engaged. */
+/** Animate gears with their pitch circles and teeth; gearboxes in the engaged gear. */
 
 import * as api from "../core/api.js";
 import { createElement, formatNumber, createSvg, toWords } from "../core/dom.js";

@@ -1,4 +1,4 @@
-/** A Geneva drive that turns: its wheel by steps, the crank with its locking disc and rollers steadily. */
+/** Animate a Geneva drive: the crank turns steadily, the wheel in steps. */
 
 import { createElement, formatNumber, createSvg } from "../core/dom.js";
 import { t } from "../core/messages.js";

@@ -1,4 +1,4 @@
-/** The planes in which a linkage is built: from the side, beneath its motion, with what clashes. */
+/** Show the planes of a linkage from the side, below its motion, with collisions. */
 
 import { createElement, formatNumber, createSvg, toWords } from "../core/dom.js";
 import { groundedJoints } from "../canvas/linkage_drawing.js";
@@ -10,12 +10,12 @@ import { unitSymbol } from "../core/units.js";
 /** @typedef {[number, number]} Point */
 /** @typedef {import("../canvas/linkage_drawing.js").Places} Places */
 
-const PLANE_HEIGHT = 210;
+const PICTURE_HEIGHT = 210;
 const TOP_MARGIN = 12;
 const FOOT_HEIGHT = 44;
 
 /** Height of a base, pixels. */
-const BASE_LINE = 14;
+const BASE_HEIGHT = 14;
 
 /** Planes are never drawn thicker than so many pixels: the side view is not to scale upward. */
 const MAX_THICKNESS = 26;
@@ -71,7 +71,7 @@ export class LinkPlanes {
    */
   constructor(view, skeleton, layout, problem, stated, lead) {
     this.view = view;
-    this.floor = PLANE_HEIGHT - FOOT_HEIGHT - BASE_LINE;
+    this.floor = PICTURE_HEIGHT - FOOT_HEIGHT - BASE_HEIGHT;
     /** Pixels for a length unit upward. */
     this.scale = 1;
     /** @type {{name: string, bar: SVGElement}[]} */
@@ -185,14 +185,14 @@ export class LinkPlanes {
     const { layout, stated, view } = this;
     const pitch = stated.thickness + (stated.gap ?? 0);
     const second = Object.values(layout.pins).some(([, high]) => high > layout.count);
-    const room = PLANE_HEIGHT - TOP_MARGIN - FOOT_HEIGHT - BASE_LINE * (second ? 2 : 1);
+    const room = PICTURE_HEIGHT - TOP_MARGIN - FOOT_HEIGHT - BASE_HEIGHT * (second ? 2 : 1);
     this.scale = Math.min(
       MAX_THICKNESS / stated.thickness,
       room / (layout.count * pitch + (second ? (stated.gap ?? 0) : 0)),
     );
     const ceiling = this.floor - this.scale * (layout.count * pitch + (stated.gap ?? 0));
     const base = (/** @type {number} */ y) =>
-      createSvg("rect", { class: "base", x: 30, y, width: view.width - 60, height: BASE_LINE });
+      createSvg("rect", { class: "base", x: 30, y, width: view.width - 60, height: BASE_HEIGHT });
     this.bars = Object.entries(layout.planes).map(([name, plane]) => ({
       name,
       bar: createSvg("rect", {
@@ -203,8 +203,8 @@ export class LinkPlanes {
       }),
     }));
     this.pins = Object.entries(layout.pins).map(([name, [low, high]], k) => {
-      const bottom = low === 0 ? this.floor + BASE_LINE : this.planeTop(low);
-      const top = high > layout.count ? ceiling - BASE_LINE : this.planeTop(high) - this.scale * stated.thickness;
+      const bottom = low === 0 ? this.floor + BASE_HEIGHT : this.planeTop(low);
+      const top = high > layout.count ? ceiling - BASE_HEIGHT : this.planeTop(high) - this.scale * stated.thickness;
       const width = Math.max(4, view.scale * stated.pin_diameter);
       return {
         name,
@@ -215,22 +215,22 @@ export class LinkPlanes {
           height: bottom - top,
           width,
         }),
-        text: createSvg("text", { class: "joint", y: PLANE_HEIGHT - (k % 2 ? 6 : 24) }, name),
+        text: createSvg("text", { class: "joint", y: PICTURE_HEIGHT - (k % 2 ? 6 : 24) }, name),
       };
     });
     this.side = createSvg(
       "svg",
       {
-        viewBox: `0 0 ${view.width} ${PLANE_HEIGHT}`,
+        viewBox: `0 0 ${view.width} ${PICTURE_HEIGHT}`,
         class: "canvas side",
         role: "img",
         "aria-label": second
           ? t`The linkage from the side: ${layout.count} planes between two bases`
           : t`The linkage from the side: ${layout.count} planes on a base`,
       },
-      createSvg("rect", { class: "paper", width: view.width, height: PLANE_HEIGHT }),
+      createSvg("rect", { class: "paper", width: view.width, height: PICTURE_HEIGHT }),
       base(this.floor),
-      second && base(ceiling - BASE_LINE),
+      second && base(ceiling - BASE_HEIGHT),
       ...Array.from({ length: layout.count }, (_, k) =>
         createSvg(
           "text",
@@ -247,7 +247,7 @@ export class LinkPlanes {
   /** Stay in line with the picture above where it shows more on either side. @param {number} more pixels */
   widen(more) {
     const frame = { x: -more, width: this.view.width + 2 * more };
-    this.side?.setAttribute("viewBox", `${frame.x} 0 ${frame.width} ${PLANE_HEIGHT}`);
+    this.side?.setAttribute("viewBox", `${frame.x} 0 ${frame.width} ${PICTURE_HEIGHT}`);
     for (const [name, value] of Object.entries(frame)) this.side?.firstElementChild?.setAttribute(name, String(value));
   }
 

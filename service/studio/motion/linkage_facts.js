@@ -1,4 +1,4 @@
-/** What an analysis tells of a linkage, as facts for reading. */
+/** Summarize the analysis of a linkage. */
 
 import { findTracedJoint } from "./circuits.js";
 import { formatNumber, toWords } from "../core/dom.js";

@@ -1,4 +1,4 @@
-/** A linkage in motion: the arrays of its cycle, drawn at the display's own rate. */
+/** Animate a linkage from the arrays of its cycle, at the frame rate of the display. */
 
 import { OtherCircuits, otherBranches, findTracedJoint, branchTrack } from "./circuits.js";
 import { createElement, formatNumber, createSvg } from "../core/dom.js";
@@ -101,7 +101,7 @@ export class LinkageMotion {
     this.gauge = motion.transmission_angle?.some((one) => one !== null)
       ? new AngleGauge(t`Transmission angle`, motion.transmission_angle, {
           limit: problem.constraints?.min_transmission_angle,
-          used: missesPart(design) ? design.metrics?.min_transmission_angle : null,
+          used: isPartialRange(design) ? design.metrics?.min_transmission_angle : null,
         })
       : null;
     /** @type {import("../plots/plots.js").PlotMark[]} */
@@ -109,7 +109,7 @@ export class LinkageMotion {
     /** @type {Companion | null} */
     this.companion = null;
     this.springs = new SpringDrawings(this.view, this.skeleton, listSprings(design, problem));
-    this.picture = this.createPicture();
+    this.picture = this.createLayers();
     this.build(design, problem);
     this.player.begin();
   }
@@ -121,7 +121,7 @@ export class LinkageMotion {
   }
 
   /** Everything on the stage, one thing over the other. */
-  createPicture() {
+  createLayers() {
     const { view, skeleton } = this;
     const still = groundedJoints(skeleton);
     const moving = drawnJoints(skeleton).filter((name) => !still.includes(name));
@@ -132,7 +132,7 @@ export class LinkageMotion {
       ...moving.map((name) =>
         createSvg("path", { class: name === "P" ? "curve" : "trail", d: view.pathData(this.jointTrack(name)) }),
       ),
-      ...this.describeToggles(),
+      ...this.drawToggles(),
       ...this.targets.map((one, k) => this.createTarget(one, k)),
       this.springs.node,
       this.linkage.node,
@@ -206,9 +206,9 @@ export class LinkageMotion {
   }
 
   /** The linkage at the toggles that end its branch, and the crank's pin at those of every circuit. */
-  describeToggles() {
+  drawToggles() {
     const { motion, skeleton, view } = this;
-    const ends = this.describeRange().map((k) => {
+    const ends = this.listToggleSamples().map((k) => {
       const ghost = new LinkageDrawing(view, skeleton, { names: false, faint: true });
       ghost.moveTo(
         Object.fromEntries(
@@ -246,7 +246,7 @@ export class LinkageMotion {
   }
 
   /** Samples at which the motion ends at a toggle. @returns {number[]} */
-  describeRange() {
+  listToggleSamples() {
     const here = this.motion.circuits.flatMap((one) => one.branches).find((one) => one.reference);
     return here && !here.full ? [0, this.count - 1] : [];
   }
@@ -265,11 +265,11 @@ export class LinkageMotion {
 
   /** Where all joints are now. @returns {Point[]} */
   currentPlaces() {
-    return Object.values(this.currentInput()).filter((one) => one !== null);
+    return Object.values(this.currentJoints()).filter((one) => one !== null);
   }
 
   /** The same by the joints' names. */
-  currentInput() {
+  currentJoints() {
     return jointPositions(this.motion, this.player.at);
   }
 
@@ -362,7 +362,7 @@ export function listTargets(problem, design) {
  * uses.
  * @param {LinkedDesign} design
  */
-function missesPart(design) {
+function isPartialRange(design) {
   return (
     Number.isFinite(design.metrics?.min_transmission_angle) &&
     (design.targets === undefined || design.targets.length > 1)

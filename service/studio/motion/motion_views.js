@@ -1,4 +1,4 @@
-/** What shows a mechanism in motion, by its type. */
+/** Choose the view of a moving mechanism by its type. */
 
 import { BarrelCamView } from "./barrel_cam.js";
 import { DiscCamView } from "./cam.js";

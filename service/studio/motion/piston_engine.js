@@ -1,4 +1,4 @@
-/** A piston engine that turns: its cylinders side by side, each seen along the shaft with its own axis upwards. */
+/** Animate a piston engine: cylinders side by side, each with its own axis upwards. */
 
 import { createElement, formatNumber, createSvg } from "../core/dom.js";
 import { t } from "../core/messages.js";
@@ -17,8 +17,8 @@ const BORE_WIDTH = 1.5;
 const PISTON_HEIGHT = 0.6;
 const HEAD_CLEARANCE = 0.4;
 
-/** From the crank at its lowest to the foot of a cylinder's number, pixels: a pin is between them. */
-const LAYOUT_NAMES = 22;
+/** Distance from the lowest crank to the number of a cylinder, pixels. */
+const NUMBER_OFFSET = 22;
 
 /** @typedef {[number, number]} Point */
 /** @typedef {Schemas["EngineDesign"]["mechanism"]["cylinders"][number]} Cylinder */
@@ -105,7 +105,7 @@ export class PistonEngineView extends RotaryView {
       crank,
       ...pins,
       createSvg("circle", { class: "pin", cx: u, cy: v, r: 3.5 }),
-      createSvg("text", { class: "called", x: u, y: view.toPicture(x, -radius)[1] + LAYOUT_NAMES }, cylinder.number),
+      createSvg("text", { class: "called", x: u, y: view.toPicture(x, -radius)[1] + NUMBER_OFFSET }, cylinder.number),
     );
     return { cylinder, x, node, crank, link, piston, pins };
   }

@@ -1,4 +1,4 @@
-/** A ratchet wheel that turns on under its pawls. */
+/** Animate a ratchet wheel under its pawls. */
 
 import { createElement, createSvg } from "../core/dom.js";
 import { t } from "../core/messages.js";

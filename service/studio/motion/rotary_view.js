@@ -1,4 +1,4 @@
-/** What turns: its clock, which tells the angle of what drives it, its picture, and plots that go with them. */
+/** The base of all rotating views: player, picture and plots. */
 
 import { createElement, formatNumber } from "../core/dom.js";
 import { t } from "../core/messages.js";

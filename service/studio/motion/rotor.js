@@ -1,4 +1,4 @@
-/** A rotor that turns: its planes of correction with their masses, and the forces on its bearings beside it. */
+/** Animate a rotor: correction planes with masses, and bearing forces. */
 
 import { createElement, formatNumber, createSvg } from "../core/dom.js";
 import { joinUnit, isRounding } from "../design/design_metrics.js";

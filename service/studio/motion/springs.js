@@ -1,4 +1,4 @@
-/** The springs of a linkage, drawn as coils between the links that they join. */
+/** Draw the springs of a linkage as coils between its links. */
 
 import { createSvg } from "../core/dom.js";
 

@@ -1,21 +1,18 @@
-/**
- * What a linkage sweeps over its used range: links as wide as they are, and the body, at many places of the motion at
- * once.
- */
+/** Draw the area that a linkage sweeps over its used range: links in their width, and the body. */
 
 import { createElement, createSvg } from "../core/dom.js";
 import { outlinePath } from "../canvas/area_hatching.js";
 import { t } from "../core/messages.js";
 import { interpolate, clampIndex } from "../core/player.js";
-import { findPlatePose } from "../assembly/workspace_view.js";
+import { linkPath } from "../assembly/workspace_view.js";
 
 /** @import { LinkageAnalysis, Skeleton } from "../types/values.js" */
 
 /** @typedef {[number, number]} Point */
 
-/** Places of the motion that make up the swept area, and of them those that have an outline: one in so many. */
+/** Number of positions in the swept area, and the interval between outlined ones. */
 const POSITION_COUNT = 120;
-const MAX_OUTLINES = 12;
+const OUTLINE_INTERVAL = 12;
 
 export class SweptArea {
   /**
@@ -63,7 +60,7 @@ export class SweptArea {
     const links = room.links.map((joints, k) => ({
       name: names[k],
       width: room.width,
-      shapes: stands.map((now) => findPlatePose(view, joints, now)),
+      shapes: stands.map((now) => linkPath(view, joints, now)),
     }));
     const body = stands.map((now) => {
       const corners = room.createCarriedBody(now);
@@ -80,7 +77,7 @@ export class SweptArea {
         createSvg("path", {
           class: `ghosts ${part}`,
           d: shapes
-            .filter((/** @type {string} */ _, /** @type {number} */ k) => k % (POSITION_COUNT / MAX_OUTLINES) === 0)
+            .filter((/** @type {string} */ _, /** @type {number} */ k) => k % (POSITION_COUNT / OUTLINE_INTERVAL) === 0)
             .join(""),
         }),
       );

@@ -1,4 +1,4 @@
-/** A design as a small picture, from its dimensions alone. */
+/** Create a thumbnail of a design from its dimensions. */
 
 import { createSvg } from "../core/dom.js";
 import { View } from "../core/view.js";

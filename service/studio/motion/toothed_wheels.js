@@ -1,4 +1,4 @@
-/** Toothed wheels, and where they stand: the shafts of a train in the plane, teeth in mesh. */
+/** Draw toothed wheels and place them with their teeth in mesh. */
 
 import { createSvg } from "../core/dom.js";
 import { t } from "../core/messages.js";

@@ -1,4 +1,4 @@
-/** Where the gears of each type of train stand, from its teeth and the speeds that the analysis gives. */
+/** Lay out the gears of each type of train, from teeth and speeds. */
 
 import { t, term } from "../core/messages.js";
 import { phaseFacing, pitchRadius } from "./toothed_wheels.js";
@@ -206,7 +206,7 @@ function layOutPlanetary(mechanism, motion, metrics) {
       const wheel = { ...first[name], name: `${name} ${copy + 1}`, centre: rotatePoint(first[name].centre, turn) };
       wheel.tooth =
         first[name].tooth +
-        chooseSide(
+        findPlanetRotation(
           names.filter((one) => bodyOf[one] === body),
           first,
           mates,
@@ -224,7 +224,7 @@ function layOutPlanetary(mechanism, motion, metrics) {
  * @param {(gear: string) => string[]} mates
  * @param {number} turn
  */
-function chooseSide(own, first, mates, turn) {
+function findPlanetRotation(own, first, mates, turn) {
   const pairs = own.flatMap((gear) =>
     mates(gear)
       .filter((mate) => first[mate].centre[0] === 0 && first[mate].centre[1] === 0)

@@ -1,10 +1,10 @@
-/** The button that copies an address, and says what the address holds. */
+/** Copy an address and report its content. */
 
 import { encodeAddress } from "../core/address_fragment.js";
 import { createElement } from "../core/dom.js";
 import { t } from "../core/messages.js";
 
-/** How long it says so. */
+/** Duration of the note. */
 const NOTE_MS = 5000;
 
 export class CopyLink {

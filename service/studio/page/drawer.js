@@ -1,6 +1,4 @@
-/**
- * The tabs beside the stage: what is shown of the chosen design. On a phone they are a sheet, with task and answers.
- */
+/** The tabs next to the stage. On a phone they form a sheet, together with task and answers. */
 
 import { createElement } from "../core/dom.js";
 
@@ -112,7 +110,7 @@ export class Drawer {
     this.showSelection();
   }
 
-  /** Show what is chosen. */
+  /** Update the tabs to the selection. */
   showSelection() {
     document.body.dataset.sheet = this.sheet;
     const chosen = PHONE_LAYOUT.matches && this.sheet !== "drawer" ? this.sheet : this.pane;

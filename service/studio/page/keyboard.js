@@ -1,7 +1,4 @@
-/**
- * The page by keys: what each does, and the sheet that lists them. Single letters act outside of fields only, and can
- * be switched off.
- */
+/** Keyboard shortcuts and the sheet that lists them. Single letters act outside of fields only, and can be disabled. */
 
 import { byId, createElement } from "../core/dom.js";
 import { t } from "../core/messages.js";

@@ -1,4 +1,4 @@
-/** The keys of the page, as the sheet of keys shows them. */
+/** List the keyboard shortcuts of the page. */
 
 import { byId } from "../core/dom.js";
 import { scrubBy, scrubTo, findVisible } from "./keyboard.js";

@@ -1,4 +1,4 @@
-/** A gauge of an angle from 0° to 90°: a needle where it is now, a mark at the least, and the limit that was set. */
+/** A gauge of an angle from 0° to 90° with its current value, its minimum and its limit. */
 
 import { createElement, formatNumber, createSvg } from "../core/dom.js";
 import { t } from "../core/messages.js";

@@ -1,4 +1,4 @@
-/** The hodograph of a force: its components against each other over the motion, with a mark where the motion stands. */
+/** Draw the hodograph of a force, with a mark at the current position. */
 
 import { createElement, formatNumber, createSvg } from "../core/dom.js";
 import { t } from "../core/messages.js";

@@ -1,4 +1,4 @@
-/** A plot to take home: its numbers as a table, and its picture. */
+/** Export a plot as a table or a picture. */
 
 import { t } from "../core/messages.js";
 

@@ -1,4 +1,4 @@
-/** Small plots over a motion, each with a mark where the motion stands; a click leads the motion there. */
+/** Small plots over a motion, with a mark at the current position; a click moves the motion there. */
 
 import { saveFile } from "../design/design_files.js";
 import { createElement, rebuild, formatNumber, createSvg } from "../core/dom.js";

@@ -1,4 +1,4 @@
-/** What is worth a plot in the motion of a linkage: force, error, and how one chosen part moves. */
+/** List the plots of a linkage: transmission, error, and the motion of one selected part. */
 
 import { drawnJoints, groundedJoints } from "../canvas/linkage_drawing.js";
 import { t, term } from "../core/messages.js";

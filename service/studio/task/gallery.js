@@ -1,4 +1,4 @@
-/** All examples with their names and pictures, grouped by what a person wants; a click states one and solves it. */
+/** The gallery of all examples, grouped by purpose; a click loads one and solves it. */
 
 import { byId, createElement, createSvg } from "../core/dom.js";
 import { translate } from "../core/messages.js";

@@ -1,4 +1,4 @@
-/** Leads through a task step by step: a note beside the thing that a step speaks of, which can be left at any time. */
+/** Guide the user through a task: a note next to the element of each step, which can be closed at any time. */
 
 import { byId, createElement } from "../core/dom.js";
 import { GUIDES } from "./guide_steps.js";

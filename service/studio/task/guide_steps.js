@@ -1,4 +1,4 @@
-/** Tasks of a minute each, step by step: where a step stands, what it says, and when it is done. */
+/** The guided tasks: position, text and end condition of each step. */
 
 import { t } from "../core/messages.js";
 

@@ -1,4 +1,4 @@
-/** The jobs of this service, newest first, each with a link that restores it. */
+/** List the jobs of this service, newest first, each with a link that restores it. */
 
 import * as api from "../core/api.js";
 import { createElement } from "../core/dom.js";

@@ -1,4 +1,4 @@
-/** A job under way: its progress, and a button to cancel it. */
+/** Show the progress of a job and a button to cancel it. */
 
 import * as api from "../core/api.js";
 import { createElement } from "../core/dom.js";

@@ -1,4 +1,4 @@
-/** What moves when the page opens: an example with its answer, made of the service's own by `tools/studio`. */
+/** Show an example with its answer when the page opens; `tools/studio` creates it. */
 
 import { byId, createElement } from "../core/dom.js";
 import { createChecks, listFigures, createTable } from "../design/design_metrics.js";

@@ -1,4 +1,4 @@
-/** A linkage that came in an address: driven by the service that opens it, and told as far as that shows it. */
+/** Show a linkage from an address, as simulated by this service. */
 
 import * as api from "../core/api.js";
 import { fetchCycle, inputAngle } from "../motion/cycle.js";

@@ -1,4 +1,4 @@
-/** The task: what is stated, in the form, on the canvas and as JSON, and the kinds and examples it is chosen from. */
+/** The task pane: the problem as form, canvas and JSON, and the choice of kinds and examples. */
 
 import { byId, createElement } from "../core/dom.js";
 import { forgetDraft } from "../core/drafts.js";
