@@ -119,7 +119,7 @@ def test_a_lid_is_drawn_solved_compared_changed_taken_home_and_sent(studio, chro
     # Gauge, checks and plots say what the answer says.
     page.click("#tab-numbers")
     best = designs[0]["metrics"]
-    least = re.search(r"least ([\d.]+°)", page.inner_text(".gauge")).group(1)
+    least = re.search(r"minimum ([\d.]+°)", page.inner_text(".gauge")).group(1)
     assert told(best["min_transmission_angle"], least, "°")
     for name, unit in (("size", " mm"), ("min_transmission_angle", "°"), ("link_ratio", ""), ("input_travel", "°")):
         row = page.get_by_role("row", name=re.compile(f"^{name.replace('_', ' ').capitalize()} ")).locator("td")
