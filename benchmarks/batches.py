@@ -26,8 +26,8 @@ from benchmarks.fairness import RESERVE, WORKERS, Tenant, key_of, row, short_job
 from benchmarks.service import PROBLEM_5_26, spent, until_settled
 from service.jobs import faults
 from service.jobs.batches.plan import Plan
-from service.jobs.batches.sampling import evenly
-from service.jobs.batches.slices import Slices
+from service.jobs.batches.sampling import sample_evenly
+from service.jobs.batches.slices import SliceSolver
 from service.jobs.batches.store import BatchStore
 from service.jobs.job_store import JobStore
 from service.jobs.processes.stop_flag import Solving
@@ -121,10 +121,10 @@ def in_one_process(samples: int) -> None:
         engine = connect(f"sqlite:///{folder}/store.sqlite3", durable=False)
         upgrade(engine)
         store, jobs = BatchStore(engine), JobStore(engine)
-        slices = Slices(store, Solving(), faults.out_of_memory(1))
+        slices = SliceSolver(store, Solving(), faults.make_out_of_memory(1))
         spent_s = []
         for reuse in (False, False, True):  # what is loaded at first use counts for the first one only
-            plan = Plan(PROBLEM_5_26, ["/positions/1/x"], [evenly(170.0, 180.0, samples)], True, ["size"], reuse)
+            plan = Plan(PROBLEM_5_26, ["/positions/1/x"], [sample_evenly(170.0, 180.0, samples)], True, ["size"], reuse)
             began = time.process_time()
             batch, _ = store.create(
                 tenant="", kind="motion", label=None, plan=plan, cost=Cost.SHORT, max_queued=1000, repeatable=None

@@ -25,9 +25,9 @@ from typing import Any
 import httpx
 
 from synthesis.analyses.cams.cam import EXAMPLE
-from tests.service.api.test_access import made
 from tests.support.problems.fuzz_bodies import LAYOUT
 from tests.support.problems.given_mechanisms import STATED
+from tests.support.service.access import made
 from tests.support.service.running import RunningServer
 
 POINTS = 1000

@@ -16,7 +16,12 @@ from typing import TYPE_CHECKING, Any
 
 import numba
 import numba.core.config
-from numba.core.caching import InTreeCacheLocator, UserProvidedCacheLocator, UserWideCacheLocator
+from numba.core.caching import (
+    IndexDataCacheFile,
+    InTreeCacheLocator,
+    UserProvidedCacheLocator,
+    UserWideCacheLocator,
+)
 from numba.core.compiler_lock import global_compiler_lock
 from numba.core.registry import CPUDispatcher
 
@@ -111,6 +116,21 @@ LOCATORS: tuple[Any, ...] = (EnvironmentFolderLocator, CheckoutLocator, UserFold
 _LOCATORS = ",".join(f"{__name__}.{locator.__name__}" for locator in LOCATORS)
 
 
+_CacheFile: Any = IndexDataCacheFile
+
+
+class _UpgradableCacheFile(_CacheFile):
+    """Index of compiled kernels that counts as empty if an earlier version wrote types that no longer exist."""
+
+    def _load_index(self) -> Any:
+        # numba unpickles the argument types of all entries before it compares the stamp of the sources, so a renamed
+        # class would end the process after an upgrade in place instead of compiling the kernel again.
+        try:
+            return super()._load_index()
+        except (AttributeError, ImportError):
+            return {}
+
+
 _Dispatcher: Any = CPUDispatcher
 
 
@@ -176,6 +196,8 @@ def _njit(*signature: Any, **options: Any) -> Callable[[Callable[..., Any]], Any
             kernel = compile_kernel(function)
         finally:
             config.CACHE_LOCATOR_CLASSES = before
+        if options.get("cache"):
+            kernel._cache._cache_file.__class__ = _UpgradableCacheFile
         if declared is not None:
             kernel.__class__ = _LazyKernel
             kernel.declared = declared

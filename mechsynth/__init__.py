@@ -1,7 +1,7 @@
 """Mechanisms designed from Python: ``from mechsynth import solve, Motion, Position``.
 
 Nothing but names and the few objects that a person at a prompt needs; what is behind them are :mod:`synthesis` and
-:mod:`kinematics`, and the rooms of :mod:`service` that need no server. docs/library.md shows it at work.
+:mod:`kinematics`, and the rooms of :mod:`service` that need no server. docs/start/library.md shows it at work.
 """
 
 from mechsynth.answers import Design, Result

@@ -18,7 +18,7 @@ from synthesis.registry import KINDS
 
 Place = str | PathLike[str]
 
-COLUMNS = 7
+MAX_COLUMNS = 7
 """Metrics beside each other in a notebook."""
 
 
@@ -87,21 +87,21 @@ class Design:
 
     def to_svg(self, path: Place) -> Path:
         """Write the drawing; returns the path. Raises as :meth:`file`, and OSError."""
-        return self._written("svg", path)
+        return self._write_file("svg", path)
 
     def to_dxf(self, path: Place) -> Path:
         """Write the CAD file, in true dimensions; as :meth:`to_svg`."""
-        return self._written("dxf", path)
+        return self._write_file("dxf", path)
 
     def to_csv(self, path: Place) -> Path:
         """Write the table; as :meth:`to_svg`."""
-        return self._written("csv", path)
+        return self._write_file("csv", path)
 
     def to_gif(self, path: Place) -> Path:
         """Write the animation; as :meth:`to_svg`."""
-        return self._written("gif", path)
+        return self._write_file("gif", path)
 
-    def _written(self, form: Form, path: Place) -> Path:
+    def _write_file(self, form: Form, path: Place) -> Path:
         content, written = self.file(form), Path(path)
         written.write_bytes(content if isinstance(content, bytes) else content.encode())
         return written
@@ -123,17 +123,17 @@ class Design:
         from synthesis.analyses import get_family  # the analysis core is for who moves something
 
         mechanism = self.mechanism.model_dump(mode="json")
-        return Cycle.of(get_family(mechanism).request.analyze_cycle(mechanism, steps))
+        return Cycle.from_lists(get_family(mechanism).request.analyze_cycle(mechanism, steps))
 
     def _repr_svg_(self) -> str:
         return self.draw()
 
     def _repr_html_(self) -> str:
         rows = (
-            (check.name, "passed" if check.passed else "FAILED", _shown(check.value), _shown(check.limit))
+            (check.name, "passed" if check.passed else "FAILED", _format_value(check.value), _format_value(check.limit))
             for check in self.verification.checks
         )
-        table = _table(("check", "", "value", "limit"), rows)
+        table = _format_table(("check", "", "value", "limit"), rows)
         return f"<div>{self.draw()}{table}</div>"
 
 
@@ -154,7 +154,7 @@ class Result:
         self.designs = [Design(design, problem, label, n) for n, design in enumerate(model.designs)]
 
     @classmethod
-    def of_json(cls, problem: Mapping[str, Any], result: Mapping[str, Any], label: str | None = None) -> Result:
+    def from_json(cls, problem: Mapping[str, Any], result: Mapping[str, Any], label: str | None = None) -> Result:
         """The same of a job as a service shows it.
 
         Raises
@@ -190,29 +190,37 @@ class Result:
         return self.model.model_dump_json()
 
     def _repr_html_(self) -> str:
-        names = [name for name, value in _metrics(self.designs) if isinstance(value, int | float | str)][:COLUMNS]
+        names = [name for name, value in _iterate_metrics(self.designs) if isinstance(value, int | float | str)][
+            :MAX_COLUMNS
+        ]
         rows = (
-            (str(d.number + 1), str(d.mechanism.type), *(_shown(getattr(d.metrics, name, None)) for name in names))
+            (
+                str(d.number + 1),
+                str(d.mechanism.type),
+                *(_format_value(getattr(d.metrics, name, None)) for name in names),
+            )
             for d in self.designs
         )
-        table = _table(("", "mechanism", *(name.replace("_", " ") for name in names)), rows) if self.designs else ""
+        table = (
+            _format_table(("", "mechanism", *(name.replace("_", " ") for name in names)), rows) if self.designs else ""
+        )
         best = self.designs[0].draw() if self.designs else ""
         return f"<div><p>{escape(self.summary)}</p>{table}{best}</div>"
 
 
-def _metrics(designs: Sequence[Design]) -> Iterator[tuple[str, Any]]:
+def _iterate_metrics(designs: Sequence[Design]) -> Iterator[tuple[str, Any]]:
     """The metrics of the best design."""
     for design in designs[:1]:
         yield from ((name, getattr(design.metrics, name)) for name in type(design.metrics).model_fields)
 
 
-def _table(heads: Iterable[str], rows: Iterable[Iterable[str]]) -> str:
+def _format_table(heads: Iterable[str], rows: Iterable[Iterable[str]]) -> str:
     head = "".join(f"<th>{escape(cell)}</th>" for cell in heads)
     body = "".join(f"<tr>{''.join(f'<td>{escape(cell)}</td>' for cell in row)}</tr>" for row in rows)
     return f"<table><thead><tr>{head}</tr></thead><tbody>{body}</tbody></table>"
 
 
-def _shown(value: Any) -> str:
+def _format_value(value: Any) -> str:
     if value is None:
         return ""
     return f"{value:.6g}" if isinstance(value, float) else str(value)

@@ -45,9 +45,9 @@ class Cycle:
     answer: Mapping[str, Any]
 
     @classmethod
-    def of(cls, listed: Mapping[str, Any]) -> Self:
+    def from_lists(cls, listed: Mapping[str, Any]) -> Self:
         """The same of an answer in plain lists."""
-        answer = {name: _arrays(value) for name, value in listed.items()}
+        answer = {name: _convert_arrays(value) for name, value in listed.items()}
         at = answer["input_angle"]
         tracks, links, slides = (answer.get(name, {}) for name in ("joints", "links", "slides"))
         return cls(
@@ -65,13 +65,13 @@ class Cycle:
         return len(self.input_angle)
 
 
-def _arrays(value: Any) -> Any:
+def _convert_arrays(value: Any) -> Any:
     if isinstance(value, dict):
-        return {name: _arrays(inner) for name, inner in value.items()}
+        return {name: _convert_arrays(inner) for name, inner in value.items()}
     if not isinstance(value, list) or not value:
         return value
     if all(isinstance(inner, bool) for inner in value):
         return np.array(value, dtype=bool)
     if all(inner is None or isinstance(inner, int | float) for inner in value):
         return np.array(value, dtype=float)
-    return [_arrays(inner) for inner in value]
+    return [_convert_arrays(inner) for inner in value]

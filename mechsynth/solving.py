@@ -7,8 +7,8 @@ from types import TracebackType
 from typing import Any, Self
 
 from mechsynth.answers import Result
-from mechsynth.progress import Progress, Told, telling
-from mechsynth.statements import InvalidProblem, Problem, checked, statement_of
+from mechsynth.progress import Progress, ProgressCallback, open_progress
+from mechsynth.statements import InvalidProblem, Problem, build_statement, check_problem
 from service import client as service
 
 
@@ -41,18 +41,18 @@ def solve(
     """
     from synthesis.dispatch import solve as solved
 
-    asked = checked(problem)
-    with telling(progress) as told:
-        return Result(solved(asked, _stopped_by(cancel, told)), asked, label)
+    asked = check_problem(problem)
+    with open_progress(progress) as told:
+        return Result(solved(asked, _stop_on_cancel(cancel, told)), asked, label)
 
 
-def _stopped_by(cancel: threading.Event | None, told: Told) -> Told:
-    def stopped(fraction: float, message: str) -> None:
+def _stop_on_cancel(cancel: threading.Event | None, report_progress: ProgressCallback) -> ProgressCallback:
+    def report(fraction: float, message: str) -> None:
         if cancel is not None and cancel.is_set():
             raise Cancelled("the problem was given up")
-        told(fraction, message)
+        report_progress(fraction, message)
 
-    return stopped
+    return report
 
 
 class Client:
@@ -105,16 +105,18 @@ class Client:
         ClientError
             ``Unreachable``, ``Refused``, or ``JobFailed`` where the job has ended without a result.
         """
-        with telling(progress) as told:
+        with open_progress(progress) as told:
             try:
-                job = self.service.solve(statement_of(problem), label=label, progress=_heard(told), cancel=cancel)
+                job = self.service.solve(
+                    build_statement(problem), label=label, progress=_convert_progress(told), cancel=cancel
+                )
             except service.ClientError as error:
-                raise _told_apart(error, cancel) from error
-        return _result(job)
+                raise _classify_error(error, cancel) from error
+        return _build_result(job)
 
     def result(self, job_id: str) -> Result:
         """The answer of a job that has ended; raises as :meth:`solve`."""
-        return _result(self.service.job(job_id).with_result())
+        return _build_result(self.service.job(job_id).with_result())
 
 
 class AsyncClient:
@@ -143,42 +145,42 @@ class AsyncClient:
 
     async def solve(self, problem: Problem, *, label: str | None = None, progress: Progress = False) -> Result:
         """Have a problem solved, and wait for the answer; raises as :meth:`Client.solve`."""
-        with telling(progress) as told:
+        with open_progress(progress) as told:
             try:
-                job = await self.service.solve(statement_of(problem), label=label, progress=_heard(told))
+                job = await self.service.solve(build_statement(problem), label=label, progress=_convert_progress(told))
             except service.ClientError as error:
-                raise _told_apart(error, None) from error
-        return _result(job)
+                raise _classify_error(error, None) from error
+        return _build_result(job)
 
     async def result(self, job_id: str) -> Result:
         """The answer of a job that has ended; raises as :meth:`Client.solve`."""
-        return _result((await self.service.job(job_id)).with_result())
+        return _build_result((await self.service.job(job_id)).with_result())
 
 
-def _heard(told: Told) -> Any:
-    return lambda progress: told(progress.fraction, progress.message)
+def _convert_progress(report_progress: ProgressCallback) -> Any:
+    return lambda progress: report_progress(progress.fraction, progress.message)
 
 
-def _result(job: service.Job) -> Result:
+def _build_result(job: service.Job) -> Result:
     assert job.result is not None
-    return Result.of_json(job.problem, job.result, job.label)
+    return Result.from_json(job.problem, job.result, job.label)
 
 
-_FIELD = "/problem"
+_PROBLEM_POINTER = "/problem"
 """Where the problem stands in the body of a request."""
 
 
-def _told_apart(error: service.ClientError, cancel: threading.Event | None) -> Exception:
+def _classify_error(error: service.ClientError, cancel: threading.Event | None) -> Exception:
     """What a fault of a client is called here."""
     if isinstance(error, service.JobFailed) and error.job.status == "cancelled":
         return Cancelled(str(error))
     if isinstance(error, service.Refused):
         if cancel is not None and cancel.is_set() and error.status == 404:
             return Cancelled("the job had ended when it was given up, and was removed")
-        if error.status == 422 and error.errors and all(_of_problem(path) for path in error.errors):
-            return InvalidProblem({path.removeprefix(_FIELD): told for path, told in error.errors.items()})
+        if error.status == 422 and error.errors and all(_is_in_problem(path) for path in error.errors):
+            return InvalidProblem({path.removeprefix(_PROBLEM_POINTER): told for path, told in error.errors.items()})
     return error
 
 
-def _of_problem(path: str) -> bool:
-    return path == _FIELD or path.startswith(f"{_FIELD}/")
+def _is_in_problem(path: str) -> bool:
+    return path == _PROBLEM_POINTER or path.startswith(f"{_PROBLEM_POINTER}/")

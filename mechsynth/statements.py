@@ -6,7 +6,7 @@ import json
 from collections.abc import Mapping
 from typing import Any, cast
 
-from service.requests import Faults, consistent, well_formed
+from service.requests import Faults, check_consistency, check_fields
 from synthesis.model.problem import ProblemBase
 from synthesis.registry import KINDS
 
@@ -25,14 +25,14 @@ class InvalidProblem(ValueError):
         super().__init__("\n".join(f"{path or '/'}: {detail}" for path, detail in self.errors.items()))
 
 
-def statement_of(problem: Problem) -> dict[str, Any]:
+def build_statement(problem: Problem) -> dict[str, Any]:
     """A problem as the JSON object that states it."""
     if isinstance(problem, ProblemBase):
         return {**json.loads(problem.model_dump_json(exclude_unset=True)), "kind": problem.kind}
     return dict(problem)
 
 
-def checked(problem: Problem) -> ProblemBase:
+def check_problem(problem: Problem) -> ProblemBase:
     """A problem that can be solved.
 
     Raises
@@ -40,18 +40,18 @@ def checked(problem: Problem) -> ProblemBase:
     InvalidProblem
         With what a service would say of it.
     """
-    statement = statement_of(problem)
+    statement = build_statement(problem)
     kind = statement.get("kind")
     if kind not in KINDS:
         raise InvalidProblem({"/kind": f"Kind must be given and be one of: {', '.join(KINDS)}."})
-    read, faults = well_formed(kind, statement)
-    faults = faults or consistent(read)
+    read, faults = check_fields(kind, statement)
+    faults = faults or check_consistency(read)
     if faults:
-        raise InvalidProblem(_by_path(faults))
+        raise InvalidProblem(_merge_by_path(faults))
     return cast(ProblemBase, read)
 
 
-def _by_path(faults: Faults) -> dict[str, str]:
+def _merge_by_path(faults: Faults) -> dict[str, str]:
     errors: dict[str, str] = {}
     for path, detail in faults:
         errors[path] = f"{errors[path]} {detail}" if path in errors else detail

@@ -14,7 +14,7 @@ MAX_STEP = 100
 """Longest name in a path, characters."""
 
 
-def sentence(text: str) -> str:
+def make_sentence(text: str) -> str:
     """A detail as a sentence: with a capital and a full stop.
 
     >>> sentence("equal to position 0")
@@ -23,7 +23,7 @@ def sentence(text: str) -> str:
     return f"{text[:1].upper()}{text[1:].rstrip('.')}."
 
 
-def pointer(location: Iterable[str | int]) -> str:
+def format_pointer(location: Iterable[str | int]) -> str:
     """The JSON pointer to a place that is given step by step; the empty string is the whole.
 
     A step is cut at :data:`MAX_STEP` characters: a name so long is no field's, and must not come back in full.
@@ -31,21 +31,21 @@ def pointer(location: Iterable[str | int]) -> str:
     return "".join("/" + str(step)[:MAX_STEP].replace("~", "~0").replace("/", "~1") for step in location)
 
 
-def place(fault: Mapping[str, Any], body: Any) -> str:
+def locate_fault(fault: Mapping[str, Any], body: Any) -> str:
     """The JSON pointer to where a fault of pydantic's lies in what was sent.
 
     Its location begins with the part of a request that it is in; in a body the pointer starts at the body itself.
     """
     location = tuple(fault["loc"])
     if location[:1] != ("body",):
-        return pointer(location)
+        return format_pointer(location)
     steps = select_given_steps(location[1:], body, fault["type"] == "missing")
     if fault["type"] == "unknown_kind" and isinstance(fault["input"], dict):
         steps.append("kind")
-    return pointer(steps)
+    return format_pointer(steps)
 
 
-def explained(fault: Mapping[str, Any]) -> str:
+def explain_fault(fault: Mapping[str, Any]) -> str:
     """What is wrong there, in a sentence."""
     if fault["type"] == "extra_forbidden":
         return "There is no such field; check its name."
@@ -56,4 +56,4 @@ def explained(fault: Mapping[str, Any]) -> str:
     unread = fault["type"] == "unknown_kind" and not isinstance(fault["input"], dict)
     if unread or fault["type"] in ("model_type", "model_attributes_type", "dict_type"):
         return "This must be an object."
-    return sentence(str(fault["msg"]).removeprefix("Value error, ").removeprefix("Assertion failed, "))
+    return make_sentence(str(fault["msg"]).removeprefix("Value error, ").removeprefix("Assertion failed, "))

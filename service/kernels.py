@@ -7,7 +7,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from typing import Protocol
 
-ANALYSIS = "analysis"
+ANALYSIS_PART = "analysis"
 """The part of the kernels that the server itself calls."""
 
 
@@ -43,11 +43,11 @@ class KernelsState:
         """Note how much there is to be and what is missing."""
         self.waiting, self._total = tuple(missing), total
 
-    def compiled(self, part: str) -> None:
+    def note_compiled(self, part: str) -> None:
         """Note that a part is there."""
         self.waiting = tuple(each for each in self.waiting if each != part)
 
-    def end(self) -> None:
+    def note_end(self) -> None:
         """Note that nobody compiles any more, for whatever reason."""
         self._ended.set()
 
@@ -57,7 +57,7 @@ class KernelsState:
         return None if self._total is None else Progress(self._total - len(self.waiting), self._total)
 
     @property
-    def ended(self) -> bool:
+    def is_ended(self) -> bool:
         """Whether nobody compiles any more, so that what is missing is compiled by whoever needs it."""
         return self._ended.is_set()
 

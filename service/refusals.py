@@ -11,7 +11,7 @@ from typing import Any
 
 from pydantic import ValidationError
 
-from service.error_messages import MAX_FAULTS, explained, place
+from service.error_messages import MAX_FAULTS, explain_fault, locate_fault
 from synthesis.model.counting import format_count
 
 FieldFaults = Sequence[tuple[str, str]]
@@ -58,28 +58,28 @@ def _restore_refusal(
     return Refusal(status, name, title, detail, errors=errors, headers=headers, defect=defect)
 
 
-def not_found(detail: str) -> Refusal:
+def refuse_not_found(detail: str) -> Refusal:
     """There is no such thing."""
     return Refusal(404, "not-found", "Not found", detail)
 
 
-def invalid_problem(errors: FieldFaults) -> Refusal:
+def refuse_invalid_problem(errors: FieldFaults) -> Refusal:
     """The problem is well-formed, but cannot be meant; ``errors`` are pairs of path and detail."""
     return Refusal(422, "invalid-problem", "Invalid problem", count_faults(len(errors)), errors=errors)
 
 
-def invalid_mechanism(errors: FieldFaults, *, defect: str | None = None) -> Refusal:
+def refuse_invalid_mechanism(errors: FieldFaults, *, defect: str | None = None) -> Refusal:
     """The mechanism is well-formed, but there is none such; ``errors`` are pairs of path and detail."""
     detail = count_faults(len(errors))
     return Refusal(422, "invalid-mechanism", "Invalid mechanism", detail, errors=errors, defect=defect)
 
 
-def invalid_request(errors: FieldFaults) -> Refusal:
+def refuse_invalid_request(errors: FieldFaults) -> Refusal:
     """Something else of the request cannot be meant; ``errors`` are pairs of path and detail."""
     return Refusal(422, "invalid-request", "Invalid request", count_faults(len(errors)), errors=errors)
 
 
-def invalid_body(error: ValidationError, body: Any) -> Refusal:
+def refuse_invalid_body(error: ValidationError, body: Any) -> Refusal:
     """The refusal of a body that is validated where it is used, not by the framework."""
     faults = error.errors(include_url=False, include_context=False)
     return refuse_faults([{**fault, "loc": ("body", *fault["loc"])} for fault in faults], body)
@@ -88,12 +88,12 @@ def invalid_body(error: ValidationError, body: Any) -> Refusal:
 def refuse_faults(faults: Sequence[Mapping[str, Any]], body: Any) -> Refusal:
     """Sort pydantic's faults into the refusal that names what they lie in: a problem, a mechanism, or the request."""
     # Several models that a part was tried as may say the same of it.
-    placed = list(dict.fromkeys((place(fault, body), explained(fault)) for fault in faults))
+    placed = list(dict.fromkeys((locate_fault(fault, body), explain_fault(fault)) for fault in faults))
     if all(path.startswith("/problem/") for path, _ in placed):
-        return invalid_problem(placed)
+        return refuse_invalid_problem(placed)
     if all(path.startswith("/mechanism/") for path, _ in placed):
-        return invalid_mechanism(placed)
-    return invalid_request(placed)
+        return refuse_invalid_mechanism(placed)
+    return refuse_invalid_request(placed)
 
 
 def count_faults(faults: int) -> str:
@@ -107,10 +107,10 @@ __all__ = [
     "FieldFaults",
     "Refusal",
     "count_faults",
-    "invalid_body",
-    "invalid_mechanism",
-    "invalid_problem",
-    "invalid_request",
-    "not_found",
+    "refuse_invalid_body",
+    "refuse_invalid_mechanism",
+    "refuse_invalid_problem",
+    "refuse_invalid_request",
+    "refuse_not_found",
     "refuse_faults",
 ]

@@ -9,23 +9,23 @@ from typing import Annotated, Literal, Self
 from pydantic import BeforeValidator, Field, SecretStr, ValidationError, field_validator, model_validator
 from pydantic_settings import BaseSettings, NoDecode, SettingsConfigDict
 
-PREFIX = "MECHSYNTH_"
+ENV_PREFIX = "MECHSYNTH_"
 
-BROKERS = ("amqp://", "amqps://", "redis://", "rediss://")
+BROKER_SCHEMES = ("amqp://", "amqps://", "redis://", "rediss://")
 
 
 class SettingsError(ValueError):
     """A setting has a value that cannot be used; the message is one line that names the variable."""
 
 
-def _listed(text: object) -> object:
+def _split_list(text: object) -> object:
     return tuple(part for given in text.split(",") if (part := given.strip())) if isinstance(text, str) else text
 
 
 class Settings(BaseSettings):
     """What an operator can change. Every field is an environment variable with the prefix ``MECHSYNTH_``."""
 
-    model_config = SettingsConfigDict(env_prefix=PREFIX, frozen=True, env_ignore_empty=True)
+    model_config = SettingsConfigDict(env_prefix=ENV_PREFIX, frozen=True, env_ignore_empty=True)
 
     host: str = Field(default="127.0.0.1", min_length=1, description="Address to listen on.")
     port: Annotated[int, Field(ge=0, le=65535, description="Port to listen on; 0 takes any free one.")] = 8000
@@ -81,7 +81,7 @@ class Settings(BaseSettings):
     cors_origins: Annotated[
         tuple[str, ...],
         NoDecode,
-        BeforeValidator(_listed),
+        BeforeValidator(_split_list),
         Field(description="Web origins that browsers may use the service from, separated by commas; * for any."),
     ] = ()
     log_level: Literal["debug", "info", "warning", "error"] = "info"
@@ -89,18 +89,18 @@ class Settings(BaseSettings):
 
     @field_validator("broker_url")
     @classmethod
-    def _broker(cls, url: SecretStr | None) -> SecretStr | None:
-        if url is not None and not url.get_secret_value().startswith(BROKERS):
-            raise ValueError(f"a broker's URL begins with {', '.join(BROKERS)}")
+    def _check_broker(cls, url: SecretStr | None) -> SecretStr | None:
+        if url is not None and not url.get_secret_value().startswith(BROKER_SCHEMES):
+            raise ValueError(f"a broker's URL begins with {', '.join(BROKER_SCHEMES)}")
         return url
 
     @model_validator(mode="after")
-    def _distributed(self) -> Self:
+    def _check_distributed(self) -> Self:
         if self.executor == "celery":
             if self.broker_url is None:
-                raise ValueError(f"{PREFIX}EXECUTOR=celery needs a broker; set {PREFIX}BROKER_URL")
+                raise ValueError(f"{ENV_PREFIX}EXECUTOR=celery needs a broker; set {ENV_PREFIX}BROKER_URL")
             if not self.store_url.startswith("postgres"):
-                raise ValueError(f"{PREFIX}EXECUTOR=celery needs PostgreSQL; set {PREFIX}DATABASE_URL")
+                raise ValueError(f"{ENV_PREFIX}EXECUTOR=celery needs PostgreSQL; set {ENV_PREFIX}DATABASE_URL")
         return self
 
     @property
@@ -126,7 +126,7 @@ def read_settings() -> Settings:
         return Settings()
     except ValidationError as error:
         faults = (
-            (f"{PREFIX}{str(e['loc'][0]).upper()}: " if e["loc"] else "") + e["msg"].removeprefix("Value error, ")
+            (f"{ENV_PREFIX}{str(e['loc'][0]).upper()}: " if e["loc"] else "") + e["msg"].removeprefix("Value error, ")
             for e in error.errors()
         )
         raise SettingsError("; ".join(faults)) from None

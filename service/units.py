@@ -18,7 +18,7 @@ _SI = {
 """What masses, loads and flywheels have, and nothing else."""
 
 
-def symbols(problem: ProblemBase) -> dict[Dimension, str]:
+def list_symbols(problem: ProblemBase) -> dict[Dimension, str]:
     """The symbol of each dimension in the units of a problem; forces and masses of inches are those of pounds-force."""
     length = problem.length_unit
     inches = length == "in"

@@ -24,7 +24,7 @@ def warm_up() -> None:
     parse_request({"mechanism": _SLIDER_CRANK, "motion": {"at": 30.0}, "dynamics": rubbing}).build_answer()
     fourbar = list_families()[0].request.build_example().model_dump(mode="json", exclude_unset=True)["mechanism"]
     for mechanism in (_SLIDER_CRANK, fourbar):
-        for block in (_LAYOUT, _TARGETS, _MADE):
+        for block in (_LAYOUT, _TARGETS, _MANUFACTURE):
             parse_request({"mechanism": mechanism, **block}).build_answer()
     parse_request({"mechanism": fourbar, **_TOPICS}).build_answer()
 
@@ -32,7 +32,7 @@ def warm_up() -> None:
 # Optional blocks, whose kernels nothing else here calls: a request that needs one must not wait for the compiler.
 _LAYOUT: dict[str, Any] = {"layout": {"link_width": 1.0, "pin_diameter": 0.4, "thickness": 0.3}}
 _TARGETS: dict[str, Any] = {"targets": [{"x": 1.0, "y": 2.0}, {"x": 2.0, "y": 3.0}]}
-_MADE: dict[str, Any] = {**_TARGETS, "manufacture": {"tolerances": {"length": 0.1}}}
+_MANUFACTURE: dict[str, Any] = {**_TARGETS, "manufacture": {"tolerances": {"length": 0.1}}}
 _TOPICS: dict[str, Any] = {"include": ["cognates", "centrodes", "curvature", "coupler_curve", "branches"]}
 
 _SLIDER_CRANK = {

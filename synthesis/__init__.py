@@ -1,8 +1,8 @@
 """Synthesis of mechanisms: solvers, verification and ranking.
 
 The entry points are :func:`parse_problem`, which parses a JSON-like statement into a problem, and :func:`solve`;
-docs/python.md has examples. Both are imported on first use, so that ``import synthesis`` costs nothing. The kinds of
-problems are folders of :mod:`synthesis.kinds`.
+docs/reference/python.md has examples. Both are imported on first use, so that ``import synthesis`` costs nothing. The
+kinds of problems are folders of :mod:`synthesis.kinds`.
 """
 
 from __future__ import annotations
@@ -17,6 +17,7 @@ __all__ = ["parse_problem", "solve"]
 
 
 def __getattr__(name: str) -> Any:
+    # Imported here, because the solvers load NumPy, SciPy and compiled kernels.
     if name == "parse_problem":
         from synthesis.registry import parse_problem
 

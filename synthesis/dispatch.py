@@ -55,7 +55,7 @@ def solve(problem: ProblemBase, progress: Progress | None = None) -> Result[Any]
 
     Parameters
     ----------
-    problem : StatedProblem
+    problem : ProblemBase
         A problem without contradictions.
     progress : callable, optional
         Progress callback.
@@ -63,13 +63,14 @@ def solve(problem: ProblemBase, progress: Progress | None = None) -> Result[Any]
     Raises
     ------
     ContradictionError
-        If ``problem.contradictions()`` is not empty.
+        If ``problem.find_contradictions()`` is not empty.
     """
     problem.require_consistent()
     told = _ignore_progress if progress is None else progress
     kind = KINDS[problem.kind]
     asked = widen_search(problem)
     result: Result[Any] = kind.solve(asked, scale_progress(told, 0.0, SEARCH_SHARE))
+    # Designs that fail a check are listed only on request and do not count as a result.
     if not any(design.verification.passed for design in result.designs):
         told(SEARCH_SHARE, "no design found; searching the nearest miss")
         rest = scale_progress(told, SEARCH_SHARE, 1.0)
@@ -81,6 +82,7 @@ def solve(problem: ProblemBase, progress: Progress | None = None) -> Result[Any]
             result = search_below_limits(problem, measured, lambda narrower: kind.solve(narrower, _ignore_progress))
         if problem.manufacture is not None and problem.manufacture.is_gridded:
             result = _round_designs(problem, result, kind)
+        # Practicality is judged in the default order, in which designs were searched.
         designs, remark = sort_usable_first(widen_search(problem), result.designs)
         if problem.rank_by in MAX_EXAMINED:
             result = rank_by_measure(problem, result.model_copy(update={"designs": designs}))
@@ -105,9 +107,11 @@ def _round_designs(problem: LinkageProblem, result: Result[Any], kind: Kind[Any,
     """Round designs to the grid; if they are ranked by a measured quantity, round only the best ones."""
     if problem.rank_by not in MAX_EXAMINED:
         return round_designs(problem, result, kind.nearly)
+    # Rounding is expensive, so round only as many designs as may be listed, plus spare ones without a neighbour.
     first = sort_by_measure(problem, result.designs)[: max(problem.max_designs, MAX_ROUNDED)]
     every = problem.model_copy(update={"max_designs": len(first) or 1})
     rounded = round_designs(every, result.model_copy(update={"designs": first}), kind.nearly)
+    # Rounding changes the design, so its measured quantity must be recomputed.
     return _measure_designs(problem, rounded, problem.rank_by)
 
 
@@ -121,6 +125,7 @@ def _apply_relaxation(
         return result.model_copy(update={"nearest_miss": miss, "summary": result.summary + reached})
     designs = found.sound[: problem.max_designs]
     count, search = len(designs), result.search
+    # These designs were found by another search, so the original one counts as incomplete.
     account = {"complete": False, "candidates": search.candidates + count, "accepted": count}
     those = f"{format_count(count, 'design')}, found by ignoring the constraints,"
     summary = f"{those} {choose_word(count, 'satisfies', 'satisfy')} them anyway."
@@ -147,8 +152,10 @@ def warm_up_rest() -> None:
     """
     waiting = [LINKAGES_PART, *KINDS]
     while waiting:
+        # A mark on disk shows that another process has compiled the kernels.
         for part in [part for part in waiting if is_compiled(part)]:
             load_linkages() if part == LINKAGES_PART else _load_kernels(part)
+            # The slice above is a copy, so removing from the list is safe.
             waiting.remove(part)
         if waiting:
             time.sleep(POLL_PERIOD_S)

@@ -111,13 +111,13 @@ def find_nearest_miss(
 
     Parameters
     ----------
-    problem : StatedProblem
+    problem : ProblemBase
         A consistent problem.
     kind : Kind
         Its kind, whose solver found no design; it declares by which strategies the task can be relaxed.
     progress : callable
         Progress callback.
-    allowance : Allowance, optional
+    allowance : SearchBudget, optional
         Time budget.
 
     Returns
@@ -130,6 +130,7 @@ def find_nearest_miss(
     purse = SearchBudget() if allowance is None else allowance
     search = purse.meter_search(kind.solve)
     onward = purse.meter_search(_continue_nothing if kind.nearer is None else kind.nearer)
+    # From the least to the most drastic relaxation; the first that gives designs ends the search.
     sound, misses = _relax_workspace(problem, search, scale_progress(progress, 0.0, 0.4))
     if not sound and not misses:
         sound, misses = _relax_constraints(problem, search, onward, scale_progress(progress, 0.0, 0.8), reachable)
@@ -146,6 +147,7 @@ def find_nearest_miss(
     progress(1.0, "verified")
     if not misses:
         return Relaxation([], None)
+    # Compare by the sum of relative gaps.
     nearest = min(misses, key=lambda miss: miss.distance)
     gaps = [
         Gap(check=check.name, value=check.value, limit=check.limit, dimension=check.dimension)
@@ -169,9 +171,11 @@ def _relax_workspace(problem: Any, solve: MeteredSearch, progress: Progress) -> 
     touching = space.model_copy(update={"clearance": 0.0})
     zoned = space.model_copy(update={"box": None, "obstacles": []})
     looser = [touching] if space.obstacles and space.clearance > 0.0 else []
+    # Without zones the next step would drop the whole workspace, so skip this one.
     looser += [zoned] if space.swept and zoned.has_constraints else []
     sound: list[Any] = []
     misses: list[_Miss] = []
+    # The last step drops the workspace altogether.
     for n, less in enumerate([*looser, None]):
         update = {"space": less, "include_failed": False, "max_designs": _limit_designs(problem)}
         span = scale_progress(progress, n / (len(looser) + 1), (n + 1) / (len(looser) + 1))
@@ -212,13 +216,16 @@ def _relax_constraints(
     misses: list[_Miss] = []
     exhaustive = searched = True
     for n, name in enumerate(stated):
+        # After the first, continue only while no design is near and another search fits the budget.
         if n and not (solve.fits and all(miss.distance > NEAR_GAP for miss in misses)):
             break
         span = scale_progress(progress, n / (len(stated) + 1), (n + 1) / (len(stated) + 1))
         relaxed = _solve_relaxed(problem, [name], solve, span)
         if relaxed.sound:
+            # A design found without the limit may satisfy it by chance.
             return relaxed.sound, []
         exhaustive &= relaxed.complete
+        # Continuation from known designs is faster than a new search, if the kind supports it.
         continued = _approach_limit(problem, relaxed.misses, nearer, nearer)
         searched = searched and continued is None
         reached = continued or []
@@ -229,6 +236,7 @@ def _relax_constraints(
             measure, best = REACHABLE_MEASURES[name]
             designs = [*relaxed.designs, *(miss.design for miss in reached)]
             reachable[name] = best([getattr(design.metrics, measure) for design in designs])
+    # No single constraint is the obstacle: drop all of them together.
     if not misses and not free and len(stated) > 1:
         relaxed = _solve_relaxed(problem, stated, solve, progress)
         return relaxed.sound, relaxed.misses
@@ -240,6 +248,7 @@ def _relax_constraints(
             name = CHECKED_CONSTRAINTS[miss.broken[0].name]
             if name in REACHABLE_MEASURES:
                 measure, best = REACHABLE_MEASURES[name]
+                # The best value reached counts, whether by dropping or by approaching the limit.
                 reachable[name] = best([reachable[name], getattr(miss.design.metrics, measure)])
         misses += reached
     return [], misses or free
@@ -255,6 +264,7 @@ def _relax_tolerance(
     misses = []
     for design in solve(problem.model_copy(update=update), progress).designs:
         error = abs(float(getattr(design.metrics, ratio.metric)))
+        # The exact check of the tolerance is done by the kind; here a float comparison suffices to skip it.
         if error <= problem.tolerance:
             continue
         broken = Check(name=ratio.check, passed=False, value=error, limit=problem.tolerance)
@@ -276,6 +286,7 @@ def _ease_task(
         return [], []
     reached, unreached = 0.0, 1.0
     misses: list[_Miss] = []
+    # Bisection in the share of the required dwell.
     for n in range(MAX_APPROACHES):
         if misses and not solve.fits:
             break
@@ -284,6 +295,7 @@ def _ease_task(
         span = scale_progress(progress, n / MAX_APPROACHES, (n + 1) / MAX_APPROACHES)
         eased = kind.easing.ease(problem, tried)
         found = solve(eased.model_copy(update=update), span).designs
+        # No design at all with this dwell: it is an upper bound.
         if not found:
             unreached = tried
             continue
@@ -315,6 +327,7 @@ def _list_constraints(problem: ProblemBase) -> list[str]:
     stated = [
         name
         for name in Constraints.model_fields
+        # Branch and order are part of a sound motion; without them a design would be useless.
         if name not in ("same_branch", "in_order") and getattr(constraints, name) != getattr(plain, name)
     ]
     return stated if _get_driver_zone(problem) is None else [*stated, DRIVER_PIVOT_REGION]
@@ -346,6 +359,7 @@ class _RelaxedResult(NamedTuple):
 
 def _solve_relaxed(problem: Any, left_out: Sequence[str], solve: MeteredSearch, progress: Progress) -> _RelaxedResult:
     """Solve the task without these constraints."""
+    # Order by the dropped quantity, so that designs close to its limit come first.
     rank_by = RANK_BY.get(left_out[0], "quality") if len(left_out) == 1 else problem.rank_by
     update = _drop_constraints(problem, left_out) | {
         "rank_by": rank_by,
@@ -374,7 +388,9 @@ def _approach_limit(
     Designs that violate nothing are returned, best first, if any are found. None if there is no such miss, or if
     ``further`` does not support the problem.
     """
+    # A design that violates several limits would need a search in several directions.
     single = sorted((miss for miss in misses if len(miss.broken) == 1), key=lambda miss: miss.distance)
+    # A class of linkage has no value to approach.
     if not single or single[0].broken[0].value is None or single[0].broken[0].limit is None:
         return None
     check = single[0].broken[0]
@@ -383,14 +399,17 @@ def _approach_limit(
     for step in range(MAX_APPROACHES):
         tried = 0.5 * (reached + unreached)
         eased = _replace_limit(problem, check.name, tried)
+        # Closer than this is not worth another search.
         near = abs(reached - unreached) <= LIMIT_ACCURACY * _choose_unit(check, at_hand[0].size)
         if eased is None or near or not spent.fits:
             break
         update = eased | {"include_failed": False, "max_designs": _limit_designs(problem)}
         found = further(problem.model_copy(update=update), [miss.design for miss in at_hand], _ignore_progress)
+        # None at the first step means that the kind cannot continue; later it means no design.
         if found is None and not step:
             return None
         verdicts = [check_constraints_of_design(problem, design) for design in found or ()]
+        # Accept only designs that improve on the nearest so far and violate no other limit.
         nearer = [miss for miss in verdicts if len(miss.broken) <= 1 and miss.distance < at_hand[0].distance]
         if nearer:
             at_hand = sorted(nearer, key=lambda miss: miss.distance)
@@ -421,6 +440,7 @@ def _replace_limit(problem: Any, check: str, limit: float) -> dict[str, Any] | N
         case "longest_link" if lengths is not None:
             update = {"link_length": lengths.model_copy(update={"max": limit})}
         case "fixed_pivot_region" | "moving_pivot_region":
+            # A zone is approached from outside: widen it by the tried distance.
             update = {check: getattr(constraints, check).widen(limit)}
         case name if name in FORCE_NAMES:
             update = {f"max_{name}": limit}
@@ -435,17 +455,20 @@ def _replace_limit(problem: Any, check: str, limit: float) -> dict[str, Any] | N
 def check_constraints_of_design(problem: Any, design: Any) -> _Miss:
     """Check a design of a relaxed problem against the original constraints, measured on the answer."""
     joints, ground = design.mechanism.skeleton.joints, _list_ground_joints(design)
+    # P and the driver's joints are not subject to the zones of the linkage's pivots.
     apart = {"P", *(DRIVER_JOINTS if _has_driver(problem) else ())}
     fixed = [complex(*joints[name]) for name in ground if name not in apart]
     moving = [complex(*place) for name, place in joints.items() if name not in {*ground, *apart}]
     measures: dict[str, Any] = {name: getattr(design.metrics, name, None) for name in Measures._fields}
     measures["lengths"] = list_link_lengths(design.mechanism)
+    # The motion itself has been verified already, in the kind's own checks.
     stated = problem.constraints.model_copy(update={"same_branch": False, "in_order": False})
     judged = check_constraints(stated, Measures(**measures), fixed, moving)
     zone = _get_driver_zone(problem)
     if zone is not None:
         judged.append(check_zone("driver_pivot_region", zone, [complex(*joints["O6"])]))
     names = {check.name for check in judged}
+    # Replace the checks of the relaxed constraints by those of the original ones.
     checks = [check for check in design.verification.checks if check.name not in names] + judged
     verified = design.model_copy(update={"verification": Verification.from_checks(checks)})
     if problem.constraints.force_limits:
@@ -460,6 +483,7 @@ def _list_ground_joints(design: Any) -> list[str]:
 
 def _compute_relative_gap(check: Check, size: float) -> float:
     """Return a gap as a share of its unit of measure."""
+    # A failed check without numbers counts as a whole limit.
     if check.value is None or check.limit is None:
         return UNMEASURED_GAP
     return abs(check.value - check.limit) / _choose_unit(check, size)
@@ -473,6 +497,7 @@ def _choose_unit(check: Check, size: float) -> float:
 def _measure_task(problem: Any) -> float:
     """Return the size of a task in length units; for a task without size, that of its zones."""
     size = getattr(problem, "task_size", None)
+    # Gears and functions have no size, but may have zones.
     if size is not None:
         return float(size)
     zones = problem.constraints.fixed_pivot_region, problem.constraints.moving_pivot_region

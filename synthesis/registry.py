@@ -1,6 +1,6 @@
 """Registry of all kinds of problems, collected from their folders, and the union of their statements.
 
-A new kind is one import and one entry here; see docs/adding-a-kind.md.
+A new kind is one import and one entry here; see docs/development/adding-a-kind.md.
 """
 
 from __future__ import annotations
@@ -62,12 +62,14 @@ KINDS: dict[str, Kind[Any, Any]] = {
 
 def _tag_kind(statement: Any) -> str | None:
     kind = statement.get("kind") if isinstance(statement, dict) else getattr(statement, "kind", None)
+    # Brackets keep the tag apart from field names in error locations.
     return f"<{kind}>" if isinstance(kind, str) and kind in KINDS else None
 
 
 if TYPE_CHECKING:
     Problem = ProblemBase
 else:
+    # Built from the registry, so that a new kind needs no change here; type checkers see the base class.
     _members = tuple(Annotated[kind.problem, Tag(f"<{name}>")] for name, kind in KINDS.items())
     Problem = Annotated[
         Union[_members],  # noqa: UP007  (made of a list)

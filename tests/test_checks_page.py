@@ -18,39 +18,43 @@ from synthesis.verification.checks import REACHES_TARGETS
 from synthesis.verification.workspace import WORKSPACE_CHECKS
 
 ROOT = Path(__file__).parents[1]
-PAGE = (ROOT / "docs" / "checks.md").read_text("utf-8")
+PAGE = (ROOT / "docs" / "reference" / "checks.md").read_text("utf-8")
 
-MAKERS = {"Check", "at_least", "at_most", "tolerated", "within_zone", "check"}
+MAKERS = {"Check", "check_minimum", "check_maximum", "check_error", "check_zone", "check"}
 """What makes a check: its name is the first argument, or is called so."""
 
 LIMITED = ("rate", "free_length", "preload", "min_length", "max_length", "max_force", "max_torque", "max_deflection")
 
 MADE_OF = {
-    ("kinds/balancing/verify_minimum.py", "f\"max_{level.name.replace(' ', '_')}\""): (
+    ("kinds/balancing/verification/minimum.py", "f\"max_{level.name.replace(' ', '_')}\""): (
         "max_shaking_force",
         "max_shaking_moment",
         "max_drive",
         "max_joint_<joint>",
     ),
-    ("kinds/cam/measured_rates.py", "f'peak_{name}'"): ("peak_velocity", "peak_acceleration", "peak_jerk"),
-    ("kinds/cam/measured_rates.py", "name"): ("meets_velocities", "meets_accelerations"),
-    ("kinds/cam/reproduction.py", "f'table_{dimension}'"): ("table_velocity", "table_acceleration", "table_jerk"),
-    ("kinds/cam/reproduction.py", "name"): (),
-    ("kinds/cam/verification.py", "name"): ("outer_wall_reproduces_program",),
+    ("kinds/cam/verification/rates.py", "f'peak_{name}'"): ("peak_velocity", "peak_acceleration", "peak_jerk"),
+    ("kinds/cam/verification/rates.py", "name"): ("meets_velocities", "meets_accelerations"),
+    ("kinds/cam/verification/reproduction.py", "f'table_{dimension}'"): (
+        "table_velocity",
+        "table_acceleration",
+        "table_jerk",
+    ),
+    ("kinds/cam/verification/reproduction.py", "name"): (),
+    ("kinds/cam/verification/verify.py", "name"): ("outer_wall_reproduces_program",),
     ("kinds/dwell/verification.py", "f'dwell_{rest.index + 1}'"): ("dwell_<n>",),
     ("kinds/dwell/verification.py", "f'dwell_{rest.index + 1}_at_end'"): ("dwell_<n>_at_end",),
     ("kinds/dwell/verification.py", "f'dwell_{rest.index + 1}_at_place'"): ("dwell_<n>_at_place",),
     ("kinds/gear_train/verification.py", "name"): ("contact_ratio", "tip_thickness"),
-    ("kinds/motion/checks.py", "name"): ("input_side", "output_side"),
+    ("kinds/motion/verification/checks.py", "name"): ("input_side", "output_side"),
     ("kinds/spring_balancing/verification.py", "name"): (*LIMITED, "extension", "compression"),
-    ("outcome/forces.py", "name"): FORCE_NAMES,
-    ("outcome/layout.py", "PLANES"): ("planes",),
-    ("outcome/manufacture.py", "YIELD"): ("yield",),
-    ("proof/checks.py", "REACHES_TARGETS"): (REACHES_TARGETS,),
-    ("proof/checks.py", "name"): (),
-    ("proof/constraints.py", "name"): ("fixed_pivot_region", "moving_pivot_region"),
-    ("proof/space.py", "ROOM[moving]"): WORKSPACE_CHECKS[:2],
-    ("relaxation.py", "name"): ("ratio", "ratio_error", "ratios", "speeds"),
+    ("results/forces.py", "name"): FORCE_NAMES,
+    ("results/layout.py", "PLANES"): ("planes",),
+    ("results/manufacture.py", "YIELD"): ("yield",),
+    ("verification/checks.py", "REACHES_TARGETS"): (REACHES_TARGETS,),
+    ("verification/checks.py", "name"): (),
+    ("verification/constraints.py", "name"): ("fixed_pivot_region", "moving_pivot_region"),
+    ("verification/workspace.py", "WORKSPACE_CHECKS[moving]"): WORKSPACE_CHECKS[:2],
+    ("nearest_miss.py", "ratio.check"): ("ratio", "ratio_error", "ratios", "speeds"),
 }
 """The names that are no literals where a check is made, by file and expression. Empty: names that others hand over."""
 

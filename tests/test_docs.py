@@ -33,7 +33,7 @@ LAST = re.compile(r"(?<![,\[{])\n(?=\")")
 """Where a field ends and the next begins without a comma between them, in a part of a statement."""
 
 
-@pytest.mark.parametrize(("page", "least"), [("python.md", 10), ("start.md", 8)])
+@pytest.mark.parametrize(("page", "least"), [("reference/python.md", 10), ("start/first-answer.md", 8)])
 def test_examples_run(page: str, least: int) -> None:
     outcome = doctest.testfile(str(ROOT / "docs" / page), module_relative=False)
     assert outcome.attempted >= least
@@ -91,7 +91,7 @@ def test_shell_examples_are_well_formed_and_post_what_the_service_takes(page: Pa
     for target in re.findall(r"^make ([\w-]+)", code, re.MULTILINE):
         assert re.search(rf"^{target}:", (ROOT / "Makefile").read_text("utf-8"), re.MULTILINE)
     for command in re.findall(r"(?:^| )mechsynth ([a-z]+)", code, re.MULTILINE):
-        assert f'add_parser("{command}"' in (ROOT / "service" / "cli.py").read_text("utf-8")
+        assert f'add_parser("{command}"' in (ROOT / "service" / "command" / "cli.py").read_text("utf-8")
     for body in re.findall(r"-d '\n(\{.*?\})'", code, re.DOTALL):
         parse_problem(json.loads(body)["problem"])
 

@@ -1,4 +1,4 @@
-"""The house is built as docs/adding-a-kind.md says, where the contracts in pyproject.toml cannot say it."""
+"""The house is built as docs/development/adding-a-kind.md says, where the contracts in pyproject.toml cannot say it."""
 
 from __future__ import annotations
 
@@ -162,7 +162,7 @@ def test_what_goes_over_all_kinds_names_none_in_a_string() -> None:
 
 
 def test_the_page_names_no_more_files_that_a_kind_edits_than_it_may_take() -> None:
-    page = (ROOT / "docs" / "adding-a-kind.md").read_text("utf-8")
+    page = (ROOT / "docs" / "development" / "adding-a-kind.md").read_text("utf-8")
     table = page.split("## What is edited elsewhere")[1].split("\n\n")[1]
     rows = re.findall(r"^\| `([^`]+)` \|[^|]*\|([^|]*)\|([^|]*)\|$", table, re.MULTILINE)
     assert all((ROOT / file).is_file() for file, *_ in rows)

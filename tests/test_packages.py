@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 ROOT = Path(__file__).parents[1]
-CONTAINER = ROOT / "docs" / "deploy" / "Dockerfile"
+CONTAINER = ROOT / "docs" / "operations" / "deploy" / "Dockerfile"
 PIN = re.compile(r"^([a-z0-9-]+)==(\S+)([^\n]*?) \\\n((?:    --hash=sha256:[0-9a-f]{64}(?: \\)?\n)+)", re.MULTILINE)
 FOR_DEVELOPERS = {"pytest", "mypy", "ruff", "hypothesis", "playwright", "schemathesis", "import-linter", "uv"}
 FOR_THE_SITE = {"mkdocs", "mkdocs-material", "mkdocstrings-python", "nbclient", "ipykernel"}

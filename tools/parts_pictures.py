@@ -1,4 +1,4 @@
-"""Draws the assemblies of ``docs/parts.md`` anew: ``python -m tools.parts_pictures``, seconds.
+"""Draws the assemblies of ``docs/mechanisms/parts.md`` anew: ``python -m tools.parts_pictures``, seconds.
 
 Each is a design of a problem that is stated here, made as a request would have it.
 """
@@ -16,7 +16,7 @@ from service.parts.registry import make_parts
 from synthesis.dispatch import solve
 from synthesis.registry import parse_problem
 
-DOCS = Path(__file__).parents[1] / "docs"
+DOCS = Path(__file__).parents[1] / "docs" / "images"
 
 PLACES = [(0.0, 0.0, 0.0), (40.0, 15.0, -25.0), (75.0, 5.0, -60.0)]
 FOURBAR: dict[str, Any] = {

@@ -34,7 +34,7 @@ def join_bodies(bodies: Iterable[Body]) -> Body:
     --------
     Two masses of 1 at a distance of 2:
 
-    >>> float(joined([body(1.0, 0j), body(1.0, 2 + 0j)]).inertia)
+    >>> float(join_bodies([make_body(1.0, 0j), make_body(1.0, 2 + 0j)]).inertia)
     2.0
     """
     parts = list(bodies)

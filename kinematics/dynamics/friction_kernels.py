@@ -48,6 +48,16 @@ POWER_STEPS = 30
 
 
 @njit(**OPTIONS)
+def _subtract_frictions(free: Real, answers: Real, y: Real, solution: Real) -> None:
+    """Write the solution with friction: that without it, less the answers to the frictions y."""
+    for row in range(len(free)):
+        total = free[row]
+        for e in range(len(y)):
+            total -= answers[e, row] * y[e]
+        solution[row] = total
+
+
+@njit(**OPTIONS)
 def solve_friction(
     terms: Integers,
     coefficients: Real,
@@ -116,11 +126,7 @@ def solve_friction(
         jammed[at] = not found
         if not found:
             continue
-        for row in range(n):
-            total = free[row]
-            for e in range(contacts):
-                total -= answers[e, row] * y[e]
-            solutions[at, row] = total
+        _subtract_frictions(free, answers, y, solutions[at])
         frictions[:, at] = y
 
 

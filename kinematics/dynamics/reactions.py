@@ -84,27 +84,17 @@ def collect_efforts(machine: Machine, now: Places) -> list[Effort]:
     return efforts
 
 
-def compute_reactions(machine: Machine, now: Places, *, minimum_norm: bool = False) -> Reactions:
-    """Compute all reactions of a machine at the positions of a motion.
+def _solve_machine(machine: Machine, now: Places, system: System, known: Real) -> tuple[_Solution, list[Real]]:
+    """Solve the equations of all positions.
 
-    With redundant constraints the joint forces that are not determined are NaN or, with ``minimum_norm``, those of the
-    smallest sum of squares (:mod:`redundancy`).
-
-    Raises
-    ------
-    TopologyError
-        For friction with redundant constraints: it would depend on forces that are not unique.
+    Returns
+    -------
+    outcome : _Solution
+        The solution, NaN where the equations are singular.
+    open_forces : list of array
+        Self-stresses of a machine with redundant constraints.
     """
-    mechanism, system = machine.mechanism, build_system(machine.mechanism)
-    shape = now.smooth.shape
-    size = now.size
-    # Loads on pins are collected per joint, since the hub carries them.
-    efforts = collect_efforts(machine, now)
-    on_pins: dict[str, Complex] = {joint: np.zeros(shape, np.complex128) for joint in mechanism.joints}
-    for effort in efforts:
-        if effort.joint:
-            on_pins[effort.joint] = on_pins[effort.joint] + effort.force
-    known = _build_right_sides(machine, now, system, efforts, on_pins, size)
+    mechanism, shape, size = machine.mechanism, now.smooth.shape, now.size
     slides = len(mechanism.slides)
     along = [now.direction(n)[0] for n in range(slides)]
     directions = np.stack([*(1j * line for line in along), _get_input_direction(now), *along]).reshape(
@@ -119,6 +109,7 @@ def compute_reactions(machine: Machine, now: Places, *, minimum_norm: bool = Fal
     jammed, stick = np.zeros(len(known), np.bool_), np.zeros(shape, np.bool_)
     frictions = np.empty((0, len(known)))
     equations = system.terms, system.coefficients, system.bases
+    state = joints, directions, known, posed, solutions, conditions
     contacts = list_contacts(mechanism, system, machine.friction)
     open_forces: list[Real] = []
     if machine.mechanism.redundant:
@@ -133,22 +124,9 @@ def compute_reactions(machine: Machine, now: Places, *, minimum_norm: bool = Fal
         stick = np.logical_or.reduce([np.broadcast_to(is_still(c, now), shape) for c in contacts])
         frictions = np.empty(factors.shape)
         wrench = build_wrenches(contacts, mechanism, system, slides + 1)
-        solve_friction(
-            *equations,
-            *wrench,
-            columns,
-            factors,
-            joints,
-            directions,
-            known,
-            posed,
-            solutions,
-            conditions,
-            frictions,
-            jammed,
-        )
+        solve_friction(*equations, *wrench, columns, factors, *state, frictions, jammed)
     else:
-        kernels.solve_positions(*equations, joints, directions, known, posed, solutions, conditions)
+        kernels.solve_positions(*equations, *state)
     # "not <" also marks NaN and infinite condition numbers.
     singular = ~(conditions < MAX_CONDITION)
     solutions[singular], frictions[:, singular], jammed[singular] = np.nan, np.nan, False
@@ -164,6 +142,30 @@ def compute_reactions(machine: Machine, now: Places, *, minimum_norm: bool = Fal
         np.asarray(jammed.reshape(shape)),
         rubbing,
     )
+    return outcome, open_forces
+
+
+def compute_reactions(machine: Machine, now: Places, *, minimum_norm: bool = False) -> Reactions:
+    """Compute all reactions of a machine at the positions of a motion.
+
+    With redundant constraints the joint forces that are not determined are NaN or, with ``minimum_norm``, those of the
+    smallest sum of squares (:mod:`redundancy`).
+
+    Raises
+    ------
+    TopologyError
+        For friction with redundant constraints: it would depend on forces that are not unique.
+    """
+    mechanism, system = machine.mechanism, build_system(machine.mechanism)
+    shape, size = now.smooth.shape, now.size
+    # Loads on pins are collected per joint, since the hub carries them.
+    efforts = collect_efforts(machine, now)
+    on_pins: dict[str, Complex] = {joint: np.zeros(shape, np.complex128) for joint in mechanism.joints}
+    for effort in efforts:
+        if effort.joint:
+            on_pins[effort.joint] = on_pins[effort.joint] + effort.force
+    known = _build_right_sides(machine, now, system, efforts, on_pins, size)
+    outcome, open_forces = _solve_machine(machine, now, system, known)
     found = _assemble_reactions(machine, now, system, efforts, on_pins, outcome, size)
     if not machine.mechanism.redundant:
         return found

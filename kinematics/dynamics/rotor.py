@@ -37,7 +37,7 @@ def compute_plane_corrections(moments: Complex, z: Real, planes: Real) -> Comple
     Norton, Example 12-1, kg·m:
 
     >>> masses = np.array([1.2 * 1.135, 1.8 * 0.822]) * np.exp(1j * np.radians([113.4, 48.8]))
-    >>> added = plane_corrections(masses, np.zeros(2), np.zeros(1))
+    >>> added = compute_plane_corrections(masses, np.zeros(2), np.zeros(1))
     >>> round(float(abs(added[0])), 3), round(float(np.degrees(np.angle(added[0]))) % 360.0, 1)
     (2.403, 259.6)
     """

@@ -44,7 +44,7 @@ def compute_acceleration_harmonics(ratio: float, order: int, *, two_term: bool =
 
     Examples
     --------
-    >>> round(acceleration_harmonics(1.0 / 3.5, 4)[2], 10)
+    >>> round(compute_acceleration_harmonics(1.0 / 3.5, 4)[2], 10)
     0.2917795398
     """
     found = {1: 1.0}

@@ -52,7 +52,7 @@ def compute_corner_rounding(pressure_angle: float, dedendum: float) -> float:
 def compute_straight_depth(pressure_angle: float, dedendum: float) -> float:
     """Compute the depth below its reference line that the rack's straight flank reaches, modules.
 
-    >>> round(straight_depth(math.radians(20.0), 1.25), 4)
+    >>> round(compute_straight_depth(math.radians(20.0), 1.25), 4)
     1.0
     """
     return dedendum - compute_corner_rounding(pressure_angle, dedendum) * (1.0 - math.sin(pressure_angle))

@@ -52,7 +52,7 @@ def list_spindle_speeds(input_speed: Fraction | int, stages: Sequence[Sequence[t
     Rao, Solved Problem 8.8.
 
     >>> box = [[(24, 96), (80, 40)], [(30, 60), (45, 45), (60, 30)]]
-    >>> [int(found.speed) for found in spindle_speeds(200, box)]
+    >>> [int(found.speed) for found in list_spindle_speeds(200, box)]
     [25, 50, 100, 200, 400, 800]
     """
     for pairs in stages:

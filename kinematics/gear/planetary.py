@@ -141,7 +141,7 @@ def solve_speeds(train: Train, known: Mapping[str, Fraction | int], locked: Iter
     Norton, Example 9-5: sun 40, planet 20, ring 80; arm at −200 rpm, sun at −100 rpm.
 
     >>> train = Train((Mesh("sun", "planet", "arm", 40, 20), Mesh("planet", "ring", "arm", 20, 80, INTERNAL)))
-    >>> speeds(train, {"arm": -200, "sun": -100}).values["ring"]
+    >>> solve_speeds(train, {"arm": -200, "sun": -100}).values["ring"]
     Fraction(-250, 1)
     """
     bodies = train.bodies

@@ -123,10 +123,10 @@ def solve_power_flow(
     --------
     Rao, Solved Problem 8.10: stepped planet, annulus held, 100 N m on the carrier.
 
-    >>> from kinematics.gear.planetary import INTERNAL, Train, Mesh, speeds
+    >>> from kinematics.gear.planetary import INTERNAL, Train, Mesh, solve_speeds
     >>> train = Train((Mesh("A", "p", "C", 52, 15), Mesh("p", "B", "C", 25, 92, INTERNAL)), frozenset({"p"}))
-    >>> found = speeds(train, {"C": 200, "B": 0}).values
-    >>> round(float(power_flow(train, found, {"A", "B", "C"}, {"C": 100}).torques["A"]), 1)
+    >>> found = solve_speeds(train, {"C": 200, "B": 0}).values
+    >>> round(float(solve_power_flow(train, found, {"A", "B", "C"}, {"C": 100}).torques["A"]), 1)
     -48.5
     """
     shares = _check_efficiencies(train, efficiency)

@@ -357,7 +357,7 @@ class Mesh:
 def compute_min_teeth(pressure_angle: float = PRESSURE_ANGLE, addendum: float = FULL_DEPTH_ADDENDUM) -> int:
     """Compute the minimum teeth that mesh with a rack, and so with every gear: z ≥ 2 k / sin² φ (Norton, eq. 9.8).
 
-    >>> [least_teeth_with_rack(math.radians(angle)) for angle in (14.5, 20.0, 25.0)]
+    >>> [compute_min_teeth(math.radians(angle)) for angle in (14.5, 20.0, 25.0)]
     [32, 18, 12]
     """
     return _round_up(2.0 * addendum / math.sin(pressure_angle) ** 2)

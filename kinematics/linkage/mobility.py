@@ -28,7 +28,7 @@ def compute_mobility(links: int, full_joints: int, half_joints: int = 0, grounde
 
     Examples
     --------
-    >>> mobility(links=4, full_joints=4)
+    >>> compute_mobility(links=4, full_joints=4)
     1
     """
     counts = {"links": links, "full_joints": full_joints, "half_joints": half_joints, "grounded": grounded}

@@ -1,1 +1,1 @@
-"""Who may ask: keys, the tenants that they stand for, and how often they may ask."""
+"""Access control: API keys, their tenants, and rate limits."""

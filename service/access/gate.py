@@ -1,7 +1,7 @@
-"""The gate: which tenant a request is for, and whether it has come too often.
+"""The gate: finds the tenant of a request and enforces the rate limit.
 
-Without keys the service is open, to this machine only (see :mod:`service.server.run`), and every request is for the
-tenant :data:`ANYBODY`. From the first key on each request needs one.
+Without keys the service is open to this machine only (see :mod:`service.server.run`), and every request belongs to the
+tenant :data:`ANYBODY`. Once the first key exists, each request needs a key.
 """
 
 from __future__ import annotations
@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING
 
 from starlette.concurrency import run_in_threadpool
 
-from service.access.keys import Key, KeyStore, digest
+from service.access.keys import Key, KeyStore, hash_key
 
 if TYPE_CHECKING:
     from limits import RateLimitItem
@@ -24,20 +24,20 @@ ANYBODY = ""
 """The tenant of all requests to a service without keys."""
 
 FRESH_S = 1.0
-"""How long the list of keys is taken for granted: so soon does a new key open and a revoked one close."""
+"""Time for which the list of keys is cached, seconds; new and revoked keys take effect after it."""
 
 
 @dataclass(frozen=True, slots=True)
 class Allowance:
-    """How much a key may still ask: requests left, seconds until they are all there again, and the rule."""
+    """Remaining requests of a key, seconds until all are available again, and the rule."""
 
     left: int
     reset_s: int
     limit: int
     window_s: int
 
-    def headers(self) -> dict[str, str]:
-        """``RateLimit`` and ``RateLimit-Policy`` (draft-ietf-httpapi-ratelimit-headers)."""
+    def format_headers(self) -> dict[str, str]:
+        """Return the headers ``RateLimit`` and ``RateLimit-Policy`` (draft-ietf-httpapi-ratelimit-headers)."""
         return {
             "RateLimit": f'"key";r={self.left};t={self.reset_s}',
             "RateLimit-Policy": f'"key";q={self.limit};w={self.window_s}',
@@ -45,7 +45,7 @@ class Allowance:
 
 
 class NoKey(Exception):
-    """The request needs a key and has none, or one that is not in force."""
+    """The request needs a key and has none, or an invalid one."""
 
     def __init__(self, given: bool) -> None:
         self.given = given
@@ -53,7 +53,7 @@ class NoKey(Exception):
 
 
 class TooOften(Exception):
-    """The key has been used up for now."""
+    """The key has reached its rate limit."""
 
     def __init__(self, allowance: Allowance) -> None:
         self.allowance = allowance
@@ -61,7 +61,7 @@ class TooOften(Exception):
 
 
 class Gate:
-    """Lets requests in, each for a tenant. To be used on one event loop only."""
+    """Admits requests, each for a tenant. For use on one event loop only."""
 
     def __init__(self, keys: KeyStore, rate_limit: str | None) -> None:
         self._keys = keys
@@ -72,17 +72,17 @@ class Gate:
         self._limiter: tuple[SlidingWindowCounterRateLimiter, RateLimitItem] | None = None
 
     async def admit(self, key: str | None) -> tuple[str, Allowance | None]:
-        """The tenant of a request that came with ``key``, and what the key has left.
+        """Return the tenant of a request with ``key``, and the allowance left to the key.
 
         Raises
         ------
         NoKey, TooOften
-            When the request is not let in.
+            If the request is not admitted.
         """
         await self._refresh()
         if self._holders is None:
             return ANYBODY, None
-        holder = None if key is None else self._holders.get(digest(key))
+        holder = None if key is None else self._holders.get(hash_key(key))
         if holder is None:
             raise NoKey(given=key is not None)
         if self._limiter is None:
@@ -101,7 +101,7 @@ class Gate:
         return holder.tenant, allowance
 
     async def is_open(self) -> bool:
-        """Whether there are no keys, so that requests need none."""
+        """Return whether no keys exist, so that requests need none."""
         await self._refresh()
         return self._holders is None
 
@@ -112,14 +112,14 @@ class Gate:
             if time.monotonic() - self._read_at < FRESH_S:
                 return
             began = time.monotonic()
-            self._holders = await run_in_threadpool(self._keys.holders)
+            self._holders = await run_in_threadpool(self._keys.load_holders)
             if self._holders is not None and self._limiter is None and self._rate_limit is not None:
-                # Its import takes a while, which a service without keys has no use for.
-                self._limiter = await run_in_threadpool(_limiter, self._rate_limit)
+                # In a thread and on demand: the import takes a while, and a service without keys does not need it.
+                self._limiter = await run_in_threadpool(_create_limiter, self._rate_limit)
             self._read_at = began
 
 
-def _limiter(rate_limit: str) -> tuple[SlidingWindowCounterRateLimiter, RateLimitItem]:
+def _create_limiter(rate_limit: str) -> tuple[SlidingWindowCounterRateLimiter, RateLimitItem]:
     from limits import parse
     from limits.aio.storage import MemoryStorage
     from limits.aio.strategies import SlidingWindowCounterRateLimiter

@@ -1,10 +1,10 @@
-"""The API keys: who holds which, made, listed and revoked.
+"""API keys and their tenants.
 
-Words: a *tenant* owns jobs and sees only its own; a *key* is a secret that stands for a tenant, who may hold several. A
-key is shown once, when it is made; the store has its hash. It is 256 random bits, which nobody can guess, so a plain
-SHA-256 is enough to keep it secret; the slow hashes for passwords are for secrets that people have thought of.
+Words: a *tenant* owns jobs and sees only its own; a *key* is a secret that identifies a tenant, who may have several. A
+key is shown once, when it is created; the store has its hash. A key has 256 random bits and cannot be guessed, so a
+plain SHA-256 protects it; slow password hashes are for secrets chosen by people.
 
-A revoked key stays in the store. So a service that has ever had a key never becomes open again by revoking.
+A revoked key stays in the store, so a service that has ever had a key does not become open again by revoking it.
 """
 
 from __future__ import annotations
@@ -16,16 +16,16 @@ from dataclasses import dataclass, fields
 from sqlalchemy import Column, Engine, Index, String, Table, insert, inspect, select, update
 from ulid import ULID
 
-from service.jobs.store.schema import TENANT_LENGTH, metadata, now
+from service.jobs.store.schema import MAX_TENANT_LENGTH, format_now, metadata
 
-PREFIX = "mechsynth_"
-"""What every key begins with, so that one that has got somewhere by mistake is recognized."""
+KEY_PREFIX = "mechsynth_"
+"""First characters of every key, by which a leaked key can be recognized."""
 
 api_keys = Table(
     "api_keys",
     metadata,
     Column("id", String(26), primary_key=True),
-    Column("tenant", String(TENANT_LENGTH), nullable=False),
+    Column("tenant", String(MAX_TENANT_LENGTH), nullable=False),
     Column("hash", String(64), nullable=False),
     Column("created_at", String(27), nullable=False),
     Column("revoked_at", String(27)),
@@ -34,12 +34,12 @@ api_keys = Table(
 
 
 class TenantExists(Exception):
-    """A new tenant was to be made, and there is one of this name."""
+    """A tenant with this name already exists."""
 
 
 @dataclass(frozen=True, slots=True)
 class Key:
-    """A key as it is known to the store: never the key itself."""
+    """A key as the store knows it, without the secret."""
 
     id: str
     tenant: str
@@ -47,11 +47,11 @@ class Key:
     revoked_at: str | None
 
 
-_KEY = [api_keys.c[field.name] for field in fields(Key)]
+_KEY_COLUMNS = [api_keys.c[field.name] for field in fields(Key)]
 
 
-def digest(key: str) -> str:
-    """What the store keeps of a key."""
+def hash_key(key: str) -> str:
+    """Return the hash of a key that the store keeps."""
     return hashlib.sha256(key.encode("utf-8", "surrogateescape")).hexdigest()
 
 
@@ -62,49 +62,49 @@ class KeyStore:
         self._engine = engine
 
     def create(self, tenant: str, *, further: bool = False) -> tuple[Key, str]:
-        """Make a key for a new tenant, or a further one for a tenant that there is.
+        """Create a key for a new tenant, or with ``further`` another key for an existing tenant.
 
         Returns
         -------
         tuple
-            The key as stored, and the secret, which can be had now and never again.
+            The key as stored, and the secret, which cannot be retrieved later.
 
         Raises
         ------
         TenantExists
-            When the tenant has, or has had, a key, and ``further`` is false.
+            If the tenant has, or has had, a key and ``further`` is false.
         """
-        secret = PREFIX + secrets.token_urlsafe(32)
-        key = Key(id=str(ULID()), tenant=tenant, created_at=now(), revoked_at=None)
+        secret = KEY_PREFIX + secrets.token_urlsafe(32)
+        key = Key(id=str(ULID()), tenant=tenant, created_at=format_now(), revoked_at=None)
         with self._engine.begin() as connection:
             known = connection.execute(select(api_keys.c.id).where(api_keys.c.tenant == tenant).limit(1)).first()
             if known is not None and not further:
                 raise TenantExists(tenant)
             row = {field.name: getattr(key, field.name) for field in fields(Key)}
-            connection.execute(insert(api_keys).values(**row, hash=digest(secret)))
+            connection.execute(insert(api_keys).values(**row, hash=hash_key(secret)))
         return key, secret
 
-    def all(self) -> list[Key]:
-        """All keys, oldest first, revoked ones too."""
+    def list_keys(self) -> list[Key]:
+        """Return all keys, revoked ones included, oldest first."""
         with self._engine.connect() as connection:
-            return [Key(*row) for row in connection.execute(select(*_KEY).order_by(api_keys.c.id))]
+            return [Key(*row) for row in connection.execute(select(*_KEY_COLUMNS).order_by(api_keys.c.id))]
 
     def revoke(self, key_id: str) -> bool:
-        """Make a key useless; False when there is none of this id that was of use."""
+        """Revoke a key; return False if no valid key has this id."""
         change = update(api_keys).where(api_keys.c.id == key_id, api_keys.c.revoked_at.is_(None))
         with self._engine.begin() as connection:
-            return bool(connection.execute(change.values(revoked_at=now())).rowcount)
+            return bool(connection.execute(change.values(revoked_at=format_now())).rowcount)
 
-    def holders(self) -> dict[str, Key] | None:
-        """The keys in force by their hashes; None when no key has ever been made."""
+    def load_holders(self) -> dict[str, Key] | None:
+        """Return the valid keys by their hashes; None if no key has ever been created."""
         with self._engine.connect() as connection:
-            rows = connection.execute(select(api_keys.c.hash, *_KEY)).all()
+            rows = connection.execute(select(api_keys.c.hash, *_KEY_COLUMNS)).all()
         if not rows:
             return None
         return {row[0]: key for row in rows if (key := Key(*row[1:])).revoked_at is None}
 
-    def any(self) -> bool:
-        """Whether a key has ever been made; also of a store that has no tables yet."""
+    def has_keys(self) -> bool:
+        """Return whether a key has ever been created; False for a store without tables."""
         if not inspect(self._engine).has_table(api_keys.name):
             return False
         with self._engine.connect() as connection:

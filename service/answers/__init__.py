@@ -1,1 +1,1 @@
-"""What requests are answered with that takes the analysis core or a drawing library, and who computes it."""
+"""Answers to requests that need the analysis core or a drawing library, and the processes that compute them."""

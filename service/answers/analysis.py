@@ -1,4 +1,4 @@
-"""The analysis of a given mechanism, from the body of a request to the JSON of its answer."""
+"""Analysis of a given mechanism, from the request body to the JSON answer."""
 
 from __future__ import annotations
 
@@ -8,12 +8,12 @@ from pydantic import ValidationError
 from pydantic_core import to_json
 
 from service.answers.numerical import refuse_numerical_errors
-from service.error_messages import sentence
-from service.refusals import invalid_body, invalid_mechanism, invalid_request
+from service.error_messages import make_sentence
+from service.refusals import refuse_invalid_body, refuse_invalid_mechanism, refuse_invalid_request
 
 
 def analyse(body: Any) -> bytes:
-    """Analyse the mechanism that a body states.
+    """Analyse the mechanism in a request body.
 
     Raises
     ------
@@ -29,16 +29,16 @@ def analyse(body: Any) -> bytes:
         try:
             request = parse_request(body)
         except ValidationError as error:
-            raise invalid_body(error, body) from None
+            raise refuse_invalid_body(error, body) from None
         contradictions = request.find_errors()
         if contradictions:
-            raise invalid_request([(path, sentence(detail)) for path, detail in contradictions])
+            raise refuse_invalid_request([(path, make_sentence(detail)) for path, detail in contradictions])
         try:
             answer = request.build_answer()
         except BudgetError as error:
-            raise invalid_request([(error.path, sentence(error.detail))]) from None
+            raise refuse_invalid_request([(error.path, make_sentence(error.detail))]) from None
         except MechanismError as error:
-            raise invalid_mechanism([(f"/mechanism{error.path}", sentence(error.detail))]) from None
+            raise refuse_invalid_mechanism([(f"/mechanism{error.path}", make_sentence(error.detail))]) from None
         except kinematics.MechanismError as error:
-            raise invalid_mechanism([("/mechanism", sentence(str(error)))]) from None
+            raise refuse_invalid_mechanism([("/mechanism", make_sentence(str(error)))]) from None
         return to_json(answer, inf_nan_mode="null")

@@ -1,55 +1,56 @@
-"""A design of a solved job as a file, and in motion."""
+"""Files and motion of a design of a solved job."""
 
 from __future__ import annotations
 
 from pydantic import ValidationError
 from pydantic_core import from_json, to_json
 
-from service.answers.job_result import SolvedJob, design_index
+from service.answers.job_result import SolvedJob, parse_design_index
 from service.answers.numerical import refuse_numerical_errors
-from service.refusals import Refusal, not_found
+from service.refusals import Refusal, refuse_not_found
 from service.render import Form
 
 
 def draw_design(job: SolvedJob, number: str, form: Form) -> str | bytes:
-    """The file of design ``number`` in a form.
+    """Return the file of design ``number`` in a format.
 
     Raises
     ------
     Refusal
-        404 where there is no such design or file of it, 409 where it is of a size that is not drawn.
+        404 if there is no such design or file, 409 if the size of the design is beyond the range for drawings.
     """
     from service import render
 
-    designs = job.answer().designs
-    n = design_index(number, len(designs))
-    problem = job.statement()
+    designs = job.load_result().designs
+    n = parse_design_index(number, len(designs))
+    problem = job.load_problem()
     try:
         return render.export_design(designs[n], problem, render.make_heading(problem, job.label, n), form)
     except render.NoSuchExport:
-        raise not_found(f"There is no .{form} file of this type of mechanism.") from None
+        raise refuse_not_found(f"This type of mechanism has no .{form} file.") from None
     except render.NotBuilt:
-        raise Refusal(409, "no-drawing", "No drawing", "This design is of a size that is not drawn.") from None
+        raise Refusal(409, "no-drawing", "No drawing", "The size of this design is beyond the range for drawings.") from None
 
 
 def move_design(result: str, number: str, steps: int) -> bytes:
-    """The motion of design ``number`` of a stored result, in JSON.
+    """Return the motion of design ``number`` of a stored result as JSON.
 
     Raises
     ------
     Refusal
-        404 where there is no such design, 409 where it is no mechanism that the analysis core would be given.
+        404 if there is no such design, 409 if the analysis core does not accept its mechanism.
     """
     from kinematics import errors as kinematics
     from synthesis.analyses import get_family
     from synthesis.mechanisms import MechanismError
 
     designs = from_json(result)["designs"]
-    mechanism = designs[design_index(number, len(designs))]["mechanism"]
+    mechanism = designs[parse_design_index(number, len(designs))]["mechanism"]
     with refuse_numerical_errors("/mechanism"):
         try:
             answer = get_family(mechanism).request.analyze_cycle(mechanism, steps)
         except (ValidationError, MechanismError, kinematics.MechanismError):
-            # A design for lengths at the end of what can be stated may itself lie beyond that.
-            raise Refusal(409, "no-motion", "No motion", "This design is of a size that is not analysed.") from None
+            # A design for a problem with lengths near the permitted limits may exceed these limits itself.
+            detail = "The size of this design is beyond the range for analyses."
+            raise Refusal(409, "no-motion", "No motion", detail) from None
         return to_json(answer, inf_nan_mode="null")

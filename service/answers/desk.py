@@ -1,4 +1,4 @@
-"""Who has analyses and drawings made for requests: two pools of processes, forked from one that is warmed up."""
+"""The answer desk: analyses and drawings for requests, by two pools of processes forked from a warmed-up one."""
 
 from __future__ import annotations
 
@@ -12,45 +12,45 @@ from collections.abc import Awaitable, Callable, Mapping
 from typing import Any
 
 from service.answers import process
-from service.jobs.processes.parent_death import tell_children
+from service.jobs.processes.parent_death import export_parent_pid
 from service.jobs.processes.request_pool import Busy, Limits, PoolMetrics, RequestPool
 from service.observability.logs import Format
 
-TEMPLATE = "service.answers.template"
-"""The module that the process has imported that others are forked from."""
+TEMPLATE_MODULE = "service.answers.template"
+"""Module imported by the process from which the others are forked."""
 
 CPU_S = 4.0
-"""Processor time of an analysis at most, seconds. No honest one has been seen to take half of that."""
+"""Maximum processor time of an analysis, seconds; at least twice that of any legitimate analysis seen so far."""
 
 SHORT_S = 0.25
-"""Processor time after which a call is long: nine in ten analyses take less than a tenth of it."""
+"""Processor time after which a call is long, seconds; nine in ten analyses take less than a tenth of it."""
 
 WALL_S = 60.0
-"""How long an analysis may take by the clock, on however busy a machine."""
+"""Maximum duration of an analysis, seconds, generous for a busy machine."""
 
 WAIT_S = 10.0
-"""How long an analysis waits for its turn: it takes milliseconds where not all processes are busy."""
+"""Time that an analysis waits for its turn, seconds; milliseconds suffice unless all processes are busy."""
 
 LOAD_WAIT_S = 45.0
-"""How long an analysis waits for the core to be loaded: five seconds on a quiet machine, once."""
+"""Time that an analysis waits for the core to be loaded, seconds; it takes five seconds, once, on an idle machine."""
 
 DRAWING_CPU_S, DRAWING_WALL_S = 30.0, 60.0
-"""The same of drawings, animations, reports and simulations; a report shows twenty designs in full."""
+"""The same limits for drawings, animations, reports and simulations; a report shows up to 20 designs in full."""
 
 MEMORY_MB = 768
-"""Memory of a call beyond what its idle process has, MiB."""
+"""Memory of a call beyond that of its idle process, MiB."""
 
 HANDS, MAX_LONG = 4, 2
-"""Analyses, or drawings, that run at once, and long ones of these."""
+"""Maximum numbers of concurrent analyses, and of long ones among them."""
 
 _PERIOD_S = 0.02
-"""Period at which it is looked whether the template may be loaded, which tells nobody."""
+"""Period of the check whether the template may be loaded, seconds; no event announces it."""
 
 
 class AnswerDesk:
-    """Has functions of :mod:`service.answers` called. To be used on one event loop only.
+    """Executes functions of :mod:`service.answers` in processes. For use on one event loop only.
 
-    The kernels of the analysis core may have to be compiled first; until then analyses wait.
+    The kernels of the analysis core may have to be compiled first; analyses wait for that.
     """
 
     def __init__(self, log_level: str, log_format: Format, metrics: PoolMetrics | None = None) -> None:
@@ -67,7 +67,7 @@ class AnswerDesk:
         )  # fmt: skip
 
     def start(self, after: Callable[[], bool]) -> None:
-        """Load the template once ``after`` says so, when its kernels have been compiled or must be; returns at once."""
+        """Load the template once ``after`` returns true: its kernels are compiled, or must be now. Return at once."""
         threading.Thread(target=self._load, args=(after,), name="answers", daemon=True).start()
 
     def stop(self) -> None:
@@ -78,22 +78,22 @@ class AnswerDesk:
 
     @property
     def is_awaited(self) -> bool:
-        """Whether somebody waits for the core to be loaded."""
+        """Whether a request waits for the core to be loaded."""
         return self._asked > 0
 
     @property
-    def loaded(self) -> bool:
-        """Whether analyses are begun at once."""
+    def is_loaded(self) -> bool:
+        """Whether the core is loaded, so that analyses start at once."""
         return self._loaded.is_set()
 
-    def counts(self) -> Mapping[str, Mapping[str, int]]:
-        """Calls by pool and state, for the metrics."""
-        return {pool.name: pool.counts() for pool in (self._analyses, self._drawings)}
+    def count_calls(self) -> Mapping[str, Mapping[str, int]]:
+        """Return the number of calls by pool and state, for the metrics."""
+        return {pool.name: pool.count_calls() for pool in (self._analyses, self._drawings)}
 
     async def analyse(
         self, gone: Callable[[], Awaitable[bool]], tenant: str, work: Callable[..., Any], *args: Any
     ) -> Any:
-        """Call a function that answers with an analysis.
+        """Call a function that returns an analysis.
 
         Raises
         ------
@@ -104,7 +104,7 @@ class AnswerDesk:
         return await self._analyses.call(gone, tenant, work, *args)
 
     async def draw(self, gone: Callable[[], Awaitable[bool]], tenant: str, work: Callable[..., Any], *args: Any) -> Any:
-        """Call a function that draws, reports or exports; errors as of :meth:`analyse`."""
+        """Call a function that draws, reports or exports; errors as for :meth:`analyse`."""
         return await self._drawings.call(gone, tenant, work, *args)
 
     async def _wait_until_loaded(self) -> None:
@@ -122,14 +122,14 @@ class AnswerDesk:
         while not after():
             if self._stopping.wait(_PERIOD_S):
                 return
-        tell_children()
-        multiprocessing.set_forkserver_preload([TEMPLATE])
-        # The first process is there when the template is loaded; the others follow within a tenth of a second.
+        export_parent_pid()
+        multiprocessing.set_forkserver_preload([TEMPLATE_MODULE])
+        # The first process returns when the template is loaded; later ones start within a tenth of a second.
         context = multiprocessing.get_context("forkserver")
         first = context.Process(target=os.getpid, name="answers", daemon=True)
         first.start()
         first.join()
-        # All that is imported by now stays; see service.server.web.
+        # All objects imported so far stay alive; see service.server.web.
         gc.freeze()
         if not self._stopping.is_set():
             self._loaded.set()

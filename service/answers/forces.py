@@ -1,4 +1,4 @@
-"""The forces of a design of a solved job, with the loads of its problem or with those that a body states."""
+"""Forces in a design of a solved job, with the loads of its problem or of a request body."""
 
 from __future__ import annotations
 
@@ -7,14 +7,14 @@ from typing import Any
 from pydantic import ValidationError
 from pydantic_core import to_json
 
-from service.answers.job_result import SolvedJob, design_index
+from service.answers.job_result import SolvedJob, parse_design_index
 from service.answers.numerical import refuse_numerical_errors
-from service.error_messages import sentence
-from service.refusals import Refusal, invalid_body, invalid_request
+from service.error_messages import make_sentence
+from service.refusals import Refusal, refuse_invalid_body, refuse_invalid_request
 
 
-def forces_of_design(job: SolvedJob, number: str, steps: int, body: Any) -> bytes:
-    """The forces of a design, in JSON; by the problem's own block where ``body`` is None.
+def compute_design_forces(job: SolvedJob, number: str, steps: int, body: Any) -> bytes:
+    """Return the forces in a design as JSON; if ``body`` is None, with the problem's own block.
 
     Raises
     ------
@@ -22,49 +22,49 @@ def forces_of_design(job: SolvedJob, number: str, steps: int, body: Any) -> byte
         404, 409 or 422.
     """
     with refuse_numerical_errors("/dynamics"):
-        return _forces(job, number, steps, body)
+        return _compute_forces(job, number, steps, body)
 
 
-def _forces(job: SolvedJob, number: str, steps: int, body: Any) -> bytes:
+def _compute_forces(job: SolvedJob, number: str, steps: int, body: Any) -> bytes:
     from synthesis.model.dynamics.request import DesignForcesRequest
     from synthesis.model.linkage.problem import LinkageProblem
     from synthesis.results.forces import ForcesUnknownError, compute_forces_over_motion
 
-    designs = job.answer().designs
-    design = designs[design_index(number, len(designs))]
-    problem = job.statement()
+    designs = job.load_result().designs
+    design = designs[parse_design_index(number, len(designs))]
+    problem = job.load_problem()
     if body is None and getattr(design, "dynamics", None):
-        return to_json(_with_its_own(problem, design, steps), inf_nan_mode="null")
+        return to_json(_compute_own_forces(problem, design, steps), inf_nan_mode="null")
     if not isinstance(problem, LinkageProblem):
-        raise _no_forces("Only linkages have forces in their joints.")
+        raise _refuse_forces("Joint forces are available for linkages only.")
     if body is None:
         if problem.dynamics is None:
-            raise _no_forces("The problem states no dynamics; post a block of your own.")
+            raise _refuse_forces("The problem has no `dynamics`; post your own block.")
         stated: Any = problem.dynamics
     else:
         try:
             stated = DesignForcesRequest.model_validate(body).dynamics
             stated.fill_from_layout(problem.layout)
         except ValidationError as error:
-            raise invalid_body(error, body) from None
+            raise refuse_invalid_body(error, body) from None
     try:
         return to_json(compute_forces_over_motion(stated, design, problem.length_unit, steps), inf_nan_mode="null")
     except ForcesUnknownError as error:
         if body is None or not error.path:
-            raise _no_forces(sentence(str(error))) from None
-        raise invalid_request([(error.path, sentence(error.detail))]) from None
+            raise _refuse_forces(make_sentence(str(error))) from None
+        raise refuse_invalid_request([(error.path, make_sentence(error.detail))]) from None
 
 
-def _with_its_own(problem: Any, design: Any, steps: int) -> dict[str, Any]:
-    """The forces of a design that has a block of its own, over the motion that its problem states."""
+def _compute_own_forces(problem: Any, design: Any, steps: int) -> dict[str, Any]:
+    """Return the forces in a design with its own block, over the motion given in its problem."""
     from synthesis.analyses import parse_request
 
     motion = problem.motion.model_copy(update={"steps": steps}).model_dump(exclude_unset=True, by_alias=True)
     if "speed_rpm" not in motion:
-        motion["speed"] = problem.motion.rate  # that of the kind, where none is stated
+        motion["speed"] = problem.motion.rate  # the default of the kind
     stated = {"mechanism": design.mechanism.model_dump(), "motion": motion, "dynamics": design.dynamics}
     return parse_request({**stated, "length_unit": problem.length_unit}).build_answer()
 
 
-def _no_forces(detail: str) -> Refusal:
+def _refuse_forces(detail: str) -> Refusal:
     return Refusal(409, "no-forces", "No forces", detail)

@@ -1,4 +1,4 @@
-"""A solved job as the processes that answer requests get it, and its designs by their numbers."""
+"""A solved job in the form for the processes that answer requests, and the numbers of its designs."""
 
 from __future__ import annotations
 
@@ -6,8 +6,8 @@ import re
 from dataclasses import dataclass
 from typing import Any
 
-from service.refusals import not_found
-from service.requests import read
+from service.refusals import refuse_not_found
+from service.requests import load_stored_problem
 from synthesis.registry import KINDS
 
 _DESIGN_NUMBER = re.compile("[0-9]{1,4}")
@@ -15,7 +15,7 @@ _DESIGN_NUMBER = re.compile("[0-9]{1,4}")
 
 @dataclass(frozen=True, slots=True)
 class SolvedJob:
-    """What is asked of a job that has a result; ``problem`` and ``result`` are JSON text, as they are stored."""
+    """The fields of a job with a result; ``problem`` and ``result`` are JSON text as stored."""
 
     id: str
     kind: str
@@ -25,23 +25,23 @@ class SolvedJob:
     problem: str
     result: str
 
-    def statement(self) -> Any:
-        """The problem."""
-        return read(self.kind, self.problem)
+    def load_problem(self) -> Any:
+        """Parse the problem."""
+        return load_stored_problem(self.kind, self.problem)
 
-    def answer(self) -> Any:
-        """The result of the kind, with its designs."""
+    def load_result(self) -> Any:
+        """Parse the result, with its designs."""
         return KINDS[self.kind].result.model_validate_json(self.result)
 
 
-def design_index(number: str, designs: int) -> int:
-    """The index that a path states of so many designs.
+def parse_design_index(number: str, designs: int) -> int:
+    """Parse the design number in a path; ``designs`` is the number of designs.
 
     Raises
     ------
     Refusal
-        404 where it is none.
+        404 if there is no such design.
     """
     if not _DESIGN_NUMBER.fullmatch(number) or int(number) >= designs:
-        raise not_found(f"The job has {designs} designs, counted from 0; this is none of them.")
+        raise refuse_not_found(f"The job has {designs} designs, counted from 0; this is none of them.")
     return int(number)

@@ -1,7 +1,7 @@
-"""Numerical errors that escape from an analysis: refused at the boundary, and counted as defects.
+"""Numerical errors that escape from an analysis: refused at the boundary and counted as defects.
 
-An input that leads a computation astray is a fault of the service's own, since it should have been refused by its
-field. The client still gets an answer that says where, and the operator the trace.
+An input that breaks a computation is a defect of the service, since the validation of its field should have refused it.
+The client still gets an answer with the place, and the log has the traceback for the operator.
 """
 
 from __future__ import annotations
@@ -11,10 +11,10 @@ from contextlib import contextmanager
 
 import structlog
 
-from service.refusals import Refusal, invalid_mechanism
+from service.refusals import Refusal, refuse_invalid_mechanism
 
 NUMERICAL_ERRORS = (ArithmeticError, ValueError, IndexError)
-"""What numerical libraries raise on numbers that they cannot take; ``LinAlgError`` is a ``ValueError``."""
+"""Errors of numerical libraries for numbers they cannot handle; ``LinAlgError`` is a ``ValueError``."""
 
 log = structlog.get_logger(__name__)
 
@@ -26,7 +26,7 @@ def refuse_numerical_errors(path: str = "/mechanism") -> Iterator[None]:
     Raises
     ------
     Refusal
-        422, marked as a defect. Refusals from inside pass as they are.
+        422, marked as a defect. Refusals from inside pass unchanged.
     """
     try:
         yield
@@ -34,5 +34,5 @@ def refuse_numerical_errors(path: str = "/mechanism") -> Iterator[None]:
         raise
     except NUMERICAL_ERRORS as error:
         log.exception("a numerical error has escaped", error=type(error).__name__)
-        detail = "These numbers cannot be computed with; are all sizes, angles and counts meant so?"
-        raise invalid_mechanism([(path, detail)], defect=type(error).__name__) from None
+        detail = "The computation failed for these numbers; check all sizes, angles and counts."
+        raise refuse_invalid_mechanism([(path, detail)], defect=type(error).__name__) from None

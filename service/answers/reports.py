@@ -1,4 +1,4 @@
-"""A solved job as one page for paper."""
+"""The printable report of a solved job."""
 
 from __future__ import annotations
 
@@ -8,14 +8,14 @@ from service.answers.job_result import SolvedJob
 
 
 def report_job(job: SolvedJob, most: int, built: dict[int, str]) -> tuple[str, str]:
-    """The page, with ``most`` designs in full, and the policy that it goes out with.
+    """Return the page, with at most ``most`` designs in full, and its content security policy.
 
     Parameters
     ----------
     built : dict
-        By the number of a design: its assembly as SVG, or why there is none.
+        Assembly of each design by number: an SVG, or the reason why there is none.
     """
     from service.render.report import POLICY, ReportedJob, report
 
     occasion = ReportedJob(job.id, job.kind, job.label, job.created_at, job.finished_at, version("mechsynth"))
-    return report(job.statement(), job.answer(), occasion, most, built), POLICY
+    return report(job.load_problem(), job.load_result(), occasion, most, built), POLICY

@@ -10,11 +10,11 @@ import gc
 import os
 
 from service.jobs.processes.limits import use_one_thread
-from service.jobs.processes.parent_death import forget_parent
+from service.jobs.processes.parent_death import clear_parent_pid
 
 use_one_thread()
 # Forked processes are children of this one, not of the server that started this one.
-forget_parent()
+clear_parent_pid()
 
 
 def _load() -> None:

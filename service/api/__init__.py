@@ -1,1 +1,1 @@
-"""How the service speaks HTTP: thin endpoints over :mod:`service.jobs`, and one manner of saying what went wrong."""
+"""The HTTP API: thin endpoints over :mod:`service.jobs`, with one format for all errors."""

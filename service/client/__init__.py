@@ -1,12 +1,12 @@
-"""Clients of the service for Python programs: one that waits, and one for programs on an event loop.
+"""Clients of the service for Python programs: a synchronous one, and one for event loops.
 
 >>> with Client("http://127.0.0.1:8000") as client:  # doctest: +SKIP
 ...     job = client.solve({"kind": "motion", "positions": [...]})
 ...     drawing = client.file(job.id, 0, "svg")
 
-They need httpx and nothing of the service. Problems and results are plain JSON objects, as the reference describes
-them; jobs and events are values. What can be sent again safely is sent again when the connection or the service fails
-for a moment: a problem goes with an ``Idempotency-Key``, so that it makes one job however often it is sent.
+They need only httpx and no other part of the service. Problems and results are plain JSON objects as described in the
+API reference; jobs and events are value objects. Requests that can be repeated safely are repeated if the connection or
+the service fails temporarily: a problem is sent with an ``Idempotency-Key``, so that it creates only one job.
 """
 
 from service.client.asynchronous import AsyncClient

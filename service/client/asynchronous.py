@@ -1,4 +1,4 @@
-"""The client for programs on an event loop: many jobs are waited for at once, in one thread."""
+"""The client for event loops: one thread can wait for many jobs at once."""
 
 from __future__ import annotations
 
@@ -11,12 +11,12 @@ from typing import Any, Self
 import httpx
 
 from service.client import exchange
-from service.client.exchange import Attempts, Following, Request
+from service.client.exchange import Attempts, EventReader, Request
 from service.client.values import ClientError, Job, JobSummary, Progress, Refused
 
 
 class AsyncClient:
-    """Talks to one service, over one pool of connections; what it does is what :class:`Client` does.
+    """Talks to one service over one pool of connections, with the methods of :class:`Client`.
 
     Parameters
     ----------
@@ -25,7 +25,7 @@ class AsyncClient:
     """
 
     def __init__(self, url: str, key: str | None = None, *, timeout_s: float = 60.0) -> None:
-        self._http = httpx.AsyncClient(**exchange.settings(url, key, timeout_s))
+        self._http = httpx.AsyncClient(**exchange.build_pool_settings(url, key, timeout_s))
 
     async def __aenter__(self) -> Self:
         return self
@@ -40,42 +40,42 @@ class AsyncClient:
         await self._http.aclose()
 
     async def submit(self, problem: Mapping[str, Any], *, label: str | None = None, wait_s: int = 0) -> Job:
-        """Have a problem solved; waits ``wait_s`` seconds (30 at most) for the end of the job."""
-        return exchange.shown_job(await self._asked(exchange.submission(problem, label, wait_s)))
+        """Submit a problem; wait at most ``wait_s`` seconds (up to 30) for the end of the job."""
+        return exchange.parse_job(await self._send_request(exchange.build_submission(problem, label, wait_s)))
 
     async def job(self, job_id: str) -> Job:
-        """The job as it stands."""
-        return exchange.shown_job(await self._asked(exchange.showing(job_id)))
+        """Return the present state of the job."""
+        return exchange.parse_job(await self._send_request(exchange.build_job_request(job_id)))
 
     async def delete(self, job_id: str) -> None:
         """Cancel an unfinished job, or remove a finished one."""
-        await self._asked(exchange.removal(job_id))
+        await self._send_request(exchange.build_removal(job_id))
 
     async def follow(self, job_id: str) -> AsyncIterator[JobSummary | Progress]:
-        """What happens to a job, as it happens, to its final state; see :meth:`Client.follow`."""
-        following = Following(job_id, self._http.base_url)
+        """Yield the events of a job until its final state; see :meth:`Client.follow`."""
+        following = EventReader(job_id, self._http.base_url)
         while not following.ended:
             fault: Refused | httpx.TransportError | None = None
             try:
-                async with self._http.stream("GET", following.path, **following.request()) as answer:
-                    if not following.opened(answer) and not following.ended:
+                async with self._http.stream("GET", following.path, **following.build_request()) as answer:
+                    if not following.check_opened(answer) and not following.ended:
                         await answer.aread()
-                        raise exchange.refusal(answer)
+                        raise exchange.build_refusal(answer)
                     async for line in answer.aiter_lines():
-                        if (news := following.heard(line)) is not None:
+                        if (news := following.parse_line(line)) is not None:
                             yield news
                         if following.ended:
                             return
             except (Refused, httpx.TransportError) as error:
                 fault = error
             if not following.ended:
-                await asyncio.sleep(following.broken(fault))
+                await asyncio.sleep(following.handle_break(fault))
 
     async def wait(self, job_id: str, progress: Callable[[Progress], None] | None = None) -> Job:
-        """Wait until the job has ended; tells how far it is by ``progress``."""
+        """Wait until the job has ended; report its progress to ``progress``."""
         async for news in self.follow(job_id):
             if progress is not None:
-                progress(exchange.progress_in(news))
+                progress(exchange.extract_progress(news))
         return await self.job(job_id)
 
     async def solve(
@@ -85,12 +85,12 @@ class AsyncClient:
         label: str | None = None,
         progress: Callable[[Progress], None] | None = None,
     ) -> Job:
-        """Have a problem solved, and wait for its result. Whoever cancels this task cancels the job.
+        """Solve a problem and wait for its result. Cancelling this task cancels the job.
 
         Raises
         ------
         JobFailed
-            When the job ends without a result. That no design exists is a result.
+            If the job ends without a result. An answer without designs is a result.
         """
         job = await self.submit(problem, label=label)
         try:
@@ -98,29 +98,29 @@ class AsyncClient:
         except ClientError:
             raise
         except BaseException:
-            with suppress(ClientError, RuntimeError):  # the latter of connections that are closed already
+            with suppress(ClientError, RuntimeError):  # RuntimeError if the connections are already closed
                 await self.delete(job.id)
             raise
         return job.with_result()
 
     async def file(self, job_id: str, design: int, form: str) -> bytes | None:
-        """A drawing or table of a design (``svg``, ``dxf``, ``csv``, ...); None where its mechanism has none such."""
+        """Return a file of a design (``svg``, ``dxf``, ``csv``, ...); None if its type of mechanism has no such file."""
         try:
-            return (await self._asked(exchange.file_of(job_id, design, form))).content
+            return (await self._send_request(exchange.build_file_request(job_id, design, form))).content
         except Refused as refusal:
             if refusal.status == 404:
                 return None
             raise
 
-    async def _asked(self, request: Request) -> httpx.Response:
+    async def _send_request(self, request: Request) -> httpx.Response:
         attempts = Attempts(self._http.base_url)
         while True:
             try:
                 answer = await self._http.request(request.method, request.path, **request.more)
             except httpx.TransportError as error:
-                pause = attempts.unanswered(error)
+                pause = attempts.handle_silence(error)
             else:
                 if answer.is_success:
                     return answer
-                pause = attempts.refused(answer)
+                pause = attempts.handle_refusal(answer)
             await asyncio.sleep(pause)

@@ -1,4 +1,4 @@
-"""How a client speaks with the service, whoever does the reading and waiting: requests, attempts and events."""
+"""The protocol of the clients without input and output: requests, attempts and events."""
 
 from __future__ import annotations
 
@@ -9,86 +9,86 @@ from typing import Any, NamedTuple
 
 import httpx
 
-from service.client.values import Job, JobSummary, Json, Progress, Refused, Unreachable, job_of, summary_of
+from service.client.values import Job, JobSummary, Json, Progress, Refused, Unreachable, build_job, build_summary
 
-ATTEMPTS = 4
-"""How often a request is sent in all before it is given up."""
+MAX_ATTEMPTS = 4
+"""Maximum number of attempts of a request."""
 
-RESUMPTIONS = 8
-"""How often in a row a broken stream is resumed: for a minute, which a service may take to start again."""
+MAX_RESUMPTIONS = 8
+"""Maximum number of consecutive resumptions of a broken stream: about a minute, enough for a restart of the service."""
 
-LONGEST_PAUSE_S = 30.0
+MAX_PAUSE_S = 30.0
 
-SILENCE = httpx.Timeout(60.0)
-"""The service breaks the silence of a stream every 15 seconds."""
+STREAM_TIMEOUT = httpx.Timeout(60.0)
+"""Timeout of a stream, on which the service sends at least a comment every 15 seconds."""
 
-_TEMPORARY = (429, 502, 503, 504)
+_TEMPORARY_STATUSES = (429, 502, 503, 504)
 
 
 class Request(NamedTuple):
-    """What is sent: a method, a path and what httpx takes besides."""
+    """A request: method, path and further arguments for httpx."""
 
     method: str
     path: str
     more: Mapping[str, Any] = {}
 
 
-def settings(url: str, key: str | None, timeout_s: float) -> dict[str, Any]:
-    """What a pool of connections to one service is made with."""
+def build_pool_settings(url: str, key: str | None, timeout_s: float) -> dict[str, Any]:
+    """Return the arguments of httpx for a pool of connections to one service."""
     headers = {} if key is None else {"Authorization": f"Bearer {key}"}
     return {"base_url": url, "headers": headers, "timeout": timeout_s}
 
 
-def submission(problem: Mapping[str, Any], label: str | None, wait_s: int) -> Request:
-    """A problem to be solved; the answer may be waited for, for 30 seconds at most."""
+def build_submission(problem: Mapping[str, Any], label: str | None, wait_s: int) -> Request:
+    """Build the request that submits a problem and waits at most ``wait_s`` (up to 30) seconds for its end."""
     body = {"problem": dict(problem), **({} if label is None else {"label": label})}
     headers = {"Idempotency-Key": uuid.uuid4().hex, **({"Prefer": f"wait={wait_s}"} if wait_s > 0 else {})}
     return Request("POST", "/v1/jobs", {"json": body, "headers": headers})
 
 
-def showing(job_id: str) -> Request:
-    """The job as it stands."""
+def build_job_request(job_id: str) -> Request:
+    """Build the request for the present state of a job."""
     return Request("GET", f"/v1/jobs/{job_id}")
 
 
-def removal(job_id: str) -> Request:
-    """Cancels an unfinished job, removes a finished one."""
+def build_removal(job_id: str) -> Request:
+    """Build the request that cancels an unfinished job or removes a finished one."""
     return Request("DELETE", f"/v1/jobs/{job_id}")
 
 
-def file_of(job_id: str, design: int, form: str) -> Request:
-    """A file of a design."""
+def build_file_request(job_id: str, design: int, form: str) -> Request:
+    """Build the request for a file of a design."""
     return Request("GET", f"/v1/jobs/{job_id}/designs/{design}.{form}")
 
 
-def shown_job(answer: httpx.Response) -> Job:
-    """The job in an answer."""
-    return job_of(answer.json())
+def parse_job(answer: httpx.Response) -> Job:
+    """Parse the job in an answer."""
+    return build_job(answer.json())
 
 
 class Attempts:
-    """How often one request was sent, and when it is sent again."""
+    """The attempts of one request, and the pauses between them."""
 
     def __init__(self, url: object) -> None:
         self._url, self._made = url, 0
 
-    def refused(self, answer: httpx.Response) -> float:
-        """Seconds to the next attempt after an answer that is none; raises where there is no next one."""
+    def handle_refusal(self, answer: httpx.Response) -> float:
+        """Return the seconds until the next attempt after an error answer; raise if there is no next attempt."""
         self._made += 1
-        if answer.status_code not in _TEMPORARY or self._made >= ATTEMPTS:
-            raise refusal(answer)
-        return _pause_s(self._made, answer.headers.get("retry-after"))
+        if answer.status_code not in _TEMPORARY_STATUSES or self._made >= MAX_ATTEMPTS:
+            raise build_refusal(answer)
+        return _compute_pause_s(self._made, answer.headers.get("retry-after"))
 
-    def unanswered(self, error: httpx.TransportError) -> float:
-        """The same where there was no answer."""
+    def handle_silence(self, error: httpx.TransportError) -> float:
+        """Return the seconds until the next attempt after a missing answer; raise if there is no next attempt."""
         self._made += 1
-        if self._made >= ATTEMPTS:
-            raise _unreachable(self._url, error) from None
-        return _pause_s(self._made, None)
+        if self._made >= MAX_ATTEMPTS:
+            raise _build_unreachable(self._url, error) from None
+        return _compute_pause_s(self._made, None)
 
 
-class Following:
-    """Where a reader of a job's events stands: what was heard last, and how often the stream has broken since."""
+class EventReader:
+    """State of a reader of a job's events: the last event received, and the failures of the stream since."""
 
     def __init__(self, job_id: str, url: object) -> None:
         self.path = f"/v1/jobs/{job_id}/events"
@@ -99,18 +99,18 @@ class Following:
         self._name, self._data = "message", ""
         self._id: str | None = None
 
-    def request(self) -> dict[str, Any]:
-        """What the stream is asked for with: from where on."""
+    def build_request(self) -> dict[str, Any]:
+        """Return the arguments of the request for the stream, with the event after which it resumes."""
         self._name, self._data, self._id = "message", "", None
-        return {"headers": {} if self._last is None else {"Last-Event-ID": self._last}, "timeout": SILENCE}
+        return {"headers": {} if self._last is None else {"Last-Event-ID": self._last}, "timeout": STREAM_TIMEOUT}
 
-    def opened(self, answer: httpx.Response) -> bool:
-        """Whether there is a stream to be read; there is none after the last event."""
+    def check_opened(self, answer: httpx.Response) -> bool:
+        """Return whether the answer is a stream; after the last event there is none (204)."""
         self.ended = answer.status_code == 204
         return answer.status_code == 200
 
-    def heard(self, line: str) -> JobSummary | Progress | None:
-        """What a line of the stream completes; comments, and events of other names, are passed over."""
+    def parse_line(self, line: str) -> JobSummary | Progress | None:
+        """Process a line of the stream and return the event that it completes; ignore comments and unknown events."""
         field, _, value = line.partition(":")
         value = value.removeprefix(" ")
         match field:
@@ -124,37 +124,39 @@ class Following:
                 name, data, event_id = self._name, json.loads(self._data), self._id
                 self._name, self._data, self._id = "message", "", None
                 self._last, self._failures = event_id or self._last, 0
-                return self._told(name, data)
+                return self._parse_event(name, data)
         return None
 
-    def _told(self, name: str, data: Json) -> JobSummary | Progress | None:
+    def _parse_event(self, name: str, data: Json) -> JobSummary | Progress | None:
         if name == "removed":
             raise Refused(404, {"detail": "The job was removed."})
         if name == "progress":
             return Progress(**data)
         if name != "state":
             return None
-        job = summary_of(data)
+        job = build_summary(data)
         self.ended = job.finished
         return job
 
-    def broken(self, fault: Refused | httpx.TransportError | None) -> float:
-        """Seconds until the stream is resumed, not to storm a service that has just come up; raises where it is not."""
-        if isinstance(fault, Refused) and (fault.status not in _TEMPORARY or self._failures >= RESUMPTIONS):
+    def handle_break(self, fault: Refused | httpx.TransportError | None) -> float:
+        """Return the seconds until the stream is resumed, which spare a restarting service; raise after the last try."""
+        if isinstance(fault, Refused) and (
+            fault.status not in _TEMPORARY_STATUSES or self._failures >= MAX_RESUMPTIONS
+        ):
             raise fault
-        if isinstance(fault, httpx.TransportError) and self._failures >= RESUMPTIONS:
-            raise _unreachable(self._url, fault) from None
+        if isinstance(fault, httpx.TransportError) and self._failures >= MAX_RESUMPTIONS:
+            raise _build_unreachable(self._url, fault) from None
         self._failures += 1
-        return _pause_s(self._failures, None)
+        return _compute_pause_s(self._failures, None)
 
 
-def progress_in(news: JobSummary | Progress) -> Progress:
-    """How far the job is, as something that was heard of it says."""
+def extract_progress(news: JobSummary | Progress) -> Progress:
+    """Return the progress in an event of a job."""
     return news.progress if isinstance(news, JobSummary) else news
 
 
-def refusal(answer: httpx.Response) -> Refused:
-    """The refusal that an answer is."""
+def build_refusal(answer: httpx.Response) -> Refused:
+    """Build the exception for an error answer."""
     try:
         problem = answer.json()
     except ValueError:
@@ -162,11 +164,11 @@ def refusal(answer: httpx.Response) -> Refused:
     return Refused(answer.status_code, problem if isinstance(problem, dict) else {"detail": answer.reason_phrase})
 
 
-def _unreachable(url: object, error: Exception) -> Unreachable:
+def _build_unreachable(url: object, error: Exception) -> Unreachable:
     return Unreachable(f"no answer from {url} ({type(error).__name__}: {error})")
 
 
-def _pause_s(attempt: int, retry_after: str | None) -> float:
-    """What the service asks for, or longer each time."""
+def _compute_pause_s(attempt: int, retry_after: str | None) -> float:
+    """Return the pause before the next attempt, seconds: as requested by the service, or doubling with each attempt."""
     asked_for = float(retry_after) if retry_after is not None and retry_after.isdecimal() else 0.1 * 2**attempt
-    return min(asked_for, LONGEST_PAUSE_S)
+    return min(asked_for, MAX_PAUSE_S)

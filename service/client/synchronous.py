@@ -1,4 +1,4 @@
-"""The client that waits for its answers."""
+"""The synchronous client."""
 
 from __future__ import annotations
 
@@ -12,28 +12,28 @@ from typing import Any, Self
 import httpx
 
 from service.client import exchange
-from service.client.exchange import Attempts, Following, Request
-from service.client.values import ClientError, Job, JobSummary, Json, Progress, Refused, Status, summary_of
+from service.client.exchange import Attempts, EventReader, Request
+from service.client.values import ClientError, Job, JobSummary, Json, Progress, Refused, Status, build_summary
 
-_LOOK_S = 0.05
-"""How often it is looked whether a wait was given up."""
+_CANCEL_CHECK_PERIOD_S = 0.05
+"""Period of the check for a cancellation, seconds."""
 
 
 class Client:
-    """Talks to one service, over one pool of connections.
+    """Talks to one service over one pool of connections.
 
     Parameters
     ----------
     url
-        Where the service is, ``http://127.0.0.1:8000``.
+        URL of the service, such as ``http://127.0.0.1:8000``.
     key
-        The API key, where the service has keys.
+        API key, if the service has keys.
     timeout_s
-        How long one answer may take.
+        Time limit for one answer, seconds.
     """
 
     def __init__(self, url: str, key: str | None = None, *, timeout_s: float = 60.0) -> None:
-        self._http = httpx.Client(**exchange.settings(url, key, timeout_s))
+        self._http = httpx.Client(**exchange.build_pool_settings(url, key, timeout_s))
 
     def __enter__(self) -> Self:
         return self
@@ -48,42 +48,42 @@ class Client:
         self._http.close()
 
     def submit(self, problem: Mapping[str, Any], *, label: str | None = None, wait_s: int = 0) -> Job:
-        """Have a problem solved; waits ``wait_s`` seconds (30 at most) for the end of the job."""
-        return exchange.shown_job(self._asked(exchange.submission(problem, label, wait_s)))
+        """Submit a problem; wait at most ``wait_s`` seconds (up to 30) for the end of the job."""
+        return exchange.parse_job(self._send_request(exchange.build_submission(problem, label, wait_s)))
 
     def job(self, job_id: str) -> Job:
-        """The job as it stands."""
-        return exchange.shown_job(self._asked(exchange.showing(job_id)))
+        """Return the present state of the job."""
+        return exchange.parse_job(self._send_request(exchange.build_job_request(job_id)))
 
     def jobs(self, *, status: Status | None = None, kind: str | None = None) -> Iterator[JobSummary]:
-        """The jobs, newest first, page by page as they are asked for."""
+        """Yield the jobs, newest first; pages are requested as needed."""
         query: dict[str, str] = {name: value for name, value in (("status", status), ("kind", kind)) if value}
         while True:
-            page = self._asked(Request("GET", "/v1/jobs", {"params": query})).json()
-            yield from (summary_of(listed) for listed in page["jobs"])
+            page = self._send_request(Request("GET", "/v1/jobs", {"params": query})).json()
+            yield from (build_summary(listed) for listed in page["jobs"])
             if page["next_cursor"] is None:
                 return
             query["cursor"] = page["next_cursor"]
 
     def delete(self, job_id: str) -> None:
         """Cancel an unfinished job, or remove a finished one."""
-        self._asked(exchange.removal(job_id))
+        self._send_request(exchange.build_removal(job_id))
 
     def follow(self, job_id: str) -> Iterator[JobSummary | Progress]:
-        """What happens to a job, as it happens: the job at each change of its state, its progress in between.
+        """Yield the events of a job: the job at each change of its state, its progress in between.
 
-        Ends with the job in its final state. A broken stream is resumed where it broke.
+        The last event is the job in its final state. A broken stream is resumed where it broke.
         """
-        following = Following(job_id, self._http.base_url)
+        following = EventReader(job_id, self._http.base_url)
         while not following.ended:
             fault: Refused | httpx.TransportError | None = None
             try:
-                with self._http.stream("GET", following.path, **following.request()) as answer:
-                    if not following.opened(answer) and not following.ended:
+                with self._http.stream("GET", following.path, **following.build_request()) as answer:
+                    if not following.check_opened(answer) and not following.ended:
                         answer.read()
-                        raise exchange.refusal(answer)
+                        raise exchange.build_refusal(answer)
                     for line in answer.iter_lines():
-                        news = following.heard(line)
+                        news = following.parse_line(line)
                         if news is not None:
                             yield news
                         if following.ended:
@@ -91,13 +91,13 @@ class Client:
             except (Refused, httpx.TransportError) as error:
                 fault = error
             if not following.ended:
-                time.sleep(following.broken(fault))
+                time.sleep(following.handle_break(fault))
 
     def wait(self, job_id: str, progress: Callable[[Progress], None] | None = None) -> Job:
-        """Wait until the job has ended; tells how far it is by ``progress``."""
+        """Wait until the job has ended; report its progress to ``progress``."""
         for news in self.follow(job_id):
             if progress is not None:
-                progress(exchange.progress_in(news))
+                progress(exchange.extract_progress(news))
         return self.job(job_id)
 
     def solve(
@@ -108,31 +108,31 @@ class Client:
         progress: Callable[[Progress], None] | None = None,
         cancel: threading.Event | None = None,
     ) -> Job:
-        """Have a problem solved, and wait for its result.
+        """Solve a problem and wait for its result.
 
-        The job is cancelled when ``cancel`` is set, which another thread may do, and when the wait is interrupted.
+        The job is cancelled if another thread sets ``cancel``, or if the wait is interrupted.
 
         Raises
         ------
         JobFailed
-            When the job ends without a result. That no design exists is a result.
+            If the job ends without a result. An answer without designs is a result.
         """
         job = self.submit(problem, label=label, wait_s=1)
         if not job.finished:
-            with self._cancelled_with(job.id, cancel):
+            with self._cancel_with(job.id, cancel):
                 job = self.wait(job.id, progress)
         return job.with_result()
 
     @contextmanager
-    def _cancelled_with(self, job_id: str, cancel: threading.Event | None) -> Iterator[None]:
+    def _cancel_with(self, job_id: str, cancel: threading.Event | None) -> Iterator[None]:
         over = threading.Event()
-        watching = threading.Thread(target=self._cancelled_when, args=(job_id, cancel, over), daemon=True)
+        watching = threading.Thread(target=self._cancel_when, args=(job_id, cancel, over), daemon=True)
         if cancel is not None:
             watching.start()
         try:
             yield
         except BaseException as error:
-            if not isinstance(error, ClientError):  # an interrupt, or a fault of who is told how far the job is
+            if not isinstance(error, ClientError):  # an interrupt, or an error of the progress callback
                 with suppress(ClientError):
                     self.delete(job_id)
             raise
@@ -141,55 +141,57 @@ class Client:
             if cancel is not None:
                 watching.join()
 
-    def _cancelled_when(self, job_id: str, cancel: threading.Event, over: threading.Event) -> None:
+    def _cancel_when(self, job_id: str, cancel: threading.Event, over: threading.Event) -> None:
         while not over.is_set():
-            if cancel.wait(_LOOK_S):
+            if cancel.wait(_CANCEL_CHECK_PERIOD_S):
                 with suppress(ClientError):
                     self.delete(job_id)
                 return
 
     def file(self, job_id: str, design: int, form: str) -> bytes | None:
-        """A drawing or table of a design (``svg``, ``dxf``, ``csv``, ...); None where its mechanism has none such."""
+        """Return a file of a design (``svg``, ``dxf``, ``csv``, ...); None if its type of mechanism has no such file."""
         try:
-            return self._asked(exchange.file_of(job_id, design, form)).content
+            return self._send_request(exchange.build_file_request(job_id, design, form)).content
         except Refused as refusal:
             if refusal.status == 404:
                 return None
             raise
 
     def motion(self, job_id: str, design: int, *, steps: int = 360) -> Json:
-        """A design over its cycle, joint by joint."""
+        """Return the motion of a design over its cycle, joint by joint."""
         request = Request("GET", f"/v1/jobs/{job_id}/designs/{design}/motion", {"params": {"steps": steps}})
-        return _object(self._asked(request))
+        return _parse_object(self._send_request(request))
 
     def analyse(self, mechanism: Mapping[str, Any], motion: Mapping[str, Any]) -> Json:
-        """What the analysis core knows of a given mechanism."""
+        """Analyse a given mechanism."""
         return self.analysis({"mechanism": dict(mechanism), "motion": dict(motion)})
 
     def analysis(self, request: Mapping[str, Any]) -> Json:
-        """The same for the whole body of a request, with all that it may state besides."""
-        return _object(self._asked(Request("POST", "/v1/analyses", {"json": dict(request)})))
+        """Send a complete analysis request, which may have further blocks, and return its answer."""
+        return _parse_object(self._send_request(Request("POST", "/v1/analyses", {"json": dict(request)})))
 
     def problems(self) -> dict[str, Json]:
-        """The kinds of problems, each with title, description, schema and an example that runs."""
-        return {listed["kind"]: listed for listed in self._asked(Request("GET", "/v1/problems")).json()["problems"]}
+        """Return the kinds of problems by name, each with title, description, schema and an example."""
+        return {
+            listed["kind"]: listed for listed in self._send_request(Request("GET", "/v1/problems")).json()["problems"]
+        }
 
-    def _asked(self, request: Request) -> httpx.Response:
-        """The answer to a request that may be sent again."""
+    def _send_request(self, request: Request) -> httpx.Response:
+        """Send a request, repeating it if necessary, and return the answer."""
         attempts = Attempts(self._http.base_url)
         while True:
             try:
                 answer = self._http.request(request.method, request.path, **request.more)
             except httpx.TransportError as error:
-                pause = attempts.unanswered(error)
+                pause = attempts.handle_silence(error)
             else:
                 if answer.is_success:
                     return answer
-                pause = attempts.refused(answer)
+                pause = attempts.handle_refusal(answer)
             time.sleep(pause)
 
 
-def _object(answer: httpx.Response) -> Json:
+def _parse_object(answer: httpx.Response) -> Json:
     parsed = answer.json()
     assert isinstance(parsed, dict)
     return parsed

@@ -1,9 +1,9 @@
-"""What clients give their callers: jobs and progress as values, and what did not work out as exceptions.
+"""Values and exceptions of the clients.
 
 ClientError
-+-- Unreachable     no answer, after several attempts
-+-- Refused         the service has said no: a problem with type, status and details
-+-- JobFailed       the job has ended without a result
++-- Unreachable     no answer after several attempts
++-- Refused         error answer of the service, with type, status and details
++-- JobFailed       the job ended without a result
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ Status = Literal["queued", "running", "succeeded", "failed", "cancelled"]
 
 
 class ClientError(Exception):
-    """Something did not work out; see the tree above."""
+    """Base class of the clients' errors; see the tree above."""
 
 
 class Unreachable(ClientError):
@@ -25,7 +25,7 @@ class Unreachable(ClientError):
 
 
 class Refused(ClientError):
-    """The service has answered with a problem (RFC 9457)."""
+    """The service has answered with an error (problem details, RFC 9457)."""
 
     def __init__(self, status: int, problem: Mapping[str, Any]) -> None:
         self.status = status
@@ -37,7 +37,7 @@ class Refused(ClientError):
 
 
 class JobFailed(ClientError):
-    """The job has ended without a result."""
+    """The job ended without a result."""
 
     def __init__(self, job: Job) -> None:
         self.job = job
@@ -46,7 +46,7 @@ class JobFailed(ClientError):
 
 @dataclass(frozen=True, slots=True)
 class Progress:
-    """How far a job is: the share that is done, and what is being done."""
+    """Progress of a job: the completed share, and the present step."""
 
     fraction: float
     message: str
@@ -54,7 +54,7 @@ class Progress:
 
 @dataclass(frozen=True, slots=True)
 class JobSummary:
-    """A job as it is listed."""
+    """A job as in a list."""
 
     id: str
     kind: str
@@ -67,7 +67,7 @@ class JobSummary:
 
     @property
     def finished(self) -> bool:
-        """Whether the job will not change any more."""
+        """Whether the state of the job is final."""
         return self.status not in ("queued", "running")
 
 
@@ -80,26 +80,26 @@ class Job(JobSummary):
     error: Json | None
 
     def with_result(self) -> Job:
-        """The job itself; raises :class:`JobFailed` where it has ended without a result."""
+        """Return the job itself; raise :class:`JobFailed` if it ended without a result."""
         if self.result is None:
             raise JobFailed(self)
         return self
 
 
-def job_of(shown: Mapping[str, Any]) -> Job:
-    """The job that an answer shows."""
-    return Job(**_values(shown, _JOB))
+def build_job(shown: Mapping[str, Any]) -> Job:
+    """Build a job from an answer."""
+    return Job(**_extract_values(shown, _JOB_FIELDS))
 
 
-def summary_of(listed: Mapping[str, Any]) -> JobSummary:
-    """The job that a list or an event shows."""
-    return JobSummary(**_values(listed, _SUMMARY))
+def build_summary(listed: Mapping[str, Any]) -> JobSummary:
+    """Build a job summary from a list or an event."""
+    return JobSummary(**_extract_values(listed, _SUMMARY_FIELDS))
 
 
-_JOB = [field.name for field in fields(Job)]
-_SUMMARY = [field.name for field in fields(JobSummary)]
+_JOB_FIELDS = [field.name for field in fields(Job)]
+_SUMMARY_FIELDS = [field.name for field in fields(JobSummary)]
 
 
-def _values(listed: Mapping[str, Any], names: Sequence[str]) -> Json:
-    # Fields that a newer service has besides are passed over.
+def _extract_values(listed: Mapping[str, Any], names: Sequence[str]) -> Json:
+    # Additional fields of a newer service are ignored.
     return {**{name: listed[name] for name in names}, "progress": Progress(**listed["progress"])}

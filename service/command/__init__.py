@@ -1,1 +1,1 @@
-"""The command line: serve, solve, analyze, draw, demo."""
+"""The command line: serve, solve, analyze, draw, demo and others."""

@@ -1,4 +1,4 @@
-"""``mechsynth analyze``: what the analysis core knows of a mechanism in a file, as JSON or as a table."""
+"""``mechsynth analyze``: the analysis of a mechanism in a file, as JSON or as a table."""
 
 from __future__ import annotations
 
@@ -11,30 +11,30 @@ from pathlib import Path
 from typing import Any
 
 from service import client as service
-from service.command.inputs import SourceError, object_of
+from service.command.inputs import SourceError, read_object
 
 
 def analyze(source: str, url: str, key: str | None, output: Path | None) -> None:
-    """Print the analysis of a file with a mechanism, or with the body of a request; or write it to a file.
+    """Print the analysis of a mechanism or request body in a file, or write it to a file.
 
-    Numbers are written in full. A file whose name ends in ``.csv`` has a column for everything that is told of each
-    position of the input, by its place in the answer: ``joints.A.x``.
+    Numbers are written in full. A file whose name ends in ``.csv`` has a column for each quantity with one value per
+    position of the input, named by its place in the answer: ``joints.A.x``.
 
     Raises
     ------
     SourceError
-        Where the file holds no mechanism.
+        If the file contains no mechanism.
     service.ClientError
-        Where the service does not analyse it.
+        If the service does not analyse it.
     """
-    stated = object_of(source)
+    stated = read_object(source)
     request = stated if "mechanism" in stated else {"mechanism": stated}
     if not isinstance(request["mechanism"], dict):
-        raise SourceError(f"{source} holds no mechanism")
+        raise SourceError(f"{source} contains no mechanism")
     with service.Client(url, key) as client:
         answer = client.analysis(request)
     table = output is not None and output.suffix.lower() == ".csv"
-    text = _table(source, answer) if table else json.dumps(answer, ensure_ascii=False) + "\n"
+    text = _format_table(source, answer) if table else json.dumps(answer, ensure_ascii=False) + "\n"
     if output is None:
         sys.stdout.write(text)
     else:
@@ -42,11 +42,11 @@ def analyze(source: str, url: str, key: str | None, output: Path | None) -> None
         output.write_text(text, encoding="utf-8", newline="")
 
 
-def _table(source: str, answer: dict[str, Any]) -> str:
+def _format_table(source: str, answer: dict[str, Any]) -> str:
     count = len(answer.get("input_angle", ()))
-    columns = {name: values for name, values in _lists("", answer) if len(values) == count > 0}
+    columns = {name: values for name, values in _iterate_lists("", answer) if len(values) == count > 0}
     if not columns:
-        raise SourceError(f"{source}: what is known of this mechanism does not depend on a position; write .json")
+        raise SourceError(f"{source}: this analysis has no values over the motion for a table; write a .json file instead")
     text = io.StringIO()
     rows = csv.writer(text, lineterminator="\n")
     rows.writerow(columns)
@@ -54,13 +54,13 @@ def _table(source: str, answer: dict[str, Any]) -> str:
     return text.getvalue()
 
 
-def _lists(place: str, value: Any) -> Iterator[tuple[str, list[Any]]]:
-    """Every list of plain values in an answer, with its place."""
+def _iterate_lists(place: str, value: Any) -> Iterator[tuple[str, list[Any]]]:
+    """Yield every list of plain values in an answer with its place."""
     if isinstance(value, dict):
         for name, inner in value.items():
-            yield from _lists(f"{place}.{name}" if place else name, inner)
+            yield from _iterate_lists(f"{place}.{name}" if place else name, inner)
     elif isinstance(value, list) and not any(isinstance(inner, dict | list) for inner in value):
         yield place, value
     elif isinstance(value, list):
         for n, inner in enumerate(value):
-            yield from _lists(f"{place}.{n}", inner)
+            yield from _iterate_lists(f"{place}.{n}", inner)

@@ -1,6 +1,6 @@
 """The command ``mechsynth``.
 
-Only what is needed to read the command line is imported here: the worker processes import this module again when they
+Only modules needed to parse the command line are imported here: worker processes import this module again at their
 start, and ``mechsynth --help`` should not take a second.
 """
 
@@ -13,29 +13,29 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from service.jobs.processes.parent_death import die_with_parent_from_the_start
+from service.jobs.processes.parent_death import bind_to_parent_at_start
 
 if TYPE_CHECKING:
     from service.settings import Settings
 
-die_with_parent_from_the_start()
+bind_to_parent_at_start()
 
 EXIT_FAILURE = 1
 EXIT_USAGE = 2
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
-    """Run a command; returns the exit status: 0 success, 1 failure, 2 wrong arguments or settings."""
-    command = _parser().parse_args(arguments)
+    """Run a command and return the exit status: 0 success, 1 failure, 2 wrong arguments or settings."""
+    command = _build_parser().parse_args(arguments)
     if command.name == "serve":
         return _serve()
     if command.name == "worker":
-        return _worker()
+        return _run_worker()
     if command.name == "demo":
-        from service.command.demo import DemoFailure, demo
+        from service.command.demo import DemoFailure, run_demo
 
         try:
-            demo(command.output)
+            run_demo(command.output)
         except (DemoFailure, OSError) as failure:
             print(f"mechsynth demo: {failure}", file=sys.stderr)
             return EXIT_FAILURE
@@ -51,14 +51,14 @@ def main(arguments: Sequence[str] | None = None) -> int:
             return EXIT_FAILURE
         return 0
     if command.name in ("analyze", "draw"):
-        return _of_file(command)
+        return _run_file_command(command)
     if command.name == "openapi":
-        from service.server.app import api_document
+        from service.server.app import build_api_document
 
-        command.output.write_text(api_document(), encoding="utf-8")
+        command.output.write_text(build_api_document(), encoding="utf-8")
         return 0
     if command.name == "keys":
-        return _keys(command)
+        return _run_keys(command)
     from service.server.precompile import WarmingFailure, warm
 
     try:
@@ -69,7 +69,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     return 0
 
 
-def _of_file(command: argparse.Namespace) -> int:
+def _run_file_command(command: argparse.Namespace) -> int:
     from service.client import ClientError
     from service.command.inputs import SourceError
 
@@ -88,16 +88,16 @@ def _of_file(command: argparse.Namespace) -> int:
     return 0
 
 
-def _at_service(command: argparse.ArgumentParser) -> None:
+def _add_service_options(command: argparse.ArgumentParser) -> None:
     command.add_argument(
         "--url",
         default=os.environ.get("MECHSYNTH_URL", "http://127.0.0.1:8000"),
-        help="the service (MECHSYNTH_URL; the API key comes from MECHSYNTH_API_KEY)",
+        help="URL of the service (default: MECHSYNTH_URL; the API key is read from MECHSYNTH_API_KEY)",
     )
 
 
-def _settings() -> Settings | None:
-    """The settings; None, and the reason is printed, where they cannot be used."""
+def _load_settings() -> Settings | None:
+    """Read the settings; if they are invalid, print the reason and return None."""
     from service.settings import SettingsError, read_settings
 
     try:
@@ -107,8 +107,8 @@ def _settings() -> Settings | None:
         return None
 
 
-def _keys(command: argparse.Namespace) -> int:
-    settings = _settings()
+def _run_keys(command: argparse.Namespace) -> int:
+    settings = _load_settings()
     if settings is None:
         return EXIT_USAGE
     from service.access import command as keys
@@ -127,7 +127,7 @@ def _keys(command: argparse.Namespace) -> int:
 
 
 def _serve() -> int:
-    settings = _settings()
+    settings = _load_settings()
     if settings is None:
         return EXIT_USAGE
     from service.server.run import ServeError, serve
@@ -140,8 +140,8 @@ def _serve() -> int:
     return 0
 
 
-def _worker() -> int:
-    settings = _settings()
+def _run_worker() -> int:
+    settings = _load_settings()
     if settings is None:
         return EXIT_USAGE
     if settings.executor != "celery":
@@ -150,62 +150,62 @@ def _worker() -> int:
     from sqlalchemy.exc import SQLAlchemyError
 
     from service.jobs.cluster.worker_host import HostError, run_host
-    from service.server.precompile import Compilation, every_part
+    from service.server.precompile import Compilation, list_parts
 
-    compilation = Compilation(every_part, settings.log_level, settings.log_format, ahead=settings.compile_ahead)
+    compilation = Compilation(list_parts, settings.log_level, settings.log_format, ahead=settings.compile_ahead)
     try:
         run_host(settings, compilation)
     except HostError as error:
         print(f"mechsynth worker: {error}", file=sys.stderr)
         return EXIT_FAILURE
     except (SQLAlchemyError, OSError) as error:
-        # Not the URL itself, which may hold a password.
+        # The message omits the URL, which may contain a password.
         print(f"mechsynth worker: cannot use the database ({type(error).__name__})", file=sys.stderr)
         return EXIT_FAILURE
     return 0
 
 
-def _parser() -> argparse.ArgumentParser:
+def _build_parser() -> argparse.ArgumentParser:
     parser = argparse.ArgumentParser(prog="mechsynth", description="A service that designs mechanisms.")
     commands = parser.add_subparsers(dest="name", required=True, metavar="command")
-    commands.add_parser("serve", help="run the service; the environment variables MECHSYNTH_... set it up")
-    commands.add_parser("worker", help="run a worker host, which takes jobs from a broker; set up like the service")
-    demo = commands.add_parser("demo", help="solve a problem through a service of its own, and draw the answer")
-    demo.add_argument("--output", type=Path, default=Path("var/demo.svg"), help="where the drawing goes (SVG)")
-    solve = commands.add_parser("solve", help="solve the problem in a file: print the answer, write the drawings")
+    commands.add_parser("serve", help="run the service, configured by environment variables MECHSYNTH_...")
+    commands.add_parser("worker", help="run a worker host, which takes jobs from a broker; configured like the service")
+    demo = commands.add_parser("demo", help="start a service, solve an example problem and draw the answer")
+    demo.add_argument("--output", type=Path, default=Path("var/demo.svg"), help="file for the drawing (SVG)")
+    solve = commands.add_parser("solve", help="solve the problem in a file, print the answer and write the drawings")
     solve.add_argument(
         "problem",
-        help="a JSON file with a problem, or the body of a request; - for standard input; "
+        help="a JSON file with a problem or a request body; - for standard input; "
         "or a .csv with columns x, y, angle (motion), x, y (path), or input, output (function)",
     )
-    _at_service(solve)
-    solve.add_argument("--json", action="store_true", help="print the job with its answer as JSON, instead of tables")
-    solve.add_argument("--output", type=Path, help="folder of the drawings; named after the file when left out")
+    _add_service_options(solve)
+    solve.add_argument("--json", action="store_true", help="print the job with its answer as JSON instead of tables")
+    solve.add_argument("--output", type=Path, help="folder for the drawings; by default named after the problem file")
     solve.add_argument(
         "--forms", default="svg,dxf,csv", type=lambda text: [form for form in text.split(",") if form],
-        help="which files to write for each design, separated by commas; '' for none",
+        help="formats of the files to write for each design, separated by commas; '' for none",
     )  # fmt: skip
-    analyze = commands.add_parser("analyze", help="tell what is known of the mechanism in a file: angles, joints, ...")
+    analyze = commands.add_parser("analyze", help="analyse the mechanism in a file: angles, joints, ...")
     analyze.add_argument(
-        "mechanism", help="a JSON file with a mechanism, or the body of a request; - for standard input"
+        "mechanism", help="a JSON file with a mechanism or a request body; - for standard input"
     )
-    _at_service(analyze)
-    analyze.add_argument("-o", "--output", type=Path, help="a file, .json or .csv; left out, JSON is printed")
-    draw = commands.add_parser("draw", help="draw a design of an answer; this needs no service")
-    draw.add_argument("answer", help="what mechsynth solve --json has printed; - for standard input")
-    draw.add_argument("-o", "--output", type=Path, required=True, help="the file: .svg, .gif, .dxf or .csv")
-    draw.add_argument("--design", type=int, default=1, help="which of the designs, counted from 1")
+    _add_service_options(analyze)
+    analyze.add_argument("-o", "--output", type=Path, help="output file, .json or .csv; by default JSON is printed")
+    draw = commands.add_parser("draw", help="draw a design of an answer, without a service")
+    draw.add_argument("answer", help="output of mechsynth solve --json; - for standard input")
+    draw.add_argument("-o", "--output", type=Path, required=True, help="output file: .svg, .gif, .dxf or .csv")
+    draw.add_argument("--design", type=int, default=1, help="number of the design, counted from 1")
     openapi = commands.add_parser("openapi", help="write the OpenAPI document to a file")
     openapi.add_argument("output", type=Path)
-    keys = commands.add_parser("keys", help="make, list and revoke API keys").add_subparsers(
+    keys = commands.add_parser("keys", help="create, list and revoke API keys").add_subparsers(
         dest="act", required=True, metavar="act"
     )
-    create = keys.add_parser("create", help="make a key for a new tenant, and print it")
-    create.add_argument("tenant", help="the name of the tenant, who sees only its own jobs")
-    create.add_argument("--further", action="store_true", help="one more key for a tenant that there is")
-    keys.add_parser("list", help="show all keys by their ids; not the keys themselves")
-    keys.add_parser("revoke", help="make a key useless").add_argument("id", help="the id of the key")
-    commands.add_parser("warm", help="compile the numeric kernels, so that the first start need not")
+    create = keys.add_parser("create", help="create a key for a new tenant and print it")
+    create.add_argument("tenant", help="name of the tenant, who sees only its own jobs")
+    create.add_argument("--further", action="store_true", help="create another key for an existing tenant")
+    keys.add_parser("list", help="list the ids of all keys, without the keys themselves")
+    keys.add_parser("revoke", help="revoke a key").add_argument("id", help="id of the key")
+    commands.add_parser("warm", help="compile the numerical kernels ahead of the first start")
     return parser
 
 

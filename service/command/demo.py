@@ -1,4 +1,4 @@
-"""One real problem through the real service: states it over HTTP, prints the verified answer, draws it."""
+"""``mechsynth demo``: submits one real problem to a real service, prints the verified answer and draws it."""
 
 from __future__ import annotations
 
@@ -15,26 +15,26 @@ from typing import Any
 from service.client import Client, ClientError, Job
 
 START_TIMEOUT_S = 120.0
-"""The very first start compiles the numeric kernels."""
+"""Time limit for the start, seconds; the very first start compiles the numerical kernels."""
 
 STOP_TIMEOUT_S = 10.0
 _POLL_S = 0.05
-"""Period at which the file is read into which the service announces itself; a file tells nobody."""
+"""Period at which the file with the announcement of the service is read, seconds."""
 
 
 class DemoFailure(Exception):
-    """The demonstration did not come to its end; the message says where."""
+    """The demonstration failed; the message has the reason."""
 
 
-def demo(output: Path) -> None:
+def run_demo(output: Path) -> None:
     """Run the demonstration and write the drawing of the best design to ``output``.
 
     Raises
     ------
     DemoFailure
-        When the service does not start, does not answer as documented, or finds no design.
+        If the service does not start, does not answer as documented, or finds no design.
     """
-    with _service() as url, Client(url) as client:
+    with _start_service() as url, Client(url) as client:
         try:
             first, *_ = client.problems().values()
             job = client.solve(first["example"], label="demo")
@@ -42,7 +42,7 @@ def demo(output: Path) -> None:
         except ClientError as error:
             raise DemoFailure(str(error)) from None
     if drawing is None:
-        raise DemoFailure("no design was found")
+        raise DemoFailure("the service found no design")
     output.parent.mkdir(parents=True, exist_ok=True)
     output.write_bytes(drawing)
     print(report(job))
@@ -50,7 +50,7 @@ def demo(output: Path) -> None:
 
 
 def report(job: Job) -> str:
-    """The problem, the best design and its checks as a text for people."""
+    """Format the problem, the best design and its checks as text."""
     assert job.result is not None
     problem, result = job.problem, job.result
     unit = problem["length_unit"]
@@ -71,9 +71,9 @@ def report(job: Job) -> str:
         f"  {'coupler point':<22} {point['distance']:10.4f} {unit} at {point['angle']:.4f}° from the coupler",
         f"  {'reference input angle':<22} {mechanism['reference_input_angle']:10.4f}°",
         f"  {'class':<26} {metrics['grashof']} ({metrics['barker']})",
-        f"  {'transmission angle':<22} {metrics['min_transmission_angle']:10.4f}° at least",
+        f"  {'transmission angle':<22} {metrics['min_transmission_angle']:10.4f}° minimum",
         "",
-        "Reached when driven (residuals are shares of the task's size, or radians):",
+        "Targets reached (residuals relative to the size of the task, or in radians):",
     ]
     lines += [
         f"  target {t['index']}:  input angle {t['input_angle']:10.4f}°   residual {t['residual']:.1e}"
@@ -90,8 +90,8 @@ def _check(check: dict[str, Any]) -> str:
 
 
 @contextmanager
-def _service() -> Iterator[str]:
-    """A service of the demonstration's own; gives its URL."""
+def _start_service() -> Iterator[str]:
+    """Run a service for the demonstration and yield its URL."""
     Path("var").mkdir(exist_ok=True)
     with tempfile.TemporaryDirectory(prefix="demo-", dir="var") as folder:
         environment = {
@@ -100,7 +100,7 @@ def _service() -> Iterator[str]:
             "MECHSYNTH_PORT": "0",
             "MECHSYNTH_DATA_DIR": folder,
             "MECHSYNTH_LOG_LEVEL": "warning",
-            # It solves one problem and ends.
+            # One problem needs no more than one worker.
             "MECHSYNTH_WORKERS": "1",
             "MECHSYNTH_RESERVE": "0",
             "MECHSYNTH_COMPILE_AHEAD": "false",
@@ -112,7 +112,7 @@ def _service() -> Iterator[str]:
                 [sys.executable, "-m", "service.command.cli", "serve"], env=environment, stdout=stdout
             )
         try:
-            yield _announced_url(server, announced)
+            yield _wait_for_url(server, announced)
         finally:
             server.terminate()
             try:
@@ -122,13 +122,13 @@ def _service() -> Iterator[str]:
                 server.wait()
 
 
-def _announced_url(server: subprocess.Popen[bytes], announced: Path) -> str:
+def _wait_for_url(server: subprocess.Popen[bytes], announced: Path) -> str:
     deadline = time.monotonic() + START_TIMEOUT_S
     while time.monotonic() < deadline:
         words = announced.read_text().split()
         if words and words[-1].startswith("http"):
             return words[-1]
         if server.poll() is not None:
-            raise DemoFailure(f"the service ended at its start with status {server.returncode}")
+            raise DemoFailure(f"the service ended during its start with status {server.returncode}")
         time.sleep(_POLL_S)
     raise DemoFailure(f"the service was not ready after {START_TIMEOUT_S:g} s")

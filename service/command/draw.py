@@ -1,4 +1,4 @@
-"""``mechsynth draw``: a design of an answer of ``mechsynth solve --json`` as a file; without a service."""
+"""``mechsynth draw``: draws a design from the output of ``mechsynth solve --json``, without a service."""
 
 from __future__ import annotations
 
@@ -8,46 +8,48 @@ from typing import Any, get_args
 
 from pydantic import ValidationError
 
-from service.command.inputs import SourceError, object_of
+from service.command.inputs import SourceError, read_object
 from service.render import Form, NoSuchExport, NotBuilt, export_design, list_forms, make_heading
-from service.requests import read
+from service.requests import load_stored_problem
 from synthesis.registry import KINDS
 
 
 def draw(source: str, number: int, output: Path) -> None:
-    """Write a design of an answer, counted from 1, to a file, in the form that its ending names.
+    """Write a design of an answer, counted from 1, to a file in the format of its suffix.
 
     Raises
     ------
     SourceError
-        Where there is no such answer, design or form.
+        If there is no such answer, design or format.
     """
     known: tuple[Form, ...] = get_args(Form)
     form = next((form for form in known if output.suffix.lower() == f".{form}"), None)
     if form is None:
         raise SourceError(f"{output}: the name must end in one of: {', '.join(f'.{form}' for form in known)}")
-    job = object_of(source)
-    problem, designs = _answer(source, job)
+    job = read_object(source)
+    problem, designs = _read_answer(source, job)
     if not 1 <= number <= len(designs):
-        raise SourceError(f"{source} has {len(designs)} designs, counted from 1; {number} is none of them")
+        raise SourceError(f"design {number} does not exist; {source} has designs 1 to {len(designs)}")
     design = designs[number - 1]
     try:
         content = export_design(design, problem, make_heading(problem, job.get("label"), number - 1), form)
     except NoSuchExport:
         there = ", ".join(list_forms(design.mechanism.type))
-        raise SourceError(f"there is no .{form} of a {design.mechanism.type}; there are: {there}") from None
+        raise SourceError(f"{design.mechanism.type} has no .{form} file; available: {there}") from None
     except NotBuilt:
-        raise SourceError("this design is of a size that is not drawn") from None
+        raise SourceError("the size of this design is beyond the range for drawings") from None
     output.parent.mkdir(parents=True, exist_ok=True)
     output.write_bytes(content if isinstance(content, bytes) else content.encode())
 
 
-def _answer(source: str, job: dict[str, Any]) -> tuple[Any, list[Any]]:
+def _read_answer(source: str, job: dict[str, Any]) -> tuple[Any, list[Any]]:
     problem, result = job.get("problem"), job.get("result")
     if not isinstance(problem, dict) or not isinstance(result, dict) or problem.get("kind") not in KINDS:
-        raise SourceError(f"{source} holds no answer; mechsynth solve --json writes one")
+        raise SourceError(f"{source} contains no answer; mechsynth solve --json writes one")
     kind = problem["kind"]
     try:
-        return read(kind, json.dumps(problem)), KINDS[kind].result.model_validate_json(json.dumps(result)).designs
+        return load_stored_problem(kind, json.dumps(problem)), KINDS[kind].result.model_validate_json(
+            json.dumps(result)
+        ).designs
     except ValidationError as error:
-        raise SourceError(f"{source} holds no answer of this version: {error.errors()[0]['msg']}") from None
+        raise SourceError(f"{source} contains no answer of this version: {error.errors()[0]['msg']}") from None

@@ -1,4 +1,4 @@
-"""What the command line reads: problems as JSON or as tables, requests, and answers that it has written."""
+"""Inputs of the command line: problems as JSON or tables, requests, and answers written by it."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ STANDARD_INPUT = "-"
 
 
 class SourceError(Exception):
-    """A file cannot be used; the message says why."""
+    """A file cannot be used; the message has the reason."""
 
 
 _TABLES = {name: kind.columns for name, kind in KINDS.items() if kind.columns is not None}
@@ -24,31 +24,31 @@ _TABLES = {name: kind.columns for name, kind in KINDS.items() if kind.columns is
 _SEPARATORS = ",;\t"
 
 
-def problem_of(source: str) -> tuple[dict[str, Any], str | None]:
-    """The problem in a file and its label: a problem, the body of a request, or a table whose name ends in ``.csv``."""
+def read_problem(source: str) -> tuple[dict[str, Any], str | None]:
+    """Read the problem and its label from a problem, a request body, or a table in a ``.csv`` file."""
     label = None if source == STANDARD_INPUT else Path(source).stem
     if Path(source).suffix.lower() == ".csv":
-        return _tabled(source, text_of(source)), label
-    stated = object_of(source)
+        return _parse_table(source, read_text(source)), label
+    stated = read_object(source)
     inner = stated.get("problem")
-    if isinstance(inner, dict):  # the body of a request
+    if isinstance(inner, dict):  # a request body
         return inner, stated.get("label")
     return stated, label
 
 
-def object_of(source: str) -> dict[str, Any]:
-    """The JSON object in a file."""
+def read_object(source: str) -> dict[str, Any]:
+    """Read the JSON object in a file."""
     try:
-        stated = json.loads(text_of(source))
+        stated = json.loads(read_text(source))
     except ValueError as error:
         raise SourceError(f"{source} is not JSON: {error}") from None
     if not isinstance(stated, dict):
-        raise SourceError(f"{source} holds no JSON object")
+        raise SourceError(f"{source} contains no JSON object")
     return stated
 
 
-def text_of(source: str) -> str:
-    """The text of a file, or of the standard input."""
+def read_text(source: str) -> str:
+    """Read the text of a file or of standard input."""
     try:
         return sys.stdin.read() if source == STANDARD_INPUT else Path(source).read_text(encoding="utf-8-sig")
     except (OSError, UnicodeDecodeError) as error:
@@ -56,7 +56,8 @@ def text_of(source: str) -> str:
         raise SourceError(f"cannot read {source} ({told})") from None
 
 
-def _tabled(source: str, text: str) -> dict[str, Any]:
+def _parse_table(source: str, text: str) -> dict[str, Any]:
+    # The most frequent separator of the header is that of the table.
     head = text.partition("\n")[0]
     rows = csv.DictReader(io.StringIO(text), delimiter=max(_SEPARATORS, key=head.count), skipinitialspace=True)
     names = {(name or "").strip() for name in rows.fieldnames or ()}
@@ -67,17 +68,17 @@ def _tabled(source: str, text: str) -> dict[str, Any]:
     listed = []
     for row in rows:
         if None in row:
-            raise SourceError(f"{source}, line {rows.line_num}: there are more cells than columns")
+            raise SourceError(f"{source}, line {rows.line_num}: more cells than columns")
         cells = ((name.strip(), (cell or "").strip()) for name, cell in row.items())
-        listed.append({name: _value(source, rows.line_num, name, cell) for name, cell in cells if cell})
+        listed.append({name: _parse_value(source, rows.line_num, name, cell) for name, cell in cells if cell})
     return {"kind": kind, _TABLES[kind].field: [cells for cells in listed if cells]}
 
 
-def _value(source: str, line: int, name: str, cell: str) -> Any:
+def _parse_value(source: str, line: int, name: str, cell: str) -> Any:
     try:
         value = json.loads(cell, parse_constant=float)
     except ValueError:
         value = None
     if not isinstance(value, bool | int | float) or value != value or abs(value) == float("inf"):
-        raise SourceError(f"{source}, line {line}: {name} is no number: {cell}")
+        raise SourceError(f"{source}, line {line}: {name} is not a number: {cell}")
     return value

@@ -1,10 +1,10 @@
-"""Curves in what other programs made: drawings (SVG, DXF), tables (CSV) and pictures (PNG), as points with y upwards.
+"""Curves in files of other programs: drawings (SVG, DXF), tables (CSV) and pictures (PNG), as points with y upwards.
 
-A *curve* is a row of points of the plane, open or closed. It stands for what the file draws within a *chord tolerance*:
-no piece of the drawn curve is farther than that from the chord between the two points at its ends.
+A *curve* is a sequence of points of the plane, open or closed. It represents the drawn curve within a *chord
+tolerance*: no piece of the drawn curve is farther than that from the chord between the points at its ends.
 
-:mod:`service.imports.reading` is the door; it brings the libraries that read files, so it is not imported here.
-:mod:`service.imports.desk` has files read by processes of their own, whose time and memory are bounded.
+:mod:`service.imports.reading` is the entry point; it imports the libraries that read files, so it is not imported here.
+:mod:`service.imports.desk` reads files in processes with bounded time and memory.
 """
 
 from service.imports.answer import ImportedCurve, ImportedPoint, Imports

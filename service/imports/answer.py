@@ -1,4 +1,4 @@
-"""What was found in a file, as the API says it."""
+"""Schemas of the curves read from a file."""
 
 from __future__ import annotations
 
@@ -22,20 +22,20 @@ class ImportedPoint(BaseModel):
 
 
 class ImportedCurve(DrawingElement):
-    """A curve as points: as `points` of a path, corners of an outline or an obstacle, or a table of y over x."""
+    """A curve as points, usable as `points` of a path, corners of an outline or obstacle, or a table of y over x."""
 
     model_config = ConfigDict(title="Imported curve")
 
     points: list[ImportedPoint] = Field(
-        description="In the order in which the curve runs; of a closed curve the first is not repeated."
+        description="Points in order along the curve; a closed curve does not repeat the first point."
     )
-    closed: bool = Field(description="Whether it goes on from the last point to the first.")
-    length: float = Field(description="Length of the curve as it is drawn, not of its chords.")
+    closed: bool = Field(description="Whether the curve continues from the last point to the first.")
+    length: float = Field(description="Length of the drawn curve, not of its chords.")
     tolerance: float = Field(
-        description="Greatest distance of the drawn curve from the chords between the points; 0 where the points are "
-        "those of the file. Above the one that was asked for where `max_points` takes more."
+        description="Maximum distance of the drawn curve from the chords between the points; 0 if the points are those "
+        "of the file. It exceeds the requested tolerance if `max_points` requires it."
     )
-    joined: int = Field(description="How many open elements were joined to it at their ends; 1 where there was one.")
+    joined: int = Field(description="Number of open elements joined at their ends to form the curve.")
 
 
 class Imports(BaseModel):
@@ -43,12 +43,12 @@ class Imports(BaseModel):
 
     format: Format
     millimetres_per_unit: float | None = Field(
-        description="Millimetres in a unit of the file (of a picture: in a pixel); null where it states none."
+        description="Millimetres in a unit of the file (for a picture: in a pixel); null if the file has no unit."
     )
     length_unit: DrawingUnit | None = Field(
-        description="The unit of all numbers here; null: the file's own, because it states none."
+        description="Unit of all numbers here; null means the units of a file without a known unit."
     )
-    scale: float = Field(description="Units of the numbers here in a unit of the file.")
-    curves: list[ImportedCurve] = Field(description="In the order of the file; of a picture the longest first.")
-    left_out: list[LeftOut] = Field(description=f"What gives no curve, {MAX_LISTED} elements at most.")
-    left_out_count: int = Field(description="How many elements give no curve.")
+    scale: float = Field(description="Units of the numbers here per unit of the file.")
+    curves: list[ImportedCurve] = Field(description="Curves in the order of the file; for a picture, longest first.")
+    left_out: list[LeftOut] = Field(description=f"Elements without a curve, at most {MAX_LISTED}.")
+    left_out_count: int = Field(description="Number of all elements without a curve.")

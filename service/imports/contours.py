@@ -1,11 +1,11 @@
-"""Contours of a field of samples by marching squares, as closed curves between its points.
+"""Contours of a field of samples by marching squares, as closed curves between the samples.
 
-Where the field passes the level between two neighbouring samples, it is taken to run straight from one to the other,
-and a contour crosses there (Lorensen and Cline, Computer Graphics 21 (1987), 163–169, in the plane). Each crossing lies
-on the side of two squares, and each square leads from one of its crossings to another; so every crossing has one that
-follows it, and the contours are the cycles. Higher values lie to the left of a contour: around an island it runs
-counter-clockwise. In a square whose corners are high and low in turn, the high ones are joined unless the mean of the
-four is lower than the level: lines that are one pixel wide hold together.
+If the field passes the level between two neighbouring samples, it is interpolated linearly, and a contour crosses the
+line between them there (Lorensen and Cline, Computer Graphics 21 (1987), 163–169, in the plane). Each crossing lies on
+the common side of two squares, and each square connects one of its crossings to another one. So each crossing has
+exactly one successor, and the contours are the cycles. Higher values lie to the left of a contour, which therefore runs
+counter-clockwise around an island. In a square whose corners are alternately high and low, the high ones are joined
+unless the mean of the four is below the level; so lines one pixel wide hold together.
 """
 
 from __future__ import annotations
@@ -15,64 +15,70 @@ from numpy.typing import NDArray
 
 from kinematics.arrays import Complex
 
-# The sides of a square: bottom, right, top, left. Corners count 1, 2, 4, 8 from lower left, counter-clockwise. From
-# which side to which a contour goes, with the high corners on its left.
-_BOTTOM, _RIGHT, _TOP, _LEFT = range(4)
-_WAYS: dict[int, tuple[tuple[int, int], ...]] = {
-    1: ((_BOTTOM, _LEFT),),
-    2: ((_RIGHT, _BOTTOM),),
-    3: ((_RIGHT, _LEFT),),
-    4: ((_TOP, _RIGHT),),
-    6: ((_TOP, _BOTTOM),),
-    7: ((_TOP, _LEFT),),
-    8: ((_LEFT, _TOP),),
-    9: ((_BOTTOM, _TOP),),
-    11: ((_RIGHT, _TOP),),
-    12: ((_LEFT, _RIGHT),),
-    13: ((_BOTTOM, _RIGHT),),
-    14: ((_LEFT, _BOTTOM),),
+# The sides of a square: bottom, right, top, left. The key is the sum of the high corners, which count 1, 2, 4, 8 from
+# the lower left, counter-clockwise. The value has the sides from and to which contours run, high corners on the left.
+_BOTTOM_SIDE, _RIGHT_SIDE, _TOP_SIDE, _LEFT_SIDE = range(4)
+_SIDE_PAIRS: dict[int, tuple[tuple[int, int], ...]] = {
+    1: ((_BOTTOM_SIDE, _LEFT_SIDE),),
+    2: ((_RIGHT_SIDE, _BOTTOM_SIDE),),
+    3: ((_RIGHT_SIDE, _LEFT_SIDE),),
+    4: ((_TOP_SIDE, _RIGHT_SIDE),),
+    6: ((_TOP_SIDE, _BOTTOM_SIDE),),
+    7: ((_TOP_SIDE, _LEFT_SIDE),),
+    8: ((_LEFT_SIDE, _TOP_SIDE),),
+    9: ((_BOTTOM_SIDE, _TOP_SIDE),),
+    11: ((_RIGHT_SIDE, _TOP_SIDE),),
+    12: ((_LEFT_SIDE, _RIGHT_SIDE),),
+    13: ((_BOTTOM_SIDE, _RIGHT_SIDE),),
+    14: ((_LEFT_SIDE, _BOTTOM_SIDE),),
 }
-_JOINED = {5: ((_BOTTOM, _RIGHT), (_TOP, _LEFT)), 10: ((_LEFT, _BOTTOM), (_RIGHT, _TOP))}
-"""With a high middle, which joins the high corners."""
-_APART = {5: ((_BOTTOM, _LEFT), (_TOP, _RIGHT)), 10: ((_RIGHT, _BOTTOM), (_LEFT, _TOP))}
+_JOINED_PAIRS = {
+    5: ((_BOTTOM_SIDE, _RIGHT_SIDE), (_TOP_SIDE, _LEFT_SIDE)),
+    10: ((_LEFT_SIDE, _BOTTOM_SIDE), (_RIGHT_SIDE, _TOP_SIDE)),
+}
+"""The two ambiguous squares with a high centre, which joins the high corners; below, those with a low centre."""
+_SEPARATE_PAIRS = {
+    5: ((_BOTTOM_SIDE, _LEFT_SIDE), (_TOP_SIDE, _RIGHT_SIDE)),
+    10: ((_RIGHT_SIDE, _BOTTOM_SIDE), (_LEFT_SIDE, _TOP_SIDE)),
+}
 
 
-class TooMany(ValueError):
-    """There are more crossings than were allowed."""
+class TooManyCrossings(ValueError):
+    """The contours have more crossings than allowed."""
 
 
-def contours(field: NDArray[np.uint8], level: float, most: int) -> list[Complex]:
-    """The contours of a field at a level, each as the crossings along it, complex; the first is not repeated.
+def trace_contours(field: NDArray[np.uint8], level: float, most: int) -> list[Complex]:
+    """Return the contours of a field at a level, each as its crossings x + iy in order, without repeating the first.
 
     Parameters
     ----------
     field : uint8, shape (rows, columns)
-        Samples at x = column, y = row. Its rim is below the level, so that every contour is closed.
+        Samples at x = column, y = row. The rim must be below the level, so that every contour is closed.
     level : float
-        No sample has it.
+        Level of the contours; no sample may be equal to it.
     most : int
-        Crossings at most.
+        Maximum number of crossings.
 
     Raises
     ------
     TooMany
-        There are more.
+        If there are more crossings.
     """
     high = field > level
-    # The sides of squares that a contour crosses, by their places in the raveled field, ascending.
-    across, up = np.flatnonzero(_differ(high, 1)), np.flatnonzero(_differ(high, 0))
+    # The sides of squares that contours cross, as ascending indices into the raveled field.
+    across, up = np.flatnonzero(_mark_crossings(high, 1)), np.flatnonzero(_mark_crossings(high, 0))
     if len(across) + len(up) > most:
-        raise TooMany
+        raise TooManyCrossings
     if not len(across):
         return []
     columns = field.shape[1]
-    points = np.concatenate([_crossings(field, level, across, 1), _crossings(field, level, up, columns)])
-    following = _following(field, level, high, across, up)
-    return [points[cycle] for cycle in _cycles(following)]
+    points = np.concatenate([_locate_crossings(field, level, across, 1), _locate_crossings(field, level, up, columns)])
+    following = _link_crossings(field, level, high, across, up)
+    return [points[cycle] for cycle in _collect_cycles(following)]
 
 
-def _differ(high: NDArray[np.bool_], axis: int) -> NDArray[np.bool_]:
-    """Which samples are on another side of the level than the next one along an axis; the last ones are not."""
+def _mark_crossings(high: NDArray[np.bool_], axis: int) -> NDArray[np.bool_]:
+    """Mark the samples on another side of the level than the next one along an axis; the last ones are never marked."""
     differ = np.zeros_like(high)
     here = (slice(None), slice(None, -1)) if axis == 1 else (slice(None, -1), slice(None))
     there = (slice(None), slice(1, None)) if axis == 1 else (slice(1, None), slice(None))
@@ -80,8 +86,8 @@ def _differ(high: NDArray[np.bool_], axis: int) -> NDArray[np.bool_]:
     return differ
 
 
-def _crossings(field: NDArray[np.uint8], level: float, sides: NDArray[np.int64], step: int) -> Complex:
-    """Where the field passes the level between samples and those ``step`` places farther."""
+def _locate_crossings(field: NDArray[np.uint8], level: float, sides: NDArray[np.int64], step: int) -> Complex:
+    """Return where the field passes the level between the given samples and those ``step`` indices later."""
     samples = field.ravel()
     first, second = samples[sides].astype(float), samples[sides + step].astype(float)
     row, column = np.divmod(sides, field.shape[1])
@@ -89,16 +95,16 @@ def _crossings(field: NDArray[np.uint8], level: float, sides: NDArray[np.int64],
     return np.asarray(column + 1j * row + (share if step == 1 else 1j * share))
 
 
-def _following(
+def _link_crossings(
     field: NDArray[np.uint8],
     level: float,
     high: NDArray[np.bool_],
     across: NDArray[np.int64],
     up: NDArray[np.int64],
 ) -> NDArray[np.int64]:
-    """The crossing that follows each one along its contour; those across come first."""
+    """Return the index of the next crossing along the contour for each crossing; those of ``across`` come first."""
     columns = field.shape[1]
-    # Every square that is crossed has a crossed side at its lower left or upper right corner.
+    # The squares on both sides of each crossed side.
     squares = np.unique(np.concatenate([across, across - columns, up, up - 1]))
     corners = [squares, squares + 1, squares + columns + 1, squares + columns]
     case = sum(high.ravel()[corner].astype(np.uint8) << k for k, corner in enumerate(corners))
@@ -119,16 +125,16 @@ def _following(
     for value in range(1, 15):
         here = case == value
         for ways, where in (
-            [(_WAYS[value], here)]
-            if value in _WAYS
-            else [(_JOINED[value], here & joined), (_APART[value], here & ~joined)]
+            [(_SIDE_PAIRS[value], here)]
+            if value in _SIDE_PAIRS
+            else [(_JOINED_PAIRS[value], here & joined), (_SEPARATE_PAIRS[value], here & ~joined)]
         ):
             for start, end in ways:
                 following[sides[start, where]] = sides[end, where]
     return following
 
 
-def _cycles(following: NDArray[np.int64]) -> list[NDArray[np.int64]]:
+def _collect_cycles(following: NDArray[np.int64]) -> list[NDArray[np.int64]]:
     after = following.tolist()
     seen = bytearray(len(after))
     cycles = []

@@ -9,23 +9,23 @@ import numpy as np
 from numpy.typing import NDArray
 
 from kinematics.arrays import Complex
-from service.imports.limits import MOST_POINTS
-from service.imports.thinning import astray, at_most, thinned, with_farthest
+from service.imports.limits import MAX_POINTS
+from service.imports.thinning import add_farthest, limit_points, measure_deviation, reduce_points
 from service.outlines.curves import STRAIGHTNESS_TOLERANCE, count_chords, flatten_pieces, make_line
 from service.outlines.faults import UnsuitableDrawing
 from service.outlines.limits import DEFAULT_TOLERANCE
 
-SAME = 1e-12
+DUPLICATE_TOLERANCE = 1e-12
 """Points this share of the greatest coordinate apart are one, which rounding has made two."""
 
-LOOKED = 0.125
+DENSE_CHORD_SHARE = 0.125
 """What of the tolerance goes to the chords between the points that are looked at; the rest to those that are left."""
 
 _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(16)
 
 
 @dataclass(frozen=True)
-class Asked:
+class PointRequest:
     """How many points a curve is to have: ``tolerance`` None takes a share of its own extent, and keeps its corners."""
 
     tolerance: float | None
@@ -40,7 +40,7 @@ class Points(NamedTuple):
     looked: int
 
 
-def of_pieces(pieces: Complex, closed: bool, asked: Asked) -> Points:
+def select_piece_points(pieces: Complex, closed: bool, request: PointRequest) -> Points:
     """Points of a curve that is stated by cubics, shape (n, 4), one after the other.
 
     Corners, where a straight piece begins or ends, stay as they stand unless a tolerance is asked for.
@@ -57,43 +57,43 @@ def of_pieces(pieces: Complex, closed: bool, asked: Asked) -> Points:
         raise ValueError("it has no length")
     if closed and pieces[-1, 3] != pieces[0, 0]:
         pieces = np.concatenate([pieces, make_line(pieces[-1, 3], pieces[0, 0])])
-    extent = _extent(pieces.ravel())
-    tolerance = DEFAULT_TOLERANCE * extent if asked.tolerance is None else asked.tolerance
-    chords = LOOKED * tolerance
+    extent = _measure_extent(pieces.ravel())
+    tolerance = DEFAULT_TOLERANCE * extent if request.tolerance is None else request.tolerance
+    chords = DENSE_CHORD_SHARE * tolerance
     counts = count_chords(pieces, chords)
-    if counts.sum() > MOST_POINTS:
+    if counts.sum() > MAX_POINTS:
         raise UnsuitableDrawing(
-            f"A curve has more than {MOST_POINTS} points at a tolerance of {tolerance:.4g}; give a larger one."
+            f"A curve has more than {MAX_POINTS} points at a tolerance of {tolerance:.4g}; give a larger one."
         )
     dense = flatten_pieces(pieces, chords)
-    lines = straight(pieces)
+    lines = find_straight(pieces)
     kept = np.zeros(len(dense), bool)
     ends = np.concatenate([[0], np.cumsum(counts)])
     kept[ends[:-1]] |= lines
     kept[ends[1:]] |= lines
-    return _chosen(dense, kept, closed, tolerance - chords, asked, 0.0 if lines.all() else chords)
+    return _select_points(dense, kept, closed, tolerance - chords, request, 0.0 if lines.all() else chords)
 
 
-def of_points(points: Complex, closed: bool, asked: Asked, tolerance: float = 0.0) -> Points:
+def select_polyline_points(points: Complex, closed: bool, request: PointRequest, tolerance: float = 0.0) -> Points:
     """Points of a curve that is stated by points, shape (n,): all of them, or those within a tolerance.
 
     ``tolerance`` is what is taken where none is asked for; 0 keeps all points.
     """
     whole = np.append(points, points[0]) if closed else points
-    within = asked.tolerance if asked.tolerance is not None else tolerance
-    return _chosen(whole, np.full(len(whole), within == 0.0), closed, within, asked)
+    within = request.tolerance if request.tolerance is not None else tolerance
+    return _select_points(whole, np.full(len(whole), within == 0.0), closed, within, request)
 
 
-def _chosen(
+def _select_points(
     dense: Complex,
     kept: NDArray[np.bool_],
     closed: bool,
     tolerance: float,
-    asked: Asked,
+    request: PointRequest,
     chords: float = 0.0,
 ) -> Points:
     """``tolerance`` is for the chords between the points that are left, ``chords`` for those between all of them."""
-    same = SAME * float(np.abs(dense).max())
+    same = DUPLICATE_TOLERANCE * float(np.abs(dense).max())
     new = np.append(True, np.abs(np.diff(dense)) > same)
     dense, kept = dense[new], kept[new]
     if closed:
@@ -105,20 +105,20 @@ def _chosen(
         raise ValueError("it has no length")
     if closed and len(dense) < 4:
         raise ValueError("it goes to and fro, and encloses nothing")
-    if asked.tolerance is not None:
+    if request.tolerance is not None:
         kept = np.zeros(len(dense), bool)
-    chosen = thinned(dense, tolerance, kept) if tolerance > 0.0 else np.arange(len(dense))
-    if len(chosen) - closed > asked.max_points:
-        chosen = at_most(dense, asked.max_points + closed, tolerance)
+    chosen = reduce_points(dense, tolerance, kept) if tolerance > 0.0 else np.arange(len(dense))
+    if len(chosen) - closed > request.max_points:
+        chosen = limit_points(dense, request.max_points + closed, tolerance)
     while closed and len(chosen) < 4:
         # However large the tolerance, it goes around something.
-        chosen = with_farthest(dense, chosen)
-    away = astray(dense, chosen)
+        chosen = add_farthest(dense, chosen)
+    away = measure_deviation(dense, chosen)
     found = dense[chosen[:-1] if closed else chosen]
     return Points(found, away + chords, len(dense))
 
 
-def length_of(pieces: Complex) -> float:
+def measure_length(pieces: Complex) -> float:
     """Length of a curve that is stated by cubics: the speed is integrated by Gauss in two halves of each."""
     total = 0.0
     edges = np.diff(pieces, axis=1)
@@ -130,17 +130,17 @@ def length_of(pieces: Complex) -> float:
     return total
 
 
-def length_of_points(points: Complex, closed: bool) -> float:
+def measure_polyline(points: Complex, closed: bool) -> float:
     """Length of the chords between points."""
     way = np.append(points, points[0]) if closed else points
     return float(np.abs(np.diff(way)).sum())
 
 
-def straight(pieces: Complex) -> NDArray[np.bool_]:
+def find_straight(pieces: Complex) -> NDArray[np.bool_]:
     """Which cubics are lines that run evenly from end to end."""
     bends = np.abs(pieces[:, :-2] - 2.0 * pieces[:, 1:-1] + pieces[:, 2:]).max(axis=1)
     return np.asarray(bends <= STRAIGHTNESS_TOLERANCE * np.abs(np.diff(pieces, axis=1)).sum(axis=1))
 
 
-def _extent(points: Complex) -> float:
+def _measure_extent(points: Complex) -> float:
     return float(max(np.ptp(points.real), np.ptp(points.imag)))

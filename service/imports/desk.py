@@ -11,12 +11,12 @@ from collections.abc import Awaitable, Callable
 from typing import Any
 
 from service.imports import reader
-from service.imports.limits import MEMORY_MB, READ_S
+from service.imports.limits import MEMORY_MB, READ_TIMEOUT_S
 from service.jobs.processes.request_pool import GivenUp, Limits, PoolMetrics, RequestPool
 from service.observability.logs import Format
 from service.outlines.faults import UnsuitableDrawing
 
-READERS = 2
+READER_COUNT = 2
 """Files that are read at once."""
 
 
@@ -27,7 +27,9 @@ class ImportDesk:
         self, log_level: str, log_format: Format, memory_mb: int = MEMORY_MB, metrics: PoolMetrics | None = None
     ) -> None:
         settings = os.getpid(), log_level, log_format, memory_mb
-        self.pool = RequestPool("files", reader.prepare, settings, Limits(READ_S), hands=READERS, metrics=metrics)
+        self.pool = RequestPool(
+            "files", reader.prepare, settings, Limits(READ_TIMEOUT_S), hands=READER_COUNT, metrics=metrics
+        )
 
     async def read(
         self, gone: Callable[[], Awaitable[bool]], tenant: str, door: reader.Door, content: bytes, **asked: Any
@@ -44,11 +46,11 @@ class ImportDesk:
         try:
             answer = await self.pool.call(gone, tenant, reader.read, door, content, asked)
         except GivenUp as error:
-            longer, more = f"longer than {READ_S:g} seconds to read", "more memory to read than a file has here"
+            longer, more = f"longer than {READ_TIMEOUT_S:g} seconds to read", "more memory to read than a file has here"
             taken = longer if error.of == "time" else more
             raise UnsuitableDrawing(f"The file takes {taken}; send a smaller or simpler one.") from None
         if isinstance(answer, reader.Fault):
-            raise answer.error()
+            raise answer.to_error()
         assert isinstance(answer, bytes)
         return answer
 

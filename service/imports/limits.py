@@ -1,31 +1,31 @@
-"""How large a file may be that is read within a second or two, beside the limits of drawings."""
+"""Size limits of imported files, which allow reading within a second or two, in addition to those of drawings."""
 
-MOST_CURVES = 1_000
-"""Curves of an answer."""
+MAX_CURVES = 1_000
+"""Maximum number of curves in an answer."""
 
-MOST_POINTS = 100_000
-"""Points of a file before they are thinned, and of all curves of an answer."""
+MAX_POINTS = 100_000
+"""Maximum number of points of a file before thinning, and of all curves in an answer."""
 
-PNG = b"\x89PNG\r\n\x1a\n"
-"""What a PNG file begins with."""
+PNG_SIGNATURE = b"\x89PNG\r\n\x1a\n"
+"""First bytes of a PNG file."""
 
-MOST_LOOKED = 300_000
-"""Points of all curves of a file together, before they are thinned."""
+MAX_DENSE_POINTS = 300_000
+"""Maximum total number of points of all curves of a file before thinning."""
 
-MOST_PIXELS = 1 << 24
-"""Of a picture: 4096 by 4096."""
+MAX_PIXELS = 1 << 24
+"""Maximum number of pixels of a picture: 4096 by 4096."""
 
-MOST_CROSSINGS = 400_000
-"""Points of all contours of a picture, before they are thinned."""
+MAX_CROSSINGS = 400_000
+"""Maximum number of points of all contours of a picture before thinning."""
 
-MOST_COLUMNS = 100
-"""Of a table, of which two are read."""
+MAX_COLUMNS = 100
+"""Maximum number of columns of a table, of which two are read."""
 
-FEWEST, DEFAULT_POINTS, MOST_ASKED = 3, 1_000, 10_000
-"""Points of a curve, by `max_points`; a path or an outline takes 1000."""
+MIN_POINTS, DEFAULT_POINTS, MAX_REQUESTED_POINTS = 3, 1_000, 10_000
+"""Bounds and default of `max_points`, points of a curve; a path or an outline accepts 1000."""
 
-READ_S = 10.0
-"""How long a file is read before it is given up."""
+READ_TIMEOUT_S = 10.0
+"""Time limit for reading a file, seconds."""
 
 MEMORY_MB = 512
-"""What a process may take for a file, beside what its libraries take."""
+"""Memory limit for a file beyond that of the libraries, MiB."""

@@ -1,6 +1,6 @@
-"""The outlines in a picture: what is dark on light, light on dark, or opaque on nothing, to a fraction of a pixel.
+"""Outlines in a picture, dark on light, light on dark or opaque on transparent, to a fraction of a pixel.
 
-A sample stands in the middle of its pixel; x and y begin at the lower left corner of the picture.
+A sample lies in the middle of its pixel; the origin of x and y is the lower left corner of the picture.
 """
 
 from __future__ import annotations
@@ -16,38 +16,38 @@ from numpy.typing import NDArray
 from PIL import Image
 
 from kinematics.arrays import Complex
-from service.imports.contours import TooMany, contours
-from service.imports.limits import MOST_CROSSINGS, MOST_PIXELS
+from service.imports.contours import TooManyCrossings, trace_contours
+from service.imports.limits import MAX_CROSSINGS, MAX_PIXELS
 from service.outlines.faults import MalformedDrawing, UnsuitableDrawing
 
-BROKEN = (
+BROKEN_FILE_ERRORS = (
     OSError, EOFError, SyntaxError, ValueError, IndexError, struct.error, zlib.error, Image.DecompressionBombError,
 )  # fmt: skip
-"""What the library raises of broken files, by its sources; anything else is a defect."""
+"""Errors of the library for broken files, according to its sources; any other error is a defect."""
 
 Samples = NDArray[np.uint8]
-"""0 is black, or nothing; 255 is white, or opaque."""
+"""Lightness or opacity: 0 is black or transparent, 255 is white or opaque."""
 
-LEAST_CONTRAST = 25
-"""Between the darkest and the lightest sample."""
+MIN_CONTRAST = 25
+"""Minimum difference between the darkest and the lightest sample."""
 
-SPECK = 12
-"""Contours of fewer crossings go around some three pixels or less."""
+MIN_CONTOUR_CROSSINGS = 12
+"""Minimum number of crossings of a contour; shorter ones enclose three pixels or fewer."""
 
-STEPPED = 0.5
-"""A contour of which this share of the crossings lies midway between two samples has steps: its rim had no grey."""
+STEPPED_SHARE = 0.5
+"""Share of crossings midway between two samples from which a contour counts as stepped: its edge has no grey."""
 
-_PASSES = 10
-_INWARD, _OUTWARD = 0.33, -0.34
-"""Taubin, Curve and surface smoothing without shrinkage (ICCV 1995): steps become lines, and the area stays."""
+_PASS_COUNT = 10
+_INWARD_FACTOR, _OUTWARD_FACTOR = 0.33, -0.34
+"""Factors of Taubin, Curve and surface smoothing without shrinkage (ICCV 1995): steps become lines, areas are kept."""
 
-FINE, COARSE = 0.1, 0.5
-"""Pixels within which a contour is thinned where none are asked for: smooth, and such as had steps."""
+FINE_TOLERANCE, COARSE_TOLERANCE = 0.1, 0.5
+"""Default tolerances for thinning a contour, pixels: smooth contours, and stepped ones."""
 
 
 @dataclass(frozen=True)
 class Picture:
-    """Contours in pixels, the longest first; whether each had steps; how many specks were left out; a pixel's size."""
+    """Contours in pixels, longest first; whether each was stepped; number of omitted specks; size of a pixel in mm."""
 
     contours: list[Complex]
     stepped: list[bool]
@@ -55,46 +55,46 @@ class Picture:
     millimetres: tuple[float, float] | None
 
 
-def picture_of(content: bytes) -> Picture:
-    """The contours in a PNG picture.
+def read_picture(content: bytes) -> Picture:
+    """Find the contours in a PNG picture.
 
     Raises
     ------
-    Malformed
-        It is no PNG, or not a whole one.
-    Unsuitable
-        It has too many pixels or contours, or nothing that stands out.
+    MalformedDrawing
+        If it is not a complete PNG file.
+    UnsuitableDrawing
+        If it has too many pixels or contours, or too little contrast.
     """
-    samples, alpha, millimetres = _samples(content)
-    field, level = _field(samples, alpha)
+    samples, alpha, millimetres = _read_samples(content)
+    field, level = _build_field(samples, alpha)
     try:
-        found = contours(field, level, MOST_CROSSINGS)
-    except TooMany:
+        found = trace_contours(field, level, MAX_CROSSINGS)
+    except TooManyCrossings:
         raise UnsuitableDrawing(
-            f"The contours of the picture have more than {MOST_CROSSINGS} points; is it a photograph? Send a drawing "
-            "in two colours."
+            f"The contours of the picture have more than {MAX_CROSSINGS} points, like those of a photograph. Send a "
+            "drawing in two colours."
         ) from None
-    # Rows run downwards in the file, and were turned over; the rim is one sample wide, and samples lie in the middle.
-    kept = [one - complex(0.5, 0.5) for one in found if len(one) >= SPECK]
-    stepped = [_stepped(one) for one in kept]
-    smooth = [_smoothed(one) if steps else one for one, steps in zip(kept, stepped, strict=True)]
+    # The padding shifts samples by 1, their place in the middle of a pixel by -1/2: the crossings shift by 1/2.
+    kept = [one - complex(0.5, 0.5) for one in found if len(one) >= MIN_CONTOUR_CROSSINGS]
+    stepped = [_is_stepped(one) for one in kept]
+    smooth = [_smooth_contour(one) if steps else one for one, steps in zip(kept, stepped, strict=True)]
     order = sorted(range(len(smooth)), key=lambda k: -float(np.abs(np.diff(smooth[k])).sum()))
     return Picture([smooth[k] for k in order], [stepped[k] for k in order], len(found) - len(kept), millimetres)
 
 
-def _samples(content: bytes) -> tuple[Samples, Samples | None, tuple[float, float] | None]:
-    """Lightness, rows upwards; opacity where any is stated; millimetres of a pixel across and up."""
-    # Where it begins as it must; the library would refuse the largest in words of its own.
-    _bounded(int.from_bytes(content[16:20], "big"), int.from_bytes(content[20:24], "big"))
+def _read_samples(content: bytes) -> tuple[Samples, Samples | None, tuple[float, float] | None]:
+    """Return lightness with rows upwards, opacity if there is any, and the size of a pixel in x and y, millimetres."""
+    # Read the size from the header first: the library would refuse very large pictures with its own message.
+    _check_size(int.from_bytes(content[16:20], "big"), int.from_bytes(content[20:24], "big"))
     try:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")
             picture = Image.open(io.BytesIO(content), formats=("PNG",))
-            _bounded(*picture.size)
+            _check_size(*picture.size)
             picture.load()
     except UnsuitableDrawing:
         raise
-    except BROKEN as error:
+    except BROKEN_FILE_ERRORS as error:
         raise MalformedDrawing(f"The picture cannot be read as PNG ({type(error).__name__}).") from None
     density = picture.info.get("dpi")
     opacity = None
@@ -112,39 +112,39 @@ def _samples(content: bytes) -> tuple[Samples, Samples | None, tuple[float, floa
     return lightness[::-1], None if opacity is None else opacity[::-1], millimetres
 
 
-def _bounded(width: int, height: int) -> None:
-    if width * height > MOST_PIXELS:
-        raise UnsuitableDrawing(f"The picture has {width} × {height} pixels, more than {MOST_PIXELS}.")
+def _check_size(width: int, height: int) -> None:
+    if width * height > MAX_PIXELS:
+        raise UnsuitableDrawing(f"The picture has {width} × {height} pixels, more than {MAX_PIXELS}.")
 
 
-def _field(lightness: Samples, opacity: Samples | None) -> tuple[Samples, float]:
-    """What stands out as high samples, with a rim of what does not around it; and the level between the two."""
+def _build_field(lightness: Samples, opacity: Samples | None) -> tuple[Samples, float]:
+    """Return the drawing as high samples on a low background with a low rim, and the level between the two."""
     if opacity is not None and opacity.min() < 128 <= opacity.max():
-        # The drawing is what is opaque, whatever its colour.
+        # In a partly transparent picture the opaque part is the drawing, independent of its colour.
         return np.pad(opacity, 1), 127.5
     least, most = int(lightness.min()), int(lightness.max())
-    if most - least < LEAST_CONTRAST:
+    if most - least < MIN_CONTRAST:
         raise UnsuitableDrawing(
-            "Nothing stands out in the picture; it takes something dark on light, or the other way."
+            "The picture has too little contrast; send dark lines on a light background or the reverse."
         )
     middle = 0.5 * (least + most)
-    # No sample has the level itself.
+    # The level must differ from every sample: samples are integers, so a fraction is added if necessary.
     level = middle if middle % 1.0 else middle + 0.25
     rim = np.concatenate([lightness[0], lightness[-1], lightness[:, 0], lightness[:, -1]])
-    # What most of the rim is, is the ground.
+    # The majority of the rim decides whether the background is dark or light.
     if float((rim > level).mean()) < 0.5:
         return np.pad(lightness, 1, constant_values=least), level
     return np.pad(~lightness, 1, constant_values=255 - most), 255.0 - level
 
 
-def _stepped(contour: Complex) -> bool:
-    # Of a crossing one coordinate is that of a sample; the other is in the middle where both samples are pure.
+def _is_stepped(contour: Complex) -> bool:
+    # One coordinate of a crossing is that of a sample; the other one is midway if both samples are pure black or white.
     twice = 2.0 * np.stack([contour.real, contour.imag])
-    return bool((np.abs(twice - np.round(twice)).max(axis=0) < 1e-6).mean() > STEPPED)
+    return bool((np.abs(twice - np.round(twice)).max(axis=0) < 1e-6).mean() > STEPPED_SHARE)
 
 
-def _smoothed(contour: Complex) -> Complex:
-    for _ in range(_PASSES):
-        for share in (_INWARD, _OUTWARD):
+def _smooth_contour(contour: Complex) -> Complex:
+    for _ in range(_PASS_COUNT):
+        for share in (_INWARD_FACTOR, _OUTWARD_FACTOR):
             contour = contour + share * (0.5 * (np.roll(contour, 1) + np.roll(contour, -1)) - contour)
     return contour

@@ -10,10 +10,18 @@ import numpy as np
 
 from kinematics.arrays import Complex
 from service.imports.answer import Format, ImportedCurve, ImportedPoint, Imports
-from service.imports.curve_points import Asked, Points, length_of, length_of_points, of_pieces, of_points, straight
-from service.imports.limits import DEFAULT_POINTS, MOST_CURVES, MOST_LOOKED, MOST_POINTS, PNG
-from service.imports.picture import COARSE, FINE, picture_of
-from service.imports.table import table_of
+from service.imports.curve_points import (
+    PointRequest,
+    Points,
+    find_straight,
+    measure_length,
+    measure_polyline,
+    select_piece_points,
+    select_polyline_points,
+)
+from service.imports.limits import DEFAULT_POINTS, MAX_CURVES, MAX_DENSE_POINTS, MAX_POINTS, PNG_SIGNATURE
+from service.imports.picture import COARSE_TOLERANCE, FINE_TOLERANCE, read_picture
+from service.imports.table import read_table
 from service.outlines.answer import DrawingUnit, describe_source, format_sentence, list_left_out, truncate_text
 from service.outlines.curves import Curve, Source, make_line
 from service.outlines.drawing import Drawing
@@ -25,7 +33,7 @@ from service.outlines.path_data import make_unit_arc
 
 
 @dataclass(frozen=True)
-class Found:
+class FoundCurve:
     """A curve before its points are chosen: ``drawn`` are cubics, shape (n, 4), or points, shape (n,)."""
 
     source: Source
@@ -34,21 +42,21 @@ class Found:
     joined: int = 1
     tolerance: float = 0.0
 
-    def chosen(self, asked: Asked) -> Points:
+    def choose_points(self, request: PointRequest) -> Points:
         """Its points as they are asked for."""
         if self.drawn.ndim == 2:
-            return of_pieces(self.drawn, self.closed, asked)
-        return of_points(self.drawn, self.closed, asked, self.tolerance)
+            return select_piece_points(self.drawn, self.closed, request)
+        return select_polyline_points(self.drawn, self.closed, request, self.tolerance)
 
-    def length(self, points: Complex) -> float:
+    def compute_length(self, points: Complex) -> float:
         """How long it is, where these are its points. A contour wavers within a pixel, and is as long as its chords."""
-        return length_of(self.drawn) if self.drawn.ndim == 2 else length_of_points(points, self.closed)
+        return measure_length(self.drawn) if self.drawn.ndim == 2 else measure_polyline(points, self.closed)
 
 
 LeftOut = list[tuple[Source, str]]
 
 
-def imports_of(
+def read_curves(
     content: bytes,
     *,
     length_unit: DrawingUnit = "mm",
@@ -80,29 +88,29 @@ def imports_of(
     DrawingError
         One of its kinds says why there are no curves.
     """
-    asked = Asked(tolerance, max_points)
+    asked = PointRequest(tolerance, max_points)
     # Numbers that overflow are looked for where they come out.
     with np.errstate(all="ignore"):
-        if content.startswith(PNG):
-            return _picture(content, length_unit, pixel_size, asked)
+        if content.startswith(PNG_SIGNATURE):
+            return _read_picture(content, length_unit, pixel_size, asked)
         drawing = read_drawing(content)
         if drawing is not None:
-            return _drawing(drawing, length_unit, asked)
+            return _read_drawing(drawing, length_unit, asked)
         if not tables:
             raise ForeignFormat("The body is neither SVG, DXF text nor PNG; a table is sent as text/csv.")
-        return _table(content, length_unit, asked)
+        return _read_table(content, length_unit, asked)
 
 
-def _drawing(drawing: Drawing, length_unit: DrawingUnit, asked: Asked) -> Imports:
+def _read_drawing(drawing: Drawing, length_unit: DrawingUnit, request: PointRequest) -> Imports:
     curves, left_out, scale, unit = convert_units(drawing, length_unit)
     reach = JOIN_GAP_SHARE * (
-        asked.tolerance if asked.tolerance is not None else DEFAULT_TOLERANCE * measure_extent(curves)
+        request.tolerance if request.tolerance is not None else DEFAULT_TOLERANCE * measure_extent(curves)
     )
-    found, tiny = _connected(curves, reach)
-    return _answer(drawing.format, found, [*left_out, *tiny], drawing.millimetres, unit, scale, asked)
+    found, tiny = _connect_curves(curves, reach)
+    return _build_answer(drawing.format, found, [*left_out, *tiny], drawing.millimetres, unit, scale, request)
 
 
-def _connected(curves: Sequence[Curve], reach: float) -> tuple[list[Found], LeftOut]:
+def _connect_curves(curves: Sequence[Curve], reach: float) -> tuple[list[FoundCurve], LeftOut]:
     """What is closed by itself, and what is joined of the rest, in the order of the drawing; and what is too short."""
     place: dict[int, int] = {}
     for k, one in enumerate(curves):
@@ -117,11 +125,13 @@ def _connected(curves: Sequence[Curve], reach: float) -> tuple[list[Found], Left
     found = [([one], True) for one in curves if one.closed]
     found += [(chain.members, chain.closed) for chain in find_chains(open_, reach)]
     found.sort(key=lambda one: min(place[id(each.source)] for each in one[0]))
-    return [Found(members[0].source, _pieces(members, closed), closed, len(members)) for members, closed in found], tiny
+    return [
+        FoundCurve(members[0].source, _join_pieces(members, closed), closed, len(members)) for members, closed in found
+    ], tiny
 
 
-def _picture(content: bytes, length_unit: DrawingUnit, pixel_size: float | None, asked: Asked) -> Imports:
-    picture = picture_of(content)
+def _read_picture(content: bytes, length_unit: DrawingUnit, pixel_size: float | None, request: PointRequest) -> Imports:
+    picture = read_picture(content)
     stated = picture.millimetres
     if pixel_size is not None:
         across = up = pixel_size
@@ -132,47 +142,47 @@ def _picture(content: bytes, length_unit: DrawingUnit, pixel_size: float | None,
     else:
         across, up, unit = 1.0, 1.0, None
     found = [
-        Found(
+        FoundCurve(
             Source("contour"),
             across * one.real + 1j * up * one.imag,
             closed=True,
-            tolerance=(COARSE if steps else FINE) * max(across, up),
+            tolerance=(COARSE_TOLERANCE if steps else FINE_TOLERANCE) * max(across, up),
         )
         for one, steps in zip(picture.contours, picture.stepped, strict=True)
     ]
     left_out: LeftOut = [(Source("contour"), "it goes around a few pixels only")] * picture.specks
     millimetres = None if unit is None else across * MILLIMETRES_PER_UNIT[unit]
-    return _answer("png", found, left_out, millimetres, unit, across, asked)
+    return _build_answer("png", found, left_out, millimetres, unit, across, request)
 
 
-def _table(content: bytes, length_unit: DrawingUnit, asked: Asked) -> Imports:
-    table = table_of(content)
+def _read_table(content: bytes, length_unit: DrawingUnit, request: PointRequest) -> Imports:
+    table = read_table(content)
     scale = 1.0 if table.millimetres is None else table.millimetres / MILLIMETRES_PER_UNIT[length_unit]
     name = None if table.names is None else ", ".join(table.names)
     found = []
     for points in table.curves:
         closed = len(points) > 3 and bool(points[0] == points[-1])
-        found.append(Found(Source("points", name=name), scale * (points[:-1] if closed else points), closed))
+        found.append(FoundCurve(Source("points", name=name), scale * (points[:-1] if closed else points), closed))
     unit = None if table.millimetres is None else length_unit
-    return _answer("csv", found, [], table.millimetres, unit, scale, asked)
+    return _build_answer("csv", found, [], table.millimetres, unit, scale, request)
 
 
-def _answer(
+def _build_answer(
     format_: Format,
-    found: Sequence[Found],
+    found: Sequence[FoundCurve],
     left_out: LeftOut,
     millimetres: float | None,
     unit: DrawingUnit | None,
     scale: float,
-    asked: Asked,
+    request: PointRequest,
 ) -> Imports:
     curves = []
-    found, shorter = _largest(found)
+    found, shorter = _select_largest(found)
     left_out = [*left_out, *shorter]
     total = looked = 0
     for one in found:
         try:
-            points, tolerance, looked_at = one.chosen(asked)
+            points, tolerance, looked_at = one.choose_points(request)
         except ValueError as error:
             if isinstance(error, UnsuitableDrawing):
                 raise
@@ -182,17 +192,15 @@ def _answer(
             left_out.append((one.source, f"its coordinates go beyond {MAX_COORDINATE:g}, or are no numbers"))
             continue
         total, looked = total + len(points), looked + looked_at
-        if total > MOST_POINTS or looked > MOST_LOOKED:
-            raise UnsuitableDrawing(
-                f"The curves take more than {MOST_POINTS} points together; give a larger tolerance."
-            )
+        if total > MAX_POINTS or looked > MAX_DENSE_POINTS:
+            raise UnsuitableDrawing(f"The curves take more than {MAX_POINTS} points together; give a larger tolerance.")
         named: dict[str, Any] = describe_source(one.source)
         curves.append(
             ImportedCurve(
                 **named,
                 points=[ImportedPoint.model_construct(x=z.real, y=z.imag) for z in points.tolist()],
                 closed=one.closed,
-                length=one.length(points),
+                length=one.compute_length(points),
                 tolerance=tolerance,
                 joined=one.joined,
             )
@@ -213,20 +221,20 @@ def _answer(
     )
 
 
-def _largest(found: Sequence[Found]) -> tuple[Sequence[Found], LeftOut]:
+def _select_largest(found: Sequence[FoundCurve]) -> tuple[Sequence[FoundCurve], LeftOut]:
     """As many curves as an answer has, in their order; and those that are smaller, as left out."""
-    if len(found) <= MOST_CURVES:
+    if len(found) <= MAX_CURVES:
         return found, []
     size = np.array([max(np.ptp(one.drawn.real), np.ptp(one.drawn.imag)) for one in found])
-    kept = set(np.argsort(-size, kind="stable")[:MOST_CURVES].tolist())
-    reason = f"it is smaller than the {MOST_CURVES} curves of an answer"
+    kept = set(np.argsort(-size, kind="stable")[:MAX_CURVES].tolist())
+    reason = f"it is smaller than the {MAX_CURVES} curves of an answer"
     return (
         [one for k, one in enumerate(found) if k in kept],
         [(one.source, reason) for k, one in enumerate(found) if k not in kept],
     )
 
 
-def _pieces(members: Sequence[Curve], closed: bool) -> Complex:
+def _join_pieces(members: Sequence[Curve], closed: bool) -> Complex:
     """The cubics of curves in a row; where the next one begins near to the end of the one before, it begins there."""
     (first, *_) = members
     if first.circle is not None:
@@ -235,7 +243,7 @@ def _pieces(members: Sequence[Curve], closed: bool) -> Complex:
     if not first.closed:
         for before, after in zip(parts if closed else parts[:-1], [*parts[1:], parts[0]], strict=False):
             gap = before[-1, 3] - after[0, 0]
-            if gap and straight(after[:1])[0]:
+            if gap and find_straight(after[:1])[0]:
                 after[:1] = make_line(before[-1, 3], after[0, 3])
             else:
                 after[0, :2] += gap

@@ -8,14 +8,14 @@ from dataclasses import dataclass
 import numpy as np
 
 from kinematics.arrays import Complex
-from service.imports.limits import MOST_COLUMNS, MOST_CURVES, MOST_POINTS
+from service.imports.limits import MAX_COLUMNS, MAX_CURVES, MAX_POINTS
 from service.outlines.faults import ForeignFormat, MalformedDrawing, UnsuitableDrawing
 from service.outlines.formats import MILLIMETRES_PER_UNIT
 from service.outlines.limits import MAX_COORDINATE
 
 _NUMBER = re.compile(r"[+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?", re.ASCII)
 _UNIT = re.compile(r"(.*?)\s*[\[(]\s*([A-Za-z]+)\s*[\])]")
-LONGEST_CELL = 64
+MAX_CELL_LENGTH = 64
 """Characters of a number, or of a name with its unit."""
 
 
@@ -28,7 +28,7 @@ class Table:
     millimetres: float | None
 
 
-def table_of(content: bytes) -> Table:
+def read_table(content: bytes) -> Table:
     """The points in a table.
 
     Cells are parted by semicolons, tabs, commas or blanks, whichever of these the first row has, in this order; where
@@ -45,7 +45,7 @@ def table_of(content: bytes) -> Table:
     Unsuitable
         There are no points, or too many.
     """
-    lines = _text(content).splitlines()
+    lines = _decode_text(content).splitlines()
     rows = [(n, line.partition("#")[0].strip()) for n, line in enumerate(lines, 1)]
     first = next((line for _, line in rows if line), None)
     if first is None:
@@ -60,23 +60,23 @@ def table_of(content: bytes) -> Table:
             if curves[-1]:
                 curves.append([])
             continue
-        cells = [cell.strip().strip('"').strip() for cell in line.split(separator, MOST_COLUMNS)]
-        if names is None and not count and _named(cells, decimal_comma):
-            names, columns, millimetres = _columns(cells)
+        cells = [cell.strip().strip('"').strip() for cell in line.split(separator, MAX_COLUMNS)]
+        if names is None and not count and _has_names(cells, decimal_comma):
+            names, columns, millimetres = _find_columns(cells)
             continue
-        if len(cells) <= max(columns) or len(cells) > MOST_COLUMNS:
+        if len(cells) <= max(columns) or len(cells) > MAX_COLUMNS:
             raise MalformedDrawing(f"Line {n} of the table has not two columns of numbers.")
-        curves[-1].append(complex(*(_value(cells[k], decimal_comma, n) for k in columns)))
+        curves[-1].append(complex(*(_parse_number(cells[k], decimal_comma, n) for k in columns)))
         count += 1
-        if count > MOST_POINTS or len(curves) > MOST_CURVES:
-            raise UnsuitableDrawing(f"The table has more than {MOST_POINTS} points, or more than {MOST_CURVES} curves.")
+        if count > MAX_POINTS or len(curves) > MAX_CURVES:
+            raise UnsuitableDrawing(f"The table has more than {MAX_POINTS} points, or more than {MAX_CURVES} curves.")
     found = [np.array(curve) for curve in curves if curve]
     if not found:
         raise UnsuitableDrawing("The table has names and no points.")
     return Table(found, names, millimetres)
 
 
-def _text(content: bytes) -> str:
+def _decode_text(content: bytes) -> str:
     encoding = "utf-16" if content[:2] in (b"\xff\xfe", b"\xfe\xff") else "utf-8-sig"
     try:
         text = content.decode(encoding)
@@ -88,13 +88,13 @@ def _text(content: bytes) -> str:
     return text
 
 
-def _named(cells: list[str], decimal_comma: bool) -> bool:
-    return not any(_NUMBER.fullmatch(_pointed(cell, decimal_comma)) for cell in cells)
+def _has_names(cells: list[str], decimal_comma: bool) -> bool:
+    return not any(_NUMBER.fullmatch(_replace_comma(cell, decimal_comma)) for cell in cells)
 
 
-def _columns(cells: list[str]) -> tuple[tuple[str, str], tuple[int, int], float | None]:
+def _find_columns(cells: list[str]) -> tuple[tuple[str, str], tuple[int, int], float | None]:
     """Names, places and unit of the two columns that are read."""
-    parted = [_UNIT.fullmatch(cell) if len(cell) <= LONGEST_CELL else None for cell in cells]
+    parted = [_UNIT.fullmatch(cell) if len(cell) <= MAX_CELL_LENGTH else None for cell in cells]
     names = [found[1] if found else cell for found, cell in zip(parted, cells, strict=True)]
     lower = [name.lower() for name in names]
     columns = (lower.index("x"), lower.index("y")) if {"x", "y"} <= set(lower) else (0, 1)
@@ -105,13 +105,13 @@ def _columns(cells: list[str]) -> tuple[tuple[str, str], tuple[int, int], float 
     return (names[columns[0]], names[columns[1]]), columns, units.get(stated.pop()) if len(stated) == 1 else None
 
 
-def _pointed(cell: str, decimal_comma: bool) -> str:
+def _replace_comma(cell: str, decimal_comma: bool) -> str:
     return cell.replace(",", ".", 1) if decimal_comma else cell
 
 
-def _value(cell: str, decimal_comma: bool, line: int) -> float:
-    spelt = _pointed(cell[: LONGEST_CELL + 1], decimal_comma)
-    if not _NUMBER.fullmatch(spelt) or len(spelt) > LONGEST_CELL:
+def _parse_number(cell: str, decimal_comma: bool, line: int) -> float:
+    spelt = _replace_comma(cell[: MAX_CELL_LENGTH + 1], decimal_comma)
+    if not _NUMBER.fullmatch(spelt) or len(spelt) > MAX_CELL_LENGTH:
         raise MalformedDrawing(f"Line {line} of the table has a cell that is no number.")
     value = float(spelt)
     if not abs(value) <= MAX_COORDINATE:

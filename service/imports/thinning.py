@@ -1,4 +1,4 @@
-"""Fewer points for a curve, within a chord tolerance: many where it bends, few where it is straight.
+"""Thinning of the points of a curve within a chord tolerance: many in bends, few on straight pieces.
 
 From a point on, the curve is followed as long as one chord stands for it: as long as it does not turn back, and the
 direction to the next point lies within the wedge in which every point passed so far is no farther than the tolerance
@@ -17,31 +17,31 @@ from numpy.typing import NDArray
 
 from kinematics.arrays import Complex
 
-MOST_TRIES = 12
-"""Tolerances that are tried for a number of points; each is a pass over the curve."""
+MAX_TRIES = 12
+"""Maximum number of tolerances tried to reach a number of points; each is a pass over the curve."""
 
-NEAR_ENOUGH = 0.9
-"""A curve that has this share of the points that it may have is not tried with more."""
+MIN_FILL_SHARE = 0.9
+"""Share of the permitted number of points with which the search for a smaller tolerance ends."""
 
 
-def thinned(points: Complex, tolerance: float, kept: Sequence[bool] | NDArray[np.bool_]) -> NDArray[np.int64]:
-    """The numbers of points whose chords stand for all, ascending, the first and the last among them.
+def reduce_points(points: Complex, tolerance: float, kept: Sequence[bool] | NDArray[np.bool_]) -> NDArray[np.int64]:
+    """Return ascending indices of points whose chords represent all points; the first and the last are included.
 
     Parameters
     ----------
     points : complex, shape (n,)
-        Along the curve.
+        Points along the curve.
     tolerance : float
-        Greatest distance of a point from the chord that passes it.
+        Maximum distance of a point from its chord.
     kept : shape (n,)
-        Points that stay whatever the tolerance.
+        Points to keep in any case.
     """
     x, y = points.real.tolist(), points.imag.tolist()
     stays = np.asarray(kept, bool).tolist()
     last = len(x) - 1
     chosen = [0]
     anchor, k = 0, 1
-    # The wedge from its right to its left side, as vectors, and the square of the distance that was reached.
+    # The wedge by vectors along its right and left sides, and the square of the greatest distance so far.
     opened = False
     right_x = right_y = left_x = left_y = reach = 0.0
     narrow = tolerance * tolerance
@@ -49,13 +49,13 @@ def thinned(points: Complex, tolerance: float, kept: Sequence[bool] | NDArray[np
         dx, dy = x[k] - x[anchor], y[k] - y[anchor]
         square = dx * dx + dy * dy
         if opened and not (square >= reach and right_x * dy - right_y * dx >= 0.0 and dx * left_y - dy * left_x >= 0.0):
-            # The point before was the last that one chord reaches.
+            # The chord to this point would pass an earlier one too far away: the previous point becomes the anchor.
             anchor = k - 1
             chosen.append(anchor)
             opened, reach = False, 0.0
             continue
         if square > narrow:
-            # The tangents to the circle about the point, as wide as the tolerance.
+            # Tangents from the anchor to the circle around the point whose radius is the tolerance.
             along = math.sqrt(square - narrow)
             from_x, from_y = dx * along + dy * tolerance, dy * along - dx * tolerance
             to_x, to_y = dx * along - dy * tolerance, dy * along + dx * tolerance
@@ -72,22 +72,22 @@ def thinned(points: Complex, tolerance: float, kept: Sequence[bool] | NDArray[np
     return np.array(chosen)
 
 
-def at_most(points: Complex, count: int, tolerance: float) -> NDArray[np.int64]:
-    """The numbers of ``count`` points at most, the first and the last among them, whose chords stand for all.
+def limit_points(points: Complex, count: int, tolerance: float) -> NDArray[np.int64]:
+    """Return indices of at most ``count`` points, including the first and the last, whose chords represent all points.
 
-    ``tolerance`` is one that takes more points. Where no tolerance takes nearly as many as there may be, as of a
-    polygon, those go one by one that make the smallest triangles with their neighbours (Visvalingam and Whyatt, The
-    Cartographic Journal 30 (1993), 46–51).
+    ``tolerance`` is one that needs more points. If no tolerance gives nearly ``count`` points, as for a polygon, points
+    are removed that form the smallest triangles with their neighbours (Visvalingam and Whyatt, The Cartographic Journal
+    30 (1993), 46–51).
     """
     free = np.zeros(len(points), bool)
     low, high = tolerance, np.inf
     above = np.arange(len(points))
-    # Of a circle it takes the square of π over the number of its chords.
+    # First guess: the deviation of a circle's chords decreases with the square of their number.
     tried = max(4.0 * tolerance, float(np.abs(points - points[0]).max()) / count**2)
-    for _ in range(MOST_TRIES):
-        # What a smaller tolerance has left out is nearer than that.
-        found = above[thinned(points[above], tried, free[above])]
-        if NEAR_ENOUGH * count <= len(found) <= count:
+    for _ in range(MAX_TRIES):
+        # Points dropped at a smaller tolerance need not be considered again at a larger one.
+        found = above[reduce_points(points[above], tried, free[above])]
+        if MIN_FILL_SHARE * count <= len(found) <= count:
             return found
         if len(found) < count:
             high = tried
@@ -98,7 +98,7 @@ def at_most(points: Complex, count: int, tolerance: float) -> NDArray[np.int64]:
         at = points[above]
         one, other = at[1:-1] - at[:-2], at[2:] - at[1:-1]
         area = np.abs((one.conj() * other).imag)
-        # Some at once where many must go, but no two neighbours.
+        # Remove several at a time if many must go, but no two neighbours.
         smallest = np.sort(np.argpartition(area, excess // 4)[: excess // 4 + 1])
         begins = np.append(True, np.diff(smallest) > 1)
         run = np.arange(len(smallest)) - np.maximum.accumulate(np.where(begins, np.arange(len(smallest)), 0))
@@ -106,20 +106,20 @@ def at_most(points: Complex, count: int, tolerance: float) -> NDArray[np.int64]:
     return above
 
 
-def astray(points: Complex, chosen: NDArray[np.int64]) -> float:
-    """The greatest distance of a point from the chord that passes it."""
-    return 0.0 if len(chosen) == len(points) else float(_away(points, chosen).max())
+def measure_deviation(points: Complex, chosen: NDArray[np.int64]) -> float:
+    """Return the maximum distance of a point from its chord."""
+    return 0.0 if len(chosen) == len(points) else float(_measure_distances(points, chosen).max())
 
 
-def with_farthest(points: Complex, chosen: NDArray[np.int64]) -> NDArray[np.int64]:
-    """One point more: of those that are not among them, the one that is farthest from its chord."""
-    away = _away(points, chosen)
+def add_farthest(points: Complex, chosen: NDArray[np.int64]) -> NDArray[np.int64]:
+    """Add the point that is farthest from its chord among those not chosen."""
+    away = _measure_distances(points, chosen)
     away[chosen] = -1.0
     return np.sort(np.append(chosen, np.argmax(away)))
 
 
-def _away(points: Complex, chosen: NDArray[np.int64]) -> NDArray[np.float64]:
-    """The distance of each point from the chord that passes it."""
+def _measure_distances(points: Complex, chosen: NDArray[np.int64]) -> NDArray[np.float64]:
+    """Return the distance of each point from its chord."""
     owner = np.searchsorted(chosen, np.arange(len(points)), side="right").clip(1, len(chosen) - 1)
     start, end = points[chosen[owner - 1]], points[chosen[owner]]
     along, away = end - start, points - start

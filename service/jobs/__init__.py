@@ -1,1 +1,1 @@
-"""How a job lives: its row, its states, and who runs it."""
+"""Jobs: their rows in the store, their states, and the processes that run them."""

@@ -1,4 +1,4 @@
-"""What a client can do with jobs: the store, the executor and the notifier behind one object."""
+"""The operations on jobs that the API offers: store, executor and notifier behind one object."""
 
 from __future__ import annotations
 
@@ -17,13 +17,13 @@ from service.jobs.store.finished_cache import FinishedJobs
 from service.jobs.store.schema import JobRow, JobSummary, SampleRow
 from service.jobs.store.states import Cost, Status
 from service.observability.metrics import Metrics
-from service.observability.telemetry import span
+from service.observability.telemetry import measure_span
 
 log = structlog.get_logger(__name__)
 
 
 class PartOfBatch(Exception):
-    """The job cannot be removed by itself; carries the id of the batch that it is a sample of."""
+    """The job is a sample of a batch and cannot be removed by itself; carries the id of the batch."""
 
     def __init__(self, batch: str) -> None:
         self.batch = batch
@@ -32,7 +32,7 @@ class PartOfBatch(Exception):
 
 @dataclass(frozen=True, slots=True)
 class JobDesk:
-    """Accepts, shows, cancels and removes jobs. All methods run on the event loop; the store is asked in a thread."""
+    """Accepts, shows, cancels and removes jobs. Runs on the event loop; queries the store in a thread."""
 
     store: JobStore
     executor: Executor
@@ -52,33 +52,33 @@ class JobDesk:
         wait_s: float,
         repeatable: Repeatable | None,
     ) -> JobRow:
-        """Store a job, have it run, and wait up to ``wait_s`` seconds for its end. Returns the job as it then is.
+        """Store a job, submit it, wait up to ``wait_s`` seconds for its end, and return its state after that.
 
-        A request that comes again by its key gets the job that it has made the first time.
+        A repeated request with the same key returns the job it created first.
 
         Raises
         ------
         KeyReused
-            When the key came with another request before.
+            If the key was used with a different request before.
         QueueFull
-            When no more jobs of the tenant are taken for now.
+            If the tenant's queue is full.
         """
-        with span("store"):
-            job, new = await run_in_threadpool(self._stored, tenant, kind, label, problem, cost, repeatable)
+        with measure_span("store"):
+            job, new = await run_in_threadpool(self._store_job, tenant, kind, label, problem, cost, repeatable)
         if new:
             log.info("job accepted", job=job.id, kind=kind)
-            self.metrics.accepted(kind)
+            self.metrics.count_job(kind)
         with self.notifier.watch(job.id) as changed:
             if new:
                 self.executor.submit(job.id)
             if wait_s <= 0:
                 return job
-            # It may have ended before it was watched: whoever is free finds it in the store without being told.
+            # A free worker may have found the job in the store and ended it before the watch began.
             job = await self.get(job.tenant, job.id) or job
-            with span("job"):
-                return await self._ended(job, changed, wait_s)
+            with measure_span("job"):
+                return await self._wait_for_end(job, changed, wait_s)
 
-    def _stored(
+    def _store_job(
         self, tenant: str, kind: str, label: str | None, problem: str, cost: Cost, repeatable: Repeatable | None
     ) -> tuple[JobRow, bool]:
         if repeatable is None:
@@ -96,7 +96,7 @@ class JobDesk:
             max_queued=self.max_queued,
         )
 
-    async def _ended(self, job: JobRow, changed: asyncio.Event, wait_s: float) -> JobRow:
+    async def _wait_for_end(self, job: JobRow, changed: asyncio.Event, wait_s: float) -> JobRow:
         try:
             async with asyncio.timeout(wait_s):
                 while not job.status.finished and not self.notifier.closed:
@@ -108,33 +108,34 @@ class JobDesk:
         return job
 
     async def get(self, tenant: str, job_id: str) -> JobRow | None:
-        """The job, or None where the tenant has none such. Another tenant's job is none."""
+        """Return the job; None if it does not exist or belongs to another tenant."""
         job = self.finished.get(job_id)
         if job is None:
+            # Noted before the read: a removal during the read must not leave the job in the cache.
             removals = self.finished.removals
             job = await run_in_threadpool(self.store.get, job_id)
             if job is not None:
                 self.finished.keep(job, removals)
         return job if job is not None and job.tenant == tenant else None
 
-    async def page(
+    async def list_page(
         self, *, tenant: str, limit: int, status: Status | None, kind: str | None, before: str | None
     ) -> list[JobSummary]:
-        """At most ``limit`` jobs of the tenant, newest first."""
+        """Return at most ``limit`` jobs of the tenant, newest first."""
         return await run_in_threadpool(
-            self.store.page, tenant=tenant, limit=limit, status=status, kind=kind, before=before
+            self.store.list_page, tenant=tenant, limit=limit, status=status, kind=kind, before=before
         )
 
     async def cancel_or_delete(self, tenant: str, job_id: str) -> JobRow | Literal["deleted"] | None:
-        """Cancel the job when it is unfinished (returns it), else remove it; None where the tenant has none such.
+        """Cancel an unfinished job and return it, or remove a finished one; None if the tenant has no such job.
 
-        A job that ends by itself while it is being cancelled is returned and not removed: the client asked when
-        it was unfinished, and must not lose a result that it has never seen.
+        A job that ends by itself while it is being cancelled is returned and not removed: it was unfinished when the
+        client sent the request, and the client must not lose a result that it has never seen.
 
         Raises
         ------
         PartOfBatch
-            When the job is a sample of a batch, which is removed as a whole.
+            If the job is a sample of a batch, which is removed as a whole.
         """
         job = await self.get(tenant, job_id)
         if job is None:
@@ -145,18 +146,18 @@ class JobDesk:
             try:
                 return "deleted" if await run_in_threadpool(self.store.delete, job_id) else None
             finally:
-                self.finished.removed(job_id)
+                self.finished.note_removal(job_id)
         if await run_in_threadpool(self.store.cancel, job_id):
             log.info("job cancelled", job=job_id, was=job.status)
             self.executor.cancel(job_id)
             self.notifier.publish(job_id)
         return await self.get(tenant, job_id)
 
-    async def ready(self) -> str | None:
-        """None when jobs can be taken and run; else what is missing, in a sentence."""
+    async def check_readiness(self) -> str | None:
+        """Return None if jobs can be accepted and run, else a sentence that names the missing part."""
         try:
             await run_in_threadpool(self.store.ping)
-        except Exception:  # whatever a database driver raises means the same here: no store
+        except Exception:  # any error of the database driver means the same here: no store
             log.exception("the store does not answer")
             return "The job store does not answer."
-        return None if self.executor.ready() > 0 else "No worker has finished starting yet."
+        return None if self.executor.count_ready_workers() > 0 else "No worker has finished starting yet."

@@ -1,4 +1,4 @@
-"""Who runs the jobs: the protocol that the rest of the service knows."""
+"""The protocol of executors, which run the jobs."""
 
 from __future__ import annotations
 
@@ -6,39 +6,39 @@ from collections.abc import Callable
 from typing import Protocol
 
 Changed = Callable[[str | None], None]
-"""Called with the id of a job that a worker is done with, or None where any job may be it; from any thread."""
+"""Callback with the id of a job that a worker has released, or None if it may be any job; called from any thread."""
 
 
 class Executor(Protocol):
-    """Runs stored jobs by their ids. What became of a job stands in the store alone."""
+    """Runs stored jobs by their ids. Only the store holds their outcome."""
 
     def start(self) -> None:
-        """Begin to take jobs; nothing happens when it has begun already. The workers may still be starting after."""
+        """Start to take jobs; repeated calls do nothing. The workers may still be starting on return."""
         ...
 
     def resume(self) -> None:
-        """Take up the jobs of the store that nobody runs. Called once, when the store has its tables."""
+        """Take up stored jobs that no process runs. Called once, when the store has its tables."""
         ...
 
     def subscribe(self, changed: Changed) -> None:
-        """Tell one subscriber from now on of each job that a worker is done with: it has ended, or is queued again.
+        """Notify one subscriber of each job that a worker releases: it has ended or is queued again.
 
-        Nobody is told of a claim or of progress; that stands in the store.
+        Claims and progress are not notified; the store holds them.
         """
         ...
 
     def submit(self, job_id: str) -> None:
-        """Have the queued job run."""
+        """Submit a queued job."""
         ...
 
     def cancel(self, job_id: str) -> None:
-        """Stop the computation of a job that is cancelled in the store already; native code included."""
+        """Stop the computation of a job already cancelled in the store, even inside native code."""
         ...
 
-    def ready(self) -> int:
-        """How many workers have finished starting."""
+    def count_ready_workers(self) -> int:
+        """Return the number of workers that have finished starting."""
         ...
 
     def stop(self) -> None:
-        """Stop within a few seconds. Jobs under way go back into the queue of the store."""
+        """Stop within a few seconds; running jobs return to the queue."""
         ...

@@ -1,4 +1,4 @@
-"""Why a job failed, as the problem-details object that its client reads."""
+"""Faults of failed jobs, as problem-details objects for the client."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from service.error_messages import MAX_FAULTS
 
 @dataclass(frozen=True, slots=True)
 class Fault:
-    """A problem-details object (RFC 9457) without its instance."""
+    """A problem-details object (RFC 9457) without the field ``instance``."""
 
     type: str
     title: str
@@ -20,7 +20,7 @@ class Fault:
     errors: Sequence[tuple[str, str]] | None = None
 
     def as_json(self, job_id: str) -> str:
-        """The object as stored with the job that it is about."""
+        """Return the object as JSON for the row of the job."""
         told = {**asdict(self), "instance": f"/v1/jobs/{job_id}"}
         if self.errors is None:
             del told["errors"]
@@ -33,45 +33,45 @@ INTERNAL_ERROR = Fault(
     "/problems/internal-error",
     "Internal error",
     500,
-    "The computation failed by a defect of the service; the log of the service has the details.",
+    "The computation failed because of a defect of the service; its log has the details.",
 )
 WORKER_DIED = Fault(
     "/problems/worker-died",
     "Worker died",
     500,
-    "The process that computed the job died at every attempt, so the job was given up.",
+    "The job was given up because its worker process died in every attempt.",
 )
 
 
-def timeout(limit_s: float) -> Fault:
-    """The job took longer than ``limit_s`` seconds."""
+def make_timeout(limit_s: float) -> Fault:
+    """Build the fault of a job that took longer than ``limit_s`` seconds."""
     return Fault(
         "/problems/timeout",
         "Timeout",
         504,
-        f"The computation was stopped after the {limit_s:g} seconds that a job may take.",
+        f"The computation was stopped at the time limit of {limit_s:g} s.",
     )
 
 
-def out_of_memory(limit_mb: int) -> Fault:
-    """The job asked for more than ``limit_mb`` MiB."""
+def make_out_of_memory(limit_mb: int) -> Fault:
+    """Build the fault of a job that needed more than ``limit_mb`` MiB."""
     return Fault(
         "/problems/out-of-memory",
         "Out of memory",
         507,
-        f"The computation needed more than the {limit_mb} MiB of memory that a job may take.",
+        f"The computation exceeded the memory limit of {limit_mb} MiB.",
     )
 
 
-def invalid_problem(errors: Sequence[tuple[str, str]]) -> Fault:
-    """A sample of a batch states no problem; ``errors`` are pairs of the place in it and what is wrong there.
+def make_invalid_problem(errors: Sequence[tuple[str, str]]) -> Fault:
+    """Build the fault of a sample with an invalid problem; ``errors`` are pairs of JSON pointer and detail.
 
-    Some of them are told, as of a job that is refused.
+    At most :data:`~service.error_messages.MAX_FAULTS` errors are reported, as for a refused job.
     """
     return Fault(
         "/problems/invalid-problem",
         "Invalid problem",
         422,
-        f"With these values the problem cannot be meant: {errors[0][0]}: {errors[0][1]}",
+        f"With these values the problem is invalid: {errors[0][0]}: {errors[0][1]}",
         errors[:MAX_FAULTS],
     )

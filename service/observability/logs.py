@@ -1,4 +1,4 @@
-"""One log for the service, its libraries and its workers: a line a record on stderr, for people or for machines."""
+"""One log for the service, its libraries and its workers: one line per record on stderr, as text or JSON."""
 
 from __future__ import annotations
 
@@ -18,30 +18,30 @@ _STAMPS: tuple[Processor, ...] = (
 )
 
 _MARGIN = "    "
-"""What the lines of a traceback begin with, so that no message of an error can look like a record of its own."""
+"""Indentation of the lines of a traceback, so that no error message can look like a log record."""
 
-# What moves the cursor of a terminal, colours it, ends a line, or turns the direction of what follows (C0, C1, line and
-# paragraph separators, bidirectional controls).
+# Characters that control a terminal, end a line, or change the direction of text (C0, C1, line and paragraph
+# separators, bidirectional controls).
 _CONTROLS = [*range(0x20), *range(0x7F, 0xA0), 0x2028, 0x2029, *range(0x202A, 0x202F), *range(0x2066, 0x206A)]
 _SPELT = {code: chr(code).encode("unicode_escape").decode() for code in _CONTROLS}
 
 
-def _spelt(_logger: WrappedLogger, _method: str, record: EventDict) -> EventDict:
-    """The record with control characters spelt out: texts may come from clients, and a record is one line."""
+def _escape_controls(_logger: WrappedLogger, _method: str, record: EventDict) -> EventDict:
+    """Escape control characters in the record: texts may come from clients, and a record is one line."""
     return {
         key.translate(_SPELT): value if key == "exc_info" else str(value).translate(_SPELT)
         for key, value in record.items()
     }
 
 
-def _traceback(out: TextIO, error: ExcInfo) -> None:
+def _write_traceback(out: TextIO, error: ExcInfo) -> None:
     for part in traceback.format_exception(*error):
         for line in part.rstrip("\n").split("\n"):
             out.write(f"\n{_MARGIN}{line.translate(_SPELT)}")
 
 
 _RENDERERS: dict[Format, tuple[Processor, ...]] = {
-    "text": (_spelt, structlog.dev.ConsoleRenderer(colors=False, exception_formatter=_traceback)),
+    "text": (_escape_controls, structlog.dev.ConsoleRenderer(colors=False, exception_formatter=_write_traceback)),
     "json": (structlog.processors.format_exc_info, structlog.processors.JSONRenderer()),
 }
 
@@ -49,8 +49,8 @@ _RENDERERS: dict[Format, tuple[Processor, ...]] = {
 def configure(level: str, form: Format) -> None:
     """Send the records of structlog and of the standard library to stderr, from ``level`` upwards.
 
-    ``text`` gives lines of ``key=value``, control characters spelt out, with indented tracebacks; ``json`` an object a
-    line.
+    ``text`` gives lines of ``key=value`` with escaped control characters and indented tracebacks; ``json`` gives one
+    object per line.
     """
     line = structlog.stdlib.ProcessorFormatter(
         processors=[

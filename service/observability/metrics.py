@@ -1,7 +1,7 @@
-"""What the service counts and measures about itself, in Prometheus' form.
+"""Metrics of the service in the format of Prometheus.
 
-No label holds anything that a client has chosen: operations, methods, kinds, outcomes and reasons are from lists of the
-service's own, so that nobody can fill the memory with new ones or put a secret into them.
+Labels contain no text chosen by clients: operations, methods, kinds, outcomes and reasons come from fixed lists, so
+that clients can neither fill the memory with new values nor put secrets into them.
 """
 
 from __future__ import annotations
@@ -31,41 +31,41 @@ log = structlog.get_logger(__name__)
 
 
 class WorkerMetrics:
-    """What is known of workers and of the process that has them, in a registry of its own."""
+    """Metrics of workers and of the process that runs them, in a separate registry."""
 
     def __init__(self) -> None:
         self.registry = CollectorRegistry()
         for collector in (ProcessCollector, PlatformCollector, GCCollector):
             collector(registry=self.registry)
-        self._attempts = self._counter("job_attempts", "Attempts at jobs that have ended, by how.", "outcome")
-        self._job_seconds = self._histogram(
+        self._attempts = self._create_counter("job_attempts", "Attempts at jobs that have ended, by how.", "outcome")
+        self._job_seconds = self._create_histogram(
             "job_seconds",
             "Computation of an attempt at a job that its worker has brought to an end.",
             "kind",
             _JOB_SECONDS,
         )
-        self._worker_restarts = self._counter(
+        self._worker_restarts = self._create_counter(
             "worker_restarts", "Worker processes that were replaced, by why.", "reason"
         )
-        self._workers = self._gauge("workers_ready", "Worker processes that have finished starting.")
+        self._workers = self._create_gauge("workers_ready", "Worker processes that have finished starting.")
 
-    def _counter(self, name: str, text: str, *labels: str) -> Counter:
+    def _create_counter(self, name: str, text: str, *labels: str) -> Counter:
         return Counter(f"mechsynth_{name}", text, labels, registry=self.registry)
 
-    def _gauge(self, name: str, text: str, *labels: str) -> Gauge:
+    def _create_gauge(self, name: str, text: str, *labels: str) -> Gauge:
         return Gauge(f"mechsynth_{name}", text, labels, registry=self.registry)
 
-    def _histogram(self, name: str, text: str, label: str, buckets: tuple[float, ...]) -> Histogram:
+    def _create_histogram(self, name: str, text: str, label: str, buckets: tuple[float, ...]) -> Histogram:
         return Histogram(f"mechsynth_{name}", text, (label,), buckets=buckets, registry=self.registry)
 
-    def attempt(self, outcome: str, kind: str | None = None, seconds: float = 0.0) -> None:
-        """An attempt at a job has ended; kind and time are known where the worker itself has ended it."""
+    def count_attempt(self, outcome: str, kind: str | None = None, seconds: float = 0.0) -> None:
+        """Count an ended attempt at a job; kind and time are known if the worker itself ended it."""
         self._attempts.labels(outcome.replace(" ", "_")).inc()
         if kind is not None:
             self._job_seconds.labels(kind).observe(seconds)
 
-    def worker_restart(self, reason: str) -> None:
-        """A worker process is being replaced."""
+    def count_worker_restart(self, reason: str) -> None:
+        """Count a replaced worker process."""
         self._worker_restarts.labels(reason).inc()
 
 
@@ -74,14 +74,14 @@ class HostMetrics(WorkerMetrics):
 
     def __init__(self) -> None:
         super().__init__()
-        self._jobs = self._gauge(
+        self._jobs = self._create_gauge(
             "host_jobs",
             "Jobs that this host has taken: a worker computes them.",
             "status",
         )
 
     def watch(self, workers: Callable[[], int], running: Callable[[], int]) -> None:
-        """Ask these whenever the metrics are read: ready workers, and running jobs of the host."""
+        """Set the callbacks that give the ready workers and the running jobs of the host at each read."""
         self._workers.set_function(workers)
         self._jobs.labels("running").set_function(running)
 
@@ -91,115 +91,117 @@ class Metrics(WorkerMetrics):
 
     def __init__(self) -> None:
         super().__init__()
-        self._requests = self._counter("http_requests", "Requests that were answered.", "operation", "method", "status")
-        self._request_seconds = self._histogram(
+        self._requests = self._create_counter(
+            "http_requests", "Requests that were answered.", "operation", "method", "status"
+        )
+        self._request_seconds = self._create_histogram(
             "http_request_seconds",
             "From the head of a request to the end of its answer, waits and streams included.",
             "operation",
             _REQUEST_SECONDS,
         )
-        self._rejections = self._counter(
+        self._rejections = self._create_counter(
             "http_rejections", "Requests that were answered with an error, by the type of the problem.", "reason"
         )
-        self._jobs_accepted = self._counter("jobs_accepted", "Jobs that were accepted.", "kind")
-        self._batches_accepted = self._counter("batches_accepted", "Batches that were accepted.", "kind")
-        self._given_up = self._counter(
+        self._jobs_accepted = self._create_counter("jobs_accepted", "Jobs that were accepted.", "kind")
+        self._batches_accepted = self._create_counter("batches_accepted", "Batches that were accepted.", "kind")
+        self._given_up = self._create_counter(
             "calls_given_up",
             "Analyses, drawings, parts and files that were given up, by why: time, memory, busy, gone, lost.",
             "pool",
             "reason",
         )
-        self._defects = self._counter(
+        self._defects = self._create_counter(
             "defects", "Requests refused after a numerical error that no field had kept out.", "operation"
         )
-        self._listeners = self._gauge("event_listeners", "Clients that listen to the events of a job.")
+        self._listeners = self._create_gauge("event_listeners", "Clients that listen to the events of a job.")
 
-    def request(self, operation: str, method: str, status: int, seconds: float) -> None:
-        """A request has been answered."""
+    def count_request(self, operation: str, method: str, status: int, seconds: float) -> None:
+        """Count an answered request."""
         self._requests.labels(operation, method if method in METHODS else "other", str(status)).inc()
         self._request_seconds.labels(operation).observe(seconds)
 
-    def refused_unread(self, status: int, type_: str) -> None:
-        """A request was answered with a problem of this type before it was whole, so that no operation has seen it."""
+    def count_unread_refusal(self, status: int, type_: str) -> None:
+        """Count an incomplete request that was answered with a problem of this type, before any operation saw it."""
         self._requests.labels("none", "other", str(status)).inc()
-        self.rejection(type_)
+        self.count_rejection(type_)
 
-    def rejection(self, type_: str) -> None:
-        """A request was answered with a problem of this type (``/problems/...``)."""
+    def count_rejection(self, type_: str) -> None:
+        """Count a request that was answered with a problem of this type (``/problems/...``)."""
         self._rejections.labels(type_.removeprefix("/problems/")).inc()
 
-    def accepted(self, kind: str) -> None:
-        """A job was accepted."""
+    def count_job(self, kind: str) -> None:
+        """Count an accepted job."""
         self._jobs_accepted.labels(kind).inc()
 
-    def accepted_batch(self, kind: str) -> None:
-        """A batch was accepted."""
+    def count_batch(self, kind: str) -> None:
+        """Count an accepted batch."""
         self._batches_accepted.labels(kind).inc()
 
-    def call_given_up(self, pool: str, reason: str) -> None:
-        """An analysis, a drawing, parts or a file were given up."""
+    def count_given_up(self, pool: str, reason: str) -> None:
+        """Count an analysis, a drawing, parts or a file given up."""
         self._given_up.labels(pool, reason).inc()
 
-    def defect(self, operation: str) -> None:
-        """A request has met a defect of the service's own, and was refused for it."""
+    def count_defect(self, operation: str) -> None:
+        """Count a request refused because of a defect of the service."""
         self._defects.labels(operation).inc()
 
     def watch_calls(self, counts: Callable[[], Mapping[str, Mapping[str, int]]]) -> None:
-        """Ask this whenever the metrics are read: calls by pool and state."""
+        """Set the callback that gives the calls by pool and state at each read."""
         self.registry.register(_Calls(counts))
 
     def watch(
         self, listeners: Callable[[], int], workers: Callable[[], int], queue: Callable[[], Mapping[str, int]]
     ) -> None:
-        """Ask these whenever the metrics are read: listeners, ready workers, and unfinished jobs by their state."""
+        """Set the callbacks that give the listeners, ready workers and unfinished jobs by state at each read."""
         self._listeners.set_function(listeners)
         self._workers.set_function(workers)
         self.registry.register(_Queue(queue))
 
 
 class _Calls(Collector):
-    """What runs and waits in the pools of processes that answer requests."""
+    """Running and waiting calls in the pools of processes that answer requests."""
 
     def __init__(self, counts: Callable[[], Mapping[str, Mapping[str, int]]]) -> None:
         self._counts = counts
 
     def describe(self) -> Iterator[GaugeMetricFamily]:
-        yield _calls_family()
+        yield _create_calls_family()
 
     def collect(self) -> Iterator[GaugeMetricFamily]:
-        family = _calls_family()
+        family = _create_calls_family()
         for pool, counts in self._counts().items():
             for state, calls in counts.items():
                 family.add_metric([pool, state], calls)
         yield family
 
 
-def _calls_family() -> GaugeMetricFamily:
+def _create_calls_family() -> GaugeMetricFamily:
     return GaugeMetricFamily(
         "mechsynth_calls", "Analyses, drawings, parts and files that run or wait.", labels=["pool", "state"]
     )
 
 
 class _Queue(Collector):
-    """The unfinished jobs, counted in the store, which several servers may share."""
+    """Unfinished jobs, counted in the store, which several servers may share."""
 
     def __init__(self, queue: Callable[[], Mapping[str, int]]) -> None:
         self._queue = queue
 
     def describe(self) -> Iterator[GaugeMetricFamily]:
-        yield _family()
+        yield _create_queue_family()
 
     def collect(self) -> Iterator[GaugeMetricFamily]:
         try:
             counts = self._queue()
-        except Exception:  # whatever a database driver raises: the other metrics are wanted all the more
+        except Exception:  # any error of the database driver: the other metrics matter even more then
             log.exception("the unfinished jobs could not be counted")
             return
-        family = _family()
+        family = _create_queue_family()
         for status, jobs in counts.items():
             family.add_metric([status], jobs)
         yield family
 
 
-def _family() -> GaugeMetricFamily:
+def _create_queue_family() -> GaugeMetricFamily:
     return GaugeMetricFamily("mechsynth_jobs_unfinished", "Unfinished jobs in the store.", labels=["status"])

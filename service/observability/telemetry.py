@@ -1,7 +1,7 @@
-"""What is told about each request: a line in the log, its metrics, its id, and where its time went.
+"""Telemetry of requests: a log line, metrics, the request id, and the time spent in its parts.
 
-One record a request, in a context variable; whatever has a hand in the answer adds to it. The middleware is outermost,
-so that the answer to a defect has all this as well.
+Each request has a record in a context variable, to which all parts of the answer contribute. The middleware is
+outermost, so that the answer to a defect is covered, too.
 """
 
 from __future__ import annotations
@@ -18,14 +18,14 @@ from starlette.datastructures import Headers, MutableHeaders
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 from ulid import ULID
 
-from service.observability.head import asked_for_head
+from service.observability.head import is_head_request
 from service.observability.metrics import Metrics
 
 CUT_SHORT = "mechsynth.cut_short"
-"""Where the state of a request says with which status and problem its connection has answered in place of the
-operation, which was still waiting for the rest of it."""
+"""Key in the state of a request for the status and problem with which the connection answered it while its operation
+was still waiting for the rest of the body."""
 
-_CLIENTS_ID = re.compile("[A-Za-z0-9._:/+=@-]{1,100}")
+_CLIENT_ID_PATTERN = re.compile("[A-Za-z0-9._:/+=@-]{1,100}")
 
 log = structlog.get_logger(__name__)
 
@@ -43,8 +43,8 @@ _record: ContextVar[_Record | None] = ContextVar("record", default=None)
 
 
 @contextmanager
-def span(name: str) -> Iterator[None]:
-    """Time a part of the present request for its ``Server-Timing``; equal names add up."""
+def measure_span(name: str) -> Iterator[None]:
+    """Measure the time of a part of the present request for ``Server-Timing``; equal names add up."""
     began = time.perf_counter()
     try:
         yield
@@ -54,29 +54,29 @@ def span(name: str) -> Iterator[None]:
             record.spans[name] = record.spans.get(name, 0.0) + time.perf_counter() - began
 
 
-def refused(type_: str) -> None:
-    """Note the type of the problem that the present request is answered with."""
+def note_refusal(type_: str) -> None:
+    """Record the type of the problem with which the present request is answered."""
     record = _record.get()
     if record is not None:
         record.refused = type_
 
 
 def note_defect(error: str) -> None:
-    """Note that the present request has met a defect of the service's own, by the type of the error."""
+    """Record that the present request has hit a defect of the service, by the type of the error."""
     record = _record.get()
     if record is not None:
         record.defect = error
 
 
-def answer_with(headers: Mapping[str, str]) -> None:
-    """Add headers to the answer to the present request, whatever that will be."""
+def add_headers(headers: Mapping[str, str]) -> None:
+    """Add headers to any answer to the present request."""
     record = _record.get()
     if record is not None:
         record.headers.update(headers)
 
 
 class Telemetry:
-    """Watches every request from outside of the application."""
+    """Middleware around the application that observes every request."""
 
     def __init__(self, app: ASGIApp, metrics: Metrics) -> None:
         self._app = app
@@ -90,36 +90,36 @@ class Telemetry:
         began = time.perf_counter()
         record = _Record()
         _record.set(record)
-        request_id = _request_id(scope)
+        request_id = _get_request_id(scope)
         structlog.contextvars.clear_contextvars()
         structlog.contextvars.bind_contextvars(request=request_id)
 
-        async def sent(message: Message) -> None:
+        async def send_with_headers(message: Message) -> None:
             if message["type"] == "http.response.start":
                 record.status = message["status"]
                 headers = MutableHeaders(raw=message["headers"])
                 headers.update(record.headers)
                 headers["X-Request-ID"] = request_id
-                headers["Server-Timing"] = _server_timing(record.spans, time.perf_counter() - began)
+                headers["Server-Timing"] = _format_server_timing(record.spans, time.perf_counter() - began)
             await send(message)
 
         try:
-            await self._app(scope, receive, sent)
+            await self._app(scope, receive, send_with_headers)
         finally:
-            self._tell(scope, record, time.perf_counter() - began)
+            self._record_request(scope, record, time.perf_counter() - began)
 
-    def _tell(self, scope: Scope, record: _Record, seconds: float) -> None:
+    def _record_request(self, scope: Scope, record: _Record, seconds: float) -> None:
         if CUT_SHORT in scope.get("state", ()):
             record.status, record.refused = scope["state"][CUT_SHORT]
         route = scope.get("route")
         operation = getattr(route, "operation_id", None) or getattr(route, "name", None) or "none"
-        method = "HEAD" if asked_for_head(scope) else scope["method"]
-        self._metrics.request(operation, method, record.status, seconds)
+        method = "HEAD" if is_head_request(scope) else scope["method"]
+        self._metrics.count_request(operation, method, record.status, seconds)
         if record.refused is not None:
-            self._metrics.rejection(record.refused)
+            self._metrics.count_rejection(record.refused)
         if record.defect is not None:
-            self._metrics.defect(operation)
-        # The path holds nothing secret, but a query might; and a path may be long.
+            self._metrics.count_defect(operation)
+        # The query is omitted, since it may contain a secret, and long paths are cut.
         log.info(
             "request",
             method=method[:20],
@@ -131,11 +131,11 @@ class Telemetry:
         )
 
 
-def _request_id(scope: Scope) -> str:
-    # A proxy or client in front may have named the request already; then both logs speak of it by one name.
+def _get_request_id(scope: Scope) -> str:
+    # A proxy or client may have assigned an id already; then both logs use the same one.
     given = Headers(scope=scope).get("x-request-id", "")
-    return given if _CLIENTS_ID.fullmatch(given) else str(ULID())
+    return given if _CLIENT_ID_PATTERN.fullmatch(given) else str(ULID())
 
 
-def _server_timing(spans: dict[str, float], total: float) -> str:
+def _format_server_timing(spans: dict[str, float], total: float) -> str:
     return ", ".join(f"{name};dur={1e3 * seconds:.2f}" for name, seconds in [*spans.items(), ("total", total)])

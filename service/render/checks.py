@@ -8,7 +8,7 @@ from service.render.outline import add_unit
 from service.render.page import blocks, sheet
 from service.render.page.numbers import format_length, format_small
 from service.render.page.svg import clean_text
-from service.units import symbols
+from service.units import list_symbols
 from synthesis.model.answer import Check, Verification
 from synthesis.model.dimension import Dimension
 from synthesis.model.problem import ProblemBase
@@ -41,7 +41,7 @@ def _read(check: Check, digits: int) -> list[str]:
 
 def make_checks_block(verification: Verification, problem: ProblemBase) -> blocks.Block:
     """Return the block of all checks of a design, in the units of its problem."""
-    units = symbols(problem)
+    units = list_symbols(problem)
     listed = []
     for check in verification.checks:
         value, limit = format_check(check, units)

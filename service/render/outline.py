@@ -19,7 +19,7 @@ from pydantic import BaseModel
 
 from service.render.page.numbers import format_length
 from service.render.page.svg import clean_text
-from service.units import symbols
+from service.units import list_symbols
 from synthesis.model.counting import format_integer
 from synthesis.model.dimension import Dimension, collect_dimensions
 from synthesis.model.problem import ProblemBase
@@ -110,7 +110,7 @@ def list_entries(
 ) -> list[tuple[str, str]]:
     """Return the rows of a model for a sheet: names in lower case, or as given in ``titles``, and values with units."""
     rows = []
-    for row in make_outline(model, symbols(problem), leave_out).rows:
+    for row in make_outline(model, list_symbols(problem), leave_out).rows:
         name = row.name[:1].lower() + row.name[1:]
         rows.append((titles.get(name, name), add_unit(row.value, row.unit)))
     return rows

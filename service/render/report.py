@@ -22,7 +22,7 @@ from service.render.checks import format_check
 from service.render.outline import Outline, add_unit, format_name, format_value, make_outline
 from service.render.page.sheet import UNIT_NAMES
 from service.render.page.svg import clean_text
-from service.units import symbols
+from service.units import list_symbols
 from synthesis.model.answer import Check, Result, Search
 from synthesis.model.dimension import Dimension, collect_dimensions
 from synthesis.model.problem import ProblemBase
@@ -114,7 +114,7 @@ def report(
     str
         HTML. Deterministic: the same arguments give the same text.
     """
-    units = symbols(problem)
+    units = list_symbols(problem)
     title = problem.model_config.get("title") or format_name(occasion.kind)
     # Labels are client text: remove control characters.
     heading = clean_text(occasion.label or "") or title

@@ -1,4 +1,4 @@
-"""The application: everything put together, started and stopped."""
+"""The ASGI application: assembly of all parts, start and stop."""
 
 from __future__ import annotations
 
@@ -44,27 +44,26 @@ from service.jobs.events.poller import JobPoller
 from service.jobs.executor import Executor
 from service.jobs.job_store import JobStore
 from service.jobs.retention import keep_tidy
-from service.jobs.store.database import connect, sqlite_file, upgrade
+from service.jobs.store.database import connect, find_sqlite_file, upgrade
 from service.jobs.store.finished_cache import CAPACITY_BYTES, FinishedJobs
-from service.kernels import ANALYSIS, KernelsState
+from service.kernels import ANALYSIS_PART, KernelsState
 from service.observability.metrics import Metrics
 from service.parts.export.worker import Workshop
 from service.settings import Settings
 
 _DESCRIPTION = """Designs mechanisms and verifies every answer by driving it.
 
-State a problem in a job (`POST /v1/jobs`), wait for it or come back for it, and read the designs from its result.
-Many problems at once are a batch (`POST /v1/batches`).
-`GET /v1/problems` lists what can be asked, each with an example that runs as it is. A mechanism that exists already is
-analysed at once (`POST /v1/analyses`). The outlines in a drawing are read (`POST /v1/outlines`), and so are the curves
-in a drawing, a table or a picture (`POST /v1/imports`).
+Submit a problem as a job (`POST /v1/jobs`), wait for it or poll it, and read the designs from its result. Submit many
+problems as a batch (`POST /v1/batches`). `GET /v1/problems` lists the kinds of problems, each with an example that can
+be posted as it is. `POST /v1/analyses` analyses a given mechanism at once. `POST /v1/outlines` reads the outlines in a
+drawing, and `POST /v1/imports` reads the curves in a drawing, a table or a picture.
 
 Angles are degrees, counter-clockwise from +x; lengths are plain numbers in the problem's `length_unit`. Unknown fields
 are refused. Errors are `application/problem+json` (RFC 9457); validation errors name each field by its JSON pointer."""
 
 
 def create_app(settings: Settings, executor: Executor, measured: Metrics, kernels: KernelsState) -> FastAPI:
-    """The service as an ASGI application. Its start upgrades the store and takes unfinished jobs up again."""
+    """Create the service as an ASGI application. Its start upgrades the store and resumes unfinished jobs."""
 
     @asynccontextmanager
     async def lifespan(app: FastAPI) -> AsyncIterator[None]:
@@ -73,7 +72,7 @@ def create_app(settings: Settings, executor: Executor, measured: Metrics, kernel
         notifier = ChangeNotifier(asyncio.get_running_loop())
         log_as = settings.log_level, settings.log_format
         app.state.answers = answers = AnswerDesk(*log_as, metrics=measured)
-        answers.start(after=lambda: kernels.has(ANALYSIS) or (kernels.ended and answers.is_awaited))
+        answers.start(after=lambda: kernels.has(ANALYSIS_PART) or (kernels.is_ended and answers.is_awaited))
         app.state.readers = readers = ImportDesk(*log_as, metrics=measured)
         app.state.workshop = workshop = Workshop(
             settings.job_memory_mb, settings.job_timeout_s, *log_as, metrics=measured
@@ -83,8 +82,8 @@ def create_app(settings: Settings, executor: Executor, measured: Metrics, kernel
             executor.start()
             await run_in_threadpool(upgrade, engine)
             await run_in_threadpool(executor.resume)
-            # A SQLite store has one server; of any other, another server may remove a job.
-            finished = FinishedJobs(CAPACITY_BYTES if sqlite_file(settings.store_url) else 0)
+            # A SQLite store has one server; in any other store, another server may remove a job behind the cache.
+            finished = FinishedJobs(CAPACITY_BYTES if find_sqlite_file(settings.store_url) else 0)
             app.state.desk = JobDesk(store, executor, notifier, measured, settings.max_queued, finished)
             app.state.gate = Gate(KeyStore(engine), settings.rate_limit_rule)
             batch_store = BatchStore(engine)
@@ -92,9 +91,14 @@ def create_app(settings: Settings, executor: Executor, measured: Metrics, kernel
             pollers: list[JobPoller[Any]] = [JobPoller(store, notifier), JobPoller(batch_store, notifier)]
             app.state.poller, app.state.batch_poller = pollers
             measured.watch_calls(
-                lambda: {**answers.counts(), **{pool.name: pool.counts() for pool in (readers.pool, workshop.pool)}}
+                lambda: {
+                    **answers.count_calls(),
+                    **{pool.name: pool.count_calls() for pool in (readers.pool, workshop.pool)},
+                }
             )
-            measured.watch(lambda: sum(each.listeners for each in pollers), executor.ready, store.unfinished)
+            measured.watch(
+                lambda: sum(each.listeners for each in pollers), executor.count_ready_workers, store.count_unfinished
+            )
             polling = [asyncio.create_task(poller.run()) for poller in pollers]
             tidying = asyncio.create_task(keep_tidy(store, batch_store, finished, settings.retention_days))
             yield
@@ -109,25 +113,25 @@ def create_app(settings: Settings, executor: Executor, measured: Metrics, kernel
             await run_in_threadpool(executor.stop)
             engine.dispose()
 
-    app = application(lifespan)
+    app = build_application(lifespan)
     app.state.settings = settings
     app.state.metrics = measured
     app.state.kernels = kernels
     return app
 
 
-def api_document() -> str:
-    """The OpenAPI document of the service as it is kept with the source, without any service running."""
+def build_api_document() -> str:
+    """Return the OpenAPI document that is kept with the source; no running service is needed."""
 
     @asynccontextmanager
     async def lifespan(app: FastAPI) -> AsyncIterator[None]:
         yield
 
-    return json.dumps(application(lifespan).openapi(), indent=1, ensure_ascii=False) + "\n"
+    return json.dumps(build_application(lifespan).openapi(), indent=1, ensure_ascii=False) + "\n"
 
 
-def application(lifespan: Lifespan[FastAPI]) -> FastAPI:
-    """All routes and errors of the service, around whatever its life brings."""
+def build_application(lifespan: Lifespan[FastAPI]) -> FastAPI:
+    """Create an application with all routes and error handlers of the service."""
     app = FastAPI(
         title="mechsynth",
         summary="A REST service that designs mechanisms.",
@@ -138,7 +142,7 @@ def application(lifespan: Lifespan[FastAPI]) -> FastAPI:
         docs_url=None,
         redoc_url=None,
         redirect_slashes=False,
-        # Problems and designs have one schema each, whether they come or go.
+        # Problems and designs have one schema each for input and output.
         separate_input_output_schemas=False,
         openapi_tags=[jobs.TAG, batches.TAG, analyses.TAG, outlines.TAG, imports.TAG, problems.TAG, health.TAG],
     )

@@ -1,12 +1,12 @@
-"""Compilation ahead of time: all kernels of the project, part by part, on all processors, in processes of their own.
+"""Compilation ahead of time: all kernels of the project, part by part, on all processors, in separate processes.
 
-``mechsynth warm`` does it before a service starts. A service that finds kernels missing does it beside its jobs, when
-its first worker is ready: most of them at low priority, and a job that comes before its kernels compiles them itself
-(:mod:`service.jobs.workers.compile_watch`). Which parts are compiled stands on disk (:mod:`kinematics.kernel_marks`),
-so that what was interrupted goes on at the next start, and processes that share a cache share the parts out.
+``mechsynth warm`` does it before a service starts. A service with missing kernels does it in parallel with its jobs
+once its first worker is ready, most parts at low priority; a job that arrives before its kernels compiles them itself
+(:mod:`service.jobs.workers.compile_watch`). Marks on disk record the compiled parts (:mod:`kinematics.kernel_marks`),
+so that an interrupted compilation continues at the next start, and processes with a common cache share the work.
 
-The compiler holds the interpreter, so threads would only take turns. Where two processes compile the same function at
-once, both keep a sound copy.
+The compiler holds the interpreter lock, so threads would only take turns. If two processes compile the same function at
+once, both keep a valid copy.
 """
 
 from __future__ import annotations
@@ -21,55 +21,55 @@ from multiprocessing.process import BaseProcess
 
 import structlog
 
-from service.jobs.processes.parent_death import die_with, tell_children
-from service.kernels import ANALYSIS, KernelsState
+from service.jobs.processes.parent_death import bind_to_parent, export_parent_pid
+from service.kernels import ANALYSIS_PART, KernelsState
 from service.loading import IMPORTS
 from service.observability import logs
 
-DEMANDS = "demands"
-"""The part of the kernels that no example of a kind calls."""
+CONSTRAINTS_PART = "demands"
+"""The kernels of constraints, which no example of a kind calls."""
 
-PRIORITY = 10
-"""By how much processes that compile beside jobs are nicer than these."""
+NICENESS = 10
+"""Niceness of processes that compile in parallel with jobs."""
 
 MAX_START_DELAY_S = 10.0
-"""The service looks for missing kernels after its first worker has started, but not later than this."""
+"""Time limit for the first worker's start, after which the search for missing kernels begins in any case, seconds."""
 
 _PERIOD_S = 0.1
-"""Period at which it is looked what has been compiled: by marks on disk, which tell nobody."""
+"""Period at which the marks of compiled parts on disk are checked, seconds; no event announces them."""
 
 log = structlog.get_logger(__name__)
 
 
 class WarmingFailure(Exception):
-    """Kernels could not be compiled; the message says which parts are missing."""
+    """Kernels could not be compiled; the message names the missing parts."""
 
 
-def every_part() -> list[str]:
-    """All parts of the kernels, first those that most of the others call."""
+def list_parts() -> list[str]:
+    """Return all parts of the kernels, first those that most others call."""
     from kinematics.kernel_marks import LINKAGES_PART
     from synthesis.registry import KINDS
 
-    return [LINKAGES_PART, ANALYSIS, *KINDS, DEMANDS]
+    return [LINKAGES_PART, ANALYSIS_PART, *KINDS, CONSTRAINTS_PART]
 
 
-def analysis_alone() -> list[str]:
-    """The part of a server whose jobs run elsewhere."""
-    return [ANALYSIS]
+def list_analysis_parts() -> list[str]:
+    """Return the parts needed by a server whose jobs run elsewhere."""
+    return [ANALYSIS_PART]
 
 
 def warm() -> None:
-    """Compile all kernels that have not been compiled; returns when they are there.
+    """Compile all missing kernels and wait for the end.
 
     Raises
     ------
     WarmingFailure
-        When a solver raised or a process died, for want of memory for instance.
+        If a solver raised or a process died, for example for lack of memory.
     """
     from synthesis import dispatch
 
     logs.configure("warning", "text")
-    compilation = Compilation(every_part, "warning", "text", priority=0, ahead=True)
+    compilation = Compilation(list_parts, "warning", "text", priority=0, ahead=True)
     if not compilation.missing:
         return
     dispatch.warm_up()  # what most parts need is compiled once, before it is needed everywhere
@@ -79,13 +79,13 @@ def warm() -> None:
 
 
 class Compilation:
-    """Compiles parts of the kernels in processes, and knows how far that is.
+    """Compiles parts of the kernels in processes and tracks the progress.
 
-    Where it is not to compile ``ahead`` it only knows: then whoever needs kernels compiles them.
+    Without ``ahead`` it compiles nothing and only reports the missing parts, which jobs then compile on demand.
     """
 
     def __init__(
-        self, wanted: Callable[[], list[str]], level: str, form: logs.Format, priority: int = PRIORITY, *, ahead: bool
+        self, wanted: Callable[[], list[str]], level: str, form: logs.Format, priority: int = NICENESS, *, ahead: bool
     ) -> None:
         self.state = KernelsState()
         self._wanted = wanted
@@ -96,12 +96,12 @@ class Compilation:
         self._thread: threading.Thread | None = None
 
     def start(self, after: Callable[[], bool]) -> None:
-        """Compile in the background once ``after`` says so, at the latest :data:`MAX_START_DELAY_S` from now."""
+        """Compile in the background once ``after`` returns true, at the latest after :data:`MAX_START_DELAY_S`."""
         self._thread = threading.Thread(target=self._begin, args=(after,), name="compilation", daemon=True)
         self._thread.start()
 
     def stop(self) -> None:
-        """End the processes and wait for that. What they have compiled is kept."""
+        """End the processes and wait for their end; compiled kernels are kept."""
         self._stopping.set()
         if self._thread is not None:
             self._thread.join()
@@ -114,14 +114,14 @@ class Compilation:
         return [part for part in self._wanted() if not is_compiled(part)]
 
     def run(self) -> None:
-        """Compile what is missing; returns when that is done, cannot be done, or is to stop."""
+        """Compile the missing parts; return when all are done, cannot be done, or a stop is requested."""
         missing = self.missing
         self.state.look(len(self._wanted()), missing)
         if not missing or not self._ahead:
             return
         log.info("compiling kernels in the background; jobs compile their own meanwhile", parts=missing)
         began = time.monotonic()
-        tell_children()
+        export_parent_pid()
         context = get_context("spawn")
         arguments = (missing, os.getpid(), self._priority, self._level, self._form)
         processes = [
@@ -149,10 +149,10 @@ class Compilation:
             with IMPORTS:
                 importlib.import_module("kinematics.kernel_marks")  # it takes half a second
             self.run()
-        except Exception:  # the service can do without: jobs compile what they need
+        except Exception:  # not fatal: jobs compile the kernels they need
             log.exception("kernels could not be compiled in the background")
         finally:
-            self.state.end()
+            self.state.note_end()
 
     def _watch(self, processes: Sequence[BaseProcess]) -> None:
         from kinematics.kernel_marks import is_compiled
@@ -162,7 +162,7 @@ class Compilation:
             alive = any(process.is_alive() for process in processes)
             for part in self.state.waiting:
                 if is_compiled(part):
-                    self.state.compiled(part)
+                    self.state.note_compiled(part)
                     log.info("kernels compiled", part=part, left=len(self.state.waiting))
             if not self.state.waiting:
                 return
@@ -171,8 +171,8 @@ class Compilation:
 
 
 def _compile(missing: list[str], parent: int, priority: int, level: str, form: logs.Format) -> None:
-    """What a process does: compile the parts that no other process is at, one after the other."""
-    die_with(parent)
+    """Compile the parts that no other process works on, one at a time; the main function of a process."""
+    bind_to_parent(parent)
     logs.configure(level, form)
     from kinematics.kernel_marks import LINKAGES_PART, claim_part, is_compiled, mark_compiled
 
@@ -184,11 +184,11 @@ def _compile(missing: list[str], parent: int, priority: int, level: str, form: l
                 if not ours:
                     elsewhere.append(part)
                 elif not is_compiled(part):
-                    if part not in (LINKAGES_PART, ANALYSIS):  # without these no mechanism can be looked at
+                    if part not in (LINKAGES_PART, ANALYSIS_PART):  # without these no mechanism can be looked at
                         os.nice(priority - os.nice(0))
                     try:
                         _compile_part(part)
-                    except Exception:  # of a solver: the other parts can be compiled all the same
+                    except Exception:  # an error of a solver: the other parts can still be compiled
                         log.exception("kernels could not be compiled", part=part)
                     else:
                         mark_compiled(part)
@@ -204,9 +204,9 @@ def _compile_part(part: str) -> None:
 
     if part == LINKAGES_PART:
         dispatch.load_linkages()
-    elif part == ANALYSIS:
+    elif part == ANALYSIS_PART:
         warm_analysis.warm_up()
-    elif part == DEMANDS:
+    elif part == CONSTRAINTS_PART:
         dispatch.compile_constraints()
     else:
         dispatch.compile_kind(part)

@@ -105,8 +105,7 @@ def _write_body(machine: Multibody, body: Body, flange: bool) -> Iterator[str]:
     across = half if body.axis[:2] == (0.0, 0.0) or body.sort == "slide" else whole
     yield (
         f"  {BODY_CLASS} {body.name}(m = {format_number(body.mass)}, r_CM = {centre}, I_11 = {across}, I_22 = "
-        f"{across}, "
-        f"I_33 = {whole}) {_format_text(body.label)};"
+        f"{across}, I_33 = {whole}) {_format_text(body.label)};"
     )
 
 

@@ -21,7 +21,7 @@ class Names:
         Examples
         --------
         >>> names = Names()
-        >>> names.of("link", "input"), names.of("link", "in put"), names.of("link", "in-put")
+        >>> names.make_name("link", "input"), names.make_name("link", "in put"), names.make_name("link", "in-put")
         ('link_input', 'link_in_put', 'link_in_put_2')
         """
         plain = re.sub(r"[^A-Za-z0-9]+", "_", label).strip("_")
@@ -56,7 +56,7 @@ def format_number(value: float) -> str:
 
     Examples
     --------
-    >>> number(0.1), number(-0.0), number(3.0)
+    >>> format_number(0.1), format_number(-0.0), format_number(3.0)
     ('0.1', '0', '3')
     """
     # Adding 0 turns -0.0 into 0.0.

@@ -77,7 +77,7 @@ def format_integer(value: int) -> str:
 
     Examples
     --------
-    >>> integer(1000), integer(-3000), integer(0)
+    >>> format_integer(1000), format_integer(-3000), format_integer(0)
     ('Fe', '0ku', '0')
     """
     digits, rest = "", abs(value)

@@ -1,7 +1,7 @@
-"""What the analysis core knows of a given mechanism, for a client: a request and its answer, by mechanism family.
+"""Analyses of given mechanisms for clients: a request and its answer, by mechanism family.
 
-A family is a module with the models of its request and answer. It is found by the mechanism's type, so that a fault
-in a request is told in the words of its family.
+A family is a module with the models of its request and answer. It is chosen by the mechanism's type, so that errors in
+a request refer to the fields of its family.
 """
 
 from __future__ import annotations
@@ -40,27 +40,28 @@ FAMILIES: dict[str, Family] = {
     )
     for name in list_mechanism_types(family.request)
 }
-"""By the mechanism types that are no linkages; every other mechanism is one."""
+"""Families by mechanism type, without linkages; every type that is not listed is a linkage."""
 
 
 def get_family(mechanism: Any) -> Family:
     """Return the family of a mechanism in JSON form; that of linkages if it is unclear."""
     kind = mechanism.get("type") if isinstance(mechanism, dict) else None
+    # Even invalid requests need a family, whose model then reports the error.
     return FAMILIES.get(kind, linkage.FAMILY) if isinstance(kind, str) else linkage.FAMILY
 
 
 def list_families() -> list[Family]:
-    """All of them, linkages first."""
+    """Return all families, linkages first."""
     return list(dict.fromkeys([linkage.FAMILY, *FAMILIES.values()]))
 
 
 def parse_request(body: Any) -> AnalysisRequest:
-    """A request from the body of a call.
+    """Parse a request from the body of a call.
 
     Raises
     ------
     pydantic.ValidationError
-        For a body that states no mechanism and its motion.
+        For a body without a mechanism and its motion.
     """
     return get_family(body.get("mechanism") if isinstance(body, dict) else None).request.model_validate(body)
 

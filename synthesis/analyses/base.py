@@ -1,4 +1,4 @@
-"""What an analysis is for every family of mechanisms: a request that checks and answers itself, and its answer."""
+"""Base of the analyses of all families of mechanisms: a request that checks and answers itself, and its answer."""
 
 from __future__ import annotations
 
@@ -16,12 +16,12 @@ class AnalysisRequest(Statement, ABC):
     """A mechanism and how it is driven; each family has its own fields."""
 
     def find_errors(self) -> list[tuple[str, str]]:
-        """What no single field shows: (JSON pointer, detail)."""
+        """List errors that no single field shows: (JSON pointer, detail)."""
         return []
 
     @abstractmethod
     def build_answer(self) -> dict[str, Any]:
-        """The answer to a request without faults, as plain lists and numbers in the shape of the family's model.
+        """Build the answer to a valid request, as plain lists and numbers in the form of the family's model.
 
         Raises
         ------
@@ -31,12 +31,13 @@ class AnalysisRequest(Statement, ABC):
 
     @classmethod
     def analyze_cycle(cls, mechanism: dict[str, Any], steps: int) -> dict[str, Any]:
-        """The answer for a design's mechanism (as JSON has it) over its cycle, a full turn of the input at speed 1."""
+        """Build the answer for a design's mechanism (in JSON form) over its cycle, a full turn of the input at speed
+        1."""
         return cls.model_validate({"mechanism": mechanism, "motion": {"steps": steps}}).build_answer()
 
     @classmethod
     def build_example(cls) -> Self:
-        """The example of the API documentation."""
+        """Build the example of the API documentation."""
         return cls.model_validate(cls.model_json_schema()["examples"][0])
 
 
@@ -50,7 +51,7 @@ class DrivenRequest(AnalysisRequest, Generic[Given]):
     motion: StatedMotion = Sweep()
 
     def find_errors(self) -> list[tuple[str, str]]:
-        """Those of the motion, and what no single field shows."""
+        """List the errors of the motion."""
         return self.motion.find_errors()
 
 

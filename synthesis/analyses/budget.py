@@ -1,13 +1,13 @@
-"""What an analysis may be asked for: how much, known before the work begins."""
+"""Limits on the size of an analysis, checked before the work begins."""
 
 from __future__ import annotations
 
 MAX_VALUES = 2_000_000
-"""Numbers in the lists of an answer at most: some forty megabytes of JSON."""
+"""Maximum count of numbers in an answer's lists: some forty megabytes of JSON."""
 
 
 class BudgetError(ValueError):
-    """A request for more than is computed at once; carries the field's path and the greatest value that would do."""
+    """Raised for a request that exceeds the limit; carries the field's path and the largest permitted value."""
 
     def __init__(self, path: str, detail: str) -> None:
         self.path = path
@@ -16,17 +16,18 @@ class BudgetError(ValueError):
 
 
 def require_values(path: str, positions: int, numbers: int) -> None:
-    """Refuse so many ``numbers`` at each of so many positions where they are more than :data:`MAX_VALUES`.
+    """Refuse ``numbers`` values at each of several positions if they exceed :data:`MAX_VALUES` in total.
 
     Parameters
     ----------
     path : str
-        Of the field that says how many positions there are.
+        Path of the field that determines the number of positions.
 
     Raises
     ------
     BudgetError
     """
     if positions * numbers > MAX_VALUES:
+        # Tell the client the limit in positions, the quantity that the request can change.
         most = MAX_VALUES // numbers
         raise BudgetError(path, f"at most {most} positions, each of which has {numbers} numbers here, got {positions}")

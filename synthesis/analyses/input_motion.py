@@ -1,4 +1,4 @@
-"""How a linkage is driven: equal steps of its input, one position, or a run in time."""
+"""Input motion of a linkage: equal steps of its input, one position, or a run in time."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from synthesis.model.problem import Number, Sizable, Statement
 __all__ = ["FULL_TURN", "MAX_POSITIONS", "RAD_PER_S", "OnePosition", "StatedMotion", "Sweep", "TimeSpan", "TimedRun"]
 
 ROUNDING = 1e-12
-"""Share of a number of steps by which it may fall short of a whole one: 0.3/0.1 is three steps."""
+"""Share of a number of steps by which it may fall short of an integer: 0.3/0.1 is three steps."""
 
 
 class OnePosition(DriveSpeed):
@@ -24,7 +24,7 @@ class OnePosition(DriveSpeed):
     at: Number = Field(description="Input angle, degrees.")
 
     def list_inputs(self, *, slide: bool = False) -> tuple[Real, Real, Real | None]:
-        """Input, speed and no time."""
+        """Return input, speed and no time."""
         return np.array([self.at]), np.array([self.rate]), None
 
 
@@ -43,8 +43,9 @@ class TimedRun(DriveSpeed):
     at: Number = Field(default=0.0, description="Input angle at time 0, degrees.")
 
     def find_errors(self) -> list[tuple[str, str]]:
-        """A run backwards, or of too many positions, beside what every motion may have."""
+        """List errors of the run, backwards or with too many positions, in addition to those of every motion."""
         faults, span = super().find_errors(), self.time
+        # A run backwards would have no positions, so its number is not checked.
         if span.end < span.start:
             faults.append(("/motion/time/end", "the end must not lie before the start"))
         elif (span.end - span.start) / span.step > MAX_POSITIONS - 1:
@@ -52,15 +53,18 @@ class TimedRun(DriveSpeed):
         return faults
 
     def list_inputs(self, *, slide: bool = False) -> tuple[Real, Real, Real | None]:
-        """Inputs (degrees, or lengths along the input ``slide``), speeds and times."""
+        """Return inputs (degrees, or lengths along the input ``slide``), speeds and times."""
         count = math.floor((self.time.end - self.time.start) / self.time.step * (1.0 + ROUNDING)) + 1
+        # At least the start, even if rounding makes the number of steps negative.
         t = np.asarray(self.time.start + self.time.step * np.arange(max(count, 1)), np.float64)
         turned = self.rate * t + 0.5 * self.acceleration * t * t
+        # Rates are in radians, but the answer's angles in degrees.
         moved = turned if slide else np.degrees(turned)
         return np.asarray(self.at + moved), np.asarray(self.rate + self.acceleration * t), t
 
 
 def _tag_motion(statement: Any) -> str:
+    # The discriminator sees raw JSON or a validated model; their fields distinguish them.
     stated = statement if isinstance(statement, dict) else getattr(type(statement), "model_fields", {})
     if "time" in stated:
         return "<run>"

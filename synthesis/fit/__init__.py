@@ -1,1 +1,2 @@
-"""What every fit of a linkage shares: the chart of its dimensions, the curve it traces, and demands as inequalities."""
+"""Parts that all fits of a linkage share: the chart of its dimensions, the curve it traces, and constraints as
+margins."""

@@ -1,4 +1,4 @@
-"""Charts of linkages: unknowns x in which what a family promises holds for all x, without bounds or penalties.
+"""Charts of linkages: unknowns x for which a family's property holds at all x, without bounds or penalties.
 
 A linkage is a row of unknowns x, scaled to the task. The first two are O2, the last two P's coordinates in the
 coupler's frame (origin at A, real axis towards the coupler's other pin).
@@ -13,7 +13,7 @@ crank-rocker    the same                                 the same with a shortes
 double-rocker   the same                                 the same with b shortest
 fourbar         the same                                 d, a, b, c = e^{uₖ}: any
 slider-crank    O2, σ, u₁…u₃, P                          a = e^{u₁}, b = a + e^{u₂}, offset c = e^{u₂} tanh u₃:
-                                                         a + \\|c\\| < b, the crank turns through
+                                                         a + \\|c\\| < b, the crank rotates fully
 slider-rocker   the same                                 a = e^{u₁}, b = e^{u₂}, c = u₃: any
 geared fivebar  O2, O5, u₁…u₄, Φ, P                      input, coupler 1, coupler 2, output = e^{uₖ}
 =============== ======================================= ============================================================
@@ -45,24 +45,25 @@ UNKNOWNS = {
     SLIDER_ROCKER: 8,
     GEARED_FIVEBAR: 11,
 }
-"""How many numbers a linkage of each family has."""
+"""Number of unknowns of a linkage of each family."""
 
 LENGTHS, POINT = 3, 7
-"""Where the numbers for lengths and P's coordinates stand in the x of a fourbar."""
+"""Indices of the first length number and of P's coordinates in the x of a fourbar."""
 
 MIN_LOG, MAX_LOG = -16.0, 16.0
-"""Logarithms of lengths, in task sizes, are kept between these: far outside any linkage, inside what rounding bears."""
+"""Limits of the logarithms of lengths, in task sizes: far outside any linkage, but safe for rounding."""
 
 
 @njit(**OPTIONS)
 def compute_lengths(family: int, x: Real, lengths: Real, slopes: Real) -> None:
-    """The linkage's lengths, and their slopes in the numbers u as a square matrix.
+    """Compute the linkage's lengths, and their derivatives by the numbers u as a square matrix.
 
     Fourbars: d, a, b, c. Slider-cranks: a, b, offset. Geared fivebars: input, coupler 1, coupler 2, output.
     """
     slopes[:] = 0.0
     if family < FOURBAR:
         shortest = math.exp(x[3])
+        # s₁, s₂ and s₃ are differences of links; exponentials keep them positive, and with them the class.
         half_1, half_2, half_3 = 0.5 * math.exp(x[4]), 0.5 * math.exp(x[5]), 0.5 * math.exp(x[6])
         (first, second), third = _list_other_links(family), 3
         slopes[:, 0] = shortest
@@ -77,6 +78,7 @@ def compute_lengths(family: int, x: Real, lengths: Real, slopes: Real) -> None:
         for k in range(4):
             lengths[k] = slopes[k, k] = math.exp(x[3 + k])
     elif family == SLIDER_CRANK:
+        # tanh keeps |c| below the excess b − a, so the crank rotates fully for every u₃.
         crank, rest, t = math.exp(x[3]), math.exp(x[4]), math.tanh(x[5])
         lengths[0], lengths[1], lengths[2] = crank, crank + rest, rest * t
         slopes[0, 0] = slopes[1, 0] = crank
@@ -86,6 +88,7 @@ def compute_lengths(family: int, x: Real, lengths: Real, slopes: Real) -> None:
     elif family == SLIDER_ROCKER:
         lengths[0] = slopes[0, 0] = math.exp(x[3])
         lengths[1] = slopes[1, 1] = math.exp(x[4])
+        # The offset of a slider-rocker is free, of either sign, and so not exponential.
         lengths[2] = x[5]
         slopes[2, 2] = 1.0
     else:
@@ -95,16 +98,16 @@ def compute_lengths(family: int, x: Real, lengths: Real, slopes: Real) -> None:
 
 @njit(**OPTIONS)
 def _list_other_links(shortest: int) -> tuple[int, int]:
-    """The first two of the links d, a, b (0 to 2) that are not the shortest; c is the third."""
+    """Return the first two of the links d, a, b (0 to 2) that are not the shortest; c is always the third."""
     return 1 if shortest == 0 else 0, 1 if shortest > 1 else 2
 
 
 @njit(**OPTIONS)
 def write_unknowns(lengths: Real, family: int, edge: float, x: Real) -> bool:
-    """Write the numbers of a fourbar's lengths into x; False where the linkage is not of its family.
+    """Write the numbers of a fourbar's lengths into x; return False if the linkage is not of its family.
 
-    ``edge`` is the least s, as a share of all links together: what is nearer to a change point, or beyond it, is put
-    there. 0 refuses what is not of the family.
+    ``edge`` is the minimum s, as a share of all links together: a linkage nearer to a change point, or beyond it, is
+    moved there. With 0, linkages outside the family are refused.
     """
     if family == FOURBAR:
         for k in range(4):
@@ -113,8 +116,10 @@ def write_unknowns(lengths: Real, family: int, edge: float, x: Real) -> bool:
     (first, second), third = _list_other_links(family), 3
     shortest = lengths[family]
     one, two, three = lengths[first] - shortest, lengths[second] - shortest, lengths[third] - shortest
+    # Invert the chart: each s is a sum of two excesses over the shortest link minus the third.
     least = edge * lengths.sum()
     s1, s2, s3 = max(two + three - one, least), max(one + two - three, least), max(one + three - two, least)
+    # Also false for NaN.
     if not (s1 > 0.0 and s2 > 0.0 and s3 > 0.0):
         return False
     x[LENGTHS], x[LENGTHS + 1] = math.log(shortest), math.log(s1)

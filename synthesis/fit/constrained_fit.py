@@ -1,4 +1,4 @@
-"""Fits brought to where all demands hold, those of a room included."""
+"""Fits with all constraints enforced, including those of a workspace."""
 
 from __future__ import annotations
 
@@ -37,19 +37,21 @@ def fit_constrained(
     ----------
     rows, x, points, setting, state, most, limits, equations, weight, rounds, steps
         As for :func:`synthesis.numerics.augmented_lagrangian.descend_constrained`.
-    roomy : int
-        How many of the limits, the first, are margins of a room.
+    in_workspace : int
+        Number of the limits, the first ones, that are margins of a workspace.
     """
     ended = np.empty(1)
     status = Status(
         descend_constrained(rows, x, points, setting, state, most, limits, equations, weight, rounds, steps, ended)
     )
     if in_workspace and status is Status.INFEASIBLE:
-        # A least distance has kinks, at which multipliers do not come to rest.
+        # A minimum distance has kinks, at which multipliers do not converge. Accept a point that is close enough.
         margins = state[len(state) - limits :]
         room, demands = margins[:in_workspace], margins[in_workspace:]
+        # Equations that are not requested are infinite and do not count.
         zero = np.abs(demands[-equations:])
         off = max(-float(demands[:-equations].min()), float(zero[np.isfinite(zero)].max(initial=0.0)))
+        # Ten times the usual tolerance: the later verification decides, and this only keeps promising fits.
         if off <= 10.0 * VIOLATION_TOLERANCE and -float(room.min()) <= WORKSPACE_TOLERANCE and math.isfinite(ended[0]):
             status = Status.STEP_LIMIT
     return status, float(ended[0])

@@ -1,12 +1,12 @@
 """Limits on forces as margins of a fourbar in its chart, and their rows in a fit.
 
-The forces are those of the closed form (:mod:`kinematics.dynamics.fourbar`) at equal steps of the crank: over a whole
-turn where it turns through, else from the first point to the last. In each of :data:`WINDOW_COUNT` windows of the
-motion the peak F of each force that is limited has a margin, ln(limit / F), so that a fit sees every hump of a curve of
-forces, and not the highest alone. The derivatives are differences: what a link weighs, too, follows from the unknowns.
-A whole linkage takes some microseconds.
+The forces follow from the closed form (:mod:`kinematics.dynamics.fourbar`) at equal steps of the crank: over a full
+turn of a crank, else from the first point to the last. In each of :data:`WINDOW_COUNT` windows of the motion the peak F
+of each limited force has a margin, ln(limit / F), so that a fit sees every peak of a force curve and not the highest
+alone. The derivatives are finite differences, because the weights of the links depend on the unknowns, too. One whole
+linkage takes some microseconds.
 
-The numbers stand behind those of a room (:mod:`synthesis.fit.workspace`), of which these margins are the last.
+The numbers follow those of a workspace (:mod:`synthesis.fit.workspace`), of which these margins are the last.
 """
 
 from __future__ import annotations
@@ -51,34 +51,36 @@ DIFFERENCE_STEP = 1e-6
 """Step of the derivatives: of angles, logarithms of lengths and places in task sizes."""
 
 SIZE, LIMITS_INDEX, INDEX, STRENGTH, COUPLE, BLOCK = 0, 1, 5, 6, 7, 8
-"""Places of the numbers: the task's size in the unit of the forces, limits of the first four peaks, of the joint force
-index, the strength of the load that this is of and the link if it is a torque (-1 if not), and where the block begins.
-Infinite where no limit is stated."""
+"""Indices of the numbers: the task's size in the unit of the forces, limits of the first four peaks, of the joint force
+index, the strength of the load to which this refers and the link if it is a torque (-1 if not), and where the block
+begins. Infinite without a limit."""
 
+# Drive torque, joint force, shaking force, shaking moment and joint force index.
 QUANTITIES = 5
 
 ARGUMENT_COUNT = 11
-"""What forces depend on: the nine numbers of the chart, and the crank angles at the first point and the last."""
+"""Number of arguments of the forces: the nine numbers of the chart, and the crank angles at the first and last
+point."""
 
 NO_FORCE_LIMITS = np.zeros(0)
-"""No limits."""
+"""Empty limits."""
 
 
 def pack_forces(
     dynamics: DesignDynamics | None, limits: Mapping[Any, float], unit: LengthUnit, origin: complex, size: float
 ) -> Real:
-    """Limits on forces, and what they are of; empty where there are none, or the closed form does not know the block.
+    """Pack limits on forces with their loads; empty without limits, or if the closed form does not cover the block.
 
     Parameters
     ----------
-    stated : DesignDynamics or None
-        What every design weighs and carries.
+    dynamics : DesignDynamics or None
+        Masses and loads of every design.
     limits : mapping of str to float
         By the names of the forces.
     unit : str
         The length unit.
     origin, size : complex and float
-        Of the task, length units.
+        Of the task, in length units.
     """
     if dynamics is None or not limits or dynamics.speed_rpm is None:
         return NO_FORCE_LIMITS
@@ -96,9 +98,11 @@ def pack_forces(
         if name in limits:
             out[LIMITS_INDEX + place] = limits[name]
     speed = abs(float(block[SPEED]))
+    # At constant speed a power limit is a torque limit; the stricter of the two applies.
     if "power" in limits and speed > 0.0:
         out[LIMITS_INDEX + DRIVE] = min(out[LIMITS_INDEX + DRIVE], limits["power"] / speed)
     if "joint_force_index" in limits and dynamics.loads:
+        # The index relates joint forces to the first load alone.
         first = dynamics.loads[0]
         out[INDEX] = limits["joint_force_index"]
         if first.force is None:
@@ -107,13 +111,14 @@ def pack_forces(
             out[INDEX] = np.inf  # the frame bears it: nothing that moves does
         else:
             out[STRENGTH] = abs(complex(*(first.force.constant or (1.0, 0.0)))) or 1.0
+    # Aim lower by the share that a peak between two positions may add.
     out[LIMITS_INDEX : INDEX + 1] *= 1.0 - AIM_SHARE
     return np.concatenate([out, block]) if np.isfinite(out[LIMITS_INDEX : INDEX + 1]).any() else NO_FORCE_LIMITS
 
 
 @njit(**OPTIONS)
 def count_force_margins(forces: Real) -> int:
-    """How many margins there are."""
+    """Return the number of margins."""
     stated = 0
     for k in range(QUANTITIES if len(forces) else 0):
         if forces[LIMITS_INDEX + k] < np.inf:
@@ -123,7 +128,8 @@ def count_force_margins(forces: Real) -> int:
 
 @njit(**OPTIONS)
 def compute_window_peaks(charts: Real, lengths: Real, sign: float, ends: Real, forces: Real, out: Real) -> None:
-    """Peaks of each of n fourbars in each window, shape (n, WINDOWS, QUANTITIES); infinite where one does not close.
+    """Compute the peaks of n fourbars in each window, shape (n, WINDOW_COUNT, QUANTITIES); infinite if one does not
+    close.
 
     ``charts`` (n, 9) and ``lengths`` (n, 4) are of the linkages, ``ends`` (n, 2) their crank angles from the ground
     line at the first point and the last.
@@ -140,6 +146,7 @@ def compute_window_peaks(charts: Real, lengths: Real, sign: float, ends: Real, f
     sound = np.ones(count, np.bool_)
     for n in range(count):
         x, own = charts[n], lengths[n]
+        # Weights are defined at the first target, because loads and centres of mass may be given in the plane there.
         ground, crank = compute_unit_vector(x[2]), compute_unit_vector(x[2] + ends[n, 0])
         closes, along = close_two_bars(own[0] * ground - own[1] * crank, own[2], own[3], sign)
         o2 = complex(x[0], x[1])
@@ -153,6 +160,7 @@ def compute_window_peaks(charts: Real, lengths: Real, sign: float, ends: Real, f
         pins[n] = block[PINS : PINS + 3]
         low, high = find_crank_range(own[0], own[1], own[2], own[3])
         starts[n] = x[2] + ends[n, 0]
+        # A crank repeats its forces every turn; a rocker is only driven between its ends.
         spans[n] = 2.0 * math.pi if low == 0.0 and high == math.pi else ends[n, 1] - ends[n, 0]
     on, turning = np.empty(loads, np.int64), np.empty(loads, np.bool_)
     for k in range(loads):
@@ -180,13 +188,14 @@ def compute_window_peaks(charts: Real, lengths: Real, sign: float, ends: Real, f
         )  # fmt: skip
         out[:, :, QUANTITIES - 1] = found[:, :, JOINT] / forces[STRENGTH]
     for n in range(count):
+        # Reject linkages that do not close or whose holes leave nothing of a plate.
         if not sound[n]:
             out[n] = np.inf
 
 
 @njit(**OPTIONS)
 def compute_force_margins(x: Real, lengths: Real, sign: float, ends: Real, forces: Real, values: Real) -> bool:
-    """The margins of one linkage, written; False where it does not close all along its motion.
+    """Write the margins of one linkage; return False if it does not close all along its motion.
 
     Parameters
     ----------
@@ -198,7 +207,7 @@ def compute_force_margins(x: Real, lengths: Real, sign: float, ends: Real, force
         Crank angles from the ground line at the first point and the last.
     forces : float, shape (m,)
         Of :func:`pack_forces`.
-    values : float, shape (margins_of_forces(forces),)
+    values : float, shape (count_force_margins(forces),)
         Written.
     """
     found = np.empty((1, WINDOW_COUNT, QUANTITIES))
@@ -214,7 +223,9 @@ def compute_force_margins(x: Real, lengths: Real, sign: float, ends: Real, force
             force = found[0, w, k]
             if force == np.inf:
                 return False
+            # A force that vanishes, or is far below its limit, must not give an infinite margin.
             values[m] = min(math.log(limit / force), MAX_MARGIN) if force > 0.0 and limit > 0.0 else MAX_MARGIN
+            # With a limit of 0 a logarithm does not exist; the force itself is the violation.
             if limit == 0.0 and force > 0.0:
                 values[m] = -force
             m += 1
@@ -225,7 +236,7 @@ def compute_force_margins(x: Real, lengths: Real, sign: float, ends: Real, force
 def compute_force_slopes(
     x: Real, lengths: Real, slopes: Real, sign: float, ends: Real, turns: Real, forces: Real, rows: Real
 ) -> None:
-    """The derivatives of the margins by the unknowns, shape (margins, unknowns), written.
+    """Write the derivatives of the margins by the unknowns, shape (margins, unknowns).
 
     ``slopes`` are those of the lengths, ``turns``, shape (2, unknowns), those of the crank angles at both ends.
     """
@@ -234,9 +245,11 @@ def compute_force_slopes(
         np.empty((ARGUMENT_COUNT + 1, 4)),
         np.empty((ARGUMENT_COUNT + 1, 2)),
     )
+    # Row 0 is the linkage itself; row n + 1 has argument n perturbed. All are evaluated in one call.
     for n in range(ARGUMENT_COUNT + 1):
         charts[n], sizes[n], angles[n] = x[:9], lengths, ends
         move = n - 1
+        # The lengths follow the chart to first order, so they need not be recomputed.
         if LENGTHS <= move < LENGTHS + 4:
             sizes[n] += DIFFERENCE_STEP * slopes[:, move - LENGTHS]
         elif move >= 9:
@@ -252,21 +265,24 @@ def compute_force_slopes(
             continue
         for w in range(WINDOW_COUNT):
             force = found[0, w, k]
+            # A peak that vanishes or does not exist has no logarithm, so its row stays 0.
             if 0.0 < force < np.inf:
                 for n in range(ARGUMENT_COUNT):
                     moved = found[n + 1, w, k]
+                    # d ln(limit/F) = −dF/F.
                     by = (force - moved) / (DIFFERENCE_STEP * force) if moved < np.inf else 0.0
                     if n < 9:
                         rows[m, n] += by
+                    # The end angles depend on all unknowns: apply the chain rule.
                     else:
                         rows[m] += by * turns[n - 9]
             m += 1
 
 
 def compute_min_margins(charts: Real, lengths: Real, sign: float, ends: Real, forces: Real) -> Real:
-    """The least margin of each of n fourbars, shape (n,), as for :func:`compute_window_peaks`.
+    """Compute the minimum margin of each of n fourbars, shape (n,), as for :func:`compute_window_peaks`.
 
-    −∞ where one does not close.
+    −∞ if one does not close.
     """
     found = np.empty((len(charts), WINDOW_COUNT, QUANTITIES))
     compute_window_peaks(charts, lengths, sign, ends, forces, found)
@@ -274,4 +290,5 @@ def compute_min_margins(charts: Real, lengths: Real, sign: float, ends: Real, fo
     stated = np.isfinite(limits)
     with np.errstate(divide="ignore"):
         logs = np.log(limits[stated]) - np.log(found[:, :, stated].max(axis=1))
+    # NaN arises for a force of 0 under a limit of 0, which is satisfied.
     return np.asarray(np.where(np.isnan(logs), MAX_MARGIN, logs).min(axis=1))

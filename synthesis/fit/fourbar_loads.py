@@ -1,12 +1,12 @@
-"""What fourbars weigh and carry as numbers for compiled code: a block ``dynamics`` once, every fourbar from its joints.
+"""Masses and loads of fourbars as numbers for compiled code, for every fourbar from its joints.
 
-A statement becomes one vector, :func:`pack_loads`. What it tells of a link is the sum of three things, each with its
-mass, its first moment and its polar moment of the second order: what stands at places of the plane (as the linkage
-stands at its first target), what stands at places of the link (from its first joint, over the direction to the second),
-and a plate about the link's joints, a bar or their convex hull widened, less its holes, as in
-:mod:`kinematics.dynamics.shapes`. :func:`weigh_links` makes bodies of them for the joints of one fourbar.
+A block becomes one vector, :func:`pack_loads`. The data of a link are the sum of three parts, each with its mass, first
+moment and polar second moment: bodies at points of the plane (with the linkage at its first target), bodies at points
+of the link (from its first joint, along the direction to the second), and a plate about the link's joints, a bar or
+their convex hull widened, less its holes, as in :mod:`kinematics.dynamics.shapes`. :func:`weigh_links` combines them
+for the joints of one fourbar.
 
-Everything is in the unit of the forces, and places are told from the task's origin: a far one costs digits.
+Everything is in the unit of the forces. Points are relative to the task's origin: a distant origin would cost digits.
 """
 
 from __future__ import annotations
@@ -35,37 +35,39 @@ ON_PIN = {"A": PIN_A, "B": PIN_B, "P": PIN_P}
 FIXED = "O2", "O4"
 
 SPEED, GRAVITY, AT_POINT, ABOUT, PINS, COUPLES, LOADS, BODIES = 0, 1, 3, 4, 6, 9, 12, 13
-"""Places of a block's numbers: the input's speed, gravity (x, y), whether shaking moments are about a stated point, and
-which; masses at A, B and P; torques on the links; how many forces act; where the links begin."""
+"""Indices of a block: the input's speed, gravity (x, y), whether shaking moments are about a given point, and that
+point; masses at A, B and P; torques on the links; the number of forces; the beginning of the links."""
 
 IN_PLANE, IN_LINK, PLATE, LINK = 0, 4, 8, 15
-"""Of a link: mass, first moment (x, y) and polar moment of what stands in the plane, and of what stands in the link;
-density times thickness, width (0 for none), whether ends are square, overhang, and radii of holes at its joints.
-The last is how many numbers a link has."""
+"""Indices in a link's record: mass, first moment (x, y) and polar moment of bodies in the plane, and of bodies in the
+link; density times thickness, width (0 without a plate), whether ends are square, overhang, and radii of holes at its
+joints. The last is the length of a record."""
 
 FORCES = BODIES + 3 * LINK
-"""Where the forces begin: what each acts on, whether its place is told in the plane, its place, the force, and whether
-that turns with the link."""
+"""Beginning of the forces. Each record: the part on which it acts, whether its point is given in the plane, the point,
+the force, and whether the force turns with the link."""
 
 FORCE = 7
 
 
 class _UnsupportedBlockError(ValueError):
-    """A statement that these numbers do not tell."""
+    """A block that these numbers cannot represent."""
 
 
 def pack_loads(block: DesignDynamics, unit: LengthUnit, origin: complex) -> Real | None:
-    """The numbers of a block; None for one that has something else: springs, friction, loads that change, polygons
-    with corners of both sorts, other links than those of a fourbar.
+    """Pack a block into a vector, or return None if it has other elements.
+
+    Such elements are springs, friction, variable loads, polygons with corners in both frames, and links that a fourbar
+    lacks.
 
     Parameters
     ----------
-    stated : DesignDynamics
-        With an input that turns.
+    block : DesignDynamics
+        With a rotating input.
     unit : str
         The length unit.
     origin : complex
-        The task's, length units.
+        Of the task, in length units.
     """
     try:
         return _LoadPacker(block, unit, origin).pack()
@@ -74,18 +76,19 @@ def pack_loads(block: DesignDynamics, unit: LengthUnit, origin: complex) -> Real
 
 
 class _LoadPacker:
-    """The numbers of one block."""
+    """Converter of one block."""
 
     def __init__(self, stated: DesignDynamics, unit: LengthUnit, origin: complex) -> None:
         self.stated, self.scale, self.origin = stated, stated.scale(unit), origin
 
     def pack(self) -> Real:
-        """All of them in one vector."""
+        """Return all numbers in one vector."""
         stated = self.stated
         if stated.springs or stated.friction is not None or stated.speed_rpm is None:
             raise _UnsupportedBlockError
         if not stated.bodies.keys() <= LINKS.keys():
             raise _UnsupportedBlockError
+        # Loads on fixed pivots act on the frame and move nothing.
         forces = [self._pack_force(load) for load in stated.loads if load.torque is None and load.joint not in FIXED]
         out = np.zeros(FORCES + FORCE * len(forces))
         out[SPEED], out[LOADS] = stated.speed_rpm * math.tau / 60.0, len(forces)
@@ -109,6 +112,8 @@ class _LoadPacker:
             at = BODIES + n * LINK
             if body is not None:
                 self._pack_body(body, joints, out[at : at + LINK])
+            # The common plate applies to links that have no body of their own; the coupler is a hull, always with
+            # round ends.
             elif stated.plate is not None:
                 own = {joint: hole for joint, hole in stated.plate.holes.items() if joint in joints}
                 plain = {"ends": "round", "overhang": 0.0} if len(joints) > 2 else {}
@@ -121,7 +126,7 @@ class _LoadPacker:
         return self.scale * (place - self.origin)
 
     def _resolve_place(self, place: Place) -> tuple[bool, complex]:
-        """Whether a place is one of the plane, and where it is."""
+        """Return whether a place is given in the plane, and its coordinates."""
         if isinstance(place, PolarPoint):
             return False, self.scale * place.vector
         return True, self._pack_place(complex(*place))
@@ -145,6 +150,7 @@ class _LoadPacker:
             self._pack_shape(body.shape, joints, out)
             return
         mass, inertia = body.mass or 0.0, body.inertia or 0.0
+        # Without a centre of mass, the body is at the link's first joint.
         plane, centre = (False, 0j) if body.cg is None else self._resolve_place(body.cg)
         _add_body(out, plane, Body(np.asarray(mass), np.asarray(centre), np.asarray(inertia)))
 
@@ -157,6 +163,7 @@ class _LoadPacker:
         if shape.polygon is not None:
             places = [self._resolve_place(corner) for corner in shape.polygon]
             frames = {plane for plane, _ in places}
+            # Corners in both frames would change the polygon's shape with the linkage.
             if len(frames) > 1:
                 raise _UnsupportedBlockError
             section = make_polygon([place for _, place in places])
@@ -185,9 +192,10 @@ class _LoadPacker:
 
 
 def _add_body(out: Real, plane: bool, body: Body) -> None:
-    """Add a body to what stands in the plane, or in the link."""
+    """Add a body to those given in the plane, or in the link."""
     at = IN_PLANE if plane else IN_LINK
     mass, centre = float(body.mass), complex(body.cg)
+    # Moments about the origin, so that parts add up; the parallel-axis theorem moves the inertia there.
     first = mass * centre
     out[at : at + 4] += mass, first.real, first.imag, float(body.inertia) + mass * abs(centre) ** 2
 
@@ -199,7 +207,7 @@ def _square_magnitude(z: complex) -> float:
 
 @njit(**OPTIONS)
 def _integrate_bar(p: complex, q: complex, width: float, square: bool, overhang: float) -> tuple[float, complex, float]:
-    """Area, first moment and polar moment about the origin of a bar between two joints."""
+    """Integrate area, first moment and polar moment about the origin of a bar between two joints."""
     length, middle = abs(q - p), 0.5 * (p + q)
     if square:
         along = length + 2.0 * overhang
@@ -218,9 +226,10 @@ def _integrate_bar(p: complex, q: complex, width: float, square: bool, overhang:
 
 @njit(**OPTIONS)
 def _integrate_widened_hull(a: complex, b: complex, p: complex, width: float) -> tuple[float, complex, float]:
-    """The same of the convex hull of three joints, widened by half the width all round."""
+    """Integrate the same for the convex hull of three joints, widened by half the width all round."""
     corners = (a, b, p)
     turned = (b - a).real * (p - a).imag - (b - a).imag * (p - a).real
+    # Collinear joints: the hull is the bar between the two that are farthest from each other.
     if turned == 0.0:
         one, two = a, b
         if abs(p - a) > abs(two - one):
@@ -229,11 +238,13 @@ def _integrate_widened_hull(a: complex, b: complex, p: complex, width: float) ->
             one, two = b, p
         bar: tuple[float, complex, float] = _integrate_bar(one, two, width, False, 0.0)
         return bar
+    # The sums below assume anticlockwise corners.
     if turned < 0.0:
         corners = (a, p, b)
     r = 0.5 * width
     area, first, polar = 0.0, 0j, 0.0
     for n in range(3):
+        # Sum over the corners: the triangle to the origin, the strip along the side, and the sector at the corner.
         z, w, before = corners[n], corners[(n + 1) % 3], corners[(n + 2) % 3]
         doubled = z.real * w.imag - z.imag * w.real
         area += 0.5 * doubled
@@ -245,6 +256,7 @@ def _integrate_widened_hull(a: complex, b: complex, p: complex, width: float) ->
         area += strip
         first += strip * middle
         polar += strip * ((length * length + r * r) / 12.0 + _square_magnitude(middle))
+        # The sector's opening is the exterior angle; atan2 is accurate for flat and sharp corners.
         opening = abs(
             math.atan2(
                 out_before.real * out.imag - out_before.imag * out.real,
@@ -262,10 +274,26 @@ def _integrate_widened_hull(a: complex, b: complex, p: complex, width: float) ->
 
 
 @njit(**OPTIONS)
+def _subtract_holes(
+    row: Real, reach: complex, third: complex, area: float, middle: complex, second_moment: float
+) -> tuple[float, complex, float]:
+    """Return area, first and second moment of a plate less its holes at the joints."""
+    for k in range(3):
+        hole = row[PLATE + 4 + k]
+        if hole > 0.0:
+            centre = 0j if k == 0 else reach if k == 1 else third
+            taken = math.pi * hole * hole
+            area -= taken
+            middle -= taken * centre
+            second_moment -= taken * (0.5 * hole * hole + _square_magnitude(centre))
+    return area, middle, second_moment
+
+
+@njit(**OPTIONS)
 def weigh_links(
     block: Real, joints: Complex, mass: Real, cg: Complex, inertia: Real, arms: Complex, forces: Complex
 ) -> bool:
-    """The bodies of one fourbar and the forces on it, as :class:`kinematics.dynamics.fourbar.Weights` has them.
+    """Compute the bodies and forces of one fourbar, in the form of :class:`kinematics.dynamics.fourbar.Weights`.
 
     Parameters
     ----------
@@ -281,7 +309,7 @@ def weigh_links(
     Returns
     -------
     bool
-        False where holes leave nothing of a plate.
+        False if holes leave nothing of a plate.
     """
     o2, a, b, o4, p = joints
     sound = True
@@ -294,6 +322,7 @@ def weigh_links(
         # All moments are about the link's first joint, over the link's direction.
         m = row[IN_PLANE]
         moment = complex(row[IN_PLANE + 1], row[IN_PLANE + 2])
+        # Move the part given in the plane to the link's first joint; the part given in the link is there already.
         polar = row[IN_PLANE + 3] - 2.0 * (moment * first.conjugate()).real + m * _square_magnitude(first)
         moment = (moment - m * first) * unit.conjugate()
         m += row[IN_LINK]
@@ -309,19 +338,13 @@ def weigh_links(
                     area, middle, second_moment = _integrate_widened_hull(0j, reach, third, width)
                 else:
                     area, middle, second_moment = _integrate_bar(0j, reach, width, row[PLATE + 2] > 0.0, row[PLATE + 3])
-            for k in range(3):
-                hole = row[PLATE + 4 + k]
-                if hole > 0.0:
-                    centre = 0j if k == 0 else reach if k == 1 else third
-                    taken = math.pi * hole * hole
-                    area -= taken
-                    middle -= taken * centre
-                    second_moment -= taken * (0.5 * hole * hole + _square_magnitude(centre))
+            area, middle, second_moment = _subtract_holes(row, reach, third, area, middle, second_moment)
             sound &= area > 0.0 or width == 0.0
             m += density * area
             moment += density * middle
             polar += density * second_moment
         mass[n] = m
+        # A massless link has no centre of mass, and 0 avoids a NaN.
         cg[n] = moment / m if m > 0.0 else 0j
         inertia[n] = polar - m * _square_magnitude(cg[n])
         sound &= m >= 0.0
@@ -332,9 +355,11 @@ def weigh_links(
         second = a if on == CRANK else b
         unit = (second - first) / abs(second - first)
         arms[k] = complex(row[2], row[3])
+        # The kernel expects application points in the link's frame.
         if row[1] > 0.0:
             arms[k] = (arms[k] - first) * unit.conjugate()
         forces[k] = complex(row[4], row[5])
+        # A force in the link's frame was requested relative to its direction at the first target.
         if row[6] > 0.0:
             forces[k] *= unit.conjugate()
     return sound

@@ -1,4 +1,4 @@
-"""The margins of a room for a fourbar in its chart, and their rows in a fit.
+"""Workspace margins of a fourbar in its chart, and their rows in a fit.
 
 Joints at equal steps of the crank from one angle to another go to :mod:`synthesis.fit.workspace_margins`. With f = O4 →
 B, which keeps its length, the coupler turns by dθ₃ = −Re(f̄ df)/Re(f̄ i b e^{iθ₃}) for any other change of f (as in
@@ -6,10 +6,10 @@ B, which keeps its length, the coupler turns by dθ₃ = −Re(f̄ df)/Re(f̄ i 
 
     A = O2 + a e^{iθ},   B = A + b e^{iθ₃},   P = A + p e^{iθ₃},   O4 = O2 + d e^{iγ}.
 
-The crank's angles from the ground line move with the unknowns too, those between the ends in proportion.
+The crank's angles from the ground line depend on the unknowns, too, those between the ends in proportion.
 
-A linkage that carries a body has one unknown more, the direction ψ of A → B on the body as it is drawn: the body is
-turned by θ₃ − ψ.
+A linkage that carries a body has one more unknown, the direction ψ of A → B on the body as drawn: the body is rotated
+by θ₃ − ψ.
 """
 
 from __future__ import annotations
@@ -51,28 +51,30 @@ from synthesis.numerics.augmented_lagrangian import compute_load
 _VECTOR, _MATRIX = types.float64[::1], types.float64[:, ::1]
 
 LINKAGE = 9
-"""Unknowns of a fourbar's chart; those of a fit behind them move the crank's angles alone."""
+"""Number of unknowns of a fourbar's chart; later unknowns of a fit change only the crank's angles."""
 
 NO_BODY = -1
-"""In place of the index of ψ among the unknowns: the linkage carries none."""
+"""Stands for the index of ψ if the linkage carries no body."""
 
 TOGGLE_DISTANCE = 1e-3
-"""Radians that a cycle ends before a toggle, where joints have no derivative."""
+"""Distance of a cycle's ends from a toggle, radians: at the toggle itself joints have no derivative."""
 
 
 @njit(**OPTIONS)
 def find_crank_interval(lengths: Real, ends: Real, whole: bool, room: Real) -> tuple[float, float, bool, bool]:
-    """The crank angles, from the ground line, that a room is held between, whether they are a whole turn, and whether
-    they move with the ends of the used range.
+    """Return the crank angles between which a workspace applies, whether they are a full turn, and whether they move.
 
-    ``whole`` tells that the crank turns through its whole turn; a room over the cycle is held as far as it turns.
+    The angles are from the ground line; they move if they depend on the ends of the used range. ``whole`` means that
+    the crank rotates fully. With a workspace over the cycle, the interval is as wide as the crank can turn.
     """
     if not whole and room[CYCLE_INDEX] == 0.0:
         return ends[0], ends[1], False, True
     low, high = find_crank_range(lengths[0], lengths[1], lengths[2], lengths[3])
     if whole or (low == 0.0 and high == math.pi):
         return ends[0], ends[0] + 2.0 * math.pi, True, True
-    # The range between toggles that the first end lies in.
+    # Otherwise the range between toggles that contains the first end. The derivatives neglect that the toggles move
+    # with the lengths.
+    # Reduce the angle to −π..π, because the ranges are given around 0 and π.
     at = ends[0] - 2.0 * math.pi * math.floor((ends[0] + math.pi) / (2.0 * math.pi))
     if low == 0.0:
         return TOGGLE_DISTANCE - high, high - TOGGLE_DISTANCE, False, False
@@ -85,7 +87,7 @@ def find_crank_interval(lengths: Real, ends: Real, whole: bool, room: Real) -> t
 
 @njit(**OPTIONS)
 def _locate_joints(x: Real, lengths: Real, sign: float, angle: float, body: int, places: Complex) -> bool:
-    """The joints with the crank at an angle from the ground line, written; False where the linkage does not close."""
+    """Write the joints with the crank at an angle from the ground line; return False if the linkage does not close."""
     ground = compute_unit_vector(x[2])
     pin = lengths[1] * compute_unit_vector(x[2] + angle)
     closes, along = close_two_bars(lengths[0] * ground - pin, lengths[2], lengths[3], sign)
@@ -95,6 +97,7 @@ def _locate_joints(x: Real, lengths: Real, sign: float, angle: float, body: int,
     places[O4] = places[O2] + lengths[0] * ground
     places[P] = places[A] + complex(x[POINT], x[POINT + 1]) * along
     if body >= 0:
+        # The body's rotation is the coupler's direction minus its direction on the drawn body.
         places[TURN] = along * compute_unit_vector(-x[body])
     return bool(closes)
 
@@ -112,9 +115,9 @@ def trace_joints(
     places: Complex,
     home: Complex,
 ) -> bool:
-    """The joints over a motion, shape (n, 6), n being 0 where it does not count, and at the first point, shape (6,).
+    """Write the joints over a motion, shape (n, 6), and at the first point, shape (6,).
 
-    Returns whether the linkage closes everywhere.
+    n is 0 if the motion does not matter. Returns whether the linkage closes everywhere.
 
     Parameters
     ----------
@@ -125,9 +128,9 @@ def trace_joints(
     begin, end, first : float
         Crank angles from the ground line: of the motion, and of the first position.
     ring : bool
-        Whether the end is the beginning again.
+        Whether the end coincides with the beginning.
     body : int
-        Which unknown ψ is, or :data:`NO_BODY`.
+        Index of ψ among the unknowns, or :data:`NO_BODY`.
     places, home : complex
         Written.
     """
@@ -143,12 +146,13 @@ def trace_joints(
 def compute_workspace_margins(
     x: Real, lengths: Real, sign: float, ends: Real, whole: bool, body: int, room: Real, values: Real, rows: Real
 ) -> bool:
-    """The margins of a fourbar's room and their rows, written; False where its motion does not close.
+    """Write the margins of a fourbar's workspace and their rows; return False if its motion does not close.
 
     ``ends``, shape (2,), are crank angles from the ground line at the first and the last point; ``body`` is as for
     :func:`trace_joints`.
     """
     begin, end, ring, _ = find_crank_interval(lengths, ends, whole, room)
+    # Pivot zones concern the first position alone: without box and obstacles no motion is traced.
     moving = room[HAS_BOX_INDEX] > 0.0 or room[GROUP_COUNT_INDEX] > 0.0
     places, home = (
         np.zeros((count_steps(ring) if moving else 0, PLACES), np.complex128),
@@ -175,22 +179,10 @@ def compute_workspace_margins(
     **OPTIONS,
 )  # fmt: skip
 def append_workspace_rows(
-    x: Real,
-    lengths: Real,
-    slopes: Real,
-    sign: float,
-    ends: Real,
-    turns: Real,
-    whole: bool,
-    body: int,
-    room: Real,
-    multipliers: Real,
-    values: Real,
-    residuals: Real,
-    jacobian: Real,
-    m: int,
-) -> int:
-    """Append the rows of a room's margins that bear a load, as :mod:`synthesis.numerics.augmented_lagrangian` has it.
+    x: Real, lengths: Real, slopes: Real, sign: float, ends: Real, turns: Real, whole: bool, body: int, room: Real,
+    multipliers: Real, values: Real, residuals: Real, jacobian: Real, m: int,
+) -> int:  # fmt: skip
+    """Append the rows of those workspace margins that bear a load (:mod:`synthesis.numerics.augmented_lagrangian`).
 
     Parameters
     ----------
@@ -200,23 +192,23 @@ def append_workspace_rows(
         Assembly.
     ends, turns : float64, shapes (2,) and (2, unknowns)
         Crank angles from the ground line at the first and the last point, and their derivatives.
-    whole : bool
+        Whether the crank rotates fully.
         Whether the crank turns through its whole turn.
     body : int
         As for :func:`trace_joints`.
     room : float64, shape (r,)
         Of :func:`synthesis.fit.workspace.pack_workspace`.
     multipliers : float64, shape (margins + 1 or more,)
-        Those of the margins first, the weight last.
+        Those of the margins first, the penalty weight last.
     values : float64, shape (margins,)
         Written.
-    residuals, jacobian, m
+        As for :func:`synthesis.numerics.augmented_lagrangian.append_limit_rows`.
         As for :func:`synthesis.numerics.augmented_lagrangian.append_limit_rows`.
 
     Returns
     -------
     int
-        The number of rows; −1 where the motion does not close.
+        The number of rows; −1 if the motion does not close.
     """
     count, unknowns = count_margins(room), len(x)
     rows = np.empty((count, ROW_SIZE))
@@ -225,29 +217,31 @@ def append_workspace_rows(
     begin, end, ring, moves = find_crank_interval(lengths, ends, whole, room)
     n = count_steps(ring)
     parts = n if ring else n - 1
-    weight = multipliers[len(multipliers) - 1]
-    root = math.sqrt(weight)
+    weight, forced = multipliers[len(multipliers) - 1], int(room[FORCE_COUNT_INDEX])
+    root, forces = math.sqrt(weight), room[int(room[FORCES_START_INDEX]) :]
+    # Derivatives of a step are computed only if a loaded margin refers to it; index n is the first position.
     known = np.zeros(n + 1, np.bool_)
     by = np.empty((n + 1, PLACES, unknowns), np.complex128)
-    forced = int(room[FORCE_COUNT_INDEX])
     weighed, by_forces = False, np.empty((forced, unknowns))
     for k in range(count):
         load = compute_load(values[k], multipliers[k], weight, False)
+        # Inactive constraints contribute neither residual nor row.
         if load <= 0.0:
             continue
         residuals[m] = root * load
         if k >= count - forced:
+            # Force derivatives cost a dozen evaluations, so compute them once and only if a limit bears a load.
             if not weighed:
-                compute_force_slopes(
-                    x, lengths, slopes, sign, ends, turns, room[int(room[FORCES_START_INDEX]) :], by_forces
-                )
+                compute_force_slopes(x, lengths, slopes, sign, ends, turns, forces, by_forces)
                 weighed = True
+            # Minus: the residual grows while the margin falls.
             jacobian[m] = -root * by_forces[k - count + forced]
             m += 1
             continue
         row, out = rows[k], jacobian[m]
         out[:] = 0.0
         at, shares = (n, n, n), (1.0, 0.0, 0.0)
+        # Zone margins (step −1) refer to the first position alone; the others to three steps of a parabola.
         if row[0] >= 0.0:
             at, shares = compute_parabola_weights(int(row[0]), row[1], ring, n)
         for s in range(3):
@@ -267,6 +261,26 @@ def append_workspace_rows(
 
 
 @njit(**OPTIONS)
+def _compute_change(
+    number: int, d: float, a: float, ground: complex, crank: complex, along: complex
+) -> tuple[complex, complex, complex]:
+    """Return the changes of A, of the bar A → B and of the ground vector by one of γ, d, a, b, c and θ."""
+    pin, bar, base = 0j, 0j, 0j
+    if number == 0:
+        # The crank keeps its angle to the ground line, so everything turns about O2.
+        pin, base = 1j * a * crank, 1j * d * ground
+    elif number == 1:
+        base = ground
+    elif number == 2:
+        pin = crank
+    elif number == 3:
+        bar = along
+    elif number == 5:
+        pin = 1j * a * crank
+    return pin, bar, base
+
+
+@njit(**OPTIONS)
 def _compute_joint_slopes(
     x: Real,
     lengths: Real,
@@ -280,33 +294,28 @@ def _compute_joint_slopes(
     body: int,
     by: Complex,
 ) -> None:
-    """Derivatives of the joints by the unknowns, shape (6, unknowns), at a share of the motion, with the crank at an
-    angle from the ground line that moves with the ends if it ``moves`` at all."""
+    """Write the derivatives of the joints by the unknowns, shape (6, unknowns).
+
+    They apply at a share of the motion, with the crank at ``angle`` from the ground line; the angle depends on the ends
+    if it ``moves``.
+    """
     unknowns = len(x)
     ground, crank = compute_unit_vector(x[2]), compute_unit_vector(x[2] + angle)
     d, a, b, c = lengths[0], lengths[1], lengths[2], lengths[3]
     _, along = close_two_bars(d * ground - a * crank, b, c, sign)
     f = a * crank + b * along - d * ground
+    # Rate of |f|²/2 per rotation of the coupler; not 0 away from toggles.
     per = (f.conjugate() * 1j * b * along).real
     p = complex(x[POINT], x[POINT + 1])
     spin = 1j * along * compute_unit_vector(-x[body]) if body >= 0 else 0j
     by[:] = 0.0
+    # All joints move with O2; the rotation of the body does not.
     for j in range(5):
         by[j, 0], by[j, 1] = 1.0, 1j
     # Changes of A, of the bar A → B, of the ground vector and of the coupler's turn by γ, d, a, b, c and θ.
     for number in range(6):
-        pin, bar, base, turn = 0j, 0j, 0j, 0.0
-        if number == 0:
-            # The crank stands still to the ground line: all turns about O2.
-            pin, base = 1j * a * crank, 1j * d * ground
-        elif number == 1:
-            base = ground
-        elif number == 2:
-            pin = crank
-        elif number == 3:
-            bar = along
-        elif number == 5:
-            pin = 1j * a * crank
+        pin, bar, base = _compute_change(number, d, a, ground, crank, along)
+        # The output's length c enters through |f| alone; every other change through f.
         turn = c / per if number == 4 else -(f.conjugate() * (pin + bar - base)).real / per
         at_b, at_p = pin + bar + 1j * b * along * turn, pin + 1j * p * along * turn
         if number == 0:
@@ -322,6 +331,7 @@ def _compute_joint_slopes(
                 by[TURN, LENGTHS + i] += spin * turn * much
         elif moves:
             for i in range(unknowns):
+                # In a full turn both ends move alike; otherwise interpolate between the ends.
                 much = turns[0, i] if ring else (1.0 - share) * turns[0, i] + share * turns[1, i]
                 by[A, i] += pin * much
                 by[B, i] += at_b * much
@@ -329,5 +339,6 @@ def _compute_joint_slopes(
                 by[TURN, i] += spin * turn * much
     by[P, POINT] += along
     by[P, POINT + 1] += 1j * along
+    # ψ is subtracted from the coupler's direction.
     if body >= 0:
         by[TURN, body] -= spin

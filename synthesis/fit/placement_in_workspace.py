@@ -1,9 +1,9 @@
-"""A fourbar whose place, direction and size are free, put where it fits into a room.
+"""Placement of a fourbar with free position, direction and size in a workspace.
 
-Similarities z → o + w z are drawn with pivots in their zones; those that keep all zones best are looked at over the
-motion, and the best of them are moved to where all margins of the room (:mod:`synthesis.fit.workspace_margins`) are
-kept: by the simplex method of Nelder and Mead (Computer Journal 7, 1965, 308–313), since it is a function of four
-numbers with kinks.
+Similarities z → o + w z are sampled with pivots in their zones. Those with the best zone margins are evaluated over the
+motion, and the best of these are improved until they satisfy all margins of the workspace
+(:mod:`synthesis.fit.workspace_margins`). The improvement uses the simplex method of Nelder and Mead (Computer Journal
+7, 1965, 308–313), because the margin is a function of four numbers with kinks.
 """
 
 from __future__ import annotations
@@ -31,13 +31,13 @@ SAMPLED_COUNT, SWEPT_COUNT, OPTIMIZED_COUNT = 3000, 60, 3
 """Numbers of positions that are sampled, of those checked over the motion, and of those then improved."""
 
 MAX_ITERATIONS = 120
-"""Steps of the simplex method."""
+"""Maximum number of iterations of the simplex method."""
 
 EDGE_MARGIN = 0.1
-"""Of the first simplex: share of the size, and radians."""
+"""Edge of the first simplex: share of the size, and radians."""
 
 SIZE_SPREAD = 0.7
-"""Standard deviation of the logarithm of a drawn size, where no two zones tell it."""
+"""Standard deviation of the logarithm of a sampled size, if no two zones determine it."""
 
 CENTER_SPREAD = 2.0
 """Standard deviation of a sampled position from the origin, in ground links, without zones and box."""
@@ -53,9 +53,9 @@ class MovingFourbar(NamedTuple):
     sign : float
         Assembly.
     ends : float, shape (2,)
-        Crank angles from the ground line that it is used between.
+        Crank angles from the ground line between which it is used.
     first : float
-        That at the first target.
+        Crank angle at the first target.
     """
 
     lengths: Real
@@ -67,34 +67,37 @@ class MovingFourbar(NamedTuple):
 def place_in_workspace(
     space: Space, linkage: MovingFourbar, boxes: Boxes, sizes: tuple[float, float], preferred: Placement
 ) -> Placement | None:
-    """Find a position that satisfies all margins of the workspace, or None.
+    """Find a placement that satisfies all margins of the workspace, or None.
 
-    One that breaks limits of size or boxes does not count: it would be rejected for a reason that is not the true one.
+    A placement that violates limits of size or boxes is not accepted, because it would be rejected later in any case.
 
     Parameters
     ----------
     space : Space
-        The room, length units.
-    linkage : Moving
+        The workspace, length units.
+    linkage : MovingFourbar
         The fourbar.
     boxes : Boxes
-        Where O2, O4, A and B must lie besides, at the first target.
+        Additional boxes of O2, O4, A and B at the first target.
     sizes : pair of float
-        Least and greatest length of the ground link.
-    preferred : Placing
-        A place without the room: taken if it fits, else tried with the others.
+        Minimum and maximum length of the ground link.
+    preferred : Placement
+        A placement that ignores the workspace: returned if it fits, else tried with the others.
     """
     scale = abs(preferred.along)
     room = pack_workspace(space, 0j, scale)
+    # No constraints in the workspace: any placement fits.
     if not len(room):
         return preferred
     # Trace the linkage once in its own frame; every placement only transforms these points.
     x = np.zeros(9)
     begin, end, ring, _ = find_crank_interval(linkage.lengths, linkage.ends, False, room)
     own, home = np.zeros((count_steps(ring), PLACES), np.complex128), np.zeros(PLACES, np.complex128)
+    # A linkage that jams on the way fits nowhere.
     if not trace_joints(x, linkage.lengths, linkage.sign, begin, end, ring, linkage.first, NO_BODY, own, home):
         return None
     sides = np.stack([boxes.left, boxes.right, boxes.low, boxes.high], axis=1) / scale
+    # The floor keeps the logarithm of a minimum size 0 finite.
     low, high = (math.log(max(size / scale, 1e-9)) if size < math.inf else math.inf for size in sizes)
 
     def compute_all_margins(tried: Real, of: Real) -> Real:
@@ -104,17 +107,21 @@ def place_in_workspace(
     if compute_all_margins(here[None], room)[0] >= 0.0:
         return preferred
     tried = np.concatenate([here[None], _sample_places(space, scale, home)])
+    # Clip samples to permitted sizes, because a rejected sample would be wasted.
     tried[:, 2] = np.clip(tried[:, 2], low, high)
     # Zones cost no motion: use them to discard most samples before the expensive margins along the motion.
     zones = select_zones(room)
     if len(zones):
         kept = compute_all_margins(tried, zones)
+        # Satisfied zones count alike, so that their margins do not favour some samples; the stable sort keeps the
+        # order.
         tried = tried[np.argsort(-np.minimum(kept, 0.0), kind="stable")[:SWEPT_COUNT]]
     else:
         tried = tried[:SWEPT_COUNT]
     kept = compute_all_margins(tried, room)
     order = np.argsort(-kept, kind="stable")[:OPTIMIZED_COUNT]
     best, value = tried[order[0]], float(kept[order[0]])
+    # Improve only if no sample is feasible already, in the order of their margins.
     for start in tried[order] if value < 0.0 else ():
         there, margin = _improve_place(start, lambda at: float(compute_all_margins(at[None], room)[0]))
         if margin > value:
@@ -128,9 +135,10 @@ def place_in_workspace(
 
 
 def _improve_place(start: Real, margin: Callable[[Real], float]) -> tuple[Real, float]:
-    """Where a margin is greatest, or as soon as it is kept, and the margin there."""
+    """Maximize a margin, stopping as soon as it is not negative; return the place and the margin there."""
     from scipy.optimize import minimize
 
+    # Any feasible placement will do, so the maximum itself is not needed.
     def check_feasible(intermediate_result: OptimizeResult) -> None:
         if intermediate_result.fun <= 0.0:
             raise StopIteration
@@ -142,7 +150,7 @@ def _improve_place(start: Real, margin: Callable[[Real], float]) -> tuple[Real, 
 
 
 def _sample_places(space: Space, scale: float, home: Complex) -> Real:
-    """Places (x, y, logarithm of the size, direction) with one or two pivots in their zones, shape (n, 4)."""
+    """Sample places (x, y, logarithm of the size, direction) with one or two pivots in their zones, shape (n, 4)."""
     # A fixed seed: the result must not depend on the order in which linkages are placed.
     rng = np.random.default_rng(0)
     fixed, moving = space.fixed_pivots, space.moving_pivots
@@ -159,6 +167,7 @@ def _sample_places(space: Space, scale: float, home: Complex) -> Real:
     ]
     # Two pivots with sampled positions determine the similarity; with fewer, size and direction are sampled, too.
     if len(drawn) > 1:
+        # A similarity with p → at and q → other.
         (p, at), (q, other) = drawn[:2]
         along = (other - at) / (q - p)
     else:
@@ -168,13 +177,14 @@ def _sample_places(space: Space, scale: float, home: Complex) -> Real:
         if drawn:
             p, at = drawn[0]
         else:
+            # Without zones, sample the linkage's centre instead of a pivot.
             p, at = complex(home[:4].mean()), _sample_centers(space, scale, rng)
     origin = at - along * p
     return np.stack([origin.real, origin.imag, np.log(np.abs(along)), np.angle(along)], axis=1)
 
 
 def _sample_centers(space: Space, scale: float, rng: np.random.Generator) -> Complex:
-    """Places in the box, or about the origin where there is none, shape (n,)."""
+    """Sample places in the box, or about the origin without one, shape (n,)."""
     if space.box is not None:
         (left, low), (right, high) = space.box
         return np.asarray(
@@ -187,7 +197,8 @@ def _sample_centers(space: Space, scale: float, rng: np.random.Generator) -> Com
 def _compute_place_margins(
     room: Real, own: Complex, ring: bool, home: Complex, sides: Real, low: float, high: float, tried: Real
 ) -> Real:
-    """The least margin of each place that is tried, those of its size and of the boxes of its pivots among them."""
+    """Compute the minimum margin of each tried place, including the margins of its size and of the boxes of its
+    pivots."""
     values, rows = np.empty(count_margins(room)), np.empty((count_margins(room), ROW_SIZE))
     least = np.empty(len(tried))
     for i in range(len(tried)):

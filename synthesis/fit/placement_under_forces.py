@@ -1,7 +1,7 @@
-"""A fourbar whose direction and size are free, put where limits on its forces are kept.
+"""Placement of a fourbar with free direction and size within limits on its forces.
 
-What a linkage weighs grows with its size, and what its pins carry of a torque falls with it; gravity has a direction.
-Sizes and directions are looked at on a grid, all at once.
+The weight of a linkage grows with its size, and the pin forces due to a torque decrease with it; gravity has a
+direction. Sizes and directions are evaluated on a grid, all at once.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ SIZE_COUNT, TURN_COUNT = 49, 12
 """Numbers of sizes and directions of the grid."""
 
 MAX_SIZE_FACTOR = 10.0
-"""By how many times a size differs from the preferred one at most, where no limit of length is nearer."""
+"""Maximum factor between a size and the preferred one, unless a limit of length is narrower."""
 
 TURN_WEIGHT = 0.05
 """Weight of a rotation by one radian relative to the logarithm of a size, in the distance between placements."""
@@ -34,31 +34,37 @@ def place_under_forces(
     ----------
     forces : float, shape (m,)
         Of :func:`synthesis.fit.fourbar_forces.pack_forces`, about the origin 0 and with a length unit for the size.
-    linkage : Moving
+    linkage : MovingFourbar
         The fourbar, without a coupler point.
     sizes : pair of float
-        Least and greatest length of the ground link.
-    preferred : Placing
-        A place without the limits: taken if it keeps them.
+        Minimum and maximum length of the ground link.
+    preferred : Placement
+        A placement that ignores the limits: returned if it satisfies them.
     """
     size, direction = abs(preferred.along), float(np.angle(preferred.along))
     low, high = max(sizes[0], size / MAX_SIZE_FACTOR), min(sizes[1], size * MAX_SIZE_FACTOR)
+    # min and max keep the preferred size in the grid even if it is outside the limits.
     logs = np.linspace(math.log(min(low, size) / size), math.log(max(high, size) / size), SIZE_COUNT)
     turns = math.tau / TURN_COUNT * np.arange(TURN_COUNT)
+    # The preferred size itself is always a grid point, so that the unchanged placement comes first.
     grown, turned = (each.ravel() for each in np.meshgrid(np.append(logs, 0.0), turns))
     away = np.abs(grown) + TURN_WEIGHT * np.abs(np.remainder(turned + math.pi, math.tau) - math.pi)
+    # Sort by distance from the preferred placement: the first feasible one is then the nearest.
     nearest = np.argsort(away, kind="stable")
     grown, turned = grown[nearest], turned[nearest]
     charts = np.zeros((len(grown), 9))
     charts[:, 0], charts[:, 1] = preferred.origin.real, preferred.origin.imag
     charts[:, 2] = direction + turned
     lengths = size * np.exp(grown)[:, None] * linkage.lengths
+    # The kernels expect the end at the first target first.
     first, last = linkage.ends if linkage.first == linkage.ends[0] else linkage.ends[::-1]
     ends = np.tile([first, last], (len(grown), 1))
+    # Evaluate the preferred placement alone first; in most cases it suffices.
     margins = compute_min_margins(charts[:1], lengths[:1], linkage.sign, ends[:1], forces)
     if margins[0] < 0.0:
         margins = compute_min_margins(charts, lengths, linkage.sign, ends, forces)
     kept = np.flatnonzero(margins >= 0.0)
+    # If no placement is feasible, take the one with the smallest violation.
     best = int(kept[0]) if len(kept) else int(np.argmax(margins))
     along = size * math.exp(grown[best]) * complex(math.cos(charts[best, 2]), math.sin(charts[best, 2]))
     return preferred._replace(along=along)

@@ -1,12 +1,13 @@
-"""How far two convex cores are apart, or how deep they overlap, and which corners a change of that comes from.
+"""Signed distance of two convex cores, and the corners that determine its derivative.
 
-The signed distance is the distance where they are apart. Where they overlap it is less than nothing by the shortest way
-that takes them apart, which is along a normal of one of their sides: the greatest of the separations along all of them
-(separating axes; Ericson, *Real-Time Collision Detection*, sec. 5.2.1). So it has a slope on both sides of 0.
+The signed distance is the distance of cores that do not overlap. For overlapping cores it is minus the shortest
+displacement that separates them, which is along a normal of one of their sides: the maximum of the separations along
+all normals (separating axes; Ericson, *Real-Time Collision Detection*, sec. 5.2.1). So it has a derivative on both
+sides of 0.
 
 With n the unit normal from the second core to the first, at the nearest points q₁ = Σ λ_k z_k and q₂,
 
-    d(distance) = Re(n̄ Σ λ_k dz_k)        while the second one stands still.
+    d(distance) = Re(n̄ Σ λ_k dz_k)        while the second core is at rest.
 """
 
 from __future__ import annotations
@@ -18,22 +19,23 @@ from kinematics.compiling import njit
 from synthesis.fit.chart import OPTIONS
 
 MIN_SIDE = 1e-12
-"""Side, in task sizes, that has no direction."""
+"""Length of a side, in task sizes, below which it has no direction."""
 
 
 @njit(**OPTIONS)
 def compute_separation(first: Complex, second: Complex, weights: Real) -> tuple[float, complex]:
-    """Signed distance of two convex cores, and the unit normal from the second to the first.
+    """Compute the signed distance of two convex cores, and the unit normal from the second to the first.
 
     Parameters
     ----------
     first, second : complex, shapes (k,) and (m,)
         Corners: a point, a bar, or a convex polygon. The second is a point or an anticlockwise polygon; the first may
-        be a triangle either way round, or flat.
+        be a triangle of either orientation, or flat.
     weights : float, shape (k,)
         λ, written.
     """
     apart, normal, corner, after, share = _separate_along_sides(first, second)
+    # A positive separation along a side may be less than the distance between two corners, so compute that exactly.
     if apart > 0.0 or corner < 0:
         apart, normal, corner, after, share = _compute_distance(first, second)
     weights[:] = 0.0
@@ -44,10 +46,14 @@ def compute_separation(first: Complex, second: Complex, weights: Real) -> tuple[
 
 @njit(**OPTIONS)
 def _separate_along_sides(first: Complex, second: Complex) -> tuple[float, complex, int, int, float]:
-    """The greatest separation along normals of sides, the normal, and where on the first: two corners and the share of
-    the second of these. No corner where neither core has an inside."""
+    """Find the maximum separation along normals of sides.
+
+    Returns the separation, the normal, and the contact on the first core: two corners and the share of the second. The
+    corner is −1 if neither core has an interior.
+    """
     best, normal, on, after, share = -math.inf, 0j, -1, -1, 0.0
     k, m = len(first), len(second)
+    # Two bars or points have no interior to overlap.
     if m < 3 and k < 3:
         return best, normal, on, after, share
     for n in range(m if m > 2 else 0):
@@ -82,11 +88,14 @@ def _separate_along_sides(first: Complex, second: Complex) -> tuple[float, compl
 
 @njit(**OPTIONS)
 def _compute_distance(first: Complex, second: Complex) -> tuple[float, complex, int, int, float]:
-    """Distance of cores that do not overlap, the least of a corner of one from a side of the other; as
-    :func:`_separate_along_sides` tells it."""
+    """Compute the distance of cores that do not overlap, as the minimum of a corner of one from a side of the other.
+
+    Returns the same as :func:`_separate_along_sides`.
+    """
     k, m = len(first), len(second)
     least, offset, on, after, share = math.inf, 0j, 0, 0, 0.0
     for j in range(k):
+        # A polygon closes from its last corner to the first; a bar has one side only.
         for n in range(m if m > 2 else 1):
             off = first[j] - second[n]
             if m > 1:
@@ -105,13 +114,16 @@ def _compute_distance(first: Complex, second: Complex) -> tuple[float, complex, 
             square = off.real * off.real + off.imag * off.imag
             if square < least:
                 least, offset, on, after, share = square, off, n, end, along
+    # Square root only once, at the end: the comparisons use squares.
     apart = math.sqrt(least)
+    # Touching cores have no normal; any unit vector will do.
     return apart, offset / apart if apart > 0.0 else 1.0 + 0j, on, after, share
 
 
 @njit(**OPTIONS)
 def measure_depth(z: complex, corners: Complex) -> tuple[float, complex]:
-    """How far a point lies within a simple anticlockwise polygon, negative outside, and the way it grows."""
+    """Return how far a point lies within a simple anticlockwise polygon, negative outside, and the direction of
+    growth."""
     m = len(corners)
     least, toward, on_edge, within = math.inf, 1.0 + 0j, 0j, False
     for n in range(m):
@@ -135,7 +147,7 @@ def measure_depth(z: complex, corners: Complex) -> tuple[float, complex]:
 
 @njit(**OPTIONS)
 def _project_on_side(offset: complex, side: complex) -> float:
-    """Where along a side, from 0 to 1, the place nearest to a point lies that is ``offset`` from its start."""
+    """Return the position along a side, 0 to 1, nearest to a point that is ``offset`` from the side's start."""
     square = side.real * side.real + side.imag * side.imag
     return min(max(_multiply_scalar(side, offset) / square, 0.0), 1.0) if square > 0.0 else 0.0
 
@@ -147,7 +159,7 @@ def _multiply_scalar(a: complex, b: complex) -> float:
 
 @njit(**OPTIONS)
 def _compute_area(corners: Complex) -> float:
-    """Twice the area that is enclosed, anticlockwise counted for more than nothing."""
+    """Return twice the enclosed area, positive if anticlockwise."""
     area = 0.0
     for n in range(len(corners)):
         one, next_one = corners[n], corners[(n + 1) % len(corners)]

@@ -1,19 +1,19 @@
-"""Curves that sixbars draw by a link which no fourbar alone moves, with their slopes in every dimension.
+"""Curves of sixbars traced by a link that is not part of a fourbar, with their derivatives in every dimension.
 
-A fourbar O2 A B O4 whose crank turns through carries a dyad C–E–D: pin C lies on one of its links, the *carrier*, pin D
-on another, the *holder*, and the links C E, on which P is, and E D close the loop. By the links that carry and hold,
+A fourbar O2 A B O4 with a fully rotating crank carries a dyad C–E–D: pin C lies on one of its links, the *carrier*, pin
+D on another, the *holder*, and the links C E, which has P, and E D close the loop. By carrier and holder:
 
 ================= ===================== ==========================================================
-carrier, holder   sixbar                what is joined
+carrier, holder   sixbar                joined links
 ================= ===================== ==========================================================
 coupler, ground   Stephenson III        D is a third fixed pivot, O6
-coupler, rocker   Watt I                links that are joined at B; the same with the two exchanged
-coupler, crank    Watt I                links that are joined at A; the same with the two exchanged
-crank, rocker     Stephenson I          opposite links; the same with the two exchanged
+coupler, rocker   Watt I                two that share pin B; the same with the two exchanged
+coupler, crank    Watt I                two that share pin A; the same with the two exchanged
+crank, rocker     Stephenson I          two opposite ones; the same with the two exchanged
 ================= ===================== ==========================================================
 
-All have the same fifteen unknowns x: those of the fourbar's chart (:mod:`synthesis.fit.chart`) as far as its lengths,
-then C and D, each in the frame of its link, ln r₁ and ln r₂, the lengths C E and E D, and P in the frame of C E. The
+All have the same fifteen unknowns x: those of the fourbar's chart (:mod:`synthesis.fit.chart`) up to its lengths, then
+C and D, each in the frame of its link, ln r₁ and ln r₂, the lengths C E and E D, and P in the frame of C E. The
 frame of the crank has its origin at O2 and its real axis through A, the coupler's goes from A to B, the rocker's from
 O4 to B; the ground's is that of the task.
 
@@ -33,28 +33,28 @@ from synthesis.fit.chart import OPTIONS
 from synthesis.fit.coupler_curve import close_two_bars, compute_unit_vector, rotate_left, scale_complex
 
 GROUND, CRANK, COUPLER, ROCKER = range(4)
-"""Links that C and D lie on."""
+"""Links that may contain C and D."""
 
 INPUT = 4
-"""In place of the holder: the fourbar stands on the input link, and E D is the ground, of a Stephenson II
-(:mod:`synthesis.fit.inverted_curve`); the carrier is then the link that P is on."""
+"""Stands for the holder of a Stephenson II: the fourbar is on the input link, and E D is the ground
+(:mod:`synthesis.fit.inverted_curve`); the carrier is then the link that has P."""
 
 C, D, DYAD, P = 7, 9, 11, 13
-"""Where the pins, the logarithms of the dyad's lengths, and P stand in the unknowns."""
+"""Indices of the pins, of the logarithms of the dyad's lengths, and of P among the unknowns."""
 
 UNKNOWNS = 15
-"""How many unknowns a sixbar has; derivatives have that by the crank angle behind those by the unknowns."""
+"""Number of unknowns of a sixbar. The derivative by the crank angle follows those by the unknowns."""
 
 
 @njit(**OPTIONS)
 def compute_turn_rate(f: complex, change: complex, per: float) -> float:
-    """The turn that keeps |F| while F changes otherwise."""
+    """Return the rotation that keeps |F| while F changes by ``change``."""
     return -(f.real * change.real + f.imag * change.imag) / per
 
 
 @njit(**OPTIONS)
 def project_across(along: complex, change: complex) -> float:
-    """The part of a change across a direction."""
+    """Return the component of a change across a direction."""
     return along.real * change.imag - along.imag * change.real
 
 
@@ -62,7 +62,7 @@ def project_across(along: complex, change: complex) -> float:
 def close_fourbar(
     x: Real, lengths: Real, sign: float, crank: complex, ground: complex
 ) -> tuple[bool, complex, complex]:
-    """Whether the fourbar closes, and the unit vectors of coupler and rocker."""
+    """Return whether the fourbar closes, and the unit vectors of coupler and rocker."""
     base = scale_complex(ground, lengths[0]) - scale_complex(crank, lengths[1])
     closes, along = close_two_bars(base, lengths[2], lengths[3], sign)
     return closes, along, scale_complex(scale_complex(along, lengths[2]) - base, 1.0 / lengths[3])
@@ -79,7 +79,7 @@ def locate_pin(
     along: complex,
     out: complex,
 ) -> complex:
-    """A pin's place from its coordinates in the frame of its link."""
+    """Return a pin's place from its coordinates in the frame of its link."""
     place: complex = local
     if frame == CRANK:
         place = o2 + local * crank
@@ -94,7 +94,7 @@ def locate_pin(
 def locate_joints(
     x: Real, lengths: Real, sign: float, carrier: int, holder: int, side: float, theta: float, places: Complex
 ) -> bool:
-    """Whether a sixbar closes with the crank at θ; A, B, C, D, E and P are written into ``places`` (6,).
+    """Return whether a sixbar closes with the crank at θ; write A, B, C, D, E and P into ``places`` (6,).
 
     ``sign`` and ``side`` are the assemblies of the fourbar's dyad and of C–E–D.
     """
@@ -117,7 +117,7 @@ def locate_joints(
 def compute_pin_velocity(
     frame: int, local: complex, arm: complex, along: complex, out: complex, turn: float, swing: float, crank: complex
 ) -> complex:
-    """A pin's derivative by the crank angle, from those of coupler and rocker."""
+    """Return a pin's derivative by the crank angle, given the rotation rates of coupler and rocker."""
     moved = 0j
     if frame == CRANK:
         moved = rotate_left(local * crank)
@@ -132,7 +132,7 @@ def compute_pin_velocity(
 def compute_velocity(
     x: Real, lengths: Real, sign: float, carrier: int, holder: int, side: float, theta: float
 ) -> tuple[bool, complex, complex]:
-    """Whether a sixbar closes, P, and P's derivative by the crank angle."""
+    """Return whether a sixbar closes, P, and P's derivative by the crank angle."""
     o2, ground, crank = complex(x[0], x[1]), compute_unit_vector(x[2]), compute_unit_vector(theta)
     closes, along, out = close_fourbar(x, lengths, sign, crank, ground)
     if not closes:
@@ -140,6 +140,7 @@ def compute_velocity(
     arm, bar, f = scale_complex(crank, lengths[1]), scale_complex(along, lengths[2]), scale_complex(out, lengths[3])
     g, moved = rotate_left(bar), rotate_left(arm)
     turn = compute_turn_rate(f, moved, f.real * g.real + f.imag * g.imag)
+    # B moves across the rocker only; its velocity over the rocker's length is the rocker's rate.
     swing = project_across(out, moved + scale_complex(g, turn)) / lengths[3]
     local_c, local_d = complex(x[C], x[C + 1]), complex(x[D], x[D + 1])
     c = locate_pin(carrier, local_c, o2, lengths, ground, crank, along, out)
@@ -151,6 +152,7 @@ def compute_velocity(
     by_c = compute_pin_velocity(carrier, local_c, arm, along, out, turn, swing, crank)
     by_d = compute_pin_velocity(holder, local_d, arm, along, out, turn, swing, crank)
     f, g = scale_complex(v, first) - base, rotate_left(scale_complex(v, first))
+    # Only the relative motion of C and D turns the dyad.
     spin = compute_turn_rate(f, by_c - by_d, f.real * g.real + f.imag * g.imag)
     reach = complex(x[P], x[P + 1]) * v
     return True, c + reach, by_c + scale_complex(rotate_left(reach), spin)
@@ -161,10 +163,12 @@ def _differentiate_pin(
     frame: int, at: int, x: Real, lengths: Real, chart: Real, ground: complex, crank: complex, along: complex,
     out: complex, turn: Real, swing: Real, by: Complex,
 ) -> complex:  # fmt: skip
-    """A pin and its derivatives, from those of the turns of coupler and rocker; ``at`` is where its numbers stand."""
+    """Return a pin and write its derivatives, from those of the rotations of coupler and rocker; ``at`` is the index of
+    its coordinates."""
     by[:] = 0.0
     local, o2 = complex(x[at], x[at + 1]), complex(x[0], x[1])
     direction = 1.0 + 0j
+    # A pin on the ground does not move with O2.
     if frame != GROUND:
         by[0], by[1] = 1.0 + 0j, 1j
     if frame == CRANK:
@@ -173,6 +177,8 @@ def _differentiate_pin(
     elif frame == COUPLER:
         direction = along
         swung = rotate_left(local * along)
+        # Unknowns 2 to 6 are the direction of the ground line and the lengths: the only ones that turn the fourbar's
+        # links.
         for k in range(2, 7):
             by[k] = scale_complex(swung, turn[k])
         for k in range(4):
@@ -183,10 +189,12 @@ def _differentiate_pin(
         swung = rotate_left(local * out)
         for k in range(2, 7):
             by[k] = scale_complex(swung, swing[k])
+        # The rocker's origin O4 moves with the ground line's direction and length.
         by[2] += rotate_left(scale_complex(ground, lengths[0]))
         for k in range(4):
             by[3 + k] += scale_complex(ground, chart[0, k])
         by[UNKNOWNS] = scale_complex(swung, swing[UNKNOWNS])
+    # The pin's own coordinates, in the frame of its link.
     by[at], by[at + 1] = direction, rotate_left(direction)
     place: complex = locate_pin(frame, local, o2, lengths, ground, crank, along, out)
     return place
@@ -197,9 +205,10 @@ def differentiate_pins(
     x: Real, lengths: Real, chart: Real, sign: float, carrier: int, holder: int, theta: float, turns: Real,
     by_c: Complex, by_d: Complex,
 ) -> tuple[bool, complex, complex]:  # fmt: skip
-    """Whether the fourbar closes, C and D, and their derivatives (16,) by the unknowns and, last, the crank angle.
+    """Return whether the fourbar closes, C and D; write their derivatives (16,) by the unknowns and, last, the crank
+    angle.
 
-    ``turns`` (2, 16) gets those of the directions of coupler and rocker.
+    ``turns`` (2, 16) receives the derivatives of the directions of coupler and rocker.
     """
     ground, crank = compute_unit_vector(x[2]), compute_unit_vector(theta)
     closes, along, out = close_fourbar(x, lengths, sign, crank, ground)
@@ -210,6 +219,7 @@ def differentiate_pins(
     g = rotate_left(bar)
     per = f.real * g.real + f.imag * g.imag
     over = 1.0 / lengths[3]
+    # Turning the ground line moves O4 at a fixed absolute crank angle.
     moved = -rotate_left(scale_complex(ground, lengths[0]))
     turn[2] = compute_turn_rate(f, moved, per)
     swing[2] = project_across(out, moved + scale_complex(g, turn[2])) * over
@@ -220,6 +230,7 @@ def differentiate_pins(
         moved = (
             scale_complex(crank, chart[1, k]) - scale_complex(ground, chart[0, k]) + scale_complex(along, chart[2, k])
         )
+        # The second term is the change of |F| = c itself.
         turn[3 + k] = compute_turn_rate(f, moved, per) + lengths[3] * chart[3, k] / per
         swing[3 + k] = project_across(out, moved + scale_complex(g, turn[3 + k])) * over
     c = _differentiate_pin(carrier, C, x, lengths, chart, ground, crank, along, out, turn, swing, by_c)
@@ -231,7 +242,7 @@ def differentiate_pins(
 def differentiate_point(
     x: Real, side: float, c: complex, d: complex, by_c: Complex, by_d: Complex, slopes: Complex
 ) -> tuple[bool, complex]:
-    """Whether C–E–D closes, P, and P's derivatives (16,), from the pins and theirs."""
+    """Return whether C–E–D closes, and P; write P's derivatives (16,), given the pins and their derivatives."""
     first, second = math.exp(x[DYAD]), math.exp(x[DYAD + 1])
     closes, v = close_two_bars(d - c, first, second, side)
     if not closes:
@@ -241,6 +252,7 @@ def differentiate_point(
     per = f.real * g.real + f.imag * g.imag
     for k in range(UNKNOWNS + 1):
         slopes[k] = by_c[k] + scale_complex(swung, compute_turn_rate(f, by_c[k] - by_d[k], per))
+    # ln r₁ stretches the bar by its own vector; ln r₂ changes |F| by r₂.
     slopes[DYAD] = scale_complex(swung, compute_turn_rate(f, bar, per))
     slopes[DYAD + 1] = scale_complex(swung, second * second / per)
     slopes[P], slopes[P + 1] = v, rotate_left(v)
@@ -249,7 +261,7 @@ def differentiate_point(
 
 @njit(**OPTIONS)
 def compute_cosine(x: Real, c: complex, d: complex) -> float:
-    """The cosine of the angle between the links at E."""
+    """Return the cosine of the angle between the links at E."""
     first, second, base = math.exp(x[DYAD]), math.exp(x[DYAD + 1]), d - c
     square = base.real * base.real + base.imag * base.imag
     return (first * first + second * second - square) / (2.0 * first * second)
@@ -257,13 +269,14 @@ def compute_cosine(x: Real, c: complex, d: complex) -> float:
 
 @njit(**OPTIONS)
 def differentiate_cosine(x: Real, c: complex, d: complex, by_c: Complex, by_d: Complex, row: Real) -> float:
-    """The same, and its derivatives by the unknowns (15,), from the pins and theirs."""
+    """Return the same cosine and write its derivatives by the unknowns (15,), given the pins and their derivatives."""
     first, second, base = math.exp(x[DYAD]), math.exp(x[DYAD + 1]), d - c
     over = 1.0 / (first * second)
     for k in range(UNKNOWNS):
         change = by_d[k] - by_c[k]
         row[k] = -over * (base.real * change.real + base.imag * change.imag)
     value: float = compute_cosine(x, c, d)
+    # By ln r₁ and ln r₂ the law of cosines gives r₁/r₂ − cos μ and r₂/r₁ − cos μ.
     row[DYAD] = over * first * first - value
     row[DYAD + 1] = over * second * second - value
     return value

@@ -1,24 +1,24 @@
-"""A room as numbers for compiled fits: what a linkage must keep clear of, stay within, and have its pivots in.
+"""A workspace as numbers for compiled fits: obstacles to avoid, a box to stay within, and zones for pivots.
 
-The block ``space`` of a statement becomes one vector in task coordinates, :func:`pack_workspace`. Of a linkage's joints
-along its motion :mod:`synthesis.fit.workspace_margins` makes margins of it, in this order:
+The block ``space`` becomes one vector in task coordinates, :func:`pack_workspace`.
+:mod:`synthesis.fit.workspace_margins` turns the joints of a linkage along its motion into these margins, in this order:
 
 ============ ======================================= ==========================================================
-demand       margins                                 value, in task sizes
+constraint   margins                                 value, in task sizes
 ============ ======================================= ==========================================================
 pivot zones  one for each pivot that has zones       how far it lies within the nearest of them
 box          four for each window of the motion      how far the parts lie within a side
-obstacles    one for each window, part and obstacle  distance of the outlines, less the clearance; less than
-                                                     nothing by the depth of the overlap
-forces       one for each window and limit           :mod:`synthesis.fit.fourbar_forces`, of fourbars alone
+obstacles    one for each window, part and obstacle  distance of the outlines minus the clearance; minus the depth
+                                                     for outlines that overlap
+forces       one for each window and limit           :mod:`synthesis.fit.fourbar_forces`, for fourbars only
 ============ ======================================= ==========================================================
 
-The motion is taken in :data:`WINDOW_COUNT` windows of :data:`STEP_COUNT` steps each, and within a window the nearest
-place counts, looked for between the steps too. So rows are few, and what counts may move along the motion while a fit
-descends. Obstacles and the body are convex pieces (:mod:`synthesis.fit.convex_pieces`).
+The motion is divided into :data:`WINDOW_COUNT` windows of :data:`STEP_COUNT` steps each. In a window the nearest place
+counts, between the steps too. So rows are few, and the nearest place may move along the motion while a fit descends.
+Obstacles and the body are convex pieces (:mod:`synthesis.fit.convex_pieces`).
 
-Everything is aimed at a little more narrowly than it is checked (:data:`AIM_SHARE`), so that the sweep of the finished
-linkage (:mod:`synthesis.verification.workspace`), which shares nothing with this, finds it kept.
+All fits aim at slightly narrower limits than those checked (:data:`AIM_SHARE`), so that the sweep of the finished
+linkage (:mod:`synthesis.verification.workspace`), which shares no code with this, confirms them.
 """
 
 from __future__ import annotations
@@ -35,28 +35,30 @@ from synthesis.model.linkage.workspace import Space
 from synthesis.model.linkage.zones import MovingZone, Zone
 
 WINDOW_COUNT, STEP_COUNT = 12, 4
-"""Windows of the motion, and steps in each."""
+"""Number of windows of the motion, and of steps in each."""
 
 AIM_SHARE = 1e-4
 """Extra margin of all fits beyond the checked limits, as a share of the task's size."""
 
 NARROW_SHARE = 0.2
-"""Of a zone that is small beside that: the share of its half width by which it is drawn in at most."""
+"""Maximum extra margin in a small zone, as a share of its half width."""
 
 O2, A, B, O4, P, TURN = range(6)
-"""The joints, in the order in which margins take their places, and behind them the turn e^{iα} of a carried body."""
+"""Joints, in the order in which margins expect their places, followed by the rotation e^{iα} of a carried body."""
 
+# Number of entries above.
 PLACES = 6
 
 FOURBAR_PARTS = ((O2, A), (O4, B), (A, B, P))
 """Parts of a fourbar with a coupler point; with an outline of the body the coupler is A, B alone."""
 
 MAX_PIECES = 120
-"""Of all obstacles, and of the body: a step of a fit looks at each. Outlines of more are simplified for it, but are as
-they are where a design is verified."""
+"""Maximum number of convex pieces of all obstacles, and of the body, because a step of a fit examines each. Outlines
+with more are simplified for the fit, but not for verification."""
 
 MAX_GROUPS = 24
-"""Pieces of obstacles, and of the body, that have margins of their own; of more, those of an outline share them."""
+"""Maximum number of pieces of obstacles, and of the body, with margins of their own; beyond it the pieces of an outline
+share them."""
 
 (
     COUNT_INDEX, HALF_WIDTH_INDEX, CLEARANCE_INDEX, LEFT_INDEX, RIGHT_INDEX, LOW_INDEX, HIGH_INDEX, HAS_BOX_INDEX,
@@ -64,16 +66,29 @@ MAX_GROUPS = 24
     ZONE_COUNT_INDEX, ZONES_START_INDEX, PARTS_START_INDEX, BODY_START_INDEX, PIECES_START_INDEX, EASED_INDEX,
     FORCE_COUNT_INDEX, FORCES_START_INDEX,
 ) = range(23)  # fmt: skip
-"""Places of a room's numbers: how many margins it has; half of a link's width; the distance to be kept; the box, and
-whether there is one; P of the body as it is drawn; whether the whole cycle counts; how many parts, groups of the body's
-pieces, groups of the obstacles' pieces, these pieces, and pivots with zones there are; where each of these tables
-begins; by how much less narrowly than other parts the body is aimed at in the first window and the last; and how many
-margins limits on forces have, and where these (:mod:`synthesis.fit.fourbar_forces`) begin."""
+"""Indices of a workspace's numbers: number of margins; half of a link's width; required clearance; the box, and whether
+one exists; P of the body as drawn; whether the whole cycle counts; numbers of parts, of groups of the body's pieces, of
+groups of the obstacles' pieces, of these pieces, and of pivots with zones; the beginnings of these tables; the easing
+by which the body's limits are less narrow in the first and last window; number and beginning of the margins of forces
+(:mod:`synthesis.fit.fourbar_forces`)."""
 
 HEADER_SIZE = 23
 
 NO_WORKSPACE = np.zeros(0)
-"""No room."""
+"""Empty workspace."""
+
+
+def _pack_box(
+    box: tuple[tuple[float, float], tuple[float, float]], origin: complex, size: float, aim: float
+) -> tuple[float, float, float, float]:
+    """Return left, right, low and high of a box in task coordinates, every side narrowed by the aim."""
+    (left, low), (right, high) = box
+    return (
+        (left - origin.real) / size + aim,
+        (right - origin.real) / size - aim,
+        (low - origin.imag) / size + aim,
+        (high - origin.imag) / size - aim,
+    )
 
 
 def pack_workspace(
@@ -93,29 +108,31 @@ def pack_workspace(
     Parameters
     ----------
     space : Space or None
-        What is stated.
+        The requested workspace.
     origin, size : complex and float
         Of the task.
     parts : sequence of joints
         The moving links by their joints, one to three each. With an outline of the body, and ``first``, P belongs to
-        none.
+        none of them.
     first : complex, optional
-        P of the body as it is drawn, in the problem's coordinates, of a linkage that carries one.
+        P of the body as drawn, in the problem's coordinates, for a linkage that carries one.
     pivots : four joints
-        The fixed pivots of the input and the output and the moving ones, −1 for one that the linkage does not have.
+        The fixed pivots of the input and the output and the moving ones, −1 for one that the linkage lacks.
     aim : float
-        Share of the task's size by which everything is kept more narrowly than it is checked.
+        Share of the task's size by which all limits are narrowed.
     spare : float
-        By how much more than is checked the body keeps clear where it has to be at the ends of the motion: it cannot be
-        aimed at more narrowly there.
+        Clearance of the body beyond the required one at the ends of the motion. The targets fix the body there, so
+        its limits cannot be narrowed further.
     forces : float
         Limits on forces, of :func:`synthesis.fit.fourbar_forces.pack_forces`.
     """
     if space is None:
         return _append_forces(np.zeros(HEADER_SIZE), [[], [], [], []], forces) if len(forces) else NO_WORKSPACE
     zones = _pack_zones(space, origin, size, pivots, first is not None, aim)
+    # Zones need only the first position; box and obstacles the whole motion.
     moves = space.has_swept_constraints
     carries = space.body is not None and first is not None
+    # The body's outline stands for the coupler's third corner.
     links = [[joint for joint in part if not (carries and joint == P)] for part in parts] if moves else []
     body: list[list[float]] = []
     if moves and space.body is not None and carries:
@@ -135,18 +152,13 @@ def pack_workspace(
     header[HALF_WIDTH_INDEX], header[CLEARANCE_INDEX] = 0.5 * space.link_width / size, space.clearance / size + aim
     header[LEFT_INDEX : HIGH_INDEX + 1] = -np.inf, np.inf, -np.inf, np.inf
     if space.box is not None:
-        (left, low), (right, high) = space.box
-        header[LEFT_INDEX : HIGH_INDEX + 1] = (
-            (left - origin.real) / size + aim, (right - origin.real) / size - aim,
-            (low - origin.imag) / size + aim, (high - origin.imag) / size - aim,
-        )  # fmt: skip
+        header[LEFT_INDEX : HIGH_INDEX + 1] = _pack_box(space.box, origin, size, aim)
     header[HAS_BOX_INDEX], header[CYCLE_INDEX] = space.box is not None, space.over == "cycle"
     if first is not None:
-        header[FIRST_X_INDEX], header[FIRST_Y_INDEX] = (
-            (first.real - origin.real) / size,
-            (first.imag - origin.imag) / size,
-        )
+        header[FIRST_X_INDEX] = (first.real - origin.real) / size
+        header[FIRST_Y_INDEX] = (first.imag - origin.imag) / size
     header[PART_COUNT_INDEX], header[BODY_COUNT_INDEX], header[GROUP_COUNT_INDEX] = len(links), bodies, groups
+    # Ease the aim of the body at the ends by the part that its spare clearance does not cover.
     header[PIECE_COUNT_INDEX], header[ZONE_COUNT_INDEX], header[EASED_INDEX] = (
         len(pieces),
         len(zones),
@@ -162,14 +174,14 @@ def pack_workspace(
 
 
 def _append_forces(header: Real, tables: Sequence[list[list[float]]], forces: Real) -> Real:
-    """The numbers of a room, table after table, and the limits on forces behind them."""
+    """Concatenate the numbers of a workspace, table after table, and the limits on forces after them."""
     numbers = [header]
     at = HEADER_SIZE
     for place, table in zip(
         (ZONES_START_INDEX, PARTS_START_INDEX, BODY_START_INDEX, PIECES_START_INDEX), tables, strict=True
     ):
         header[place] = at
-        # Each table ends with the mark of no further record.
+        # A record never begins with a negative number, so −1 marks the end of a table.
         numbers.append(np.array([value for record in table for value in record] + [-1.0]))
         at += len(numbers[-1])
     header[FORCE_COUNT_INDEX], header[FORCES_START_INDEX] = count_force_margins(forces), at
@@ -178,7 +190,8 @@ def _append_forces(header: Real, tables: Sequence[list[list[float]]], forces: Re
 
 
 def select_zones(room: Real) -> Real:
-    """A packed room as far as pivots' zones go, which cost no motion; empty where there are none."""
+    """Return a packed workspace with the pivots' zones alone, which need no motion; empty without zones."""
+    # Zeroed counts make the kernels skip the other tables, so the tables need not be removed.
     if not len(room) or room[ZONE_COUNT_INDEX] == 0.0:
         return NO_WORKSPACE
     zones = room.copy()
@@ -196,8 +209,9 @@ def _list_outlines(space: Space) -> list[tuple[Complex, float]]:
 
 
 def _pack_pieces(outlines: Sequence[tuple[Complex, float]]) -> list[list[float]]:
-    """Records of convex pieces: group, radius, middle, reach about it, number of corners, corners."""
+    """Pack convex pieces as records: group, radius, middle, reach about it, number of corners, corners."""
     found = [decompose_convex(corners, 1.0, MAX_PIECES) for corners, _ in outlines]
+    # The first pass limits each outline alone; too many in total, then share the limit equally.
     if sum(len(pieces) for pieces, _ in found) > MAX_PIECES:
         share = max(MAX_PIECES // len(outlines), 1)
         found = [decompose_convex(corners, 1.0, share) for corners, _ in outlines]
@@ -206,6 +220,7 @@ def _pack_pieces(outlines: Sequence[tuple[Complex, float]]) -> list[list[float]]
         for number, (pieces, beyond) in enumerate(found)
         for piece in pieces
     ]
+    # Few pieces have margins of their own, which are smoother; otherwise each outline has one.
     alone = len(listed) <= MAX_GROUPS
     records = []
     for n, (number, piece, radius) in enumerate(listed):
@@ -220,7 +235,8 @@ def _pack_pieces(outlines: Sequence[tuple[Complex, float]]) -> list[list[float]]
 def _pack_zones(
     space: Space, origin: complex, size: float, pivots: Sequence[int], carries: bool, aim: float
 ) -> list[list[list[float]]]:
-    """Of each pivot that has zones the records: joint, on the body or not, radius, margin, count of corners, these."""
+    """Pack the zones of each pivot as records: joint, whether on the body, radius, margin, number of corners,
+    corners."""
     fixed, moving = space.fixed_pivots, space.moving_pivots
     demanded = (
         fixed.input if fixed else None,
@@ -236,7 +252,9 @@ def _pack_zones(
         for zone in [zones] if isinstance(zones, Zone) else zones:
             corners, radius = zone.outline
             corners = _orient_anticlockwise((corners - origin) / size)
+            # A narrow zone must not vanish by the extra margin, so limit it to a share of the zone's half width.
             half = radius / size if len(corners) == 1 else _estimate_half_width(zone) / size
+            # A linkage without a body has only the frame of the ground.
             on_body = carries and isinstance(zone, MovingZone) and zone.frame == "body"
             head = [float(joint), float(on_body), radius / size, min(aim, NARROW_SHARE * half), float(len(corners))]
             records.append([*head, *corners.view(np.float64).tolist()])
@@ -245,7 +263,7 @@ def _pack_zones(
 
 
 def _estimate_half_width(zone: Zone) -> float:
-    """About half of how wide a polygon is where it is widest."""
+    """Estimate half of the maximum width of a polygon, from its area and bounding box."""
     left, right, low, high = zone.bounds
     return zone.size / (2.0 * max(right - left, high - low))
 

@@ -1,14 +1,14 @@
 """Margins of a workspace along a motion, and their derivatives by the unknowns that move the joints.
 
-A motion is given by where its joints are at equal steps: shape (n, 6), in the order O2, A, B, O4, P and, of a linkage
-that carries a body, the turn e^{iα} of the body from how it is drawn. Between the steps joints, and corners of the
-body, lie on parabolas through three of their places. Each margin has a *row*: the step k beside which its nearest
-place is, the share t of a step that it is off (−1 to 1), and weights w with which
+A motion is given by its joints at equal steps: shape (n, 6), in the order O2, A, B, O4, P and, for a linkage that
+carries a body, the rotation e^{iα} of the body from its drawn pose. Between the steps joints, and corners of the body,
+lie on parabolas through three of their places. Each margin has a *row*: the step k next to its nearest place, the share
+t of a step between the two (−1 to 1), and weights w with which
 
     d(margin) = Σ_s L_s(t) Re Σ_j w̄_j dz_{s,j}        over the steps s = k − 1, k, k + 1,
 
-L_s being Lagrange's of the parabola, and dz of the turn i e^{iα} dα. :func:`differentiate_margin` takes the sum.
-Margins of zones have k = −1: they are of the first position, which is given by itself.
+where L_s are Lagrange's weights of the parabola, and dz of the rotation is i e^{iα} dα. :func:`differentiate_margin`
+computes the sum. Margins of zones have k = −1: they concern the first position, which is given separately.
 """
 
 from __future__ import annotations
@@ -45,10 +45,10 @@ from synthesis.fit.workspace import (
 )
 
 STEP_COLUMN, SHARE_COLUMN, WEIGHTS_COLUMN = 0, 1, 2
-"""Places in a row: k, t, and the weights as pairs of numbers."""
+"""Indices in a row: k, t, and the weights as pairs of numbers."""
 
 ROW_SIZE = WEIGHTS_COLUMN + 2 * PLACES
-"""Numbers of a row."""
+"""Length of a row."""
 
 FAR_GAP = 0.25
 """Maximum distance, in task sizes: larger ones are cut off."""
@@ -57,8 +57,8 @@ CONVERGENCE_TOLERANCE = 0.1
 """Margins above this, in task sizes, are lower bounds without a row: no limit bears a load there."""
 
 MAX_NARROWINGS, DUPLICATE_TOLERANCE = 4, 1e-3
-"""Places between steps that are looked at for the nearest, at most; what is nearer to it than the second, as a share of
-a step, is the same place."""
+"""Maximum number of places between steps at which the nearest place is searched, and the distance of two of them, as a
+share of a step, below which the search has converged."""
 
 
 @njit(**OPTIONS)
@@ -69,7 +69,8 @@ def count_margins(room: Real) -> int:
 
 @njit(**OPTIONS)
 def count_steps(ring: bool) -> int:
-    """At how many steps a motion is given; that of a whole turn ends one before it comes back to where it began."""
+    """Return the number of steps of a motion; a full turn has one less, because its end coincides with its
+    beginning."""
     return WINDOW_COUNT * STEP_COUNT + (0 if ring else 1)
 
 
@@ -82,13 +83,13 @@ def compute_margins(room: Real, places: Complex, ring: bool, home: Complex, valu
     room : float, shape (r,)
         Of :func:`synthesis.fit.workspace.pack_workspace`, not empty.
     places : complex, shape (n, 6)
-        Joints, and the body's turn, at ``n = steps_of(ring)`` equal steps of the motion, in task coordinates. What the
-        linkage does not have is not looked at.
+        Joints, and the body's rotation, at ``n = count_steps(ring)`` equal steps of the motion, in task coordinates.
+        Entries that the linkage lacks are ignored.
     ring : bool
-        Whether the motion goes on from its end at its beginning.
+        Whether the end of the motion continues at its beginning.
     home : complex, shape (6,)
         The same in the first position.
-    values, rows : float, shapes (margins_of(room),) and (margins_of(room), ROW)
+    values, rows : float, shapes (count_margins(room),) and (count_margins(room), ROW_SIZE)
         Written.
     """
     rows[:] = 0.0
@@ -101,16 +102,16 @@ def compute_margins(room: Real, places: Complex, ring: bool, home: Complex, valu
 
 @njit(**OPTIONS)
 def differentiate_margin(row: Real, ring: bool, slopes: Complex, home: Complex, out: Real) -> None:
-    """The derivatives of a margin by m unknowns from those of the joints.
+    """Compute the derivatives of a margin by m unknowns, given those of the joints.
 
     Parameters
     ----------
-    row : float, shape (ROW,)
+    row : float, shape (ROW_SIZE,)
         Of the margin.
     ring : bool
         As for :func:`compute_margins`.
     slopes : complex, shape (n, 6, m)
-        Derivatives of the places at the steps. Only those of :func:`compute_parabola_weights` are looked at.
+        Derivatives of the places at the steps. Only those of :func:`compute_parabola_weights` are used.
     home : complex, shape (6, m)
         The same of the first position.
     out : float, shape (m,)
@@ -128,7 +129,7 @@ def differentiate_margin(row: Real, ring: bool, slopes: Complex, home: Complex, 
 
 @njit(**OPTIONS)
 def add_derivative(row: Real, share: float, slopes: Complex, out: Real) -> None:
-    """Add to ``out`` what the places of one step contribute, their derivatives being ``slopes`` (6, m)."""
+    """Add the contribution of the places of one step to ``out``; ``slopes`` (6, m) are their derivatives."""
     for j in range(PLACES):
         x, y = share * row[WEIGHTS_COLUMN + 2 * j], share * row[WEIGHTS_COLUMN + 2 * j + 1]
         if x != 0.0 or y != 0.0:
@@ -140,7 +141,7 @@ def add_derivative(row: Real, share: float, slopes: Complex, out: Real) -> None:
 def compute_parabola_weights(
     step: int, share: float, ring: bool, n: int
 ) -> tuple[tuple[int, int, int], tuple[float, float, float]]:
-    """The steps whose places make up the place a share of a step off a step, and how much of each."""
+    """Return three steps and their weights, which give the place a share of a step off a step."""
     # At the ends of an open range the parabola is that of the nearest inner step.
     k = step if ring else min(max(step, 1), n - 2)
     t = share + (step - k)
@@ -162,7 +163,7 @@ def _add_weight(row: Real, joint: int, weight: complex) -> None:
 
 @njit(**OPTIONS)
 def _write_zone_margins(room: Real, home: Complex, values: Real, rows: Real) -> int:
-    """How far pivots lie within the nearest of their zones; returns the number of these margins."""
+    """Write how far pivots lie within the nearest of their zones; return the number of these margins."""
     at, m, pivot = int(room[ZONES_START_INDEX]), -1, -1
     drawn = complex(room[FIRST_X_INDEX], room[FIRST_Y_INDEX])
     while room[at] >= 0.0:
@@ -199,7 +200,8 @@ def _write_zone_margins(room: Real, home: Complex, values: Real, rows: Real) -> 
 
 @njit(**OPTIONS)
 def _find_parabola_minimum(before: float, here: float, after: float) -> float:
-    """Where between steps −1 and 1 a margin is least, by the parabola through three; 0 where it does not bend up."""
+    """Return the share of a step, −1 to 1, at which the parabola through three margins is lowest; 0 if it does not bend
+    up."""
     bend = before - 2.0 * here + after
     if not bend > 0.0 or before < here or after < here:
         return 0.0
@@ -208,7 +210,7 @@ def _find_parabola_minimum(before: float, here: float, after: float) -> float:
 
 @njit(**OPTIONS)
 def _find_window_steps(room: Real, window: int, ring: bool, n: int) -> tuple[int, int]:
-    """The steps of a window, from and to before; the last takes the end of the motion too."""
+    """Return the steps of a window, as a half-open range; the last window includes the end of the motion."""
     # A whole turn ends one step before its start; an open range has one more step, which the last window takes.
     last = n if not ring and window == WINDOW_COUNT - 1 else (window + 1) * STEP_COUNT
     return window * STEP_COUNT, last
@@ -216,14 +218,16 @@ def _find_window_steps(room: Real, window: int, ring: bool, n: int) -> tuple[int
 
 @njit(**OPTIONS)
 def _get_easing(room: Real, window: int) -> float:
-    """By how much less narrowly than other parts the body is aimed at in a window."""
+    """Return the easing of the body's limits in a window."""
     return float(room[EASED_INDEX]) if window == 0 or window == WINDOW_COUNT - 1 else 0.0
 
 
 @njit(**OPTIONS)
 def _measure_side_distance(room: Real, here: Complex, side: int, eased: float) -> tuple[float, int, complex]:
-    """How far the parts lie within a side of the box, the joint that is nearest to it, and of a corner of the body its
-    place on that, else 0."""
+    """Measure how far the parts lie within a side of the box.
+
+    Returns the distance, the nearest joint, and the point of the body if a corner of the body is nearest, else 0.
+    """
     axis, toward = side // 2, 1.0 if side % 2 == 0 else -1.0
     limit, half = room[LEFT_INDEX + side], room[HALF_WIDTH_INDEX]
     least, joint, corner = math.inf, -1, 0j
@@ -241,6 +245,7 @@ def _measure_side_distance(room: Real, here: Complex, side: int, eased: float) -
         count = int(room[at + 5])
         for k in range(count):
             own = complex(room[at + 6 + 2 * k], room[at + 7 + 2 * k]) - drawn
+            # The body's pieces are drawn at the requested first position: move them with P and the rotation.
             z = here[P] + here[TURN] * own
             place = z.real if axis == 0 else z.imag
             if toward * (place - limit) + eased < least:
@@ -251,7 +256,7 @@ def _measure_side_distance(room: Real, here: Complex, side: int, eased: float) -
 
 @njit(**OPTIONS)
 def _write_box_margins(room: Real, places: Complex, ring: bool, values: Real, rows: Real, first: int) -> int:
-    """How far the parts lie within each side of the box in each window; returns the number of the next margin."""
+    """Write how far the parts lie within each side of the box in each window; return the number of the next margin."""
     n = len(places)
     depths = np.empty((4, n))
     for step in range(n):
@@ -275,6 +280,7 @@ def _write_box_margins(room: Real, places: Complex, ring: bool, values: Real, ro
             row = rows[first]
             row[STEP_COLUMN], row[SHARE_COLUMN] = float(step), share
             weight = (1.0 if side % 2 == 0 else -1.0) * (1.0 + 0j if side < 2 else 1j)
+            # The derivative of a side's distance is that of the nearest corner's coordinate, with the side's sign.
             _add_weight(row, joint, weight)
             _add_weight(row, TURN, weight * corner.conjugate())
             first += 1
@@ -283,7 +289,8 @@ def _write_box_margins(room: Real, places: Complex, ring: bool, values: Real, ro
 
 @njit(**OPTIONS)
 def _write_core(room: Real, part: int, record: int, here: Complex, core: Complex) -> int:
-    """The corners of a part: link ``part``, or where it is −1 the piece of the body at ``record``; their number."""
+    """Write the corners of a part: link ``part``, or the piece of the body at ``record`` if it is −1; return their
+    number."""
     if part >= 0:
         at = int(room[PARTS_START_INDEX]) + 4 * part
         count = int(room[at])
@@ -302,6 +309,7 @@ def _write_obstacle_margins(room: Real, places: Complex, ring: bool, values: Rea
     """Write the minimum distance of each part from each group of obstacles in each window, minus the required one."""
     links, groups = int(room[PART_COUNT_INDEX]), int(room[GROUP_COUNT_INDEX])
     record = int(room[BODY_START_INDEX])
+    # Size the scratch for the largest piece; links have up to three corners.
     longest, end = 3, record
     while room[end] >= 0.0:
         longest = max(longest, int(room[end + 5]))
@@ -318,6 +326,7 @@ def _write_obstacle_margins(room: Real, places: Complex, ring: bool, values: Rea
             room, part, -1, pieces, places, ring, core, here, weights, numbers, True, values, rows, first
         )
         first += WINDOW_COUNT * groups
+    # Pieces of the body in one group share margins; the first of a group resets them.
     group, fresh = -1.0, True
     while room[record] >= 0.0:
         if room[record] != group:
@@ -341,63 +350,69 @@ def _measure_gap(room: Real, core: Complex, radius: float, piece: int, weights: 
 
 @njit(**OPTIONS)
 def _bound_displacement(room: Real, part: int, record: int, one: Complex, other: Complex) -> float:
-    """How far corners of a part are from where they were, at most."""
+    """Bound the displacement of a part's corners."""
     if part < 0:
         middle = complex(room[record + 2], room[record + 3]) - complex(room[FIRST_X_INDEX], room[FIRST_Y_INDEX])
+        # A rigid piece: the displacement of its middle, plus its reach times the chord of the rotation.
         about = abs(one[P] - other[P] + middle * (one[TURN] - other[TURN]))
         return float(about + room[record + 4] * abs(one[TURN] - other[TURN]))
     at, most = int(room[PARTS_START_INDEX]) + 4 * part, 0.0
     for k in range(int(room[at])):
         joint = int(room[at + 1 + k])
+        # A convex hull moves no farther than the farthest of its corners.
         most = max(most, abs(one[joint] - other[joint]))
     return most
 
 
 @njit(**OPTIONS)
-def _write_part_margins(
-    room: Real,
-    part: int,
-    record: int,
-    pieces: Integers,
-    places: Complex,
-    ring: bool,
-    core: Complex,
-    here: Complex,
-    weights: Real,
-    nearest: Real,
-    fresh: bool,
-    values: Real,
-    rows: Real,
-    first: int,
-) -> None:
-    """The margins of one part from each group of pieces in each window, from number ``first`` on.
+def _examine_middle(
+    room: Real, pieces: Integers, core: Complex, radius: float, farthest: float, middle: int, weights: Real,
+    at_middle: Real, nearest: Real,
+) -> None:  # fmt: skip
+    """Write the gaps of a part from all pieces in the middle of a window, and the nearest piece of each group.
 
-    Where the part shares its margins with others, ``fresh`` tells the first of them. ``nearest`` is scratch: of each
-    group the least gap, its step and its piece. In a window the middle is looked at first: from there no gap changes by
-    more than the part moves.
+    ``farthest`` bounds the part's displacement in the window.
+    """
+    for k in range(len(pieces)):
+        piece = pieces[k]
+        group = int(room[piece])
+        at_middle[k] = _bound_gap(room, core, radius, piece)
+        # Compute the exact gap only if the bound cannot exclude a load in this window.
+        if at_middle[k] - farthest < CONVERGENCE_TOLERANCE:
+            at_middle[k], _ = _measure_gap(room, core, radius, piece, weights)
+        if at_middle[k] - farthest >= CONVERGENCE_TOLERANCE:
+            # Far in the whole window: keep the lower bound, which needs no row.
+            nearest[group, 0] = min(nearest[group, 0], at_middle[k] - farthest)
+        elif at_middle[k] < nearest[group, 0]:
+            nearest[group, 0], nearest[group, 1], nearest[group, 2] = at_middle[k], float(middle), float(piece)
+
+
+@njit(**OPTIONS)
+def _write_part_margins(
+    room: Real, part: int, record: int, pieces: Integers, places: Complex, ring: bool, core: Complex, here: Complex,
+    weights: Real, nearest: Real, fresh: bool, values: Real, rows: Real, first: int,
+) -> None:  # fmt: skip
+    """Write the margins of one part from each group of pieces in each window, from number ``first`` on.
+
+    If the part shares its margins with others, ``fresh`` is true for the first of them. ``nearest`` is scratch: for
+    each group the minimum gap, its step and its piece. The middle of a window is examined first: from there no gap
+    changes by more than the part moves.
     """
     n, groups = len(places), len(nearest)
     moves, at_middle = np.empty(STEP_COUNT + 1), np.empty(len(pieces))
     for window in range(WINDOW_COUNT):
+        # The body's outline has no width of its own; a negative radius eases its limit.
         radius = room[HALF_WIDTH_INDEX] if part >= 0 else -_get_easing(room, window)
         begin, end = _find_window_steps(room, window, ring, n)
         middle = (begin + end) // 2
+        # Step −1 marks a bound without a place.
         nearest[:, 0], nearest[:, 1] = FAR_GAP, -1.0
         farthest = 0.0
         for step in range(begin, end):
             moves[step - begin] = _bound_displacement(room, part, record, places[step], places[middle])
             farthest = max(farthest, moves[step - begin])
         count = _write_core(room, part, record, places[middle], core)
-        for k in range(len(pieces)):
-            piece = pieces[k]
-            group = int(room[piece])
-            at_middle[k] = _bound_gap(room, core[:count], radius, piece)
-            if at_middle[k] - farthest < CONVERGENCE_TOLERANCE:
-                at_middle[k], _ = _measure_gap(room, core[:count], radius, piece, weights[:count])
-            if at_middle[k] - farthest >= CONVERGENCE_TOLERANCE:
-                nearest[group, 0] = min(nearest[group, 0], at_middle[k] - farthest)
-            elif at_middle[k] < nearest[group, 0]:
-                nearest[group, 0], nearest[group, 1], nearest[group, 2] = at_middle[k], float(middle), float(piece)
+        _examine_middle(room, pieces, core[:count], radius, farthest, middle, weights[:count], at_middle, nearest)
         for step in range(begin, end):
             if step == middle:
                 continue
@@ -405,6 +420,7 @@ def _write_part_margins(
             for k in range(len(pieces)):
                 piece = pieces[k]
                 group = int(room[piece])
+                # From the middle the part cannot come nearer than this, so the pair needs no exact gap at this step.
                 if at_middle[k] - moves[step - begin] >= min(nearest[group, 0], CONVERGENCE_TOLERANCE):
                     continue
                 if not known:
@@ -416,10 +432,12 @@ def _write_part_margins(
             number = first + window * groups + group
             if fresh:
                 values[number] = FAR_GAP
+            # Another piece of the same group is nearer.
             if nearest[group, 0] >= values[number]:
                 continue
             values[number] = nearest[group, 0]
             rows[number] = 0.0
+            # Beyond the tolerance no limit bears a load, so no derivative is needed.
             if nearest[group, 0] >= CONVERGENCE_TOLERANCE or nearest[group, 1] < 0.0:
                 continue
             _write_nearest_row(
@@ -430,7 +448,7 @@ def _write_part_margins(
 
 @njit(**OPTIONS)
 def _bound_gap(room: Real, core: Complex, radius: float, piece: int) -> float:
-    """A lower bound of the gap, by the circles around both."""
+    """Return a lower bound of the gap, by the circles around both."""
     middle, reach = core.mean(), 0.0
     for corner in core:
         reach = max(reach, abs(corner - middle))
@@ -453,7 +471,8 @@ def _measure_gap_between(
     weights: Real,
     radius: float,
 ) -> tuple[float, complex]:
-    """The gap and its direction a share of a step off a step; ``here``, ``core`` and ``weights`` are written."""
+    """Return the gap and its direction at a share of a step off a step; ``here``, ``core`` and ``weights`` are
+    overwritten."""
     _interpolate_places(places, step, share, ring, here)
     count = _write_core(room, part, record, here, core)
     gap: tuple[float, complex] = _measure_gap(room, core[:count], radius, piece, weights[:count])
@@ -462,24 +481,12 @@ def _measure_gap_between(
 
 @njit(**OPTIONS)
 def _write_nearest_row(
-    room: Real,
-    part: int,
-    record: int,
-    piece: int,
-    places: Complex,
-    step: int,
-    ring: bool,
-    core: Complex,
-    here: Complex,
-    weights: Real,
-    radius: float,
-    gap: float,
-    values: Real,
-    rows: Real,
-    number: int,
-) -> None:
-    """A margin and its row, from the step at which it is least: there, or between that and its neighbours."""
+    room: Real, part: int, record: int, piece: int, places: Complex, step: int, ring: bool, core: Complex,
+    here: Complex, weights: Real, radius: float, gap: float, values: Real, rows: Real, number: int,
+) -> None:  # fmt: skip
+    """Write a margin and its row, at the step with the minimum or between it and its neighbours."""
     n = len(places)
+    # Bracket the minimum between the neighbouring steps; at the ends of an open range one side is missing.
     left, middle, right = -1.0, 0.0, 1.0
     if not ring:
         left, right = (0.0 if step == 0 else -1.0), (0.0 if step == n - 1 else 1.0)
@@ -489,6 +496,7 @@ def _write_nearest_row(
         room, part, record, piece, places, step, right, ring, core, here, weights, radius
     )
     for _ in range(MAX_NARROWINGS if left < 0.0 < right else 0):
+        # Not a bracket: a neighbour in the next window is nearer, and that window has its own margin.
         if at_left < at_middle or at_right < at_middle:
             break
         share = _find_lowest(left, at_left, middle, at_middle, right, at_right)
@@ -498,7 +506,7 @@ def _write_nearest_row(
             room, part, record, piece, places, step, share, ring, core, here, weights, radius
         )
         if (share < middle) == (value < at_middle):
-            # What lies to the right of the lower of the two is given up.
+            # Keep the bracket around the lower of the two; the part beyond the other is dropped.
             right, at_right = (middle, at_middle) if value < at_middle else (share, value)
         else:
             left, at_left = (middle, at_middle) if value < at_middle else (share, value)
@@ -516,6 +524,7 @@ def _write_nearest_row(
         for k in range(int(room[at])):
             _add_weight(row, int(room[at + 1 + k]), weights[k] * normal)
         return
+    # A contact on the body moves with P and with the rotation about P.
     _add_weight(row, P, normal)
     drawn = complex(room[FIRST_X_INDEX], room[FIRST_Y_INDEX])
     for k in range(int(room[record + 5])):
@@ -525,8 +534,10 @@ def _write_nearest_row(
 
 @njit(**OPTIONS)
 def _find_lowest(left: float, at_left: float, middle: float, at_middle: float, right: float, at_right: float) -> float:
-    """Where the parabola through three places is lowest; in the longer half where it does not bend up."""
+    """Return the lowest point of the parabola through three places, or a point of the longer half if it does not bend
+    up."""
     one, two = (middle - left) * (at_middle - at_right), (middle - right) * (at_middle - at_left)
+    # Three equal values: the parabola is flat, so bisect.
     if one == two:
         return 0.5 * (middle + (left if middle - left > right - middle else right))
     return float(middle - 0.5 * ((middle - left) * one - (middle - right) * two) / (one - two))

@@ -1,13 +1,13 @@
-"""The best linkages on the grid of a shop, or of the links in stock: all of those near a design, driven.
+"""The best linkages on the grid of a shop, or made of links in stock: all those near a design, driven.
 
-Rounding each dimension by itself is far from the best, as the errors of several can cancel. Every combination of grid
-values within :data:`REACH_STEPS` steps of the design is driven to all targets, or as far as it may still be among the
-best; nothing about them is linear, and nothing is left out. A fourbar that guides a body has nine dimensions and two
-million combinations.
+Rounding each dimension separately is far from optimal, because the errors of several can cancel. Every combination of
+grid values within :data:`REACH_STEPS` steps of the design is driven to all targets, or until it can no longer be among
+the best; no linearization is used, and no combination is omitted. A fourbar that guides a body has nine dimensions and
+two million combinations.
 
-Links in stock may be far from those of a design. For each choice of them the other dimensions are brought along, from
-the design's, by Gauss and Newton's method with the exact derivatives, the links changing in steps; where there is a
-grid as well, the others are then searched on it around that.
+Links in stock may differ much from those of a design. For each choice of links the other dimensions follow from the
+design's by Gauss and Newton's method with the exact derivatives, while the links change in steps. With a grid as well,
+the others are then searched on it around the result.
 """
 
 from __future__ import annotations
@@ -43,25 +43,25 @@ from synthesis.model.linkage.conversion import (
 from synthesis.model.manufacture.request import Manufacture, RequiredTargets
 
 Limits = tuple[float, float]
-"""Of distance, and of angle in radians."""
+"""Limits of distance, and of angle in radians."""
 
 REACH_STEPS = 2
-"""Steps of the grid to either side of a design that are searched, in every dimension at once."""
+"""Number of grid steps to either side of a design that are searched, in all dimensions at once."""
 
 MAX_KEPT = 256
-"""Linkages that are kept of a search, the nearest to the task first."""
+"""Maximum number of linkages that a search keeps, the nearest to the task first."""
 
 BATCH_DIMENSIONS = 6
-"""Dimensions that one batch runs over."""
+"""Number of dimensions covered by one batch: 5⁶ = 15,625 combinations fit the cache."""
 
 MAX_CHOICES = 64
 """Maximum number of choices of links in stock, those most similar to the design first."""
 
 MAX_REFINED_CHOICES = 6
-"""Of these, the best around which a grid is searched."""
+"""Maximum number of these choices around which a grid is searched, the best first."""
 
 STEP_COUNT, NEWTON_STEPS = 6, 3
-"""Steps in which links become those of the stock, and steps of Gauss and Newton's method at each."""
+"""Number of steps in which links change to those in stock, and of Gauss-Newton steps at each."""
 
 
 class NearbyLinkages(NamedTuple):
@@ -70,13 +70,13 @@ class NearbyLinkages(NamedTuple):
     Attributes
     ----------
     task : Task
-        With adjusted inputs where these are free; misses are measured by the size of the task and in radians.
+        With adjusted inputs if these are free; misses are measured by the size of the task and in radians.
     rows : float, shape (v, n)
         Their dimensions.
     squares : float, shape (v,)
         Sums of the squares of their misses.
     body : float or None
-        Angle from A → B to the body's line, radians, where a body is carried.
+        Angle from A → B to the body's line, radians, if a body is carried.
     """
 
     task: Task
@@ -85,7 +85,7 @@ class NearbyLinkages(NamedTuple):
     body: float | None
 
     def compute_body_angle(self, coupler: float) -> float | None:
-        """The body's angle where A → B has this one, radians; degrees."""
+        """Return the body's angle, degrees, for a direction of A → B in radians."""
         return None if self.body is None else math.degrees(coupler + self.body)
 
 
@@ -102,21 +102,21 @@ def find_nearest_on_grid(
     ----------
     linkage : Linkage
         The design, as exact as it was found.
-    held : Held
-        What it is held to.
-    stated : Manufacture
+    held : RequiredTargets
+        Its requirements.
+    block : Manufacture
         With ``round`` or ``stock``.
     used : pair of float or None
         The range of the input on which linkages must stay on their branch, radians.
     limits : pair of float, optional
-        Errors up to which linkages are looked for: distance, and angle in radians. They hold for the targets that have
-        no tolerance of their own, and are not looked at here where some have one.
+        Maximum errors: distance, and angle in radians. They apply to targets without a tolerance of their own, and are
+        ignored if some have one.
 
     Returns
     -------
-    Near or str
-        :data:`MAX_KEPT` linkages at most; the nearest alone where none keeps the limits. In words why none can be
-        looked for.
+    NearbyLinkages or str
+        At most :data:`MAX_KEPT` linkages; only the nearest if none satisfies the limits. A message if the search is
+        impossible.
     """
     found = find_target_inputs(linkage, held, (held.size, 1.0), used)
     if isinstance(found, str):
@@ -127,11 +127,13 @@ def find_nearest_on_grid(
         task,
         adjusted=held.free,
         greatest=False,
+        # A slide lies on its line for every offset; a ground line may have to keep a given point or direction.
         on_ground=(False, False) if task.slides else held.on_ground,
         ground_angle=float(np.angle(ground)),
     )
     row = linkage.row[: task.dimensions]
     names = linkage.list_names(guides=task.guides)
+    # Limits help only if every target uses them.
     kept = None if has_own_tolerances(held) or limits == (math.inf, math.inf) else limits
     body = None
     if task.sort == "poses" and held.angles is not None and task.angles is not None:
@@ -140,14 +142,16 @@ def find_nearest_on_grid(
         values = _list_candidates(row, names, block, held.kept)
         rows, taken = _search_combinations(linkage, task, values, kept, screened=block.quality is not None)
         if not len(rows):
-            # None keeps them; the one that comes nearest tells by how much.
+            # None satisfies them: return the nearest alone, whose error shows how far off the grid is.
             rows, taken = (part[:1] for part in _search_combinations(linkage, task, values, None))
         return NearbyLinkages(task, rows, taken, body)
+    # From here on links come from stock.
     moving = [k for k, name in enumerate(names) if name.startswith("links.")]
     rows, taken = _search_stock(linkage, task, row, np.array(sorted(set(block.stock.links))), names, held.kept)
     if block.round is not None:
         parts = [(np.empty((0, len(row))), np.empty(0))]
         for centre in rows[:MAX_REFINED_CHOICES]:
+            # Links stay those of the stock; only the other dimensions are on the grid.
             values = _list_candidates(centre, names, block, held.kept)
             for k in moving:
                 values[k] = centre[k : k + 1]
@@ -158,7 +162,7 @@ def find_nearest_on_grid(
 
 
 def has_own_tolerances(held: RequiredTargets) -> bool:
-    """Whether targets have tolerances of their own."""
+    """Return whether targets have tolerances of their own."""
     return held.limits is not None and bool(((held.limits > 0.0) & np.isfinite(held.limits)).any())
 
 
@@ -172,17 +176,21 @@ def _list_candidates(row: Real, names: list[str], block: Manufacture, kept: froz
         if name in kept:
             values.append(np.array([at]))
             continue
+        # Grid values around the nearest one.
         counts = np.arange(-REACH_STEPS, REACH_STEPS + 1) + round(float(at) / step)
-        # 3 times 0.1 is not 0.3: a whole multiple is what is written with few digits.
+        # 3 times 0.1 is not 0.3 in binary: round to 12 digits to get the decimal multiple that a user expects.
         listed = np.array([float(f"{count * step:.12g}") for count in counts])
+        # Links need positive lengths; a very short one becomes one step.
         if link:
             listed = listed[listed > 0.0] if (listed > 0.0).any() else np.array([step])
+        # Nearest values first, so that good combinations come early and shorten the later search.
         values.append(listed[np.argsort(np.abs(listed - at), kind="stable")])
     return values
 
 
 def _list_dial_settings(linkage: Linkage, task: Task, rows: Real) -> Real | None:
-    """Where the dial of a slider stands: its places are counted from the foot of the pivot, which the grid moves."""
+    """Return the dial settings of a slider: its positions are counted from the foot of the pivot, which the grid
+    moves."""
     if task.guides or not task.slides:
         return None
     moved = (rows[:, 0] - linkage.row[0]) + 1j * (rows[:, 1] - linkage.row[1])
@@ -192,17 +200,18 @@ def _list_dial_settings(linkage: Linkage, task: Task, rows: Real) -> Real | None
 def _search_combinations(
     linkage: Linkage, task: Task, values: list[Real], limits: Limits | None, *, screened: bool = False
 ) -> tuple[Real, Real]:
-    """The best of all combinations of values, driven: rows (v, n) and sums of squares (v,), the least first.
+    """Return the best of all combinations of values, driven: rows (v, n) and sums of squares (v,), smallest first.
 
-    Only those that keep the limits, where there are such; ``screened``: these are tight, and looked at first.
+    With limits, only those that satisfy them. ``screened`` means that the limits are tight, so they are tested first.
     """
+    # The last dimensions form a batch; the first ones are enumerated around it, which bounds the memory.
     split = max(len(values) - BATCH_DIMENSIONS, 0)
     inner = np.stack(np.meshgrid(*values[split:], indexing="ij"), axis=-1).reshape(-1, len(values) - split)
     batch = np.empty((len(inner), len(values)))
     batch[:, split:] = inner
     rows, taken, most = np.empty((0, len(values))), np.empty(0), math.inf
     if limits is not None:
-        # Nothing that keeps them has more.
+        # A combination within the limits at every target cannot have a larger sum of squares.
         most = len(task.inputs) * ((limits[0] / task.units[0]) ** 2 + (limits[1] / task.units[1]) ** 2)
     for outer in combined(*values[:split]):
         batch[:, :split] = outer
@@ -212,6 +221,7 @@ def _search_combinations(
             near = measure_shares(dataclasses.replace(task, greatest=True, units=limits), batch, settings)
             some = np.flatnonzero(near <= 1.0 + LIMIT_SLACK)
             settings = None if settings is None else settings[some]
+        # Driving stops as soon as the sum exceeds ``most``, the worst of the kept ones.
         square = measure_squares(task, batch[some], most, settings)
         good = np.flatnonzero(np.isfinite(square))
         if limits is not None:
@@ -221,6 +231,7 @@ def _search_combinations(
         if not len(good):
             continue
         rows, taken = np.concatenate([rows, batch[some][good]]), np.concatenate([taken, square[good]])
+        # Prune as soon as there are too many; the threshold then falls and speeds up the rest.
         if len(taken) > MAX_KEPT:
             first = np.argpartition(taken, MAX_KEPT)[:MAX_KEPT]
             rows, taken = rows[first], taken[first]
@@ -232,9 +243,10 @@ def _search_combinations(
 def _search_stock(
     linkage: Linkage, task: Task, row: Real, stock: Real, names: list[str], kept: frozenset[str]
 ) -> tuple[Real, Real]:
-    """Linkages of links in stock, all other dimensions as the task wants them: rows and sums, the least first."""
+    """Return linkages of links in stock, the other dimensions fitted to the task: rows and sums, smallest first."""
     moving = [k for k, name in enumerate(names) if name.startswith("links.")]
     free = np.array([k for k, name in enumerate(names) if k not in moving and name not in kept], np.intp)
+    # Try the most similar links first, by the sum of logarithmic differences.
     away = np.abs(np.log(stock[None] / row[moving][:, None]))
     choices = sorted(combined(range(len(stock)), repeat=len(moving)), key=lambda c: sum(away[range(len(c)), c]))
     rows = [_bring_to_lengths(task, row, moving, stock[list(choice)], free) for choice in choices[:MAX_CHOICES]]
@@ -245,24 +257,28 @@ def _search_stock(
 
 
 def _bring_to_lengths(task: Task, row: Real, moving: list[int], links: Real, free: NDArray[np.intp]) -> Real | None:
-    """The dimensions with other links, by steps from those of the design; None where that leads nowhere."""
+    """Return the dimensions with other links, reached in steps from those of the design; None if the steps diverge."""
     weights = np.array([1.0 / task.units[0]] * 2 + [1.0 / task.units[1]])
+    # On the way the branch limits do not matter; the caller drives the result with them.
     loose = dataclasses.replace(task, used=None)
     at = row.copy()
     for share in np.linspace(0.0, 1.0, STEP_COUNT + 1)[1:]:
+        # Change the links in steps, so that Gauss and Newton's method stays near its solution.
         at[moving] = row[moving] + share * (links - row[moving])
         for _ in range(NEWTON_STEPS):
             off = compute_sensitivities(loose, at)
             if not (np.isfinite(off.rates).all() and np.isfinite(off.offsets).all()):
                 return None
             slopes = (off.rates[:, :, free] * weights[:, None]).reshape(-1, len(free))
+            # Least squares of minimal norm, because fewer targets than dimensions leave freedom.
             at[free] -= np.linalg.lstsq(slopes, (off.offsets * weights).ravel(), rcond=1e-9)[0]
     at[moving] = links
     return at
 
 
 def build_mechanism(linkage: Linkage, near: NearbyLinkages, n: int) -> FourbarMechanism | SliderCrankMechanism | None:
-    """One of the linkages near a design as an answer states it, standing at the first target; None where it cannot."""
+    """Return one of the linkages near a design as a mechanism of an answer, at the first target; None if it is
+    impossible."""
     try:
         return _build_mechanism(linkage, near, n)
     except DimensionError:  # the grid may have both fixed pivots in one place
@@ -275,6 +291,7 @@ def _build_mechanism(linkage: Linkage, near: NearbyLinkages, n: int) -> FourbarM
     theta, sign = float(driven.inputs[0, 0]), int(task.assemblies[0])
     if not math.isfinite(theta):
         return None
+    # Linkages that guide no body keep the point of the design, which plays no role.
     point = complex(row[-2], row[-1]) if task.guides else complex(linkage.row[-2], linkage.row[-1])
     o2 = complex(row[0], row[1])
     if task.slide_angle is None:
@@ -283,6 +300,7 @@ def _build_mechanism(linkage: Linkage, near: NearbyLinkages, n: int) -> FourbarM
         body = near.compute_body_angle(float(at.coupler_angle))
         joints = FourbarConfiguration(o2, complex(at.a), complex(at.b), o4, complex(at.p))
         made = build_fourbar(joints, body)
+        # Joints are computed and rounded; the dimensions must be the grid values exactly.
         return replace_dimensions(made if task.guides else remove_coupler_point(made), row)
     line = o2 - 1j * row[2] * task.slide_direction
     sliding = SliderCrank(o2, line, task.slide_angle, row[3], row[4], point)

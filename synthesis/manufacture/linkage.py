@@ -29,7 +29,7 @@ NAMES = {
     ),
     "slider_crank": ("fixed_pivot.x", "fixed_pivot.y", "offset", "links.crank", "links.coupler"),
 }
-"""Dimensions by the type of the mechanism, in the order of the variants; those of P come after them."""
+"""Names of the dimensions by the type of the mechanism, in the order of the variants; those of P follow."""
 
 POINT_DIMENSIONS = ("coupler_point.along", "coupler_point.across")
 
@@ -37,7 +37,8 @@ LIMIT_SLACK = 1e-9
 """Relative rounding at a limit."""
 
 OPPOSITE_SHARE = 0.5
-"""Share of the own assembly's miss at a target below which the opposite assembly is the one that is meant there."""
+"""Share of the own assembly's miss at a target below which the opposite assembly is taken to be the intended one
+there."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -68,26 +69,27 @@ class Linkage:
     reference: float
 
     def list_names(self, *, guides: bool) -> list[str]:
-        """The names of the dimensions, those of P only where it is guided."""
+        """Return the names of the dimensions; those of P only if it is guided."""
         return [*NAMES[self.type], *(POINT_DIMENSIONS if guides else ())]
 
     def mark_pivots(self, *, guides: bool) -> NDArray[np.bool_]:
-        """Which of the dimensions are places of fixed pivots, or a slide's offset; the others are lengths."""
+        """Return a mask of dimensions that are coordinates of fixed pivots, or a slide's offset; the others are
+        lengths."""
         named = self.list_names(guides=guides)
         return np.array([name.startswith("fixed_pivot") or name == "offset" for name in named])
 
 
 def extract_linkage(mechanism: Any) -> Linkage | None:
-    """The dimensions of the mechanism of an answer or a request; None of a type that is not built.
+    """Extract the dimensions of the mechanism of an answer or a request; None for an unsupported type.
 
     Parameters
     ----------
     mechanism : a model of a mechanism
         Its fields ``fixed_pivots`` or ``fixed_pivot``, ``links``, ``slide``, ``coupler_point``, ``assembly`` and
-        ``reference_input_angle`` are read; its skeleton is not looked at.
+        ``reference_input_angle`` are used; its skeleton is ignored.
     """
     stated = mechanism.model_dump(exclude={"skeleton"})
-    # A linkage that is stated by its skeleton alone has no assembly: its dimensions are not known by their names.
+    # A linkage given by its skeleton alone has no assembly and no named dimensions; a driven slider is not supported.
     if stated["type"] not in NAMES or "assembly" not in stated or stated.get("driven_by") == "slider":
         return None
     point = stated["coupler_point"]
@@ -101,6 +103,7 @@ def extract_linkage(mechanism: Any) -> Linkage | None:
     pivot, line = complex(*stated["fixed_pivot"]), complex(*stated["slide"]["point"])
     angle = math.radians(stated["slide"]["angle"])
     along = cmath.exp(1j * angle)
+    # Split the vector from the line's point into its parts along the slide (the foot) and across it (the offset).
     between = (pivot - line) * along.conjugate()
     row = [pivot.real, pivot.imag, between.imag, links["crank"], links["coupler"]]
     foot = line + along * between.real
@@ -109,21 +112,21 @@ def extract_linkage(mechanism: Any) -> Linkage | None:
 
 @dataclass(frozen=True, eq=False)
 class ManufacturedLinkage:
-    """A linkage with its task, as a shop makes it.
+    """A linkage with its task, as manufactured.
 
     Attributes
     ----------
     linkage : Linkage
         As drawn.
     task : Task
-        Its targets, where a target with a tolerance of the task's own is the place at which the linkage as drawn
+        Its targets. A target with a tolerance of the task's own is replaced by the place at which the nominal linkage
         passes it.
     own : float, shape (t, 3)
-        How far that place lies from the demanded one: x, y and angle; 0 of what has no tolerance of its own.
+        Offset of that place from the requested one: x, y and angle; 0 without a tolerance of its own.
     limits : float, shape (t, 3)
-        The task's own tolerances, infinite where there is none.
+        The task's own tolerances, infinite without one.
     around : bool
-        Whether those of x are of the distance, in any direction.
+        Whether those of x limit the distance, in any direction.
     """
 
     linkage: Linkage
@@ -134,12 +137,12 @@ class ManufacturedLinkage:
 
     @cached_property
     def nominal_dimensions(self) -> Real:
-        """The dimensions as drawn, shape (n,)."""
+        """Return the nominal dimensions, shape (n,)."""
         return self.linkage.row[: self.task.dimensions]
 
     @property
     def list_names(self) -> list[str]:
-        """What the dimensions are called."""
+        """Names of the dimensions."""
         return self.linkage.list_names(guides=self.task.guides)
 
     @property
@@ -148,8 +151,10 @@ class ManufacturedLinkage:
         return bool(np.isfinite(self.limits).any())
 
     def mark_within_own_tolerances(self, offsets: Real) -> NDArray[np.bool_]:
-        """Whether variants with these offsets (v, t, 3) keep the task's own tolerances, shape (v,)."""
+        """Return a mask of variants, given their offsets (v, t, 3), that satisfy the task's own tolerances, shape
+        (v,)."""
         off = np.abs(offsets + self.own)
+        # A tolerance of the point limits its distance, so both coordinates get the same value.
         if self.around:
             off[..., 0] = off[..., 1] = np.hypot(off[..., 0], off[..., 1])
         return np.asarray((off <= self.limits * (1.0 + LIMIT_SLACK)).all(axis=(1, 2)))
@@ -181,11 +186,12 @@ def build_task(linkage: Linkage, held: RequiredTargets, units: tuple[float, floa
 def find_target_inputs(
     linkage: Linkage, held: RequiredTargets, units: tuple[float, float], used: tuple[float, float] | None
 ) -> tuple[Task, Real] | str:
-    """The same where the linkage can be assembled at every target, and its errors there (t, 3); or why it cannot."""
+    """Return the task and the errors (t, 3) of a linkage that can be assembled at every target; else a message."""
     task = build_task(linkage, held, units)
     if isinstance(task, str):
         return task
     row = linkage.row[: task.dimensions]
+    # Without a used range each target may be met in either assembly.
     if used is None:
         task = dataclasses.replace(task, assemblies=_choose_assemblies(task, row))
     offsets = measure_deviations(task, row[None]).offsets[0]
@@ -203,10 +209,10 @@ def build_product(
     ----------
     linkage : Linkage
         As drawn.
-    held : Held
-        What it is held to.
-    stated : Exactness
-        The block of the statement.
+    held : RequiredTargets
+        Its requirements.
+    block : Exactness
+        The block of the request.
     used : pair of float or None
         The range of the input on which it must stay on its branch, radians.
     """
@@ -216,11 +222,14 @@ def build_product(
     task, offsets = found
     limits = np.full(offsets.shape, math.inf)
     if held.limits is not None:
+        # A tolerance of 0 means an exact target, which manufacturing can never meet; quality limits apply there
+        # instead.
         limits = np.where((held.limits > 0.0) & np.isfinite(held.limits), held.limits, math.inf)
     own = np.where(np.isfinite(limits), offsets, 0.0)
     task = dataclasses.replace(
         task,
         adjusted=block.input == "adjusted" or (block.input is None and held.free),
+        # Move such targets to the place that the nominal linkage reaches, so that errors count from there.
         points=None if task.points is None else task.points + own[:, 0] + 1j * own[:, 1],
         angles=None if task.angles is None else task.angles + own[:, 2],
     )
@@ -230,6 +239,7 @@ def build_product(
 def list_quality_units(quality: Quality) -> tuple[float, float]:
     """Return the quality's limits of distance and of angle (radians); infinite if not given."""
     angle = math.inf if quality.max_angle_error is None else math.radians(quality.max_angle_error)
+    # No limit is an infinite one, which any error satisfies.
     return quality.max_error or math.inf, angle
 
 
@@ -243,7 +253,8 @@ def _choose_units(block: Exactness, held: RequiredTargets) -> tuple[float, float
 
 
 def _convert_coupler_angles(linkage: Linkage, task: Task, held: RequiredTargets) -> Real | None:
-    """Demanded angles of the line A → B: the body's, by how the body stands on the coupler in the reference."""
+    """Convert requested angles of the body to angles of the line A → B, by the body's angle on the coupler in the
+    reference."""
     assert held.angles is not None
     at = dataclasses.replace(
         task,
@@ -257,7 +268,7 @@ def _convert_coupler_angles(linkage: Linkage, task: Task, held: RequiredTargets)
 
 
 def _choose_assemblies(task: Task, row: Real) -> NDArray[np.int64]:
-    """The assembly that is meant at each target, where a linkage is not held to one: the opposite if clearly nearer."""
+    """Choose the intended assembly at each target of a linkage without a fixed one: the opposite if clearly nearer."""
     misses = []
     for sign in (1, -1):
         off = measure_deviations(dataclasses.replace(task, assemblies=sign * task.assemblies), row[None])

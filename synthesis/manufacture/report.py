@@ -19,7 +19,7 @@ from synthesis.model.manufacture.answer import Allocation, ManufactureReport, Se
 from synthesis.model.manufacture.request import Exactness, Manufacture, RequiredTargets
 
 IMPORTANT_SHARE = 0.8
-"""Share of all errors that the tolerances that matter add up to."""
+"""Share of all errors that the reported important tolerances cause together."""
 
 
 class ManufactureResult(NamedTuple):
@@ -38,14 +38,14 @@ def report_manufacture(
     ----------
     mechanism : a model of a mechanism
         As drawn.
-    held : Held
-        What it is held to.
-    stated : Exactness
+    held : RequiredTargets
+        Its requirements.
+    block : Exactness
         The block.
     seed : int
-        That of the problem; the block may have its own.
+        Seed of the problem; the block may have its own.
     used : pair of float or None
-        The range of the input on which it must stay on its branch, radians; None where it need not.
+        The range of the input on which it must stay on its branch, radians; None without this requirement.
     """
     linkage = extract_linkage(mechanism)
     if linkage is None:
@@ -55,12 +55,14 @@ def report_manufacture(
         return ManufactureResult(ManufactureReport(remark=made), None)
     off = list_errors(block, linkage.mark_pivots(guides=made.task.guides))
     share, rates = _compute_shares(made, off)
+    # Largest contribution first, also in the answer.
     listed = [
         _describe_sensitivity(made, rates, k, float(off[k]), float(share[k])) for k in np.argsort(-share, kind="stable")
     ]
     remark = None if np.isfinite(rates.rates).all() else "the linkage is at a toggle at a target"
     clearance = 0.0 if block.tolerances is None else block.tolerances.pin_clearance
     play = compute_plays(made, clearance) if clearance > 0.0 else []
+    # None is not "no play": the clearances can jam the linkage.
     if play is None:
         remark = "within the clearances of its pins the linkage reaches a toggle at a target"
     allocated: list[Allocation] = []
@@ -68,6 +70,7 @@ def report_manufacture(
         allocated = find_widest_tolerances(
             made, block, seed if block.seed is None else block.seed, _compute_squares(made, rates), off
         )
+    # The block's own seed has precedence, so that a client can repeat or vary the samples alone.
     seeded = seed if block.seed is None else block.seed
     told = ManufactureReport(
         seed=seeded if block.is_sampled else None,
@@ -82,7 +85,7 @@ def report_manufacture(
 
 
 def _compute_shares(made: ManufacturedLinkage, off: Real) -> tuple[Real, Sensitivities]:
-    """What each tolerance adds to the squares of all errors, shape (n,); zeros where derivatives are not finite."""
+    """Return each tolerance's share of the squares of all errors, shape (n,); zeros if derivatives are not finite."""
     rates = compute_sensitivities(made.task, made.nominal_dimensions)
     added = _compute_squares(made, rates) * off * off
     whole = float(added.sum())
@@ -90,7 +93,8 @@ def _compute_shares(made: ManufacturedLinkage, off: Real) -> tuple[Real, Sensiti
 
 
 def _compute_squares(made: ManufacturedLinkage, rates: Sensitivities) -> Real:
-    """What each dimension adds to the squares of all errors, by the square of its tolerance, shape (n,)."""
+    """Return each dimension's contribution to the squares of all errors, per square of its tolerance, shape (n,)."""
+    # Rates of distance and of angle are comparable only in units of their limits.
     units = np.array([made.task.units[0]] * 2 + [made.task.units[1]])
     return np.asarray(np.square(rates.rates / units[:, None]).sum(axis=(0, 1)))
 
@@ -98,7 +102,7 @@ def _compute_squares(made: ManufacturedLinkage, rates: Sensitivities) -> Real:
 def _describe_sensitivity(
     made: ManufacturedLinkage, rates: Sensitivities, k: int, off: float, share: float
 ) -> Sensitivity | None:
-    """The derivatives to one dimension; None where they are not finite."""
+    """Describe the derivatives by one dimension; None if they are not finite."""
     x, y, turned = rates.rates[:, :, k].T
     if not np.isfinite(rates.rates[:, :, k]).all():
         return None
@@ -119,10 +123,11 @@ def _describe_sensitivity(
 
 
 def _select_important(listed: list[Sensitivity | None]) -> list[str]:
-    """The dimensions, the first most, whose tolerances make up :data:`IMPORTANT_SHARE` of the errors."""
+    """Return the dimensions, largest share first, whose tolerances cause :data:`IMPORTANT_SHARE` of the errors."""
     named: list[str] = []
     left = IMPORTANT_SHARE
     for one in listed:
+        # The list is sorted, so the first without a share ends it.
         if left <= 0.0 or one is None or one.share <= 0.0:
             break
         named.append(one.dimension)
@@ -131,11 +136,13 @@ def _select_important(listed: list[Sensitivity | None]) -> list[str]:
 
 
 def _find_worst_case(made: ManufacturedLinkage, off: Real) -> WorstCase:
-    """The greatest errors over all corners of the tolerances, every one of them driven."""
+    """Find the maximum errors over all corners of the tolerances, each of them driven."""
+    # Only dimensions with a tolerance vary: at most 2⁹ corners.
     open_ones = np.flatnonzero(off > 0.0)
     corners = np.tile(made.nominal_dimensions, (2 ** len(open_ones), 1))
     corners[:, open_ones] += np.array(list(combined((-1.0, 1.0), repeat=len(open_ones)))) * off[open_ones]
     driven = measure_deviations(made.task, corners)
+    # One corner that cannot be assembled makes the worst case unbounded.
     if not np.isfinite(driven.offsets).all():
         return WorstCase(assembles=False)
     sort, slides = made.task.sort, made.task.slides

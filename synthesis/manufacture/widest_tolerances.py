@@ -1,11 +1,10 @@
-"""The widest tolerances with which a linkage still has the yield that is demanded, cheapest first.
+"""The widest tolerances with which a linkage still has the required yield, cheapest first.
 
-To make a dimension within a tolerance t costs in proportion to 1/t (Chase and Greenwood, Design issues in mechanical
-tolerance analysis, Manufacturing Review 1 (1988) 50). To the first order the squares of all errors add up to Σ s t²,
-with s from the exact derivatives; the cheapest tolerances of a given sum have t ∝ s^(−1/3) for each dimension by
-itself, and t ∝ (n/s)^(1/3) for n dimensions that share one. That is the shape; how wide it may be is found with
-samples, driven as those of the yield are, by bisection: what is answered has been sampled in full, and keeps what is
-demanded.
+The cost of a tolerance t is proportional to 1/t (Chase and Greenwood, Design issues in mechanical tolerance analysis,
+Manufacturing Review 1 (1988) 50). To first order the squares of all errors add up to Σ s t², with s from the exact
+derivatives; the cheapest tolerances of a given sum have t ∝ s^(−1/3) for each dimension separately, and
+t ∝ (n/s)^(1/3) for n dimensions that share one. This gives the proportions. The width is found by bisection with
+driven samples, as for the yield: the answer has been sampled in full, and satisfies the requirement.
 """
 
 from __future__ import annotations
@@ -28,32 +27,33 @@ MAX_ROUGH_SAMPLES = 10_000
 """Maximum number of samples in the search of the width."""
 
 BISECTION_COUNT = 9
-"""Bisections of a factor of two: to a seventh of a per cent."""
+"""Number of bisections of a factor of two: to a seventh of a per cent."""
 
 MAX_DOUBLINGS = 8
 """Maximum number of doublings or halvings in the search of the width."""
 
 NARROWING_FACTOR, MAX_TRIES = 0.98, 25
-"""What a width is lessened by where all samples show less than the rough ones did, and how often."""
+"""Factor by which a width is reduced if all samples show a lower yield than the rough ones, and maximum number of
+tries."""
 
 
 def find_widest_tolerances(
     made: ManufacturedLinkage, block: Exactness, seed: int, squares: Real, off: Real
 ) -> list[Allocation]:
-    """Tolerances as wide as the demanded yield lets them be, the cheapest first; empty where there are none.
+    """Find the widest tolerances with the required yield, cheapest first; empty if there are none.
 
     Parameters
     ----------
-    made : Product
+    made : ManufacturedLinkage
         The linkage with its task.
-    stated : Exactness
+    block : Exactness
         With a quality and a yield in it.
     seed : int
         Of the samples.
     squares : float, shape (n,)
-        What each dimension adds to the squares of all errors, by the square of its tolerance.
+        Contribution of each dimension to the squares of all errors, per square of its tolerance.
     off : float, shape (n,)
-        Stated tolerances; those of 0 stay so.
+        Given tolerances; those of 0 remain 0.
     """
     assert block.quality is not None
     demanded = block.quality.yield_
@@ -71,6 +71,7 @@ def find_widest_tolerances(
         if told is None:
             continue
         tolerances, share = told
+        # Mean relative cost 1/t, relative to the given tolerances.
         cost = float(np.mean(off[open_ones] / tolerances[open_ones]))
         named = {name: float(t) for name, t in zip(made.list_names, tolerances, strict=True)}
         found.append(Allocation(by=by, tolerances=named, cost=cost, yield_=share))
@@ -79,6 +80,7 @@ def find_widest_tolerances(
 
 def _allocate_by_dimension(squares: Real, open_ones: NDArray[np.bool_]) -> Real:
     known = np.where(squares > 0.0, squares, np.nan)
+    # A dimension without influence would get an infinite tolerance; it gets that of the least influential one.
     least = float(np.nanmin(known)) if np.isfinite(known).any() else 1.0
     return np.where(open_ones, np.where(squares > 0.0, squares, least) ** (-1.0 / 3.0), 0.0)
 
@@ -87,6 +89,7 @@ def _allocate_by_sort(squares: Real, open_ones: NDArray[np.bool_], pivots: NDArr
     shape = np.zeros(len(squares))
     for sort in (open_ones & pivots, open_ones & ~pivots):
         if sort.any():
+            # The floor avoids a division by 0 if a whole sort has no influence.
             shape[sort] = (np.count_nonzero(sort) / max(float(squares[sort].sum()), 1e-300)) ** (1.0 / 3.0)
     return shape
 
@@ -96,18 +99,22 @@ def _scale_tolerances(
 ) -> tuple[Real, Yield] | None:
     """Find the widest tolerances of a given proportion, and their yield; None if none is small enough."""
     rough = min(block.samples, MAX_ROUGH_SAMPLES)
+    # Scale the proportions to the given tolerances, so that width 1 is a sensible start.
     unit = shape * float(np.median(off[off > 0.0] / shape[off > 0.0]))
 
     def compute_tolerances(width: float) -> Real:
         return np.minimum(width * unit, MAX_WIDENING * off)
 
     def count(width: float, samples: int) -> int:
+        # The same seed for every width: the yield is then nearly monotonic in the width.
         share = sample_errors(block.distribution, seed, samples, len(off))
         return count_good(made, made.nominal_dimensions + share * compute_tolerances(width))
 
     def has_required_yield(width: float) -> bool:
+        # Rough samples suffice for the search; the final check uses all of them.
         return count(width, rough) >= demanded * rough
 
+    # Bracket the width by factors of two, up or down from the given tolerances.
     low = high = 1.0
     if has_required_yield(low):
         for _ in range(MAX_DOUBLINGS):
@@ -120,14 +127,17 @@ def _scale_tolerances(
             high, low = low, 0.5 * low
             if has_required_yield(low):
                 break
+        # Even the smallest width fails: the nominal design itself is too near its limits.
         else:
             return None
     for _ in range(BISECTION_COUNT):
+        # Geometric mean, because the width is a factor.
         middle = math.sqrt(low * high)
         low, high = (middle, high) if has_required_yield(middle) else (low, middle)
     for _ in range(MAX_TRIES):
         kept = count(low, block.samples)
         ends = compute_interval(kept, block.samples)
+        # The lower end of the confidence interval must satisfy the requirement, not the estimate alone.
         if ends[0] >= demanded:
             value = kept / block.samples
             return compute_tolerances(low), Yield(value=value, low=ends[0], high=ends[1], samples=block.samples)

@@ -1,11 +1,11 @@
-"""The yield of a linkage: how many of those that a shop makes are good, by samples driven in compiled batches.
+"""Yield of a linkage: the share of manufactured linkages that are good, by samples driven in compiled batches.
 
-A sample is good where it can be assembled at every target, stays on its branch, and keeps the quality at every target;
-where the task has tolerances of its own, those too. The samples of all designs of an answer are the same ones, so that
-yields differ by their designs and not by chance.
+A sample is good if it can be assembled at every target, stays on its branch, and satisfies the quality at every target,
+and the task's own tolerances if there are any. All designs of an answer use the same samples, so that their yields
+differ by the designs and not by chance.
 
 The interval is that of Clopper and Pearson, The use of confidence or fiducial limits illustrated in the case of the
-binomial, Biometrika 26 (1934) 404: it holds the true yield with at least the stated confidence, whatever that is.
+binomial, Biometrika 26 (1934) 404: it contains the true yield with at least the nominal confidence, for any true yield.
 """
 
 from __future__ import annotations
@@ -23,28 +23,33 @@ from synthesis.model.manufacture.answer import Yield
 from synthesis.model.manufacture.request import CONFIDENCE_LEVEL, Exactness
 
 BATCH_SIZE = 8192
-"""Samples that are driven at once where their deviations are looked at."""
+"""Number of samples driven at once if their deviations are needed."""
 
 
 def list_errors(requested: Exactness, pivots: NDArray[np.bool_]) -> Real:
-    """How far each dimension may be off, by whether it is a place of a fixed pivot; shape (n,)."""
+    """Return the tolerance of each dimension: of a fixed pivot's place, or of a length; shape (n,)."""
     tolerances = requested.tolerances
     assert tolerances is not None
     return np.where(pivots, tolerances.pivot, tolerances.length)
 
 
+# Designs of one answer share the samples; the cache holds those of a few requests.
 @lru_cache(maxsize=4)
 def sample_errors(distribution: str, seed: int, samples: int, dimensions: int) -> Real:
-    """Shares of its tolerance by which each dimension of each sample is off, shape (samples, dimensions); read-only."""
+    """Sample the relative errors of each dimension, shape (samples, dimensions), as shares of its tolerance;
+    read-only."""
     rng = np.random.default_rng(seed)
     shape = samples, dimensions
+    # A tolerance is three standard deviations of a normal distribution.
     share = rng.uniform(-1.0, 1.0, shape) if distribution == "uniform" else rng.standard_normal(shape) / 3.0
+    # The array is shared through the cache.
     share.flags.writeable = False
     return share
 
 
 def count_good(product: ManufacturedLinkage, variants: Real) -> int:
-    """How many variants (v, n) of a linkage are good."""
+    """Count the good variants (v, n) of a linkage."""
+    # The compiled shares alone decide if no target has a tolerance of its own; they need no deviations.
     if not product.has_own_tolerances:
         return int(np.count_nonzero(measure_shares(product.task, variants) <= 1.0 + LIMIT_SLACK))
     count = 0
@@ -66,13 +71,14 @@ def sample_yield(product: ManufacturedLinkage, block: Exactness, seed: int) -> Y
 
 
 def compute_interval(count: int, samples: int, confidence: float = CONFIDENCE_LEVEL) -> tuple[float, float]:
-    """The interval of a share of which ``count`` of ``samples`` were met (Clopper and Pearson 1934).
+    """Compute the confidence interval of a share that ``count`` of ``samples`` satisfied (Clopper and Pearson 1934).
 
-    >>> low, high = interval(0, 10, 0.95)
+    >>> low, high = compute_interval(0, 10, 0.95)
     >>> low, round(high, 4)
     (0.0, 0.3085)
     """
     tail = 0.5 * (1.0 - confidence)
+    # The beta function has no quantile for a count of 0 or all; the interval ends at 0 or 1 there.
     low = 0.0 if count == 0 else float(betaincinv(count, samples - count + 1, tail))
     high = 1.0 if count == samples else float(betaincinv(count + 1, samples - count, 1.0 - tail))
     return low, high

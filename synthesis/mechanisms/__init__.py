@@ -1,7 +1,7 @@
-"""Statements of a given mechanism: its dimensions as its users know them, or its skeleton; degrees and lengths.
+"""Given mechanisms: their dimensions in the usual form, or their skeleton; degrees and lengths.
 
-Each model gives the analysis core's :class:`kinematics.linkage.planar.mechanism.Mechanism`. Dimensions say it all for
-the types that have them; every other type is stated by its skeleton.
+Each model builds the analysis core's :class:`kinematics.linkage.planar.mechanism.Mechanism`. Types with complete
+dimensions are given by these; every other type is given by its skeleton.
 """
 
 from __future__ import annotations
@@ -24,26 +24,28 @@ _BY_TYPE: dict[str, type[GivenByDimensions]] = {
 
 
 def is_known_by_dimensions(mechanism_type: str) -> bool:
-    """Whether the dimensions of a type say all, so that its mechanism needs no skeleton."""
+    """Return whether the dimensions of a type are complete, so that its mechanism needs no skeleton."""
     return mechanism_type in _BY_TYPE
 
 
 def _choose_model(statement: Any) -> type[GivenByDimensions | GivenSkeleton]:
-    """Which model reads a statement: the dimensions where its type has them and they are given, else the skeleton.
+    """Choose the model for a mechanism: the dimensions if its type has them and they are given, else the skeleton.
 
-    Whatever is no statement of a mechanism is the skeleton's to refuse.
+    Input that is no mechanism at all goes to the skeleton, whose error messages are the most general.
     """
+    # Already validated, for example a default or a mechanism that is passed on.
     if isinstance(statement, GivenByDimensions):
         return type(statement)
     if not isinstance(statement, dict) or not isinstance(statement.get("type"), str):
         return GivenSkeleton
+    # A skeleton without pivots cannot be complete dimensions, so it is read as a skeleton for every type.
     if "skeleton" in statement and not {"fixed_pivots", "fixed_pivot"} & statement.keys():
         return GivenSkeleton
     return _BY_TYPE.get(statement["type"], GivenSkeleton)
 
 
 def _tag_model(model: type[BaseModel]) -> str:
-    """The model's name among those of the union; no name of a field looks so."""
+    """Return the model's tag in the union; the brackets keep it apart from names of fields."""
     return f"<{model.__name__}>"
 
 

@@ -26,6 +26,7 @@ class MechanismError(ValueError):
 
 def require_agreement(path: str, given: float | None, measured: float, what: str = "the fixed pivots") -> None:
     """Refuse a redundant dimension that contradicts the others."""
+    # Relative to the larger value, so that the order of the two does not matter.
     if given is not None and abs(given - measured) > AGREEMENT_TOLERANCE * max(abs(measured), abs(given)):
         raise MechanismError(path, f"{what} give {measured:.9g}; leave the field out or correct it")
 
@@ -33,10 +34,10 @@ def require_agreement(path: str, given: float | None, measured: float, what: str
 def assemble_at_reference(
     make: Callable[[float], Mechanism], degrees: float | None, between: Iterable[float]
 ) -> Mechanism:
-    """The mechanism at its reference angle; where none is stated, at the first degree that will do, from 30° on.
+    """Assemble the mechanism at its reference angle, or at the first suitable angle, in degrees from 30° on.
 
-    ``between`` are angles, radians, from the midst of where the lengths let it be assembled, none where they do not:
-    that may be less than a degree. They are not looked at before they are needed.
+    ``between`` are angles, radians, from the middle of the range in which the mechanism can be assembled, if there is
+    one. That range may be narrower than a degree. The angles are computed only if needed.
     """
     if degrees is not None:
         try:
@@ -45,6 +46,7 @@ def assemble_at_reference(
             raise MechanismError(
                 "/reference_input_angle", "the mechanism cannot be assembled at this input angle"
             ) from None
+    # Whole degrees first, because they give readable results; the computed angles are a fallback.
     for angle in chain((math.radians((FIRST_ANGLE_DEGREES + step) % 360) for step in range(360)), between):
         try:
             return make(angle)
@@ -54,16 +56,19 @@ def assemble_at_reference(
 
 
 def find_reaching_angles(crank: float, o2: complex, o4: complex, least: float, most: float) -> list[float]:
-    """Crank angles, radians, at which its pin is in the midst of the distances from O4 that it can have and may have.
+    """Find crank angles, radians, at which the distance of its pin from O4 is in the middle of the permitted range.
 
-    Law of cosines in the triangle O2, A, O4. None where it has no such distance.
+    Law of cosines in the triangle O2, A, O4. Empty if no distance is permitted.
     """
     ground = abs(o4 - o2)
+    # Intersect the distances that the crank can reach with those that the other links permit.
     low, high = max(least, abs(crank - ground)), min(most, crank + ground)
     if low > high or ground == 0.0:
         return []
     reach = 0.5 * (low + high)
+    # Factored difference of squares, as rounding would otherwise dominate for nearly equal lengths.
     cosine = ((crank - reach) * (crank + reach) + ground * ground) / (2.0 * crank * ground)
+    # Clip, because rounding may exceed ±1 at an end of the range.
     turn = math.acos(max(-1.0, min(1.0, cosine)))
     return [cmath.phase(o4 - o2) + turn, cmath.phase(o4 - o2) - turn]
 
@@ -71,9 +76,9 @@ def find_reaching_angles(crank: float, o2: complex, o4: complex, least: float, m
 def find_middle_sine(
     centre: float, radius: float, bound: float, least: float = -1.0, most: float = 1.0
 ) -> float | None:
-    """Sine, from ``least`` to ``most``, with centre + radius · sine in the midst of what it can be within ± bound.
+    """Return the sine, ``least`` to ``most``, with centre + radius · sine in the middle of its range within ± bound.
 
-    None where it cannot be within.
+    None if it cannot be within the bound.
     """
     low, high = max(-bound, centre + radius * least), min(bound, centre + radius * most)
     return None if low > high else max(-1.0, min(1.0, (0.5 * (low + high) - centre) / radius))

@@ -19,7 +19,7 @@ from synthesis.model.dimension import ANGLE, LENGTH
 from synthesis.model.problem import Coordinate, Degrees, NonNegative, PositiveLength, PositiveNumber, Statement
 
 MAX_POINTS = 20_000
-"""Points of a given profile at most."""
+"""Maximum number of points of a given profile."""
 
 Coordinates = Annotated[list[Coordinate], Field(min_length=16, max_length=MAX_POINTS)]
 
@@ -32,28 +32,30 @@ FOLLOWERS: dict[FollowerType, type[core.Follower]] = {
     "translating_flat": core.TranslatingFlat,
     "oscillating_flat": core.OscillatingFlat,
 }
-"""Followers of the analysis core by their types. All begin with the radius of their cam: prime or base circle."""
+"""Followers of the analysis core by their types. The first field of each is the radius of its cam: prime or base
+circle."""
 
 
 def get_follower_type(follower: core.Follower) -> FollowerType:
-    """The type of a follower of the analysis core."""
+    """Return the type of a follower of the analysis core."""
     return next(name for name, kind in FOLLOWERS.items() if isinstance(follower, kind))
 
 
 def list_dimensions(kind: type[core.Follower]) -> dict[str, Any]:
     """Return the names of a follower's own dimensions and their defaults."""
+    # The first field is the cam's radius, which is not a dimension of the follower.
     return {field.name: 0.0 if field.default is MISSING else field.default for field in fields(kind)[1:]}
 
 
 def build_follower(name: FollowerType, radius: float, spec: object) -> core.Follower:
-    """A follower of the analysis core from a model with its dimensions, and the radius of its cam.
+    """Build a follower of the analysis core from a model with its dimensions, and the radius of its cam.
 
     Raises
     ------
     DimensionError
-        For dimensions that no follower has.
+        For dimensions of an impossible follower.
     """
-    # No field of another type of follower is read, so that a surplus dimension has no effect.
+    # Only the fields of this type are used, so that a surplus dimension of another type has no effect.
     kind: Any = FOLLOWERS[name]
     dimensions = {
         dimension: default if getattr(spec, dimension) is None else getattr(spec, dimension)
@@ -77,19 +79,21 @@ class GivenFollower(Statement):
     sense: Literal[1, -1] | None = Field(default=None, description="1, the default: the arm swings out with the cam.")
 
     def build_core(self, prime_radius: float | None, base_radius: float | None) -> core.Follower:
-        """The follower of the analysis core.
+        """Build the follower of the analysis core.
 
         Raises
         ------
         MechanismError
-            For what is missing, or dimensions that no follower has.
+        For missing dimensions, or those of an impossible follower.
         """
+        # Only dimensions without a sensible default are required.
         needed = {"translating_flat": (), "oscillating_flat": ("pivot_distance",)}.get(self.type, ("roller_radius",))
         needed += ("arm", "pivot_distance") if self.type == "oscillating_roller" else ()
         for name in needed:
             if getattr(self, name) is None:
                 raise MechanismError(f"/follower/{name}", f"a {self.type.replace('_', ' ')} needs it")
         roller = self.type.endswith("roller")
+        # Displacement 0 is defined on the prime circle for a roller, on the base circle for a flat face.
         radius = prime_radius if roller else base_radius
         if radius is None:
             name = "prime_radius" if roller else "base_radius"
@@ -139,15 +143,15 @@ class GivenCam(Statement):
     program: Any = None
 
     def build_follower(self) -> core.Follower:
-        """The follower of the analysis core."""
+        """Build the follower of the analysis core."""
         return self.follower.build_core(self.prime_radius, self.base_radius)
 
     def build_contour(self) -> Contour:
-        """The profile of the analysis core."""
+        """Build the profile of the analysis core."""
         return self.profile.build_contour("/profile")
 
     def build_wall(self) -> Contour | None:
-        """The outer wall of a groove."""
+        """Build the outer wall of a groove; None for an open cam."""
         if self.outer_wall is not None and not self.follower.type.endswith("roller"):
             raise MechanismError("/outer_wall", "only a roller runs in a groove")
         return None if self.outer_wall is None else self.outer_wall.build_contour("/outer_wall")
@@ -181,7 +185,7 @@ class EccentricContour(Statement):
     eccentricity: Annotated[NonNegative, LENGTH]
 
     def build_core(self) -> contours.SpecifiedContour:
-        """The contour of the analysis core."""
+        """Build the contour of the analysis core."""
         return contours.build_eccentric_circle(self.radius, self.eccentricity)
 
 
@@ -197,7 +201,7 @@ class TangentContour(_NosedContour):
     shape: Literal["tangent"]
 
     def build_core(self) -> contours.SpecifiedContour:
-        """The contour of the analysis core."""
+        """Build the contour of the analysis core."""
         return contours.build_tangent_cam(self.base_radius, self.nose_radius, self.nose_distance)
 
 
@@ -211,8 +215,9 @@ class ArcContour(_NosedContour):
     )
 
     def build_core(self) -> contours.SpecifiedContour:
-        """The contour of the analysis core."""
+        """Build the contour of the analysis core."""
         radius = self.flank_radius
+        # Two ways to give the flank; both together could contradict each other.
         if (radius is None) == (self.half_action_angle is None):
             raise MechanismError("/contour/flank_radius", "give either this or the half action angle")
         if radius is None:
@@ -233,10 +238,11 @@ class GivenContourCam(Statement):
     rotation: Literal["ccw", "cw"] = "ccw"
 
     def build_core(self) -> tuple[contours.SpecifiedContour, core.TranslatingRoller | core.TranslatingFlat]:
-        """Contour and follower of the analysis core."""
+        """Build contour and follower of the analysis core."""
         try:
             contour = self.contour.build_core()
             if self.roller_radius is None:
+                # A flat face touches at the base circle itself; a roller's centre is its radius farther out.
                 return contour, core.TranslatingFlat(contour.base_radius)
             prime = contour.base_radius + self.roller_radius
             return contour, core.TranslatingRoller(prime, self.roller_radius, self.offset)

@@ -1,6 +1,6 @@
 """Conversion of requested loads for the analysis core: tables over the input, resistance, and gas on a piston.
 
-Tables are in the units of the statement; the core's load functions take its input (radians, or metres along the slide).
+Tables are in the units of the request; the core's load functions take its input (radians, or metres along the slide).
 """
 
 from __future__ import annotations
@@ -31,11 +31,12 @@ from synthesis.model.dynamics.request import LoadedLinkage
 Fault = tuple[str, str]
 
 STEP_COUNT = 360
-"""Positions of a turn between which a dead centre is found by Newton's method."""
+"""Number of positions of a turn, the best of which starts Newton's method for a dead centre."""
 
 
 def count_turns(course: ForceCurve | TorqueCurve, mechanism: Mechanism) -> int:
-    """Turns of the input after which a table repeats."""
+    """Return the number of input turns after which a table repeats."""
+    # Without a number of its own, a table repeats with the mechanism.
     return course.turns or round(find_cycle_from_reference(mechanism) / (2.0 * math.pi))
 
 
@@ -53,15 +54,17 @@ def find_period_turns(block: LoadedLinkage, mechanism: Mechanism) -> int:
             turns.append(count_turns(course, mechanism))
         if load.force is not None and load.force.gas is not None:
             turns.append(load.force.gas.cycle // round(FULL_TURN))
+    # All repeat together after the least common multiple.
     return math.lcm(*turns)
 
 
 def find_course_errors(course: ForceCurve | TorqueCurve, mechanism: Mechanism) -> Iterator[Fault]:
-    """What a table over the input contradicts: (path below the course, detail)."""
+    """Yield contradictions of a table over the input: (path below the course, detail)."""
     if course.table is None:
         return
     slide = mechanism.has_slide_input
     if slide != (course.by == "input_position"):
+        # Other checks would only repeat this error in other words.
         yield "/by", "a slide drives this mechanism" if slide else "the angle of a link drives this mechanism"
         return
     if slide:
@@ -73,6 +76,7 @@ def find_course_errors(course: ForceCurve | TorqueCurve, mechanism: Mechanism) -
     try:
         period = FULL_TURN * count_turns(course, mechanism)
     except KinematicsError as error:
+        # The period is unknown, for example with gears of irrational ratio.
         yield "/turns", f"state it: {error}"
         return
     fault = find_period_error(course.table, period)
@@ -81,21 +85,25 @@ def find_course_errors(course: ForceCurve | TorqueCurve, mechanism: Mechanism) -
 
 
 def interpolate_table(table: Real, period: float, interpolation: Interpolation) -> Course:
-    """The course of a table over the absolute input angle (degrees), periodic; complex where it has two values."""
+    """Return the load function of a table over the absolute input angle (degrees), periodic; complex for two values."""
     angles, values = table[:, 0], table[:, 1] if table.shape[1] == 2 else table[:, 1] + 1j * table[:, 2]
+    # A table may end before its period or repeat the first row at its end; a periodic spline needs the latter.
     if angles[-1] - angles[0] < period:
         angles, values = np.append(angles, angles[0] + period), np.append(values, values[0])
     else:
+        # Use the first value at the end as well, because a rounded last row would leave a step.
         values = np.append(values[:-1], values[0])
     start = angles[0]
     if interpolation == "linear":
+        # Reduce the angle to the table's own period, which need not start at 0.
         return lambda input: np.interp(start + (np.degrees(input[0]) - start) % period, angles, values)
     spline = CubicSpline(angles, values, bc_type="periodic")
     return lambda input: np.asarray(spline(start + (np.degrees(input[0]) - start) % period))
 
 
 def interpolate_along_slide(table: Real, scale: float) -> Course:
-    """The course of a table over the place of the input slide, in lengths of which ``scale`` is the core's unit."""
+    """Return the load function of a table over the position of the input slide; ``scale`` is a length unit in core
+    units."""
     places, values = scale * table[:, 0], table[:, 1] if table.shape[1] == 2 else table[:, 1] + 1j * table[:, 2]
     return lambda input: np.interp(input[0], places, values)
 
@@ -113,17 +121,17 @@ def build_course(course: ForceCurve | TorqueCurve, mechanism: Mechanism, scale: 
 
 
 def find_ground_slide(mechanism: Mechanism, joint: str) -> int | None:
-    """The slide of the ground that carries a joint."""
+    """Return the number of the ground slide that carries a joint."""
     return next((n for n, s in enumerate(mechanism.slides) if s.joint == joint and s.link == GROUND), None)
 
 
 def find_top_dead_centre(mechanism: Mechanism, slide: int) -> tuple[float, complex]:
-    """Input angle in [0, 2π) where a joint on a slide of the ground is farthest from the crank, and the way from there.
+    """Find the input angle in [0, 2π) at which a joint on a ground slide is farthest from the crank, and the way back.
 
     Raises
     ------
     ValueError
-        Where no crank turns through, or the joint does not move.
+        If no crank makes a full turn, or the joint does not move.
     """
     if mechanism.has_slide_input:
         raise ValueError("gas pressure needs a piston moved by a crank; a slide drives this mechanism")
@@ -137,24 +145,28 @@ def find_top_dead_centre(mechanism: Mechanism, slide: int) -> tuple[float, compl
     direction = complex(np.exp(1j * line.angle))
     pivot = complex(mechanism.joints[mechanism.input_pivot])
     centre = ((pivot - complex(line.point)) * direction.conjugate()).real
+    # The top dead centre is at the end of the stroke that is farther from the crank's pivot.
     outward = 1.0 if abs(along.max() - centre) >= abs(along.min() - centre) else -1.0
     step = 2.0 * math.pi / STEP_COUNT
     top = float(at[np.argmax(outward * along)])
+    # Newton's method for zero velocity; from half a degree away four steps reach rounding.
     for _ in range(4):
         _, velocity, acceleration = drive(mechanism, [top], order=2).slides[name][:, 0]
+        # A joint at rest, or a toggle: keep the sampled position.
         if not np.isfinite(acceleration) or acceleration == 0.0:
             break
+        # Limit the step to one sample, so that Newton's method cannot leave this extreme.
         top -= float(np.clip(velocity / acceleration, -step, step))
     return top % (2.0 * math.pi), -outward * direction
 
 
 def build_gas_force(gas: GasPressure, mechanism: Mechanism, joint: str, scale: float) -> JointForce:
-    """Pressure times area on the pin of a joint.
+    """Build the force of gas, pressure times area, on the pin of a joint.
 
     Raises
     ------
     ValueError
-        Where the joint is not on a slide of the ground, or no crank moves it.
+        If the joint is not on a ground slide, or no crank moves it.
     """
     slide = find_ground_slide(mechanism, joint)
     if slide is None:
@@ -165,6 +177,7 @@ def build_gas_force(gas: GasPressure, mechanism: Mechanism, joint: str, scale: f
     phase = math.radians(gas.phase)
 
     def evaluate_force(input: Real) -> NDArray[np.complex128]:
+        # An engine that runs backwards goes through its indicator diagram in the same order of events.
         sense = np.where(input[1] < 0.0, -1.0, 1.0)
         return np.asarray(way * area * pressure(np.asarray([sense * (input[0] - top) + phase])), np.complex128)
 

@@ -1,9 +1,9 @@
-"""How much a flywheel must store: energy of the fluctuation of a torque over a cycle, and the inertia that evens it.
+"""Flywheel dimensioning: energy of the fluctuation of a torque over a cycle, and the inertia that reduces it.
 
-The driver gives the mean torque T̄ all the time; what the machine takes more or less goes through the flywheel's
+The driver supplies the mean torque T̄ at all times; the difference from the machine's torque T changes the flywheel's
 energy. With W(θ) = ∫ (T − T̄) dθ, its fluctuation is E = max W − min W (Norton, *Design of Machinery*, eq. 11.18-11.20:
-W stands at its extremes where T crosses T̄, and no single pulse need be as large as E). Then ω² = ω₀² − 2 W / I, and to
-first order in the coefficient k = (ω_max − ω_min)/ω̄ of fluctuation I = E/(k ω̄²) (11.22). Exactly, ω̄ is the mean over
+W has its extremes where T crosses T̄, and no single pulse need be as large as E). Then ω² = ω₀² − 2 W / I, and to first
+order in the coefficient k = (ω_max − ω_min)/ω̄ of fluctuation I = E/(k ω̄²) (11.22). Exactly, ω̄ is the mean over
 time.
 """
 
@@ -18,28 +18,28 @@ from scipy.optimize import brentq
 from kinematics.arrays import Real
 
 ENERGY_TOLERANCE = 1e-12
-"""Energy, as a share of the torque's largest magnitude times the cycle, that is none: rounding."""
+"""Energy that counts as rounding, as a share of the torque's largest magnitude times the cycle."""
 
 FINE_POSITIONS = 4096
-"""Positions of a cycle over which the time of a turn is summed; the trapezoid rule on a smooth periodic speed."""
+"""Number of positions of a cycle in the sum of the time of a turn; the trapezoid rule on a smooth periodic speed."""
 
 MAX_COEFFICIENT = 2.0
-"""A coefficient of fluctuation is less than this: the flywheel would stand still, and turn back."""
+"""Upper bound of the coefficient of fluctuation, at which the flywheel would stop and turn back."""
 
 
 @dataclass(frozen=True)
 class Fluctuation:
-    """A torque over a cycle against its mean; angles in radians.
+    """Deviation of a torque from its mean over a cycle; angles in radians.
 
     Attributes
     ----------
     mean, energy : float
         T̄ and E.
     crossings, areas : float, shape (P,)
-        Angles at which T crosses its mean, and the area from each to the next one round the cycle.
+        Angles at which T crosses its mean, and the area from each to the next one, cyclically.
     highest, lowest : float
-        Angles at which the most energy is taken out of the flywheel (the least speed follows), and the least.
-    demand : float, shape (FINE,)
+        Angles at which the energy taken out of the flywheel is largest (the minimum speed follows), and smallest.
+    demand : float, shape (FINE_POSITIONS,)
         W over the cycle in equal steps.
     """
 
@@ -53,49 +53,54 @@ class Fluctuation:
 
 
 def compute_fluctuation(angle: Real, torque: Real) -> Fluctuation:
-    """The fluctuation of a torque, by a periodic cubic through its samples.
+    """Compute the fluctuation of a torque, by a periodic cubic through its samples.
 
     Parameters
     ----------
     angle, torque : float, shape (N + 1,)
-        Equal steps of the angle over a cycle, upwards; the last position is the first one again.
+        Equal steps of the angle over a cycle, increasing; the last position repeats the first.
     """
+    # The trapezoid rule on a full period: the last sample repeats the first and is left out.
     mean = float(torque[:-1].mean())
     level = torque - mean
+    # A periodic spline requires exactly equal end values.
     level[-1] = level[0]
     return _compute_course_fluctuation(CubicSpline(angle, level, bc_type="periodic"), mean, float(np.abs(torque).max()))
 
 
 def compute_table_fluctuation(angle: Real, torque: Real, *, smooth: bool) -> Fluctuation:
-    """The fluctuation of a torque by a table: straight between its rows, or ``smooth`` by a periodic cubic.
+    """Compute the fluctuation of a torque given by a table: linear between its rows, or ``smooth`` by a periodic cubic.
 
     Parameters
     ----------
     angle, torque : float, shape (N + 1,)
-        Any steps of the angle upwards over a cycle; the last row is the first one again.
+        Any increasing steps of the angle over a cycle; the last row repeats the first.
     """
     if smooth:
         course = CubicSpline(angle, np.append(torque[:-1], torque[0]), bc_type="periodic")
     else:
         course = PPoly(np.stack([np.diff(torque) / np.diff(angle), torque[:-1]]), angle)
     mean = float(course.integrate(angle[0], angle[-1])) / float(angle[-1] - angle[0])
+    # Subtract the mean from the constant coefficients alone: the polynomials stay as they are.
     course.c[-1] -= mean
     return _compute_course_fluctuation(course, mean, float(np.abs(torque).max()))
 
 
 def _compute_course_fluctuation(course: PPoly, mean: float, greatest: float) -> Fluctuation:
-    """The fluctuation of what a torque has beyond its mean, in polynomials over a cycle."""
+    """Compute the fluctuation of the part of a torque beyond its mean, as polynomials over a cycle."""
     first, last = float(course.x[0]), float(course.x[-1])
     integral = course.antiderivative()
     period = last - first
     demand = np.asarray(integral(first + period * np.arange(FINE_POSITIONS) / FINE_POSITIONS))
     crossings = course.roots(extrapolate=False)
+    # Count a crossing at both ends of the cycle once.
     crossings = np.unique(crossings[(crossings >= first) & (crossings < last)])
     stands = np.asarray(integral(crossings))
     size = greatest * period
+    # A constant torque, but for rounding: no flywheel is needed.
     if len(crossings) < 2 or float(np.ptp(stands)) <= ENERGY_TOLERANCE * size:
         return Fluctuation(mean, 0.0, np.empty(0), np.empty(0), first, first, 0.0 * demand)
-    # Over the whole cycle W ends where it began, but for the trapezoid's mean not being the cubic's.
+    # Over the whole cycle W returns to its start, except that the sampled mean may differ slightly from the cubic's.
     round_trip = float(integral(last))
     areas = np.diff(np.append(stands, stands[0] + round_trip))
     highest, lowest = int(np.argmax(stands)), int(np.argmin(stands))
@@ -111,7 +116,7 @@ def _compute_course_fluctuation(course: PPoly, mean: float, greatest: float) -> 
 
 
 def list_pulses(found: Fluctuation, period: float) -> list[dict[str, float]]:
-    """In the shape of :class:`synthesis.model.dynamics.answer.Pulse`; the period of the cycle in radians."""
+    """Convert to the form of :class:`synthesis.model.dynamics.answer.Pulse`; the period of the cycle is in radians."""
     ends = np.degrees(np.append(found.crossings, found.crossings[:1] + period))
     return [
         {"from": float(start), "to": float(end), "area": float(area)}
@@ -120,29 +125,32 @@ def list_pulses(found: Fluctuation, period: float) -> list[dict[str, float]]:
 
 
 def compute_first_order_inertia(energy: float, speed: float, coefficient: float) -> float:
-    """E/(k ω̄²)."""
+    """Compute E/(k ω̄²)."""
     return energy / (coefficient * speed**2)
 
 
 def compute_exact_coefficient(found: Fluctuation, inertia: float, speed: float) -> float:
-    """(ω_max − ω_min)/ω̄ of a shaft of so much inertia whose mean speed over time is ``speed``.
+    """Compute (ω_max − ω_min)/ω̄ of a shaft with this inertia whose mean speed over time is ``speed``.
 
-    ``MOST`` where the flywheel would come to a stand.
+    :data:`MAX_COEFFICIENT` if the flywheel would stop.
     """
     ends = find_extreme_speeds(found, inertia, speed)
     return MAX_COEFFICIENT if ends is None else (ends[1] - ends[0]) / speed
 
 
 def find_extreme_speeds(found: Fluctuation, inertia: float, speed: float) -> tuple[float, float] | None:
-    """ω_min and ω_max of a shaft whose mean speed over time is ``speed``; None where it would come to a stand."""
+    """Find ω_min and ω_max of a shaft whose mean speed over time is ``speed``; None if it would stop."""
     if found.energy == 0.0:
         return speed, speed
+    # ω² − ω_min²: the minimum speed is where the most energy has been taken.
     excess = (found.demand - found.demand.max()) * (-2.0 / inertia)
     span = 2.0 * found.energy / inertia
 
     def compute_mean_speed(least_squared: float) -> float:
+        # The mean over time is the harmonic mean over the angle.
         return 1.0 / float(np.mean(1.0 / np.sqrt(least_squared + excess)))
 
+    # Even with a minimum speed near 0 the mean exceeds the required one: the shaft would stop.
     if not compute_mean_speed(1e-9 * span) < speed:
         return None
     squared = brentq(lambda least: compute_mean_speed(least) - speed, 1e-9 * span, speed**2, xtol=1e-15 * speed**2)
@@ -154,6 +162,7 @@ def find_exact_inertia(found: Fluctuation, speed: float, coefficient: float) -> 
     if found.energy == 0.0:
         return 0.0
     guess = compute_first_order_inertia(found.energy, speed, coefficient)
+    # The first-order value is within a factor of two in practice; widen the bracket if it is not.
     low, high = 0.5 * guess, 2.0 * guess
     while compute_exact_coefficient(found, low, speed) < coefficient:
         low *= 0.5

@@ -24,7 +24,7 @@ class GivenFourbar(GivenByDimensions):
     assembly: Assembly = "open"
 
     def assemble(self) -> Mechanism:
-        """The mechanism at its reference input angle, or at one where it can be assembled."""
+        """Assemble the mechanism at its reference input angle, or at one at which this is possible."""
         o2, o4 = complex(*self.fixed_pivots.input), complex(*self.fixed_pivots.output)
         require_agreement("/links/ground", self.links.ground, abs(o4 - o2))
         try:
@@ -36,6 +36,7 @@ class GivenFourbar(GivenByDimensions):
         return assemble_at_reference(
             lambda angle: catalogue.make_fourbar(linkage, angle, ASSEMBLY_SIGNS[self.assembly]),
             self.reference_input_angle,
+            # The distance of the crank pin from O4 must be within reach of coupler and output.
             find_reaching_angles(
                 self.links.input,
                 o2,

@@ -1,4 +1,4 @@
-"""What many fourbars weigh and carry, as the closed form of :mod:`kinematics.dynamics.fourbar` takes it."""
+"""Masses and loads of many fourbars, in the form of :mod:`kinematics.dynamics.fourbar`."""
 
 from __future__ import annotations
 
@@ -15,14 +15,17 @@ JOINTS = "O2", "A", "B", "O4", "P"
 
 
 def is_closed_form(block: DesignDynamics) -> bool:
-    """Whether a block has nothing that the closed form leaves out: springs, friction, loads that change."""
+    """Return whether the closed form covers a block: no springs, friction or variable loads."""
+    # Packing itself decides; unit and origin do not matter for that.
     return pack_loads(block, "m", 0j) is not None
 
 
 def build_fourbars(joints: Complex, span: Real, scale: float) -> Fourbars:
-    """Fourbars by their joints O2, A, B, O4, P in the reference, shape (n, 5), that turn by ``span`` from there."""
+    """Build fourbars from their joints O2, A, B, O4, P in the reference, shape (n, 5), that turn by ``span`` from
+    there."""
     o2, a, b, o4, p = (scale * column for column in joints.T)
     line = (b - a) / np.abs(b - a)
+    # Open assembly, +1: B lies to the left of the line from A to O4.
     sign = np.where((np.conj(o4 - a) * (b - a)).imag >= 0.0, 1.0, -1.0)
     return Fourbars(
         o2, o4, np.abs(a - o2), np.abs(b - a), np.abs(b - o4), (p - a) / line, sign, np.angle(a - o2), np.asarray(span)
@@ -30,12 +33,12 @@ def build_fourbars(joints: Complex, span: Real, scale: float) -> Fourbars:
 
 
 def build_weights(dynamics: DesignDynamics, joints: Complex, unit: LengthUnit) -> Weights:
-    """What fourbars weigh and carry by a block in :func:`is_closed_form`.
+    """Build masses and loads of fourbars for a block that :func:`is_closed_form`.
 
     Parameters
     ----------
-    stated : DesignDynamics
-        What every fourbar weighs and carries.
+    dynamics : DesignDynamics
+        Masses and loads of every fourbar.
     joints : complex, shape (n, 5)
         O2, A, B, O4, P in the reference, length units.
     unit : str
@@ -44,9 +47,10 @@ def build_weights(dynamics: DesignDynamics, joints: Complex, unit: LengthUnit) -
     Raises
     ------
     ValueError
-        Where the block has more.
+        If the block has other elements.
     """
     count, scale = len(joints), dynamics.scale(unit)
+    # An origin near the linkages keeps the digits of moments, which are differences of products.
     origin = complex(joints[0, 0]) if count else 0j
     block = pack_loads(dynamics, unit, origin)
     if block is None:
@@ -79,4 +83,5 @@ def _weigh_each(
 ) -> None:
     for n in range(len(joints)):
         if not weigh_links(block, joints[n], mass[n], cg[n], inertia[n], arm[n], force[n]):
+            # Holes leave nothing of a plate: an infinite mass excludes the design from every limit.
             mass[n] = np.inf

@@ -25,7 +25,7 @@ SAMPLE_COUNT, MAX_SAMPLES = 720, 200_000
 """Number of input angles per turn of the faster pin, and their maximum, at which an assembly is tried."""
 
 ANGLE_RESOLUTION = 1e-15
-"""Radians at which a search for the best angle ends: no float of an angle is finer."""
+"""Step, radians, at which the search for the best angle ends; floats of angles are no finer."""
 
 MAX_REFINED = 16
 """Maximum number of the best input angles that are refined."""
@@ -53,7 +53,7 @@ class GivenGearedFivebar(GivenByDimensions):
     assembly: Assembly = "open"
 
     def assemble(self) -> Mechanism:
-        """The mechanism at its reference input angle, or at one where it can be assembled."""
+        """Assemble the mechanism at its reference input angle, or at one at which this is possible."""
         o2, o5 = complex(*self.fixed_pivots.input), complex(*self.fixed_pivots.output)
         require_agreement("/links/ground", self.links.ground, abs(o5 - o2))
         if o2 == o5:
@@ -77,10 +77,10 @@ class GivenGearedFivebar(GivenByDimensions):
         )
 
     def _find_reaching_angles(self, o2: complex, o5: complex) -> Iterator[float]:
-        """Input angles at which the pins A and B are farthest inside the distances that the couplers let them have.
+        """Yield input angles at which the distance of pins A and B is well inside the range that the couplers permit.
 
-        They may lie in any turn until the gears repeat. The distance goes up and down a few times for each turn of
-        either pin. Between samples that show that, the best place is drawn in: the golden section would do no better.
+        They may lie in any turn until the gears repeat. The distance oscillates a few times in each turn of either pin.
+        Sampling finds the local maxima; shrinking steps then refine them, about as fast as the golden section.
         """
         ground, radius = cmath.phase(o5 - o2), max(self.links.input, self.links.output)
         low, high = abs(self.links.coupler_1 - self.links.coupler_2), self.links.coupler_1 + self.links.coupler_2
@@ -92,18 +92,22 @@ class GivenGearedFivebar(GivenByDimensions):
                 + self.links.output * np.exp(1j * (ground + self.gear_ratio * turn + math.radians(self.phase)))
                 - self.links.input * np.exp(1j * (ground + turn))
             )
+            # Positive inside the ring of permitted distances, relative to the larger crank.
             return np.asarray(np.minimum(high - np.abs(pins), np.abs(pins) - low) / radius)
 
         turns = count_turns_until_repeat(self.gear_ratio)
+        # Sample per turn of the faster pin, since the distance changes with both.
         samples = min(round(SAMPLE_COUNT * max(1.0, abs(self.gear_ratio)) * turns), MAX_SAMPLES)
         step = 2.0 * math.pi * turns / samples
         at = np.arange(samples) * step
         margin = measure_margin(at)
+        # Local maxima only, best first: neighbours of a maximum would be refined to the same place.
         best = at[
             np.argsort(-np.where((margin >= np.roll(margin, 1)) & (margin >= np.roll(margin, -1)), margin, -np.inf))[
                 :MAX_REFINED
             ]
         ]
+        # Shrink by 0.7 instead of 0.5, because the best point may lie outside the halved interval.
         while step > ANGLE_RESOLUTION:
             tried = best[:, None] + step * np.array([-0.5, 0.0, 0.5])
             best = tried[np.arange(len(best)), np.argmax(measure_margin(tried), axis=1)]

@@ -10,12 +10,12 @@ from kinematics.indexing.geneva import Geneva
 
 
 def build_drive(mechanism: Any) -> CrankCourse:
-    """The drive with its crank, and with the drag link before it where it has one.
+    """Build the drive with its crank, and with the drag link before it if there is one.
 
     Parameters
     ----------
     mechanism : object
-        Has ``type``, ``stations`` and the sizes that the type has; those of shock-free entry where they are None.
+        Has ``type``, ``stations`` and the sizes of the type; those of shock-free entry if they are None.
     """
     drive = Geneva.shock_free(mechanism.type, mechanism.stations)
     ratio = drive.ratio
@@ -24,11 +24,12 @@ def build_drive(mechanism: Any) -> CrankCourse:
             ratio = math.tan(math.radians(mechanism.cone_angle))
     elif mechanism.crank_radius is not None and mechanism.center_distance is not None:
         ratio = mechanism.crank_radius / mechanism.center_distance
-    # A crank that is rounded off a little below the least reaches the slots all the same.
+    # A crank rounded to slightly less than the minimum still reaches the slots: use the minimum.
     drive = Geneva(mechanism.type, mechanism.stations, max(ratio, drive.ratio))
     link = getattr(mechanism, "drag_link", None)
     if link is None:
         return CrankCourse(drive)
+    # Direction of the crank in the middle of the index: towards an external wheel's axis, away from the others'.
     towards = 0.0 if mechanism.type == "geneva_external" else math.pi
     lengths = DragLink(link.input / link.ground, link.coupler / link.ground, link.output / link.ground)
     return CrankCourse(drive, lengths, towards - math.radians(link.crank_offset))

@@ -12,12 +12,12 @@ from synthesis.model.dynamics.bodies import BodySpec, Part, Place, PolarPoint, S
 
 
 def escape_pointer(name: str) -> str:
-    """A name as a part of a JSON pointer."""
+    """Escape a name for a JSON pointer."""
     return name.replace("~", "~0").replace("/", "~1")
 
 
 class BlockError(ValueError):
-    """A block that no machine can be made of; carries the field's path below the request."""
+    """Raised for a block that gives no machine; carries the field's path below the request."""
 
     def __init__(self, path: str, detail: str) -> None:
         self.path = path
@@ -44,16 +44,17 @@ class LinkBodies:
         self.scale = scale
 
     def resolve_place(self, link: str, place_spec: Place) -> complex:
-        """A place on a link, in the reference configuration."""
+        """Return a place on a link, in the reference configuration."""
         if not isinstance(place_spec, PolarPoint):
             return self.scale * complex(*place_spec)
         first, second = (complex(self.joints[joint]) for joint in self.links[link][:2])
         return self.scale * (first + place_spec.vector * (second - first) / abs(second - first))
 
     def build_body(self, link: str, body_spec: BodySpec) -> Body:
-        """The body of a link."""
+        """Build the body of a link."""
         if body_spec.shape is not None:
             return self._build_shape(link, body_spec.shape)
+        # Without a centre of mass, the body is at the link's first joint.
         first = self.scale * complex(self.joints[self.links[link][0]])
         centre = first if body_spec.cg is None else self.resolve_place(link, body_spec.cg)
         return make_body(body_spec.mass or 0.0, centre, body_spec.inertia or 0.0)
@@ -71,12 +72,15 @@ class LinkBodies:
                 )
             else:
                 plate = shapes.make_widened_hull(list(joints.values()), self.scale * (shape.width or 0.0))
+            # A hole is a disc of negative area.
             for joint, diameter in shape.holes.items():
                 plate = plate.plus(shapes.make_disc(joints[joint], self.scale * diameter / 2.0), -1.0)
             path = f"/dynamics/bodies/{escape_pointer(link)}/shape"
+            # A flat polygon or holes larger than the plate leave no area.
             if not plate.area > 0.0 or not math.isfinite(plate.polar):
                 raise BlockError(path, "the plate has no area; the polygon is flat, or the holes are too wide")
             for joint, diameter in shape.holes.items():
+                # Holes up to the plate's width stay inside its round ends.
                 wider = 0.0 if shape.width is None else diameter - shape.width
                 if wider > 0.0 and self._is_at_edge(link, joint, wider):
                     raise BlockError(
@@ -86,12 +90,13 @@ class LinkBodies:
         return join_bodies(bodies)
 
     def _is_at_edge(self, link: str, joint: str, wider: float) -> bool:
-        """Whether a hole that is ``wider`` than the plate (length units) reaches beyond its edge at a joint."""
+        """Return whether a hole that is ``wider`` than the plate (length units) extends beyond its edge at a joint."""
         import shapely  # holes are seldom that wide
 
         places = {name: complex(self.joints[name]) for name in self.links[link]}
         hull = shapely.MultiPoint([(place.real, place.imag) for place in places.values()]).convex_hull
         edge = hull.exterior if hull.geom_type == "Polygon" else hull
+        # Inside a wide hull a large hole may still be far from the edge.
         return bool(2.0 * edge.distance(shapely.Point(places[joint].real, places[joint].imag)) < wider)
 
     def _build_part(self, link: str, part: Part, density: float) -> Body:

@@ -33,22 +33,24 @@ Fault = tuple[str, str]
 
 
 def find_dynamics_errors(block: DynamicsBlock, mechanism: Mechanism) -> list[Fault]:
-    """What the block names and the mechanism does not have: (JSON pointer below the request, detail)."""
+    """Find names in the block that the mechanism lacks: (JSON pointer below the request, detail)."""
     faults = [
         *_find_name_errors(block, mechanism),
         *_find_report_errors(block, mechanism),
         *_find_drive_errors(block, mechanism),
     ]
+    # A machine can only be built without these errors, so the deeper checks follow last.
     return faults or _find_build_errors(block, mechanism)
 
 
 def find_weight_errors(block: LoadedLinkage, mechanism: Mechanism) -> list[Fault]:
-    """The same of what a linkage weighs and carries alone."""
+    """Find the same for the masses and loads of a linkage alone."""
     return list(_find_name_errors(block, mechanism)) or _find_build_errors(block, mechanism)
 
 
 def _find_build_errors(block: LoadedLinkage, mechanism: Mechanism) -> list[Fault]:
     try:
+        # The unit does not affect the errors.
         build_machine(block, mechanism, "m")
     except BlockError as error:
         return [(error.path, error.detail)]
@@ -86,6 +88,7 @@ def _find_name_errors(block: LoadedLinkage, mechanism: Mechanism) -> Iterator[Fa
 def _find_friction_errors(block: LoadedLinkage, mechanism: Mechanism) -> Iterator[Fault]:
     if block.friction is None:
         return
+    # With redundant constraints joint forces, and hence friction, are not determined.
     if mechanism.redundant:
         yield "/dynamics/friction", "constraints are redundant, so that the forces that cause friction are not unique"
     rubbing = find_rubbing_joints(mechanism)
@@ -158,12 +161,12 @@ def _find_drive_errors(block: DynamicsBlock, mechanism: Mechanism) -> Iterator[F
 
 
 def build_machine(block: LoadedLinkage, mechanism: Mechanism, unit: LengthUnit) -> tuple[Machine, list[str]]:
-    """The machine of a block without faults, and what a client should be warned of.
+    """Build the machine of a block without errors, and list warnings for the client.
 
     Raises
     ------
     BlockError
-        For a shape that leaves no mass, gas on no piston, or a spring without direction.
+        For a shape that leaves no mass, gas without a piston, or a spring without direction.
     """
     scale = block.scale(unit)
     reader = _MachineBuilder(mechanism, scale)
@@ -176,12 +179,14 @@ def build_machine(block: LoadedLinkage, mechanism: Mechanism, unit: LengthUnit) 
             for a in mechanism.links[link]
             for b in mechanism.links[link]
         )
+        # Shapes are consistent by construction; only given inertias can be impossible.
         if stated.shape is None and is_too_slender(part, reach):
             warnings.append(f"bodies: {link} has a moment of inertia that no body of its mass and length has")
     massless = [link for link in mechanism.links if link != GROUND and link not in block.bodies]
     if massless:
         warnings.append(f"bodies: without mass are {', '.join(massless)}")
     masses: dict[str, float] = {}
+    # Several masses at one joint add up.
     for stated_mass in block.point_masses:
         masses[stated_mass.joint] = masses.get(stated_mass.joint, 0.0) + stated_mass.mass
     about = find_first_fixed_pivot(mechanism) if block.moment_about is None else complex(*block.moment_about)
@@ -202,13 +207,14 @@ def build_machine(block: LoadedLinkage, mechanism: Mechanism, unit: LengthUnit) 
 
 
 def build_machines(block: LoadedLinkage, mechanism: Mechanism, unit: LengthUnit) -> Machine | None:
-    """The machines of many designs of one make, shape (n,), as one; None where a load changes, or there are springs or
-    friction, or names that the designs do not have.
+    """Build the machines of many designs of one topology, shape (n,), as one.
 
-    A design of which holes leave nothing has no finite mass.
+    None if loads vary, if there are springs or friction, or if the designs lack a name. A design whose holes leave
+    nothing of a plate has no finite mass.
     """
     first_one = _select_first(mechanism)
     constant = all(getattr(load.force or load.torque, "constant", None) is not None for load in block.loads)
+    # Variable loads, springs and friction depend on the motion of each design and are not vectorized.
     if not constant or block.springs or block.friction is not None or any(_find_name_errors(block, first_one)):
         return None
     scale, count = block.scale(unit), mechanism.shape[0]
@@ -220,6 +226,7 @@ def build_machines(block: LoadedLinkage, mechanism: Mechanism, unit: LengthUnit)
             try:
                 part = reader.build_body(link, stated)
             except BlockError:
+                # Infinite mass excludes the design from every limit without stopping the others.
                 mass[k, n] = np.inf
                 continue
             mass[k, n], cg[k, n], inertia[k, n] = part.mass, part.cg, part.inertia
@@ -227,11 +234,13 @@ def build_machines(block: LoadedLinkage, mechanism: Mechanism, unit: LengthUnit)
             if load.link is not None and load.point is not None:
                 places[k, n] = reader.resolve_place(load.link, load.point)
     reading = _MachineBuilder(first_one, scale)
+    # Loads are the same for all designs but for their places, which are replaced below.
     loads = [reading.build_load(f"/dynamics/loads/{k}", load) for k, load in enumerate(block.loads)]
     masses: dict[str, float] = {}
     for stated_mass in block.point_masses:
         masses[stated_mass.joint] = masses.get(stated_mass.joint, 0.0) + stated_mass.mass
     ground = mechanism.links[GROUND]
+    # Without fixed pivots, moments are taken about the first slide.
     about = np.asarray(mechanism.joints[ground[0]] if ground else mechanism.slides[0].point)
     if block.moment_about is not None:
         about = np.asarray(complex(*block.moment_about))
@@ -247,7 +256,7 @@ def build_machines(block: LoadedLinkage, mechanism: Mechanism, unit: LengthUnit)
 
 
 def _select_first(mechanism: Mechanism) -> Mechanism:
-    """The first of many designs."""
+    """Return the first of many designs."""
 
     def take_first(value: NDArray[Any]) -> NDArray[Any]:
         return np.asarray(np.broadcast_to(value, mechanism.shape)[0])
@@ -263,28 +272,29 @@ def _build_friction(block: LoadedLinkage, scale: float) -> Friction:
     stated = block.friction
     if stated is None:
         return Friction()
+    # Entries without friction would only slow down the iteration.
     pins = {joint: (pin.mu, scale * pin.radius) for joint, pin in stated.pins.items() if pin.mu > 0.0}
     return Friction(pins, {int(slide): mu for slide, mu in stated.slides.items() if mu > 0.0})
 
 
 def find_first_fixed_pivot(mechanism: Mechanism) -> complex:
-    """The first fixed pivot, or a point of the first slide where there is none."""
+    """Return the first fixed pivot, or a point of the first slide if there is none."""
     ground = mechanism.links[GROUND]
     return complex(mechanism.joints[ground[0]] if ground else mechanism.slides[0].point)
 
 
 def locate_on_link(mechanism: Mechanism, link: str, place: Place, scale: float = 1.0) -> complex:
-    """A place on a link in the reference configuration, in the unit that ``scale`` makes of the mechanism's."""
+    """Return a place on a link in the reference configuration, in the mechanism's unit times ``scale``."""
     return _MachineBuilder(mechanism, scale).resolve_place(link, place)
 
 
 def build_torsion_spring(mechanism: Mechanism, links: tuple[str, str]) -> TorsionSpring:
-    """A torsion spring of a unit rate between two links.
+    """Build a torsion spring of unit rate between two links.
 
     Raises
     ------
     BlockError
-        Where it cannot be told how far it is wound.
+        If its rotation is undetermined.
     """
     return TorsionSpring(links, 1.0, near=_MachineBuilder(mechanism, 1.0).measure_rotation("/springs", links))
 
@@ -297,13 +307,14 @@ class _MachineBuilder(LinkBodies):
         self.mechanism = mechanism
 
     def resolve_place(self, link: str, place_spec: Place) -> complex:
-        """A place on a link, in the reference configuration; a ground of slides has no line of its own: x is it."""
+        """Return a place on a link, in the reference configuration; a ground without two pivots uses the x-axis as its
+        line."""
         if isinstance(place_spec, PolarPoint) and len(self.links[link]) < 2:
             return self.scale * (find_first_fixed_pivot(self.mechanism) + place_spec.vector)
         return super().resolve_place(link, place_spec)
 
     def build_load(self, path: str, load_spec: LoadSpec) -> Load:
-        """A load of the analysis core; ``path`` is its own below the request."""
+        """Build a load of the analysis core; ``path`` is its own below the request."""
         if load_spec.torque is not None:
             resisting, link = load_spec.torque.against_motion, str(load_spec.link)
             if resisting is not None:
@@ -314,6 +325,7 @@ class _MachineBuilder(LinkBodies):
             resisting = load_spec.force.against_motion
             if resisting is not None:
                 slide = find_ground_slide(self.mechanism, load_spec.joint)
+                # Resistance opposes the velocity; a joint on a slide has only that along the slide.
                 return Resistance(load_spec.joint, resisting.forward, resisting.backward, slide)
             if load_spec.force.gas is not None:
                 try:
@@ -328,7 +340,7 @@ class _MachineBuilder(LinkBodies):
         return PointForce(load_spec.link, place, course, load_spec.frame == "link")
 
     def build_spring(self, path: str, spring_spec: SpringSpec) -> Load:
-        """A spring of the analysis core; ``path`` is its own below the request."""
+        """Build a spring of the analysis core; ``path`` is its own below the request."""
         if spring_spec.ends is None:
             links = spring_spec.links or (GROUND, GROUND)
             rate, free = spring_spec.torsion or 0.0, math.radians(spring_spec.free_angle)
@@ -337,6 +349,7 @@ class _MachineBuilder(LinkBodies):
         size = self.scale * max(
             abs(complex(a - b)) for a in self.mechanism.joints.values() for b in self.mechanism.joints.values()
         )
+        # Without free length and preload the force is proportional to the vector itself and needs no direction.
         if abs(complex(second - first)) <= MIN_LENGTH * size and (
             spring_spec.free_length > 0.0 or spring_spec.preload != 0.0
         ):
@@ -352,8 +365,9 @@ class _MachineBuilder(LinkBodies):
         )
 
     def measure_rotation(self, path: str, links: tuple[str, str]) -> Callable[[Real], Real]:
-        """How far one link is turned against another, roughly; ``path`` is the spring's below the request."""
+        """Return a function for the approximate rotation of one link relative to another; ``path`` is the spring's."""
         try:
+            # A slide's motion does not repeat by turns, so no rotation is counted modulo a cycle.
             period = math.inf if self.mechanism.has_slide_input else compute_cycle(self.mechanism)
         except KinematicsError as error:
             raise BlockError(path, f"how far the spring is wound cannot be told: {error}") from None

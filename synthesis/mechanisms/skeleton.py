@@ -1,4 +1,5 @@
-"""Any planar linkage by its skeleton: joints in one configuration, and what joins them."""
+"""Any planar linkage by its skeleton: joints in one configuration, and the links, slides and gears that connect
+them."""
 
 from __future__ import annotations
 
@@ -22,14 +23,16 @@ from synthesis.model.linkage.given_linkage import (
 from synthesis.model.problem import Degrees, Point, PositiveLength, Statement
 
 MAX_SHOWN = 6
-"""Distances that a message lists."""
+"""Maximum number of distances in a message."""
 
 
 def assemble_skeleton(spec: SkeletonSpec, degrees: float | None = None) -> Mechanism:
     """Build the mechanism in the reference configuration; a given input angle fixes the turn count of gears."""
     assembled = _build_mechanism(spec, 0)
+    # Without gears the input angle modulo a full turn determines the configuration.
     if degrees is None or not assembled.gears or assembled.has_slide_input:
         return assembled
+    # With gears the other links depend on the turn of the input, so shift by whole turns to the given angle.
     return _build_mechanism(spec, round((math.radians(degrees) - float(assembled.reference_input)) / (2.0 * math.pi)))
 
 
@@ -54,7 +57,7 @@ def _build_mechanism(spec: SkeletonSpec, turns: int) -> Mechanism:
 
 
 def describe_skeleton(mechanism: Mechanism) -> dict[str, Any]:
-    """The skeleton of a mechanism in its reference configuration, as JSON has it."""
+    """Describe the skeleton of a mechanism in its reference configuration, in JSON form."""
 
     def convert_to_pair(z: complex) -> tuple[float, float]:
         return z.real, z.imag
@@ -127,14 +130,15 @@ class GivenSkeleton(Statement):
     reference_body_angle: Degrees | None = Field(default=None, description=BODY_DESCRIPTION)
 
     def build_mechanism(self) -> Mechanism:
-        """The mechanism in its reference configuration.
+        """Build the mechanism in its reference configuration.
 
         Raises
         ------
         MechanismError
-            For a skeleton that is none, and for dimensions beside it that it does not have.
+        For an invalid skeleton, and for dimensions that contradict it.
         """
         assembled = assemble_skeleton(self.skeleton, self.reference_input_angle)
+        # A name without a link of its own may stand for the distance of two joints of any link.
         for name, stated in self.links.items():
             listed = [assembled.links[name]] if name in assembled.links else list(assembled.links.values())
             distances = [distance for joints in listed for distance in _measure_distances(assembled, joints)]
@@ -142,6 +146,7 @@ class GivenSkeleton(Statement):
                 of = f"the skeleton's link {name!r} has" if name in assembled.links else "the skeleton has a link with"
                 shown = ", ".join(f"{distance:.9g}" for distance in distances[:MAX_SHOWN])
                 raise MechanismError(f"/links/{name}", f"{of} joints {shown} apart; leave the field out or correct it")
+        # Coordinates are compared relative to the extent of the skeleton.
         size = max((abs(complex(z)) for z in assembled.joints.values()), default=1.0)
         for name, pivot in self.fixed_pivots.items():
             ground = [complex(assembled.joints[joint]) for joint in assembled.links[GROUND]]
@@ -151,7 +156,7 @@ class GivenSkeleton(Statement):
         return assembled
 
     def _require_agreement(self, assembled: Mechanism) -> None:
-        """Refuse a coupler point or an input angle that is not the skeleton's."""
+        """Refuse a coupler point or an input angle that differs from the skeleton's."""
         if self.coupler_point is not None:
             missing = [name for name in ("A", "B", "P") if name not in assembled.joints]
             if missing:
@@ -163,6 +168,7 @@ class GivenSkeleton(Statement):
         if self.reference_input_angle is not None:
             if assembled.has_slide_input:
                 raise MechanismError("/reference_input_angle", "a slide drives this mechanism; leave the field out")
+            # Angles are equal modulo a full turn.
             off = math.remainder(math.degrees(float(assembled.reference_input)) - self.reference_input_angle, 360.0)
             if abs(off) > AGREEMENT_TOLERANCE * 360.0:
                 raise MechanismError(
@@ -183,22 +189,24 @@ class GivenByDimensions(Statement, ABC):
 
     @abstractmethod
     def assemble(self) -> Mechanism:
-        """The mechanism at its reference input angle, or at one where it can be assembled."""
+        """Assemble the mechanism at its reference input angle, or at one at which this is possible."""
 
     def build_mechanism(self) -> Mechanism:
-        """The mechanism in its reference configuration.
+        """Build the mechanism in its reference configuration.
 
         Raises
         ------
         MechanismError
-            For dimensions that give no mechanism, and for a skeleton with other ones.
+        For dimensions that give no mechanism, and for a skeleton that contradicts them.
         """
         own = self.assemble()
         if self.skeleton is None:
             return own
         assembled = assemble_skeleton(self.skeleton, self.reference_input_angle)
+        # Absolute slack, since distances of joints far from the origin carry its rounding.
         slack = ROUNDING_TOLERANCE * max(abs(complex(z)) for m in (own, assembled) for z in m.joints.values())
         for joints in own.links.values():
+            # Compare only the joints that both have; the skeleton may have more.
             for one, other in combinations([joint for joint in joints if joint in assembled.joints], 2):
                 stated, apart = (abs(complex(m.joints[one] - m.joints[other])) for m in (own, assembled))
                 if abs(stated - apart) > AGREEMENT_TOLERANCE * max(stated, apart) + slack:
@@ -206,6 +214,7 @@ class GivenByDimensions(Statement, ABC):
                         "/skeleton/joints",
                         f"{one} and {other} are {apart:.9g} apart; the dimensions give {stated:.9g}",
                     )
+        # The skeleton is driven, because it has joints that the dimensions lack.
         return assembled
 
 

@@ -45,10 +45,10 @@ class GivenSliderCrank(GivenByDimensions):
     driven_by: Literal["crank", "slider"] = "crank"
 
     def assemble(self) -> Mechanism:
-        """The mechanism at its reference crank angle, or at one where it can be assembled."""
+        """Assemble the mechanism at its reference crank angle, or at one at which this is possible."""
         pivot, angle = complex(*self.fixed_pivot), math.radians(self.slide.angle)
         line = complex(*self.slide.point)
-        # Books differ in the sign of an offset; the slide says on which side of the pivot it passes.
+        # Textbooks differ in the sign of an offset, so compare its magnitude: the slide determines the side.
         offset = None if self.offset is None else abs(self.offset)
         require_agreement(
             "/offset", offset, abs(((pivot - line) * cmath.exp(-1j * angle)).imag), "the slide and the pivot"
@@ -70,7 +70,7 @@ class GivenSliderCrank(GivenByDimensions):
         )
 
     def _find_reaching_angles(self, offset: float, angle: float) -> list[float]:
-        """Crank angles with the pin in the midst of where the coupler reaches the slide from."""
+        """Find crank angles with the pin in the middle of the range from which the coupler reaches the slide."""
         sine = find_middle_sine(offset, self.links.crank, self.links.coupler)
         return [] if sine is None else [angle + math.asin(sine), angle + math.pi - math.asin(sine)]
 
@@ -105,21 +105,23 @@ class GivenInvertedSliderCrank(GivenByDimensions):
     assembly: Assembly = "open"
 
     def assemble(self) -> Mechanism:
-        """The mechanism at its reference input angle, or at one where it can be assembled."""
+        """Assemble the mechanism at its reference input angle, or at one at which this is possible."""
         o2, o4 = complex(*self.fixed_pivots.input), complex(*self.fixed_pivots.output)
         require_agreement("/links/ground", self.links.ground, abs(o4 - o2))
         if self.coupler_point is not None:
+            # The point's direction is relative to the line A → O4, which depends on the input angle.
             if self.reference_input_angle is None:
                 raise MechanismError("/reference_input_angle", "missing: it defines the direction of the coupler point")
             return self._add_body(
                 assemble_at_reference(self._assemble_at, self.reference_input_angle, ()), self.coupler_point.vector
             )
+        # The sliding line keeps this distance from O4, so the pin cannot come nearer.
         nearest = abs(self.links.output * math.sin(math.radians(self.slide.angle)))
         between = find_reaching_angles(self.links.input, o2, o4, nearest, math.inf)
         return assemble_at_reference(self._assemble_at, self.reference_input_angle, between)
 
     def _add_body(self, bare: Mechanism, local: complex) -> Mechanism:
-        """The mechanism with the link that slides, and P on it: it keeps its line at a distance from O4."""
+        """Add the sliding link with P; its line keeps its distance from O4."""
         o2, o4, a = (complex(bare.joints[joint]) for joint in ("O2", "O4", "A"))
         if a == o4:
             raise MechanismError("/reference_input_angle", "the crank pin is on O4; the coupler point has no direction")
@@ -128,7 +130,7 @@ class GivenInvertedSliderCrank(GivenByDimensions):
             {"O2": o2, "O4": o4, "A": a, "P": p},
             {"ground": ("O2", "O4"), "input": ("O2", "A"), "coupler": ("A", "P")},
             "input",
-            # The parallel through O4: a line that keeps its distance from O4 has one there that passes through it.
+            # Use the parallel through O4: the sliding link turns with its line, so it also keeps a parallel through O4.
             (Slide("O4", "coupler", np.asarray(o4), bare.slides[0].angle),),
         )
 
@@ -163,7 +165,7 @@ class GivenQuickReturn(GivenByDimensions):
     assembly: Assembly = "open"
 
     def assemble(self) -> Mechanism:
-        """The mechanism at its reference input angle, or at one where it can be assembled."""
+        """Assemble the mechanism at its reference input angle, or at one at which this is possible."""
         o2, o4 = complex(*self.fixed_pivots.input), complex(*self.fixed_pivots.output)
         require_agreement("/links/ground", self.links.ground, abs(o4 - o2))
         if (self.links.crank > abs(o4 - o2)) != (self.type == "whitworth"):
@@ -188,12 +190,14 @@ class GivenQuickReturn(GivenByDimensions):
         )
 
     def _find_reaching_angles(self, o2: complex, o4: complex) -> list[float]:
-        """Crank angles with C in the midst of where it gets to and the coupler reaches the ram's slide from."""
+        """Find crank angles with C in the middle of its range within reach of the coupler from the ram's slide."""
         slide, ground = math.radians(self.slide.angle), o2 - o4
         height = ((o4 - complex(*self.slide.point)) * cmath.exp(-1j * slide)).imag
+        # Half of the rocker's swing; a Whitworth rocker turns fully.
         lean = math.pi if self.links.crank > abs(ground) else math.asin(self.links.crank / abs(ground))
         towards = cmath.phase(ground) - slide
         ends = [towards - lean, towards + lean]
+        # Extremes of the sine lie inside the swing only if the rocker passes the perpendicular to the slide.
         ends += [
             end for end in (0.5 * math.pi, -0.5 * math.pi) if abs(math.remainder(end - towards, 2 * math.pi)) < lean
         ]
@@ -202,12 +206,14 @@ class GivenQuickReturn(GivenByDimensions):
         if sine is None:
             return []
         angles = []
+        # Two rocker angles have this sine, and each may have two crank positions.
         for turn in (math.asin(sine), math.pi - math.asin(sine)):
             rocker = cmath.rect(1.0, slide + turn)
-            # A stands on the rocker's ray from O4, at the crank's length from O2.
+            # A lies on the rocker's ray from O4, at the crank's length from O2: intersect ray and circle.
             pivot = ground / rocker
             square = self.links.crank**2 - pivot.imag**2
             for root in (math.sqrt(square), -math.sqrt(square)) if square >= 0.0 else ():
+                # The crank pin must be on the ray itself, not on its continuation behind O4.
                 if pivot.real + root > 0.0:
                     angles.append(cmath.phase((root - 1j * pivot.imag) * rocker))
         return angles

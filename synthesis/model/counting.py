@@ -13,10 +13,11 @@ decimal sign."""
 def format_integer(number: int) -> str:
     """Format a whole number for a sentence.
 
-    >>> grouped(9216), grouped(-14002477).replace(SPACE, " ")
+    >>> format_integer(9216), format_integer(-14002477).replace(THIN_SPACE, " ")
     ('9216', '−14 002 477')
     """
     digits = f"{number:,}".replace(",", THIN_SPACE) if abs(number) >= MIN_GROUPED else str(number)
+    # A true minus sign, as in printed tables.
     return digits.replace("-", "−")
 
 
@@ -28,7 +29,7 @@ def choose_word(number: int, one: str, many: str) -> str:
 def format_count(number: int, one: str, many: str = "") -> str:
     """Format a number and its noun; without ``many`` the plural of ``one`` ends in s.
 
-    >>> counted(1, "linkage"), counted(0, "linkage"), counted(2, "series", "series")
+    >>> format_count(1, "linkage"), format_count(0, "linkage"), format_count(2, "series", "series")
     ('1 linkage', '0 linkages', '2 series')
     """
     return f"{format_integer(number)} {choose_word(number, one, many or f'{one}s')}"

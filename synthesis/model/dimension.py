@@ -121,6 +121,7 @@ class DimensionedModel(BaseModel):
         schema = handler(core_schema)
         properties = handler.resolve_ref_schema(schema).get("properties", {})
         for name, dimension in collect_dimensions(cls).items():
+            # Schemas use the alias, the models the Python name.
             properties[cls.model_fields[name].alias or name]["x-dimension"] = dimension.value
         return schema
 
@@ -139,6 +140,7 @@ def collect_dimensions(model: type[BaseModel]) -> dict[str, Dimension]:
         of_field = {entry for entry in field.metadata if isinstance(entry, Dimension)} | set(
             _find_in_annotation(field.annotation)
         )
+        # Mixed dimensions in one field could not be converted to other units.
         if len(of_field) > 1:
             raise TypeError(f"{model.__name__}.{name} measures {' and '.join(sorted(of_field))}: make two fields of it")
         for dimension in of_field:

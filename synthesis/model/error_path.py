@@ -16,6 +16,7 @@ def select_given_steps(location: Sequence[str | int], document: Any, missing: bo
     for step in location:
         member = isinstance(value, list | tuple) and isinstance(step, int) and step < len(value)
         if member or (isinstance(value, dict) and step in value):
+            # Only the last step may be missing in the document: it names the required field.
             value = value[step]
         elif not (missing and step is location[-1] and isinstance(value, dict)):
             continue

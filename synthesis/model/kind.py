@@ -165,6 +165,7 @@ class Kind(Generic[P, R]):
         designs = collect_models(self.result.model_fields["designs"].annotation)
         measured = [model for design in designs for model in collect_models(design.model_fields["metrics"].annotation)]
         named = [field.alias or name for model in measured for name, field in model.model_fields.items()]
+        # Designs of different models share metrics; keep the first of each name.
         return list(dict.fromkeys(named))
 
     @property

@@ -1,4 +1,4 @@
-"""Block ``layout`` of a statement: sizes of links and pins, and their arrangement in planes (docs/layout.md)."""
+"""Block ``layout`` of a problem: sizes of links and pins, arrangement in planes (docs/mechanisms/layout.md)."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ MAX_PLANES = 20
 
 
 class LayoutSizes(Statement):
-    """Sizes of links and pins, and their arrangement in planes (docs/layout.md)."""
+    """Sizes of links and pins, and their arrangement in planes (docs/mechanisms/layout.md)."""
 
     link_width: PositiveLength = Field(
         description="Width of the links: a link is the hull of its joints, widened by half of this."
@@ -39,6 +39,7 @@ class LayoutSizes(Statement):
     @field_validator("pin_diameter")
     @classmethod
     def _validate_diameter(cls, diameter: float, info: ValidationInfo) -> float:
+        # Infinite if the width itself failed validation: one error is enough.
         if diameter > info.data.get("link_width", math.inf):
             raise ValueError("pin_diameter must not exceed link_width")
         return diameter

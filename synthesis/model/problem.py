@@ -124,4 +124,5 @@ class ProblemBase(Statement):
         """Raise the first contradiction, if there is one."""
         contradictions = self.find_contradictions()
         if contradictions:
+            # One message at a time; the client corrects it and sends again.
             raise ContradictionError(contradictions[0])

@@ -22,6 +22,7 @@ def triangulate_polygon(corners: Complex) -> Complex:
     for turn in TRIAL_ROTATIONS:
         turned = corners * np.exp(1j * turn)
         shape = Polygon(np.stack([turned.real, turned.imag], axis=1))
+        # A zero-width buffer splits an outline that touches itself.
         shape = shape if shape.is_valid else shape.buffer(0.0)
         try:
             parts = get_parts(constrained_delaunay_triangles(shape))
@@ -30,5 +31,6 @@ def triangulate_polygon(corners: Complex) -> Complex:
         # Map each vertex back to the nearest original corner: the rotation must not change the coordinates.
         places = np.array([get_coordinates(part).view(np.complex128).ravel()[:3] for part in parts])
         return np.asarray(corners[np.abs(places[..., None] - turned).argmin(axis=-1)])
+    # A fan around one corner triangulates the convex hull.
     hull = get_coordinates(shape.convex_hull).view(np.complex128).ravel()[:-1] * np.exp(-1j * turn)
     return np.stack([np.full(len(hull) - 2, hull[0]), hull[1:-1], hull[2:]], axis=1)

@@ -70,6 +70,7 @@ def append_limit_rows(
     weight = multipliers[limits]
     root = math.sqrt(weight)
     for k in range(limits):
+        # A limit that was not requested: infinity must not enter the products below.
         if margins[k] == np.inf:
             continue
         load = compute_load(margins[k], multipliers[k], weight, k >= limits - equations)
@@ -88,6 +89,7 @@ def _update_multipliers(margins: Real, equations: int, multipliers: Real) -> flo
     limits = margins.size
     weight, worst = multipliers[limits], 0.0
     for k in range(limits):
+        # Absent limits keep the multiplier 0.
         if margins[k] < np.inf:
             equation = k >= limits - equations
             # An inequality is violated on one side only, an equation on both.
@@ -139,6 +141,7 @@ def descend_constrained(
     """
     multipliers = np.zeros(limits + 1)
     multipliers[limits] = weight
+    # Zeros, because functions write only those entries of a row that may differ from 0.
     residuals, jacobian = np.empty(most), np.zeros((most, x.size))
     margins = state[state.size - limits :]
     before = worst = np.inf
@@ -146,6 +149,7 @@ def descend_constrained(
     ended[0] = np.inf
     for _ in range(rounds):
         _, status = descend(rows, x, points, setting, multipliers, state, most, steps, GRADIENT_TOLERANCE)
+        # The start is outside the domain; more weight cannot help.
         if status == _IMPOSSIBLE:
             return _IMPOSSIBLE
         worst = _update_multipliers(margins, equations, multipliers)

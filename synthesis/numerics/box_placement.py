@@ -87,10 +87,11 @@ def place_in_boxes(
 
     Returns
     -------
-    Placing
+    Placement
         In the middle of the possible positions. If ``least`` exceeds ``most``, no size fits and the linkage gets the
         geometric mean of both.
     """
+    # No size is permitted: report the least bad placement with a size between the contradictory limits.
     if least > most:
         between = math.sqrt(least * most) if most > 0.0 else least
         return place_in_boxes(points, boxes, between, between, preferred, turned=turned)._replace(fits=False)
@@ -135,6 +136,7 @@ def _find_scale_and_direction(
         ahead = preferred / abs(preferred)
         normals = np.concatenate([normals, [1j * ahead, -1j * ahead, -ahead]])
         limits = np.concatenate([limits, np.zeros(3)])
+    # The slack scales with the numbers from which the limits are computed.
     slack = ROUNDING_TOLERANCE * (_measure_extent(boxes) + float(abs(points).max()) * least)
     bounded = np.isfinite(limits)
     normals, limits = normals[bounded], limits[bounded] + slack
@@ -163,11 +165,13 @@ def _mark_feasible(planes: _Directions, w: Complex, slack: float) -> NDArray[np.
 
 
 def _bound_sizes(planes: _Directions) -> tuple[float, float] | None:
+    # Without half-planes every size fits.
     """Return the minimum and maximum |w| of the polygon, or None if it is empty."""
     if not len(planes.normals):
         return 0.0, math.inf
     first, second = np.triu_indices(len(planes.normals), 1)
     turn = np.sin(planes.normals[second] - planes.normals[first])
+    # Nearly parallel lines meet too far away for a meaningful corner.
     met = np.abs(turn) > ROUNDING_TOLERANCE
     first, second, turn = first[met], second[met], turn[met]
     # The corner of two lines: w · n = h for both.
@@ -181,11 +185,13 @@ def _bound_sizes(planes: _Directions) -> tuple[float, float] | None:
     )
     # The nearest point of the polygon is the origin, a corner, or the foot of the perpendicular to a side.
     feet = planes.limits * np.exp(1j * planes.normals)
+    # Corners lie on their own two lines only up to rounding.
     slack = ROUNDING_TOLERANCE * float(np.abs(planes.limits).max())
     corners = corners[_mark_feasible(planes, corners, slack)]
     if not corners.size:
         return None
     feet = feet[_mark_feasible(planes, feet, slack)]
+    # The origin itself lies in the polygon if no limit is negative.
     nearest = 0.0 if (planes.limits >= 0.0).all() else float(np.abs(np.concatenate([corners, feet])).min())
     return nearest, float(np.abs(corners).max())
 
@@ -195,6 +201,7 @@ def _choose_size(low: float, high: float, preferred: float) -> float:
     if low <= preferred <= high:
         return preferred
     if preferred > high:
+        # Away from the very end, where only one exact placement fits.
         low = max(low, MIN_SIZE_SHARE * high)
         return high * math.exp(END_DISTANCE_SHARE * math.log(low / high))
     high = min(high, low / MIN_SIZE_SHARE)
@@ -209,8 +216,10 @@ def _choose_direction(planes: _Directions, size: float, preferred: float, slack:
     half = np.arccos(share[cut])
     ends = np.concatenate([planes.normals[cut] - half, planes.normals[cut] + half])
     ends = np.sort(np.mod(ends, math.tau))
+    # Arcs are cyclic: the last one continues at the first end, one turn later.
     onward = np.append(ends[1:], ends[:1] + math.tau)
     tried = np.concatenate([[preferred], 0.5 * (ends + onward), ends])
+    # The preferred direction wins if it fits; ends fit only if an arc has no width.
     widths = np.concatenate([[math.inf], onward - ends, np.zeros(len(ends))])
     there = np.asarray(size * np.exp(1j * tried), np.complex128)
     fits = _mark_feasible(planes, there, (ROUNDING_TOLERANCE + slack) * size)

@@ -39,6 +39,7 @@ def solve_positive(matrix: Real, right: Real) -> bool:
             for k in range(j):
                 value -= matrix[i, k] * matrix[j, k]
             matrix[i, j] = value / pivot
+    # Forward substitution with L, then backward with its transpose.
     for i in range(n):
         for k in range(i):
             right[i] -= matrix[i, k] * right[k]

@@ -74,6 +74,7 @@ def solve_conic_program(cost: Real, rows: Sequence[ConeRows]) -> Solution:
         settings = clarabel.DefaultSettings()
         settings.verbose = False
         settings.max_threads = 1
+        # Settings that differ from the defaults, one set after another.
         for name, value in route.items():
             setattr(settings, name, value)
         found = clarabel.DefaultSolver(none, cost, matrix, offset, cones, settings).solve()
@@ -81,6 +82,7 @@ def solve_conic_program(cost: Real, rows: Sequence[ConeRows]) -> Solution:
         # Only a solution of full accuracy has a dual value that bounds the minimum.
         dual = float(found.obj_val_dual) if reached == "Solved" else -np.inf
         solution = Solution(np.array(found.x), float(found.obj_val), dual, STATUSES.get(reached, "failed"))
+        # Infeasible and unbounded are final results, too.
         if reached in STATUSES and reached != "AlmostSolved":
             return solution
         # Remember the best inaccurate result: an almost solved program is better than a failed one.

@@ -43,7 +43,7 @@ SYSTEM = types.int64(_VECTOR, _VECTOR, _VECTOR, _VECTOR, _VECTOR, _VECTOR, _VECT
 """The type of a compiled system: y, low, p, p_low, dp, newton, tangent, work."""
 
 END_REACHED, TOO_MANY_STEPS, STEP_TOO_SMALL, NOT_CONVERGED = range(4)
-"""Status of a path's end; only ``REACHED`` is a solution."""
+"""Status of a path's end; only :data:`END_REACHED` is a solution."""
 
 CORRECTOR_TOLERANCE, PRECISE_CORRECTOR_TOLERANCE = 1e-6, 1e-9
 """Relative Newton step at which a point is close enough to its path, in ordinary and in double-double precision. The
@@ -200,6 +200,7 @@ def _follow(
     newton, tangent = np.empty(n, np.complex128), np.empty(n, np.complex128)
     at, rest = np.empty(n, np.complex128), np.zeros(n, np.complex128)
     left, h, tried, grown = 1.0, FIRST_STEP, 0, 2.0
+    # Higher precision pays only if the corrector uses it: tighter tolerance, more steps.
     close, corrections = (
         (PRECISE_CORRECTOR_TOLERANCE, MAX_PRECISE_CORRECTIONS) if precise else (CORRECTOR_TOLERANCE, MAX_CORRECTIONS)
     )
@@ -209,9 +210,11 @@ def _follow(
     while left > 0.0:
         if tried >= most_steps:
             return TOO_MANY_STEPS, tried
+        # Near a singular end the steps shrink with the remaining path; a fixed minimum would end it too early.
         if h < (MIN_STEP_SHARE * left if precise else MIN_STEP):
             return STEP_TOO_SMALL, tried
         tried += 1
+        # The last step ends exactly at t = 1.
         h = min(h, left)
         # Runge–Kutta's classical stages; stages 1 and 2 share the parameters at the middle of the step.
         for stage in range(1, 4):
@@ -249,6 +252,7 @@ def _follow(
             for k in range(n):
                 y[k], low[k] = at[k], rest[k]
                 slopes[0, k] = tangent[k]
+            # Growth is limited to 2.5, because the error estimate rests on a single step.
             h *= min(max(scale, 0.5), grown)
             grown = 2.5
         else:
@@ -345,18 +349,20 @@ def follow(
 
     Returns
     -------
-    Ends
+    PathEnds
         In the order of ``y``.
     """
     ends = np.array(y, np.complex128, order="C")
     low = np.zeros_like(ends)
     count = len(ends)
     status, steps = np.zeros(count, np.int64), np.zeros(count, np.int64)
+    # Compiled kernels require contiguous arrays.
     ways = [np.ascontiguousarray(p, np.complex128) for p in (start, end, bend)]
 
     kernel: Any = _follow_all
 
     def run_chunk(first: int) -> None:
+        # Slices of the same arrays: each thread writes its own rows.
         some = slice(first, first + CHUNK_SIZE)
         limits = tolerance, most_steps, scratch, precise
         kernel(system, groups, ends[some], low[some], *ways, *limits, status[some], steps[some])
@@ -395,7 +401,7 @@ def estimate_progress(way: int, share: float) -> float:
     The number of runs is not known in advance, so that each run takes a fixed share of the remaining progress; the
     progress therefore never decreases.
 
-    >>> further(0, 0.0), further(0, 1.0), further(1, 0.0), round(further(1, 1.0), 2)
-    (0.0, 0.8, 0.8, 0.96)
+    >>> estimate_progress(0, 0.0), estimate_progress(0, 1.0), estimate_progress(1, 0.0)
+    (0.0, 0.8, 0.8)
     """
     return 1.0 - MIN_REMAINING_SHARE**way * (1.0 - (1.0 - MIN_REMAINING_SHARE) * share)

@@ -21,6 +21,7 @@ def solve_convex_program(cost: Any, constraints: list[Any]) -> bool:
     problem = cp.Problem(cp.Minimize(cost), constraints)
     try:
         with warnings.catch_warnings():
+            # The callers judge inaccurate solutions themselves, so the warning is noise.
             warnings.filterwarnings("ignore", message="Solution may be inaccurate")
             problem.solve(solver=cp.CLARABEL)
     except cp.SolverError:

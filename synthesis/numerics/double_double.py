@@ -38,6 +38,7 @@ def _multiply_exactly(a: float, b: float) -> tuple[float, float]:
 def add(a: complex, a_low: complex, b: complex, b_low: complex) -> tuple[complex, complex]:
     """Return a + b as a pair (high, low)."""
     total, rest = add_exactly(a, b)
+    # Renormalize, so that the low part stays below the rounding of the high part.
     rest += a_low + b_low
     high = total + rest
     return high, rest - (high - total)
@@ -46,11 +47,13 @@ def add(a: complex, a_low: complex, b: complex, b_low: complex) -> tuple[complex
 @njit(cache=True, nogil=True)
 def multiply(a: complex, a_low: complex, b: complex, b_low: complex) -> tuple[complex, complex]:
     """Return a b as a pair (high, low)."""
+    # The four real partial products of a complex product, each with its error.
     p, p_low = _multiply_exactly(a.real, b.real)
     q, q_low = _multiply_exactly(-a.imag, b.imag)
     u, u_low = _multiply_exactly(a.real, b.imag)
     v, v_low = _multiply_exactly(a.imag, b.real)
     total, rest = add_exactly(complex(p, u), complex(q, v))
+    # The product of both low parts is below the precision and is dropped.
     rest += complex(p_low + q_low, u_low + v_low) + (a * b_low + a_low * b)
     high = total + rest
     return high, rest - (high - total)

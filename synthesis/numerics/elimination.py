@@ -29,12 +29,14 @@ def factor(matrix: NDArray[Any], pivots: Any) -> bool:
             if size > best:
                 best, row = size, i
         pivots[k] = row
+        # Negated, so that NaN counts as singular.
         if not best > 0.0:
             return False
         if row != k:
             for c in range(n):
                 matrix[k, c], matrix[row, c] = matrix[row, c], matrix[k, c]
         inverse = 1.0 / matrix[k, k]
+        # Store the reciprocal: substitution then multiplies instead of dividing.
         matrix[k, k] = inverse
         for i in range(k + 1, n):
             share = matrix[i, k] * inverse
@@ -81,6 +83,7 @@ def reduce(matrix: Complex) -> bool:
         if not best > 0.0:
             return False
         if row != k:
+            # Columns before k are not used again.
             for c in range(k, width):
                 matrix[k, c], matrix[row, c] = matrix[row, c], matrix[k, c]
         pivot = matrix[k, k]

@@ -21,7 +21,7 @@ from typing import Any
 import numpy as np
 from numba import types
 
-from kinematics.arrays import Real
+from kinematics.arrays import Integers, Real
 from kinematics.compiling import njit
 from synthesis.numerics.levenberg import MATRIX, ROWS, VECTOR, compute_half_square
 
@@ -103,6 +103,70 @@ def _compute_scaled_norm(scale: Real, step: Real) -> float:
     return math.sqrt(total)
 
 
+@njit(cache=True, nogil=True, error_model="numpy")
+def _list_open_unknowns(jacobian: Real, m: int, open_: Integers) -> int:
+    """Write the numbers of the unknowns with a column that is not 0; return their count."""
+    # Columns of zeros belong to unknowns that the problem holds fixed; the QR decomposition must not contain them.
+    free = 0
+    for j in range(len(open_)):
+        norm = 0.0
+        for i in range(m):
+            norm += jacobian[i, j] * jacobian[i, j]
+        if norm > 0.0:
+            open_[free] = j
+            free += 1
+    return free
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def _fill_damped_matrix(
+    jacobian: Real, m: int, open_: Integers, free: int, damping: float, scale: Real, matrix: Real
+) -> None:
+    """Write the columns of the open unknowns over the damping; ``scale`` has their largest norms so far."""
+    for j in range(free):
+        norm = 0.0
+        for i in range(m):
+            matrix[i, j] = jacobian[i, open_[j]]
+            norm += matrix[i, j] * matrix[i, j]
+        # The running maximum makes the scaling monotonic, which Moré's convergence proof needs.
+        scale[j] = max(scale[j], math.sqrt(norm))
+        for i in range(free):
+            matrix[m + i, j] = 0.0
+        matrix[m + j, j] = math.sqrt(damping) * scale[j]
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def _write_bending(
+    jacobian: Real, m: int, open_: Integers, free: int, velocity: Real, residuals: Real, ahead: Real, right: Real
+) -> None:
+    """Write minus the second derivative of the residuals along the velocity, from the residuals a small step ahead."""
+    right[: m + free] = 0.0
+    for i in range(m):
+        along = 0.0
+        for j in range(free):
+            along += jacobian[i, open_[j]] * velocity[j]
+        right[i] = -2.0 / DIFFERENCE_STEP * ((ahead[i] - residuals[i]) / DIFFERENCE_STEP - along)
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def _solve_velocity(
+    matrix: Real, m: int, free: int, heads: Real, residuals: Real, right: Real, velocity: Real
+) -> float:
+    """Solve for the velocity by the decomposed matrix, and return the magnitude of its largest component."""
+    right[: m + free] = 0.0
+    right[:m] = -residuals[:m]
+    _solve_qr(matrix, m + free, free, heads, right, velocity)
+    return float(np.abs(velocity).max())
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def _move_open(x: Real, open_: Integers, free: int, step: Real, trial: Real) -> None:
+    """Write x with a step of the open unknowns into ``trial``."""
+    trial[:] = x
+    for j in range(free):
+        trial[open_[j]] += step[j]
+
+
 @njit(
     types.float64(types.FunctionType(ROWS), VECTOR, MATRIX, VECTOR, VECTOR, VECTOR, types.int64, types.int64),
     cache=True,
@@ -128,80 +192,53 @@ def follow_valley(
     if m < 0:
         return math.inf
     cost = compute_half_square(residuals, m)
-    trial, trial_state = np.empty(n), np.empty(state.size)
-    open_, scale = np.zeros(n, np.int64), np.zeros(n)
-    # Columns of zeros belong to unknowns that the problem holds fixed; the QR decomposition must not contain them.
-    free = 0
-    for j in range(n):
-        norm = 0.0
-        for i in range(m):
-            norm += jacobian[i, j] * jacobian[i, j]
-        if norm > 0.0:
-            open_[free] = j
-            free += 1
-    velocity, acceleration, heads = np.zeros(free), np.zeros(free), np.zeros(free)
-    scale = np.zeros(free)
+    trial, trial_state, open_ = np.empty(n), np.empty(state.size), np.zeros(n, np.int64)
+    free = _list_open_unknowns(jacobian, m, open_)
+    velocity, acceleration, heads, scale = np.zeros(free), np.zeros(free), np.zeros(free), np.zeros(free)
     matrix, right = np.zeros((most + free, free)), np.zeros(most + free)
     damping, idle = FIRST_DAMPING, 0
     for _ in range(steps):
+        # Any of the three ends the descent: rounding level, no acceptable damping, or no progress.
         if cost < ROUNDING_COST or damping > MAX_DAMPING or idle >= MAX_STALLED_STEPS:
             break
-        for j in range(free):
-            norm = 0.0
-            for i in range(m):
-                matrix[i, j] = jacobian[i, open_[j]]
-                norm += matrix[i, j] * matrix[i, j]
-            scale[j] = max(scale[j], math.sqrt(norm))
-            for i in range(free):
-                matrix[m + i, j] = 0.0
-            matrix[m + j, j] = math.sqrt(damping) * scale[j]
+        _fill_damped_matrix(jacobian, m, open_, free, damping, scale, matrix)
         if not _decompose_qr(matrix, m + free, free, heads):
             break
-        right[: m + free] = 0.0
-        right[:m] = -residuals[:m]
-        _solve_qr(matrix, m + free, free, heads, right, velocity)
-        longest = np.abs(velocity).max()
+        longest = _solve_velocity(matrix, m, free, heads, residuals, right, velocity)
+        # Infinite or NaN: the decomposition was numerically singular.
         if not longest < math.inf:
             break
         # A long step says nothing about the direction of the valley at x: damp it instead of shortening it.
         if longest > MAX_STEP:
             damping *= DAMPING_INCREASE
             continue
-        trial[:] = x
-        for j in range(free):
-            trial[open_[j]] += DIFFERENCE_STEP * velocity[j]
+        _move_open(x, open_, free, DIFFERENCE_STEP * velocity, trial)
         trial_state[:] = state
         if rows(trial, points, setting, multipliers, trial_state, tried, unused) != m:
             damping *= DAMPING_INCREASE
             continue
         # Second derivative of the residuals along the velocity, by a one-sided difference with the known slope.
-        right[: m + free] = 0.0
-        for i in range(m):
-            along = 0.0
-            for j in range(free):
-                along += jacobian[i, open_[j]] * velocity[j]
-            right[i] = -2.0 / DIFFERENCE_STEP * ((tried[i] - residuals[i]) / DIFFERENCE_STEP - along)
+        _write_bending(jacobian, m, open_, free, velocity, residuals, tried, right)
         _solve_qr(matrix, m + free, free, heads, right, acceleration)
-        if not _compute_scaled_norm(scale, acceleration) <= MAX_ACCELERATION_RATIO * _compute_scaled_norm(
-            scale, velocity
-        ):
+        # A large acceleration means that the quadratic model does not hold over this step.
+        limit = MAX_ACCELERATION_RATIO * _compute_scaled_norm(scale, velocity)
+        if not _compute_scaled_norm(scale, acceleration) <= limit:
             damping *= DAMPING_INCREASE
             continue
-        trial[:] = x
         # Second-order Taylor step x(1) = x + v + a/2 along the geodesic.
-        for j in range(free):
-            trial[open_[j]] += velocity[j] + 0.5 * acceleration[j]
+        _move_open(x, open_, free, velocity + 0.5 * acceleration, trial)
         trial_state[:] = state
         reached = rows(trial, points, setting, multipliers, trial_state, tried, unused)
         gained = compute_half_square(tried, m) if reached == m else math.inf
         if not gained < cost:
             damping *= DAMPING_INCREASE
             continue
+        # Several idle steps in turn are needed: in a curved valley a single small gain is normal.
         idle = idle + 1 if cost - gained <= MIN_RELATIVE_GAIN * cost else 0
         cost = gained
         x[:] = trial
         state[:] = trial_state
-        residuals, tried = tried, residuals
-        jacobian, unused = unused, jacobian
+        # Swap buffers instead of copying.
+        residuals, tried, jacobian, unused = tried, residuals, unused, jacobian
         damping = max(damping / DAMPING_DECREASE, MIN_DAMPING)
     return cost

@@ -100,6 +100,20 @@ def _predict_gain(matrix: Real, gradient: Real, step: Real) -> float:
     return gain
 
 
+@njit(cache=True, nogil=True)
+def _damp_equations(matrix: Real, gradient: Real, damping: float, scale: Real, factor: Real, step: Real) -> None:
+    """Write the damped normal equations: their lower triangle into ``factor``, the right side into ``step``.
+
+    ``scale`` has the largest diagonal so far, which damping is relative to.
+    """
+    for i in range(len(scale)):
+        scale[i] = max(scale[i], matrix[i, i])
+        step[i] = -gradient[i]
+        for j in range(i + 1):
+            factor[i, j] = matrix[i, j]
+        factor[i, i] += damping * scale[i]
+
+
 @njit(
     DESCENT_RESULT(
         types.FunctionType(ROWS), VECTOR, MATRIX, VECTOR, VECTOR, VECTOR, types.int64, types.int64, types.float64
@@ -108,16 +122,9 @@ def _predict_gain(matrix: Real, gradient: Real, step: Real) -> float:
     nogil=True,
 )
 def descend(
-    rows: Any,
-    x: Real,
-    points: Real,
-    setting: Real,
-    multipliers: Real,
-    state: Real,
-    most: int,
-    steps: int,
+    rows: Any, x: Real, points: Real, setting: Real, multipliers: Real, state: Real, most: int, steps: int,
     tolerance: float,
-) -> tuple[float, int]:
+) -> tuple[float, int]:  # fmt: skip
     """Descend from x in place to a local minimum, and return half the sum of squares there and the status.
 
     Parameters
@@ -150,6 +157,7 @@ def descend(
     matrix, factor, gradient, step = np.empty((n, n)), np.empty((n, n)), np.empty(n), np.empty(n)
     scale = np.full(n, MIN_SCALE)
     cost = compute_half_square(residuals, m)
+    # Also true for NaN.
     if not cost < np.inf:
         return np.inf, _IMPOSSIBLE
     _build_normal_equations(residuals, jacobian, m, n, matrix, gradient)
@@ -157,12 +165,7 @@ def descend(
     for _ in range(steps):
         if cost < ZERO_COST:
             return cost, _ZERO
-        for i in range(n):
-            scale[i] = max(scale[i], matrix[i, i])
-            step[i] = -gradient[i]
-            for j in range(i + 1):
-                factor[i, j] = matrix[i, j]
-            factor[i, i] += damping * scale[i]
+        _damp_equations(matrix, gradient, damping, scale, factor, step)
         # A matrix that is not positive definite to rounding needs much more damping: leave it in big steps.
         if not solve_positive(factor, step):
             damping *= 10.0
@@ -180,6 +183,7 @@ def descend(
         trial_m = rows(trial, points, setting, multipliers, trial_state, trial_residuals, trial_jacobian)
         trial_cost = compute_half_square(trial_residuals, trial_m) if trial_m >= 0 else np.inf
         if trial_cost < cost:
+            # Without a predicted gain the model is at rounding level; 1 leaves the damping moderate.
             ratio = (cost - trial_cost) / expected if expected > 0.0 else 1.0
             small = small + 1 if cost - trial_cost <= tolerance * cost else 0
             cost, m = trial_cost, trial_m
@@ -190,12 +194,14 @@ def descend(
             _build_normal_equations(residuals, jacobian, m, n, matrix, gradient)
             damping = max(damping * max(1.0 / 3.0, 1.0 - (2.0 * ratio - 1.0) ** 3), MIN_DAMPING)
             growth = 2.0
+            # Two in turn, because one tiny gain may follow a badly damped step.
             if small >= 2:
                 return cost, _COST
             continue
         # The step was refused, but the predicted gain is mere rounding: the point is stationary to working precision.
         if expected <= STEP_TOLERANCE * cost:
             return cost, _GRADIENT
+        # A step below rounding cannot change the point.
         if longest < STEP_TOLERANCE:
             return cost, _STEP
         damping *= growth

@@ -34,9 +34,10 @@ def solve_linear_program(cost: Real, rows: Real, limits: Real, low: Real, high: 
 
     Returns
     -------
-    Least or None
+    LinearMinimum or None
         None if the program is infeasible or unbounded, or if a number is not finite.
     """
+    # HiGHS does not define its behaviour for NaN.
     if not all(np.isfinite(given).all() for given in (cost, rows, limits)):
         return None
     program = highspy.Highs()

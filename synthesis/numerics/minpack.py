@@ -65,6 +65,7 @@ def fit(
         Maximum number of evaluations of the residuals.
     """
     values = residuals(start)
+    # Without unknowns the start is the minimum; SciPy rejects an empty vector.
     if not len(start):
         return Fit(start, 0.5 * float(values @ values), Status.STEP)
     # MINPACK requires at least as many residuals as unknowns.

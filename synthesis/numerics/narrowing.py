@@ -95,7 +95,7 @@ def find_narrowest_band(
 
     Returns
     -------
-    Narrowest or None
+    NarrowestBand or None
         None if the start is no linkage.
     """
     narrowest: NarrowestBand | None = None
@@ -103,6 +103,7 @@ def find_narrowest_band(
         narrowest = _descend_with_penalty(values, start, low, high, half_limit, arrived, penalty)
         if narrowest is None or narrowest.violation <= VIOLATION_TOLERANCE:
             break
+        # Continue from the shape found so far with the higher penalty.
         start = narrowest.shape
     return narrowest
 
@@ -129,6 +130,7 @@ def _descend_with_penalty(
             break
         while trust > MIN_TRUST_RADIUS:
             reach = trust * (1.0 + np.abs(x))
+            # The trust region and the bounds of the shape together are a box, as a linear program needs.
             bounds = np.maximum(low - x, -reach), np.minimum(high - x, reach)
             step, predicted = _solve_step(here, tangents, *bounds, half_limit, penalty)
             if step is None:
@@ -139,6 +141,8 @@ def _descend_with_penalty(
             # A tenth of the predicted gain is enough to accept a step; otherwise the trust region shrinks around it.
             if np.isfinite(tried_merit[0]) and gain > 0.1 * hoped and hoped > 0.0:
                 break
+            # Shrink relative to the step actually taken; 0 if even the prediction promises no gain, which ends the
+            # loop.
             trust = 0.25 * float(np.max(np.abs(step) / (1.0 + np.abs(x)))) if hoped > arrived * merit else 0.0
         else:
             break
@@ -157,6 +161,7 @@ def compute_merits(values: ShapeValues, half_limit: float = np.inf, penalty: flo
     The merit is the half width plus the penalty times the violation.
     """
     half_width = 0.5 * np.ptp(values.banded, axis=1)
+    # The initial 0 makes an empty set of constraints satisfied.
     violation = np.maximum(0.0, -values.positive.min(axis=1, initial=0.0))
     if values.limited.size and np.isfinite(half_limit):
         violation = np.maximum(violation, 0.5 * np.ptp(values.limited, axis=1) - half_limit)

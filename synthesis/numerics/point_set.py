@@ -17,6 +17,7 @@ def mark_duplicates(points: Complex, share: float) -> Mask:
 def _count_neighbours(known: Complex, points: Complex, share: float) -> NDArray[np.int64]:
     """Count the known points that equal each of ``points``."""
     radius = share * np.abs(points).max(axis=-1)
+    # A complex number is two coordinates of the tree; the maximum norm avoids squares.
     tree = cKDTree(np.ascontiguousarray(known).view(np.float64))
     near = tree.query_ball_point(np.ascontiguousarray(points).view(np.float64), radius, p=np.inf, return_length=True)
     return np.asarray(near)

@@ -16,6 +16,7 @@ THREAD_COUNT = 2
 def run_in_portions(work: Callable[[slice], None], count: int, portion: int) -> None:
     """Call ``work`` with consecutive slices of ``portion`` of the ``count`` rows, and re-raise its errors."""
     slices = [slice(first, first + portion) for first in range(0, count, portion)]
+    # A single portion needs no thread.
     if len(slices) < THREAD_COUNT:
         for some in slices:
             work(some)

@@ -23,7 +23,7 @@ from numpy.typing import NDArray
 from kinematics.arrays import Complex, Real
 
 Numbers = NDArray[Any]
-"""Real or complex: what is real stays so."""
+"""Real or complex numbers; real input gives real output."""
 
 DEGENERACY_TOLERANCE = 1e-11
 """Relative singular value of the monomial equations below which the quadrics have a whole curve in common."""
@@ -96,9 +96,11 @@ def find_common_points(forms: Real, error: float = 0.0) -> CommonPoints:
     # A null space larger than the number of roots means that the quadrics share a curve.
     if s[frame.monomials - roots - 1] <= DEGENERACY_TOLERANCE * s[0]:
         return CommonPoints(np.empty((0, m)), np.empty(0, np.bool_), False, np.empty((0, m), np.complex128))
+    # Basis of the null space: combinations of the monomials' values at the common points.
     basis = vh[frame.monomials - roots :].T
     above = np.tensordot(frame.first, basis[frame.lift], (0, 1))
     below = np.tensordot(frame.second, basis[frame.lift], (0, 1))
+    # The eigenvectors of multiplication by one linear form relative to another are the common points.
     _, vectors = np.linalg.eig(np.linalg.lstsq(below, above, rcond=None)[0])
     monomials = basis @ vectors
     # Read each point from the monomials x_i^(m−1) x_j of its largest coordinate i, which cannot be 0.
@@ -166,6 +168,7 @@ def _refine_points(forms: Real, points: Numbers, error: float) -> CommonPoints:
     proved = apart & np.concatenate([real_alone, alone & (imaginary > radius)])
     kept: list[int] = []
     for k in np.flatnonzero(real_alone | (residual <= RESIDUAL_TOLERANCE)):
+        # ±x are the same projective point, hence the absolute value.
         gaps = [1.0 - abs(float(reals[k] @ reals[j])) for j in kept]
         if min(gaps, default=1.0) > DIRECTION_TOLERANCE:
             kept.append(int(k))
@@ -188,6 +191,7 @@ def _iterate_newton(forms: Real, points: Numbers) -> Numbers:
         jacobian = np.concatenate([2.0 * images, np.conj(points)[:, None, :]], axis=1)
         right = np.concatenate([values, np.zeros((len(points), 1))], axis=1)
         u, s, vh = np.linalg.svd(jacobian)
+        # Pseudoinverse: at a multiple root the Jacobian is singular, and its small singular values carry only noise.
         inverse = np.where(s > ROUNDING_ERROR, 1.0 / np.maximum(s, ROUNDING_ERROR), 0.0)
         move = np.einsum("kji,kj->ki", vh.conj(), inverse * np.einsum("kij,ki->kj", u.conj(), right))
         points = points - move
@@ -207,6 +211,7 @@ def _certify_roots(forms: Real, points: Numbers, error: float) -> tuple[Real, ND
     jacobian = np.concatenate([2.0 * images, np.conj(points)[:, None, :]], axis=1)
     least = np.linalg.svd(jacobian, compute_uv=False)[:, -1] if len(points) else np.empty(0)
     error *= math.sqrt(len(forms))
+    # Subtract the possible error of the Jacobian, so that the proof holds for all quadrics within the error.
     least = np.maximum(least - 2.0 * error, MIN_NORM)
     residual = np.linalg.norm(values, axis=1)
     step = (residual + ROUNDING_ERROR + error) / least

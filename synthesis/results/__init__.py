@@ -1,1 +1,1 @@
-"""What comes of a search: which designs are returned, in which order, and the account of the rest."""
+"""Results of a search: selection and order of the designs, and the account of rejected candidates."""

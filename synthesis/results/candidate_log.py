@@ -52,7 +52,7 @@ class CandidateLog(Generic[Design]):
 
     Parameters
     ----------
-    problem : StatedProblem
+    problem : ProblemBase
         The problem, with the number of designs, whether to include failed ones, and the seed.
     reasons : mapping, optional
         Reasons of rejection by the first failed check; the reason of other checks is their own name.
@@ -101,6 +101,7 @@ class CandidateLog(Generic[Design]):
         ``verify`` returns a verdict as described at :meth:`insert_design`.
         """
         verified = 0
+        # Candidates come best first, so the search may stop early.
         for candidate in candidates:
             self.record_candidate(verify(candidate))
             verified += 1
@@ -112,6 +113,7 @@ class CandidateLog(Generic[Design]):
         self, best: Sequence[Candidate], covered: int, verify: Callable[[Candidate], Design | str | None]
     ) -> None:
         """Verify the best of the ``covered`` candidates of an exhaustive search; they outrank the others."""
+        # An exhaustive search has seen the others and ranked them below.
         self.reject(OUTRANKED_REASON, covered - len(best))
         self.verify_candidates(best, verify)
 
@@ -157,10 +159,12 @@ class CandidateLog(Generic[Design]):
 
     def find_reason(self, broken: Sequence[str]) -> str:
         """Return the reason of rejection of a design with these failed checks."""
+        # The first failed check names the reason: later ones often follow from it.
         return self._reasons.get(broken[0], broken[0])
 
     def withdraw(self, kept: list[Design], reason: str) -> None:
         """Keep only ``kept`` of the passed designs; count the others as rejected for ``reason``."""
+        # The total stays the same: accepted becomes rejected.
         withdrawn = len(self.passed) - len(kept)
         self.passed = kept
         self.accepted -= withdrawn
@@ -197,6 +201,7 @@ class CandidateLog(Generic[Design]):
 
     def _complete_failed(self, failed: Design) -> Design:
         """Return a failed design with the checks of its workspace, too."""
+        # If the mechanism cannot be rebuilt, show the design without those checks.
         return check_workspace_of_design(self.stated, failed) or failed
 
     def build_search(self, method: str, *, complete: bool = False) -> Search:
@@ -206,6 +211,7 @@ class CandidateLog(Generic[Design]):
             complete=complete,
             candidates=self.candidates,
             accepted=self.accepted,
+            # Unary plus drops reasons whose count fell to 0.
             rejected=dict(+self.rejected),
             seed=self.stated.seed,
         )

@@ -21,4 +21,5 @@ def verify_all_constraints(problem: ProblemBase, design: Design) -> Design | Non
     judged = check_workspace_of_design(problem, design)
     if judged is None:
         return None
+    # Cheapest first: forces take milliseconds, planes a search, the yield thousands of samples.
     return verify_yield(problem, verify_planes(problem, verify_forces(problem, judged)))

@@ -27,6 +27,7 @@ Candidate = TypeVar("Candidate")
 
 def is_within_tolerance(error: Fraction, tolerance: float | None) -> bool:
     """Return whether an error is at most the tolerance; True without a tolerance."""
+    # The decimal that the client wrote, not its binary approximation.
     return tolerance is None or error <= parse_decimal(tolerance)
 
 
@@ -39,6 +40,7 @@ def select_pareto(by_size: Iterable[Candidate], error: Callable[[Candidate], Any
     """Return the candidates, given in order of increasing size, that have a smaller error than all before them."""
     front: list[Candidate] = []
     for candidate in by_size:
+        # Equal errors at a larger size are dominated, too.
         if not front or error(candidate) < error(front[-1]):
             front.append(candidate)
     return front

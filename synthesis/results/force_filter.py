@@ -44,6 +44,7 @@ def select_bearable(problem: LinkageProblem, mechanism: Mechanism, moved: Real) 
     every = np.ones(mechanism.shape, np.bool_)
     slides = mechanism.has_slide_input
     if stated is None or not limits.keys() & set(FORCES_IN_CLOSED_FORM) or not every.size:
+        # Nothing to evaluate: let the general equations decide later.
         return every
     speed = stated.speed if slides else stated.speed_rpm
     machine = (
@@ -51,13 +52,16 @@ def select_bearable(problem: LinkageProblem, mechanism: Mechanism, moved: Real) 
         if speed is None
         else build_machines(apply_link_shape(stated, mechanism.links), mechanism, problem.length_unit)
     )
+    # Undecidable here; the designs are measured later in any case.
     if speed is None or machine is None or not is_built_of_dyads(machine):
         return every
     pace = speed if slides else speed * math.tau / 60.0
+    # The reference input may be common to all designs.
     start = np.broadcast_to(np.asarray(mechanism.reference_input), mechanism.shape)[:, None]
     shares = np.linspace(0.0, 1.0, STEP_COUNT + 1)
     found = compute_dyad_forces(machine, start + moved[:, None] * shares, pace)
     if not slides:
+        # A crank is loaded over its whole turn; a linkage that jams on the way is evaluated over the used range only.
         whole = compute_dyad_forces(machine, start + math.tau * shares, pace)
         turns = np.isfinite(whole.drive).all(axis=1, keepdims=True)
         found = type(found)(*(np.where(turns, full, part) for full, part in zip(whole, found, strict=True)))
@@ -66,6 +70,7 @@ def select_bearable(problem: LinkageProblem, mechanism: Mechanism, moved: Real) 
         "joint_force": found.pin,
         "shaking_force": found.shaking_force,
         "shaking_moment": found.shaking_moment,
+        # A slide's speed is in length units, so its power needs the scale of the forces.
         "power": found.drive * pace * (machine.scale if slides else 1.0),
     }
     for name, limit in limits.items():

@@ -40,6 +40,7 @@ def verify_forces(problem: ProblemBase, design: Design) -> Design:
     """Return a design with its forces and their checks, if it passed all other checks and forces are limited."""
     if not isinstance(problem, LinkageProblem) or not problem.constraints.force_limits or problem.dynamics is None:
         return design
+    # Forces are expensive: a design that failed already does not need them.
     if not design.verification.passed:
         return design
     return add_force_checks(problem.constraints, add_forces(problem, design))
@@ -50,10 +51,12 @@ def add_force_checks(constraints: Constraints, design: Design) -> Design:
     limits = constraints.force_limits
     if not limits:
         return design
+    # Checks may come from a narrower search, whose limits do not apply here.
     checks = [check for check in design.verification.checks if check.name not in limits]
     for name, limit in limits.items():
         value = get_peak(design, name)
         checks.append(
+            # Unknown forces cannot be proven to be within the limit.
             Check(name=name, passed=False, limit=limit, dimension=DIMENSIONS[name])
             if value is None
             else check_maximum(name, value, limit, DIMENSIONS[name])
@@ -122,20 +125,21 @@ def prepare_drive(dynamics: DesignDynamics, design: Any, steps: int = STEP_COUNT
 
     Parameters
     ----------
-    stated : DesignDynamics
-        What every design weighs and carries.
+    dynamics : DesignDynamics
+        Masses and loads of every design.
     design : a design of linkages
-        With its mechanism and metrics.
+        Verified design with its mechanism and metrics.
     steps : int
-        Of each turn, or of the range.
+        Number of steps per turn, or of the range.
 
     Raises
     ------
-    NoForces
-        Where the block does not fit the design.
+    ForcesUnknownError
+        If the block does not fit the design.
     """
     from synthesis.mechanisms.machine import find_weight_errors
 
+    # The links' thickness follows from the layout, which this design lacks.
     if dynamics.links is not None and dynamics.plate is None:
         raise ForcesUnknownError("/dynamics/links", dynamics.fill_from_layout(None) or "")
     mechanism = rebuild_mechanism(design.mechanism, from_skeleton=True)
@@ -143,6 +147,7 @@ def prepare_drive(dynamics: DesignDynamics, design: Any, steps: int = STEP_COUNT
         raise ForcesUnknownError("", "no mechanism can be built from these dimensions")
     block = apply_link_shape(dynamics, mechanism.links)
     for path, detail in find_weight_errors(block, mechanism):
+        # Report the first error; others often follow from it.
         raise ForcesUnknownError(map_error_path(dynamics, path), detail)
     slides = mechanism.has_slide_input
     speed = dynamics.speed if slides else dynamics.speed_rpm
@@ -156,7 +161,7 @@ def prepare_drive(dynamics: DesignDynamics, design: Any, steps: int = STEP_COUNT
 
 
 def _compute_forces(problem: LinkageProblem, dynamics: DesignDynamics, design: Any) -> DesignForces:
-    # Only who states the block waits for the import.
+    # A local import: only problems with this block need the module.
     from synthesis.analyses.linkages.dynamics import UndeterminedForcesError, find_force_peaks
 
     try:
@@ -164,6 +169,7 @@ def _compute_forces(problem: LinkageProblem, dynamics: DesignDynamics, design: A
         closed, peaks = find_force_peaks(run.mechanism, run.block, problem.length_unit, run.at, run.speed)
     except (ForcesUnknownError, UndeterminedForcesError) as error:
         return DesignForces(units=dynamics.units, remark=str(error))
+    # Limits refer to the most loaded joint.
     joint = max((name for name in peaks if name.startswith("joint ")), key=lambda name: peaks[name].value)
     slides = run.mechanism.has_slide_input
 
@@ -188,28 +194,28 @@ def _compute_forces(problem: LinkageProblem, dynamics: DesignDynamics, design: A
 
 
 def compute_forces_over_motion(dynamics: DesignDynamics, design: Any, unit: LengthUnit, steps: int) -> dict[str, Any]:
-    """Analyze a design's motion with all forces, in the form of
-    :class:`synthesis.analyses.linkages.linkage.LinkageAnalysis`.
+    """Analyze a design's motion with all forces, as :class:`synthesis.analyses.linkages.linkage.LinkageAnalysis`.
 
     Parameters
     ----------
-    stated : DesignDynamics
-        What it weighs and carries; with the wishes of a :class:`DynamicsBlock`, where it has them.
+    dynamics : DesignDynamics
+        Masses and loads; with the report options of a :class:`DynamicsBlock` if it has them.
     design : a design of linkages
-        As it was answered.
+        The design as answered.
     unit : str
         Its length unit.
     steps : int
-        Of each turn, or of the range.
+        Number of steps per turn, or of the range.
 
     Raises
     ------
-    NoForces
-        Where the block does not fit the design.
+    ForcesUnknownError
+        If the block does not fit the design.
     """
     from synthesis.analyses.linkages.linkage import LinkageAnalysisRequest
 
     run = prepare_drive(dynamics, design, steps)
+    # Fields of designs alone, such as the shape of all links, have been applied to the links already.
     own = {name for name in DesignDynamics.model_fields if name not in LoadedLinkage.model_fields}
     block = run.block.model_dump(mode="json", by_alias=True, exclude_unset=True, exclude=own)
     request = LinkageAnalysisRequest.model_validate(
@@ -230,6 +236,7 @@ def map_error_path(dynamics: DesignDynamics, path: str) -> str:
     parts = path.split("/")
     if parts[1:3] != ["dynamics", "bodies"] or dynamics.links is None or "shape" not in parts[4:5]:
         return path
+    # Undo the escaping of JSON pointers in the reverse order.
     unescaped = parts[3].replace("~1", "/").replace("~0", "~")
     return path if unescaped in dynamics.bodies else "/".join(["/dynamics/links", *parts[5:]])
 
@@ -249,6 +256,7 @@ def _fit_shape_to_link(shape: Shape, joints: Sequence[str]) -> Shape:
     """Fit the shape of all links to one link: keep the holes of its own joints, and the ends only for a bar."""
     holes = {joint: diameter for joint, diameter in shape.holes.items() if joint in joints}
     update: dict[str, Any] = {"holes": holes}
+    # A link with more than two joints is a hull, which has no square ends.
     if len(joints) != 2:
         update |= {"ends": "round", "overhang": 0.0}
     return shape.model_copy(update=update)
@@ -258,11 +266,14 @@ def _list_inputs(block: DesignDynamics, mechanism: Mechanism, metrics: Any, step
     """Return the inputs of a whole cycle of mechanism and loads if the input rotates fully, else as verified."""
     from synthesis.mechanisms.courses import find_period_turns
 
+    # Steering linkages do not measure this; their input never rotates fully.
     turns_through = getattr(metrics, "full_rotation", False)  # a steering linkage is not asked to
     if turns_through and not mechanism.has_slide_input:
         turns = find_period_turns(block, mechanism)
+        # 0 means that motion and loads never repeat together.
         if turns:
             start = math.degrees(mechanism.reference_input)
+            # The last position repeats the first, as the force analysis of a closed motion expects.
             return start + np.linspace(0.0, 360.0 * turns, steps * turns + 1)
     ends = metrics.used_stroke if mechanism.has_slide_input else metrics.used_range
     return None if ends is None else np.linspace(float(ends[0]), float(ends[1]), steps + 1)

@@ -38,8 +38,8 @@ def lay_out_design(layout_spec: LayoutSpec, design: Design) -> Design:
 
     Parameters
     ----------
-    stated : StatedLayout
-        The block of the statement.
+    layout_spec : LayoutSpec
+        The block of the request.
     design : a design of linkages
         The verified design; it is returned unchanged if it already has a layout.
     """
@@ -55,6 +55,7 @@ def lay_out_design(layout_spec: LayoutSpec, design: Design) -> Design:
     )
     metrics = design.metrics
     used = metrics.used_stroke
+    # Either a stroke or a range is known, depending on the input.
     if metrics.used_range is not None:
         used = math.radians(metrics.used_range[0]), math.radians(metrics.used_range[1])
     layout = lay_out_mechanism(mechanism, layout_spec, used)
@@ -63,6 +64,7 @@ def lay_out_design(layout_spec: LayoutSpec, design: Design) -> Design:
         check = Check(
             name=PLANES,
             passed=layout.buildable and layout.count <= layout_spec.max_planes,
+            # A design that cannot be built in any number of planes has no value.
             value=float(layout.count) if layout.buildable else None,
             limit=float(layout_spec.max_planes),
         )

@@ -23,6 +23,7 @@ def verify_yield(problem: ProblemBase, design: Design) -> Design:
         return design
     if problem.manufacture.required_yield is None or not design.verification.passed:
         return design
+    # The yield counts for the rounded design, which does not exist yet.
     if problem.manufacture.is_gridded and design.exact is None:
         return design
     return analyze_manufacture(problem, design, allocate=False)
@@ -53,7 +54,9 @@ def analyze_manufacture(problem: LinkageProblem, design: Design, *, allocate: bo
     if stated is None:
         return design
     if not allocate:
+        # The widest tolerances need the final designs only; the check of the yield does not depend on them.
         stated = stated.model_copy(update={"widest": False})
+    # Results exist already, unless only the tolerances are missing.
     if design.manufacture is not None and (design.manufacture.widest or not stated.widest):
         return design
     # A local import: only problems with this block need the module.
@@ -76,6 +79,7 @@ def analyze_manufacture(problem: LinkageProblem, design: Design, *, allocate: bo
     update: dict[str, Any] = {"manufacture": told.manufactured, "metrics": metrics}
     if stated.required_yield is not None:
         low = None if told.yield_ is None else told.yield_.low
+        # The lower end of the confidence interval must reach the required yield.
         kept = low is not None and low >= stated.required_yield
         others = [check for check in design.verification.checks if check.name != YIELD]
         check = Check(name=YIELD, passed=kept, value=low, limit=stated.required_yield)
@@ -87,6 +91,7 @@ def analyze_manufacture(problem: LinkageProblem, design: Design, *, allocate: bo
 def find_branch_range(problem: LinkageProblem, design: Any) -> tuple[float, float] | None:
     """Return the range of the input (radians) on which a manufactured design must stay on its branch, or None."""
     used = design.metrics.used_range
+    # Without this constraint a linkage may change its branch between targets.
     if used is None or not problem.constraints.same_branch:
         return None
     return math.radians(used[0]), math.radians(used[1])
@@ -95,6 +100,7 @@ def find_branch_range(problem: LinkageProblem, design: Any) -> tuple[float, floa
 def measure_target_errors(problem: LinkageProblem, design: Any) -> tuple[float | None, float | None]:
     """Return the maximum distance and angle (degrees) by which a design misses its targets; None if not applicable."""
     greatest = getattr(design.metrics, "max_structural_error", None)
+    # Function generators measure one maximum error, in the unit of the output.
     if greatest is not None:
         return (greatest, None) if problem.slides else (None, greatest)
     angles = [target.angle_residual for target in design.targets if target.angle_residual is not None]

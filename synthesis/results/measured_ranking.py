@@ -21,7 +21,7 @@ Problem = TypeVar("Problem", bound=ProblemBase)
 
 MAX_SEARCHES, LIMIT_FACTOR, MAX_SEARCH_TIME_S = 4, 0.8, 4.0
 """For orders by a force: maximum number of further searches, limit of each as a share of the smallest force so far, and
-processor time (seconds) after which none is started."""
+processor time (seconds) after which no further one is started."""
 
 MAX_EXAMINED: Mapping[str, int] = {"planes": 40, "yield": 40} | dict.fromkeys(FORCE_NAMES, 100)
 """Minimum number of designs to measure for each such order: the first ones in the default order."""
@@ -40,6 +40,7 @@ def widen_search(problem: Problem) -> Problem:
         return problem
     if problem.rank_by not in MAX_EXAMINED:
         gridded = problem.manufacture is not None and problem.manufacture.is_gridded
+        # Other orders need no measurement and search as requested.
         return problem.list_later(problem.rank_by, MAX_ROUNDED) if gridded else problem
     return problem.list_later(type(problem).model_fields["rank_by"].default, MAX_EXAMINED[problem.rank_by])
 
@@ -73,6 +74,7 @@ def search_below_limits(
             break
         narrowed = problem.constraints.model_copy(update={limit: LIMIT_FACTOR * least})
         asked = widen_search(problem).model_copy(update={"constraints": narrowed, "include_failed": False})
+        # The limit applies to the search only, so check the designs against the original limits.
         further = [_restore_checks(problem, design) for design in solve(asked).designs]
         if not further:
             break
@@ -82,6 +84,7 @@ def search_below_limits(
 
 def _restore_checks(problem: LinkageProblem, design: Any) -> Any:
     """Replace the force checks of a design by those of the original limits."""
+    # Checks against the narrower limit would mark good designs as failed.
     checks = [check for check in design.verification.checks if check.name not in FORCE_NAMES]
     bare = design.model_copy(update={"verification": Verification.from_checks(checks)})
     return add_force_checks(problem.constraints, bare)
@@ -94,6 +97,7 @@ def rank_by_measure(problem: LinkageProblem, result: Result[Any]) -> Result[Any]
     value follow, and designs that fail a check come last.
     """
     designs = sort_by_measure(problem, result.designs)[: problem.max_designs]
+    # No remark without designs, because there is nothing to rank.
     told = _describe_order(problem.rank_by, result.designs, _select_measure(problem)) if result.designs else ""
     return result.model_copy(update={"designs": designs, "summary": result.summary + told})
 
@@ -105,6 +109,7 @@ def sort_by_measure(problem: LinkageProblem, designs: Sequence[Any]) -> list[Any
 
     def compute_sort_key(design: Any) -> tuple[bool, float]:
         measured = measure(design)
+        # Failed designs last, then those without a value.
         return not design.verification.passed, math.inf if measured is None else sense * measured
 
     return sorted(designs, key=compute_sort_key)

@@ -35,11 +35,13 @@ def pareto_front(designs: Sequence[Any]) -> Front | None:
         None for fewer than two sound designs.
     """
     sound = [n for n, design in enumerate(designs) if design.verification.passed]
+    # A front of one design says nothing.
     if len(sound) < 2:
         return None
     metrics = [designs[n].metrics for n in sound]
     columns = {
         "min_transmission_angle": [-float(measured.min_transmission_angle) for measured in metrics],
+        # Smaller is better in every column, so the transmission angle is negated.
         "size": [float(measured.size) for measured in metrics],
     }
     error = _find_error_field(metrics[0])
@@ -50,6 +52,7 @@ def pareto_front(designs: Sequence[Any]) -> Front | None:
             **columns,
         }
     table = np.array(list(columns.values())).T
+    # Pairwise comparison is fast enough: an answer has a few hundred designs at most.
     no_worse = (table[:, None] <= table).all(axis=2)
     better = (table[:, None] < table).any(axis=2)
     beaten = np.flatnonzero((no_worse & better).any(axis=0))

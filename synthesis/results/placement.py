@@ -50,23 +50,25 @@ def find_placement(
     Parameters
     ----------
     constraints : Constraints
-        Whose regions and limits of length are to be kept.
+        Constraints with the regions and limits of length to satisfy.
     fixed, moving : sequence of complex
         Fixed pivots, and moving pivots in the first position.
     lengths : sequence of float or None
-        Of the links; None where the size is given, which is then that of ``preferred``.
+        Lengths of the links; None if the size is fixed, namely that of ``preferred``.
     preferred : complex
-        Size and direction that are taken where they fit.
+        Preferred size and direction, used if they fit.
     turned : bool
-        Whether the direction may be another one.
+        Whether another direction is permitted.
     """
     limits = constraints.link_length
     if limits is None and constraints.fixed_pivot_region is None and constraints.moving_pivot_region is None:
+        # Any position fits: keep the preferred one at the origin.
         return Placement(0j, preferred, True)
     least, most = 0.0, math.inf
     if lengths is None:
         least = most = abs(preferred)
     elif limits is not None:
+        # One scale applies to all links: the shortest gives its minimum, the longest its maximum.
         least = limits.min / min(lengths)
         most = math.inf if limits.max is None else limits.max / max(lengths)
     regions = [constraints.fixed_pivot_region] * len(fixed) + [constraints.moving_pivot_region] * len(moving)
@@ -90,19 +92,21 @@ def place_mechanism(
     Parameters
     ----------
     constraints : Constraints
-        Whose regions and limits of length are to be kept.
+        Constraints with the regions and limits of length to satisfy.
     mechanism : a mechanism of an answer
         It stays where it is if it fits there.
     lengths : sequence of float
-        Of its links.
+        Lengths of its links.
     sized, turned : bool
-        Whether its size, and its direction, may be others.
+        Whether another size, and another direction, are permitted.
     """
     skeleton = mechanism.skeleton
     still = next(link.joints for link in skeleton.links if link.name == "ground")
+    # P is a point of the body, not a pivot, so regions do not apply to it.
     places = {name: complex(*place) for name, place in skeleton.joints.items() if name != "P"}
     fixed = [place for name, place in places.items() if name in still]
     moving = [place for name, place in places.items() if name not in still]
+    # A mechanism that fits stays exactly as it was computed.
     if _is_placed(constraints, fixed, moving, lengths):
         return mechanism
     there = find_placement(constraints, fixed, moving, lengths if sized else None, 1.0 + 0j, turned=turned)
@@ -114,6 +118,7 @@ def _is_placed(
 ) -> bool:
     """Return whether the linkage already satisfies all regions and limits."""
     limits = constraints.link_length
+    # The tolerance keeps a link that a fit placed exactly at its limit.
     if limits is not None and min(lengths) < limits.min * (1.0 - EDGE_TOLERANCE):
         return False
     if limits is not None and limits.max is not None and max(lengths) > limits.max * (1.0 + EDGE_TOLERANCE):
@@ -131,9 +136,10 @@ def transform_mechanism(mechanism: Mechanism, origin: complex, along: complex) -
         return there.real, there.imag
 
     def transform_line(of: dict[str, Any]) -> dict[str, Any]:
-        # A slide of an inverted linkage is told in its link's own frame, without a point.
+        # A slide of an inverted linkage is given in its link's own frame, without a point, and is not transformed.
         return {**of, "point": transform_point(of["point"]), "angle": of["angle"] + turn} if "point" in of else of
 
+    # Fields that are absent here are ratios or names, which a similarity does not change.
     changed: dict[str, Callable[[Any], Any]] = {
         "fixed_pivot": transform_point,
         "fixed_pivots": lambda pivots: {name: transform_point(point) for name, point in pivots.items()},

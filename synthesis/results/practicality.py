@@ -58,10 +58,12 @@ def sort_usable_first(problem: LinkageProblem, designs: Sequence[Any]) -> Ordere
     """
     limited = not all(_is_default(problem.constraints, name) for name in ("min_transmission_angle", "max_link_ratio"))
     passed = [design for design in designs if design.verification.passed]
+    # A client who set limits or an order has decided what matters.
     if limited or not _is_default(problem, "rank_by") or not passed or is_usable(passed[0]):
         return OrderedDesigns(list(designs), "")
 
     def measure_design_error(design: Any) -> float:
+        # Each kind names its own error; otherwise use the error of the Pareto front.
         measure = problem.error_measure
         return measure_error(design) if measure is None else float(getattr(design.metrics, measure))
 
@@ -79,7 +81,9 @@ def sort_usable_first(problem: LinkageProblem, designs: Sequence[Any]) -> Ordere
     first = [design for design in near if is_usable(design)]
     if first:
         return OrderedDesigns(
-            _move_to_front(first, designs), f" Designs with {practice} and {compact} are listed first."
+            _move_to_front(first, designs),
+            f" Designs with {practice} and {compact} are listed first.",
+            # Without a fully practical design, accept a long link before a poor transmission angle.
         )
     told = f" {missing} has {practice} and {compact}"
     if has_even_links(passed[0]):
@@ -94,6 +98,7 @@ def sort_usable_first(problem: LinkageProblem, designs: Sequence[Any]) -> Ordere
 
 def _move_to_front(first: Sequence[Any], designs: Sequence[Any]) -> list[Any]:
     """Return the designs with ``first`` moved to the front."""
+    # Compare by identity: designs with equal values are still different entries.
     chosen = {id(design) for design in first}
     return [*first, *(design for design in designs if id(design) not in chosen)]
 

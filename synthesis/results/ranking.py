@@ -1,6 +1,6 @@
 """Ranking of sound designs, and removal of designs that are nearly equal.
 
-docs/ranking.md explains the orders.
+docs/methods/ranking.md explains the orders.
 """
 
 from __future__ import annotations
@@ -36,6 +36,7 @@ def select_distinct(joints: ArrayLike, count: int, apart: float) -> list[int]:
         Chosen rows, best first.
     """
     table = np.ascontiguousarray(joints, np.complex128)
+    # The kernel cannot be compiled for an empty table of unknown width.
     return [int(k) for k in _select_distinct(table, count, apart)] if len(table) else []
 
 
@@ -45,6 +46,7 @@ def select_most_distinct(joints: NDArray[np.complex128], count: int, aparts: Ite
     chosen: list[int] = []
     for apart in aparts:
         chosen = select_distinct(joints, count, float(apart))
+        # Enough, or all that exist: a smaller distance would only add near duplicates.
         if len(chosen) >= min(count, len(joints)):
             break
     return chosen
@@ -60,8 +62,10 @@ def _select_distinct(joints: NDArray[np.complex128], count: int, apart: float) -
         differs = True
         for j in chosen[:taken]:
             gap = 0.0
+            # Two candidates differ if any of their joints does.
             for k in range(joints.shape[1]):
                 gap = max(gap, abs(joints[i, k] - joints[j, k]))
+            # Too close to a better candidate, which is already chosen.
             if gap < apart:
                 differs = False
                 break
@@ -77,6 +81,7 @@ RESIDUAL_ROUNDING = 1e-12
 
 def _compute_decade(residual: float) -> float:
     """Return the order of magnitude of a residual; residuals of one decade, or at rounding level, count as equal."""
+    # Whole decades: differences within one do not matter in practice, and other keys decide.
     return math.floor(math.log10(max(residual, RESIDUAL_ROUNDING)))
 
 

@@ -57,7 +57,7 @@ def round_designs(problem: LinkageProblem, result: Result[Any], verify_with_tole
         The problem with the requested number of designs.
     result : Result
         Exact designs; those that fail a check are kept unchanged, after the others.
-    nearly : callable
+    verify_with_tolerance : callable or None
         The kind's :attr:`synthesis.model.kind.Kind.nearly`.
     """
     stated = problem.manufacture
@@ -70,6 +70,7 @@ def round_designs(problem: LinkageProblem, result: Result[Any], verify_with_tole
     found: list[Any] = []
     missed: list[_RoundedDesign] = []
     for design in passed:
+        # Designs are rounded in order, so the first ones found are the best.
         if len(found) >= problem.max_designs:
             break
         rounded = _round_design(problem, design, verify_with_tolerance)
@@ -77,9 +78,11 @@ def round_designs(problem: LinkageProblem, result: Result[Any], verify_with_tole
             missed.append(rounded)
         else:
             found.append(rounded.design)
+    # Designs lost by rounding move from accepted to rejected, so that the counts still add up.
     lost = Counter(rounded.reason for rounded in missed)
     search = result.search
     account = {
+        # Rounding looks only near the designs, so the search is no longer exhaustive.
         "complete": False,
         "accepted": search.accepted - len(missed),
         "rejected": dict(Counter(search.rejected) + lost),
@@ -93,6 +96,7 @@ def round_designs(problem: LinkageProblem, result: Result[Any], verify_with_tole
             "designs": [*found, *(failed if problem.include_failed else [])][: problem.max_designs],
             "search": search.model_copy(update=account),
             "summary": result.summary + told,
+            # With a rounded design there is no need for a nearest miss.
             "nearest_miss": result.nearest_miss if found else _find_nearest_miss(missed),
         }
     )
@@ -113,6 +117,7 @@ def _round_design(problem: LinkageProblem, design: Any, verify_with_tolerance: N
     if isinstance(near, str):
         return _RoundedDesign(None, ON_GRID)
     first, judged = _RoundedDesign(None, ON_GRID), 0
+    # Candidates are sorted by error: the first that passes is the most accurate one.
     for n in range(min(len(near.rows), MAX_DRIVEN)):
         mechanism = build_mechanism(linkage, near, n)
         driven = None if mechanism is None else verify_with_tolerance(problem, design, mechanism)
@@ -121,6 +126,7 @@ def _round_design(problem: LinkageProblem, design: Any, verify_with_tolerance: N
         checks = [*_check_quality(problem, driven, exact), *driven.verification.checks]
         rounded = driven.model_copy(
             update={
+                # Joints are computed, but the dimensions must be the grid values exactly.
                 "mechanism": replace_dimensions(driven.mechanism, near.rows[n]),
                 "exact": exact,
                 "verification": Verification.from_checks(checks),
@@ -130,12 +136,15 @@ def _round_design(problem: LinkageProblem, design: Any, verify_with_tolerance: N
             judged += 1
             rounded = verify_all_constraints(problem, rounded)
             if rounded is None:
+                # Driven, but no mechanism can be rebuilt from the rounded dimensions.
                 continue
         broken = [check.name for check in rounded.verification.checks if not check.passed]
         if not broken:
             return _RoundedDesign(rounded, "")
+        # Keep the most accurate failure for the nearest miss.
         if first.design is None:
             first = _RoundedDesign(rounded, broken[0])
+        # The common constraints are expensive, so limit the number of designs that reach them.
         if judged >= MAX_VERIFIED:
             break
     return first
@@ -147,6 +156,7 @@ def _check_quality(problem: LinkageProblem, design: Any, exact: ExactDesign) -> 
     held = problem.build_required_targets(design)
     own = _mark_own_tolerances(held)
     if own is not None:
+        # Targets with their own tolerances have checks of their own.
         free = [target for target, has in zip(design.targets, own, strict=True) if not has]
         error = max((target.point_residual for target in free), default=None)
         angle = max((target.angle_residual for target in free if target.angle_residual is not None), default=None)
@@ -162,6 +172,7 @@ def _check_quality(problem: LinkageProblem, design: Any, exact: ExactDesign) -> 
 def _set_error_limits(problem: LinkageProblem, held: RequiredTargets, exact: ExactDesign) -> tuple[float, float]:
     """Return the permitted distance and angle (radians) at targets: the quality if given, otherwise the defaults."""
     quality = None if problem.manufacture is None else problem.manufacture.quality
+    # An exact design may itself be inaccurate, as a fit to many targets; rounding may then double its error.
     distance = max(LARGE_ERROR * held.size, MAX_ERROR_GROWTH * (exact.max_error or 0.0))
     angle = max(LARGE_ERROR, MAX_ERROR_GROWTH * math.radians(exact.max_angle_error or 0.0))
     if quality is not None and quality.max_error is not None:
@@ -189,6 +200,7 @@ def _find_nearest_miss(missed: list[_RoundedDesign]) -> NearestMiss[Any] | None:
     def list_broken_checks(design: Any) -> list[Check]:
         return [check for check in design.verification.checks if not check.passed]
 
+    # A linkage that fails fewer checks is closer, even if its error is larger.
     best = min(known, key=lambda design: (len(list_broken_checks(design)), design.metrics.rms_residual))
     gaps = [
         Gap(check=check.name, value=check.value, limit=check.limit, dimension=check.dimension)

@@ -68,6 +68,7 @@ def select_passing(designs: Sequence[Design]) -> list[Design]:
 
 def has_good_transmission(problem: LinkageProblem, design: Any) -> bool:
     """Return whether a linkage that passes all checks transmits force well enough to search no other types."""
+    # A required angle has already been checked, so passing is good enough.
     demanded = problem.constraints.min_transmission_angle
     return demanded is not None or bool(design.metrics.min_transmission_angle >= SOUND_TRANSMISSION_ANGLE)
 
@@ -79,7 +80,9 @@ def merge_alternatives(
     order = ordered([*plain, *better])
     kept = order[:most]
     for sort in (plain, better):
+        # With space for one design only, the best of all is shown.
         if sort and len(kept) > 1 and not any(design is one for design in kept for one in sort):
+            # Replace the last design: the best of the missing type is informative, the last of the other least so.
             kept[-1] = next(design for design in order if any(design is one for one in sort))
     return kept
 
@@ -123,12 +126,13 @@ def merge_results(
         Designs of both answers to list, in order.
     of_second : int
         Number of them from the second answer.
-    told : str
+    remark : str
         Sentence before both summaries.
     ordered : callable
         Sorts designs.
     """
     simple, found = answers
+    # Failed designs are only present if the client requested them.
     failed = [one for answer in answers for one in answer.designs if not one.verification.passed]
     searches = limit_offered(simple.search, len(offered) - of_second), limit_offered(found.search, of_second)
     return simple.model_copy(
@@ -142,6 +146,7 @@ def merge_results(
 
 def limit_offered(search: Search, count: int) -> Search:
     """Return the counts of a search of which at most ``count`` designs are listed; the others count as outranked."""
+    # A search may have accepted more designs than are listed now.
     withdrawn = max(search.accepted - count, 0)
     rejected = Counter(search.rejected) + Counter({OUTRANKED_REASON: withdrawn})
     return search.model_copy(update={"accepted": search.accepted - withdrawn, "rejected": dict(rejected)})
@@ -152,6 +157,7 @@ def merge_searches(first: Search, second: Search) -> Search:
     return second.model_copy(
         update={
             "method": f"{first.method}, {second.method}",
+            # Two partial searches are not exhaustive together.
             "complete": False,
             "candidates": first.candidates + second.candidates,
             "accepted": first.accepted + second.accepted,

@@ -39,6 +39,7 @@ class SearchBudget:
         """Run a search, charge its time to the budget, and return its result and its time in seconds."""
         begun = self._clock()
         try:
+            # Charge the time of a search that raises, too.
             found = search(*arguments)
         finally:
             taken = self._clock() - begun
@@ -57,6 +58,7 @@ class MeteredSearch:
         self._allowance, self._search = allowance, search
         self._longest = 0.0
 
+    # A class so that each kind of search has its own longest run.
     def __call__(self, *arguments: Any) -> Any:
         """Run the search even if the budget is used up."""
         found, taken = self._allowance.run_metered(self._search, arguments)

@@ -1,9 +1,9 @@
-"""The proof of a design: it is driven by the analysis core and measured, from its dimensions alone.
+"""Verification of a design: the analysis core drives and measures it, from its dimensions alone.
 
-Here stands what is the same for every kind of problem: a mechanism rebuilt from what an answer states
-(:mod:`~synthesis.verification.reconstruction`), extremes of what it does
-(:mod:`~synthesis.verification.refined_extremes`), what is measured of every driven linkage
-(:mod:`~synthesis.verification.measures`), and measured values against limits (:mod:`~synthesis.verification.checks`,
-:mod:`~synthesis.verification.constraints`). What only one kind demands (its targets, its rests, its dials) is driven
-and checked in that kind's folder, in ``verification`` and what that imports; a module here imports no kind.
+This package contains the parts common to all kinds of problems: the mechanism rebuilt from an answer
+(:mod:`~synthesis.verification.reconstruction`), extremes of its motion
+(:mod:`~synthesis.verification.refined_extremes`), measured properties of every driven linkage
+(:mod:`~synthesis.verification.measures`), and comparisons of measured values with limits
+(:mod:`~synthesis.verification.checks`, :mod:`~synthesis.verification.constraints`). Requirements of a single kind
+(targets, dwells, dials) are checked in that kind's folder ``verification``; a module here imports no kind.
 """

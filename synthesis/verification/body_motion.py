@@ -94,10 +94,12 @@ def measure_body_motion(
     input_turn = 0.0 if slides else abs(span[1] - span[0])
     travelled, turned = _measure_path_and_turn(pose, *span)
     steps = np.diff(turns)
+    # Rotations are compared modulo a full turn, since a target fixes the angle only up to that.
     needed_turn = float(np.abs(steps - 2.0 * np.pi * np.round(steps / (2.0 * np.pi))).sum())
     needed = float(np.abs(np.diff(places)).sum())
     travel_ratio = turn_ratio = None
     excess = 0.0
+    # A linkage that does not close between its positions has no path; it fails other checks.
     if not math.isfinite(travelled + turned):
         return BodyMotion(input_turn)
     if needed > MIN_EXTENT * size:
@@ -106,6 +108,7 @@ def measure_body_motion(
         excess = max(excess, (travelled - needed) / max(needed, size))
     if needed_turn > MIN_EXTENT:
         turn_ratio = turned / needed_turn
+    # Small required rotations are likewise compared with a fixed angle.
     excess = max(excess, (turned - needed_turn) / max(needed_turn, SMALL_BODY_TURN))
     return BodyMotion(input_turn, travel_ratio, turn_ratio, excess)
 
@@ -114,10 +117,12 @@ def _measure_path_and_turn(pose: Pose, start: float, end: float) -> tuple[float,
     """Measure the length of P's path and the total rotation of the body; NaN if the linkage does not close."""
     before = math.nan, math.nan
     count = FIRST_STEP_COUNT
+    # Double the grid until length and rotation agree with those of the grid before.
     while True:
         places, angles = pose(np.linspace(start, end, count + 1))
         if not np.all(np.isfinite(places)):
             return math.nan, math.nan
+        # Unwrap before summing: angles of a pose are known only within one turn.
         angles = np.unwrap(angles)
         ways = _measure_path(places), _sum_turning(angles)
         # Every other point of the first grid serves as the coarser grid for the first comparison.
@@ -140,6 +145,8 @@ def _measure_path(places: Complex) -> float:
 def _sum_turning(angles: Real) -> float:
     """Sum the rotation of a body in both directions."""
     steps = np.diff(angles)
+    # A reversal lies between samples: add the rotation that the chord to the next sample misses at the extreme.
     back = np.flatnonzero(steps[1:] * steps[:-1] < 0.0)
+    # Height of the parabola's vertex above the chords: slope² / (2 |bend|), on the way there and back.
     slope, bend = 0.5 * (steps[back + 1] + steps[back]), steps[back + 1] - steps[back]
     return float(np.abs(steps).sum() + (slope * slope / np.abs(bend)).sum())

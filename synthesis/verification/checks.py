@@ -35,6 +35,7 @@ def check_minimum(
     name: str, value: float, limit: float, dimension: Dimension | None = None, slack: float = LIMIT_SLACK
 ) -> Check:
     """Check a value against a minimum; ``slack`` is relative."""
+    # Relative, because limits range from fractions to thousands; the slack of a limit 0 is 0.
     return Check(name=name, passed=value >= limit * (1.0 - slack), value=value, limit=limit, dimension=dimension)
 
 

@@ -50,12 +50,14 @@ def check_constraints(
     if constraints.full_rotation:
         checks.append(Check(name="full_rotation", passed=measures.full_rotation))
     if constraints.link_length is not None:
+        # A minimum of 0 is the default and no constraint.
         if constraints.link_length.min > 0.0:
             checks.append(check_minimum("shortest_link", min(measures.lengths), constraints.link_length.min, LENGTH))
         if constraints.link_length.max is not None:
             checks.append(check_maximum("longest_link", max(measures.lengths), constraints.link_length.max, LENGTH))
     if constraints.max_link_ratio is not None:
         checks.append(check_maximum("link_ratio", measures.link_ratio, constraints.max_link_ratio))
+    # Regions are exact: the distance function itself returns 0 for points on the border.
     for name, region, pivots in (
         ("fixed_pivot_region", constraints.fixed_pivot_region, fixed_pivots),
         ("moving_pivot_region", constraints.moving_pivot_region, moving_pivots),

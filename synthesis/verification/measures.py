@@ -3,7 +3,7 @@
     quality = sin μ / ((1 + (reach/3)²) · (1 + (ratio/8)²))
 
 combines the first concerns of a designer: good force transmission, a linkage that is small for its task, and links of
-similar lengths. docs/ranking.md explains the numbers and defines the size of the task for each kind of problem.
+similar lengths. docs/methods/ranking.md explains the numbers and defines the size of the task for each kind of problem.
 """
 
 from __future__ import annotations
@@ -150,6 +150,7 @@ def measure_linkage(
         Factor of the quality, for a linkage that carries a body: see
         :func:`synthesis.verification.body_motion.compute_ease`.
     """
+    # Without a used range there are no angles, and 0 is the worst one: quality becomes 0.
     least = min(transmission.values(), default=0.0)
     ratio = max(lengths) / min(lengths)
     return Measures(
@@ -161,6 +162,7 @@ def measure_linkage(
         visits_in_order=visits_in_order,
         full_rotation=full_rotation,
         link_ratio=ratio,
+        # A task without size has an infinite scale: reach then drops out of the quality and is not reported.
         reach=reach / task if math.isfinite(task) else None,
         size=measure_diagonal(places),
         quality=eased * compute_quality(math.sin(least), reach / task, ratio),
@@ -199,6 +201,7 @@ def measure_fourbar_reach(linkage: Fourbar) -> float:
 
 def measure_diagonal(places: Complex) -> float:
     """Return the diagonal of the box around the finite points; 0 if there are none."""
+    # NaN marks inputs at which the linkage does not close.
     known = places[np.isfinite(places)]
     return math.hypot(np.ptp(known.real), np.ptp(known.imag)) if known.size else 0.0
 
@@ -210,6 +213,7 @@ def list_fixed_pivots(mechanism: Mechanism) -> list[complex]:
 
 def list_moving_pivots(mechanism: Mechanism) -> list[complex]:
     """Return the reference positions of all joints except those of the ground and P."""
+    # P is a point of a link, not a pivot.
     still = {*mechanism.links[GROUND], "P"}
     return [complex(place) for name, place in mechanism.joints.items() if name not in still]
 
@@ -223,5 +227,6 @@ def classify_fourbar(mechanism: Mechanism, *joints: str) -> BarkerClass:
 def classify_inner_fourbar(mechanism: Mechanism) -> BarkerClass | None:
     """Classify the fourbar O2 A B O4 within a linkage; None if it contains none, as a Stephenson II sixbar."""
     sides = ({"O2", "A"}, {"A", "B"}, {"B", "O4"}, {"O4", "O2"})
+    # Each pair of joints must belong to one link; sixbars of other topology have no such loop.
     joined = all(any(side <= set(joints) for joints in mechanism.links.values()) for side in sides)
     return classify_fourbar(mechanism) if joined else None

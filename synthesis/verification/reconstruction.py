@@ -32,8 +32,10 @@ def rebuild_mechanism(mechanism: BaseModel, *, from_skeleton: bool = False) -> M
     """
     stated = mechanism.model_dump()
     if is_known_by_dimensions(stated["type"]) and not from_skeleton:
+        # The dimensions are sufficient: building from them proves that they are complete and correct.
         del stated["skeleton"]
     try:
         return _GIVEN_ADAPTER.validate_python(stated).build_mechanism()
+    # A design that cannot be rebuilt is dropped by the caller, so the reason does not matter here.
     except (ValidationError, MechanismError, ImpossibleMechanism):
         return None

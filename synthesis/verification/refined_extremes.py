@@ -43,9 +43,11 @@ def find_minimum_near(of: Callable[[Real], Real], inputs: Real, values: Real) ->
     """
     if not np.isfinite(values).any():
         return math.nan, math.nan
+    # Infinity sorts behind all values, so inputs without a position are never minima.
     known = np.where(np.isfinite(values), values, np.inf)
     n = int(np.argmin(known))
     best = float(inputs[n]), float(known[n])
+    # The grid point itself stays a candidate: refinement may find only NaN around a toggle.
     for at, least in zip(*_refine_minimum(of, inputs, _find_valleys(known)), strict=True):
         if least < best[1]:
             best = float(at), float(least)
@@ -58,8 +60,10 @@ def _find_valleys(values: Real) -> NDArray[np.int64]:
     Between its neighbours a smooth quantity falls below a local minimum of the grid by less than the rise to the higher
     neighbour.
     """
+    # At the ends the missing neighbour counts as equal.
     left, right = np.append(values[:1], values[:-1]), np.append(values[1:], values[-1:])
     known = np.isfinite(values)
+    # Replace infinities before subtracting, because ∞ − ∞ is NaN.
     rise = np.where(known, np.maximum(left, right), 0.0) - np.where(known, values, 0.0)
     low = np.flatnonzero(known & (values <= left) & (values <= right) & (values - rise <= values.min()))
     return low[np.argsort(values[low], kind="stable")][:MAX_VALLEYS]
@@ -69,15 +73,19 @@ def _refine_minimum(of: Callable[[Real], Real], inputs: Real, places: NDArray[np
     """Refine the minima around several grid points at once; infinite for a point without finite values."""
     at, place, least = inputs[places], np.full(len(places), np.nan), np.full(len(places), np.inf)
     gaps = np.abs(np.diff(inputs))
+    # Half-width of the first refinement: the larger neighbouring gap, so that uneven grids are covered.
     step = np.maximum(gaps[np.maximum(places - 1, 0)], gaps[np.minimum(places, len(gaps) - 1)])
     low, high = sorted((inputs[0], inputs[-1]))
     row = np.arange(len(places))
     for _ in range(REFINEMENT_COUNT):
+        # Clip, because inputs outside the given range do not belong to the motion.
         closer = np.clip(np.linspace(at - step, at + step, SAMPLE_COUNT, axis=1), low, high)
         refined = np.asarray(of(closer.ravel())).reshape(closer.shape)
+        # A quantity without a value never wins the minimum.
         refined = np.where(np.isfinite(refined), refined, np.inf)
         k = refined.argmin(axis=1)
         tried = refined[row, k]
+        # Recentre only on a finite value.
         at = np.where(np.isfinite(tried), closer[row, k], at)
         nearer = tried < least
         place, least = np.where(nearer, at, place), np.where(nearer, tried, least)
@@ -94,6 +102,7 @@ def find_minimum(mechanism: Mechanism, inputs: Real, values: Real, of: Quantity)
 def find_extremes(mechanism: Mechanism, inputs: Real, values: Real, of: Quantity) -> tuple[float, float]:
     """Find the minimum and the maximum of a quantity."""
     least = find_minimum(mechanism, inputs, values, of)
+    # The maximum is the minimum of the negative.
     return least, -find_minimum(mechanism, inputs, -values, lambda motion: -of(motion))
 
 
@@ -128,6 +137,7 @@ def find_min_transmission_angles(
             return np.where(beyond, 0.0, np.abs(there.sines[link]))
 
         _, least = find_minimum_near(evaluate_sine, inputs, np.abs(sines))
+        # Rounding may give a sine slightly above 1.
         angles[link] = 0.0 if math.isnan(least) else math.asin(min(least, 1.0))
     return angles
 

@@ -37,12 +37,14 @@ def integrate_speed(angle: Real, middle: Real, ends: Real, inertia: float, mean_
     ----------
     angle, ends : float, shape (N + 1,)
         Angles over one cycle (radians) and what is taken from the shaft there; corners of the torque are among them.
-    middle : float, shape (N,)
+        Angles over one cycle (radians) and the torque taken from the shaft there; corners of the torque are among them.
         The torque in the middle between them.
     """
     step = np.diff(angle)
     cycle = float(angle[-1] - angle[0])
+    # The mean torque by Simpson's rule, consistent with the midpoints that Runge and Kutta's method uses.
     mean = float((step * (ends[:-1] + 4.0 * middle + ends[1:])).sum() / 6.0) / cycle
+    # The drive supplies the constant mean torque; the difference accelerates the shaft.
     first = np.tile((mean - ends[:-1]) / inertia, CYCLE_COUNT).tolist()
     half = np.tile((mean - middle) / inertia, CYCLE_COUNT).tolist()
     last = np.tile((mean - ends[1:]) / inertia, CYCLE_COUNT).tolist()
@@ -52,16 +54,20 @@ def integrate_speed(angle: Real, middle: Real, ends: Real, inertia: float, mean_
         """Return the excess of the mean over time over the required one, for an initial speed."""
         speed = _integrate_cycle(start, steps, first, half, last)
         if not speed:
+            # A shaft that comes to rest is too slow: negative, so that the root search moves up.
             return -mean_speed
         w = np.array(speed)
         slope = np.array(first) / w[:-1], np.array(last) / w[1:]
+        # Speed at mid-step from the cubic Hermite interpolant; then Simpson's rule for the time.
         between = 0.5 * (w[1:] + w[:-1]) + np.array(steps) * (slope[0] - slope[1]) / 8.0
         time = float((np.array(steps) * (1.0 / w[:-1] + 4.0 / between + 1.0 / w[1:])).sum()) / 6.0
         return CYCLE_COUNT * cycle / time - mean_speed
 
+    # Even the fastest start does not reach the mean: the torque is too uneven for this inertia.
     if not compute_mean_error(MAX_START_SPEED * mean_speed) > 0.0:
         return None
     start = float(
+        # The tolerance is near rounding, because the fluctuation is a small difference of speeds.
         brentq(compute_mean_error, MIN_START_SPEED * mean_speed, MAX_START_SPEED * mean_speed, xtol=1e-14 * mean_speed)
     )
     speed = _integrate_cycle(start, steps, first, half, last)
@@ -87,6 +93,7 @@ def _integrate_cycle(
     for step, a, b, c in zip(h, first, half, last, strict=True):
         one = a / w
         two = w + 0.5 * step * one
+        # Speeds of 0 or less mean rest: the equation in θ has no solution beyond it.
         if two <= 0.0:
             return []
         two = b / two
@@ -106,7 +113,9 @@ def _integrate_cycle(
 
 def _interpolate_extremes(w: Real, before: Real, after: Real, h: Real) -> Real:
     """Return the speeds at the steps' ends and at the extremes of the cubic Hermite interpolant within the steps."""
+    # An extreme lies within a step if the slope changes its sign there.
     turns = before * after < 0.0
+    # Linear interpolation of the slope locates it; the inner where avoids a division by 0.
     share = np.where(turns, before / np.where(turns, before - after, 1.0), 0.0)
     lead = (1.0 + 2.0 * share) * (1.0 - share) ** 2 * w[:-1] + share**2 * (3.0 - 2.0 * share) * w[1:]
     bend = share * (1.0 - share) ** 2 * h * before - share**2 * (1.0 - share) * h * after

@@ -19,7 +19,7 @@ def check_workspace_of_design(problem: ProblemBase, design: Design) -> Design | 
 
     Parameters
     ----------
-    problem : StatedProblem
+    problem : ProblemBase
         The problem.
     design : a design
         Design with its mechanism, metrics and verification.
@@ -31,8 +31,10 @@ def check_workspace_of_design(problem: ProblemBase, design: Design) -> Design | 
     if not isinstance(problem, LinkageProblem) or problem.space is None or problem.space.is_empty:
         return design
     verified: Any = design
+    # The kind has checked the workspace itself, with knowledge that is not available here.
     if any(check.name in WORKSPACE_CHECKS for check in verified.verification.checks):
         return design
+    # The skeleton has joints that dimensions lack but links and bodies need.
     mechanism = rebuild_mechanism(verified.mechanism, from_skeleton=True)
     if mechanism is None:
         return None

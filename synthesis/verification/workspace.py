@@ -1,7 +1,7 @@
-"""Whether a finished linkage fits into its room: pivots in their zones, and a motion that keeps clear of what is there.
+"""Check of a finished linkage against its workspace: pivots in their zones, and a motion clear of box and obstacles.
 
-The mechanism is built anew from its answer and swept over its motion (:mod:`kinematics.linkage.clearance`), so that
-nothing between two positions escapes. What could not be decided counts as not kept.
+The mechanism is rebuilt from its answer and swept over its motion (:mod:`kinematics.linkage.clearance`), so that no
+contact between two positions is missed. An undecided check counts as failed.
 """
 
 from __future__ import annotations
@@ -34,8 +34,8 @@ BODY_POINT = "P"
 class FirstPosition(NamedTuple):
     """The body in its first position, as requested and as reached by the linkage.
 
-    ``point`` and ``angle`` (radians) are demanded; ``met`` is where P is in the reference, and ``turned`` how far the
-    body is turned there from the demanded angle.
+    ``point`` and ``angle`` (radians) are requested; ``met`` is the place of P in the reference, and ``turned`` the
+    body's rotation there from the requested angle.
     """
 
     point: complex
@@ -57,13 +57,13 @@ def check_space(space: Space, mechanism: Mechanism, used: UsedRange, first: Firs
     Parameters
     ----------
     space : Space
-        What is demanded.
+        The requested workspace.
     mechanism : Mechanism
         The finished linkage, in its reference configuration at the first target.
     used : UsedRange
-        The motion that it was verified along.
+        The motion over which it was verified.
     first : FirstPosition, optional
-        Of a linkage that carries a body.
+        For a linkage that carries a body.
     """
     checks = []
     sides = _list_sides(mechanism)
@@ -74,6 +74,7 @@ def check_space(space: Space, mechanism: Mechanism, used: UsedRange, first: Firs
         for zones, side in zip((demanded.input, demanded.output), sides, strict=True):
             if zones is not None:
                 gone = max(gone, _measure_zone_distance(zones, mechanism, side.moving if moving else side.fixed, first))
+        # An infinite distance (missing pivot) has no JSON number: report no value.
         value = gone if math.isfinite(gone) else None
         checks.append(
             Check(name=WORKSPACE_CHECKS[moving], passed=gone == 0.0, value=value, limit=0.0, dimension=LENGTH)
@@ -93,8 +94,10 @@ def _list_sides(mechanism: Mechanism) -> tuple[_Side, _Side]:
     ground = mechanism.links[GROUND]
     crank = _Side("O2" if "O2" in ground else None, "A" if "A" in mechanism.joints else None)
     other = next((joint for joint in ("O4", "O5") if joint in ground), None)
+    # In a slider-crank A or B may be on the slide; a pivot there is not a pin of the output.
     pinned = "B" in mechanism.joints and not any(slide.joint == "A" for slide in mechanism.slides)
     output = _Side(other, "B" if pinned else None)
+    # A driven slider is the input, so the sides change places.
     return (output, crank) if mechanism.has_slide_input else (crank, output)
 
 
@@ -121,8 +124,10 @@ def _check_sweep(space: Space, mechanism: Mechanism, used: UsedRange, first: Fir
     moving = list_moving_parts(space, mechanism, first)
     checks = []
     if space.box is not None:
+        # Without a motion nothing is proven, so the check fails without a value.
         walls, away = _build_walls(space.box, mechanism, moving)
         nearest, kept = (None, False) if span is None else _measure_clearance(mechanism, moving, walls, span, away)
+        # The walls are shifted outward by ``away``; a smaller clearance means that a part extends beyond its side.
         beyond = None if nearest is None else max(away - nearest, 0.0) if not kept else 0.0
         checks.append(Check(name="box", passed=kept, value=beyond, limit=0.0, dimension=LENGTH))
     if space.obstacles:
@@ -141,6 +146,7 @@ def list_moving_parts(space: Space, mechanism: Mechanism, first: FirstPosition |
     for link, joints in mechanism.links.items():
         if link == GROUND:
             continue
+        # The body's outline replaces P as the extent of its link.
         kept = [joint for joint in joints if not (body and joint == BODY_POINT)]
         hull = _build_hull(np.array([complex(mechanism.joints[joint]) for joint in kept]))
         parts.append(Part(link, hull, 0.5 * space.link_width))
@@ -161,6 +167,7 @@ def _build_hull(points: Complex) -> Complex:
 
     hull = MultiPoint(np.stack([points.real, points.imag], axis=1)).convex_hull
     corners: Complex = get_coordinates(hull).view(np.complex128).ravel()
+    # Shapely closes a polygon by repeating its first corner.
     return corners[:-1] if hull.geom_type == "Polygon" else corners
 
 
@@ -169,10 +176,12 @@ def _find_input_range(space: Space, mechanism: Mechanism, used: UsedRange) -> tu
     if space.over == "used":
         ends = used.used_stroke
         if ends is None and used.used_range is not None:
+            # Ranges are in degrees in an answer, in radians in the core.
             ends = math.radians(used.used_range[0]), math.radians(used.used_range[1])
         return None if ends is None else (min(ends), max(ends))
     try:
         here = find_reference_branch(mechanism, find_branches(mechanism))
+    # A change point in the motion leaves the branch undefined, hence nothing is proven.
     except MechanismError:
         return None
     return None if here is None else MechanismOnBranch(mechanism, here).range
@@ -183,6 +192,7 @@ def _measure_clearance(
 ) -> tuple[float, bool]:
     """Return the minimum distance of moving parts from fixed ones, and whether it reaches the required one."""
     pairs = [(n, len(moving) + k) for n in range(len(moving)) for k in range(len(fixed))]
+    # All pairs report their distance, because the answer states the minimum.
     found = sweep_pairs(mechanism, [*moving, *fixed], pairs, *span, wanted, nearest="all")
     return min(pair.least for pair in found), all(pair.keeps for pair in found)
 
@@ -190,9 +200,10 @@ def _measure_clearance(
 def _build_walls(
     box: tuple[tuple[float, float], tuple[float, float]], mechanism: Mechanism, moving: list[Part]
 ) -> tuple[list[Part], float]:
-    """Build the four sides of a box, shifted outward beyond every part: a part as far from them as the shift is inside.
+    """Build the four sides of a box, shifted outward beyond every part.
 
-    So it is told how far a part is beyond a side, as its distance from the moved side falls short.
+    A part inside a side is at least ``away`` from the shifted side. A smaller distance is the amount by which the part
+    extends beyond the side; so violations are measured with the same sweep as obstacles.
     """
     (left, low), (right, high) = box
     places = np.array([complex(z) for z in mechanism.joints.values()])
@@ -200,6 +211,7 @@ def _build_walls(
     reach = float(np.abs(places - middle).max()) + sum(
         float(np.abs(part.points - part.points[0]).max()) for part in moving
     )
+    # Twice the largest possible excursion: a part never reaches the shifted side, where distance would become 0.
     away = 2.0 * (reach + abs(complex(right - left, high - low)) + max(part.radius for part in moving))
     x, y = (left - away, right + away), (low - away, high + away)
     corners = np.array([complex(x[0], y[0]), complex(x[1], y[0]), complex(x[1], y[1]), complex(x[0], y[1])])

@@ -2,8 +2,8 @@
 
 import pytest
 
-from service.api.http.metric_units import measures
-from service.units import symbols
+from service.api.http.metric_units import collect_measures
+from service.units import list_symbols
 from synthesis.registry import KINDS, list_examples, parse_problem
 from tests.support.browser.studio import PLAIN, state
 
@@ -18,12 +18,12 @@ ASKED = """async asked => {
 @pytest.mark.parametrize("kind", KINDS)
 def test_the_page_has_the_units_of_the_service(kept_studio, kind):
     """In millimetres and in inches; a field that an example leaves out has its default there, as jobs have it."""
-    wanted = sorted(set(measures(KINDS[kind].result).values()))
+    wanted = sorted(set(collect_measures(KINDS[kind].result).values()))
     stated = [parse_problem({**one, "length_unit": unit}) for one in list_examples(kind) for unit in ("mm", "in")]
     asked = [[one.model_dump(mode="json", by_alias=True), [str(of) for of in wanted]] for one in stated]
     told = kept_studio.page.evaluate(ASKED, asked)
     for problem, units in zip(stated, told, strict=True):
-        assert dict(zip(wanted, units, strict=True)) == {of: symbols(problem)[of] for of in wanted}
+        assert dict(zip(wanted, units, strict=True)) == {of: list_symbols(problem)[of] for of in wanted}
 
 
 def test_numbers_have_their_units_beside_them(studio, server):

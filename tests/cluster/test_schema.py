@@ -83,4 +83,4 @@ def test_connections_that_were_cut_are_replaced(engine):
             "SELECT count(pg_terminate_backend(pid)) FROM pg_stat_activity "
             "WHERE datname = current_database() AND pid <> pg_backend_pid()",
         )
-    assert store.unfinished()["queued"] == 3
+    assert store.count_unfinished()["queued"] == 3

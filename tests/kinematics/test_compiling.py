@@ -62,6 +62,42 @@ def test_the_compiler_alone_does_not(tmp_path: Path) -> None:
     assert _run(tmp_path, "numba", 2) == [20, 1]  # the reason for the digest; where it fails, the digest can go
 
 
+TYPED = """
+from typing import NamedTuple
+
+from kinematics.compiling import njit
+
+
+class {name}(NamedTuple):
+    size: float
+
+
+@njit(cache=True)
+def double(limits):
+    return 2 * limits.size
+
+
+print(int(double({name}(3.0))), sum(double.stats.cache_hits.values()))
+"""
+
+
+def _run_typed(folder: Path, name: str) -> str:
+    """Run a kernel whose argument has a class of this name; print its value and its hits in the cache."""
+    folder.joinpath("pyproject.toml").touch()
+    folder.joinpath("typed.py").write_text(TYPED.format(name=name))
+    environment = {key: value for key, value in os.environ.items() if key != "NUMBA_CACHE_DIR"}
+    environment |= {"PYTHONPATH": os.pathsep.join([str(folder), str(ROOT)]), "PYTHONDONTWRITEBYTECODE": "1"}
+    command = [sys.executable, "-c", "import typed"]
+    return subprocess.run(command, env=environment, cwd=folder, capture_output=True, text=True, check=True).stdout
+
+
+@pytest.mark.slow
+def test_a_renamed_argument_type_is_compiled_again(tmp_path: Path) -> None:
+    assert _run_typed(tmp_path, "Limit") == "6 0\n"
+    assert _run_typed(tmp_path, "Limit") == "6 1\n"
+    assert _run_typed(tmp_path, "Bound") == "6 0\n"
+
+
 def test_sources_are_reached_through_packages_and_lists_of_names(tmp_path: Path) -> None:
     package = tmp_path / "kinematics" / "part"
     package.mkdir(parents=True)

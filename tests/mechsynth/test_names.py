@@ -8,7 +8,7 @@ import pytest
 
 import mechsynth
 from mechsynth import kinds, parts
-from mechsynth.statements import statement_of
+from mechsynth.statements import build_statement
 from synthesis.model.mechanism_types import collect_models
 from synthesis.registry import KINDS, list_examples, parse_problem
 
@@ -38,7 +38,7 @@ def test_every_kind_is_a_class_that_states_its_kind(kind):
     assert of_kind.model_fields.keys() == KINDS[kind].problem.model_fields.keys()
     for example in list_examples(kind):
         fields = {name: value for name, value in example.items() if name != "kind"}
-        statement = statement_of(of_kind.model_validate(fields))
+        statement = build_statement(of_kind.model_validate(fields))
         assert statement["kind"] == kind
         assert parse_problem(statement) == parse_problem(example)
 

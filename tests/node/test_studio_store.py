@@ -6,7 +6,7 @@ import subprocess
 
 import pytest
 
-from service.requests import filled_in
+from service.requests import fill_defaults
 from synthesis.registry import KINDS, list_examples
 from tests.support.service.running import ROOT
 
@@ -92,7 +92,7 @@ console.log(JSON.stringify(cases.map(([schema, ...both]) => both.map((one) => ca
 
 def test_an_example_whose_defaults_are_written_out_is_the_example_yet(tmp_path):
     cases = [
-        [KINDS[kind].problem.model_json_schema(), one, json.loads(filled_in(kind, json.dumps(one)))]
+        [KINDS[kind].problem.model_json_schema(), one, json.loads(fill_defaults(kind, json.dumps(one)))]
         for kind in KINDS
         for one in list_examples(kind)
     ]

@@ -111,7 +111,7 @@ def test_what_the_page_of_a_machine_tells_is_what_its_run_answered(made: Path, e
         else:
             assert rows[label] == str(value).strip("[]")
     for check in best["verification"]["checks"]:
-        assert f"| [`{check['name']}`](../checks.md#{check_anchor(check['name'])}) |" in page
+        assert f"| [`{check['name']}`](../reference/checks.md#{check_anchor(check['name'])}) |" in page
     drawn = (folder / f"{entry.name}.svg").read_text("utf-8")
     assert f"{entry.title}, design 1" in drawn.replace("&#x27;", "'").replace("&amp;", "&")
     assert json.loads((folder / "problem.json").read_text("utf-8")) == entry.problem

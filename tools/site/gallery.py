@@ -198,8 +198,8 @@ def _page(entry: Entry, code: str, answer: Any, forms: list[str]) -> str:
     name, best = entry.name, answer["designs"][0]
     numbers = "".join(f"| {label} | {shown(at(answer, place))} |\n" for label, place in entry.numbers.items())
     checks = "".join(
-        f"| [`{check['name']}`](../checks.md#{check_anchor(check['name'])}) | {shown(check.get('value', True))} | "
-        f"{shown(check.get('limit'))} |\n"
+        f"| [`{check['name']}`](../reference/checks.md#{check_anchor(check['name'])}) "
+        f"| {shown(check.get('value', True))} | {shown(check.get('limit'))} |\n"
         for check in best["verification"]["checks"]
     )
     several = f", and {len(answer['designs']) - 1} more" if len(answer["designs"]) > 1 else ""

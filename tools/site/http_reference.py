@@ -139,13 +139,13 @@ def _kind_page(page: str, kind: str, models: Schema, places: dict[str, str]) -> 
     return "".join(text)
 
 
-GUIDES = {"layshaft_gearbox": "gearbox.md"}
+GUIDES = {"layshaft_gearbox": "tasks/gearbox.md"}
 """The pages of kinds that have none of their own name."""
 
 
 def guide(kind: str) -> str:
     """The page of ``docs/`` that tells of a kind of problem."""
-    return GUIDES.get(kind, f"{kind}.md")
+    return GUIDES.get(kind, f"tasks/{kind}.md")
 
 
 def _first(head: str, names: set[str]) -> list[str]:

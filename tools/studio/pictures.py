@@ -19,7 +19,7 @@ from scipy.interpolate import CubicSpline
 from synthesis.registry import KINDS, list_examples
 
 CHROMIUM = "/usr/bin/chromium"
-DOCS = Path(__file__).parents[2] / "docs"
+DOCS = Path(__file__).parents[2] / "docs" / "images"
 KIND_FOLDER = DOCS / "studio_kinds"
 
 SIZE = (1280, 800)

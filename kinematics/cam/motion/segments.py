@@ -55,7 +55,7 @@ def build_law_segment(law: Law, angle: float, start: float, end: float) -> Segme
     Peak velocity and acceleration of a cycloidal rise of 1 in 1 rad are 2 and 2π (Norton, Table 8-3):
 
     >>> from kinematics.cam.motion.laws import LAWS
-    >>> rise = law_segment(LAWS["cycloidal"], 1.0, 0.0, 1.0)
+    >>> rise = build_law_segment(LAWS["cycloidal"], 1.0, 0.0, 1.0)
     >>> [round(float(rise.extremes(order).greatest), 2) for order in (1, 2)]
     [2.0, 6.28]
     """

@@ -57,6 +57,41 @@ MAX_CONDITION = 1e12
 
 
 @njit(**OPTIONS)
+def _find_normal(angle: float) -> complex:
+    """Return the unit normal of a line at an angle."""
+    return complex(-math.sin(angle), math.cos(angle))
+
+
+@njit(**OPTIONS)
+def _bound_slotted(apart: float, d: float, r: float) -> float:
+    """Bound the rotation of a link whose line, at the signed distance r from its pin, goes through a joint.
+
+    ``d`` is the distance of pin and joint, which changes by at most ``apart``.
+    """
+    # The closure exists only for distances of at least |r|.
+    least = max(d - apart, abs(r))
+    spread = 0.0
+    # With r = 0 the angle does not depend on the distance.
+    if r != 0.0:
+        spread = _bound_spread(r / max(d, abs(r)), r / (d + apart), r / least)
+    return float(min(_bound_swing(apart, d) + spread, math.pi))
+
+
+@njit(**OPTIONS)
+def _bound_carried(x: Complex, on: Mask, pin: int, turned: float, moved: Real) -> float:
+    """Bound the displacement of the point of a link at a pin that is not its own.
+
+    It moves at most like a joint of the link (``on``) plus the rotation about that.
+    """
+    carried = np.inf
+    for k in range(len(x)):
+        if on[k]:
+            chord = 2.0 * abs(x[pin] - x[k]) * math.sin(0.5 * turned)
+            carried = min(carried, moved[k] + chord)
+    return carried
+
+
+@njit(**OPTIONS)
 def bound_by_closures(
     rows: Integers,
     ratios: Real,
@@ -123,30 +158,12 @@ def bound_by_closures(
                 chord = 2.0 * c * math.sin(0.5 * turned[other, n])
                 moved[joint, n] = min(moved[joint, n], moved[other_pin, n] + chord)
             elif kind == RPR:
-                apart, d = moved[pin, n] + moved[joint, n], abs(x[joint] - x[pin])
-                angle = line_angles[step[SLIDE]]
-                normal = complex(-math.sin(angle), math.cos(angle))
-                r = (normal.conjugate() * (line[step[SLIDE]] - place[pin])).real
-                # The closure exists only for distances of at least |r|.
-                least = max(d - apart, abs(r))
-                spread = 0.0
-                # With r = 0 the angle does not depend on the distance.
-                if r != 0.0:
-                    spread = _bound_spread(r / max(d, abs(r)), r / (d + apart), r / least)
-                turned[link, n] = min(_bound_swing(apart, d) + spread, math.pi)
+                distance = (_find_normal(line_angles[step[SLIDE]]).conjugate() * (line[step[SLIDE]] - place[pin])).real
+                turned[link, n] = _bound_slotted(moved[pin, n] + moved[joint, n], abs(x[joint] - x[pin]), distance)
             elif kind == RRP:
-                # The point of the line's link at the pin moves at most like a joint of that link plus the rotation
-                # about it.
-                carried = 0.0
-                if other != 0:
-                    carried = np.inf
-                    for k in range(len(place)):
-                        if on[other, k]:
-                            chord = 2.0 * abs(x[pin] - x[k]) * math.sin(0.5 * turned[other, n])
-                            carried = min(carried, moved[k, n] + chord)
+                carried = _bound_carried(x, on[other], pin, turned[other, n], moved[:, n]) if other != 0 else 0.0
                 e = moved[pin, n] + carried
-                angle = line_angles[step[SLIDE]]
-                normal = turn[other, n] * complex(-math.sin(angle), math.cos(angle))
+                normal = turn[other, n] * _find_normal(line_angles[step[SLIDE]])
                 length = abs(place[joint] - place[pin])
                 ratio = (normal.conjugate() * (x[joint] - x[pin])).real / length
                 spread = _bound_spread(ratio, ratio - e / length, ratio + e / length)

@@ -165,7 +165,7 @@ def build_cognates(linkage: Fourbar) -> Cognates:
     --------
     Those of Chebyshev's straight-line linkage are Hoeken's, 2 : 1 : 2.5 : 2.5 (Norton, Fig. 3-29):
 
-    >>> pair = cognates(Fourbar.from_lengths(2.5, 1.0, 2.5, 2.0, 0.5))
+    >>> pair = build_cognates(Fourbar.from_lengths(2.5, 1.0, 2.5, 2.0, 0.5))
     >>> pair.left.linkage.lengths
     array([1.  , 0.5 , 1.25, 1.25])
     """

@@ -259,21 +259,9 @@ def whole_motion(
                 sound_i[k] = sound
             for k in range(end - start):
                 j3[k], j4[k] = _compute_jerks(
-                    ground.real,
-                    ground.imag,
-                    kx[k],
-                    ky[k],
-                    ux[k],
-                    uy[k],
-                    inverse[k],
-                    w2[k],
-                    a2[k],
-                    j2[k],
-                    w3[k],
-                    a3[k],
-                    w4[k],
-                    a4[k],
-                )
+                    ground.real, ground.imag, kx[k], ky[k], ux[k], uy[k], inverse[k], w2[k], a2[k], j2[k], w3[k], a3[k],
+                    w4[k], a4[k],
+                )  # fmt: skip
             for k in range(end - start):
                 ax[k], ay[k] = o2.real + kx[k], o2.imag + ky[k]
             for row in range(3):

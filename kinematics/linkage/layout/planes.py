@@ -81,9 +81,9 @@ def stack_plates(
     output's pivot (pin 1) lies above it:
 
     >>> O2, O4 = Spindle(frozenset({0}), below=True), Spindle(frozenset({2}), below=True)
-    >>> stacked(3, [(0, 1), (1, 2)], [O2, O4])
+    >>> stack_plates(3, [(0, 1), (1, 2)], [O2, O4])
     (1, 2, 1)
-    >>> stacked(3, [(0, 1), (1, 2)], [O2, O4._replace(meets=frozenset({0}))])
+    >>> stack_plates(3, [(0, 1), (1, 2)], [O2, O4._replace(meets=frozenset({0}))])
     (2, 3, 1)
     """
     own = list(range(count))

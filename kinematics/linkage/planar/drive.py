@@ -115,7 +115,7 @@ def drive(
     The fourbar of Norton, Table P4-1, row a, from the catalogue:
 
     >>> from kinematics.linkage import Fourbar, catalogue
-    >>> fourbar = catalogue.fourbar(Fourbar.from_lengths(2.0, 7.0, 9.0, 6.0), input_angle=0.5)
+    >>> fourbar = catalogue.make_fourbar(Fourbar.from_lengths(2.0, 7.0, 9.0, 6.0), input_angle=0.5)
     >>> float(np.degrees(drive(fourbar, np.radians([30.0])).angles["output"][0, 0]).round(1))
     117.3
     """

@@ -12,7 +12,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from kinematics.arrays import Complex, Real
+from kinematics.arrays import Complex, Mask, Real
 from kinematics.linkage.planar.constraints import MAX_MISFIT, MIN_SINGULAR_VALUE, Poses
 from kinematics.linkage.planar.mechanism import Mechanism
 
@@ -42,6 +42,26 @@ class SettledMotion(NamedTuple):
     angles: dict[str, Real]
     joints: dict[str, Complex]
     slides: dict[str, Real]
+
+
+def _mask_unsettled(poses: Poses, best: Real, rival: Real, least: Real) -> tuple[Mask, Mask]:
+    """Clear positions and rates that are not unique; return where positions and where rates are known.
+
+    Parameters
+    ----------
+    best, rival : float, shape (N,)
+        Smallest misfit, and that of another pose.
+    least : float, shape (N,)
+        Smallest singular value of the constraints.
+    """
+    valid = (best <= MAX_MISFIT) & ((rival > MAX_MISFIT) | (best <= np.maximum(CLEAR_RATIO * rival, EXACT_MISFIT)))
+    for jet in poses:
+        jet[:, :, ~valid] = np.nan
+    # Rates are undefined where the input does not determine them.
+    smooth = valid & (least > MIN_SINGULAR_VALUE)
+    for jet in poses:
+        jet[1:, :, ~smooth] = np.nan
+    return np.asarray(valid), np.asarray(smooth)
 
 
 def settle(
@@ -99,13 +119,7 @@ def settle(
         best[at], least[at[nearer]] = np.minimum(misfit, best[at]), smallest[nearer]
         if (best <= EXACT_MISFIT).all():
             break
-    valid = (best <= MAX_MISFIT) & ((rival > MAX_MISFIT) | (best <= np.maximum(CLEAR_RATIO * rival, EXACT_MISFIT)))
-    for jet in poses:
-        jet[:, :, ~valid] = np.nan
-    # Rates are undefined where the input does not determine them.
-    smooth = valid & (least > MIN_SINGULAR_VALUE)
-    for jet in poses:
-        jet[1:, :, ~smooth] = np.nan
+    valid, smooth = _mask_unsettled(poses, best, rival, least)
 
     def reshape_jet(jet: NDArray[Any], unit: Real, zero: NDArray[Any]) -> NDArray[Any]:
         jet = jet * unit

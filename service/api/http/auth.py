@@ -1,4 +1,4 @@
-"""Who is let in: what every operation under ``/v1`` asks before it does anything, even before it reads a body."""
+"""Authentication: every operation under ``/v1`` checks the API key first, before it reads a body."""
 
 from __future__ import annotations
 
@@ -15,71 +15,71 @@ from service.access.gate import ANYBODY, Gate, NoKey, TooOften
 from service.api.http.problem_details import Refusal
 from service.observability import telemetry
 
-SCHEME = "bearer"
+SECURITY_SCHEME = "bearer"
 """The name of the security scheme in the OpenAPI document."""
 
 Handler = Callable[[Request], Coroutine[Any, Any, Response]]
 
 
 class GuardedRoute(APIRoute):
-    """A route that lets in by API key where there are keys."""
+    """A route that requires an API key if the service has keys."""
 
     def get_route_handler(self) -> Handler:
-        """What is behind the gate, and the gate."""
-        handle = self.handler_inside()
+        """Return the handler, preceded by the check of the key."""
+        handle = self.build_inner_handler()
 
-        async def admit_first(request: Request) -> Response:
-            request.state.tenant = await _admitted(request)
+        async def handle_after_admission(request: Request) -> Response:
+            request.state.tenant = await _check_admission(request)
             return await handle(request)
 
-        return admit_first
+        return handle_after_admission
 
-    def handler_inside(self) -> Handler:
-        """The framework's handler."""
+    def build_inner_handler(self) -> Handler:
+        """Return the framework's handler, which subclasses may wrap."""
         return super().get_route_handler()
 
 
-async def _admitted(request: Request) -> str:
+async def _check_admission(request: Request) -> str:
     gate = request.app.state.gate
     assert isinstance(gate, Gate)
     try:
-        tenant, allowance = await gate.admit(_key(request))
+        tenant, allowance = await gate.admit(_read_key(request))
     except NoKey as refusal:
         raise Refusal(
             401, "unauthorized", "Unauthorized",
-            "This key is not in force." if refusal.given else "A key is needed: `Authorization: Bearer mechsynth_...`.",
+            "The API key is not valid." if refusal.given else "Send an API key: `Authorization: Bearer mechsynth_...`.",
             headers={"WWW-Authenticate": 'Bearer error="invalid_token"' if refusal.given else "Bearer"},
         ) from None  # fmt: skip
     except TooOften as refusal:
         allowance = refusal.allowance
-        telemetry.answer_with(allowance.headers())
+        telemetry.add_headers(allowance.format_headers())
         raise Refusal(
             429, "rate-limited", "Rate limited",
-            f"A key may ask {allowance.limit} times in {allowance.window_s} seconds; this one has.",
+            f"This key has reached its limit of {allowance.limit} requests in {allowance.window_s} seconds.",
             headers={"Retry-After": str(allowance.reset_s)},
         ) from None  # fmt: skip
-    if tenant == ANYBODY and not _meant_for_this_machine(request):
+    if tenant == ANYBODY and not _is_for_this_machine(request):
         raise Refusal(
             403, "foreign-host", "Foreign host",
-            "Without keys the service is open to this machine only, not by names that are known elsewhere; "
+            "Without API keys the service accepts only requests from this machine, addressed to a local host name. "
             "`mechsynth keys create NAME` makes a key.",
         )  # fmt: skip
     if allowance is not None:
-        telemetry.answer_with(allowance.headers())
+        telemetry.add_headers(allowance.format_headers())
         structlog.contextvars.bind_contextvars(tenant=tenant)
     return tenant
 
 
-NOBODYS = ("localhost", "local", "internal", "test", "example", "invalid")
-"""Endings of names that nobody can register (RFC 2606, 6761, 6762)."""
+UNREGISTRABLE_DOMAINS = ("localhost", "local", "internal", "test", "example", "invalid")
+"""Top-level domains in which no names can be registered (RFC 2606, 6761, 6762)."""
 
 
-def _meant_for_this_machine(request: Request) -> bool:
-    """Whether the host that a client believes to speak to can be this machine.
+def _is_for_this_machine(request: Request) -> bool:
+    """Return whether the host name of the request can only mean this machine.
 
-    A page from anywhere may give its own host the address 127.0.0.1, and would then be let in by the browser as if it
-    came from here (DNS rebinding); only the name tells: one that somebody elsewhere can have registered. Addresses,
-    names without a dot and names that are nobody's are none of those. Clients without a name are no browsers.
+    A foreign web page may resolve its own host to 127.0.0.1, and the browser would then treat this service as part of
+    that page (DNS rebinding). Only the host name reveals it: such a name is registered. Addresses, names without a dot
+    and names that cannot be registered are safe. Clients that send no name are not browsers.
     """
     given = request.headers.get("host", "localhost")
     try:
@@ -87,7 +87,7 @@ def _meant_for_this_machine(request: Request) -> bool:
         if not name.strip("."):
             return False
         *registered, last = name.rstrip(".").split(".")
-        return not registered or last in NOBODYS or _is_address(name)
+        return not registered or last in UNREGISTRABLE_DOMAINS or _is_address(name)
     except ValueError:
         return False
 
@@ -100,15 +100,15 @@ def _is_address(name: str) -> bool:
     return True
 
 
-def _key(request: Request) -> str | None:
+def _read_key(request: Request) -> str | None:
     scheme, _, key = request.headers.get("authorization", "").partition(" ")
     return key.strip() if scheme.lower() == "bearer" else None
 
 
-async def _tenant(request: Request) -> str:
+async def _get_tenant(request: Request) -> str:
     tenant = request.state.tenant
     assert isinstance(tenant, str)
     return tenant
 
 
-Tenant = Annotated[str, Depends(_tenant)]
+Tenant = Annotated[str, Depends(_get_tenant)]

@@ -1,4 +1,4 @@
-"""Reading request bodies: which are taken, how large they may be, and how their JSON is parsed."""
+"""Reading of request bodies: accepted types, size limits, and JSON parsing."""
 
 from __future__ import annotations
 
@@ -12,23 +12,23 @@ from starlette.requests import ClientDisconnect
 
 from service.api.http.auth import GuardedRoute, Handler
 from service.api.http.json_limits import locate_excess
-from service.api.http.problem_details import Refusal, invalid_request, malformed_json
-from service.error_messages import pointer
+from service.api.http.problem_details import Refusal, refuse_invalid_request, refuse_malformed_json
+from service.error_messages import format_pointer
 
 MAX_VALUES = 20_000
-"""Most values (numbers, strings, lists, objects) in a body. The largest honest problem has a few thousand; a body of a
-million tiny faults would keep the validation busy for a second."""
+"""Maximum number of values (numbers, strings, lists, objects) in a body. The largest real problem has a few thousand;
+validating a million tiny faults would take a second."""
 
 
 MAX_DEPTH = 201
-"""Lists and objects within one another that the parser takes."""
+"""Maximum nesting of lists and objects, set by the parser."""
 
 
 class BoundedRequest(Request):
-    """A request whose body is read up to a limit."""
+    """A request whose body is read up to a size limit."""
 
-    async def limited(self, limit: int) -> bytes:
-        """The body, ``limit`` bytes at most, and not compressed.
+    async def read_limited(self, limit: int) -> bytes:
+        """Read the body, which must be uncompressed and have at most ``limit`` bytes.
 
         Raises
         ------
@@ -40,41 +40,44 @@ class BoundedRequest(Request):
                 415, "unsupported-media-type", "Unsupported media type", "The body must not be compressed.",
                 headers={"Accept-Encoding": "identity"},
             )  # fmt: skip
-        # The header is only a promise, but a body that announces itself as too large need not be read at all.
+        # The header is only a claim, but a body announced as too large need not be read at all. Longer numbers than 18
+        # digits are not converted.
         announced = self.headers.get("content-length", "0")
         if announced.isdecimal() and (len(announced) > 18 or int(announced) > limit):
-            raise _too_large(limit)
+            raise _refuse_large_body(limit)
         body = bytearray()
         try:
             async for chunk in self.stream():
                 body += chunk
                 if len(body) > limit:
-                    raise _too_large(limit)
+                    raise _refuse_large_body(limit)
         except ClientDisconnect:
-            # Nobody reads the answer; it ends the request without the log of a defect.
-            raise Refusal(400, "incomplete-body", "Incomplete body", "The connection ended before the body.") from None
+            # The client is gone and cannot read this answer, which ends the request without logging a defect.
+            raise Refusal(
+                400, "incomplete-body", "Incomplete body", "The connection was closed before the end of the body."
+            ) from None
         return bytes(body)
 
     @property
     def media_type(self) -> str:
-        """The type that the body is announced as, without its parameters; empty where it is not."""
+        """Media type in the ``Content-Type`` header, without parameters; empty if there is none."""
         return self.headers.get("content-type", "").partition(";")[0].strip().lower()
 
 
-def foreign(detail: str, *accepted: str) -> Refusal:
-    """The body is of a type that is not taken; these are."""
+def refuse_media_type(detail: str, *accepted: str) -> Refusal:
+    """Build the refusal of a body of another type than the ``accepted`` ones."""
     return Refusal(
         415, "unsupported-media-type", "Unsupported media type", detail, headers={"Accept": ", ".join(accepted)}
     )
 
 
 class JsonRequest(BoundedRequest):
-    """A request whose body is checked and parsed by the rules of this module."""
+    """A request whose JSON body is checked and parsed by this module."""
 
     _checked: Any
 
     async def read(self, limit: int) -> None:
-        """Read and parse the body, at most ``limit`` bytes.
+        """Read and parse the body of at most ``limit`` bytes.
 
         Raises
         ------
@@ -82,21 +85,21 @@ class JsonRequest(BoundedRequest):
             413, 415 or 400, as documented for the endpoints that take a body.
         """
         if self.media_type != "application/json":
-            raise foreign("The body must be application/json.", "application/json")
-        self._body = await self.limited(limit)
-        self._checked = _parsed(self._body)
+            raise refuse_media_type("The body must be application/json.", "application/json")
+        self._body = await self.read_limited(limit)
+        self._checked = _parse_body(self._body)
 
     async def json(self) -> Any:
-        """The parsed body; :meth:`read` comes first."""
+        """Return the parsed body; :meth:`read` must be called first."""
         return self._checked
 
 
 class JsonRoute(GuardedRoute):
-    """A route that lets in by API key and then reads its body through :class:`JsonRequest`."""
+    """A route that checks the API key and then reads its body through :class:`JsonRequest`."""
 
-    def handler_inside(self) -> Handler:
-        """The framework's handler, on a request that is read and parsed already."""
-        handle = super().handler_inside()
+    def build_inner_handler(self) -> Handler:
+        """Return the framework's handler for a request whose body has been read and parsed."""
+        handle = super().build_inner_handler()
         if self.body_field is None:
             return handle
 
@@ -108,76 +111,76 @@ class JsonRoute(GuardedRoute):
         return read_first
 
 
-def _too_large(limit: int) -> Refusal:
+def _refuse_large_body(limit: int) -> Refusal:
     # The rest of the body stays unread, so the connection cannot serve another request.
     return Refusal(
-        413, "body-too-large", "Body too large", f"The body may have {limit} bytes at most.",
+        413, "body-too-large", "Body too large", f"The body must have at most {limit} bytes.",
         headers={"Connection": "close"},
     )  # fmt: skip
 
 
-def _parsed(body: bytes) -> Any:
-    if _surely_has_more_values_than(body, MAX_VALUES):
-        raise _too_many(body)
-    # This parser bounds depth and digits by itself, and passes NaN and 1e999 on to the validation, which knows the
-    # field that they are in.
+def _parse_body(body: bytes) -> Any:
+    if _has_more_values_than(body, MAX_VALUES):
+        raise _refuse_many_values(body)
+    # This parser limits depth and digits itself. It passes NaN and 1e999 on to the validation, which names the field.
     try:
         parsed = from_json(body)
     except ValueError as error:
-        # The message is the parser's own, "expected `:` at line 1 column 8"; it holds nothing of the input.
+        # The message is the parser's own, "expected `:` at line 1 column 8", without parts of the input.
         detail = f"The body is not valid JSON: {error}."
-        raise malformed_json(detail, _faults_of_depth(body) if "recursion" in str(error) else ()) from None
-    values, keys = _counts(parsed)
+        raise refuse_malformed_json(detail, _find_depth_faults(body) if "recursion" in str(error) else ()) from None
+    values, keys = _count_values(parsed)
     if values > MAX_VALUES:
-        raise _too_many(body)
-    if _keys_written(body) != keys:
-        twice = [(place, "This key is given twice; give it once.") for place in _given_twice(body)]
+        raise _refuse_many_values(body)
+    if _count_keys(body) != keys:
+        # The parser keeps the last of equal keys silently; only then is the slower search for them necessary.
+        twice = [(place, "This key occurs twice; give it once.") for place in _find_duplicate_keys(body)]
         if twice:
-            raise invalid_request(twice)
+            raise refuse_invalid_request(twice)
     return parsed
 
 
-def _too_many(body: bytes) -> Refusal:
+def _refuse_many_values(body: bytes) -> Refusal:
     where = locate_excess(body, MAX_VALUES, MAX_DEPTH)
-    detail = f"Here the body comes to hold more than {MAX_VALUES} values; it may have {MAX_VALUES} at most."
+    detail = f"Up to here the body has more than {MAX_VALUES} values; the limit is {MAX_VALUES}."
     return Refusal(
-        422, "invalid-request", "Invalid request", f"The body holds more than {MAX_VALUES} values.",
+        422, "invalid-request", "Invalid request", f"The body has more than {MAX_VALUES} values.",
         errors=[(where, detail)],
     )  # fmt: skip
 
 
-def _faults_of_depth(body: bytes) -> list[tuple[str, str]]:
-    """Where a body that cannot be parsed is nested too deep; nothing where that is not what is wrong."""
+def _find_depth_faults(body: bytes) -> list[tuple[str, str]]:
+    """Find the place where an unparsable body is nested too deeply; an empty list if the fault is another one."""
     where = locate_excess(body, len(body), MAX_DEPTH)
-    return [(where, f"This is nested more than {MAX_DEPTH} deep.")] if where else []
+    return [(where, f"This is nested more than {MAX_DEPTH} levels deep.")] if where else []
 
 
-def _surely_has_more_values_than(body: bytes, limit: int) -> bool:
-    """Whether the punctuation alone says so: a comma stands between two values, and each list or object is one.
+def _has_more_values_than(body: bytes, limit: int) -> bool:
+    """Return whether the punctuation alone shows it: a comma separates two values, and each list or object is a value.
 
-    Half a million lists take a third of a second to make and to collect again; counting their brackets takes a
-    millisecond. What passes has at most twice the limit.
+    Building and freeing half a million lists takes a third of a second; counting their brackets takes a millisecond. A
+    body that passes has at most twice the limit.
     """
     if len(body) <= limit:
         return False
-    body = _punctuation(body)
+    body = _strip_strings(body)
     lists = min(body.count(b"["), body.count(b"]"))
     objects = min(body.count(b"{"), body.count(b"}"))
     return body.count(b",") > limit or lists + objects > limit + 1
 
 
-def _punctuation(body: bytes) -> bytes:
-    """What is outside of strings: behind a backslash a quote does not end its string."""
+def _strip_strings(body: bytes) -> bytes:
+    """Return the text outside of strings; a quote after a backslash does not end its string."""
     return b"".join(body.replace(rb"\\", b"").replace(rb"\"", b"").split(b'"')[::2])
 
 
-def _keys_written(body: bytes) -> int:
-    """How many keys a valid body has: a colon outside of strings stands behind each."""
-    return _punctuation(body).count(b":")
+def _count_keys(body: bytes) -> int:
+    """Count the keys of a valid body: each is followed by a colon outside of strings."""
+    return _strip_strings(body).count(b":")
 
 
-def _counts(parsed: Any) -> tuple[int, int]:
-    """How many values objects and lists hold, and how many keys; of those given twice the parser keeps the last."""
+def _count_values(parsed: Any) -> tuple[int, int]:
+    """Count the values in objects and lists, and the keys; the parser has kept only the last of equal keys."""
     values = keys = 0
     pending = [parsed]
     while pending:
@@ -192,12 +195,12 @@ def _counts(parsed: Any) -> tuple[int, int]:
 
 
 class _Members(list[tuple[str, Any]]):
-    """An object of the body as it is written."""
+    """An object of the body with all its members, equal keys included."""
 
 
-def _given_twice(body: bytes) -> list[str]:
-    """The places of keys that are given more than once, as JSON pointers."""
-    # Numbers are not looked at, and the standard library refuses some that are valid.
+def _find_duplicate_keys(body: bytes) -> list[str]:
+    """Return the places of keys that occur more than once, as JSON pointers."""
+    # Numbers stay texts: they are not needed, and the standard library refuses some valid ones.
     written = json.loads(body, object_pairs_hook=_Members, parse_int=str, parse_float=str)
     found: list[str] = []
     pending: list[tuple[tuple[str | int, ...], Any]] = [((), written)]
@@ -205,7 +208,7 @@ def _given_twice(body: bytes) -> list[str]:
         place, value = pending.pop()
         if isinstance(value, _Members):
             counted = Counter(name for name, _ in value)
-            found += [pointer((*place, name)) for name, times in counted.items() if times > 1]
+            found += [format_pointer((*place, name)) for name, times in counted.items() if times > 1]
             pending += [((*place, name), member) for name, member in value]
         elif isinstance(value, list):
             pending += [((*place, k), member) for k, member in enumerate(value)]

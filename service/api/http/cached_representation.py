@@ -1,4 +1,4 @@
-"""What is the same for everybody who asks: made and packed once, and sent to those only who have another version."""
+"""Responses equal for all clients: built and compressed once, and sent only to clients with another version."""
 
 from __future__ import annotations
 
@@ -13,42 +13,42 @@ from service.api.http import etag
 
 GZIP = "gzip"
 
-WORTH_PACKING_BYTES = 2048
-"""Less than that is a packet or two either way."""
+MIN_PACKED_BYTES = 2048
+"""Minimum size for compression, bytes; smaller answers fill one or two packets in either case."""
 
-_LEVEL = 6
-"""The highest makes the description of the API a thirtieth smaller, and takes three times as long."""
+_GZIP_LEVEL = 6
+"""Compression level; the highest makes the API description 3 % smaller and takes three times as long."""
 
 
-def takes_gzip(request: Request) -> bool:
-    """Whether the client takes answers in gzip."""
+def is_gzip_accepted(request: Request) -> bool:
+    """Return whether the client accepts answers in gzip."""
     return GZIP in request.headers.get("accept-encoding", "")
 
 
 @dataclass(frozen=True)
 class Representation:
-    """The content of an answer."""
+    """Content of a response."""
 
     content: bytes
     media_type: str
 
     @cached_property
     def version(self) -> str:
-        """Sixteen hexadecimal digits of its SHA-256."""
+        """Sixteen hexadecimal digits of the content's SHA-256."""
         return hashlib.sha256(self.content).hexdigest()[:16]
 
     @cached_property
-    def packed(self) -> bytes:
-        """The same in gzip."""
-        return gzip.compress(self.content, _LEVEL)
+    def gzip_content(self) -> bytes:
+        """The content compressed with gzip."""
+        return gzip.compress(self.content, _GZIP_LEVEL)
 
-    def answer(self, request: Request, headers: dict[str, str]) -> Response:
-        """The content under the entity tag of its version; 304 without it where the client has that one already."""
-        tag = etag.tag(self.version)
+    def respond(self, request: Request, headers: dict[str, str]) -> Response:
+        """Return a response with the content and its entity tag, or 304 if the client has this version."""
+        tag = etag.format_tag(self.version)
         headers = {**headers, "ETag": tag}
-        if etag.matches(request.headers.getlist("if-none-match"), tag):
+        if etag.is_current_tag(request.headers.getlist("if-none-match"), tag):
             return Response(status_code=304, headers={**headers, "Vary": "Accept-Encoding"})
-        if not takes_gzip(request) or len(self.content) < WORTH_PACKING_BYTES:
+        if not is_gzip_accepted(request) or len(self.content) < MIN_PACKED_BYTES:
             return Response(self.content, headers=headers, media_type=self.media_type)
         headers |= {"Content-Encoding": GZIP, "Vary": "Accept-Encoding"}
-        return Response(self.packed, headers=headers, media_type=self.media_type)
+        return Response(self.gzip_content, headers=headers, media_type=self.media_type)

@@ -1,4 +1,4 @@
-"""Answers that the processes of the answer desk compute, as replies or refusals."""
+"""Responses computed by the processes of the answer desk, or the refusals of these requests."""
 
 from __future__ import annotations
 
@@ -9,35 +9,41 @@ from fastapi import Request, Response
 
 from service.answers.desk import CPU_S, DRAWING_CPU_S, AnswerDesk
 from service.answers.process import GZIP_MARK, compute_packed
-from service.api.http.cached_representation import GZIP, takes_gzip
-from service.api.http.problem_details import Refusal, busy, compiling, gone, invalid_mechanism
-from service.jobs.processes.request_pool import Busy, GivenUp, Gone
-from service.observability.telemetry import note_defect, span
+from service.api.http.cached_representation import GZIP, is_gzip_accepted
+from service.api.http.problem_details import (
+    Refusal,
+    refuse_busy,
+    refuse_compiling,
+    refuse_gone,
+    refuse_invalid_mechanism,
+)
+from service.jobs.processes.request_pool import Busy, ClientGone, GivenUp
+from service.observability.telemetry import measure_span, note_defect
 
 
-async def answer_with_analysis(
+async def respond_with_analysis(
     request: Request, answers: AnswerDesk, tenant: str, work: Callable[..., bytes], *args: Any
 ) -> Response:
-    """Reply with the JSON that an analysis gives.
+    """Respond with the JSON answer of an analysis.
 
     Raises
     ------
     Refusal
-        What the analysis refuses; 422 where it takes too much, 503 where its turn has not come, 499 where nobody waits.
+        By the analysis; 422 if it exceeds its limits, 503 if the service is busy, 499 if the client has disconnected.
     """
     try:
-        with span("analysis"):
-            if takes_gzip(request):
+        with measure_span("analysis"):
+            if is_gzip_accepted(request):
                 work, args = compute_packed, (work, *args)
             content = await answers.analyse(request.is_disconnected, tenant, work, *args)
     except GivenUp as error:
-        taken = f"{CPU_S:g} seconds of computation" if error.of == "time" else "more memory than an analysis has"
-        detail = f"The analysis was given up after it took {taken}; are all sizes and counts meant so?"
-        raise invalid_mechanism([("/mechanism", detail)]) from None
+        limit = f"time limit of {CPU_S:g} s" if error.of == "time" else "memory limit"
+        detail = f"The analysis exceeded its {limit}; check all sizes and counts."
+        raise refuse_invalid_mechanism([("/mechanism", detail)]) from None
     except Busy:
-        raise (busy("analyses") if answers.loaded else compiling()) from None
-    except Gone:
-        raise gone() from None
+        raise (refuse_busy("analyses") if answers.is_loaded else refuse_compiling()) from None
+    except ClientGone:
+        raise refuse_gone() from None
     except Refusal as refusal:
         raise _count_defect(refusal) from None
     packed = {"Content-Encoding": GZIP, "Vary": "Accept-Encoding"} if content.startswith(GZIP_MARK) else None
@@ -45,28 +51,28 @@ async def answer_with_analysis(
 
 
 async def draw_in_turn(request: Request, answers: AnswerDesk, tenant: str, work: Callable[..., Any], *args: Any) -> Any:
-    """Have something drawn, reported or exported.
+    """Compute a drawing, a report or an export.
 
     Raises
     ------
     Refusal
-        As :func:`answer_with_analysis`; 409 where a design takes too much.
+        As :func:`respond_with_analysis`, but 409 if a design exceeds the limits.
     """
     try:
         return await answers.draw(request.is_disconnected, tenant, work, *args)
     except GivenUp as error:
-        taken = f"{DRAWING_CPU_S:g} seconds of computation" if error.of == "time" else "more memory than a drawing has"
-        raise Refusal(409, "no-drawing", "No drawing", f"This was given up after it took {taken}.") from None
+        limit = f"time limit of {DRAWING_CPU_S:g} s" if error.of == "time" else "memory limit"
+        raise Refusal(409, "no-drawing", "No drawing", f"The drawing exceeded its {limit}.") from None
     except Busy:
-        raise busy("drawings") from None
-    except Gone:
-        raise gone() from None
+        raise refuse_busy("drawings") from None
+    except ClientGone:
+        raise refuse_gone() from None
     except Refusal as refusal:
         raise _count_defect(refusal) from None
 
 
 def _count_defect(refusal: Refusal) -> Refusal:
-    """The refusal, which is counted where a defect of the service's own led to it."""
+    """Return the refusal, after counting it if a defect of the service caused it."""
     if refusal.defect is not None:
         note_defect(refusal.defect)
     return refusal

@@ -1,4 +1,4 @@
-"""The parts of the application that endpoints work with, as dependencies."""
+"""FastAPI dependencies for the parts of the application that endpoints use."""
 
 from __future__ import annotations
 
@@ -19,21 +19,21 @@ from service.parts.export.worker import Workshop
 T = TypeVar("T")
 
 
-def _part(name: str, of_type: type[T]) -> Callable[[Request], Coroutine[Any, Any, T]]:
-    """The dependency on the part that the start of the application has put under this name."""
+def _build_dependency(name: str, of_type: type[T]) -> Callable[[Request], Coroutine[Any, Any, T]]:
+    """Return a dependency that yields the application's state attribute ``name``."""
 
-    async def part(request: Request) -> T:
+    async def get_part(request: Request) -> T:
         value = getattr(request.app.state, name)
         assert isinstance(value, of_type)
         return value
 
-    return part
+    return get_part
 
 
-Desk = Annotated[JobDesk, Depends(_part("desk", JobDesk))]
-Batches = Annotated[BatchDesk, Depends(_part("batches", BatchDesk))]
-Poller = Annotated[JobPoller[JobSummary], Depends(_part("poller", JobPoller))]
-BatchPoller = Annotated[JobPoller[BatchSummary], Depends(_part("batch_poller", JobPoller))]
-Answers = Annotated[AnswerDesk, Depends(_part("answers", AnswerDesk))]
-Readers = Annotated[ImportDesk, Depends(_part("readers", ImportDesk))]
-Bench = Annotated[Workshop, Depends(_part("workshop", Workshop))]
+Desk = Annotated[JobDesk, Depends(_build_dependency("desk", JobDesk))]
+Batches = Annotated[BatchDesk, Depends(_build_dependency("batches", BatchDesk))]
+Poller = Annotated[JobPoller[JobSummary], Depends(_build_dependency("poller", JobPoller))]
+BatchPoller = Annotated[JobPoller[BatchSummary], Depends(_build_dependency("batch_poller", JobPoller))]
+Answers = Annotated[AnswerDesk, Depends(_build_dependency("answers", AnswerDesk))]
+Readers = Annotated[ImportDesk, Depends(_build_dependency("readers", ImportDesk))]
+Bench = Annotated[Workshop, Depends(_build_dependency("workshop", Workshop))]

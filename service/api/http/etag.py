@@ -1,23 +1,23 @@
-"""``ETag`` and ``If-None-Match`` (RFC 9110): a client that has the newest state already is not sent it again."""
+"""``ETag`` and ``If-None-Match`` (RFC 9110): a client that has the newest state does not receive it again."""
 
 from __future__ import annotations
 
 import re
 from collections.abc import Iterable
 
-_TAG = re.compile(r'(?:W/)?("[!#-~\x80-\xff]*")')
+_TAG_PATTERN = re.compile(r'(?:W/)?("[!#-~\x80-\xff]*")')
 
 
-def tag(version: int | str) -> str:
-    """The entity tag of a version: a weak one, since it says nothing of whether the answer is packed on its way."""
+def format_tag(version: int | str) -> str:
+    """Return the weak entity tag of a version; weak because the answer may be compressed on its way."""
     return f'W/"{version}"'
 
 
-def matches(headers: Iterable[str], current: str) -> bool:
-    """Whether ``If-None-Match`` names the current tag, or any by ``*``. Weak tags compare like strong ones.
+def is_current_tag(headers: Iterable[str], current: str) -> bool:
+    """Return whether ``If-None-Match`` names the current tag or ``*``. Weak tags compare like strong ones.
 
     >>> matches(['"6", W/"7"'], '"7"'), matches(['"7"'], 'W/"7"')
     (True, True)
     """
     opaque = current.removeprefix("W/")
-    return any(header.strip() == "*" or opaque in _TAG.findall(header) for header in headers)
+    return any(header.strip() == "*" or opaque in _TAG_PATTERN.findall(header) for header in headers)

@@ -1,4 +1,4 @@
-"""The ``Idempotency-Key`` header: by it a client can send a request again and not have it done twice."""
+"""The ``Idempotency-Key`` header: a client can repeat a request without having it executed twice."""
 
 from __future__ import annotations
 
@@ -8,36 +8,36 @@ from collections.abc import Sequence
 
 from pydantic import BaseModel
 
-from service.api.http.problem_details import Refusal, invalid_request
+from service.api.http.problem_details import Refusal, refuse_invalid_request
 from service.jobs.store.admission import Repeatable
 
-KEY = "^[!-~]{1,200}$"
-"""What a key may be: visible ASCII characters, taken as they are."""
+KEY_PATTERN = "^[!-~]{1,200}$"
+"""Pattern of a key: 1 to 200 visible ASCII characters."""
 
 
-def repeatable(keys: Sequence[str], body: BaseModel) -> Repeatable | None:
-    """The request as one that may come again; None where it has no key.
+def read_repeatable(keys: Sequence[str], body: BaseModel) -> Repeatable | None:
+    """Return the key and the hash of a request that may be repeated; None if it has no key.
 
-    The hash is of what the client stated, by its meaning: the order of the fields, the spelling of the numbers and
-    defaults that are written out make no difference.
+    The hash covers the content of the request: the order of fields, the spelling of numbers and explicitly written
+    defaults make no difference.
 
     Raises
     ------
     Refusal
-        422 for two keys.
+        422 if there are several keys.
     """
     if not keys:
         return None
     if len(keys) > 1:
-        raise invalid_request([("/header/idempotency-key", "There must be one key only.")])
+        raise refuse_invalid_request([("/header/idempotency-key", "Send only one `Idempotency-Key`.")])
     stated = body.model_dump(mode="json", exclude_defaults=True)
     canonical = json.dumps(stated, sort_keys=True, separators=(",", ":"))
     return Repeatable(keys[0], hashlib.sha256(canonical.encode()).hexdigest())
 
 
-def key_reused() -> Refusal:
-    """The key came with another body before."""
+def refuse_reused_key() -> Refusal:
+    """Build the refusal of a key that was used with a different body before."""
     return Refusal(
         409, "idempotency-key-reused", "Idempotency key reused",
-        "Another request has used this Idempotency-Key; take a new key for a new request.",
+        "A different request has used this `Idempotency-Key`. Use a new key for a new request.",
     )  # fmt: skip

@@ -1,27 +1,27 @@
-"""Ids of jobs and of batches in paths and in cursors: which can be some, and the cursor of a page that one ends."""
+"""Ids of jobs and batches in paths and in the cursors of pages."""
 
 from __future__ import annotations
 
 import base64
 import re
 
-from service.api.http.problem_details import invalid_request
+from service.api.http.problem_details import refuse_invalid_request
 
-ULID = re.compile("[0-7][0-9A-HJKMNP-TV-Z]{25}")
-"""What can be an id. Only that reaches the database, which need not stand every string."""
+ULID_PATTERN = re.compile("[0-7][0-9A-HJKMNP-TV-Z]{25}")
+"""Pattern of an id. Only texts that match reach the database, which does not accept every string."""
 
 
-def cursor_of(last_id: str) -> str:
-    """The cursor of the page that follows the one which ends with this."""
+def encode_cursor(last_id: str) -> str:
+    """Return the cursor of the page after the one that ends with this id."""
     return base64.urlsafe_b64encode(last_id.encode()).decode().rstrip("=")
 
 
-def id_of_cursor(cursor: str) -> str:
-    """The id in a cursor; raises a refusal for what is none of ours."""
+def decode_cursor(cursor: str) -> str:
+    """Return the id in a cursor; raise a refusal if the service has not issued it."""
     try:
         last_id = base64.b64decode(cursor + "=" * (-len(cursor) % 4), altchars=b"-_", validate=True).decode()
     except ValueError:
         last_id = ""
-    if not ULID.fullmatch(last_id):
-        raise invalid_request([("/query/cursor", "This is not a cursor that the service has given out.")])
+    if not ULID_PATTERN.fullmatch(last_id):
+        raise refuse_invalid_request([("/query/cursor", "Expected a `next_cursor` of this service.")])
     return last_id

@@ -1,29 +1,29 @@
-"""Where a JSON text has too much: the place at which its values become too many, or are nested too deep."""
+"""Limits of a JSON text: finds the place where it has too many values or is nested too deeply."""
 
 from __future__ import annotations
 
 import json
 import re
 
-from service.error_messages import pointer
+from service.error_messages import format_pointer
 
 MAX_STEPS = 8
-"""Steps of a place that are told: the field is wanted, not the hundredth list in it."""
+"""Maximum number of steps in a reported place: the field matters, not the hundredth nested list in it."""
 
 _TOKEN = re.compile(rb'"(?:[^"\\]|\\.)*"|[\[\]{},:]', re.DOTALL)
 
 
 def locate_excess(body: bytes, most_values: int, most_depth: int) -> str:
-    """The JSON pointer to the list or object in which a body passes a limit.
+    """Return the JSON pointer to the list or object in which a body exceeds a limit; empty if it exceeds none.
 
-    The text is read up to there and no farther, and need not be valid beyond; the empty string where it passes none.
+    The text is read only up to there and need not be valid after it.
 
     Parameters
     ----------
     most_values : int
-        Keys and members of lists and objects, all together.
+        Maximum number of keys and members of all lists and objects.
     most_depth : int
-        Lists and objects within one another.
+        Maximum nesting of lists and objects.
     """
     place: list[str | int] = []
     in_list: list[bool] = []
@@ -46,12 +46,12 @@ def locate_excess(body: bytes, most_values: int, most_depth: int) -> str:
             place[-1] = _read_key(token)
         after_colon = token == b":"
         if values > most_values or len(place) > most_depth:
-            return pointer(place[:-1][:MAX_STEPS])
+            return format_pointer(place[:-1][:MAX_STEPS])
     return ""
 
 
 def _read_key(token: bytes) -> str:
     try:
         return str(json.loads(token))
-    except ValueError:  # the parser has not come so far
+    except ValueError:  # an invalid key after the point where the parser stopped
         return ""

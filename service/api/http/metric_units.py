@@ -1,4 +1,4 @@
-"""What the numbers of a design measure, by their names: so that a client can put a unit beside each."""
+"""Dimensions of the numbers of a design, by name, from which a client can show units."""
 
 from __future__ import annotations
 
@@ -9,41 +9,41 @@ from pydantic import BaseModel
 
 from synthesis.model.dimension import Dimension, collect_dimensions
 
-PARTS = ("metrics", "mechanism", "springs")
-"""What of a design has numbers that people read; springs where a kind looks for them."""
+MEASURED_FIELDS = ("metrics", "mechanism", "springs")
+"""Fields of a design with numbers for people; only kinds that design springs have ``springs``."""
 
 
-def measures(result: type[BaseModel]) -> dict[str, Dimension]:
-    """The dimension of each named number in the designs of an answer.
+def collect_measures(result: type[BaseModel]) -> dict[str, Dimension]:
+    """Return the dimension of each named number in the designs of an answer.
 
-    A name that measures one thing here and another there is left out.
+    A name with different dimensions in different places is omitted.
 
     Parameters
     ----------
     result : type of pydantic model
-        Of a kind of problem, with its ``designs``.
+        Result model of a kind of problem, with the field ``designs``.
     """
     found: dict[str, set[Dimension]] = {}
-    for design in _models(result.model_fields["designs"].annotation):
-        for part in filter(design.model_fields.__contains__, PARTS):
-            for model in _reached(design.model_fields[part].annotation, set()):
+    for design in _iterate_models(result.model_fields["designs"].annotation):
+        for part in filter(design.model_fields.__contains__, MEASURED_FIELDS):
+            for model in _collect_models(design.model_fields[part].annotation, set()):
                 for name, dimension in collect_dimensions(model).items():
                     found.setdefault(name, set()).add(dimension)
     return {name: next(iter(of)) for name, of in sorted(found.items()) if len(of) == 1}
 
 
-def _reached(annotation: Any, seen: set[type[BaseModel]]) -> set[type[BaseModel]]:
-    """All models that a value may hold, however deep."""
-    for model in _models(annotation):
+def _collect_models(annotation: Any, seen: set[type[BaseModel]]) -> set[type[BaseModel]]:
+    """Collect all models that a value may contain, at any depth."""
+    for model in _iterate_models(annotation):
         if model not in seen:
             seen.add(model)
             for field in model.model_fields.values():
-                _reached(field.annotation, seen)
+                _collect_models(field.annotation, seen)
     return seen
 
 
-def _models(annotation: Any) -> Iterator[type[BaseModel]]:
+def _iterate_models(annotation: Any) -> Iterator[type[BaseModel]]:
     if isinstance(annotation, type) and issubclass(annotation, BaseModel):
         yield annotation
     for part in get_args(annotation):
-        yield from _models(part)
+        yield from _iterate_models(part)

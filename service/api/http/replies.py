@@ -1,4 +1,4 @@
-"""Answers of operations as HTTP replies."""
+"""HTTP responses with JSON text."""
 
 from __future__ import annotations
 
@@ -10,13 +10,13 @@ from service.api.http import etag
 
 
 def as_json(content: bytes, status: int = 200, headers: dict[str, str] | None = None) -> Response:
-    """A reply of JSON text."""
+    """Return a response with JSON text."""
     return Response(content, status_code=status, headers=headers, media_type="application/json")
 
 
-def unless_known(request: Request, revision: int, content: Callable[[], bytes]) -> Response:
-    """JSON text under the entity tag of its revision; 304 without it where the client has that one already."""
-    current = etag.tag(revision)
-    if etag.matches(request.headers.getlist("if-none-match"), current):
+def respond_unless_known(request: Request, revision: int, content: Callable[[], bytes]) -> Response:
+    """Return JSON text with the entity tag of its revision, or 304 if the client has this revision."""
+    current = etag.format_tag(revision)
+    if etag.is_current_tag(request.headers.getlist("if-none-match"), current):
         return Response(status_code=304, headers={"ETag": current})
     return as_json(content(), headers={"ETag": current})

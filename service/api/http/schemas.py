@@ -1,4 +1,4 @@
-"""What goes over the wire besides problems and results, which are the models of :mod:`synthesis`."""
+"""Schemas of the API other than those of problems and results, which are the models of :mod:`synthesis`."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from pydantic_core import to_json
 from service.api.http.problem_details import ProblemDetails
 from service.jobs.store.schema import JobRow, JobSummary, SampleRow
 from service.jobs.store.states import Status
-from service.requests import filled_in
+from service.requests import fill_defaults
 from synthesis.model.answer import Result, optional_field
 from synthesis.model.kind import Group
 from synthesis.registry import KINDS, Problem, get_first_example
@@ -19,22 +19,22 @@ if TYPE_CHECKING:
     AnyResult = Result[Any]
 else:
     AnyResult = Union[tuple(kind.result for kind in KINDS.values())]  # noqa: UP007  (made of a list)
-    """The answer to any problem; which kind it is, the job tells."""
+    """The answer to a problem of any kind; the job has the kind."""
 
 Timestamp = Annotated[str, Field(json_schema_extra={"format": "date-time"}, examples=["2026-01-31T12:00:00.000000Z"])]
 
 
-def _printable(label: str) -> str:
+def _check_printable(label: str) -> str:
     if "\0" in label or any("\ud800" <= character <= "\udfff" for character in label):
         raise ValueError("the label must not contain NUL or lone surrogates")
     return label
 
 
-Label = Annotated[str, Field(strict=True, max_length=200), AfterValidator(_printable)]
+Label = Annotated[str, Field(strict=True, max_length=200), AfterValidator(_check_printable)]
 
 
 class JobRequest(BaseModel):
-    """A problem to solve, with an optional label to recognize the job by."""
+    """A problem to solve, with an optional label for the job."""
 
     model_config = ConfigDict(
         title="Job request",
@@ -48,23 +48,23 @@ class JobRequest(BaseModel):
 
 
 class Progress(BaseModel):
-    """How far a job is."""
+    """Progress of a job."""
 
-    fraction: float = Field(ge=0.0, le=1.0, description="Share of the work that is done.")
-    message: str = Field(description="What is being done.")
+    fraction: float = Field(ge=0.0, le=1.0, description="Completed share of the work.")
+    message: str = Field(description="Present step of the work.")
 
 
 class JobListItem(BaseModel):
-    """A job in a list: everything but its problem, its result and its error, which the job itself has."""
+    """A job in a list: without its problem, result and error, which the job itself has."""
 
     model_config = ConfigDict(title="Job in a list")
 
-    id: str = Field(description="A ULID; ids sort by time of creation.", examples=["01K6WM2B7Q3W9Z0V5N8XJ4R1TD"])
-    kind: str = Field(description="The kind of the problem.", examples=list(KINDS))
+    id: str = Field(description="ULID; ids sort by time of creation.", examples=["01K6WM2B7Q3W9Z0V5N8XJ4R1TD"])
+    kind: str = Field(description="Kind of the problem.", examples=list(KINDS))
     label: str | None
     status: Status
     created_at: Timestamp
-    started_at: Timestamp | None = Field(description="When the present attempt began.")
+    started_at: Timestamp | None = Field(description="Start of the present attempt.")
     finished_at: Timestamp | None
     progress: Progress
 
@@ -72,17 +72,17 @@ class JobListItem(BaseModel):
 class Job(JobListItem):
     """A job and its answer.
 
-    ``succeeded`` means that the computation ended and its answer can be relied on; it may be that no design exists.
+    ``succeeded`` means that the computation ended with a reliable answer, which may be that no design exists.
     """
 
     model_config = ConfigDict(title="Job")
 
-    problem: Problem = Field(description="The problem as stated, defaults filled in; posted again it is the same one.")
-    result: AnyResult | None = Field(description="The answer of a job that has succeeded.")
-    error: ProblemDetails | None = Field(description="Why a job has failed.")
-    batch: str | None = optional_field("Of a problem of a batch, the id of that; otherwise left out.")
+    problem: Problem = Field(description="The problem with all defaults; posted again it counts as the same problem.")
+    result: AnyResult | None = Field(description="Answer of a job that has succeeded.")
+    error: ProblemDetails | None = Field(description="Reason why the job failed.")
+    batch: str | None = optional_field("Id of the batch if the job is one of its problems; otherwise omitted.")
     cached: bool | None = optional_field(
-        "Of a problem of a batch: an equal problem had been answered; otherwise left out."
+        "Whether the answer to an equal problem was reused, if the job is a problem of a batch; otherwise omitted."
     )
 
 
@@ -92,17 +92,17 @@ class JobList(BaseModel):
     model_config = ConfigDict(title="Job list")
 
     jobs: list[JobListItem]
-    next_cursor: str | None = Field(description="The cursor of the next page; null on the last one.")
+    next_cursor: str | None = Field(description="Cursor of the next page; null on the last page.")
 
 
 class ExampleName(BaseModel):
-    """An example of a kind of problem, as a person looks for it."""
+    """Name of an example of a kind of problem."""
 
     model_config = ConfigDict(title="Example name")
 
     name: str = Field(examples=["Hatch lid"])
-    group: Group = Field(description="What it is for.")
-    line: str = Field(description="What it shows, in a sentence.")
+    group: Group = Field(description="Field of application.")
+    line: str = Field(description="Content of the example in a sentence.")
 
 
 class ProblemKind(BaseModel):
@@ -115,20 +115,20 @@ class ProblemKind(BaseModel):
     description: str
     schema_: dict[str, Any] = Field(
         alias="schema",
-        description="JSON schema of the problem. `x-dimension` says what a number measures: a length in the problem's "
-        "unit, an angle in degrees, ...; pure numbers have none.",
+        description="JSON schema of the problem. `x-dimension` gives the dimension of a number: a length in the "
+        "problem's unit, an angle in degrees, ...; pure numbers have none.",
     )
-    example: dict[str, Any] = Field(description="A problem of this kind that runs as it is.")
+    example: dict[str, Any] = Field(description="A problem of this kind that can be posted as it is.")
     examples: list[ExampleName] = Field(
-        description="What the `examples` of the schema are, in their order; the first of them is `example`."
+        description="Names of the `examples` of the schema, in the same order; the first one is `example`."
     )
     measures: dict[str, str] = Field(
-        description="What the numbers of its designs measure, by their names in `metrics` and `mechanism`: a length in "
-        "the problem's unit, an angle in degrees, ...; pure numbers are not in it."
+        description="Dimensions of the numbers of its designs, by their names in `metrics` and `mechanism`: a length "
+        "in the problem's unit, an angle in degrees, ...; pure numbers are omitted."
     )
     files: dict[str, list[str]] = Field(
-        description="By the type of mechanism, the files that there are of its designs: drawings (svg, gif, dxf), a "
-        "table (csv), and simulations (mjcf, urdf, mo, sim.py)."
+        description="File formats of its designs by type of mechanism: drawings (svg, gif, dxf), a table (csv), and "
+        "simulations (mjcf, urdf, mo, sim.py)."
     )
 
 
@@ -139,11 +139,11 @@ class ProblemKinds(BaseModel):
 
     problems: list[ProblemKind]
     solids: bool = Field(
-        description="Whether parts of designs are had as solids too: printed, milled, as STEP and glTF. Without the "
-        "extra `cad` there are outlines alone."
+        description="Whether parts of designs are also available as solids: printed, milled, as STEP and glTF. Without "
+        "the extra `cad` only outlines are available."
     )
     parts: list[str] = Field(
-        description="Types of mechanism, beside those that have a `skeleton`, whose designs are had as parts."
+        description="Types of mechanism whose designs are available as parts, in addition to those with a `skeleton`."
     )
 
 
@@ -154,23 +154,23 @@ class Health(BaseModel):
 
 
 class Kernels(BaseModel):
-    """How far the compilation of numeric kernels is, which each kind of problem has some of.
+    """Progress of the compilation of numerical kernels, which each kind of problem needs.
 
-    A job that comes before its kernels are compiled compiles them itself, and takes seconds longer.
+    A job that arrives before its kernels are compiled compiles them itself and takes seconds longer.
     """
 
-    compiled: int = Field(ge=0, description="Parts that are compiled.")
-    total: int = Field(ge=0, description="All parts that there are.")
+    compiled: int = Field(ge=0, description="Number of compiled parts.")
+    total: int = Field(ge=0, description="Number of all parts.")
 
 
 class Readiness(Health):
-    """What the service is ready for."""
+    """Readiness of the service."""
 
-    kernels: Kernels | None = Field(description="Null as long as it is not known, a second after the start.")
+    kernels: Kernels | None = Field(description="Null while unknown, in the first second after the start.")
 
 
-def list_item(job: JobSummary) -> dict[str, Any]:
-    """A job as :class:`JobListItem`."""
+def describe_job(job: JobSummary) -> dict[str, Any]:
+    """Return a job as :class:`JobListItem`."""
     return {
         "id": job.id,
         "kind": job.kind,
@@ -179,20 +179,18 @@ def list_item(job: JobSummary) -> dict[str, Any]:
         "created_at": job.created_at,
         "started_at": job.started_at,
         "finished_at": job.finished_at,
-        "progress": progress(job),
+        "progress": describe_progress(job),
     }
 
 
-def progress(job: JobSummary) -> dict[str, Any]:
-    """How far a job is, as :class:`Progress`."""
+def describe_progress(job: JobSummary) -> dict[str, Any]:
+    """Return the progress of a job as :class:`Progress`."""
     return {"fraction": job.progress_fraction, "message": job.progress_message}
 
 
-def whole_job(job: JobRow) -> bytes:
-    """A job as :class:`Job`, in JSON; result and error go out as the models wrote them into the store."""
-    stored = (
-        f'"problem":{filled_in(job.kind, job.problem)},"result":{job.result or "null"},"error":{job.error or "null"}'
-    )
+def dump_job(job: JobRow) -> bytes:
+    """Return a job as :class:`Job` in JSON; result and error are sent as stored, without parsing them."""
+    stored = f'"problem":{fill_defaults(job.kind, job.problem)},"result":{job.result or "null"},"error":{job.error or "null"}'
     if isinstance(job, SampleRow):
         stored += f',"batch":"{job.batch}","cached":{"true" if job.cached else "false"}'
-    return to_json(list_item(job))[:-1] + b"," + stored.encode() + b"}"
+    return to_json(describe_job(job))[:-1] + b"," + stored.encode() + b"}"

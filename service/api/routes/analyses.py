@@ -1,4 +1,4 @@
-"""``/v1/analyses``: what the analysis core knows of a given mechanism, at once."""
+"""``/v1/analyses``: immediate analysis of a given mechanism."""
 
 from __future__ import annotations
 
@@ -12,24 +12,24 @@ from service.answers.analysis import analyse
 from service.api.http import problem_details
 from service.api.http.auth import Tenant
 from service.api.http.body import JsonRoute
-from service.api.http.computation import answer_with_analysis
+from service.api.http.computation import respond_with_analysis
 from service.api.http.dependencies import Answers
 
-TAG = {"name": "analyses", "description": "Drive a given mechanism."}
+TAG = {"name": "analyses", "description": "Analyse a given mechanism."}
 
-# The models of an analysis bring the analysis core with them, for which the start of the service does not wait. So the
-# body is validated where it is used, and the OpenAPI document gets the models when somebody asks for it.
+# Importing the models of an analysis loads the analysis core, for which the start of the service must not wait. So the
+# body is validated where it is used, and the models are added to the OpenAPI document when it is first requested.
 REQUEST = {"$ref": "#/components/schemas/AnalysisRequest"}
 ANALYSIS = {"$ref": "#/components/schemas/Analysis"}
 
 router = APIRouter(prefix="/v1/analyses", tags=["analyses"], route_class=JsonRoute)
 
 
-def analysis_responses(description: str, **described: str) -> dict[int | str, dict[str, Any]]:
-    """The responses of an operation that answers with an analysis; errors as for :func:`errors.responses`."""
+def describe_analysis_responses(description: str, **described: str) -> dict[int | str, dict[str, Any]]:
+    """Return the responses of an operation that answers with an analysis, and its errors as for `responses`."""
     return {
         200: {"description": description, "content": {"application/json": {"schema": ANALYSIS}}},
-        **problem_details.responses(**described, e503="Other analyses have kept this one from being begun."),
+        **problem_details.describe_responses(**described, e503="The service is busy with other analyses."),
     }
 
 
@@ -38,26 +38,26 @@ def analysis_responses(description: str, **described: str) -> dict[int | str, di
     operation_id="analyse",
     summary="Analyse a mechanism",
     response_class=Response,
-    responses=analysis_responses(
+    responses=describe_analysis_responses(
         "The analysis.",
         e400="The body is not JSON.",
         e413="The body is too large.",
         e415="The body is not `application/json`.",
-        e422="The body does not state a mechanism and its motion; `errors` says where.",
+        e422="The body is not a valid mechanism with a motion; `errors` has the places.",
     ),
 )
 async def analyse_mechanism(
     request: Request, answers: Answers, tenant: Tenant, body: Annotated[Any, Body()]
 ) -> Response:
-    """Positions, velocities, accelerations and jerks over the motion, toggles, circuits and limits.
+    """Compute positions, velocities, accelerations and jerks over the motion, toggles, circuits and limits.
 
-    Nothing is stored. Where the mechanism cannot be assembled `valid` is false and the numbers are null.
+    Nothing is stored. Where the mechanism cannot be assembled, `valid` is false and the numbers are null.
     """
-    return await answer_with_analysis(request, answers, tenant, analyse, body)
+    return await respond_with_analysis(request, answers, tenant, analyse, body)
 
 
 def complete(document: dict[str, Any]) -> None:
-    """Put the models of an analysis into the OpenAPI document."""
+    """Add the models of an analysis to the OpenAPI document."""
     from pydantic.json_schema import models_json_schema
 
     from synthesis.analyses import list_families
@@ -73,8 +73,8 @@ def complete(document: dict[str, Any]) -> None:
     )
     document["components"]["schemas"].update(
         schemas["$defs"],
-        AnalysisRequest=_any_of("Analysis request", requests),
-        Analysis=_any_of("Analysis", answers),
+        AnalysisRequest=_build_union_schema("Analysis request", requests),
+        Analysis=_build_union_schema("Analysis", answers),
     )
     content = document["paths"]["/v1/analyses"]["post"]["requestBody"]["content"]["application/json"]
     content["schema"] = REQUEST
@@ -84,5 +84,5 @@ def complete(document: dict[str, Any]) -> None:
     }
 
 
-def _any_of(title: str, models: Iterable[type[BaseModel]]) -> dict[str, Any]:
+def _build_union_schema(title: str, models: Iterable[type[BaseModel]]) -> dict[str, Any]:
     return {"title": title, "anyOf": [{"$ref": f"#/components/schemas/{model.__name__}"} for model in models]}

@@ -1,4 +1,4 @@
-"""From what a client has stated of a batch to its plan, or to what is wrong with it and where."""
+"""Conversion of a batch request to its plan, or to the faults of the request with their places."""
 
 from __future__ import annotations
 
@@ -9,45 +9,45 @@ from collections.abc import Iterable, Iterator, Sequence
 from itertools import islice
 from typing import Any
 
-from service.api.http.problem_details import Refusal, invalid_problem, invalid_request
-from service.api.routes.batch_schemas import MOST_SAMPLES, BatchRequest, Vary
-from service.error_messages import MAX_FAULTS, pointer
-from service.jobs.batches.plan import NoSuchPlace, Plan, steps
-from service.jobs.batches.sampling import Span, evenly, latin_hypercube
-from service.jobs.batches.values import Picked, Values
+from service.api.http.problem_details import Refusal, refuse_invalid_problem, refuse_invalid_request
+from service.api.routes.batch_schemas import MAX_SAMPLES, BatchRequest, Vary
+from service.error_messages import MAX_FAULTS, format_pointer
+from service.jobs.batches.plan import NoSuchPlace, Plan, split_pointer
+from service.jobs.batches.sampling import Span, sample_evenly, sample_latin_hypercube
+from service.jobs.batches.values import PickedValues, Values
 from service.jobs.store.states import Cost
-from service.requests import Faults, consistent, well_formed
+from service.requests import Faults, check_consistency, check_fields
 from synthesis.model.linkage.answer import ERROR_FIELDS
 from synthesis.registry import KINDS
 
-LOOKED_AT = 100
-"""Samples, evenly spread, one of which at least has to state a problem."""
+MAX_EXAMINED = 100
+"""Number of evenly spread samples that are checked; at least one of them must be a valid problem."""
 
-TRIED_BYTES = 4_000_000
-"""Statements that are tried, in bytes of JSON: a second of work. All values of a plan, where its problem is of a usual
-size; of a larger one as many, evenly spread, and :data:`LOOKED_AT` at least."""
+MAX_TRIED_BYTES = 4_000_000
+"""Total size of the statements tried, bytes of JSON, about a second of work. That covers all values of a plan with a
+problem of usual size; with a larger one, evenly spread values are tried, at least :data:`MAX_EXAMINED`."""
 
-CHECKED_S = 1.0
-"""Seconds of processor after which no further value is tried and no further sample looked at: statements with very many
-faults take longer than their size tells."""
+CHECK_TIMEOUT_S = 1.0
+"""Processor time after which no further values or samples are checked, seconds: statements with very many faults take
+longer than their size suggests."""
 
-TABLE_BYTES = 16 << 20
-"""What the values of all samples may take together, since the table shows them in each row."""
+MAX_TABLE_BYTES = 16 << 20
+"""Maximum total size of the values of all samples, bytes of JSON, since the table repeats them in each row."""
 
 RATIO_ERRORS = ("max_error", "relative_error", "error")
-"""Errors of gears, of which a kind shows the first that it has."""
+"""Error metrics of gears; the first one that a kind has is used."""
 
-MORE_IS_BETTER = ("min_transmission_angle",)
+MAXIMIZED_METRICS = ("min_transmission_angle",)
 
-SIZES = ("size", "total_teeth", "tooth_sum")
-"""Sizes, of which a kind shows the first that it has."""
+SIZE_METRICS = ("size", "total_teeth", "tooth_sum")
+"""Size metrics; the first one that a kind has is used."""
 
 
-def plan_of(body: BatchRequest) -> tuple[str, Plan, Cost]:
-    """The kind of the problems, the plan, and what one of them is taken to cost.
+def build_plan(body: BatchRequest) -> tuple[str, Plan, Cost]:
+    """Return the kind of the problems, the plan, and the estimated cost of a problem.
 
-    A value that its field cannot have is a fault of the batch. Values that contradict one another are one of the sample
-    alone, unless all of :data:`LOOKED_AT` samples have such.
+    A value that is invalid for its field is a fault of the batch. Contradictory values are a fault of their sample
+    only, unless all of :data:`MAX_EXAMINED` checked samples are contradictory.
 
     Raises
     ------
@@ -56,42 +56,43 @@ def plan_of(body: BatchRequest) -> tuple[str, Plan, Cost]:
     """
     kind = body.problem.get("kind")
     if not isinstance(kind, str) or kind not in KINDS:
+        # The kind selects the model, so nothing else can be checked without it.
         detail = f"Kind must be given and be one of: {', '.join(KINDS)}."
-        raise invalid_problem([("/problem/kind", detail)])
-    faults = [*islice(_not_finite(body), MAX_FAULTS)]
+        raise refuse_invalid_problem([("/problem/kind", detail)])
+    faults = [*islice(_find_nonfinite_numbers(body), MAX_FAULTS)]
     if faults:
-        raise invalid_request(faults)
-    faults = [*_faults_of_fields(body), *_faults_of_sampling(body), *_faults_of_metrics(body, kind)]
+        raise refuse_invalid_request(faults)
+    faults = [*_find_field_faults(body), *_find_sampling_faults(body), *_find_metric_faults(body, kind)]
     if faults:
-        raise invalid_request(faults)
+        raise refuse_invalid_request(faults)
     plan = Plan(
         body.problem,
         [varied.field for varied in body.vary],
-        _values(body),
+        _build_values(body),
         body.sampling == "grid",
-        by_default(KINDS[kind].metrics) if body.metrics is None else body.metrics,
+        select_default_metrics(KINDS[kind].metrics) if body.metrics is None else body.metrics,
         body.reuse,
     )
     _require_places(plan)
-    until = time.thread_time() + CHECKED_S
-    faults = _faults_of_the_problem(kind, plan)
+    until = time.thread_time() + CHECK_TIMEOUT_S
+    faults = _find_problem_faults(kind, plan)
     if faults:
-        raise invalid_problem(faults)
-    faults = _faults_of_values(body, kind, plan, until)
+        raise refuse_invalid_problem(faults)
+    faults = _find_value_faults(body, kind, plan, until)
     if faults:
-        raise invalid_request(faults)
-    return kind, plan, _cost(kind, plan, until)
+        raise refuse_invalid_request(faults)
+    return kind, plan, _estimate_cost(kind, plan, until)
 
 
-def by_default(metrics: Sequence[str]) -> list[str]:
-    """Of the metrics of a kind, what its front weighs up: an error, what is to be large, what is to be small."""
+def select_default_metrics(metrics: Sequence[str]) -> list[str]:
+    """Select the default metrics of a front from those of a kind: an error, metrics to maximize, a size."""
     error = [name for name in (*ERROR_FIELDS, *RATIO_ERRORS) if name in metrics][:1]
-    size = [name for name in SIZES if name in metrics][:1]
-    return [*error, *(name for name in MORE_IS_BETTER if name in metrics), *size]
+    size = [name for name in SIZE_METRICS if name in metrics][:1]
+    return [*error, *(name for name in MAXIMIZED_METRICS if name in metrics), *size]
 
 
-def _not_finite(body: BatchRequest) -> Iterator[tuple[str, str]]:
-    """The numbers, wherever they stand, that are infinite or none."""
+def _find_nonfinite_numbers(body: BatchRequest) -> Iterator[tuple[str, str]]:
+    """Yield the faults of infinite numbers and NaN anywhere in the problem and the values."""
     pending: list[tuple[tuple[str | int, ...], Any]] = [
         (("vary", k, "values"), varied.values) for k, varied in reversed([*enumerate(body.vary)])
     ]
@@ -99,30 +100,31 @@ def _not_finite(body: BatchRequest) -> Iterator[tuple[str, str]]:
     while pending:
         place, value = pending.pop()
         if isinstance(value, float) and not math.isfinite(value):
-            yield pointer(place), "This must be a finite number."
+            yield format_pointer(place), "This must be a finite number."
         elif isinstance(value, dict | list):
             inside = value.items() if isinstance(value, dict) else enumerate(value)
             pending += [((*place, step), member) for step, member in reversed([*inside])]
 
 
-def _faults_of_the_problem(kind: str, plan: Plan) -> list[tuple[str, str]]:
-    """What is wrong with the problem whatever the varied fields are, by the first sample and the last."""
+def _find_problem_faults(kind: str, plan: Plan) -> list[tuple[str, str]]:
+    """Return the faults of the problem that do not depend on the varied fields, by the first and the last sample."""
+    # Two samples suffice: a fault that both have outside of the varied fields is taken as one of the problem.
     found: Faults = []
     for number in (0, plan.total - 1):
         before = found
-        _, faults = well_formed(kind, plan.statement(number))
-        found = [(path, detail) for path, detail in faults if _apart(path, plan.fields)]
+        _, faults = check_fields(kind, plan.build_statement(number))
+        found = [(path, detail) for path, detail in faults if _is_independent(path, plan.fields)]
         if not found:
             return []
     agreed = set(before)
     return [(f"/problem{path}", detail) for path, detail in found if (path, detail) in agreed]
 
 
-def _apart(path: str, fields: Sequence[str]) -> bool:
-    """Whether what is wrong at this place of a problem is so whatever the varied fields are.
+def _is_independent(path: str, fields: Sequence[str]) -> bool:
+    """Return whether a fault at this place is independent of the varied fields.
 
-    It may not be where it lies in one of them or on the way to it, or in an object of which a field varies: what that
-    object may have can go by it.
+    It may depend on them if it lies in a varied field, on the path to one, or in an object with a varied field, which
+    may decide on the other fields of the object.
     """
     for field in fields:
         object_, _, _ = field.rpartition("/")
@@ -131,68 +133,74 @@ def _apart(path: str, fields: Sequence[str]) -> bool:
     return True
 
 
-def _faults_of_fields(body: BatchRequest) -> Iterator[tuple[str, str]]:
-    ways = [steps(varied.field) for varied in body.vary]
+def _find_field_faults(body: BatchRequest) -> Iterator[tuple[str, str]]:
+    ways = [split_pointer(varied.field) for varied in body.vary]
     for k, way in enumerate(ways):
         if way == ["kind"]:
-            yield f"/vary/{k}/field", "The problems of a batch are of one kind."
+            yield f"/vary/{k}/field", "All problems of a batch have the same kind; `kind` cannot be varied."
         for other in ways[:k]:
             if way[: len(other)] == other or other[: len(way)] == way:
-                yield f"/vary/{k}/field", "This field is varied already, as a whole or in part."
+                yield f"/vary/{k}/field", "This field is already varied, as a whole or in part."
 
 
-def _faults_of_sampling(body: BatchRequest) -> Iterator[tuple[str, str]]:
+def _find_sampling_faults(body: BatchRequest) -> Iterator[tuple[str, str]]:
     drawn = body.sampling == "latin_hypercube"
     if drawn and body.samples is None:
-        yield "/samples", "A Latin hypercube needs the number of its samples."
+        yield "/samples", "A Latin hypercube needs `samples`, the number of problems."
     if not drawn and body.samples is not None:
-        yield "/samples", f"A {body.sampling} has as many as its values make; leave this out."
+        yield "/samples", f"The values determine the number of problems of a {body.sampling}; omit `samples`."
     if not drawn and body.seed != 0:
-        yield "/seed", f"Nothing is drawn in a {body.sampling}; leave this out."
+        yield "/seed", f"A {body.sampling} has no random draws; omit `seed`."
     counts = []
     for k, varied in enumerate(body.vary):
         if drawn and varied.count is not None:
-            yield f"/vary/{k}/count", "A Latin hypercube has as many as there are samples; leave this out."
+            yield f"/vary/{k}/count", "A Latin hypercube has one value for each of its `samples`; omit `count`."
         if not drawn and varied.values is None and varied.count is None:
-            yield f"/vary/{k}", "Say how many, by a count."
+            yield f"/vary/{k}", "Give `count`, the number of values."
         counts.append(len(varied.values) if varied.values is not None else varied.count or 1)
     if body.sampling == "zip":
         for k, count in enumerate(counts):
             if count != counts[0]:
-                yield f"/vary/{k}", f"In a zip all fields have as many values; the first one has {counts[0]}."
+                yield (
+                    f"/vary/{k}",
+                    f"In a zip all fields need the same number of values; the first field has {counts[0]}.",
+                )
     total = math.prod(counts) if body.sampling == "grid" else body.samples or counts[0]
-    if total > MOST_SAMPLES:
-        yield "/vary", f"These make {total} problems; a batch has {MOST_SAMPLES} at most."
-    elif total * sum(map(_bytes_of_a_value, body.vary)) > TABLE_BYTES:
-        yield "/vary", f"The values of {total} problems take more than {TABLE_BYTES >> 20} MiB together."
+    if total > MAX_SAMPLES:
+        yield "/vary", f"These values give {total} problems; a batch can have at most {MAX_SAMPLES}."
+    elif total * sum(map(_measure_value_bytes, body.vary)) > MAX_TABLE_BYTES:
+        yield (
+            "/vary",
+            f"The values of {total} problems exceed {MAX_TABLE_BYTES >> 20} MiB; give fewer or shorter values.",
+        )
 
 
-def _bytes_of_a_value(varied: Vary) -> float:
+def _measure_value_bytes(varied: Vary) -> float:
     return 8.0 if varied.values is None else len(json.dumps(varied.values)) / len(varied.values)
 
 
-def _faults_of_metrics(body: BatchRequest, kind: str) -> Iterator[tuple[str, str]]:
+def _find_metric_faults(body: BatchRequest, kind: str) -> Iterator[tuple[str, str]]:
     known = KINDS[kind].metrics
     for k, name in enumerate(body.metrics or ()):
         if name not in known:
-            yield f"/metrics/{k}", f"Designs of this kind have no such metric; they have {', '.join(known)}."
+            yield f"/metrics/{k}", f"Unknown metric; this kind has {', '.join(known)}."
         elif name in (body.metrics or ())[:k]:
-            yield f"/metrics/{k}", "This is given twice; give it once."
+            yield f"/metrics/{k}", "This metric is given twice; give it once."
 
 
-def _values(body: BatchRequest) -> list[Sequence[Any]]:
+def _build_values(body: BatchRequest) -> list[Sequence[Any]]:
     if body.sampling == "latin_hypercube":
         assert body.samples is not None
         given = [v.values if v.values is not None else Span(v.from_ or 0, v.to or 0) for v in body.vary]
-        return [*latin_hypercube(given, body.samples, body.seed)]
+        return [*sample_latin_hypercube(given, body.samples, body.seed)]
     return [
-        v.values if v.values is not None else evenly(v.from_ or 0, v.to or 0, v.count or 1) for v in body.vary
+        v.values if v.values is not None else sample_evenly(v.from_ or 0, v.to or 0, v.count or 1) for v in body.vary
     ]  # fmt: skip
 
 
 def _require_places(plan: Plan) -> None:
     try:
-        plan.statement(0)
+        plan.build_statement(0)
     except NoSuchPlace:
         pass
     else:
@@ -200,21 +208,21 @@ def _require_places(plan: Plan) -> None:
     for k, (field, value) in enumerate(zip(plan.fields, plan.sample(0), strict=True)):
         alone = Plan(plan.problem, [field], [[value]], True, [], True)
         try:
-            alone.statement(0)
+            alone.build_statement(0)
         except NoSuchPlace as nowhere:
-            raise invalid_request([(f"/vary/{k}/field", str(nowhere))]) from None
+            raise refuse_invalid_request([(f"/vary/{k}/field", str(nowhere))]) from None
 
 
-def _faults_of_values(body: BatchRequest, kind: str, plan: Plan, until: float) -> list[tuple[str, str]]:
-    """What is wrong with values by themselves: each is tried once, as long as there is time."""
+def _find_value_faults(body: BatchRequest, kind: str, plan: Plan, until: float) -> list[tuple[str, str]]:
+    """Return the faults of single values: each value is tried once, within the time limit."""
     found: dict[tuple[str, str], None] = {}
-    most = max(LOOKED_AT, TRIED_BYTES // len(json.dumps(plan.statement(0))))
+    most = max(MAX_EXAMINED, MAX_TRIED_BYTES // len(json.dumps(plan.build_statement(0))))
     every = sum(map(len, plan.values)) if plan.grid else plan.total
     step = -(-every // most)
-    for places, values in islice(_tried(plan), 0, None, step):
+    for places, values in islice(_iterate_trials(plan), 0, None, step):
         if time.thread_time() > until:
             break
-        _, faults = well_formed(kind, plan.stated(values))
+        _, faults = check_fields(kind, plan.fill_statement(values))
         for path, detail in faults:
             if len(found) > MAX_FAULTS:
                 break
@@ -224,18 +232,19 @@ def _faults_of_values(body: BatchRequest, kind: str, plan: Plan, until: float) -
                     unknown = detail.startswith("There is no such field")
                     inside = f"/values/{places[k]}{path[len(field) :]}" if given else ""
                     place = "/field" if unknown and path == field else inside
-                    shown = "" if given or unknown else f" This is of the value {values[k]}."
+                    # Values computed from a range have no place in the request, so the message names the value.
+                    shown = "" if given or unknown else f" The value is {values[k]}."
                     found[f"/vary/{k}{place}", f"{detail}{shown}"] = None
         if len(found) > MAX_FAULTS:
             break
     return list(found)
 
 
-def _tried(plan: Plan) -> Iterable[tuple[dict[int, int], list[Any]]]:
-    """Samples in which each value occurs: the places of those that are new in it, by field, and all its values."""
+def _iterate_trials(plan: Plan) -> Iterable[tuple[dict[int, int], list[Any]]]:
+    """Yield samples that cover each value: the places of the values new in it, by field, and all its values."""
     if not plan.grid:
         for number in range(plan.total):
-            yield {k: _place(values, number) for k, values in enumerate(plan.values)}, plan.sample(number)
+            yield {k: _get_place(values, number) for k, values in enumerate(plan.values)}, plan.sample(number)
         return
     first = plan.sample(0)
     for k, values in enumerate(plan.values):
@@ -243,46 +252,47 @@ def _tried(plan: Plan) -> Iterable[tuple[dict[int, int], list[Any]]]:
             yield {k: place}, [*first[:k], value, *first[k + 1 :]]
 
 
-def _place(values: Values, number: int) -> int:
-    """Where the value of a sample stands among those that are stated."""
-    return values.places[number] if isinstance(values, Picked) else number
+def _get_place(values: Values, number: int) -> int:
+    """Return the place of a sample's value among the given ones."""
+    return values.places[number] if isinstance(values, PickedValues) else number
 
 
-def _cost(kind: str, plan: Plan, until: float) -> Cost:
-    """What a problem of the batch costs, the longest of those that are looked at: one at least, others while there is
-    time.
-    """
+def _estimate_cost(kind: str, plan: Plan, until: float) -> Cost:
+    """Estimate the cost of a problem of the batch: the highest of the samples checked within the time, at least one."""
     refused: Faults | None = None
     brief: list[bool] = []
-    for number in _spread(plan.total, LOOKED_AT):
+    for number in _sample_numbers(plan.total, MAX_EXAMINED):
         if time.thread_time() > until and (brief or refused):
             break
-        problem, faults = well_formed(kind, plan.statement(number))
-        faults = faults or consistent(problem)
+        problem, faults = check_fields(kind, plan.build_statement(number))
+        faults = faults or check_consistency(problem)
         if faults:
             refused = refused or faults
         else:
             brief.append(KINDS[kind].brief(problem))
     if not brief and refused is not None:
-        raise _none_states_a_problem(plan, refused)
+        raise _refuse_all_samples(plan, refused)
     return Cost.SHORT if all(brief) else Cost.LONG
 
 
-def _spread(total: int, most: int) -> Iterator[int]:
-    """So many numbers below the total, evenly spread; the first ones of them too, as well as may be."""
+def _sample_numbers(total: int, most: int) -> Iterator[int]:
+    """Yield at most ``most`` numbers below the total, evenly spread, in an order whose beginnings are even, too."""
     count = min(total, most)
+    # Steps near the golden section of the count, and coprime to it, spread every beginning of the order evenly.
     step = next(step for step in range(max(1, round(count * 0.618)), count + 1) if math.gcd(step, count) == 1)
     for n in range(count):
         yield n * step % count * total // count
 
 
-def _none_states_a_problem(plan: Plan, faults: Faults) -> Refusal:
-    placed = [(_place_of(plan, path), detail) for path, detail in faults]
-    return (invalid_problem if all(path.startswith("/problem") for path, _ in placed) else invalid_request)(placed)
+def _refuse_all_samples(plan: Plan, faults: Faults) -> Refusal:
+    placed = [(_locate_fault(plan, path), detail) for path, detail in faults]
+    return (
+        refuse_invalid_problem if all(path.startswith("/problem") for path, _ in placed) else refuse_invalid_request
+    )(placed)
 
 
-def _place_of(plan: Plan, path: str) -> str:
-    """Where a fault of all samples lies: at the varied field that it is on the way to, else in the problem."""
+def _locate_fault(plan: Plan, path: str) -> str:
+    """Locate a fault of all samples: at the varied field whose path it lies on, else in the problem."""
     on_the_way = (k for k, field in enumerate(plan.fields) if path and field.startswith(f"{path}/"))
     k = next(on_the_way, None)
     return f"/problem{path}" if k is None else f"/vary/{k}/field"

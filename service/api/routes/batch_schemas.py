@@ -1,4 +1,4 @@
-"""What goes over the wire of batches."""
+"""Schemas of batches."""
 
 from __future__ import annotations
 
@@ -14,12 +14,12 @@ from synthesis.model.answer import optional_field
 from synthesis.model.problem import MAX_MAGNITUDE, Number
 from synthesis.registry import KINDS
 
-MOST_SAMPLES = 10_000
-MOST_VARIED = 20
-MOST_METRICS = 50
+MAX_SAMPLES = 10_000
+MAX_VARIED_FIELDS = 20
+MAX_METRICS = 50
 
 Bound = Annotated[int, Field(strict=True, ge=-MAX_MAGNITUDE, le=MAX_MAGNITUDE)] | Number
-"""A whole number stays one: some fields are counts."""
+"""End of a range; an integer stays an integer, because some fields are counts."""
 
 EXAMPLE: dict[str, Any] = {
     "problem": {
@@ -41,7 +41,7 @@ EXAMPLE: dict[str, Any] = {
 
 
 class Vary(BaseModel):
-    """A field of the problem, and what it is to be: one of `values`, or numbers `from` one `to` another."""
+    """A varied field of the problem: its `values`, or the range of numbers `from` one `to` another."""
 
     model_config = ConfigDict(
         extra="forbid", frozen=True, populate_by_name=True, serialize_by_alias=True,
@@ -51,63 +51,61 @@ class Vary(BaseModel):
     )  # fmt: skip
 
     field: Annotated[str, Field(strict=True, min_length=2, max_length=500, pattern="^(/([^~/]|~[01])*)+$")] = Field(
-        description="JSON pointer into the problem. Objects that are not stated are made, elements of lists are not.",
+        description="JSON pointer into the problem. Missing objects are created, missing list elements are not.",
         examples=["/positions/1/x"],
     )
-    values: Annotated[list[Any], Field(min_length=1, max_length=MOST_SAMPLES)] | None = optional_field(
-        "The values, of whatever type the field has."
+    values: Annotated[list[Any], Field(min_length=1, max_length=MAX_SAMPLES)] | None = optional_field(
+        "The values, of the type of the field."
     )
-    from_: Bound | None = optional_field(
-        "The first of evenly spaced numbers, or the lower end of a range.", alias="from"
-    )
-    to: Bound | None = optional_field("The last of them, or the upper end.")
-    count: Annotated[int, Field(strict=True, ge=1, le=MOST_SAMPLES)] | None = optional_field(
-        "How many: in a grid and in a zip. Whole numbers where the ends and all between are; a count of 1 is `from`."
+    from_: Bound | None = optional_field("First of evenly spaced numbers, or lower end of a range.", alias="from")
+    to: Bound | None = optional_field("Last of these numbers, or upper end.")
+    count: Annotated[int, Field(strict=True, ge=1, le=MAX_SAMPLES)] | None = optional_field(
+        "Number of values in a grid or a zip. They are integers if all of them are whole; a single value is `from`."
     )
 
     @model_validator(mode="after")
-    def _one_way(self) -> Self:
+    def _check_source(self) -> Self:
         ranged = self.from_ is not None and self.to is not None
-        if ranged == (self.values is not None) or (self.values is not None and self.model_fields_set & _OF_RANGES):
-            raise ValueError("give values, or from and to")
+        if ranged == (self.values is not None) or (self.values is not None and self.model_fields_set & _RANGE_FIELDS):
+            raise ValueError("give either values, or from and to")
         return self
 
 
-_OF_RANGES = {"from_", "to", "count"}
+_RANGE_FIELDS = {"from_", "to", "count"}
 
 
 class BatchRequest(BaseModel):
-    """A problem, the fields of it that are varied, and how."""
+    """A problem, its varied fields, and the sampling."""
 
     model_config = ConfigDict(
         title="Batch request", extra="forbid", frozen=True, json_schema_extra={"examples": [EXAMPLE]}
     )
 
     problem: dict[str, Any] = Field(
-        description="A problem as in a job; fields that are varied may be left out.",
+        description="A problem as in a job; varied fields may be omitted.",
         json_schema_extra={"examples": [EXAMPLE["problem"]]},
     )
-    vary: Annotated[list[Vary], Field(min_length=1, max_length=MOST_VARIED)]
+    vary: Annotated[list[Vary], Field(min_length=1, max_length=MAX_VARIED_FIELDS)]
     sampling: Literal["grid", "latin_hypercube", "zip"] = Field(
         default="grid",
-        description="`grid`: all combinations, the last field varying fastest; `zip`: the first values together, the "
-        "second, and so on; `latin_hypercube`: `samples` draws, of which each equal part of a range, or each value of "
-        "a list, gets its share.",
+        description="`grid`: all combinations, the last field varying fastest; `zip`: all first values together, then "
+        "all second values, and so on; `latin_hypercube`: `samples` draws, one in each of `samples` equal parts of a "
+        "range, or evenly distributed over a list.",
     )
-    samples: Annotated[int, Field(strict=True, ge=1, le=MOST_SAMPLES)] | None = Field(
-        default=None, description="How many problems: of a Latin hypercube only."
+    samples: Annotated[int, Field(strict=True, ge=1, le=MAX_SAMPLES)] | None = Field(
+        default=None, description="Number of problems, for a Latin hypercube only."
     )
     seed: Annotated[int, Field(strict=True, ge=0, le=2**53 - 1)] = Field(
-        default=0, description="Of the draws of a Latin hypercube."
+        default=0, description="Seed of the draws of a Latin hypercube."
     )
-    metrics: Annotated[list[str], Field(max_length=MOST_METRICS)] | None = Field(
+    metrics: Annotated[list[str], Field(max_length=MAX_METRICS)] | None = Field(
         default=None,
-        description="Metrics of the best design that the table shows. Left out: what a front weighs up by itself, as "
-        "far as the kind has it.",
+        description="Metrics of the best design that the table shows. By default those of the default front that the "
+        "kind has.",
     )
     reuse: Annotated[bool, Field(strict=True)] = Field(
         default=True,
-        description="Whether a problem that is equal to one which this version has solved before takes its answer.",
+        description="Whether to reuse the answer to an equal problem that this version has solved before.",
     )
     label: Label | None = None
 
@@ -117,31 +115,31 @@ class BatchListItem(BaseModel):
 
     model_config = ConfigDict(title="Batch in a list")
 
-    id: str = Field(description="A ULID.", examples=["01K6WM2B7Q3W9Z0V5N8XJ4R1TD"])
+    id: str = Field(description="ULID.", examples=["01K6WM2B7Q3W9Z0V5N8XJ4R1TD"])
     kind: str = Field(examples=list(KINDS))
     label: str | None
     status: Status = Field(
-        description="`succeeded`: all problems have been computed, whatever came of each; `failed`: none of them has "
-        "an answer."
+        description="`succeeded`: all problems have ended, and at least one has an answer; `failed`: none has an "
+        "answer."
     )
     created_at: Timestamp
     started_at: Timestamp | None
     finished_at: Timestamp | None
-    total: int = Field(description="Problems of the batch.")
-    done: int = Field(description="Those that have ended: succeeded and failed ones.")
+    total: int = Field(description="Number of problems.")
+    done: int = Field(description="Number of problems that have ended, succeeded or failed.")
     succeeded: int
     failed: int
-    cached: int = Field(description="Those among the succeeded ones whose answers were taken from equal problems.")
+    cached: int = Field(description="Number of succeeded problems that reused the answer to an equal problem.")
     progress: Progress
 
 
 class Batch(BatchListItem):
-    """A batch and what was stated."""
+    """A batch and its request."""
 
     model_config = ConfigDict(title="Batch")
 
-    problem: dict[str, Any] = Field(description="As stated.")
-    fields: list[str] = Field(description="The fields that are varied.")
+    problem: dict[str, Any] = Field(description="The problem as posted.")
+    fields: list[str] = Field(description="JSON pointers to the varied fields.")
     metrics: list[str]
     reuse: bool
 
@@ -152,23 +150,23 @@ class BatchList(BaseModel):
     model_config = ConfigDict(title="Batch list")
 
     batches: list[BatchListItem]
-    next_cursor: str | None = Field(description="The cursor of the next page; null on the last one.")
+    next_cursor: str | None = Field(description="Cursor of the next page; null on the last page.")
 
 
 class BatchTable(BaseModel):
-    """A row for each problem."""
+    """Table with a row for each problem."""
 
     model_config = ConfigDict(title="Table of a batch")
 
     columns: list[str] = Field(
-        description="The varied fields, `status`, `cached`, `designs` (how many passed), the metrics of the best "
-        "design, `job` (its id, once it has ended) and `failure` (why it failed)."
+        description="The varied fields, `status`, `cached`, `designs` (number that passed), the metrics of the best "
+        "design, `job` (id, once the problem has ended) and `failure` (reason of a failure)."
     )
     rows: list[list[Any]]
 
 
 class BatchFront(BatchTable):
-    """The rows that no other beats."""
+    """The Pareto front: the rows that no other row dominates."""
 
     model_config = ConfigDict(title="Front of a batch")
 
@@ -176,9 +174,9 @@ class BatchFront(BatchTable):
     greatest: list[str]
 
 
-def batch_item(batch: BatchSummary) -> dict[str, Any]:
-    """A batch as :class:`BatchListItem`."""
-    done = batch.done
+def describe_batch(batch: BatchSummary) -> dict[str, Any]:
+    """Return a batch as :class:`BatchListItem`."""
+    done = batch.ended_count
     message = f"{done} of {batch.total}" if batch.status == Status.RUNNING else batch.status.value
     return {
         "id": batch.id,
@@ -197,6 +195,6 @@ def batch_item(batch: BatchSummary) -> dict[str, Any]:
     }
 
 
-def whole_batch(batch: BatchRow) -> bytes:
-    """A batch as :class:`Batch`, in JSON: its item goes on with the members of what was stated."""
-    return to_json(batch_item(batch))[:-1] + b"," + batch.stated.encode()[1:]
+def dump_batch(batch: BatchRow) -> bytes:
+    """Return a batch as :class:`Batch` in JSON: the members of the list item, followed by those of the request."""
+    return to_json(describe_batch(batch))[:-1] + b"," + batch.stated.encode()[1:]

@@ -1,4 +1,4 @@
-"""``/v1/batches``: many problems at once, stated as one whose fields are varied."""
+"""``/v1/batches``: many problems at once, given as one problem whose fields are varied."""
 
 from __future__ import annotations
 
@@ -15,11 +15,11 @@ from service.api.http import problem_details
 from service.api.http.auth import GuardedRoute, Tenant
 from service.api.http.body import JsonRoute
 from service.api.http.dependencies import Batches, BatchPoller
-from service.api.http.idempotency import KEY, key_reused, repeatable
-from service.api.http.ids import ULID, cursor_of, id_of_cursor
-from service.api.http.problem_details import invalid_request, not_found, queue_full
-from service.api.http.replies import as_json, unless_known
-from service.api.routes.batch_plans import MORE_IS_BETTER, by_default, plan_of
+from service.api.http.idempotency import KEY_PATTERN, read_repeatable, refuse_reused_key
+from service.api.http.ids import ULID_PATTERN, decode_cursor, encode_cursor
+from service.api.http.problem_details import refuse_full_queue, refuse_invalid_request, refuse_not_found
+from service.api.http.replies import as_json, respond_unless_known
+from service.api.routes.batch_plans import MAXIMIZED_METRICS, build_plan, select_default_metrics
 from service.api.routes.batch_schemas import (
     EXAMPLE,
     Batch,
@@ -27,19 +27,19 @@ from service.api.routes.batch_schemas import (
     BatchList,
     BatchRequest,
     BatchTable,
-    batch_item,
-    whole_batch,
+    describe_batch,
+    dump_batch,
 )
-from service.api.routes.events import event_schema, followed
+from service.api.routes.events import build_event_schema, stream_events
 from service.jobs.batches.desk import BatchDesk
 from service.jobs.batches.plan import Plan
 from service.jobs.batches.rows import BatchRow
 from service.jobs.batches.table import Table
 from service.jobs.store.admission import KeyReused, QueueFull
 
-TAG = {"name": "batches", "description": "Vary the fields of a problem, and read the answers as a table."}
+TAG = {"name": "batches", "description": "Vary the fields of a problem and read the answers as a table."}
 
-NO_BATCH = "There is no batch with this id."
+NO_BATCH = "No batch has this id."
 
 RETRY_AFTER_S = 1
 
@@ -47,15 +47,15 @@ router = APIRouter(prefix="/v1/batches", tags=[TAG["name"]], route_class=JsonRou
 following = APIRouter(prefix="/v1/batches", tags=[TAG["name"]], route_class=GuardedRoute)
 
 _BODY = Body(openapi_examples={"motion": {"summary": "A grid of motion problems", "value": EXAMPLE}})
-_LOCATION = {"Location": {"description": "The path of the batch.", "schema": {"type": "string"}}}
-_RETRY_AFTER = {"Retry-After": {"description": "Look again after so many seconds.", "schema": {"type": "integer"}}}
+_LOCATION = {"Location": {"description": "Path of the batch.", "schema": {"type": "string"}}}
+_RETRY_AFTER = {"Retry-After": {"description": "Seconds until the next request.", "schema": {"type": "integer"}}}
 _ETAG = {"ETag": {"description": "Changes whenever the batch does.", "schema": {"type": "string"}}}
 
 
 @router.post(
     "",
     operation_id="create_batch",
-    summary="State many problems",
+    summary="Submit many problems",
     response_class=Response,
     status_code=202,
     responses={
@@ -65,12 +65,12 @@ _ETAG = {"ETag": {"description": "Changes whenever the batch does.", "schema": {
             "description": "The batch is accepted and will be run.",
             "headers": {**_LOCATION, **_RETRY_AFTER},
         },
-        **problem_details.responses(
+        **problem_details.describe_responses(
             e400="The body is not JSON.",
-            e409="The `Idempotency-Key` came with another body before.",
+            e409="The `Idempotency-Key` was used with a different body before.",
             e413="The body is too large.",
             e415="The body is not `application/json`.",
-            e422="The body does not state problems; `errors` says where.",
+            e422="The body does not define valid problems; `errors` has the places.",
             e503="The queue is full.",
         ),
     },
@@ -83,16 +83,16 @@ async def create_batch(
     idempotency_key: Annotated[
         str | None,
         Header(
-            pattern=KEY,
-            description="A name for this request, as of a job: sent again with it, the request is answered with the "
-            "first batch.",
+            pattern=KEY_PATTERN,
+            description="Key of this request, as for a job: the same request sent again with the same key is answered "
+            "with the first batch.",
             examples=["7f9c24e8"],
         ),
     ] = None,
 ) -> Response:
-    """Accept a problem whose fields are varied. Once this is answered the batch is stored, and each problem ends."""
+    """Accept a problem with varied fields. With the answer the batch is stored, and each of its problems will end."""
     keys = request.headers.getlist("idempotency-key")
-    kind, plan, cost = await run_in_threadpool(plan_of, body)
+    kind, plan, cost = await run_in_threadpool(build_plan, body)
     try:
         batch = await desk.accept(
             tenant=tenant,
@@ -100,25 +100,25 @@ async def create_batch(
             label=body.label,
             plan=plan,
             cost=cost,
-            repeatable=await run_in_threadpool(repeatable, keys, body),
+            repeatable=await run_in_threadpool(read_repeatable, keys, body),
         )
     except KeyReused:
-        raise key_reused() from None
+        raise refuse_reused_key() from None
     except QueueFull:
-        raise queue_full() from None
+        raise refuse_full_queue() from None
     headers = {"Location": f"/v1/batches/{batch.id}"}
     if batch.status.finished:
-        return as_json(whole_batch(batch), 200, headers)
-    return as_json(whole_batch(batch), 202, {**headers, "Retry-After": str(RETRY_AFTER_S)})
+        return as_json(dump_batch(batch), 200, headers)
+    return as_json(dump_batch(batch), 202, {**headers, "Retry-After": str(RETRY_AFTER_S)})
 
 
 class BatchFilter(BaseModel):
-    """Which batches to list."""
+    """Filter of the list of batches."""
 
     model_config = ConfigDict(extra="forbid")
 
-    limit: int = Field(default=20, ge=1, le=100, description="Batches on a page, at most.")
-    cursor: str | None = Field(default=None, max_length=100, description="`next_cursor` of the page before.")
+    limit: int = Field(default=20, ge=1, le=100, description="Maximum number of batches on a page.")
+    cursor: str | None = Field(default=None, max_length=100, description="`next_cursor` of the previous page.")
 
 
 @router.get(
@@ -128,16 +128,16 @@ class BatchFilter(BaseModel):
     response_class=Response,
     responses={
         200: {"model": BatchList},
-        **problem_details.responses(e422="A parameter is not valid; `errors` says which."),
+        **problem_details.describe_responses(e422="A parameter is not valid; `errors` names it."),
     },
 )
 async def list_batches(desk: Batches, tenant: Tenant, filter_: Annotated[BatchFilter, Query()]) -> Response:
-    """The batches, newest first, a page at a time."""
-    before = None if filter_.cursor is None else id_of_cursor(filter_.cursor)
-    page = await desk.page(tenant=tenant, limit=filter_.limit + 1, before=before)
+    """Return a page of the batches, newest first."""
+    before = None if filter_.cursor is None else decode_cursor(filter_.cursor)
+    page = await desk.list_page(tenant=tenant, limit=filter_.limit + 1, before=before)
     shown = page[: filter_.limit]
-    cursor = cursor_of(shown[-1].id) if len(page) > filter_.limit else None
-    return as_json(to_json({"batches": [batch_item(batch) for batch in shown], "next_cursor": cursor}))
+    cursor = encode_cursor(shown[-1].id) if len(page) > filter_.limit else None
+    return as_json(to_json({"batches": [describe_batch(batch) for batch in shown], "next_cursor": cursor}))
 
 
 @router.get(
@@ -147,8 +147,8 @@ async def list_batches(desk: Batches, tenant: Tenant, filter_: Annotated[BatchFi
     response_class=Response,
     responses={
         200: {"model": Batch, "headers": _ETAG},
-        304: {"description": "The batch is as the client knows it.", "headers": _ETAG},
-        **problem_details.responses(e404=NO_BATCH),
+        304: {"description": "The batch is unchanged since the state that the client has.", "headers": _ETAG},
+        **problem_details.describe_responses(e404=NO_BATCH),
     },
 )
 async def get_batch(
@@ -157,12 +157,12 @@ async def get_batch(
     tenant: Tenant,
     batch_id: str,
     if_none_match: Annotated[
-        str | None, Header(description="The `ETag` of the state that the client has.", examples=['"3"'])
+        str | None, Header(description="`ETag` of the state that the client has.", examples=['"3"'])
     ] = None,
 ) -> Response:
-    """The batch as it stands."""
-    batch = await _batch_of(desk, tenant, batch_id)
-    return unless_known(request, batch.revision, lambda: whole_batch(batch))
+    """Return the present state of the batch."""
+    batch = await _find_batch(desk, tenant, batch_id)
+    return respond_unless_known(request, batch.revision, lambda: dump_batch(batch))
 
 
 @router.delete(
@@ -172,17 +172,17 @@ async def get_batch(
     response_class=Response,
     status_code=202,
     responses={
-        202: {"model": Batch, "description": "The batch was unfinished and is cancelled; what has ended of it stays."},
+        202: {"model": Batch, "description": "The batch was unfinished and is cancelled; ended problems are kept."},
         204: {"description": "The batch was finished and is removed, with the jobs of its problems."},
-        **problem_details.responses(e404=NO_BATCH),
+        **problem_details.describe_responses(e404=NO_BATCH),
     },
 )
 async def delete_batch(desk: Batches, tenant: Tenant, batch_id: str) -> Response:
     """Cancel an unfinished batch; remove a finished one."""
-    batch = await desk.cancel_or_delete(tenant, batch_id) if ULID.fullmatch(batch_id) else None
+    batch = await desk.cancel_or_delete(tenant, batch_id) if ULID_PATTERN.fullmatch(batch_id) else None
     if batch is None:
-        raise not_found(NO_BATCH)
-    return Response(status_code=204) if batch == "deleted" else as_json(whole_batch(batch), 202)
+        raise refuse_not_found(NO_BATCH)
+    return Response(status_code=204) if batch == "deleted" else as_json(dump_batch(batch), 202)
 
 
 @router.get(
@@ -190,11 +190,11 @@ async def delete_batch(desk: Batches, tenant: Tenant, batch_id: str) -> Response
     operation_id="tabulate_batch",
     summary="Read the table of a batch",
     response_class=Response,
-    responses={200: {"model": BatchTable}, **problem_details.responses(e404=NO_BATCH)},
+    responses={200: {"model": BatchTable}, **problem_details.describe_responses(e404=NO_BATCH)},
 )
 async def tabulate_batch(desk: Batches, tenant: Tenant, batch_id: str) -> Response:
-    """A row for each problem, in the order of the samples, ended or not."""
-    _, table = await _tabulated(desk, tenant, batch_id)
+    """Return a row for each problem, ended or not, in the order of the samples."""
+    _, table = await _load_table(desk, tenant, batch_id)
     return StreamingResponse(table.as_json(), media_type="application/json")
 
 
@@ -205,25 +205,25 @@ async def tabulate_batch(desk: Batches, tenant: Tenant, batch_id: str) -> Respon
     response_class=Response,
     responses={
         200: {"description": "The table.", "content": {"text/csv": {"schema": {"type": "string"}}}},
-        **problem_details.responses(e404=NO_BATCH),
+        **problem_details.describe_responses(e404=NO_BATCH),
     },
 )
 async def tabulate_batch_as_csv(desk: Batches, tenant: Tenant, batch_id: str) -> Response:
-    """The same as CSV; numbers have all their digits."""
-    _, table = await _tabulated(desk, tenant, batch_id)
+    """Return the table as CSV; numbers have all their digits."""
+    _, table = await _load_table(desk, tenant, batch_id)
     return StreamingResponse(table.as_csv(), media_type="text/csv; charset=utf-8")
 
 
-class Weighed(BaseModel):
-    """What the rows are weighed up by."""
+class FrontQuery(BaseModel):
+    """Metrics that define a front."""
 
     model_config = ConfigDict(extra="forbid")
 
     least: list[str] = Field(
-        default=[], max_length=10, description="Metrics of the batch of which less is better; may be repeated."
+        default=[], max_length=10, description="Metrics of the batch to minimize; may be repeated."
     )
     greatest: list[str] = Field(
-        default=[], max_length=10, description="Metrics of which more is better; may be repeated."
+        default=[], max_length=10, description="Metrics of the batch to maximize; may be repeated."
     )
 
 
@@ -234,22 +234,22 @@ class Weighed(BaseModel):
     response_class=Response,
     responses={
         200: {"model": BatchFront},
-        **problem_details.responses(
-            e404=NO_BATCH, e422="A metric is none of the batch, or named twice; `errors` says which."
+        **problem_details.describe_responses(
+            e404=NO_BATCH, e422="A metric does not belong to the batch or is named twice; `errors` names it."
         ),
     },
 )
 async def weigh_up_batch(
-    desk: Batches, tenant: Tenant, batch_id: str, weighed: Annotated[Weighed, Query()]
+    desk: Batches, tenant: Tenant, batch_id: str, weighed: Annotated[FrontQuery, Query()]
 ) -> Response:
-    """The rows of the table that no other beats (Pareto).
+    """Return the Pareto front of the table: the rows that no other row dominates.
 
-    Without parameters: by error and size (of gears the sum of the teeth), of which less is better, and the least
-    transmission angle, as far as the table has them. Of errors with a sign the size counts.
+    By default error and size (for gears the sum of the teeth) are minimized and the minimum transmission angle is
+    maximized, as far as the table has them. Signed errors count by their absolute values.
     """
-    plan, table = await _tabulated(desk, tenant, batch_id)
-    least, greatest = _quantities(weighed, plan.metrics)
-    front = await run_in_threadpool(table.front, least, greatest)
+    plan, table = await _load_table(desk, tenant, batch_id)
+    least, greatest = _select_quantities(weighed, plan.metrics)
+    front = await run_in_threadpool(table.select_front, least, greatest)
     return StreamingResponse(front.as_json(least=least, greatest=greatest), media_type="application/json")
 
 
@@ -260,12 +260,12 @@ async def weigh_up_batch(
     response_class=Response,
     responses={
         200: {
-            "description": "Events until the batch has ended, as of a job: `state` (the batch as in a list) and "
-            "`progress`; `removed` where it is removed before its end was seen.",
-            "content": {"text/event-stream": {"itemSchema": event_schema("BatchListItem")}},
+            "description": "Events until the batch has ended, as for a job: `state` (the batch as in a list) and "
+            "`progress`; `removed` if it is removed before its end was sent.",
+            "content": {"text/event-stream": {"itemSchema": build_event_schema("BatchListItem")}},
         },
-        204: {"description": "The client has the event of the final state already; it need not come again."},
-        **problem_details.responses(e404=NO_BATCH, e503="Too many clients of the tenant listen at once."),
+        204: {"description": "The client already has the event of the final state and need not reconnect."},
+        **problem_details.describe_responses(e404=NO_BATCH, e503="Too many clients of the tenant are listening."),
     },
 )
 async def follow_batch(
@@ -275,41 +275,41 @@ async def follow_batch(
     batch_id: str,
     last_event_id: Annotated[
         str | None,
-        Header(description="The `id` of the last event that the client has; browsers send it by themselves."),
+        Header(description="`id` of the last event that the client has; browsers send it automatically."),
     ] = None,
 ) -> Response:
-    """The batch as it goes on, as server-sent events."""
-    return await followed(request, poller, tenant, batch_id, last_event_id, batch_item, NO_BATCH)
+    """Stream the progress of the batch as server-sent events."""
+    return await stream_events(request, poller, tenant, batch_id, last_event_id, describe_batch, NO_BATCH)
 
 
-async def _batch_of(desk: BatchDesk, tenant: str, batch_id: str) -> BatchRow:
-    batch = await desk.get(tenant, batch_id) if ULID.fullmatch(batch_id) else None
+async def _find_batch(desk: BatchDesk, tenant: str, batch_id: str) -> BatchRow:
+    batch = await desk.get(tenant, batch_id) if ULID_PATTERN.fullmatch(batch_id) else None
     if batch is None:
-        raise not_found(NO_BATCH)
+        raise refuse_not_found(NO_BATCH)
     return batch
 
 
-async def _tabulated(desk: BatchDesk, tenant: str, batch_id: str) -> tuple[Plan, Table]:
-    tabulated = await desk.table(await _batch_of(desk, tenant, batch_id))
+async def _load_table(desk: BatchDesk, tenant: str, batch_id: str) -> tuple[Plan, Table]:
+    tabulated = await desk.load_table(await _find_batch(desk, tenant, batch_id))
     if tabulated is None:
-        raise not_found(NO_BATCH)
+        raise refuse_not_found(NO_BATCH)
     return tabulated
 
 
-def _quantities(weighed: Weighed, metrics: Sequence[str]) -> tuple[list[str], list[str]]:
-    """What is to be least and what greatest, by their names; raises a refusal for what cannot be meant."""
+def _select_quantities(weighed: FrontQuery, metrics: Sequence[str]) -> tuple[list[str], list[str]]:
+    """Return the names of the metrics to minimize and to maximize; raise a refusal if the request is invalid."""
     faults = []
     for k, name in enumerate([*weighed.least, *weighed.greatest]):
         place = "/query/least" if k < len(weighed.least) else "/query/greatest"
         if name not in metrics:
-            faults.append((place, f"The metrics of the batch are {', '.join(metrics) or 'none'}."))
+            faults.append((place, f"Unknown metric; this batch has {', '.join(metrics) or 'none'}."))
         elif name in [*weighed.least, *weighed.greatest][:k]:
-            faults.append((place, f"{name} is named already; it can be weighed up once, one way."))
-    usual = [] if weighed.least or weighed.greatest else by_default(metrics)
+            faults.append((place, f"{name} is named twice; minimize or maximize it once."))
+    usual = [] if weighed.least or weighed.greatest else select_default_metrics(metrics)
     if not (weighed.least or weighed.greatest or usual):
-        faults.append(("/query/least", "Name what is to be least, or greatest."))
+        faults.append(("/query/least", "Name a metric to minimize (`least`) or to maximize (`greatest`)."))
     if faults:
-        raise invalid_request(faults)
+        raise refuse_invalid_request(faults)
     if usual:
-        return [n for n in usual if n not in MORE_IS_BETTER], [n for n in usual if n in MORE_IS_BETTER]
+        return [n for n in usual if n not in MAXIMIZED_METRICS], [n for n in usual if n in MAXIMIZED_METRICS]
     return weighed.least, weighed.greatest

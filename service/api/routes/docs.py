@@ -1,4 +1,4 @@
-"""The interactive API reference, served with nothing from elsewhere, and the OpenAPI document behind it."""
+"""The interactive API reference, served without external resources, and the OpenAPI document behind it."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from starlette.concurrency import run_in_threadpool
 from starlette.staticfiles import StaticFiles
 
 from service.api.http import problem_details
-from service.api.http.auth import SCHEME
+from service.api.http.auth import SECURITY_SCHEME
 from service.api.http.cached_representation import Representation
 from service.api.http.problem_details import ProblemDetails
 from service.api.routes import analyses
@@ -23,41 +23,41 @@ from service.api.routes import analyses
 _ASSETS = "/docs/assets"
 
 
-_REFUSED_TO_TENANTS = problem_details.responses(
-    e401="A key is needed, and there is none or none in force.",
-    e403="There are no keys, and the request is meant for another host than this machine.",
-    e429="The key has asked too often.",
+_TENANT_RESPONSES = problem_details.describe_responses(
+    e401="The API key is missing or not valid.",
+    e403="The service has no keys, and the host of the request is not this machine.",
+    e429="The key has reached its rate limit.",
     e503="The job store does not answer.",
 )
-_REFUSED_TO_ALL = problem_details.responses(
-    e408="The request did not come to its end in time.", e431="The address and the headers are too large."
+_CONNECTION_RESPONSES = problem_details.describe_responses(
+    e408="The request was not complete in time.", e431="The address and the headers are too large."
 )
-"""What the connection answers before any operation sees the request."""
+"""Responses of the connection, before any operation sees the request."""
 
 
 def install(app: FastAPI) -> None:
-    """Serve ``/docs``, and complete ``/openapi.json``."""
+    """Serve ``/docs`` and the complete ``/openapi.json``."""
     generate = app.openapi
     lock = Lock()
 
-    def openapi() -> dict[str, Any]:
+    def build_openapi() -> dict[str, Any]:
         with lock:
             if app.openapi_schema is None:
                 _complete(generate())
             return generate()
 
-    app.openapi = openapi  # type: ignore[method-assign]  # the framework's documented way to change the document
+    app.openapi = build_openapi  # type: ignore[method-assign]  # the framework's documented way to change the document
 
     @cache
-    def document(keys: bool) -> Representation:
+    def build_document(keys: bool) -> Representation:
         whole = app.openapi()
         return Representation(to_json(whole if keys else _without_keys(whole)), "application/json")
 
     @app.get("/openapi.json", include_in_schema=False)
     async def openapi_document(request: Request) -> Response:
-        # In a thread, because the first document waits for the models of the analyses.
-        shown = await run_in_threadpool(document, not await request.app.state.gate.is_open())
-        return shown.answer(request, {"Cache-Control": "no-cache"})
+        # In a thread, because the first document waits for the import of the analysis models.
+        shown = await run_in_threadpool(build_document, not await request.app.state.gate.is_open())
+        return shown.respond(request, {"Cache-Control": "no-cache"})
 
     @app.get("/docs", include_in_schema=False)
     async def docs() -> HTMLResponse:
@@ -79,19 +79,19 @@ def _complete(document: dict[str, Any]) -> None:
     schemas.update(problem.pop("$defs", {}), ProblemDetails=problem)
     analyses.complete(document)
     document["components"]["securitySchemes"] = {
-        SCHEME: {
+        SECURITY_SCHEME: {
             "type": "http",
             "scheme": "bearer",
-            "description": "An API key, where the service has keys; without any it is open to its own machine.",
+            "description": "API key, if the service has keys; without keys it is open to its own machine only.",
         }
     }
     for path, methods in document["paths"].items():
         for operation in methods.values():
             if path.startswith("/v1/"):
-                operation["security"] = [{SCHEME: []}]
-                _add(operation, _REFUSED_TO_TENANTS)
-            _add(operation, _REFUSED_TO_ALL)
-    # The framework assumes that every parameter can be refused with its own kind of 422, which does not exist here.
+                operation["security"] = [{SECURITY_SCHEME: []}]
+                _add(operation, _TENANT_RESPONSES)
+            _add(operation, _CONNECTION_RESPONSES)
+    # The framework adds its own kind of 422 to every operation with parameters; that response does not exist here.
     for methods in document["paths"].values():
         for operation in methods.values():
             if "HTTPValidationError" in str(operation["responses"].get("422")):
@@ -101,7 +101,7 @@ def _complete(document: dict[str, Any]) -> None:
 
 
 def _without_keys(document: dict[str, Any]) -> dict[str, Any]:
-    """The document of a service that has no keys: nothing in it asks for one."""
+    """Return the document of a service without keys, without security requirements."""
     paths = {
         path: {
             method: {name: value for name, value in operation.items() if name != "security"}
@@ -114,7 +114,7 @@ def _without_keys(document: dict[str, Any]) -> dict[str, Any]:
 
 
 def _add(operation: dict[str, Any], responses: dict[int | str, dict[str, Any]]) -> None:
-    """Add responses to those of an operation; one of the same status is one more reason for it."""
+    """Add responses to those of an operation; descriptions of the same status are joined."""
     for status, response in responses.items():
         own = operation["responses"].get(str(status))
         also = response if own is None else {**own, "description": f"{own['description']} {response['description']}"}

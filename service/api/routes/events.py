@@ -1,7 +1,7 @@
-"""``/v1/jobs/{id}/events``: a job as it goes on, as server-sent events.
+"""``/v1/jobs/{id}/events``: the progress of a job as server-sent events.
 
-An event's id is the job's revision and state, ``7-running``. That is all that a client's resumption needs: the newest
-state is sent where the client does not have it, and what it has missed in between is of no interest any more.
+An event's id consists of the job's revision and state, ``7-running``. To resume, a client needs no more: the newest
+state is sent if the client does not have it, and events missed in between do not matter any more.
 """
 
 from __future__ import annotations
@@ -17,30 +17,30 @@ from pydantic_core import to_json
 from service.api.http import problem_details
 from service.api.http.auth import GuardedRoute, Tenant
 from service.api.http.dependencies import Poller
-from service.api.http.ids import ULID
-from service.api.http.problem_details import Refusal, not_found, store_unavailable
-from service.api.http.schemas import list_item
+from service.api.http.ids import ULID_PATTERN
+from service.api.http.problem_details import Refusal, refuse_not_found, refuse_without_store
+from service.api.http.schemas import describe_job
 from service.api.routes.jobs import NO_JOB, TAG
 from service.jobs.events.poller import F, Follower, JobPoller
 from service.jobs.store.states import Status
-from service.observability.head import asked_for_head
+from service.observability.head import is_head_request
 
 KEEP_ALIVE_S = 15.0
-"""After so much silence a comment is sent, so that nobody between takes the connection for dead."""
+"""Silence after which a comment is sent, seconds, so that proxies do not take the connection for dead."""
 
 MAX_LISTENERS = 1000
-"""Streams of a tenant at once; each is a connection and a task of the server."""
+"""Maximum number of concurrent streams of a tenant; each is a connection and a task of the server."""
 
-STORE_ANSWERS_S = 10.0
-"""How long a client is kept waiting for the first look into the store."""
+STORE_TIMEOUT_S = 10.0
+"""Time limit for the first query of the store, seconds."""
 
 _RECONNECT_MS = 1000
 _HEADERS = {"Cache-Control": "no-store", "X-Accel-Buffering": "no"}
 _EVENT_ID = re.compile(f"([0-9]{{1,9}})-({'|'.join(Status)})")
 
 
-def event_schema(item: str) -> dict[str, Any]:
-    """The schema of an event whose state is shown as the component ``item``."""
+def build_event_schema(item: str) -> dict[str, Any]:
+    """Return the schema of an event whose state is the component ``item``."""
     return {
         "type": "object",
         "required": ["event", "data"],
@@ -73,13 +73,13 @@ router = APIRouter(prefix="/v1/jobs", tags=[TAG["name"]], route_class=GuardedRou
     response_class=Response,
     responses={
         200: {
-            "description": "Events until the job has ended: `state` (the job as in a list) whenever its state changes, "
-            "first of all the present one, and `progress` in between. The event of the final state is the last one; "
-            "a job that is removed before anybody has seen it end ends with `removed`.",
-            "content": {"text/event-stream": {"itemSchema": event_schema("JobListItem")}},
+            "description": "Events until the job has ended: `state` (the job as in a list) first and at each change of "
+            "its state, and `progress` in between. The event of the final state is the last one, or `removed` if the "
+            "job is removed before its end was sent.",
+            "content": {"text/event-stream": {"itemSchema": build_event_schema("JobListItem")}},
         },
-        204: {"description": "The client has the event of the final state already; it need not come again."},
-        **problem_details.responses(e404=NO_JOB, e503="Too many clients of the tenant listen at once."),
+        204: {"description": "The client already has the event of the final state and need not reconnect."},
+        **problem_details.describe_responses(e404=NO_JOB, e503="Too many clients of the tenant are listening."),
     },
 )
 async def follow_job(
@@ -89,17 +89,17 @@ async def follow_job(
     job_id: str,
     last_event_id: Annotated[
         str | None,
-        Header(description="The `id` of the last event that the client has; browsers send it by themselves."),
+        Header(description="`id` of the last event that the client has; browsers send it automatically."),
     ] = None,
 ) -> Response:
-    """The job as it goes on, as server-sent events.
+    """Stream the progress of the job as server-sent events.
 
-    A stream that breaks can be resumed with `Last-Event-ID`: nothing that the client has seen is repeated.
+    A broken stream can be resumed with `Last-Event-ID`; events that the client has are not repeated.
     """
-    return await followed(request, poller, tenant, job_id, last_event_id, list_item, NO_JOB)
+    return await stream_events(request, poller, tenant, job_id, last_event_id, describe_job, NO_JOB)
 
 
-async def followed(
+async def stream_events(
     request: Request,
     poller: JobPoller[F],
     tenant: str,
@@ -108,48 +108,49 @@ async def followed(
     shown: Callable[[F], dict[str, Any]],
     none_such: str,
 ) -> Response:
-    """The stream of what a poller follows, as ``shown``, which has its progress too.
+    """Return the event stream of a job or batch; ``shown`` converts it to JSON-like data with its ``progress``.
 
     Raises
     ------
     Refusal
-        503 where too many of the tenant listen or the store does not answer; 404 where the tenant has none such.
+        503 if too many clients of the tenant listen or the store does not answer; 404 if the tenant has no such job.
     """
-    if poller.listeners_of(tenant) >= MAX_LISTENERS:
+    if poller.count_listeners(tenant) >= MAX_LISTENERS:
         raise Refusal(
-            503, "too-many-listeners", "Too many listeners", "Too many of your clients listen at once; ask again.",
+            503, "too-many-listeners", "Too many listeners", "Too many of your clients are listening. Send the request again.",
             headers={"Retry-After": "5"},
         )  # fmt: skip
-    job = await _present(poller, id_, tenant) if ULID.fullmatch(id_) else None
+    job = await _read_current(poller, id_, tenant) if ULID_PATTERN.fullmatch(id_) else None
     if job is None or job.tenant != tenant:
-        raise not_found(none_such)
-    seen = _seen(last_event_id)
+        raise refuse_not_found(none_such)
+    seen = _parse_event_id(last_event_id)
     if job.status.finished and seen == (job.revision, job.status):
         return Response(status_code=204)
-    if asked_for_head(request.scope):
-        return EventSourceResponse(_nothing(), headers=_HEADERS)
-    return EventSourceResponse(_events(poller, job, seen, shown), headers=_HEADERS)
+    if is_head_request(request.scope):
+        return EventSourceResponse(_generate_nothing(), headers=_HEADERS)
+    return EventSourceResponse(_generate_events(poller, job, seen, shown), headers=_HEADERS)
 
 
-async def _present(poller: JobPoller[F], job_id: str, tenant: str) -> F | None:
+async def _read_current(poller: JobPoller[F], job_id: str, tenant: str) -> F | None:
     with poller.follow(job_id, tenant) as follower:
-        await follower.changed(STORE_ANSWERS_S)
+        await follower.wait_for_change(STORE_TIMEOUT_S)
         if not follower.read:
-            raise store_unavailable()
+            raise refuse_without_store()
         return follower.job
 
 
-async def _events(
+async def _generate_events(
     poller: JobPoller[F], job: F, seen: tuple[int, Status] | None, shown: Callable[[F], dict[str, Any]]
 ) -> AsyncIterator[bytes]:
-    """The stream of a job. It ends with the job, or without an event when the service stops."""
+    """Generate the events of a job. The stream ends with the job, or without an event when the service stops."""
     with poller.follow(job.id, job.tenant) as follower:
+        # The state just read is the first event; the poller must not read it again.
         follower.update(job)
         while not poller.closed:
-            if not await follower.changed(KEEP_ALIVE_S):
+            if not await follower.wait_for_change(KEEP_ALIVE_S):
                 yield format_sse_event(comment="keep-alive")
                 continue
-            event = _event(follower, seen, shown)
+            event = _format_event(follower, seen, shown)
             if event is not None:
                 yield event
             if follower.job is None or follower.job.status.finished:
@@ -157,10 +158,10 @@ async def _events(
             seen = (follower.job.revision, follower.job.status)
 
 
-def _event(
+def _format_event(
     follower: Follower[F], seen: tuple[int, Status] | None, shown: Callable[[F], dict[str, Any]]
 ) -> bytes | None:
-    """What a client that has seen ``seen`` is to be told; None where there is nothing new."""
+    """Return the event for a client that has the state ``seen``; None if nothing is new."""
     job = follower.job
     if job is None:
         return format_sse_event(event="removed", data_str="{}")
@@ -175,12 +176,12 @@ def _event(
     )
 
 
-async def _nothing() -> AsyncIterator[bytes]:
+async def _generate_nothing() -> AsyncIterator[bytes]:
     return
     yield b""
 
 
-def _seen(last_event_id: str | None) -> tuple[int, Status] | None:
-    # An id that is none of ours is ignored, as if the client came for the first time.
+def _parse_event_id(last_event_id: str | None) -> tuple[int, Status] | None:
+    # An unknown id is ignored, as if the client connected for the first time.
     match = _EVENT_ID.fullmatch(last_event_id or "")
     return None if match is None else (int(match[1]), Status(match[2]))

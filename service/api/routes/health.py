@@ -1,4 +1,4 @@
-"""``/healthz`` and ``/readyz``: for those who watch over the service."""
+"""``/healthz`` and ``/readyz``: for monitoring the service."""
 
 from __future__ import annotations
 
@@ -8,29 +8,30 @@ from service.api.http import problem_details
 from service.api.http.problem_details import Refusal
 from service.api.http.schemas import Health, Kernels, Readiness
 
-TAG = {"name": "health", "description": "For those who watch over the service."}
+TAG = {"name": "health", "description": "Monitor the service."}
 
 router = APIRouter(tags=["health"])
 
 
-@router.get("/healthz", operation_id="healthz", summary="Is it alive?")
+@router.get("/healthz", operation_id="healthz", summary="Check that the process is alive")
 async def healthz() -> Health:
-    """The process answers."""
+    """Report that the process answers."""
     return Health(status="ok")
 
 
 @router.get(
     "/readyz",
     operation_id="readyz",
-    summary="Does it take jobs?",
-    responses=problem_details.responses(e503="The store does not answer, or no worker has started yet."),
+    summary="Check that the service takes jobs",
+    responses=problem_details.describe_responses(e503="The store does not answer, or no worker has started yet."),
 )
 async def readyz(request: Request) -> Readiness:
-    """The store answers and at least one worker is ready.
+    """Report that the store answers and at least one worker is ready.
 
-    After an installation the numeric kernels are compiled beside the first jobs; `kernels` says how far that is.
+    After an installation the numerical kernels are compiled in parallel with the first jobs; `kernels` has the
+    progress.
     """
-    missing = await request.app.state.desk.ready()
+    missing = await request.app.state.desk.check_readiness()
     if missing is not None:
         raise Refusal(503, "not-ready", "Not ready", missing, headers={"Retry-After": "1"})
     progress = request.app.state.kernels.progress

@@ -1,4 +1,4 @@
-"""``/metrics``: the service as Prometheus sees it."""
+"""``/metrics``: metrics for Prometheus."""
 
 from __future__ import annotations
 
@@ -10,20 +10,20 @@ from service.api.routes.health import TAG
 router = APIRouter(tags=[TAG["name"]])
 
 
-# In a thread, because the store is asked for its queue.
+# A plain function, which runs in a thread, because it queries the store for the length of the queue.
 @router.get(
     "/metrics",
     operation_id="metrics",
-    summary="What does it do?",
+    summary="Read the metrics",
     response_class=Response,
     responses={
         200: {
-            "description": "The metrics in Prometheus' text format, or in OpenMetrics' where that is accepted.",
+            "description": "The metrics in the text format of Prometheus, or in OpenMetrics if the client accepts it.",
             "content": {CONTENT_TYPE_PLAIN_0_0_4: {"schema": {"type": "string"}}},
         }
     },
 )
 def metrics(request: Request) -> Response:
-    """Requests, latencies and rejections, the queue, the times of jobs, worker restarts, and the process itself."""
+    """Return requests, latencies, rejections, the queue, computing times, worker restarts and process figures."""
     encode, media_type = choose_encoder(request.headers.get("accept", ""))
     return Response(encode(request.app.state.metrics.registry), media_type=media_type)

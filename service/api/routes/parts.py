@@ -1,4 +1,4 @@
-"""``/v1/jobs/{id}/designs/{n}/parts``, ``/assembly``, ``.step``, ``.glb``: a design as parts that can be made."""
+"""``/v1/jobs/{id}/designs/{n}/parts``, ``/assembly``, ``.step``, ``.glb``: a design as parts for manufacture."""
 
 from __future__ import annotations
 
@@ -9,15 +9,15 @@ from fastapi import APIRouter, Query, Request, Response
 from pydantic_core import from_json
 from starlette.concurrency import run_in_threadpool
 
-from service.answers.job_result import SolvedJob, design_index
+from service.answers.job_result import SolvedJob, parse_design_index
 from service.api.http import problem_details
 from service.api.http.auth import GuardedRoute, Tenant
 from service.api.http.dependencies import Bench, Desk
-from service.api.http.problem_details import Refusal, busy, gone, invalid_request, not_found
-from service.api.routes.designs import HEADERS, solved_job
+from service.api.http.problem_details import Refusal, refuse_busy, refuse_gone, refuse_invalid_request, refuse_not_found
+from service.api.routes.designs import HEADERS, get_solved_job
 from service.api.routes.jobs import TAG
-from service.jobs.processes.request_pool import Busy, GivenUp, Gone
-from service.observability.telemetry import span
+from service.jobs.processes.request_pool import Busy, ClientGone, GivenUp
+from service.observability.telemetry import measure_span
 from service.parts.assembly.sizes import (
     CAD_PROCESSES,
     SOLID_FORMATS,
@@ -49,21 +49,21 @@ _MEDIA: dict[File | PartFile, str] = {
 _TEXTS = ("svg", "dxf")
 
 
-def _responses(file: File | PartFile) -> dict[int | str, dict[str, Any]]:
+def _describe_responses(file: File | PartFile) -> dict[int | str, dict[str, Any]]:
     schema = _TEXT if file in _TEXTS else _BINARY
     given: dict[str, Any] = {"content": {_MEDIA[file]: {"schema": schema}}}
     if file == "json":
         given = {"model": AssemblyView}
     solid = file == "zip" or file in SOLID_FORMATS
-    cad = {"e501": "The service runs without its extra `cad`, which this file needs."} if solid else {}
+    cad = {"e501": "This file needs the extra `cad`, which the service does not have."} if solid else {}
     return {
         200: {"description": "The assembly." if file == "json" else "The file.", **given},
-        **problem_details.responses(
-            e404="There is no such job or design, or no parts of its type of mechanism.",
-            e409="The job has no result (yet), or the design cannot be built of parts; `detail` says why.",
-            e422="A parameter is not valid, or leaves no room for the parts; `errors` says which, and what would.",
+        **problem_details.describe_responses(
+            e404="No such job or design, or its type of mechanism has no parts.",
+            e409="The job has no result (yet), or the design cannot be built of parts; `detail` has the reason.",
+            e422="A parameter is not valid or makes parts collide; `errors` names it, with values that work.",
             **cad,
-            e503="Other parts have kept these from being begun.",
+            e503="The service is busy with other parts.",
         ),
     }
 
@@ -73,20 +73,20 @@ def _responses(file: File | PartFile) -> dict[int | str, dict[str, Any]]:
     operation_id="make_parts",
     summary="Make the parts of a design",
     response_class=Response,
-    responses=_responses("zip"),
+    responses=_describe_responses("zip"),
 )
 async def make_parts(
     request: Request, desk: Desk, bench: Bench, tenant: Tenant, job_id: str, number: str,
     query: Annotated[PartsQuery, Query()],
 ) -> Response:  # fmt: skip
-    """Design ``number`` of the job's result as a zip of parts: plates, pins, washers, spacers and blocks.
+    """Return design ``number`` of the job's result as a zip of parts: plates, pins, washers, spacers and blocks.
 
-    A DXF outline of each plate, an exploded side view, a bill of materials and the assembly as STEP; printed parts have
-    STL and 3MF files besides, milled ones STEP files. All files are in millimetres. Links lie in planes that are found
-    for these sizes, and nothing is given of which two parts would meet in the motion. `print` and `mill` need the
-    service's extra `cad`; without it `laser` has no STEP file.
+    The zip has a DXF outline of each plate, an exploded side view, a bill of materials and the assembly as STEP;
+    printed parts also have STL and 3MF files, milled ones STEP files. All files are in millimetres. The links are
+    arranged in planes for these sizes, and a design whose parts would collide in the motion is refused. `print` and
+    `mill` need the service's extra `cad`; without it `laser` has no STEP file.
     """
-    return await _answered(request, desk, bench, tenant, job_id, number, query, "zip")
+    return await _respond_with_file(request, desk, bench, tenant, job_id, number, query, "zip")
 
 
 @router.get(
@@ -94,14 +94,14 @@ async def make_parts(
     operation_id="export_assembly_step",
     summary="Export a design's assembly as STEP",
     response_class=Response,
-    responses=_responses("step"),
+    responses=_describe_responses("step"),
 )
 async def export_assembly_step(
     request: Request, desk: Desk, bench: Bench, tenant: Tenant, job_id: str, number: str,
     query: Annotated[AssemblyQuery, Query()],
 ) -> Response:  # fmt: skip
-    """The parts of design ``number`` at their places, in millimetres, with names and colours (AP242)."""
-    return await _answered(request, desk, bench, tenant, job_id, number, query, "step")
+    """Return the assembled parts of design ``number``, in millimetres, with names and colours (AP242)."""
+    return await _respond_with_file(request, desk, bench, tenant, job_id, number, query, "step")
 
 
 @router.get(
@@ -109,14 +109,14 @@ async def export_assembly_step(
     operation_id="export_assembly_glb",
     summary="Export a design's assembly as glTF",
     response_class=Response,
-    responses=_responses("glb"),
+    responses=_describe_responses("glb"),
 )
 async def export_assembly_glb(
     request: Request, desk: Desk, bench: Bench, tenant: Tenant, job_id: str, number: str,
     query: Annotated[AssemblyQuery, Query()],
 ) -> Response:  # fmt: skip
-    """The parts of design ``number`` at their places as binary glTF: in metres, with the shafts upwards along y."""
-    return await _answered(request, desk, bench, tenant, job_id, number, query, "glb")
+    """Return the assembled parts of design ``number`` as binary glTF: in metres, with the shafts upwards along y."""
+    return await _respond_with_file(request, desk, bench, tenant, job_id, number, query, "glb")
 
 
 @router.get(
@@ -124,18 +124,18 @@ async def export_assembly_glb(
     operation_id="view_assembly",
     summary="Show a design's assembly in three dimensions",
     response_class=Response,
-    responses=_responses("json"),
+    responses=_describe_responses("json"),
 )
 async def view_assembly(
     request: Request, desk: Desk, bench: Bench, tenant: Tenant, job_id: str, number: str,
     query: Annotated[ViewQuery, Query()],
 ) -> Response:  # fmt: skip
-    """The parts of design ``number`` as stacks of prisms in millimetres, and where they are at inputs of the motion.
+    """Return the parts of design ``number`` as stacks of prisms in millimetres, and their positions over the motion.
 
-    What each part moves with is told once, as a turn about a pivot and the place of that. `lift` says how far a part
-    goes up where the planes are drawn apart. It needs no CAD, and is refused for the same reasons as `parts`.
+    The motion of each moving body is given once, as a rotation about a pivot and the position of the pivot. `lift` is
+    the displacement of a part in the exploded view. No CAD is needed; the refusals are those of `parts`.
     """
-    return await _answered(request, desk, bench, tenant, job_id, number, query, "json")
+    return await _respond_with_file(request, desk, bench, tenant, job_id, number, query, "json")
 
 
 @router.get(
@@ -143,61 +143,63 @@ async def view_assembly(
     operation_id="draw_assembly",
     summary="Draw a design's assembly",
     response_class=Response,
-    responses=_responses("svg"),
+    responses=_describe_responses("svg"),
 )
 async def draw_assembly(
     request: Request, desk: Desk, bench: Bench, tenant: Tenant, job_id: str, number: str,
     query: Annotated[AssemblyQuery, Query()],
 ) -> Response:  # fmt: skip
-    """A picture of the parts of design ``number``, isometric, as they are built and with their planes drawn apart."""
-    return await _answered(request, desk, bench, tenant, job_id, number, query, "svg")
+    """Return an isometric picture of the parts of design ``number``, assembled and exploded."""
+    return await _respond_with_file(request, desk, bench, tenant, job_id, number, query, "svg")
 
 
 _FORMS: dict[PartFile, str] = {
-    "dxf": "The outline of one plate or block with its holes, as it is cut.",
-    "stl": "One part as a mesh, lying as it is printed.",
-    "step": "One part as a solid (AP242), lying as it is printed.",
-    "3mf": "One part as a mesh with its unit, lying as it is printed.",
+    "dxf": "Return the outline of one plate or block with its holes, for cutting.",
+    "stl": "Return one part as a mesh, in the position for printing.",
+    "step": "Return one part as a solid (AP242), in the position for printing.",
+    "3mf": "Return one part as a mesh with its unit, in the position for printing.",
 }
 
 
-def _offer(form: PartFile) -> None:
-    """Add the operation that gives the files of one form of single parts."""
+def _add_part_route(form: PartFile) -> None:
+    """Add the operation that returns files of single parts in one format."""
 
-    async def part(
+    async def send_part(
         request: Request, desk: Desk, bench: Bench, tenant: Tenant, job_id: str, number: str, name: str,
         query: Annotated[PartsQuery, Query()],
     ) -> Response:  # fmt: skip
-        return await _answered(request, desk, bench, tenant, job_id, number, query, form, name)
+        return await _respond_with_file(request, desk, bench, tenant, job_id, number, query, form, name)
 
     router.add_api_route(
         f"/{{job_id}}/designs/{{number}}/parts/{{name}}.{form}",
-        part,
+        send_part,
         operation_id=f"export_part_{form}",
         summary=f"Export a part of a design as {form.upper()}",
-        description=f"{_FORMS[form]} ``name`` is its name in the bill, or the `item` of a part of the assembly.",
+        description=f"{_FORMS[form]} ``name`` is the name in the bill of materials, or the `item` in the assembly.",
         response_class=Response,
-        responses=_responses(form),
+        responses=_describe_responses(form),
     )
 
 
 for _form in get_args(PartFile):
-    _offer(_form)
+    _add_part_route(_form)
 
 
-async def assemblies_of(request: Request, bench: Workshop, tenant: str, job: SolvedJob, most: int) -> dict[int, str]:
-    """Pictures of the first designs that parts are made of, as SVG; or a sentence that says why there is none.
+async def draw_assemblies(request: Request, bench: Workshop, tenant: str, job: SolvedJob, most: int) -> dict[int, str]:
+    """Return pictures of the assemblies of the first ``most`` designs as SVG, or a sentence with the reason for none.
 
     Raises
     ------
     Refusal
-        503 or 499, where that is no fault of the parts.
+        503 or 499, for reasons other than the design.
     """
     designs = from_json(job.result)["designs"][:most]
     found = {}
     for n in range(len(designs)):
         try:
-            found[n] = (await _made(request, bench, tenant, make_file, _order(job, n, {}), "svg")).decode()
+            found[n] = (
+                await _make_content(request, bench, tenant, make_file, _build_order(job, n, {}), "svg")
+            ).decode()
         except Refusal as refusal:
             if refusal.status not in (409, 422):
                 raise
@@ -205,29 +207,29 @@ async def assemblies_of(request: Request, bench: Workshop, tenant: str, job: Sol
     return found
 
 
-def _order(job: SolvedJob, number: int, query: dict[str, Any]) -> dict[str, Any]:
-    """What the process is asked for."""
+def _build_order(job: SolvedJob, number: int, query: dict[str, Any]) -> dict[str, Any]:
+    """Return the arguments for the process that makes the parts."""
     stored = {"kind": job.kind, "problem": job.problem, "label": job.label, "result": job.result}
     return stored | {"number": number, "query": query}
 
 
-async def _answered(
+async def _respond_with_file(
     request: Request, desk: Desk, bench: Bench, tenant: Tenant, job_id: str, number: str, query: PartsQuery,
     file: File | PartFile, part: str | None = None,
 ) -> Response:  # fmt: skip
-    job = await solved_job(desk, tenant, job_id)
-    n = await run_in_threadpool(_checked, job.result, number)
+    job = await get_solved_job(desk, tenant, job_id)
+    n = await run_in_threadpool(_check_design_number, job.result, number)
     if (file in SOLID_FORMATS or (file == "zip" and query.process in CAD_PROCESSES)) and not is_installed():
         raise Refusal(
             501, "no-cad", "No CAD",
-            "The service runs without its extra `cad`, which makes solids; `process=laser` has outlines without it.",
+            "Solids need the extra `cad`, which the service does not have; `process=laser` gives outlines without it.",
         )  # fmt: skip
-    order = _order(job, n, query.model_dump(exclude_unset=True))
-    with span("parts"):
+    order = _build_order(job, n, query.model_dump(exclude_unset=True))
+    with measure_span("parts"):
         if part is None:
-            content = await _made(request, bench, tenant, make_file, order, file)
+            content = await _make_content(request, bench, tenant, make_file, order, file)
         else:
-            content = await _made(request, bench, tenant, make_item_file, order, part, file)
+            content = await _make_content(request, bench, tenant, make_item_file, order, part, file)
     names = {"zip": f"{job.kind}-{n + 1}-parts.zip", "svg": f"{job.kind}-{n + 1}-assembly.svg"}
     name = names.get(file, f"{job.kind}-{n + 1}.{file}") if part is None else f"{part}.{file}"
     headers = {"X-Content-Type-Options": "nosniff"}
@@ -238,31 +240,31 @@ async def _answered(
     return Response(content, media_type=_MEDIA[file], headers=headers)
 
 
-async def _made(request: Request, bench: Workshop, tenant: str, work: Callable[..., Any], *args: Any) -> bytes:
-    """What the process makes, or has made of the same."""
+async def _make_content(request: Request, bench: Workshop, tenant: str, work: Callable[..., Any], *args: Any) -> bytes:
+    """Return the file that the process makes, from the cache if it has made the same before."""
     try:
         made = await bench.run_cached(request.is_disconnected, tenant, work, *args)
     except Busy:
-        raise busy("parts") from None
-    except Gone:
-        raise gone() from None
+        raise refuse_busy("parts") from None
+    except ClientGone:
+        raise refuse_gone() from None
     except GivenUp:
-        raise _refused(
-            f"The parts were given up: they took more than {MAX_PARTS_S:g} seconds, or more memory than a job may."
+        raise _refuse_parts(
+            f"Making the parts exceeded the limit of {MAX_PARTS_S:g} seconds or the memory limit of a job."
         ) from None
     if isinstance(made, FileRefusal):
         if not made.known:
-            raise not_found(made.detail)
-        raise invalid_request([(made.path, made.detail)]) if made.path else _refused(made.detail)
+            raise refuse_not_found(made.detail)
+        raise refuse_invalid_request([(made.path, made.detail)]) if made.path else _refuse_parts(made.detail)
     assert isinstance(made, bytes)
     return made
 
 
-def _checked(result: str, number: str) -> int:
-    """The index of a design of a stored result that parts are made of."""
+def _check_design_number(result: str, number: str) -> int:
+    """Return the index of a design in a stored result."""
     designs = from_json(result)["designs"]
-    return design_index(number, len(designs))
+    return parse_design_index(number, len(designs))
 
 
-def _refused(detail: str) -> Refusal:
+def _refuse_parts(detail: str) -> Refusal:
     return Refusal(409, "no-parts", "No parts", detail)

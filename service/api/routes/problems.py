@@ -1,4 +1,4 @@
-"""``/v1/problems``: what can be asked."""
+"""``/v1/problems``: the kinds of problems."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from starlette.concurrency import run_in_threadpool
 
 from service.api.http.auth import GuardedRoute
 from service.api.http.cached_representation import Representation
-from service.api.http.metric_units import measures
+from service.api.http.metric_units import collect_measures
 from service.api.http.schemas import ExampleName, ProblemKind, ProblemKinds
 from service.parts.export.cad_available import is_installed
 from service.parts.registry import LINKAGE_KEY, MAKERS
@@ -19,7 +19,7 @@ from service.render import FORMS_BY_TYPE, list_forms
 from service.simulation.query import FORMS, TRAIN_TYPES
 from synthesis.registry import KINDS, get_first_example
 
-TAG = {"name": "problems", "description": "What can be asked."}
+TAG = {"name": "problems", "description": "The kinds of problems that the service solves."}
 
 _ETAG = {"ETag": {"description": "Changes whenever the list does.", "schema": {"type": "string"}}}
 
@@ -33,21 +33,21 @@ router = APIRouter(prefix="/v1/problems", tags=["problems"], route_class=Guarded
     response_class=Response,
     responses={
         200: {"model": ProblemKinds, "headers": _ETAG},
-        304: {"description": "The list is as the client knows it.", "headers": _ETAG},
+        304: {"description": "The list is unchanged since the version that the client has.", "headers": _ETAG},
     },
 )
 async def list_problems(
     request: Request,
-    if_none_match: Annotated[str | None, Header(description="The `ETag` of the list that the client has.")] = None,
+    if_none_match: Annotated[str | None, Header(description="`ETag` of the list that the client has.")] = None,
 ) -> Response:
-    """Every kind of problem with its title, its JSON schema, and examples that run as they are."""
-    # In a thread, because the schemas of all kinds take two seconds the first time.
-    kinds = await run_in_threadpool(_kinds)
-    return kinds.answer(request, {"Cache-Control": "private, no-cache"})
+    """Return every kind of problem with its title, its JSON schema, and examples that can be posted as they are."""
+    # In a thread, because building the schemas of all kinds takes two seconds the first time.
+    kinds = await run_in_threadpool(_describe_kinds)
+    return kinds.respond(request, {"Cache-Control": "private, no-cache"})
 
 
 @cache
-def _kinds() -> Representation:
+def _describe_kinds() -> Representation:
     kinds = ProblemKinds(
         solids=is_installed(),
         parts=sorted(MAKERS.keys() - {LINKAGE_KEY}),
@@ -59,8 +59,8 @@ def _kinds() -> Representation:
                 schema=kind.problem.model_json_schema(),
                 example=get_first_example(name),
                 examples=[ExampleName(**named._asdict()) for named in kind.gallery],
-                measures={of: str(measure) for of, measure in measures(kind.result).items()},
-                files={type_: offered for type_ in kind.mechanisms if (offered := _files(type_))},
+                measures={of: str(measure) for of, measure in collect_measures(kind.result).items()},
+                files={type_: offered for type_ in kind.mechanisms if (offered := _list_files(type_))},
             )
             for name, kind in KINDS.items()
         ],
@@ -68,7 +68,7 @@ def _kinds() -> Representation:
     return Representation(kinds.model_dump_json(by_alias=True).encode(), "application/json")
 
 
-def _files(mechanism: str) -> list[str]:
-    """The forms of files of a type of mechanism: drawings, and simulations of linkages and gear trains."""
+def _list_files(mechanism: str) -> list[str]:
+    """Return the file formats of a type of mechanism: drawings, and simulations of linkages and gear trains."""
     simulated = mechanism in TRAIN_TYPES or mechanism not in FORMS_BY_TYPE
     return [*list_forms(mechanism), *(FORMS if simulated else ())]

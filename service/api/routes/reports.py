@@ -1,4 +1,4 @@
-"""``/v1/jobs/{id}/report.html``: a job as one page for paper."""
+"""``/v1/jobs/{id}/report.html``: a printable report of a job."""
 
 from __future__ import annotations
 
@@ -12,10 +12,10 @@ from service.api.http import problem_details
 from service.api.http.auth import GuardedRoute, Tenant
 from service.api.http.computation import draw_in_turn
 from service.api.http.dependencies import Answers, Bench, Desk
-from service.api.routes.designs import solved_job
+from service.api.routes.designs import get_solved_job
 from service.api.routes.jobs import NO_JOB, TAG
-from service.api.routes.parts import assemblies_of
-from service.observability.telemetry import span
+from service.api.routes.parts import draw_assemblies
+from service.observability.telemetry import measure_span
 
 _TEXT = {"type": "string"}
 
@@ -23,16 +23,16 @@ router = APIRouter(prefix="/v1/jobs", tags=[TAG["name"]], route_class=GuardedRou
 
 
 class ReportScope(BaseModel):
-    """How much of a job is reported."""
+    """Extent of a report."""
 
     model_config = ConfigDict(extra="forbid")
 
     designs: int = Field(
-        default=5, ge=0, le=20, description="Designs shown in full, the best first; all of them are listed."
+        default=5, ge=0, le=20, description="Number of designs shown in full, best first; all designs are listed."
     )
     assemblies: bool = Field(
         default=False,
-        description="Whether each of them is shown as an assembly of parts too, or why there is none is told.",
+        description="Whether each of these is also shown as an assembly of parts, or the reason if there is none.",
     )
 
 
@@ -47,16 +47,16 @@ class ReportScope(BaseModel):
             "content": {"text/html; charset=utf-8": {"schema": _TEXT}},
             "headers": {
                 "Content-Security-Policy": {
-                    "description": "Nothing but the page's own style sheet, by its hash.",
+                    "description": "Allows only the page's own style sheet, by its hash.",
                     "schema": _TEXT,
                 }
             },
         },
-        **problem_details.responses(
+        **problem_details.describe_responses(
             e404=NO_JOB,
             e409="The job has no result (yet).",
-            e422="A parameter is not valid; `errors` says which.",
-            e503="Other drawings or parts have kept this one from being begun.",
+            e422="A parameter is not valid; `errors` names it.",
+            e503="The service is busy with other drawings or parts.",
         ),
     },
 )
@@ -64,15 +64,15 @@ async def report_job(
     request: Request, desk: Desk, answers: Answers, bench: Bench, tenant: Tenant, job_id: str,
     query: Annotated[ReportScope, Query()],
 ) -> Response:  # fmt: skip
-    """The job as one self-contained page for paper.
+    """Return a self-contained printable report of the job.
 
-    The problem, what was searched and what is proven; the designs with drawings, checks, and dimensions with units.
+    It shows the problem, the search and its completeness, and the designs with drawings, checks and dimensions.
     """
-    job = await solved_job(desk, tenant, job_id)
-    with span("report"):
+    job = await get_solved_job(desk, tenant, job_id)
+    with measure_span("report"):
         built = {}
         if query.assemblies:
-            built = await assemblies_of(request, bench, tenant, job, query.designs)
+            built = await draw_assemblies(request, bench, tenant, job, query.designs)
         page, policy = await draw_in_turn(request, answers, tenant, write_report, job, query.designs, built)
     headers = {
         "Content-Security-Policy": policy,

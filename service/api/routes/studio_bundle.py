@@ -41,7 +41,7 @@ class BundleError(Exception):
     """The modules cannot be bundled; the message says why."""
 
 
-def bundle_modules(modules: Mapping[str, str], first: str) -> dict[str, str]:
+def build_bundles(modules: Mapping[str, str], first: str) -> dict[str, str]:
     """Bundle the module ``first`` with its imports, and likewise every module that these import dynamically.
 
     Parameters
@@ -65,18 +65,18 @@ def bundle_modules(modules: Mapping[str, str], first: str) -> dict[str, str]:
     pending = [first]
     while pending:
         entry = pending.pop()
-        if bundle_path(entry) in bundles:
+        if name_bundle(entry) in bundles:
             continue
         order = _sort_by_imports(modules, entry)
         pending += [_resolve(name, found) for name in order for found in _DYNAMIC_IMPORT.findall(modules[name])]
-        bundles[bundle_path(entry)] = _concatenate(modules, order)
+        bundles[name_bundle(entry)] = _concatenate(modules, order)
     return bundles
 
 
-def bundle_path(module: str) -> str:
+def name_bundle(module: str) -> str:
     """Return the path of the bundle that starts at a module.
 
-    >>> bundle_path("assembly/assembly_scene.js")
+    >>> name_bundle("assembly/assembly_scene.js")
     'assembly/assembly_scene.bundle.js'
     """
     return module.removesuffix(".js") + SUFFIX
@@ -127,7 +127,7 @@ def _replace_imports(modules: Mapping[str, str], name: str, entry: str, external
         return f"const {bindings} = {_variable(target)};"
 
     def load_bundle(match: re.Match[str]) -> str:
-        return f'import("{_specifier(entry, bundle_path(_resolve(name, match[1])))}")'
+        return f'import("{_specifier(entry, name_bundle(_resolve(name, match[1])))}")'
 
     return _DYNAMIC_IMPORT.sub(load_bundle, _IMPORT.sub(refer, modules[name]))
 

@@ -12,7 +12,7 @@ from fastapi import APIRouter, Request, Response
 from starlette.exceptions import HTTPException
 
 from service.api.http.cached_representation import Representation
-from service.api.routes.studio_bundle import bundle_modules, bundle_path
+from service.api.routes.studio_bundle import build_bundles, name_bundle
 
 PAGE = "index.html"
 FIRST = "studio.js"
@@ -49,14 +49,14 @@ _TYPES = {
 
 
 @cache
-def studio_files() -> dict[str, Representation]:
+def load_studio_files() -> dict[str, Representation]:
     """Return all files of the page by path; requests can reach no others.
 
     The first request reads and bundles them, which takes a tenth of a second.
     """
     texts = dict(_read_folder(files("service").joinpath("studio")))
     own = {name: text for name, text in texts.items() if name.endswith(".js") and not name.startswith(VENDOR)}
-    texts |= bundle_modules(own, FIRST)
+    texts |= build_bundles(own, FIRST)
     served = {name: Representation(text.encode(), _media_type(name) or "") for name, text in texts.items()}
     return {**served, PAGE: Representation(_add_versions(texts[PAGE], served).encode(), _TYPES["html"])}
 
@@ -78,7 +78,7 @@ def _add_versions(page: str, served: Mapping[str, Representation]) -> str:
     """Make the page request its bundle and its other files by their versions."""
 
     def add_version(match: re.Match[str]) -> str:
-        name = bundle_path(FIRST) if match[2] == FIRST else match[2]
+        name = name_bundle(FIRST) if match[2] == FIRST else match[2]
         return f'{match[1]}="/studio/{name}?v={served[name].version}"'
 
     return _LINK.sub(add_version, page)
@@ -90,15 +90,15 @@ router = APIRouter(include_in_schema=False)
 @router.get("/")
 async def studio(request: Request) -> Response:
     """Serve the page."""
-    return studio_files()[PAGE].answer(request, {**_HEADERS, "Cache-Control": _REVALIDATE})
+    return load_studio_files()[PAGE].respond(request, {**_HEADERS, "Cache-Control": _REVALIDATE})
 
 
 @router.get("/studio/{name:path}")
 async def studio_file(request: Request, name: str, v: str = "") -> Response:
     """Serve a file of the page: a module, a bundle, a style sheet, messages or an icon."""
-    file = studio_files().get(name)
+    file = load_studio_files().get(name)
     if file is None or name == PAGE:
         raise HTTPException(404)
     # The page may come from another server, of an older or newer version: then this file is sent, but not cached.
     caching = _IMMUTABLE if v == file.version else _REVALIDATE
-    return file.answer(request, {**_HEADERS, "Cache-Control": caching})
+    return file.respond(request, {**_HEADERS, "Cache-Control": caching})

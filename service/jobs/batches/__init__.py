@@ -1,6 +1,6 @@
-"""Many problems at once, stated as one whose fields are varied.
+"""Batches: many problems, given as one problem whose fields are varied.
 
-Words: a *batch* is what a client has stated; a *sample* is one problem of it; its *plan* says which those are. The plan
-is dealt into *shares*, ranges of samples that are rows among the jobs and taken by turns like these; what a worker
-solves of a share in one go is a *slice*, whose samples come into the store together.
+Words: a *batch* is the client's request; a *sample* is one of its problems; the *plan* defines the samples. The plan is
+split into *shares*, ranges of samples that are rows of the job table and are scheduled like jobs. The samples that a
+worker solves of a share in one go are a *slice*; they are stored together.
 """

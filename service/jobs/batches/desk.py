@@ -1,4 +1,4 @@
-"""What a client can do with batches: the store, the executor and the notifier behind one object."""
+"""The operations on batches that the API offers: store, executor and notifier behind one object."""
 
 from __future__ import annotations
 
@@ -11,21 +11,21 @@ from starlette.concurrency import run_in_threadpool
 from service.jobs.batches.plan import Plan
 from service.jobs.batches.rows import BatchRow, BatchSummary
 from service.jobs.batches.store import BatchStore
-from service.jobs.batches.table import Table, table_of
+from service.jobs.batches.table import Table, build_table
 from service.jobs.events.notifier import ChangeNotifier
 from service.jobs.executor import Executor
 from service.jobs.store.admission import Repeatable
 from service.jobs.store.finished_cache import FinishedJobs
 from service.jobs.store.states import Cost
 from service.observability.metrics import Metrics
-from service.observability.telemetry import span
+from service.observability.telemetry import measure_span
 
 log = structlog.get_logger(__name__)
 
 
 @dataclass(frozen=True, slots=True)
 class BatchDesk:
-    """Accepts, shows, cancels and removes batches, on the event loop; the store is asked in a thread."""
+    """Accepts, shows, cancels and removes batches. Runs on the event loop; queries the store in a thread."""
 
     store: BatchStore
     executor: Executor
@@ -37,16 +37,16 @@ class BatchDesk:
     async def accept(
         self, *, tenant: str, kind: str, label: str | None, plan: Plan, cost: Cost, repeatable: Repeatable | None
     ) -> BatchRow:
-        """Store a batch and have it run. A request that comes again by its key gets what it has made the first time.
+        """Store a batch and submit it. A repeated request with the same key returns the batch it created first.
 
         Raises
         ------
         KeyReused
-            When the key came with another request before.
+            If the key was used with a different request before.
         QueueFull
-            When no more jobs of the tenant are taken for now.
+            If the tenant's queue is full.
         """
-        with span("store"):
+        with measure_span("store"):
             batch, shares = await run_in_threadpool(
                 self.store.create,
                 tenant=tenant,
@@ -59,33 +59,33 @@ class BatchDesk:
             )
         if shares:
             log.info("batch accepted", batch=batch.id, kind=kind, samples=batch.total)
-            self.metrics.accepted_batch(kind)
+            self.metrics.count_batch(kind)
         for share in shares:
             self.executor.submit(share)
         return batch
 
     async def get(self, tenant: str, batch_id: str) -> BatchRow | None:
-        """The batch, or None where the tenant has none such. Another tenant's batch is none."""
+        """Return the batch; None if it does not exist or belongs to another tenant."""
         batch = await run_in_threadpool(self.store.get, batch_id)
         return batch if batch is not None and batch.tenant == tenant else None
 
-    async def page(self, *, tenant: str, limit: int, before: str | None) -> list[BatchSummary]:
-        """At most ``limit`` batches of the tenant, newest first."""
-        return await run_in_threadpool(self.store.page, tenant=tenant, limit=limit, before=before)
+    async def list_page(self, *, tenant: str, limit: int, before: str | None) -> list[BatchSummary]:
+        """Return at most ``limit`` batches of the tenant, newest first."""
+        return await run_in_threadpool(self.store.list_page, tenant=tenant, limit=limit, before=before)
 
-    async def table(self, batch: BatchRow) -> tuple[Plan, Table] | None:
-        """What a batch is made of, and its table; None where it has been removed since it was read."""
-        return await run_in_threadpool(self._table, batch)
+    async def load_table(self, batch: BatchRow) -> tuple[Plan, Table] | None:
+        """Return the plan and the table of a batch; None if it has been removed since it was read."""
+        return await run_in_threadpool(self._load_table, batch)
 
-    def _table(self, batch: BatchRow) -> tuple[Plan, Table] | None:
-        plan = self.store.plan(batch)
-        return None if plan is None else (plan, table_of(batch, plan, self.store.table(batch)))
+    def _load_table(self, batch: BatchRow) -> tuple[Plan, Table] | None:
+        plan = self.store.load_plan(batch)
+        return None if plan is None else (plan, build_table(batch, plan, self.store.load_rows(batch)))
 
     async def cancel_or_delete(self, tenant: str, batch_id: str) -> BatchRow | Literal["deleted"] | None:
-        """Cancel the batch when it is unfinished (returns it), else remove it; None where the tenant has none such.
+        """Cancel an unfinished batch and return it, or remove a finished one; None if the tenant has no such batch.
 
-        What has ended of a cancelled batch stays. One that ends by itself while it is being cancelled is returned and
-        not removed.
+        The samples of a cancelled batch that have ended are kept. A batch that ends by itself while it is being
+        cancelled is returned and not removed.
         """
         batch = await self.get(tenant, batch_id)
         if batch is None:
@@ -94,7 +94,8 @@ class BatchDesk:
             try:
                 return "deleted" if await run_in_threadpool(self.store.delete, batch_id) else None
             finally:
-                self.finished.removed()
+                # The cache holds samples by their own ids, which are not listed here: drop all of them.
+                self.finished.note_removal()
         shares = await run_in_threadpool(self.store.cancel, batch_id)
         if shares is not None:
             log.info("batch cancelled", batch=batch_id)

@@ -1,4 +1,4 @@
-"""Which problems are the same: by what they mean, and by the version of the solvers that answer them."""
+"""Identity of problems: equal content, answered by the same version of the solvers."""
 
 from __future__ import annotations
 
@@ -15,40 +15,40 @@ if TYPE_CHECKING:
     from synthesis.model.problem import ProblemBase
 
 LIBRARIES = ("numpy", "scipy", "numba", "cvxpy-base", "clarabel", "highspy", "pydantic")
-"""What the solvers compute with: another version of it may end at other last digits."""
+"""Libraries that the solvers compute with; another version may change the last digits of an answer."""
 
-SOURCES = (".py", ".npz")
+SOURCE_SUFFIXES = (".py", ".npz")
 
 
-def digest(problem: ProblemBase) -> str:
-    """Equal for problems that have the same answer of the same solvers.
+def hash_problem(problem: ProblemBase) -> str:
+    """Return a hash that is equal for problems to which the same solvers give the same answer.
 
-    It goes by what a statement means: the order of its fields, the spelling of its numbers and defaults that are
-    written out make no difference.
+    The order of fields, the spelling of numbers and explicitly written defaults make no difference.
     """
     stated = problem.model_dump(mode="json", exclude_defaults=True)
     meant = json.dumps([problem.kind, stated], sort_keys=True, separators=(",", ":"))
-    return sha256(f"{solvers()}{meant}".encode()).hexdigest()
+    return sha256(f"{hash_solvers()}{meant}".encode()).hexdigest()
 
 
 @cache
-def solvers() -> str:
-    """The version of the solvers: of their sources, and of the libraries that they compute with."""
+def hash_solvers() -> str:
+    """Return a hash of the solvers' sources and of the versions of the libraries they compute with."""
     parts = [platform.python_version(), platform.machine(), *(f"{name} {version(name)}" for name in LIBRARIES)]
     told = sha256("\n".join(parts).encode())
     for package in ("kinematics", "synthesis"):
-        for name, source in sorted(_sources(files(package), package), key=lambda named: named[0]):
+        # Sorted, because the order of a folder's entries differs between file systems.
+        for name, source in sorted(_list_sources(files(package), package), key=lambda named: named[0]):
             told.update(f"\n{name}\n".encode())
             told.update(sha256(source.read_bytes()).digest())
     return told.hexdigest()
 
 
-def _sources(folder: Traversable, name: str) -> list[tuple[str, Traversable]]:
+def _list_sources(folder: Traversable, name: str) -> list[tuple[str, Traversable]]:
     found = []
     for entry in folder.iterdir():
         place = f"{name}/{entry.name}"
         if entry.is_dir():
-            found += _sources(entry, place)
-        elif entry.name.endswith(SOURCES):
+            found += _list_sources(entry, place)
+        elif entry.name.endswith(SOURCE_SUFFIXES):
             found.append((place, entry))
     return found

@@ -1,4 +1,4 @@
-"""The plan of a batch: a problem, the fields of it that are varied, and the values that they have in each sample."""
+"""The plan of a batch: a problem, its varied fields, and their values in each sample."""
 
 from __future__ import annotations
 
@@ -9,31 +9,31 @@ from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
 
-from service.jobs.batches.values import Values, read, written
+from service.jobs.batches.values import Values, decode_values, encode_values
 
 
 class NoSuchPlace(LookupError):
-    """A pointer leads nowhere; the message says why, in a sentence."""
+    """A pointer that leads nowhere; the message is a sentence with the reason."""
 
 
 @dataclass(frozen=True)
 class Plan:
-    """What a batch is made of. All that is written of it is JSON.
+    """Definition of all samples of a batch; it is stored as JSON.
 
     Attributes
     ----------
     problem : dict
-        The statement that is varied.
+        The problem whose fields are varied.
     fields : sequence of str
-        JSON pointers into it.
+        JSON pointers into the problem, one for each varied field.
     values : sequence of sequences
         The values of each field: all combinations of them in a grid, otherwise one of each for every sample.
     grid : bool
-        Whether it is one. The last field varies fastest.
+        Whether the samples are a grid, in which the last field varies fastest.
     metrics : sequence of str
-        What of the best design is noted, by the names of its metrics.
+        Names of the metrics of the best design that the table shows.
     reuse : bool
-        Whether answers of equal problems are taken from the store.
+        Whether stored answers to equal problems are reused.
     """
 
     problem: Mapping[str, Any]
@@ -45,79 +45,84 @@ class Plan:
 
     @property
     def total(self) -> int:
-        """How many samples there are."""
+        """Number of samples."""
         return math.prod(map(len, self.values)) if self.grid else len(self.values[0])
 
     def sample(self, number: int) -> list[Any]:
-        """The values of the fields in a sample."""
+        """Return the values of the varied fields in a sample."""
         if not self.grid:
             return [values[number] for values in self.values]
         chosen = []
+        # Mixed-radix digits of the number, last field first, since that one varies fastest.
         for values in reversed(self.values):
             number, place = divmod(number, len(values))
             chosen.append(values[place])
         return chosen[::-1]
 
-    def statement(self, number: int) -> Any:
-        """The statement of a sample, as a client would post it."""
-        return self.stated(self.sample(number))
+    def build_statement(self, number: int) -> Any:
+        """Return the problem of a sample as a client would post it."""
+        return self.fill_statement(self.sample(number))
 
-    def stated(self, values: Values) -> Any:
-        """The problem with these values of the fields.
+    def fill_statement(self, values: Values) -> Any:
+        """Return the problem with these values of the varied fields.
 
         Raises
         ------
         NoSuchPlace
-            Where a pointer leads nowhere.
+            If a pointer leads nowhere.
         """
         statement: Any = self.problem
         for steps, value in zip(self._steps, values, strict=True):
-            statement = _with(statement, steps, value)
+            statement = _copy_with(statement, steps, value)
         return statement
 
     @cached_property
     def _steps(self) -> list[list[str]]:
-        return [steps(field) for field in self.fields]
+        return [split_pointer(field) for field in self.fields]
 
-    def stated_as_json(self) -> str:
-        """What is shown of the plan, as an object in JSON: all but the values, of which there may be very many."""
-        return _as_json({name: getattr(self, name) for name in _SHOWN})
+    def dump_statement(self) -> str:
+        """Return the part of the plan that the API shows, a JSON object: all but the values, which may be very many."""
+        return _as_json({name: getattr(self, name) for name in _SHOWN_FIELDS})
 
-    def values_as_json(self) -> str:
-        """The values in JSON, for :meth:`read`."""
-        return _as_json({"grid": self.grid, "values": [written(values) for values in self.values]})
+    def dump_values(self) -> str:
+        """Return the values as JSON for :meth:`decode_values`."""
+        return _as_json({"grid": self.grid, "values": [encode_values(values) for values in self.values]})
 
     @classmethod
-    def read(cls, stated: str, values: str) -> Plan:
-        """The plan of which :meth:`stated_as_json` and :meth:`values_as_json` have written these."""
+    def read(cls, statement_json: str, values: str) -> Plan:
+        """Rebuild a plan from the output of :meth:`dump_statement` and :meth:`dump_values`."""
         varied = json.loads(values)
-        return cls(**json.loads(stated), grid=varied["grid"], values=[read(each) for each in varied["values"]])
+        return cls(
+            **json.loads(statement_json), grid=varied["grid"], values=[decode_values(each) for each in varied["values"]]
+        )
 
 
-_SHOWN = ("problem", "fields", "metrics", "reuse")
+_SHOWN_FIELDS = ("problem", "fields", "metrics", "reuse")
 
 
 def _as_json(value: Any) -> str:
     return json.dumps(value, separators=(",", ":"))
 
 
-def steps(pointer: str) -> list[str]:
-    """The steps of a JSON pointer that begins with a slash."""
+def split_pointer(pointer: str) -> list[str]:
+    """Split a JSON pointer that begins with a slash into its steps."""
+    # "~1" before "~0": the other order would turn "~01" into a slash (RFC 6901, section 4).
     return [step.replace("~1", "/").replace("~0", "~") for step in pointer.split("/")[1:]]
 
 
-def _with(value: Any, way: Sequence[str], new: Any) -> Any:
-    """A copy of ``value`` with something new at the end of the way; objects that are missing on it are made."""
+def _copy_with(value: Any, way: Sequence[str], new: Any) -> Any:
+    """Return a copy of ``value`` with ``new`` at the end of the path ``way``; missing objects are created."""
     if not way:
         return new
     step, *rest = way
     if isinstance(value, dict):
-        return {**value, step: _with(value.get(step, {} if rest else None), rest, new)}
+        return {**value, step: _copy_with(value.get(step, {} if rest else None), rest, new)}
     if isinstance(value, list):
+        # At most nine digits are converted: int() of a very long text takes time by the square of its length.
         if not (step.isascii() and step.isdecimal() and str(int(step[:9])) == step):
-            raise NoSuchPlace(f"{step[:100]!r} is no place in a list; count from 0.")
+            raise NoSuchPlace(f"Expected the index of a list element, counted from 0; got {step[:100]!r}.")
         if int(step) >= len(value):
-            raise NoSuchPlace(f"The list there has {len(value)} elements; {step} is none of them.")
+            raise NoSuchPlace(f"Element {step} does not exist; the length of the list is {len(value)}.")
         place = int(step)
-        return [*value[:place], _with(value[place], rest, new), *value[place + 1 :]]
-    raise NoSuchPlace(f"What is stated before {step[:100]!r} has no fields.")
+        return [*value[:place], _copy_with(value[place], rest, new), *value[place + 1 :]]
+    raise NoSuchPlace(f"The value before {step[:100]!r} is neither an object nor a list.")

@@ -1,4 +1,4 @@
-"""A batch, a share of it and an ended sample as values."""
+"""Value classes of a batch, a share and an ended sample."""
 
 from __future__ import annotations
 
@@ -21,44 +21,44 @@ class BatchSummary(Entry):
     revision: int
 
     @property
-    def done(self) -> int:
-        """How many of its samples have ended."""
+    def ended_count(self) -> int:
+        """Number of samples that have ended."""
         return self.succeeded + self.failed
 
 
 @dataclass(frozen=True, slots=True)
 class BatchRow(BatchSummary):
-    """A batch with what was stated, as :meth:`service.jobs.batches.plan.Plan.stated_as_json` has it."""
+    """A batch with its request, as :meth:`service.jobs.batches.plan.Plan.dump_statement` writes it."""
 
     stated: str
 
 
 @dataclass(frozen=True, slots=True)
 class Share:
-    """What is left of a share: the samples from ``first`` to before ``end``, but for those that are stored already.
+    """The rest of a share: the samples from ``first`` to before ``end``, except those already stored.
 
-    ``alone`` is one that a worker has died of, or may have: in the next turn of the share it comes by itself.
+    ``alone`` is a sample that may have killed a worker: it is solved by itself in the next turn of the share.
     """
 
     first: int
     end: int
     alone: int | None = None
 
-    def written(self) -> str:
-        """The share in JSON, as its row among the jobs has it for a problem."""
+    def dump(self) -> str:
+        """Return the share as JSON; its row in the job table stores that as the problem."""
         return json.dumps(asdict(self))
 
     @classmethod
     def read(cls, text: str) -> Share:
-        """The share that :meth:`written` has written."""
+        """Rebuild a share from the output of :meth:`dump`."""
         return cls(**json.loads(text))
 
 
 @dataclass(frozen=True, slots=True)
-class Ended:
-    """A sample that has ended: its ``result`` with the ``figures`` of it for the table, or its ``error``, in JSON.
+class EndedSample:
+    """A sample that has ended: its ``result`` and its ``figures`` for the table, or its ``error``, in JSON.
 
-    One that is the ``same_as`` another of its batch, by the number of that one, has its figures and no result itself.
+    ``same_as`` is the number of an equal sample of the batch: the row then repeats its figures and has no result.
     """
 
     number: int
@@ -75,7 +75,7 @@ class Ended:
 
 @dataclass(frozen=True, slots=True)
 class OwnAnswer:
-    """The answer of an equal problem of the same batch: the number of that sample, and its figures for the table."""
+    """The answer to an equal problem of the same batch: the number of that sample and its figures for the table."""
 
     number: int
     figures: str | None
@@ -83,7 +83,7 @@ class OwnAnswer:
 
 @dataclass(frozen=True, slots=True)
 class TableRow:
-    """What the table of a batch has of an ended sample."""
+    """The columns of an ended sample that the table of a batch needs."""
 
     number: int
     status: Status

@@ -1,8 +1,8 @@
-"""What a worker does with a share of a batch: it solves a slice of it and stores that in one go.
+"""The work on a share of a batch: a worker solves a slice of it and stores the slice in one transaction.
 
-A slice ends after :data:`SLICE_S` or :data:`MOST` samples, whichever comes first: soon enough that a worker is free for
-whatever comes next in turn, and seldom enough that claiming and storing, which takes as long as a quick problem, is a
-small part of the work.
+A slice ends after :data:`SLICE_S` seconds or :data:`MAX_SAMPLES` samples, the earlier of the two. That is soon enough to free
+the worker for the next job in turn, and late enough to make claiming and storing, which take as long as a quick
+problem, a small part of the work.
 
 This module is imported before the worker has set its number of threads, so it must not import numpy.
 """
@@ -20,28 +20,28 @@ import structlog
 from pydantic_core import from_json
 
 from service.jobs import faults
-from service.jobs.batches.identity import digest
+from service.jobs.batches.identity import hash_problem
 from service.jobs.batches.plan import Plan
-from service.jobs.batches.reading import sample_id
-from service.jobs.batches.rows import BatchRow, BatchSummary, Ended, OwnAnswer, Share
+from service.jobs.batches.reading import make_sample_id
+from service.jobs.batches.rows import BatchRow, BatchSummary, EndedSample, OwnAnswer, Share
 from service.jobs.batches.store import BatchStore
-from service.jobs.processes.stop_flag import Solving, Stopped
-from service.jobs.store.database import patiently
-from service.jobs.store.schema import Claim, now
+from service.jobs.processes.stop_flag import SolverStopped, Solving
+from service.jobs.store.database import write_when_reachable
+from service.jobs.store.schema import Claim, format_now
 from service.jobs.store.states import Status
 
 SLICE_S = 0.1
-"""Seconds after which no further sample of a slice is begun."""
+"""Time after which a slice begins no further sample, seconds."""
 
-MOST = 200
-"""Samples of a slice at most."""
+MAX_SAMPLES = 200
+"""Maximum number of samples of a slice."""
 
-LOOKED_UP = 16
-"""Samples whose answers are looked for together among those that are stored."""
+LOOKUP_GROUP_SIZE = 16
+"""Number of samples whose stored answers are queried together."""
 
-PLANS_SIZE = 2 << 20
-"""Characters of the plans that a worker keeps: reading one takes a while, and there are many slices. They take some ten
-times as much memory. The one that is worked at is kept in any case."""
+MAX_PLANS_SIZE = 2 << 20
+"""Size of the plans that a worker caches, characters of JSON; in memory they take about ten times as much. Parsing a
+plan for each of many slices would take long. The plan in use is kept whatever its size."""
 
 Outcome = Literal["slice", "superseded", "stopped", "out of memory"]
 
@@ -49,8 +49,8 @@ log = structlog.get_logger(__name__)
 
 
 @dataclass(frozen=True, slots=True)
-class _Stated:
-    """A sample as it is to be solved: the problem and its digest, or why there is none."""
+class _PreparedSample:
+    """A sample ready to be solved: the problem and its digest, or the fault that prevents it."""
 
     number: int
     problem: Any = None
@@ -59,108 +59,111 @@ class _Stated:
 
 
 @dataclass(frozen=True, slots=True)
-class _Kept:
-    """A batch, its plan, and how many characters that is."""
+class _CachedPlan:
+    """A batch, its plan, and the size of both in characters of JSON."""
 
     batch: BatchRow
     plan: Plan
     size: int
 
 
-class Slices:
-    """Solves slices in a worker process, one after the other."""
+class SliceSolver:
+    """Solves slices in a worker process, one at a time."""
 
     def __init__(self, store: BatchStore, solving: Solving, out_of_memory: faults.Fault) -> None:
         self._store = store
         self._solving = solving
         self._out_of_memory = out_of_memory
-        self._plans: OrderedDict[str, _Kept] = OrderedDict()
+        self._plans: OrderedDict[str, _CachedPlan] = OrderedDict()
 
     def run(self, claim: Claim, batch_id: str) -> Outcome:
-        """Solve a slice of the share that was claimed. The store has it when this returns.
+        """Solve a slice of the claimed share and store it before returning.
 
-        Nothing of it is stored where the lane says that it is to stop; that is soon done again.
+        If the lane requests a stop, nothing of the slice is stored; solving it again takes little time.
         """
         share = Share.read(claim.problem)
         try:
-            known = self._known(batch_id)
+            known = self._load_plan(batch_id)
             if known is None:
-                patiently(self._store.store, None, claim.job_id, claim.attempt, None, [])
+                write_when_reachable(self._store.store, None, claim.job_id, claim.attempt, None, [])
                 return "superseded"
             batch, plan = known
-            todo, end = self._window(batch, share)
+            todo, end = self._select_window(batch, share)
         except MemoryError:
-            return self._without_its_plan(claim, batch_id, share)
-        new: list[Ended] = []
+            return self._fail_share(claim, batch_id, share)
+        new: list[EndedSample] = []
         outcome: Outcome = "slice"
         until = time.perf_counter() + SLICE_S
         try:
-            for stated, answer in self._with_answers(batch, plan, todo, new):
-                new.append(self._ended(batch, plan, stated, answer))
+            for stated, answer in self._attach_answers(batch, plan, todo, new):
+                new.append(self._finish_sample(batch, plan, stated, answer))
                 if time.perf_counter() >= until:
                     break
-        except Stopped:
+        except SolverStopped:
             return "stopped"
         except MemoryError:
+            # The samples before this one are sound and are stored; only the one at work has failed.
             at = todo[len(new)]
-            new.append(_failed(batch, at, now(), self._out_of_memory))
+            new.append(_build_failure(batch, at, format_now(), self._out_of_memory))
             outcome = "out of memory"
+        # After a sample solved by itself the share goes on from its beginning; stored samples are skipped there.
         first = share.first if share.alone is not None else todo[len(new)] if len(new) < len(todo) else end
         left = Share(first, share.end) if first < share.end else None
-        stored = patiently(self._store.store, batch, claim.job_id, claim.attempt, left, new)
+        stored = write_when_reachable(self._store.store, batch, claim.job_id, claim.attempt, left, new)
         return outcome if stored else "superseded"
 
-    def _known(self, batch_id: str) -> tuple[BatchRow, Plan] | None:
-        """The batch and its plan; None where it has ended."""
+    def _load_plan(self, batch_id: str) -> tuple[BatchRow, Plan] | None:
+        """Return the batch and its plan, from the cache if possible; None if the batch has ended."""
         if batch_id not in self._plans:
-            batch = patiently(self._store.begun, batch_id)
+            batch = write_when_reachable(self._store.start_batch, batch_id)
             if batch is None:
                 return None
             try:
                 known = self._read(batch)
             except MemoryError:
+                # The cached plans take most of the memory: try again without them.
                 self._plans.clear()
                 known = self._read(batch)
             if known is None:
                 return None
             self._plans[batch_id] = known
-            while len(self._plans) > 1 and sum(each.size for each in self._plans.values()) > PLANS_SIZE:
+            while len(self._plans) > 1 and sum(each.size for each in self._plans.values()) > MAX_PLANS_SIZE:
                 self._plans.popitem(last=False)
         self._plans.move_to_end(batch_id)
         kept = self._plans[batch_id]
         return kept.batch, kept.plan
 
-    def _read(self, batch: BatchRow) -> _Kept | None:
-        values = patiently(self._store.values, batch)
+    def _read(self, batch: BatchRow) -> _CachedPlan | None:
+        values = write_when_reachable(self._store.load_values, batch)
         if values is None:
             return None
-        return _Kept(batch, Plan.read(batch.stated, values), len(batch.stated) + len(values))
+        return _CachedPlan(batch, Plan.read(batch.stated, values), len(batch.stated) + len(values))
 
-    def _without_its_plan(self, claim: Claim, batch_id: str, share: Share) -> Outcome:
-        """Fail what is left of a share whose plan takes more memory than a job may: none of it can be solved."""
+    def _fail_share(self, claim: Claim, batch_id: str, share: Share) -> Outcome:
+        """Fail the rest of a share whose plan exceeds the memory limit of a job, so that no sample can be solved."""
         self._plans.clear()
-        batch = patiently(self._store.summaries, [batch_id]).get(batch_id)
+        batch = write_when_reachable(self._store.load_summaries, [batch_id]).get(batch_id)
         new = []
         if batch is not None:
-            there = patiently(self._store.ended, batch, share.first, share.end)
+            there = write_when_reachable(self._store.find_stored, batch, share.first, share.end)
             left = (number for number in range(share.first, share.end) if number not in there)
-            new = [_failed(batch, number, now(), self._out_of_memory) for number in left]
-        patiently(self._store.store, batch, claim.job_id, claim.attempt, None, new)
+            new = [_build_failure(batch, number, format_now(), self._out_of_memory) for number in left]
+        write_when_reachable(self._store.store, batch, claim.job_id, claim.attempt, None, new)
         return "out of memory"
 
-    def _window(self, batch: BatchRow, share: Share) -> tuple[list[int], int]:
-        """The samples to be solved next, and where those begin that come after them."""
+    def _select_window(self, batch: BatchRow, share: Share) -> tuple[list[int], int]:
+        """Return the numbers of the samples to solve next, and the number at which the samples after them begin."""
         if share.alone is not None:
             first, end = share.alone, share.alone + 1
         else:
-            first, end = share.first, min(share.end, share.first + MOST)
-        there = patiently(self._store.ended, batch, first, end)
+            first, end = share.first, min(share.end, share.first + MAX_SAMPLES)
+        there = write_when_reachable(self._store.find_stored, batch, first, end)
         return [number for number in range(first, end) if number not in there], end
 
-    def _with_answers(
-        self, batch: BatchRow, plan: Plan, todo: Sequence[int], new: Sequence[Ended]
-    ) -> Iterator[tuple[_Stated, str | OwnAnswer | None]]:
-        """The samples as they are stated, each with the answer that the slice or the store has of its like."""
+    def _attach_answers(
+        self, batch: BatchRow, plan: Plan, todo: Sequence[int], new: Sequence[EndedSample]
+    ) -> Iterator[tuple[_PreparedSample, str | OwnAnswer | None]]:
+        """Yield the prepared samples, each with the answer to an equal problem from this slice or from the store."""
         own: dict[str, OwnAnswer] = {}
         left = deque(todo)
         while left:
@@ -168,22 +171,23 @@ class Slices:
             stored: dict[str, str | OwnAnswer] = {}
             if plan.reuse:
                 wanted = {stated.digest for stated in group if stated.digest is not None}
-                stored = patiently(self._store.answers, batch, wanted - own.keys())
+                stored = write_when_reachable(self._store.find_answers, batch, wanted - own.keys())
             for stated in group:
+                # The caller appends to `new` between two yields: the last entry is the sample yielded before.
                 if plan.reuse and new and new[-1].digest is not None:
                     own[new[-1].digest] = OwnAnswer(new[-1].number, new[-1].figures)
                 known_by = stated.digest or ""
                 yield stated, own.get(known_by) or stored.get(known_by)
 
-    def _group(self, batch: BatchRow, plan: Plan, left: deque[int]) -> list[_Stated]:
-        """The next samples, taken from those that are ``left``: as many as are looked for together.
+    def _group(self, batch: BatchRow, plan: Plan, left: deque[int]) -> list[_PreparedSample]:
+        """Prepare the next samples of ``left`` and remove them from it, as many as are queried together.
 
-        Where one takes too much memory to be stated, those before it; the error is its own when it comes first.
+        If preparing one takes too much memory, return those before it. The error is raised if it is the first.
         """
-        group: list[_Stated] = []
-        for number in list(left)[: LOOKED_UP if plan.reuse else 1]:
+        group: list[_PreparedSample] = []
+        for number in list(left)[: LOOKUP_GROUP_SIZE if plan.reuse else 1]:
             try:
-                group.append(self._stated(batch, plan, number))
+                group.append(self._prepare_sample(batch, plan, number))
             except MemoryError:
                 if not group:
                     raise
@@ -191,82 +195,86 @@ class Slices:
             left.popleft()
         return group
 
-    def _ended(self, batch: BatchRow, plan: Plan, stated: _Stated, answer: str | OwnAnswer | None) -> Ended:
-        began = now()
+    def _finish_sample(
+        self, batch: BatchRow, plan: Plan, prepared: _PreparedSample, answer: str | OwnAnswer | None
+    ) -> EndedSample:
+        began = format_now()
         if isinstance(answer, OwnAnswer):
-            return Ended(
-                stated.number,
+            return EndedSample(
+                prepared.number,
                 Status.SUCCEEDED,
                 began,
-                now(),
+                format_now(),
                 cached=True,
                 same_as=answer.number,
                 figures=answer.figures,
             )
         try:
-            result = self._solved(stated) if answer is None else answer
+            result = self._solve_sample(prepared) if answer is None else answer
             if isinstance(result, faults.Fault):
-                return _failed(batch, stated.number, began, result)
-            return Ended(
-                stated.number,
+                return _build_failure(batch, prepared.number, began, result)
+            return EndedSample(
+                prepared.number,
                 Status.SUCCEEDED,
                 began,
-                now(),
+                format_now(),
                 cached=answer is not None,
-                digest=stated.digest,
-                figures=_figures(result, plan.metrics),
+                digest=prepared.digest,
+                figures=_extract_figures(result, plan.metrics),
                 result=result,
             )
         except MemoryError:
             raise
-        except Exception:  # the boundary of the solvers: whatever defect they have ends this sample only
-            log.exception("the solver raised", batch=batch.id, sample=stated.number)
-            return _failed(batch, stated.number, began, faults.INTERNAL_ERROR)
+        except Exception:  # the boundary of the solvers: a defect of theirs ends this sample only
+            log.exception("the solver raised", batch=batch.id, sample=prepared.number)
+            return _build_failure(batch, prepared.number, began, faults.INTERNAL_ERROR)
 
-    def _solved(self, stated: _Stated) -> str | faults.Fault:
-        """The answer in JSON, or why there is none."""
-        from service.error_messages import sentence
-        from service.requests import consistent
+    def _solve_sample(self, prepared: _PreparedSample) -> str | faults.Fault:
+        """Return the answer as JSON, or the fault."""
+        from service.error_messages import make_sentence
+        from service.requests import check_consistency
         from synthesis import dispatch
         from synthesis.model.problem import ContradictionError
 
-        if stated.fault is not None:
-            return stated.fault
+        if prepared.fault is not None:
+            return prepared.fault
         try:
-            with self._solving.at_work(stated.number):
-                return dispatch.solve(stated.problem, self._solving.stoppable(_silent)).model_dump_json()
+            with self._solving.track_work(prepared.number):
+                return dispatch.solve(
+                    prepared.problem, self._solving.make_stoppable(_ignore_progress)
+                ).model_dump_json()
         except ContradictionError as error:
-            # Some are seen by the solver alone, and stand among those of the statement nowhere.
+            # Some contradictions are found by the solver only and are not among those of the statement.
             path, detail = error.contradiction
-            return faults.invalid_problem(consistent(stated.problem) or [(path, sentence(detail))])
+            return faults.make_invalid_problem(check_consistency(prepared.problem) or [(path, make_sentence(detail))])
 
-    def _stated(self, batch: BatchRow, plan: Plan, number: int) -> _Stated:
-        from service.requests import well_formed
+    def _prepare_sample(self, batch: BatchRow, plan: Plan, number: int) -> _PreparedSample:
+        from service.requests import check_fields
 
         try:
-            with self._solving.at_work(number):
-                problem, wrong = well_formed(batch.kind, plan.statement(number))
+            with self._solving.track_work(number):
+                problem, wrong = check_fields(batch.kind, plan.build_statement(number))
                 if wrong:
-                    return _Stated(number, fault=faults.invalid_problem(wrong))
-                return _Stated(number, problem, digest(problem))
+                    return _PreparedSample(number, fault=faults.make_invalid_problem(wrong))
+                return _PreparedSample(number, problem, hash_problem(problem))
         except MemoryError:
             raise
-        except Exception:  # a defect of what checks or tells problems apart ends this sample only
+        except Exception:  # a defect in the checks or in the hash ends this sample only
             log.exception("a statement could not be read", batch=batch.id, sample=number)
-            return _Stated(number, fault=faults.INTERNAL_ERROR)
+            return _PreparedSample(number, fault=faults.INTERNAL_ERROR)
 
 
-def _silent(_fraction: float, _message: str) -> None:
+def _ignore_progress(_fraction: float, _message: str) -> None:
     pass
 
 
-def _failed(batch: BatchSummary, number: int, began: str, fault: faults.Fault) -> Ended:
-    error = fault.as_json(sample_id(batch.id, number))
-    return Ended(number, Status.FAILED, began, now(), error=error)
+def _build_failure(batch: BatchSummary, number: int, began: str, fault: faults.Fault) -> EndedSample:
+    error = fault.as_json(make_sample_id(batch.id, number))
+    return EndedSample(number, Status.FAILED, began, format_now(), error=error)
 
 
-def _figures(result: str, metrics: Sequence[str]) -> str:
-    """What the table has of an answer: the number of designs that passed, and the metrics of the best of them."""
+def _extract_figures(result: str, metrics: Sequence[str]) -> str:
+    """Return the figures of an answer for the table: number of designs that passed, metrics of the best of them."""
     passed = [design for design in from_json(result)["designs"] if design["verification"]["passed"]]
     best = passed[0]["metrics"] if passed else {}
     return json.dumps([len(passed), *(best.get(name) for name in metrics)])

@@ -1,8 +1,8 @@
-"""The batches in the store, their shares among the jobs, and the samples that have ended.
+"""The batches in the store, their shares in the job table, and the samples that have ended.
 
-A slice comes into the store in one transaction: its samples, what is left of its share, which goes back into the queue,
-and the counts of the batch. The transaction holds only where the share is still that of the attempt, so that whatever
-dies or comes late, each sample is there once.
+A slice is stored in one transaction: its samples, the rest of its share, which goes back into the queue, and the counts
+of the batch. The transaction succeeds only if the share still belongs to the attempt. So each sample is stored exactly
+once, even if a process dies or writes late.
 """
 
 from __future__ import annotations
@@ -32,38 +32,38 @@ from ulid import ULID
 
 from service.jobs.batches import removal
 from service.jobs.batches.plan import Plan
-from service.jobs.batches.reading import sample_id
-from service.jobs.batches.rows import BatchRow, BatchSummary, Ended, OwnAnswer, Share, TableRow
+from service.jobs.batches.reading import make_sample_id
+from service.jobs.batches.rows import BatchRow, BatchSummary, EndedSample, OwnAnswer, Share, TableRow
 from service.jobs.faults import WORKER_DIED
-from service.jobs.store.admission import Repeatable, made_by, once, one_after_the_other, surely
-from service.jobs.store.schema import as_stored, as_values, batches, jobs, now, samples
+from service.jobs.store.admission import Repeatable, find_earlier, insert_confirmed, make_once, serialize_inserts
+from service.jobs.store.schema import as_stored, as_values, batches, format_now, jobs, samples
 from service.jobs.store.statements import (
-    BACK_IN_QUEUE,
     COUNT_QUEUED,
     MAX_CRASHES,
     MAX_IDS,
     MAX_KILLS,
     NO_KEY,
-    moved,
-    new_row,
-    turn_of,
+    REQUEUED_VALUES,
+    build_move,
+    build_row,
+    build_turn,
 )
-from service.jobs.store.states import FINISHED, UNFINISHED, Cost, Status
+from service.jobs.store.states import FINISHED_STATES, UNFINISHED_STATES, Cost, Status
 
-SHARES = 16
-"""Shares of a batch at most: more workers than this do not make it faster."""
+MAX_SHARES = 16
+"""Maximum number of shares of a batch; workers beyond this number do not make it faster."""
 
-CLEARED_S = 2.0
-"""How long whoever removes a batch waits for that, seconds; nobody sees it from the beginning."""
+CLEAR_TIMEOUT_S = 2.0
+"""Time that a request to remove a batch spends on deleting it, seconds; readers do not see the batch from the start."""
 
-_LOST = (
-    batches.c.status.in_(UNFINISHED),
-    ~exists().where(jobs.c.batch == batches.c.id, jobs.c.status.in_(UNFINISHED)),
+_LOST_CONDITIONS = (
+    batches.c.status.in_(UNFINISHED_STATES),
+    ~exists().where(jobs.c.batch == batches.c.id, jobs.c.status.in_(UNFINISHED_STATES)),
 )
-"""Batches of whose shares none is left, and that are not at their end."""
+"""Conditions for lost batches: not finished, but without an unfinished share."""
 
-_SUMMARY = [batches.c[field.name] for field in fields(BatchSummary)]
-_WHOLE = [batches.c[field.name] for field in fields(BatchRow)]
+_SUMMARY_COLUMNS = [batches.c[field.name] for field in fields(BatchSummary)]
+_ROW_COLUMNS = [batches.c[field.name] for field in fields(BatchRow)]
 
 
 class BatchStore:
@@ -83,20 +83,20 @@ class BatchStore:
         max_queued: int,
         repeatable: Repeatable | None,
     ) -> tuple[BatchRow, list[str]]:
-        """Store a new batch with its shares, or find the one that the same request has made already.
+        """Store a new batch with its shares, or find the batch that the same request created before.
 
         Returns
         -------
         tuple
-            The batch, and the ids of its shares where it is new.
+            The batch, and the ids of its shares; no ids if the batch is not new.
 
         Raises
         ------
         KeyReused
-            When another request of the tenant has made a batch under this key.
+            If a different request of the tenant has created a batch with this key.
         QueueFull
-            When it would be new, and with its shares more than ``max_queued`` jobs of the tenant were queued. It has
-            no more shares than that.
+            If the batch is new and its shares would raise the tenant's queued jobs above ``max_queued``. A batch has
+            at most ``max_queued`` shares.
         """
         row: dict[str, Any] = {
             "id": str(ULID()),
@@ -104,7 +104,7 @@ class BatchStore:
             "kind": kind,
             "label": label,
             "status": Status.QUEUED,
-            "created_at": now(),
+            "created_at": format_now(),
             "started_at": None,
             "finished_at": None,
             "total": plan.total,
@@ -112,71 +112,73 @@ class BatchStore:
             "failed": 0,
             "cached": 0,
             "revision": 1,
-            "stated": plan.stated_as_json(),
+            "stated": plan.dump_statement(),
         }
         key = {} if repeatable is None else {"idempotency_key": repeatable.key, "request_hash": repeatable.request_hash}
         shares = [
-            {**new_row(tenant, kind, None, share.written(), cost), **NO_KEY, "batch": row["id"]}
-            for share in _dealt(plan.total, min(SHARES, max_queued))
+            {**build_row(tenant, kind, None, share.dump(), cost), **NO_KEY, "batch": row["id"]}
+            for share in _split_shares(plan.total, min(MAX_SHARES, max_queued))
         ]
 
-        def inserted(connection: Connection) -> bool:
-            # Counted when nobody else inserts any more: in SQLite, whoever has written is alone.
-            one_after_the_other(connection, tenant)
-            connection.execute(
-                insert(batches), {**row, "removed": False, "plan": plan.values_as_json(), **NO_KEY, **key}
-            )
+        def insert_batch(connection: Connection) -> bool:
+            # Count only while no other process can insert: in SQLite the first write already takes the only lock.
+            serialize_inserts(connection, tenant)
+            connection.execute(insert(batches), {**row, "removed": False, "plan": plan.dump_values(), **NO_KEY, **key})
             queued = connection.execute(COUNT_QUEUED, {"of": tenant, "most": max_queued}).scalar_one()
             if queued + len(shares) > max_queued:
                 return False
-            turn = select(turn_of(tenant, cost, share=True))
+            turn = select(build_turn(tenant, cost, share=True))
             first = connection.execute(turn).scalar_one()
             connection.execute(insert(jobs), [{**share, "turn": first + n} for n, share in enumerate(shares)])
             return True
 
         def make() -> BatchRow:
-            surely(self._engine, lambda connection: _row(connection, row["id"]) is not None, inserted)
+            insert_confirmed(
+                self._engine, lambda connection: _load_row(connection, row["id"]) is not None, insert_batch
+            )
             return BatchRow(**row)
 
         if repeatable is None:
             return make(), [share["id"] for share in shares]
-        batch, new = once(make, lambda: self._made_by(tenant, repeatable))
+        batch, new = make_once(make, lambda: self._find_earlier(tenant, repeatable))
         return batch, [share["id"] for share in shares] if new else []
 
-    def _made_by(self, tenant: str, repeatable: Repeatable) -> BatchRow | None:
-        row = made_by(self._engine, batches, _WHOLE, tenant, repeatable)
+    def _find_earlier(self, tenant: str, repeatable: Repeatable) -> BatchRow | None:
+        row = find_earlier(self._engine, batches, _ROW_COLUMNS, tenant, repeatable)
         return None if row is None else BatchRow(*as_values(row))
 
     def get(self, batch_id: str) -> BatchRow | None:
-        """The batch, or None where there is none."""
+        """Return the batch, or None if it does not exist."""
         self._settle([batch_id])
         with self._engine.connect() as connection:
-            row = _row(connection, batch_id)
+            row = _load_row(connection, batch_id)
         return None if row is None else BatchRow(*as_values(row))
 
-    def summaries(self, batch_ids: Sequence[str]) -> dict[str, BatchSummary]:
-        """The batches of these ids that there are, by id."""
+    def load_summaries(self, batch_ids: Sequence[str]) -> dict[str, BatchSummary]:
+        """Return the existing batches among these ids, by id."""
         self._settle(batch_ids)
         found: dict[str, BatchSummary] = {}
         with self._engine.connect() as connection:
             for start in range(0, len(batch_ids), MAX_IDS):
-                query = select(*_SUMMARY).where(batches.c.id.in_(batch_ids[start : start + MAX_IDS]), removal.THERE)
+                query = select(*_SUMMARY_COLUMNS).where(
+                    batches.c.id.in_(batch_ids[start : start + MAX_IDS]), removal.NOT_REMOVED
+                )
                 for row in connection.execute(query):
                     found[row.id] = BatchSummary(*as_values(row))
         return found
 
-    def page(self, *, tenant: str, limit: int, before: str | None) -> list[BatchSummary]:
-        """At most ``limit`` batches of a tenant, newest first, from those older than the batch ``before``."""
-        query = select(batches.c.id).where(batches.c.tenant == tenant, removal.THERE)
+    def list_page(self, *, tenant: str, limit: int, before: str | None) -> list[BatchSummary]:
+        """Return at most ``limit`` batches of a tenant older than the batch ``before``, newest first."""
+        query = select(batches.c.id).where(batches.c.tenant == tenant, removal.NOT_REMOVED)
         if before is not None:
             query = query.where(batches.c.id < before)
         with self._engine.connect() as connection:
             ids = list(connection.execute(query.order_by(batches.c.id.desc()).limit(limit)).scalars())
-        found = self.summaries(ids)
+        found = self.load_summaries(ids)
         return [found[batch_id] for batch_id in ids if batch_id in found]
 
-    def table(self, batch: BatchSummary) -> list[TableRow]:
-        """The samples that have ended, in their order."""
+    def load_rows(self, batch: BatchSummary) -> list[TableRow]:
+        """Return the rows of the samples that have ended, by number."""
         query = select(
             samples.c.number, samples.c.status, samples.c.cached, samples.c.figures, samples.c.error
         ).where(samples.c.batch == batch.id).order_by(samples.c.number)  # fmt: skip
@@ -186,36 +188,38 @@ class BatchStore:
                 for row in connection.execute(query)
             ]
 
-    def plan(self, batch: BatchRow) -> Plan | None:
-        """The plan of a batch; None where it has been removed since."""
-        values = self.values(batch)
+    def load_plan(self, batch: BatchRow) -> Plan | None:
+        """Return the plan of a batch; None if the batch has been removed."""
+        values = self.load_values(batch)
         return None if values is None else Plan.read(batch.stated, values)
 
-    def values(self, batch: BatchRow) -> str | None:
-        """What the plan of a batch has beside what was stated, as it is written; None where it has been removed."""
-        query = select(batches.c.plan).where(batches.c.id == batch.id, removal.THERE)
+    def load_values(self, batch: BatchRow) -> str | None:
+        """Return the stored values of a batch's plan as JSON; None if the batch has been removed."""
+        query = select(batches.c.plan).where(batches.c.id == batch.id, removal.NOT_REMOVED)
         with self._engine.connect() as connection:
             values: str | None = connection.execute(query).scalar_one_or_none()
         return values
 
-    def begun(self, batch_id: str) -> BatchRow | None:
-        """Note that a worker is at the batch; the batch, or None where it is not to be worked at any more."""
+    def start_batch(self, batch_id: str) -> BatchRow | None:
+        """Mark a queued batch as running and return it; None if it has ended."""
         change = update(batches).where(batches.c.id == batch_id, batches.c.status == Status.QUEUED)
         with self._engine.begin() as connection:
-            connection.execute(change.values(status=Status.RUNNING, started_at=now(), revision=batches.c.revision + 1))
-            row = _row(connection, batch_id)
-        return None if row is None or row.status not in UNFINISHED else BatchRow(*as_values(row))
+            connection.execute(
+                change.values(status=Status.RUNNING, started_at=format_now(), revision=batches.c.revision + 1)
+            )
+            row = _load_row(connection, batch_id)
+        return None if row is None or row.status not in UNFINISHED_STATES else BatchRow(*as_values(row))
 
-    def ended(self, batch: BatchSummary, first: int, end: int) -> set[int]:
-        """Which of the samples from ``first`` to before ``end`` are stored."""
+    def find_stored(self, batch: BatchSummary, first: int, end: int) -> set[int]:
+        """Return the numbers of the stored samples from ``first`` to before ``end``."""
         with self._engine.connect() as connection:
-            return _ended(connection, batch.id, first, end)
+            return _find_stored(connection, batch.id, first, end)
 
-    def answers(self, batch: BatchSummary, digests: Collection[str]) -> dict[str, str | OwnAnswer]:
-        """What the tenant has of problems of these digests: an answer of the batch's own, or a result in JSON.
+    def find_answers(self, batch: BatchSummary, digests: Collection[str]) -> dict[str, str | OwnAnswer]:
+        """Return the tenant's answers to problems with these digests: a sample of this batch, or a result as JSON.
 
-        What is asked for is found at once, however many have the same digest: of the tenant's one is taken, and of a
-        batch there are not many, since those that are the same as another of it have none.
+        The query is fast however many rows share a digest: one of the tenant's results is taken, and within a batch a
+        sample equal to another one has no digest.
         """
         if not digests:
             return {}
@@ -228,41 +232,43 @@ class BatchStore:
                 found[row.digest] = OwnAnswer(row.number, row.figures)
             left = [digest for digest in digests if digest not in found]
             if left:
-                query = _one_result_each(batch.tenant, left)
+                query = _select_results(batch.tenant, left)
                 found |= {row.digest: row.result for row in connection.execute(query) if row.result is not None}
         return found
 
     def store(
-        self, batch: BatchSummary | None, share_id: str, attempt: int, left: Share | None, new: Sequence[Ended]
+        self, batch: BatchSummary | None, share_id: str, attempt: int, left: Share | None, new: Sequence[EndedSample]
     ) -> bool:
-        """Store a slice; what is left of its share goes back into the queue. False where the attempt counts no more."""
-        change = _done(share_id) if left is None else _back(share_id, left, crashes=0)
+        """Store a slice and requeue the rest of its share; return False if the attempt is no longer current."""
+        change = _build_finish(share_id) if left is None else _build_requeue(share_id, left, crashes=0)
+        # The share first, then the batch: cancel() locks them in the same order.
         with self._engine.begin() as connection:
             if connection.execute(change.where(jobs.c.attempt == attempt)).rowcount == 0:
                 return False
-            if batch is not None and new and not _stored(connection, batch, new):
+            if batch is not None and new and not _store_samples(connection, batch, new):
                 connection.rollback()
                 return False
         return True
 
-    def crashed(self, share_id: str, claim: str, number: int | None, *, killed: bool) -> Status | None:
-        """Note that the worker of a share died, by itself or ``killed`` from outside, at a sample, where that is known.
+    def record_crash(self, share_id: str, claim: str, number: int | None, *, killed: bool) -> Status | None:
+        """Record that the worker of a share died, by itself or ``killed`` from outside, at sample ``number`` if known.
 
-        The share goes on with that sample by itself; after as many deaths as a job may cause, the sample has failed.
+        The share is requeued with that sample to be solved by itself. After as many deaths as a job may cause, the
+        sample fails.
 
         Returns
         -------
         Status or None
-            ``queued``; ``succeeded`` where nothing of the share is left to do; or None where it is that of another
-            attempt, or cancelled; nothing changed.
+            ``queued``; ``succeeded`` if the share has no sample left; None, and no change, if the share is cancelled
+            or belongs to another attempt.
         """
-        return self._given_back(share_id, claim, number, MAX_KILLS if killed else MAX_CRASHES, WORKER_DIED.as_json)
+        return self._return_share(share_id, claim, number, MAX_KILLS if killed else MAX_CRASHES, WORKER_DIED.as_json)
 
     def give_up(self, share_id: str, claim: str, number: int | None, error: Callable[[str], str]) -> Status | None:
-        """Fail a sample from outside; its share goes on with the others. ``error`` gives the JSON for the job's id."""
-        return self._given_back(share_id, claim, number, 0, error)
+        """Fail a sample from outside and requeue the rest of its share. ``error`` builds the JSON for a job id."""
+        return self._return_share(share_id, claim, number, 0, error)
 
-    def _given_back(
+    def _return_share(
         self, share_id: str, claim: str, number: int | None, retries: int, error: Callable[[str], str]
     ) -> Status | None:
         held = select(jobs.c.batch, jobs.c.problem, jobs.c.crashes).where(
@@ -273,70 +279,80 @@ class BatchStore:
             if row is None:
                 return None
             left = Share.read(row.problem)
-            at = _to_blame(connection, row.batch, left, number)
+            at = _find_culprit(connection, row.batch, left, number)
             over = row.crashes >= retries
             share = Share(left.first, left.end, None if over else at)
-            change = _done(share_id) if at is None else _back(share_id, share, crashes=0 if over else row.crashes + 1)
+            change = (
+                _build_finish(share_id)
+                if at is None
+                else _build_requeue(share_id, share, crashes=0 if over else row.crashes + 1)
+            )
             if connection.execute(change.where(jobs.c.claim == claim)).rowcount == 0:
                 return None
             if at is None:
                 return Status.SUCCEEDED
+            # The failed sample is stored in the transaction that requeues its share, so it cannot run again.
             if over:
-                found = _row(connection, row.batch)
-                failed = Ended(at, Status.FAILED, now(), now(), error=error(sample_id(row.batch, at)))
-                if found is None or not _stored(connection, BatchRow(*as_values(found)), [failed]):
+                found = _load_row(connection, row.batch)
+                failed = EndedSample(
+                    at, Status.FAILED, format_now(), format_now(), error=error(make_sample_id(row.batch, at))
+                )
+                if found is None or not _store_samples(connection, BatchRow(*as_values(found)), [failed]):
                     connection.rollback()
                     return None
         return Status.QUEUED
 
     def cancel(self, batch_id: str) -> list[str] | None:
-        """Cancel an unfinished batch: the ids of its shares that were not at their end; None where there is no such."""
-        shares = select(jobs.c.id).where(jobs.c.batch == batch_id, jobs.c.status.in_(UNFINISHED))
+        """Cancel an unfinished batch; return the ids of its unfinished shares, or None if there is no such batch."""
+        shares = select(jobs.c.id).where(jobs.c.batch == batch_id, jobs.c.status.in_(UNFINISHED_STATES))
         with self._engine.begin() as connection:
-            # The shares before the batch, in the order in which slices are stored.
+            # Lock the shares before the batch, as store() does: the opposite order could deadlock.
             running = list(connection.execute(shares.order_by(jobs.c.id).with_for_update()).scalars())
             for share_id in running:
-                connection.execute(moved("cancel", share_id, progress_message="cancelled", finished_at=now()))
-            change = update(batches).where(batches.c.id == batch_id, batches.c.status.in_(UNFINISHED))
+                connection.execute(
+                    build_move("cancel", share_id, progress_message="cancelled", finished_at=format_now())
+                )
+            change = update(batches).where(batches.c.id == batch_id, batches.c.status.in_(UNFINISHED_STATES))
             cancelled = connection.execute(
-                change.values(status=Status.CANCELLED, finished_at=now(), revision=batches.c.revision + 1)
+                change.values(status=Status.CANCELLED, finished_at=format_now(), revision=batches.c.revision + 1)
             )
             return running if cancelled.rowcount else None
 
     def delete(self, batch_id: str) -> bool:
-        """Remove a finished batch with all that it has; whether there was one.
+        """Remove a finished batch with all its samples; return whether it existed.
 
-        Of a very large one what takes longer than :data:`CLEARED_S` is left to :meth:`tidy`.
+        The deletion stops after :data:`CLEAR_TIMEOUT_S` seconds; :meth:`tidy` deletes the rest of a very large batch.
         """
         if not removal.mark(self._engine, batch_id):
             return False
-        removal.clear(self._engine, batch_id, CLEARED_S)
+        removal.clear(self._engine, batch_id, CLEAR_TIMEOUT_S)
         return True
 
     def tidy(self) -> int:
-        """End the batches that were lost, and remove what is left of those whose removal broke off.
+        """End lost batches, and finish removals that were interrupted.
 
         Returns
         -------
         int
-            How many were lost: none of their shares is left, and what these had still to do was given up.
+            Number of lost batches: all their shares have ended, some of them given up with samples left.
         """
         with self._engine.connect() as connection:
-            lost = list(connection.execute(select(batches.c.id).where(*_LOST)).scalars())
+            lost = list(connection.execute(select(batches.c.id).where(*_LOST_CONDITIONS)).scalars())
         self._settle(lost)
-        for batch_id in removal.marked(self._engine):
+        for batch_id in removal.list_marked(self._engine):
             removal.clear(self._engine, batch_id)
         return len(lost)
 
     def delete_finished(self, before: datetime) -> int:
-        """Remove the oldest batch that finished before a time; tells how many."""
+        """Remove the oldest batch that finished before a time; return the number removed, 0 or 1."""
+        # An id begins with the time of creation, which precedes the end: the index on ids bounds the search.
         oldest = (
             select(batches.c.id)
             .where(
                 batches.c.id < str(ULID.from_datetime(before)),
-                batches.c.status.in_(FINISHED),
+                batches.c.status.in_(FINISHED_STATES),
                 batches.c.finished_at < as_stored(before),
-                removal.THERE,
+                removal.NOT_REMOVED,
             )
             .order_by(batches.c.id)
             .limit(1)
@@ -346,55 +362,58 @@ class BatchStore:
         return 0 if batch_id is None else int(self.delete(batch_id))
 
     def _settle(self, batch_ids: Iterable[str]) -> None:
-        """End batches of whose shares none is left: what these had still to do was given up, and has failed."""
+        """End batches without unfinished shares: the samples left in shares that were given up have failed."""
         ids = list(batch_ids)
         for start in range(0, len(ids), MAX_IDS):
             these = batches.c.id.in_(ids[start : start + MAX_IDS])
+            # Read first: almost always there is none, and a read takes no write lock.
             with self._engine.connect() as connection:
-                if connection.execute(select(batches.c.id).where(these, *_LOST)).first() is None:
+                if connection.execute(select(batches.c.id).where(these, *_LOST_CONDITIONS)).first() is None:
                     continue
-            change = update(batches).where(these, *_LOST).values(
+            change = update(batches).where(these, *_LOST_CONDITIONS).values(
                 status=case((batches.c.succeeded > 0, Status.SUCCEEDED), else_=Status.FAILED),
                 failed=batches.c.total - batches.c.succeeded,
-                finished_at=now(),
+                finished_at=format_now(),
                 revision=batches.c.revision + 1,
             )  # fmt: skip
             with self._engine.begin() as connection:
                 connection.execute(change)
 
 
-def _dealt(total: int, most: int) -> list[Share]:
-    """The shares of a batch, so many at most: as even as can be."""
+def _split_shares(total: int, most: int) -> list[Share]:
+    """Split a batch into at most ``most`` shares whose sizes differ by at most one sample."""
     count = min(total, most)
     bounds = [total * n // count for n in range(count + 1)]
     return [Share(first, end) for first, end in pairwise(bounds)]
 
 
-def _to_blame(connection: Connection, batch_id: str, left: Share, number: int | None) -> int | None:
-    """The sample at which a worker is taken to have died: the one that it was at, else the one that it had to begin.
+def _find_culprit(connection: Connection, batch_id: str, left: Share, number: int | None) -> int | None:
+    """Return the sample to blame for a worker's death: the one at work if known, else the first one not stored.
 
-    None where all of the share are stored.
+    None if all samples of the share are stored.
     """
-    stored = _ended(connection, batch_id, left.first, left.end)
+    stored = _find_stored(connection, batch_id, left.first, left.end)
     supposed = (n for n in (number, left.alone) if n is not None)
     return next((n for n in (*supposed, *range(left.first, left.end)) if n not in stored), None)
 
 
-def _done(share_id: str) -> Any:
-    return moved("succeed", share_id, finished_at=now(), progress_fraction=1.0, progress_message="succeeded")
+def _build_finish(share_id: str) -> Any:
+    return build_move(
+        "succeed", share_id, finished_at=format_now(), progress_fraction=1.0, progress_message="succeeded"
+    )
 
 
-def _back(share_id: str, left: Share, **values: Any) -> Any:
-    return moved("requeue", share_id, **{**BACK_IN_QUEUE, "problem": left.written(), **values})
+def _build_requeue(share_id: str, left: Share, **values: Any) -> Any:
+    return build_move("requeue", share_id, **{**REQUEUED_VALUES, "problem": left.dump(), **values})
 
 
-def _stored(connection: Connection, batch: BatchSummary, new: Sequence[Ended]) -> bool:
-    """Store ended samples and count them; False, and to be rolled back, where the batch is finished."""
+def _store_samples(connection: Connection, batch: BatchSummary, new: Sequence[EndedSample]) -> bool:
+    """Store ended samples and count them; return False, for the caller to roll back, if the batch has finished."""
     succeeded = sum(sample.status == Status.SUCCEEDED for sample in new)
     failed, cached = len(new) - succeeded, sum(sample.cached for sample in new)
     done = batches.c.succeeded + batches.c.failed + len(new)
     any_succeeded = batches.c.succeeded + succeeded > 0
-    change = update(batches).where(batches.c.id == batch.id, batches.c.status.in_(UNFINISHED)).values(
+    change = update(batches).where(batches.c.id == batch.id, batches.c.status.in_(UNFINISHED_STATES)).values(
         succeeded=batches.c.succeeded + succeeded,
         failed=batches.c.failed + failed,
         cached=batches.c.cached + cached,
@@ -402,19 +421,19 @@ def _stored(connection: Connection, batch: BatchSummary, new: Sequence[Ended]) -
         status=case(
             (done < batches.c.total, Status.RUNNING), (any_succeeded, Status.SUCCEEDED), else_=Status.FAILED
         ),
-        finished_at=case((done < batches.c.total, batches.c.finished_at), else_=now()),
+        finished_at=case((done < batches.c.total, batches.c.finished_at), else_=format_now()),
     )  # fmt: skip
     if connection.execute(change).rowcount == 0:
         return False
     of = {"batch": batch.id, "tenant": batch.tenant}
     connection.execute(
-        insert(samples), [{**of, **asdict(sample), "id": sample_id(batch.id, sample.number)} for sample in new]
+        insert(samples), [{**of, **asdict(sample), "id": make_sample_id(batch.id, sample.number)} for sample in new]
     )
     return True
 
 
-def _one_result_each(tenant: str, digests: Collection[str]) -> Select[Any]:
-    """The digests, each with one result that the tenant has by it, or with None."""
+def _select_results(tenant: str, digests: Collection[str]) -> Select[Any]:
+    """Return a query for each digest with one of the tenant's results for it, or NULL."""
     wanted = values(column("digest", String), name="wanted").data([(digest,) for digest in digests]).cte("wanted")
     results = [
         select(table.c.result)
@@ -426,14 +445,14 @@ def _one_result_each(tenant: str, digests: Collection[str]) -> Select[Any]:
     return select(wanted.c.digest, func.coalesce(*results).label("result"))
 
 
-def _of(batch_id: str, first: int, end: int) -> Sequence[Any]:
-    """The samples of a batch from ``first`` to before ``end``."""
+def _filter_samples(batch_id: str, first: int, end: int) -> Sequence[Any]:
+    """Return the conditions for the samples of a batch from ``first`` to before ``end``."""
     return samples.c.batch == batch_id, samples.c.number >= first, samples.c.number < end
 
 
-def _ended(connection: Connection, batch_id: str, first: int, end: int) -> set[int]:
-    return set(connection.execute(select(samples.c.number).where(*_of(batch_id, first, end))).scalars())
+def _find_stored(connection: Connection, batch_id: str, first: int, end: int) -> set[int]:
+    return set(connection.execute(select(samples.c.number).where(*_filter_samples(batch_id, first, end))).scalars())
 
 
-def _row(connection: Connection, batch_id: str) -> Any:
-    return connection.execute(select(*_WHOLE).where(batches.c.id == batch_id, removal.THERE)).one_or_none()
+def _load_row(connection: Connection, batch_id: str) -> Any:
+    return connection.execute(select(*_ROW_COLUMNS).where(batches.c.id == batch_id, removal.NOT_REMOVED)).one_or_none()

@@ -1,4 +1,4 @@
-"""The table of a batch: a row for each sample, and those rows that no other beats."""
+"""The table of a batch, one row for each sample, and its Pareto front."""
 
 from __future__ import annotations
 
@@ -13,64 +13,64 @@ import numpy as np
 from pydantic_core import to_json
 
 from service.jobs.batches.plan import Plan
-from service.jobs.batches.reading import sample_id
+from service.jobs.batches.reading import make_sample_id
 from service.jobs.batches.rows import BatchSummary, TableRow
 from service.jobs.faults import WORKER_DIED
 from service.jobs.store.states import Status
 
 Rows = np.ndarray[Any, np.dtype[np.float64]]
 
-SIGNED = ("relative_error", "error")
-"""Metrics that are errors of ratios, with their signs."""
+SIGNED_METRICS = ("relative_error", "error")
+"""Metrics that are signed errors of ratios; their absolute values are compared."""
 
-AT_ONCE = 200
-"""Rows that are written in one go."""
+CHUNK_ROWS = 200
+"""Number of rows written in one piece."""
 
 
 @dataclass(frozen=True)
 class Table:
-    """Rows by columns; None where a sample has nothing in a column."""
+    """Columns and rows; None marks an empty cell."""
 
     columns: list[str]
     rows: list[list[Any]]
 
     def as_csv(self) -> Iterator[bytes]:
-        """The table as CSV (RFC 4180), piece by piece.
+        """Yield the table as CSV (RFC 4180) in pieces.
 
-        Numbers have all their digits; what is no number and no text is JSON.
+        Numbers have all their digits; values other than numbers and texts are JSON.
         """
-        yield _written([self.columns])
-        for rows in self._pages():
-            yield _written([[_cell(value) for value in row] for row in rows])
+        yield _write_rows([self.columns])
+        for rows in self._iterate_chunks():
+            yield _write_rows([[_format_cell(value) for value in row] for row in rows])
 
     def as_json(self, **more: Any) -> Iterator[bytes]:
-        """An object of the columns, of whatever ``more``, and of the rows, in JSON, piece by piece."""
+        """Yield a JSON object of the columns, the fields ``more`` and the rows, in pieces."""
         yield to_json({"columns": self.columns, **more})[:-1] + b',"rows":['
         comma = b""
-        for rows in self._pages():
+        for rows in self._iterate_chunks():
             yield comma + to_json(rows)[1:-1]
             comma = b","
         yield b"]}"
 
-    def _pages(self) -> Iterator[list[list[Any]]]:
-        for start in range(0, len(self.rows), AT_ONCE):
-            yield self.rows[start : start + AT_ONCE]
+    def _iterate_chunks(self) -> Iterator[list[list[Any]]]:
+        for start in range(0, len(self.rows), CHUNK_ROWS):
+            yield self.rows[start : start + CHUNK_ROWS]
 
-    def front(self, least: Sequence[str], greatest: Sequence[str]) -> Table:
-        """The rows that no other beats: none is as good in all of these columns and better in one.
+    def select_front(self, least: Sequence[str], greatest: Sequence[str]) -> Table:
+        """Return the Pareto front: the rows for which no other row is as good in all columns and better in one.
 
-        Rows that lack a number in one of them are not looked at.
+        Rows without a number in one of these columns are ignored.
 
         Parameters
         ----------
         least, greatest : sequence of str
-            Columns in which less is better, and in which more is. Less of an error with a sign (:data:`SIGNED`) is less
-            of its size.
+            Columns to minimize and columns to maximize. A signed error (:data:`SIGNED_METRICS`) is minimized by its absolute
+            value.
         """
         signs = {**dict.fromkeys(least, 1.0), **dict.fromkeys(greatest, -1.0)}
         places = [(self.columns.index(name), sign) for name, sign in signs.items()]
-        complete = [row for row in self.rows if all(_number(row[place]) for place, _ in places)]
-        by_size = {self.columns.index(name) for name in least if name in SIGNED}
+        complete = [row for row in self.rows if all(_is_number(row[place]) for place, _ in places)]
+        by_size = {self.columns.index(name) for name in least if name in SIGNED_METRICS}
         weighed = np.array(
             [
                 [abs(row[place]) if place in by_size else sign * row[place] for place, sign in places]
@@ -78,15 +78,15 @@ class Table:
             ],
             float,
         )
-        return Table(self.columns, [complete[n] for n in unbeaten(weighed.reshape(len(complete), len(places)))])
+        return Table(self.columns, [complete[n] for n in find_unbeaten(weighed.reshape(len(complete), len(places)))])
 
 
-def table_of(batch: BatchSummary, plan: Plan, ended: Sequence[TableRow]) -> Table:
-    """The table of a batch as it stands: the varied fields, what came of the sample, its best design, its job."""
+def build_table(batch: BatchSummary, plan: Plan, ended: Sequence[TableRow]) -> Table:
+    """Build the current table of a batch: varied fields, outcome of each sample, its best design, its job."""
     columns = [*plan.fields, "status", "cached", "designs", *plan.metrics, "job", "failure"]
     by_number = {row.number: row for row in ended}
     nothing = [None] * (1 + len(plan.metrics))
-    # Of a finished batch, what has not ended was cancelled with it, or given up with its share.
+    # In a finished batch, a sample that has not ended was cancelled with the batch or given up with its share.
     other = {Status.CANCELLED: Status.CANCELLED, Status.SUCCEEDED: Status.FAILED, Status.FAILED: Status.FAILED}
     without = other.get(batch.status, Status.QUEUED)
     lost = WORKER_DIED.detail if without == Status.FAILED else None
@@ -99,21 +99,27 @@ def table_of(batch: BatchSummary, plan: Plan, ended: Sequence[TableRow]) -> Tabl
         error = None if row.error is None else json.loads(row.error)["detail"]
         figures = nothing if row.figures is None else row.figures
         rows.append(
-            [*plan.sample(number), row.status.value, row.cached, *figures, sample_id(batch.id, number), error]
+            [*plan.sample(number), row.status.value, row.cached, *figures, make_sample_id(batch.id, number), error]
         )  # fmt: skip
     return Table(columns, rows)
 
 
-def unbeaten(table: Rows) -> list[int]:
-    """The rows of a table, less being better in each column, that no other beats, in their order.
+def find_unbeaten(table: Rows) -> list[int]:
+    """Return the indices of the Pareto-optimal rows of a table, all columns minimized, in ascending order.
 
-    Equal rows do not beat one another. Of the different ones, sorted by the first column, among equals by the second,
-    and so on, one is beaten where another before it is as good in each other column. With two columns the least so far
-    of the second tells; with more, rows are compared with those that are kept so far, many at once.
+    Equal rows do not dominate each other. The distinct rows are sorted lexicographically; a row is dominated if an
+    earlier row is as good in each other column. With two columns, the running minimum of the second decides. With more,
+    a block of rows at a time is compared with the rows kept so far.
+
+    Parameters
+    ----------
+    table : shape (n, m)
+        Values to minimize.
     """
     if len(table) == 0:
         return []
     different, which = np.unique(table + 0.0, axis=0, return_inverse=True)  # -0.0 is 0.0
+    # The first column needs no comparison: the sort has put smaller values first.
     others = different[:, 1:]
     kept = np.zeros(len(different), bool)
     if others.shape[1] < 2:
@@ -121,38 +127,39 @@ def unbeaten(table: Rows) -> list[int]:
         if others.shape[1] == 1:
             kept[1:] = others[1:, 0] < np.minimum.accumulate(others[:-1, 0])
     else:
-        for start in range(0, len(different), _COMPARED):
-            block = others[start : start + _COMPARED]
+        for start in range(0, len(different), _BLOCK_ROWS):
+            block = others[start : start + _BLOCK_ROWS]
             left = np.flatnonzero(~_as_good(block, others[:start][kept[:start]]).any(axis=1))
+            # Within the block only earlier rows can dominate, hence the lower triangle.
             before = np.tri(len(left), k=-1, dtype=bool)
             left = left[~(_as_good(block[left], block[left]) & before).any(axis=1)]
             kept[start + left] = True
     return [int(n) for n in np.flatnonzero(kept[which.reshape(-1)])]
 
 
-_COMPARED = 256
-"""Rows that are compared with those before them together."""
+_BLOCK_ROWS = 256
+"""Number of rows compared with the earlier ones at a time; bounds the memory of the comparison."""
 
 
 def _as_good(rows: Rows, others: Rows) -> np.ndarray[Any, np.dtype[np.bool_]]:
-    """Whether of each row (n) each other one (m) is as good in each column; shape (n, m)."""
+    """Return for each row (n) whether each other row (m) is as good in every column; shape (n, m)."""
     as_good = np.ones((len(rows), len(others)), bool)
     for row, other in zip(rows.T, others.T, strict=True):
         as_good &= other <= row[:, None]
     return as_good
 
 
-def _written(rows: Iterable[Sequence[Any]]) -> bytes:
+def _write_rows(rows: Iterable[Sequence[Any]]) -> bytes:
     text = io.StringIO()
     csv.writer(text).writerows(rows)
     return text.getvalue().encode()
 
 
-def _number(value: Any) -> bool:
+def _is_number(value: Any) -> bool:
     return isinstance(value, int | float) and not isinstance(value, bool)
 
 
-def _cell(value: Any) -> Any:
+def _format_cell(value: Any) -> Any:
     if value is None or isinstance(value, str):
         return value
-    return repr(value) if _number(value) else json.dumps(value)
+    return repr(value) if _is_number(value) else json.dumps(value)

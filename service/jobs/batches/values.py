@@ -1,7 +1,7 @@
-"""The values that a field has in the samples, and how the store has them.
+"""Values of a varied field in the samples, and their stored form.
 
-Lists are JSON. Ten thousand numbers that were drawn, or as many times one of a few large objects, would be megabytes of
-it, and reading them again would take longer than solving some problems; they are arrays of numbers, written in base64.
+Lists are stored as JSON. Ten thousand random numbers, or references to a few large objects, would be megabytes of JSON,
+and parsing those would take longer than solving some problems. They are arrays of numbers, stored in base64.
 """
 
 from __future__ import annotations
@@ -16,15 +16,15 @@ Values = Sequence[Any]
 
 
 @dataclass(frozen=True)
-class Picked(Sequence[Any]):
-    """Some of few values, each any number of times: the one at ``places[n]`` is the ``n``-th.
+class PickedValues(Sequence[Any]):
+    """A sequence of repeated values: the ``n``-th element is the value at index ``places[n]``.
 
     Attributes
     ----------
     among : sequence
-        The values.
+        The distinct values.
     places : array of type H
-        Numbers of values, from 0.
+        Indices into ``among``, from 0.
     """
 
     among: Sequence[Any]
@@ -37,25 +37,29 @@ class Picked(Sequence[Any]):
         return self.among[self.places[number]]
 
 
-def written(values: Values) -> Any:
-    """Values as JSON-like data for :func:`read`: lists as they are, arrays of doubles and what is picked in base64."""
-    if isinstance(values, Picked):
-        return {"among": values.among, "places": _text(values.places)}
-    return {"doubles": _text(values)} if isinstance(values, array) else values
+def encode_values(values: Values) -> Any:
+    """Encode values as JSON-like data for :func:`decode_values`: lists unchanged, arrays and picked values in base64."""
+    if isinstance(values, PickedValues):
+        return {"among": values.among, "places": _encode_numbers(values.places)}
+    return {"doubles": _encode_numbers(values)} if isinstance(values, array) else values
 
 
-def read(data: Any) -> Values:
-    """The values of which :func:`written` has made this."""
+def decode_values(data: Any) -> Values:
+    """Decode values that :func:`encode_values` has encoded."""
     if isinstance(data, list):
         return data
-    return _array("d", data["doubles"]) if "doubles" in data else Picked(data["among"], _array("H", data["places"]))
+    return (
+        _decode_numbers("d", data["doubles"])
+        if "doubles" in data
+        else PickedValues(data["among"], _decode_numbers("H", data["places"]))
+    )
 
 
-def _text(numbers: array[Any]) -> str:
+def _encode_numbers(numbers: array[Any]) -> str:
     return b64encode(numbers.tobytes()).decode()
 
 
-def _array(type_: str, text: str) -> array[Any]:
+def _decode_numbers(type_: str, text: str) -> array[Any]:
     numbers: array[Any] = array(type_)
     numbers.frombytes(b64decode(text))
     return numbers

@@ -1,1 +1,1 @@
-"""Workers on several hosts: leases, recovery, the broker and the listener of PostgreSQL."""
+"""Workers on several hosts: leases, recovery, the broker, and the listener for PostgreSQL notifications."""

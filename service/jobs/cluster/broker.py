@@ -1,8 +1,7 @@
 """The broker: Celery over RabbitMQ or Redis wakes a worker host when a server has stored a job.
 
-A message is the id of a job and decides nothing, so that losing one, or getting it twice or late, is no harm: a host
-that is woken asks the store for the job whose turn it is (:mod:`service.jobs.workers.scheduler`), which need not be
-that one.
+A message holds the id of a job and decides nothing, so a lost, repeated or late message does no harm. A host that is
+woken asks the store for the job whose turn it is (:mod:`service.jobs.workers.scheduler`), which may be another job.
 """
 
 from __future__ import annotations
@@ -20,27 +19,27 @@ from kombu.exceptions import KombuError, OperationalError
 
 from service.settings import Settings
 
-TASK = "mechsynth.run"
+TASK_NAME = "mechsynth.run"
 
 CONNECT_TIMEOUT_S = 4.0
 CONFIRM_TIMEOUT_S = 5.0
-"""How long RabbitMQ may take to say that it has a message."""
+"""Time limit for RabbitMQ's confirmation of a message, seconds."""
 
-PAUSE_S = 1.0
-"""A broker that was out of reach is not tried again before this, so that nobody waits for it in vain."""
+RETRY_PAUSE_S = 1.0
+"""Pause before an unreachable broker is tried again, seconds; callers fail at once meanwhile."""
 
 BROKER_HEARTBEAT_S = 10.0
-"""A host whose machine has vanished loses its messages to others after twice this."""
+"""Heartbeat period of a connection, seconds. After two missed beats the messages of a lost host go to other hosts."""
 
 log = structlog.get_logger(__name__)
 
 
 class BrokerUnreachable(Exception):
-    """The broker does not take the message; it may or may not have got it."""
+    """The broker did not confirm the message, which may still have arrived."""
 
 
-def celery_app(settings: Settings, *, publisher: bool) -> Celery:
-    """Celery as servers and worker hosts have it: one queue, no results, no control messages."""
+def create_celery_app(settings: Settings, *, publisher: bool) -> Celery:
+    """Create the Celery application of servers and worker hosts: one queue, no results, no control messages."""
     url = settings.broker_url.get_secret_value() if settings.broker_url else ""
     amqp = url.startswith("amqp")
     options: dict[str, Any]
@@ -59,7 +58,7 @@ def celery_app(settings: Settings, *, publisher: bool) -> Celery:
         settings.queue,
         Exchange(settings.queue, type="direct"),
         routing_key=settings.queue,
-        # Quorum queues survive the loss of a node of RabbitMQ, and write each message to the disk.
+        # Quorum queues survive the loss of a RabbitMQ node and write each message to disk.
         queue_arguments={"x-queue-type": "quorum"} if amqp else None,
     )
     app = Celery("mechsynth", broker=url, set_as_current=not publisher)
@@ -68,7 +67,7 @@ def celery_app(settings: Settings, *, publisher: bool) -> Celery:
         broker_connection_timeout=CONNECT_TIMEOUT_S,
         broker_connection_retry_on_startup=True,
         broker_connection_max_retries=None,
-        # The publisher looks after its connection itself.
+        # The publisher monitors its connection itself.
         broker_heartbeat=0 if publisher else BROKER_HEARTBEAT_S,
         task_queues=[queue],
         task_default_queue=settings.queue,
@@ -78,7 +77,7 @@ def celery_app(settings: Settings, *, publisher: bool) -> Celery:
         task_serializer="json",
         accept_content=["json"],
         worker_prefetch_multiplier=1,
-        # A prefetch count for the whole channel is what quorum queues do not have.
+        # Quorum queues do not support a prefetch count for the whole channel.
         worker_detect_quorum_queues=True,
         worker_enable_remote_control=False,
         worker_hijack_root_logger=False,
@@ -88,49 +87,49 @@ def celery_app(settings: Settings, *, publisher: bool) -> Celery:
 
 
 class Publisher:
-    """Sends the ids of jobs, one after the other over one connection. Safe to use from many threads."""
+    """Sends the ids of jobs, one at a time over one connection. Safe to use from many threads."""
 
     def __init__(self, settings: Settings) -> None:
-        self._app = celery_app(settings, publisher=True)
+        self._app = create_celery_app(settings, publisher=True)
         self._lock = threading.Lock()
         self._connection: Any = None
         self._producer: Any = None
         self._not_before = float("-inf")
         self.reachable = True
-        """Whether the broker answered when it was last asked."""
+        """Whether the broker answered the last request."""
 
     def send(self, job_id: str) -> None:
-        """Have a worker host look for the job. When this returns, the broker has the message.
+        """Send a message that wakes a worker host; on return the broker has the message.
 
         Raises
         ------
         BrokerUnreachable
-            When it may not have it.
+            If the broker may not have the message.
         """
-        self._asked(lambda: self._publish(job_id))
+        self._run_connected(lambda: self._publish(job_id))
 
     def probe(self) -> None:
-        """See whether the broker answers; ``reachable`` says so afterwards. Makes the queue where it is missing."""
+        """Check whether the broker answers and set ``reachable``; create the queue if it is missing."""
         with suppress(BrokerUnreachable):
-            self._asked(self._declare)
+            self._run_connected(self._declare)
 
     def close(self) -> None:
-        """Give the connection back."""
+        """Close the connection."""
         with self._lock:
             self._disconnect()
 
-    def _asked(self, act: Callable[[], None]) -> None:
+    def _run_connected(self, act: Callable[[], None]) -> None:
         with self._lock:
             if time.monotonic() < self._not_before:
                 raise BrokerUnreachable("the broker was out of reach a moment ago")
             try:
                 self._connect()
                 act()
-            except Exception as error:  # every transport has errors of its own, and some raise others
-                if not isinstance(error, (OSError, KombuError, OperationalError, *self._errors())):
+            except Exception as error:  # every transport has its own errors, and some raise others
+                if not isinstance(error, (OSError, KombuError, OperationalError, *self._list_connection_errors())):
                     log.exception("the broker could not be asked")
                 self._disconnect()
-                self._not_before = time.monotonic() + PAUSE_S
+                self._not_before = time.monotonic() + RETRY_PAUSE_S
                 if self.reachable:
                     log.warning("the broker is out of reach", error=type(error).__name__)
                 self.reachable = False
@@ -139,7 +138,7 @@ class Publisher:
                 log.info("the broker is there again")
             self.reachable = True
 
-    def _errors(self) -> tuple[type[BaseException], ...]:
+    def _list_connection_errors(self) -> tuple[type[BaseException], ...]:
         return () if self._connection is None else self._connection.connection_errors + self._connection.channel_errors
 
     def _connect(self) -> None:
@@ -155,7 +154,12 @@ class Publisher:
 
     def _publish(self, job_id: str) -> None:
         self._app.send_task(
-            TASK, args=(job_id,), producer=self._producer, retry=False, confirm_timeout=CONFIRM_TIMEOUT_S, declare=[]
+            TASK_NAME,
+            args=(job_id,),
+            producer=self._producer,
+            retry=False,
+            confirm_timeout=CONFIRM_TIMEOUT_S,
+            declare=[],
         )
 
     def _disconnect(self) -> None:

@@ -1,6 +1,6 @@
 """The executor for several machines: jobs go through a broker to worker hosts (``mechsynth worker``).
 
-This side only sends ids and hears what has become of the jobs; :mod:`service.jobs.cluster.worker_host` is the other
+This side sends ids and receives notifications of changed jobs; :mod:`service.jobs.cluster.worker_host` is the other
 side.
 """
 
@@ -13,7 +13,7 @@ import structlog
 
 from service.jobs.cluster.broker import BrokerUnreachable, Publisher
 from service.jobs.cluster.leases import LeaseStore
-from service.jobs.cluster.listener import CHANGES, StoreListener
+from service.jobs.cluster.listener import CHANGES_CHANNEL, StoreListener
 from service.jobs.cluster.recovery import Recovery
 from service.jobs.executor import Changed
 from service.jobs.job_store import JobStore
@@ -26,12 +26,12 @@ log = structlog.get_logger(__name__)
 
 
 class CeleryExecutor:
-    """Has jobs run by whatever worker hosts there are.
+    """Runs jobs on the available worker hosts.
 
     Raises
     ------
     SQLAlchemyError, OSError, ImportError
-        When the store cannot be reached.
+        If the store cannot be reached.
     """
 
     def __init__(self, settings: Settings) -> None:
@@ -47,34 +47,34 @@ class CeleryExecutor:
         self._workers = 0
 
     def start(self) -> None:
-        """Begin to send jobs."""
+        """Start to send jobs."""
         if not self._sender.is_alive():
             self._sender.start()
 
     def resume(self) -> None:
-        """Begin to recover the jobs of all servers, and to listen for their changes."""
+        """Start to recover the jobs of all servers and to listen for changes."""
         self._count_workers()
         self._recovery.start()
         if self._listener is not None:
             self._listener.start()
 
     def subscribe(self, changed: Changed) -> None:
-        """Call ``changed`` from now on with each job whose state changes."""
-        self._listener = StoreListener(self._settings.store_url, CHANGES, changed)
+        """Call ``changed`` with the id of each job whose state changes from now on."""
+        self._listener = StoreListener(self._settings.store_url, CHANGES_CHANNEL, changed)
 
     def submit(self, job_id: str) -> None:
-        """Have a worker host that is free look for the job."""
+        """Wake a free worker host for the job."""
         self._queue.put(job_id)
 
     def cancel(self, job_id: str) -> None:
-        """Nothing: the host that runs the job sees within half a second that its claim is of no use any more."""
+        """Do nothing: the host that runs the job notices within half a second that its claim is no longer valid."""
 
-    def ready(self) -> int:
-        """How many workers there are on all hosts; none while the broker does not answer."""
+    def count_ready_workers(self) -> int:
+        """Return the number of workers on all hosts; 0 while the broker does not answer."""
         return self._workers if self._publisher.reachable else 0
 
     def stop(self) -> None:
-        """Stop sending. Of what is not sent yet the worker hosts hear from the store."""
+        """Stop sending; worker hosts find the unsent jobs in the store."""
         self._queue.put(None)
         threads = [self._sender, self._recovery, *([] if self._listener is None else [self._listener])]
         self._recovery.stop()
@@ -87,7 +87,7 @@ class CeleryExecutor:
         self._engine.dispose()
 
     def _count_workers(self) -> None:
-        self._workers = self._leases.workers()
+        self._workers = self._leases.count_workers()
 
     def _send(self) -> None:
         while (job_id := self._queue.get()) is not None:

@@ -1,7 +1,7 @@
-"""Recovers the jobs of several servers: requeues those whose worker host is gone.
+"""Recovery of the jobs of several servers: requeues those whose worker host is gone.
 
-Every server and every worker host runs this thread, so that jobs are recovered as long as any of them lives; the store
-sees to it that each job is taken up by one of them only.
+Every server and every worker host runs this thread, so jobs are recovered as long as one of them is alive. The store
+ensures that only one of them requeues a given job.
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ from sqlalchemy.exc import SQLAlchemyError
 
 from service.jobs.cluster.broker import Publisher
 from service.jobs.cluster.leases import LeaseStore
-from service.jobs.store.database import unreachable
+from service.jobs.store.database import is_unreachable
 from service.jobs.store.statements import LEASE_S
 from service.jobs.store.states import Status
 
@@ -25,7 +25,7 @@ log = structlog.get_logger(__name__)
 
 
 class Recovery(threading.Thread):
-    """Recovers jobs and looks after the broker once a second until it is stopped; calls ``each_round`` as often."""
+    """Recovers jobs, probes the broker and calls ``each_round`` once a second until it is stopped."""
 
     def __init__(self, leases: LeaseStore, publisher: Publisher, each_round: Callable[[], None]) -> None:
         super().__init__(name="recovery", daemon=True)
@@ -36,7 +36,7 @@ class Recovery(threading.Thread):
         self._trusted_from = float("-inf")
 
     def stop(self) -> None:
-        """Make the thread end soon; join it after."""
+        """Request the thread to end; the caller joins it."""
         self._stopping.set()
 
     def run(self) -> None:
@@ -47,16 +47,16 @@ class Recovery(threading.Thread):
                 self._each_round()
                 self._take_up_abandoned()
             except SQLAlchemyError as error:
-                if not unreachable(error):
+                if not is_unreachable(error):
                     log.exception("jobs could not be recovered")
-                # Nobody could renew a lease meanwhile, so an expired one proves nothing until all have had time to.
+                # No host could renew its leases meanwhile, so expired ones prove nothing until all have had time to.
                 self._trusted_from = time.monotonic() + LEASE_S
-            except Exception:  # whatever it is, the next round must come
+            except Exception:  # the next round must come after any error
                 log.exception("jobs could not be recovered")
 
     def _take_up_abandoned(self) -> None:
-        # Asked even where the answer is not to be trusted yet: the question shows that the store is there again.
-        expired = self._leases.expired()
+        # Query even before the answer can be trusted: it shows whether the store is back.
+        expired = self._leases.find_expired()
         if time.monotonic() < self._trusted_from:
             return
         for job_id, status in self._leases.take_back(expired):

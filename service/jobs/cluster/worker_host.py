@@ -1,10 +1,10 @@
-"""A worker host: takes jobs from the store and runs them in workers of its own (``mechsynth worker``).
+"""A worker host: takes jobs from the store and runs them in its own workers (``mechsynth worker``).
 
 The lanes and workers are those of the local executor (:mod:`service.jobs.workers.lane`), which handle turns,
-cancelling, timeouts, memory and death. A message of the broker says that there is work and not which: a host that has a
-free lane asks the store whose turn it is. So it does when PostgreSQL notifies it of a queued job, and once a second.
-While a job runs the host renews its lease in the store, which tells it in return which claims no longer count: their
-jobs are dropped.
+cancellation, timeouts, memory limits and dead workers. A message of the broker only means that there is work: a host
+with a free lane then asks the store for the job whose turn it is. It also does so when PostgreSQL notifies it of a
+queued job, and once a second. While a job runs the host renews its lease; the store answers with the claims that are no
+longer valid, and the host drops their jobs.
 """
 
 from __future__ import annotations
@@ -22,11 +22,11 @@ from prometheus_client import start_http_server
 from sqlalchemy.exc import SQLAlchemyError
 from ulid import ULID
 
-from service.jobs.cluster.broker import TASK, Publisher, celery_app
+from service.jobs.cluster.broker import TASK_NAME, Publisher, create_celery_app
 from service.jobs.cluster.leases import LeaseStore
-from service.jobs.cluster.listener import WORK, StoreListener
+from service.jobs.cluster.listener import WORK_CHANNEL, StoreListener
 from service.jobs.cluster.recovery import Recovery
-from service.jobs.store.database import LaterTables, connect, unreachable, upgrade
+from service.jobs.store.database import LaterTables, connect, is_unreachable, upgrade
 from service.jobs.workers.local_executor import LocalExecutor
 from service.kernels import Compiling
 from service.observability import logs
@@ -34,7 +34,7 @@ from service.observability.metrics import HostMetrics
 from service.settings import Settings
 
 BEAT_PERIOD_S = 0.5
-"""Period at which a host renews its leases and looks for cancelled jobs, which must stop within two seconds."""
+"""Period at which a host renews its leases and checks for cancelled jobs, seconds; these must stop within 2 s."""
 
 log = structlog.get_logger(__name__)
 
@@ -44,7 +44,7 @@ class HostError(Exception):
 
 
 class Host:
-    """The lanes of a host, and what tells them of work."""
+    """The lanes of a host, and the sources that wake them."""
 
     def __init__(self, settings: Settings, metrics: HostMetrics, compilation: Compiling) -> None:
         self.id = str(ULID())
@@ -54,27 +54,27 @@ class Host:
         self._leases = LeaseStore(self._engine)
         self._publisher = Publisher(settings)
         self._recovery = Recovery(self._leases, self._publisher, lambda: None)
-        self._beating = threading.Thread(target=self._beat, name="beat", daemon=True)
-        self._listener = StoreListener(settings.store_url, WORK, lambda _: self.lanes.wake())
+        self._beating = threading.Thread(target=self._run_heartbeat, name="beat", daemon=True)
+        self._listener = StoreListener(settings.store_url, WORK_CHANNEL, lambda _: self.lanes.wake())
         self._stopping = threading.Event()
-        metrics.watch(self.lanes.ready, lambda: len(self.lanes.claims()))
+        metrics.watch(self.lanes.count_ready_workers, lambda: len(self.lanes.list_claims()))
 
     def start(self) -> None:
-        """Make the tables where they are missing, and start the lanes."""
+        """Create missing tables and start the lanes."""
         upgrade(self._engine)
         self.lanes.start()
         self.lanes.open()
-        self._compilation.start(after=lambda: self.lanes.ready() > 0)
+        self._compilation.start(after=lambda: self.lanes.count_ready_workers() > 0)
         self._beating.start()
         self._recovery.start()
         self._listener.start()
 
-    def work(self, job_id: str) -> None:
-        """What Celery calls for a message: there is work, this job or another whose turn comes before it."""
+    def handle_message(self, job_id: str) -> None:
+        """Handle a message from Celery: there is work, this job or another one whose turn is earlier."""
         self.lanes.submit(job_id)
 
     def stop(self) -> None:
-        """Put the running jobs back into the queue and end the workers. May be called again."""
+        """Requeue the running jobs and end the workers. May be called repeatedly."""
         if self._stopping.is_set():
             return
         self._stopping.set()
@@ -83,21 +83,21 @@ class Host:
         self._listener.stop()
         self.lanes.stop()
         try:
-            self._leases.host_is_gone(self.id)
-        except SQLAlchemyError as error:  # then its last sign of life expires
+            self._leases.remove_host(self.id)
+        except SQLAlchemyError as error:  # the host's last sign of life then expires by itself
             log.warning("the store does not answer", error=type(error).__name__)
         self._publisher.close()
 
-    def _beat(self) -> None:
+    def _run_heartbeat(self) -> None:
         while not self._stopping.wait(BEAT_PERIOD_S):
             try:
-                for claim in self._leases.renew(self.lanes.claims()):
+                for claim in self._leases.renew(self.lanes.list_claims()):
                     self.lanes.drop(claim)
-                self._leases.host_is_there(self.id, self.lanes.ready())
+                self._leases.record_host(self.id, self.lanes.count_ready_workers())
             except SQLAlchemyError as error:
-                if not unreachable(error):
+                if not is_unreachable(error):
                     log.exception("the leases could not be renewed")
-            except Exception:  # whatever it is, the next beat must come
+            except Exception:  # the next heartbeat must come after any error
                 log.exception("the leases could not be renewed")
 
 
@@ -107,25 +107,25 @@ def run_host(settings: Settings, compilation: Compiling) -> None:
     Raises
     ------
     HostError
-        When the port of its metrics cannot be had, or the store is of a later version.
+        If the port for its metrics is not available, or the store belongs to a later version.
     SQLAlchemyError, OSError
-        When the store cannot be reached.
+        If the store cannot be reached.
     """
     logs.configure(settings.log_level, settings.log_format)
     metrics = HostMetrics()
     host = Host(settings, metrics, compilation)
-    show(metrics, settings)
-    signal.signal(signal.SIGTERM, _end)
-    signal.signal(signal.SIGINT, _end)
+    serve_metrics(metrics, settings)
+    signal.signal(signal.SIGTERM, _raise_shutdown)
+    signal.signal(signal.SIGINT, _raise_shutdown)
     try:
         _start(host)
-        app = celery_app(settings, publisher=False)
-        app.task(host.work, name=TASK)
-        announcement = threading.Thread(target=_announce, args=(host,), name="announcement", daemon=True)
+        app = create_celery_app(settings, publisher=False)
+        app.task(host.handle_message, name=TASK_NAME)
+        announcement = threading.Thread(target=_report_ready, args=(host,), name="announcement", daemon=True)
         announcement.start()
         app.WorkController(
             hostname=f"{host.id}@{os.uname().nodename}",
-            pool_cls=_pool_of(host),
+            pool_cls=_make_pool_class(host),
             concurrency=1,
             without_mingle=True,
             without_gossip=True,
@@ -134,6 +134,7 @@ def run_host(settings: Settings, compilation: Compiling) -> None:
     except WorkerShutdown:
         pass
     finally:
+        # A second signal must not interrupt the requeueing of jobs.
         signal.signal(signal.SIGTERM, signal.SIG_IGN)
         signal.signal(signal.SIGINT, signal.SIG_IGN)
         host.stop()
@@ -146,13 +147,13 @@ def _start(host: Host) -> None:
         raise HostError(str(error)) from None
 
 
-def show(metrics: HostMetrics, settings: Settings) -> None:
-    """Serve the metrics to Prometheus where the settings say so, in a thread that ends with the process.
+def serve_metrics(metrics: HostMetrics, settings: Settings) -> None:
+    """Serve the metrics to Prometheus if the settings name a port, in a thread that ends with the process.
 
     Raises
     ------
     HostError
-        When the port cannot be had.
+        If the port is not available.
     """
     address, port = settings.worker_metrics_host, settings.worker_metrics_port
     if port is None:
@@ -161,26 +162,26 @@ def show(metrics: HostMetrics, settings: Settings) -> None:
         start_http_server(port, address, metrics.registry)
     except OSError as error:
         raise HostError(
-            f"cannot show metrics on {address} port {port} ({error.strerror}); set MECHSYNTH_WORKER_METRICS_PORT"
+            f"cannot serve metrics on {address} port {port} ({error.strerror}); set MECHSYNTH_WORKER_METRICS_PORT"
         ) from None
     log.info("metrics", host=address, port=port)
 
 
-def _end(_signal: int, _frame: FrameType | None) -> None:
+def _raise_shutdown(_signal: int, _frame: FrameType | None) -> None:
     raise WorkerShutdown(0)
 
 
-def _announce(host: Host) -> None:
-    while host.lanes.ready() == 0:
-        time.sleep(BEAT_PERIOD_S / 10)  # lanes announce nothing when they are ready; this polls at the start only
+def _report_ready(host: Host) -> None:
+    while host.lanes.count_ready_workers() == 0:
+        time.sleep(BEAT_PERIOD_S / 10)  # lanes send no event when they are ready; this polls only at the start
     print(f"mechsynth worker {host.id} is ready", flush=True)
 
 
-def _pool_of(host: Host) -> type[TaskPool]:
-    """A pool of Celery's in whose threads its tasks wake the lanes of a host."""
+def _make_pool_class(host: Host) -> type[TaskPool]:
+    """Return a Celery pool class whose threads run the tasks that wake the lanes of a host."""
 
     class LanePool(TaskPool):
-        """Ends the lanes when it is stopped."""
+        """Celery thread pool that ends the lanes when it is stopped."""
 
         def on_stop(self) -> None:
             host.stop()

@@ -1,7 +1,7 @@
-"""Wakes the coroutines of this server that wait for a job when it changes.
+"""Wakes the coroutines of this server that wait for changes of a job.
 
-A change becomes known in a thread: a lane is done with a job, or :mod:`service.jobs.cluster.listener` hears of it.
-Nothing is read here; whoever is woken reads the store, directly or through :mod:`service.jobs.events.poller`.
+A change becomes known in a thread: a lane has finished a job, or :mod:`service.jobs.cluster.listener` is notified.
+Nothing is read here; the woken coroutines read the store, directly or through :mod:`service.jobs.events.poller`.
 """
 
 from __future__ import annotations
@@ -19,19 +19,20 @@ class ChangeNotifier:
         self._watches: dict[str, set[asyncio.Event]] = {}
         self._callbacks: set[Callable[[str | None], None]] = set()
         self.closed = False
-        """True once nobody should wait any longer, because the service stops."""
+        """Whether the service is stopping, so that waits must end."""
 
     def publish(self, job_id: str | None) -> None:
-        """Wake the watchers of a job, or of all jobs where it may be any. Callable from any thread."""
+        """Wake the watchers of a job, or of all jobs if ``job_id`` is None. Callable from any thread."""
         # A job may end while the service stops. The loop may close between a check and the call, so there is no check;
-        # when the loop is gone, so are the watchers.
+        # when the loop is closed there are no watchers left.
         with suppress(RuntimeError):
             self._loop.call_soon_threadsafe(self._wake, job_id)
 
     @contextmanager
     def watch(self, job_id: str) -> Iterator[asyncio.Event]:
-        """An event that is set at every change of the job. To be used on the event loop only."""
+        """Yield an event that is set at every change of the job. For use on the event loop only."""
         event = asyncio.Event()
+        # After close() no change is published any more, so a new watcher must not wait at all.
         if self.closed:
             event.set()
         self._watches.setdefault(job_id, set()).add(event)
@@ -45,9 +46,9 @@ class ChangeNotifier:
 
     @contextmanager
     def watch_all(self, callback: Callable[[str | None], None]) -> Iterator[None]:
-        """Call ``callback`` with the id of every job that changes, and with None where it may be any, as at the end.
+        """Call ``callback`` with the id of every job that changes, and with None if any job may have, as at the end.
 
-        On the event loop only.
+        For use on the event loop only.
         """
         self._callbacks.add(callback)
         try:
@@ -56,7 +57,7 @@ class ChangeNotifier:
             self._callbacks.discard(callback)
 
     def close(self) -> None:
-        """Wake everybody for the last time, so that no request is kept waiting by a service that stops."""
+        """Wake all watchers for the last time, so that no request delays the stop of the service."""
         self.closed = True
         for job_id in list(self._watches):
             self._wake(job_id)

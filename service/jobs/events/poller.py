@@ -1,10 +1,10 @@
-"""Polls the store for the jobs or batches whose event streams are open: one reader for all streams together.
+"""Polls the store for the jobs or batches with open event streams, one reader for all streams.
 
-What is said of jobs here holds for batches too.
+"Jobs" below stands for jobs or batches.
 
-A worker writes its progress into the store without a notification, so the store has to be polled. All followed jobs are
-read at once, every :data:`PERIOD_S` and whenever :mod:`service.jobs.events.notifier` says that one of them has changed;
-the number of streams makes no difference to the store. A job that nobody follows is not read, a finished one not again.
+A worker stores its progress without a notification, so the store has to be polled. All followed jobs are read in one
+query, every :data:`PERIOD_S` and whenever :mod:`service.jobs.events.notifier` reports a change of one of them; the load
+on the store does not depend on the number of streams. Jobs without a follower are not read, finished ones not again.
 """
 
 from __future__ import annotations
@@ -23,59 +23,59 @@ from service.jobs.events.notifier import ChangeNotifier
 from service.jobs.store.states import Status
 
 PERIOD_S = 0.25
-"""Greatest age of what a stream shows. Workers store their progress at most five times a second."""
+"""Maximum age of the state that a stream shows, seconds. Workers store their progress at most five times a second."""
 
 log = structlog.get_logger(__name__)
 
 
-class Followed(Protocol):
-    """What is asked of a job."""
+class FollowedItem(Protocol):
+    """The attributes of a job that the poller needs."""
 
     @property
     def id(self) -> str:
-        """Its id."""
+        """Id of the job."""
         ...
 
     @property
     def tenant(self) -> str:
-        """Whose it is."""
+        """Tenant that owns the job."""
         ...
 
     @property
     def status(self) -> Status:
-        """Where it stands."""
+        """State of the job."""
         ...
 
     @property
     def revision(self) -> int:
-        """Greater after each change."""
+        """Number of the revision, which increases with each change."""
         ...
 
 
-F = TypeVar("F", bound=Followed)
-F_co = TypeVar("F_co", bound=Followed, covariant=True)
+F = TypeVar("F", bound=FollowedItem)
+F_co = TypeVar("F_co", bound=FollowedItem, covariant=True)
 
 
-class Summaries(Protocol[F_co]):
-    """What is asked of a store."""
+class SummaryStore(Protocol[F_co]):
+    """The query of a store that the poller needs."""
 
-    def summaries(self, ids: Sequence[str], /) -> Mapping[str, F_co]:
-        """The jobs of these ids that there are, by id."""
+    def load_summaries(self, ids: Sequence[str], /) -> Mapping[str, F_co]:
+        """Return the existing jobs among these ids, by id."""
         ...
 
 
 @dataclass(slots=True, eq=False)
 class Follower(Generic[F]):
-    """One listener's view of a job: always its newest state, never a queue of older ones."""
+    """One listener's view of a job: only its newest state, without a queue of older ones."""
 
     job: F | None = None
-    """The job as it was read last; None before the first reading, and of a job that is not there (any more)."""
+    """The job as last read; None before the first read, and for a job that does not exist (any more)."""
     read: bool = False
-    """Whether the job was looked for in the store."""
+    """Whether the store has been queried for the job."""
     _changed: asyncio.Event = field(default_factory=asyncio.Event)
 
-    async def changed(self, within_s: float) -> bool:
-        """Wait for a change of the job; False when there is none in time."""
+    async def wait_for_change(self, within_s: float) -> bool:
+        """Wait for a change of the job; return False if there is none in time."""
         try:
             async with asyncio.timeout(within_s):
                 await self._changed.wait()
@@ -85,7 +85,7 @@ class Follower(Generic[F]):
         return True
 
     def update(self, job: F | None) -> None:
-        """Take what the store says of the job."""
+        """Set the state that the store holds of the job, and wake the listener if it is new."""
         if not self.read or job != self.job:
             self.job, self.read = job, True
             self._changed.set()
@@ -96,9 +96,9 @@ class Follower(Generic[F]):
 
 
 class JobPoller(Generic[F]):
-    """Keeps followers up to date with their jobs. To be used on the event loop only."""
+    """Keeps followers up to date with their jobs. For use on the event loop only."""
 
-    def __init__(self, store: Summaries[F], notifier: ChangeNotifier) -> None:
+    def __init__(self, store: SummaryStore[F], notifier: ChangeNotifier) -> None:
         self._store = store
         self._notifier = notifier
         self._followers: dict[str, set[Follower[F]]] = {}
@@ -107,21 +107,21 @@ class JobPoller(Generic[F]):
 
     @property
     def listeners(self) -> int:
-        """How many follow a job now."""
+        """Number of followers."""
         return sum(map(len, self._followers.values()))
 
-    def listeners_of(self, tenant: str) -> int:
-        """How many of them are the tenant's."""
+    def count_listeners(self, tenant: str) -> int:
+        """Return the number of the tenant's followers."""
         return self._listeners[tenant]
 
     @property
     def closed(self) -> bool:
-        """Whether nobody should listen any longer, because the service stops."""
+        """Whether the service is stopping, so that streams must end."""
         return self._notifier.closed
 
     @contextmanager
     def follow(self, job_id: str, tenant: str) -> Iterator[Follower[F]]:
-        """Follow a job for a tenant; the first change is the state that it has now."""
+        """Follow a job for a tenant; the first change reports its present state."""
         follower: Follower[F] = Follower()
         self._listeners[tenant] += 1
         followers = self._followers.setdefault(job_id, set())
@@ -138,8 +138,8 @@ class JobPoller(Generic[F]):
                 self._followers.pop(job_id, None)
 
     async def run(self) -> None:
-        """Read for the followers until the service stops, then wake them all."""
-        with self._notifier.watch_all(self._nudge):
+        """Poll the store for the followers until the service stops, then wake all of them."""
+        with self._notifier.watch_all(self._handle_change):
             while not self.closed:
                 await self._wait()
                 self._nudged.clear()
@@ -148,36 +148,37 @@ class JobPoller(Generic[F]):
             for follower in followers:
                 follower.wake()
 
-    def _nudge(self, job_id: str | None) -> None:
+    def _handle_change(self, job_id: str | None) -> None:
         if job_id is None or job_id in self._followers:
             self._nudged.set()
 
     async def _wait(self) -> None:
         try:
-            async with asyncio.timeout(PERIOD_S if self._unfinished() else None):
+            # Without an unfinished job there is nothing to poll: sleep until a follower arrives or the service stops.
+            async with asyncio.timeout(PERIOD_S if self._list_unfinished() else None):
                 await self._nudged.wait()
         except TimeoutError:
             pass
 
     async def _read(self) -> None:
-        wanted = self._unfinished()
+        wanted = self._list_unfinished()
         if not wanted:
             return
-        # Whoever begins to follow during the query is left to the next one: its answer may be older than they are.
+        # Followers that arrive during the query wait for the next one: this answer may predate them.
         asked = [(job_id, follower) for job_id in wanted for follower in self._followers[job_id]]
         try:
-            summaries = await run_in_threadpool(self._store.summaries, wanted)
-        except Exception:  # whatever a database driver raises: the streams wait until it answers again
+            summaries = await run_in_threadpool(self._store.load_summaries, wanted)
+        except Exception:  # any error of the database driver: the streams wait until it answers again
             log.exception("the store could not be read for the event streams")
             await asyncio.sleep(PERIOD_S)
             return
         for job_id, follower in asked:
             follower.update(summaries.get(job_id))
 
-    def _unfinished(self) -> list[str]:
-        """The followed jobs that can still change."""
-        return [job_id for job_id, followers in self._followers.items() if not all(map(_done, followers))]
+    def _list_unfinished(self) -> list[str]:
+        """Return the ids of followed jobs that can still change."""
+        return [job_id for job_id, followers in self._followers.items() if not all(map(_is_done, followers))]
 
 
-def _done(follower: Follower[Any]) -> bool:
+def _is_done(follower: Follower[Any]) -> bool:
     return follower.read and (follower.job is None or follower.job.status.finished)

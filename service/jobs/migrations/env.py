@@ -1,4 +1,4 @@
-"""Runs the migrations on the connection that :func:`service.jobs.store.database.upgrade` hands over."""
+"""Runs the migrations on the connection that :func:`service.jobs.store.database.upgrade` provides."""
 
 from alembic import context
 

@@ -1,1 +1,1 @@
-"""Processes with limits: request pools, stop flags, memory limits, death of the parent."""
+"""Processes with limits: request pools, stop flags, memory limits, detection of a dead parent."""

@@ -1,6 +1,6 @@
-"""A process of the server's that runs what a client has sent: it ends with the server, and its memory is bounded.
+"""Limits of a process that works on client input: it ends with the server, and its memory is bounded.
 
-Imported before the process has set its number of threads, so it must not import numpy.
+This module is imported before the process has set its number of threads, so it must not import numpy.
 """
 
 from __future__ import annotations
@@ -10,16 +10,16 @@ import resource
 import signal
 import sys
 
-from service.jobs.processes.parent_death import die_with
+from service.jobs.processes.parent_death import bind_to_parent
 from service.observability import logs
 
 _THREADS = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "NUMBA_NUM_THREADS")
 
 
-def confine(server_pid: int, log_level: str, log_format: logs.Format) -> None:
-    """Prepare this process: its end, its signals, its threads, its log. Called first of all."""
-    die_with(server_pid)
-    # Ctrl-C at a terminal reaches the whole group of processes; it is the server's to act on, and it stops its workers.
+def restrict_process(server_pid: int, log_level: str, log_format: logs.Format) -> None:
+    """Prepare this process: end with the server, signals, threads, log. Must be the first call in the process."""
+    bind_to_parent(server_pid)
+    # Ctrl-C at a terminal reaches the whole process group; only the server reacts to it, and stops its workers.
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     # The default action ends the process at once; a handler in Python would wait for native code to return.
     signal.signal(signal.SIGTERM, signal.SIG_DFL)
@@ -28,30 +28,31 @@ def confine(server_pid: int, log_level: str, log_format: logs.Format) -> None:
 
 
 def use_one_thread() -> None:
-    """Keep numeric libraries that are imported from now on to one thread.
+    """Restrict numerical libraries that are imported later to one thread.
 
-    As many workers as processors run side by side, so threads inside them would only compete.
+    As many workers as processors run in parallel, so threads inside them would only compete.
     """
     for variable in _THREADS:
         os.environ[variable] = "1"
 
 
 def limit_memory(beyond_mb: int) -> None:
-    """Allow ``beyond_mb`` MiB on top of what the process has now.
+    """Limit the process to ``beyond_mb`` MiB more than its present memory.
 
-    On Linux ``RLIMIT_DATA`` counts the private memory that can be written. ``RLIMIT_AS`` would count address space
-    as well that allocators and compilers reserve and never touch, so no honest figure could be set with it.
+    On Linux ``RLIMIT_DATA`` counts private writable memory. ``RLIMIT_AS`` would also count address space that
+    allocators and compilers reserve and never touch, so it allows no meaningful limit.
     """
     kind = resource.RLIMIT_DATA if sys.platform == "linux" else resource.RLIMIT_AS
-    limit = _memory_in_use() + (beyond_mb << 20)
+    limit = _measure_memory() + (beyond_mb << 20)
+    # An unprivileged process cannot exceed the hard limit that it inherited.
     hard = resource.getrlimit(kind)[1]
     if hard != resource.RLIM_INFINITY:
         limit = min(limit, hard)
     resource.setrlimit(kind, (limit, hard))
 
 
-def _memory_in_use() -> int:
-    """The bytes that count against the limit; 0 where the system does not tell."""
+def _measure_memory() -> int:
+    """Return the bytes that count towards the limit; 0 if the system does not report them."""
     try:
         with open("/proc/self/status", encoding="ascii") as status:
             for line in status:

@@ -1,4 +1,4 @@
-"""No orphans: a worker dies with its server, however the server dies."""
+"""No orphan processes: a worker ends with its server, even if the server is killed."""
 
 from __future__ import annotations
 
@@ -12,48 +12,48 @@ import time
 
 _PR_SET_PDEATHSIG = 1
 _WATCH_PERIOD_S = 0.5
-"""Where the kernel does not tell, a process looks this often whether its parent is there."""
+"""Period at which a process checks for its parent, seconds, on systems whose kernel sends no signal."""
 
 _PARENT = "MECHSYNTH_PARENT_PID"
-"""Not a setting: how a process is told, before it is told anything else, whose child it is."""
+"""Environment variable with the parent's process id, which a new process needs before its first message. Internal."""
 
 
-def die_with(parent_pid: int) -> None:
-    """See to it that this process is killed when its parent, the process ``parent_pid``, ends.
+def bind_to_parent(parent_pid: int) -> None:
+    """Ensure that this process is killed when its parent, the process ``parent_pid``, ends.
 
-    On Linux the kernel does it, at once and in native code too. The kernel takes the *thread* that created this
-    process for the parent, so that thread has to live as long as the process is wanted. Elsewhere a thread looks
-    for a change of parent, which native code that holds the interpreter can delay.
+    On Linux the kernel kills it at once, even in native code. To the kernel the parent is the *thread* that created
+    this process, so that thread must live as long as the process is needed. Elsewhere a thread checks for a change of
+    parent, which native code that holds the interpreter can delay.
     """
     if sys.platform == "linux":
         if ctypes.CDLL(None, use_errno=True).prctl(_PR_SET_PDEATHSIG, signal.SIGKILL, 0, 0, 0) != 0:
             raise OSError(ctypes.get_errno(), "prctl(PR_SET_PDEATHSIG) failed")
     else:
         threading.Thread(target=_watch, args=(parent_pid,), daemon=True, name="parent-watch").start()
-    # The parent may have ended before the kernel was asked; then nobody will send the signal any more.
+    # The parent may have ended before the call of prctl; then the kernel sends no signal.
     if os.getppid() != parent_pid:
         os.kill(os.getpid(), signal.SIGKILL)
 
 
-def die_with_parent_from_the_start() -> None:
-    """The same, at the first line of our own that a spawned process runs; nothing in any other process.
+def bind_to_parent_at_start() -> None:
+    """Do the same in the first line of our code that a spawned process runs; do nothing in any other process.
 
-    What a worker imports before it can be told anything takes a second, and a minute on a very busy machine. A server
-    that is killed meanwhile would leave it behind for so long. One that was killed before this line has left it to
-    another parent already, so the worker does not ask who that is.
+    The imports of a worker before its first message take a second, and a minute on a very busy machine. A server that
+    is killed meanwhile would leave the worker behind for that time. If the server was killed even before this line, the
+    worker already has another parent; so it takes the parent's id from the environment and not from the system.
     """
     # The mark that multiprocessing itself goes by while it imports the main module again.
     if sys.platform == "linux" and getattr(multiprocessing.current_process(), "_inheriting", False):
-        die_with(int(os.environ.pop(_PARENT, os.getppid())))
+        bind_to_parent(int(os.environ.pop(_PARENT, os.getppid())))
 
 
-def tell_children() -> None:
-    """Let the processes that this one spawns from now on know whose children they are."""
+def export_parent_pid() -> None:
+    """Pass this process's id to the processes that it spawns from now on."""
     os.environ[_PARENT] = str(os.getpid())
 
 
-def forget_parent() -> None:
-    """Let the processes that are forked from this one take it for their parent, not the one that has started it."""
+def clear_parent_pid() -> None:
+    """Remove the inherited parent id, so that processes forked from this one take this one as their parent."""
     os.environ.pop(_PARENT, None)
 
 

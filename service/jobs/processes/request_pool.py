@@ -1,9 +1,9 @@
-"""Work that a request waits for, done by processes of the server's with limits of time and memory.
+"""Work that a request waits for, done by processes of the server with limits on time and memory.
 
-Requests for the same wait for one call. Tenants have their turns, and a call that turns out to be long cannot keep
-short ones waiting (:mod:`service.jobs.processes.request_queue`).
+Equal requests share one call. Tenants take turns, and a call that turns out to be long cannot delay short ones
+(:mod:`service.jobs.processes.request_queue`).
 
-Words: a *pool* has *hands*, which are threads; a hand has a *process* that does *calls*.
+Words: a *pool* has *hands*, which are threads; a hand has a *process* that executes *calls*.
 """
 
 from __future__ import annotations
@@ -16,49 +16,53 @@ from collections.abc import Awaitable, Callable
 from typing import Any, Protocol
 
 from service.jobs.processes.request_queue import Call, RequestQueue
-from service.jobs.processes.request_worker import GivenUp, Gone, Hand, Limits, Lost, ProcessStart
+from service.jobs.processes.request_worker import ClientGone, GivenUp, Hand, Limits, ProcessLost, ProcessStart
 
-__all__ = ["Busy", "GivenUp", "Gone", "Limits", "Lost", "PoolMetrics", "RequestPool", "digest"]
+__all__ = ["Busy", "GivenUp", "ClientGone", "Limits", "ProcessLost", "PoolMetrics", "RequestPool", "hash_call"]
 
 MAX_WAIT_S = 20.0
-"""How long a call waits for its turn, where its pool says nothing else."""
+"""Default time that a call waits for its turn, seconds."""
 
-_GONE_PERIOD_S, _STOP_S = 0.25, 5.0
-"""How often it is looked whether a client is gone; how long the end of a thread may take."""
+_CLIENT_CHECK_PERIOD_S, _STOP_S = 0.25, 5.0
+"""Period of the check for a disconnected client, and time limit for the end of a thread, seconds."""
 
 
 class Busy(Exception):
-    """Others have kept this call from being begun in time."""
+    """The call did not start in time because the pool was busy with others."""
+
+
+_REASONS: dict[type[Exception], str] = {Busy: "busy", ClientGone: "gone", ProcessLost: "lost"}
+"""Values of the metric's label `reason`; they stay the same when a class is renamed."""
 
 
 class PoolMetrics(Protocol):
-    """Who counts what becomes of calls."""
+    """Counter of calls without an answer."""
 
-    def call_given_up(self, pool: str, reason: str) -> None:
-        """A call has ended without an answer."""
+    def count_given_up(self, pool: str, reason: str) -> None:
+        """Count a call that ended without an answer."""
         ...
 
 
-def digest(work: Callable[..., Any], args: tuple[Any, ...]) -> bytes:
-    """What tells calls apart."""
+def hash_call(work: Callable[..., Any], args: tuple[Any, ...]) -> bytes:
+    """Return a hash that is equal for calls of the same function with the same arguments."""
     return hashlib.sha256(repr((work.__module__, work.__qualname__, args)).encode()).digest()
 
 
 class RequestPool:
-    """Has calls done. To be used on one event loop only.
+    """Executes calls in processes. For use on one event loop only.
 
     Parameters
     ----------
     name : str
-        Of threads and processes, and in the metrics.
+        Name of the threads and processes, and label in the metrics.
     prepare : callable
-        Called first of all in a process, with ``settings``; it confines the process and limits its memory.
+        First call in a process, with ``settings``; it restricts the process and limits its memory.
     hands : int
-        Calls that are done at once, and of these ``max_long`` long ones; all of them where left out.
+        Maximum number of concurrent calls, of which at most ``max_long`` may be long; by default all.
     wait_s : float
-        How long a call waits for its turn.
+        Time that a call waits for its turn, seconds.
     forks : callable
-        See :class:`~service.jobs.processes.request_worker.ProcessStart`; by default processes are started anew.
+        See :class:`~service.jobs.processes.request_worker.ProcessStart`; by default processes are spawned.
     """
 
     def __init__(
@@ -83,41 +87,41 @@ class RequestPool:
         self.hands = [Hand(f"{name}-{n}", self._queue, start, limits) for n in range(hands)]
 
     def begin(self) -> None:
-        """Start the threads, if that has not been done. Callable from any thread."""
+        """Start the threads unless they are running. Callable from any thread."""
         with self._beginning:
             for hand in self.hands:
                 hand.begin()
 
-    def counts(self) -> dict[str, int]:
-        """Calls by their state."""
-        return self._queue.counts()
+    def count_calls(self) -> dict[str, int]:
+        """Return the number of calls by state."""
+        return self._queue.count_calls()
 
     async def call(self, gone: Callable[[], Awaitable[bool]], tenant: str, work: Callable[..., Any], *args: Any) -> Any:
-        """Call a function of a module in a process, and have its answer.
+        """Call a function of a module in a process and return its answer.
 
         Parameters
         ----------
         gone : callable
-            Whether the client waits no more.
+            Returns whether the client has disconnected.
         tenant : str
-            Whose turn it takes.
+            Tenant whose turn the call takes.
 
         Raises
         ------
         Busy, GivenUp, Gone, Lost
-            And what the function raises.
+            And the exceptions of the function.
         """
         try:
             return await self._wait_for(gone, tenant, work, args)
         except GivenUp as error:
             self._count(error.of)
             raise
-        except (Busy, Gone, Lost) as error:
-            self._count(type(error).__name__.lower())
+        except (Busy, ClientGone, ProcessLost) as error:
+            self._count(_REASONS[type(error)])
             raise
 
     def stop(self) -> None:
-        """End the processes and the threads, within a second."""
+        """End the processes and the threads within a second."""
         for hand in self.hands:
             hand.stopping.set()
         self._queue.close()
@@ -127,25 +131,26 @@ class RequestPool:
 
     def _count(self, reason: str) -> None:
         if self._metrics is not None:
-            self._metrics.call_given_up(self.name, reason)
+            self._metrics.count_given_up(self.name, reason)
 
     async def _wait_for(
         self, gone: Callable[[], Awaitable[bool]], tenant: str, work: Callable[..., Any], args: tuple[Any, ...]
     ) -> Any:
         self.begin()
-        key = digest(work, args)
+        key = hash_call(work, args)
+        # Equal requests share one call; the last of them to leave abandons it.
         if key not in self._asked:
             call = Call(work, args, tenant)
             self._asked[key] = call, asyncio.wrap_future(call.future)
-            self._queue.put(call)
+            self._queue.add(call)
         call, answer = self._asked[key]
         call.waiting += 1
         latest = time.monotonic() + self._wait_s
         try:
             while not answer.done():
-                await asyncio.wait([answer], timeout=_GONE_PERIOD_S)
+                await asyncio.wait([answer], timeout=_CLIENT_CHECK_PERIOD_S)
                 if not answer.done() and await gone():
-                    raise Gone
+                    raise ClientGone
                 if not answer.done() and not call.running and time.monotonic() > latest:
                     raise Busy
             return answer.result()

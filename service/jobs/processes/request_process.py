@@ -1,8 +1,8 @@
-"""What runs in a process that answers requests: one call after the other, from a pipe.
+"""The loop of a process that answers requests: it executes the calls that arrive on a pipe, one at a time.
 
-Messages to the server: ``READY`` once, ``TAKEN`` for each call, ``COMPILING`` where a call compiles kernels that no
-process has needed before, and at last how the call has ended. An answer of bytes follows its message as it is, so that
-a large one is not copied to be pickled.
+Messages to the server: "ready" once; then for each call "taken", "compiling" if it compiles kernels that no process has
+needed before, and finally the outcome. An answer of bytes follows its message unchanged, so that a large one is not
+copied for pickling.
 """
 
 from __future__ import annotations
@@ -18,12 +18,12 @@ import structlog
 
 Message = tuple[Literal["ready", "taken", "compiling", "bytes", "returned", "raised"], Any]
 
-READY: Message = ("ready", None)
-TAKEN: Message = ("taken", None)
-COMPILING: Message = ("compiling", None)
+READY_MESSAGE: Message = ("ready", None)
+TAKEN_MESSAGE: Message = ("taken", None)
+COMPILING_MESSAGE: Message = ("compiling", None)
 
 CALLS_BEFORE_RENEWAL = 2000
-"""After so many calls a process ends, and another takes its place: what libraries keep for ever stays bounded."""
+"""Number of calls after which a process is replaced, which bounds the memory that libraries never free."""
 
 _TICKS = os.sysconf("SC_CLK_TCK")
 
@@ -31,43 +31,45 @@ log = structlog.get_logger(__name__)
 
 
 def serve_calls(pipe: Connection, prepare: Callable[..., Any], settings: tuple[Any, ...]) -> None:
-    """Do what a pipe asks for until it is closed.
+    """Execute the calls from a pipe until it is closed.
 
     Parameters
     ----------
     prepare : callable
-        Called first of all, with ``settings``; it confines the process and limits its memory.
+        First call, with ``settings``; it restricts the process and limits its memory.
     """
     prepare(*settings)
     _report_compilations(pipe)
-    pipe.send(READY)
+    pipe.send(READY_MESSAGE)
     for _ in range(CALLS_BEFORE_RENEWAL):
         try:
             work, args = pipe.recv()
         except EOFError:
             return
-        pipe.send(TAKEN)
+        pipe.send(TAKEN_MESSAGE)
         _send_answer(pipe, *_call(work, args))
 
 
-def spent_seconds(pid: int) -> float:
-    """Processor time of a process so far; 0 where the system does not tell."""
+def read_cpu_seconds(pid: int) -> float:
+    """Return the processor time of a process so far, seconds; 0 if the system does not report it."""
     try:
         with open(f"/proc/{pid}/stat", encoding="ascii", errors="replace") as stat:
+            # The name of the process, in parentheses, may contain blanks and parentheses itself.
             fields = stat.read().rpartition(")")[2].split()
     except OSError:
         return 0.0
+    # utime and stime, fields 14 and 15 in proc(5); the first two have been cut off.
     return (int(fields[11]) + int(fields[12])) / _TICKS
 
 
 def _call(work: Callable[..., Any], args: tuple[Any, ...]) -> tuple[bool, Any]:
-    """Whether a call has raised, and what it has returned or raised."""
+    """Execute a call; return whether it raised, and the value returned or raised."""
     try:
         return False, work(*args)
     except MemoryError:
         return True, MemoryError()
-    except Exception as error:  # whatever it is, the server raises it in the request
-        if not getattr(error, "status", None):  # a refusal is no defect; anything else is told with its trace here
+    except Exception as error:  # the server raises any error in the request
+        if not getattr(error, "status", None):  # a refusal is no defect; others are logged here, with their traceback
             log.exception("a call has failed", work=work.__name__)
         return True, _make_sendable(error)
 
@@ -83,9 +85,9 @@ def _send_answer(pipe: Connection, raised: bool, answer: Any) -> None:
 
 
 def _make_sendable(error: Exception) -> Exception:
-    """An exception as it is, or its words where a pipe cannot carry it: the process would end, as without memory.
+    """Return the exception, or its text if it cannot be pickled: sending it would end the process.
 
-    No future takes a ``StopIteration``: whoever waits for it would wait for ever.
+    A future does not accept a ``StopIteration``: its waiters would wait forever.
     """
     if isinstance(error, StopIteration):
         return RuntimeError("StopIteration")
@@ -97,18 +99,18 @@ def _make_sendable(error: Exception) -> Exception:
 
 
 def _report_compilations(pipe: Connection) -> None:
-    """Tell the server of each kernel that is compiled from now on; nothing where the process has no compiler."""
+    """Report each kernel compilation to the server from now on; do nothing if the process has no compiler."""
     if "numba" not in sys.modules:
         return
     from numba.core import event
 
     class Reporter(event.Listener):
-        """Sends a message for each compilation that is begun."""
+        """Sends a message at the start of each compilation."""
 
         def on_start(self, event: Any) -> None:
-            pipe.send(COMPILING)
+            pipe.send(COMPILING_MESSAGE)
 
         def on_end(self, event: Any) -> None:
-            """The end of the call tells enough."""
+            """Do nothing: the end of the call is message enough."""
 
     event.register("numba:compile", Reporter())

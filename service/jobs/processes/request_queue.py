@@ -1,9 +1,9 @@
-"""The order in which a pool takes the calls of requests: tenants in turns, and long calls bounded.
+"""The order in which a pool takes calls: tenants in turn, with a bound on long calls.
 
-A call is *new* until it has been begun, and *long* once it has run for longer than a short call does. At most so many
-long calls run at once. A call that becomes long where that many run already gives its process up and waits as a long
-one; it begins again when its turn comes. So a process is free for a short call after a fraction of a second, whatever
-others have asked for.
+A call is *new* until it starts, and *long* once it has run longer than a short call may. The number of long calls that
+run at once is bounded. A call that becomes long beyond this bound releases its process and waits with the long calls;
+it starts again when its turn comes. So a process becomes free for a short call within a fraction of a second, even if
+other tenants send long calls.
 """
 
 from __future__ import annotations
@@ -19,10 +19,10 @@ from typing import Any
 
 @dataclass(eq=False)
 class Call:
-    """A function of a module, its arguments, and who waits for what it returns.
+    """A function of a module, its arguments, and the number of requests that wait for its answer.
 
-    ``abandoned`` is set when nobody waits any more, ``running`` while a process does the call. ``long`` is whether the
-    call has been found to be long, ``counted`` whether it is one of the long calls that run now.
+    ``abandoned`` is set when no request waits any more, ``running`` while a process executes the call. ``long`` means
+    that the call turned out to be long, ``counted`` that it is counted among the running long calls.
     """
 
     work: Callable[..., Any]
@@ -37,7 +37,7 @@ class Call:
 
 
 class _Rota:
-    """Calls by tenant; each tenant in turn gives its oldest."""
+    """Calls by tenant; each tenant in turn yields its oldest call."""
 
     def __init__(self) -> None:
         self._by_tenant: OrderedDict[str, deque[Call]] = OrderedDict()
@@ -50,10 +50,11 @@ class _Rota:
             calls.append(call)
 
     def pop(self) -> Call | None:
-        """The next call that somebody waits for."""
+        """Return the next call that is not abandoned; None if there is none."""
         while self._by_tenant:
             tenant, calls = self._by_tenant.popitem(last=False)
             call = calls.popleft()
+            # A tenant with further calls goes to the end of the line.
             if calls:
                 self._by_tenant[tenant] = calls
             if not call.abandoned.is_set():
@@ -65,12 +66,12 @@ class _Rota:
 
 
 class RequestQueue:
-    """Calls that wait, and how many long ones run. Safe to use from all threads of a pool.
+    """Waiting calls, and the count of running ones. Safe to use from all threads of a pool.
 
     Parameters
     ----------
     max_long : int
-        Long calls that run at once, at most.
+        Maximum number of long calls that run at once.
     """
 
     def __init__(self, max_long: int) -> None:
@@ -80,18 +81,18 @@ class RequestQueue:
         self._running = self._running_long = 0
         self._closed = False
 
-    def put(self, call: Call) -> None:
+    def add(self, call: Call) -> None:
         """Queue a new call."""
         with self._changed:
             self._new.append(call)
             self._changed.notify()
 
     def take(self, timeout_s: float) -> Call | None:
-        """The next call that may begin; None where there is none for so long, or the queue is closed."""
+        """Wait for the next call that may start; return None at the timeout or if the queue is closed."""
         latest = time.monotonic() + timeout_s
         with self._changed:
             while not self._closed:
-                call = self._next()
+                call = self._pop_next()
                 if call is not None:
                     self._running += 1
                     return call
@@ -102,12 +103,12 @@ class RequestQueue:
         return None
 
     def finish(self, call: Call) -> None:
-        """The call has ended, however."""
+        """Note that a call has ended, with or without an answer."""
         with self._changed:
-            self._leave(call)
+            self._remove_running(call)
 
     def admit_as_long(self, call: Call) -> bool:
-        """Count a running call as long; False where as many run as may, and the call is to give its process up."""
+        """Count a running call as long; return False if the bound is reached and the call must release its process."""
         with self._changed:
             call.long = True
             if self._running_long >= self._max_long:
@@ -117,20 +118,20 @@ class RequestQueue:
             return True
 
     def put_back(self, call: Call) -> None:
-        """Let a call that has given its process up wait for the turn of a long one."""
+        """Queue a call that has released its process among the long calls, first of its tenant."""
         with self._changed:
-            self._leave(call)
+            self._remove_running(call)
             self._long.append(call, first=True)
             self._changed.notify()
 
     def close(self) -> None:
-        """Give out nothing more."""
+        """Give out no further calls."""
         with self._changed:
             self._closed = True
             self._changed.notify_all()
 
-    def counts(self) -> dict[str, int]:
-        """Calls by their state, for the metrics."""
+    def count_calls(self) -> dict[str, int]:
+        """Return the number of calls by state, for the metrics."""
         with self._changed:
             return {
                 "running": self._running - self._running_long,
@@ -139,7 +140,7 @@ class RequestQueue:
                 "waiting_long": len(self._long),
             }
 
-    def _leave(self, call: Call) -> None:
+    def _remove_running(self, call: Call) -> None:
         self._running -= 1
         call.running = False
         if call.counted:
@@ -147,8 +148,8 @@ class RequestQueue:
             call.counted = False
         self._changed.notify()
 
-    def _next(self) -> Call | None:
-        # Long ones first: they leave the other processes to new ones, so that neither sort starves.
+    def _pop_next(self) -> Call | None:
+        # Long calls first: their bound leaves the other processes to new calls, so neither sort starves.
         if self._running_long < self._max_long:
             call = self._long.pop()
             if call is not None:

@@ -1,7 +1,7 @@
-"""The threads of a pool, each with a process that does one call after the other within limits.
+"""The threads of a pool, each with a process that executes one call at a time within limits.
 
-A process is killed where its call takes too long or too much memory, or nobody waits for the call any more: native code
-cannot be stopped otherwise. The next call gets another process.
+A process is killed if its call exceeds its limits of time or memory, or if the call is abandoned: native code cannot be
+stopped otherwise. The next call gets another process.
 """
 
 from __future__ import annotations
@@ -20,56 +20,56 @@ from typing import Any, Literal
 
 import structlog
 
-from service.jobs.processes.parent_death import tell_children
-from service.jobs.processes.request_process import serve_calls, spent_seconds
+from service.jobs.processes.parent_death import export_parent_pid
+from service.jobs.processes.request_process import read_cpu_seconds, serve_calls
 from service.jobs.processes.request_queue import Call, RequestQueue
 
-START_S = 300.0
-"""How long a process may take to start: where nothing is compiled yet, that is a minute."""
+START_TIMEOUT_S = 300.0
+"""Time limit for the start of a process, seconds; with no kernel compiled yet it takes a minute."""
 
 COMPILE_S = 120.0
-"""What a call may take more, once, where it compiles kernels that nobody has needed before."""
+"""Extra time for a call, once, if it compiles kernels that were never needed before, seconds."""
 
 IDLE_S = 600.0
-"""After how long without a call a process ends that was not forked: it shares no memory with others."""
+"""Idle time after which a spawned process ends, seconds: unlike a forked one it shares no memory with others."""
 
 LONG_PRIORITY = 5
-"""By how much a process is nicer while it does a long call: short ones have the processors first."""
+"""Increase of a process's niceness during a long call, which lets short calls have the processors first."""
 
 _PERIOD_S, _STOP_S = 0.02, 5.0
-"""How often it is looked whether a call is over its limits or abandoned; how long the end of a process may take."""
+"""Period of the check of a call's limits, and time limit for the end of a process, seconds."""
 
 Limit = Literal["time", "memory"]
 
 log = structlog.get_logger(__name__)
 
 
-class Lost(Exception):
-    """There is no process to do it, for a reason that is not its own."""
+class ProcessLost(Exception):
+    """No process could execute the call, for a reason other than the call itself."""
 
 
-class Gone(Exception):
-    """The client has gone away."""
+class ClientGone(Exception):
+    """The client has disconnected."""
 
 
 class GivenUp(Exception):
-    """The call took more ``of`` something than it may."""
+    """The call exceeded its limit ``of`` time or memory."""
 
     def __init__(self, of: Limit) -> None:
-        super().__init__(f"it takes more {of} than it may")
+        super().__init__(f"the call exceeds its limit of {of}")
         self.of = of
 
 
-class _Outstayed(Exception):
-    """The call is long, and as many long ones run as may."""
+class _LongCallRefused(Exception):
+    """The call turned out to be long while the maximum number of long calls run."""
 
 
 @dataclass(frozen=True)
 class Limits:
-    """What a call may take.
+    """Limits of a call.
 
-    ``wall_s`` bounds it by the clock, ``cpu_s`` by the processor time of its process, which tells the same on a busy
-    machine. A call that has taken more than ``short_s`` of processor time is long; None: all calls are alike.
+    ``wall_s`` bounds its duration, ``cpu_s`` the processor time of its process, which does not depend on the load of
+    the machine. A call with more than ``short_s`` seconds of processor time is long; None makes no distinction.
     """
 
     wall_s: float
@@ -79,10 +79,10 @@ class Limits:
 
 @dataclass(frozen=True)
 class ProcessStart:
-    """How the processes of a pool are started.
+    """Start of the processes of a pool.
 
-    ``forks`` tells whether they are forked from a process that has the libraries already
-    (:mod:`multiprocessing.forkserver`), which takes some hundredths of a second; else they are started anew.
+    ``forks`` returns whether they are forked from a process that has loaded the libraries
+    (:mod:`multiprocessing.forkserver`), which takes some hundredths of a second; else they are spawned.
     """
 
     prepare: Callable[..., Any]
@@ -90,29 +90,30 @@ class ProcessStart:
     forks: Callable[[], bool]
 
     def start_process(self, name: str) -> tuple[BaseProcess, Connection]:
-        """A process that has begun to prepare itself, and the pipe to it."""
-        tell_children()
-        # A child that is forked from the server itself would inherit its threads' locks and open connections.
+        """Start a process, which prepares itself after the return, and return it with the pipe to it."""
+        export_parent_pid()
+        # A child forked from the server itself would inherit the locks of its threads and its open connections.
         context: Any = get_context("forkserver" if self.forks() else "spawn")
         ours, theirs = context.Pipe()
         process = context.Process(
             target=serve_calls, args=(theirs, self.prepare, self.settings), name=name, daemon=True
         )
         process.start()
+        # With this end closed here, the death of the process shows as the end of the pipe.
         theirs.close()
         return process, ours
 
 
 class _Clock:
-    """What a call has taken of its limits."""
+    """Time that a call has used of its limits."""
 
     def __init__(self, pid: int, limits: Limits) -> None:
         self._pid, self._limits = pid, limits
-        self._began, self._spent = time.monotonic(), spent_seconds(pid)
+        self._began, self._spent = time.monotonic(), read_cpu_seconds(pid)
         self._granted = 0.0
 
-    def grant_compilation(self) -> None:
-        """Allow more, once."""
+    def extend_for_compilation(self) -> None:
+        """Extend the limits by the time for compilation, once."""
         self._granted = COMPILE_S
 
     @property
@@ -122,24 +123,24 @@ class _Clock:
 
     @property
     def over(self) -> bool:
-        """Whether the limits are passed."""
+        """Whether a limit is exceeded."""
         if time.monotonic() - self._began > self._limits.wall_s + self._granted:
             return True
         return self._limits.cpu_s is not None and self.seconds > self._limits.cpu_s + self._granted
 
     @property
     def long(self) -> bool:
-        """Whether the call is no short one."""
+        """Whether the call exceeds the time of a short call."""
         return self._limits.short_s is not None and self.seconds > self._limits.short_s
 
     @property
     def seconds(self) -> float:
-        """Processor time so far."""
-        return spent_seconds(self._pid) - self._spent
+        """Processor time of the call, seconds."""
+        return read_cpu_seconds(self._pid) - self._spent
 
 
 class Hand(threading.Thread):
-    """A thread that has a process, which dies with it (:func:`service.jobs.processes.parent_death.die_with`)."""
+    """A thread with a process that ends with it (:func:`service.jobs.processes.parent_death.bind_to_parent`)."""
 
     def __init__(self, name: str, queue: RequestQueue, start: ProcessStart, limits: Limits) -> None:
         super().__init__(name=name, daemon=True)
@@ -149,81 +150,82 @@ class Hand(threading.Thread):
         self._queue, self._process_start, self._limits = queue, start, limits
 
     def begin(self) -> None:
-        """Start the thread, if that has not been done."""
+        """Start the thread unless it is running."""
         if self.ident is None:
             self.start()
 
     def run(self) -> None:
-        """Do calls until told to stop."""
+        """Execute calls until a stop is requested."""
         while not self.stopping.is_set():
             self._start_ahead()
             call = self._queue.take(IDLE_S)
             if call is None:
                 if not self._process_start.forks():
-                    self._end_process()
+                    self._terminate_process()
             elif self._begin_call(call):
-                self._do(call)
+                self._execute_call(call)
             else:
                 self._queue.finish(call)
-        self._end_process()
+        self._terminate_process()
 
     def _begin_call(self, call: Call) -> bool:
-        """Whether somebody waits for the call, so that it is to be done; the future of one begun again runs already."""
+        """Mark the call as running; return False if it is abandoned. The future of a restarted call runs already."""
         if call.abandoned.is_set():
             return False
         call.running = call.future.running() or call.future.set_running_or_notify_cancel()
         return call.running
 
-    def _do(self, call: Call) -> None:
+    def _execute_call(self, call: Call) -> None:
         try:
-            answer = self._answer(call)
-        except _Outstayed:
+            answer = self._compute_answer(call)
+        except _LongCallRefused:
             self._queue.put_back(call)
             return
-        except Exception as error:  # whatever it is: the future raises it in the request, and the thread goes on
+        except Exception as error:  # the future raises any error in the request, and the thread goes on
             self._queue.finish(call)
             _settle(call.future, error=error)
             return
         self._queue.finish(call)
         _settle(call.future, answer=answer)
 
-    def _answer(self, call: Call) -> Any:
-        pipe = self._give(call) or self._give(call)
+    def _compute_answer(self, call: Call) -> Any:
+        # A second try, because the process may have died idle just before the first.
+        pipe = self._send_call(call) or self._send_call(call)
         if pipe is None or self.process is None or self.process.pid is None:
-            raise Lost(f"the process {self.name} takes no call")
+            raise ProcessLost(f"the process {self.name} takes no call")
         clock = _Clock(self.process.pid, self._limits)
         slowed = False
         try:
             if call.long:
-                slowed = self._slow_down()
+                slowed = self._reduce_priority()
             while True:
                 slowed = self._wait(pipe, call, clock) or slowed
                 kind, answer = _receive(pipe)
                 if kind == "compiling":
-                    clock.grant_compilation()
+                    clock.extend_for_compilation()
                     continue
                 if kind == "bytes":
                     answer = pipe.recv_bytes()
                 break
         except (EOFError, OSError):
-            # Native code that gets no memory ends its process.
+            # Native code that is refused memory ends its process.
             kind, answer = "raised", MemoryError()
-        except (Gone, GivenUp, _Outstayed):
-            self._end_process()
+        except (ClientGone, GivenUp, _LongCallRefused):
+            self._terminate_process()
             raise
         if isinstance(answer, MemoryError):
-            self._end_process()
+            self._terminate_process()
             log.warning("a call was given up", of="memory", work=call.work.__name__)
             raise GivenUp("memory")
         if slowed:
-            # Only a privileged server could make it as quick again.
-            self._end_process()
+            # Only a privileged server could raise its priority again.
+            self._terminate_process()
         if kind == "raised":
             raise answer
         return answer
 
     def _wait(self, pipe: Connection, call: Call, clock: _Clock) -> bool:
-        """Wait for a message of a call within its limits; whether the call was found to be long and slowed down."""
+        """Wait within the limits for a message of a call; return whether its priority was reduced as a long call."""
         slowed = False
         while not wait([pipe], timeout=_PERIOD_S):
             self._require_wanted(call)
@@ -232,50 +234,50 @@ class Hand(threading.Thread):
                 raise GivenUp("time")
             if not call.long and clock.long:
                 if not self._queue.admit_as_long(call):
-                    raise _Outstayed
-                # Whoever compiles holds a process that others want, the longer the slower it is.
-                slowed = not clock.compiles and self._slow_down()
+                    raise _LongCallRefused
+                # A compilation is not slowed down: it would only occupy the process longer.
+                slowed = not clock.compiles and self._reduce_priority()
         return slowed
 
-    def _slow_down(self) -> bool:
-        """Let processes with short calls go first."""
+    def _reduce_priority(self) -> bool:
+        """Reduce the priority of the process in favour of short calls."""
         assert self.process is not None
         assert self.process.pid is not None
-        with suppress(OSError):  # it has ended just now
+        with suppress(OSError):  # the process may just have ended
             os.setpriority(os.PRIO_PROCESS, self.process.pid, os.getpriority(os.PRIO_PROCESS, 0) + LONG_PRIORITY)
         return True
 
     def _require_wanted(self, call: Call | None) -> None:
         if self.stopping.is_set() or (call is not None and call.abandoned.is_set()):
-            raise Gone
+            raise ClientGone
 
     def _start_ahead(self) -> None:
-        """Have a forked process wait for the next call: it costs little, and the call need not wait for it."""
+        """Fork a process ahead of the next call: it costs little, and the call need not wait for it."""
         if not self._process_start.forks():
             return
         try:
-            self._ready_pipe(None)
-        except Gone:  # the pool stops
+            self._ensure_pipe(None)
+        except ClientGone:  # the pool stops
             pass
-        except (Lost, OSError):
+        except (ProcessLost, OSError):
             log.exception("a process could not be started ahead", process=self.name)
 
-    def _give(self, call: Call) -> Connection | None:
-        """The pipe to the process that has taken the call; None where it has died idle, just now."""
-        pipe = self._ready_pipe(call)
+    def _send_call(self, call: Call) -> Connection | None:
+        """Send a call and return the pipe of the process that took it; None if the process had died idle."""
+        pipe = self._ensure_pipe(call)
         try:
             pipe.send((call.work, call.args))
             self._expect(pipe, call, self._limits.wall_s)
         except (EOFError, OSError):
-            self._end_process()
+            self._terminate_process()
             return None
-        except (Gone, GivenUp):
-            self._end_process()
+        except (ClientGone, GivenUp):
+            self._terminate_process()
             raise
         return pipe
 
     def _expect(self, pipe: Connection, call: Call | None, limit_s: float) -> None:
-        """Wait for the message that a process is ready, or has taken the call; ``EOFError`` where it has ended."""
+        """Wait for the message that a process is ready or has taken the call; ``EOFError`` if it has ended."""
         latest = time.monotonic() + limit_s
         while not wait([pipe], timeout=_PERIOD_S):
             self._require_wanted(call)
@@ -283,24 +285,24 @@ class Hand(threading.Thread):
                 raise GivenUp("time")
         _receive(pipe)
 
-    def _ready_pipe(self, call: Call | None) -> Connection:
-        """The pipe to a process that waits for calls; a new one where there is none, or where it has died idle."""
+    def _ensure_pipe(self, call: Call | None) -> Connection:
+        """Return the pipe of a process that waits for calls; start a process if there is none or it died idle."""
         if self.process is not None and not self.process.is_alive():
-            self._end_process()
+            self._terminate_process()
         if self._pipe is not None:
             return self._pipe
         self.process, self._pipe = self._process_start.start_process(self.name)
         try:
-            self._expect(self._pipe, call, START_S)
-        except Gone:
-            self._end_process()
+            self._expect(self._pipe, call, START_TIMEOUT_S)
+        except ClientGone:
+            self._terminate_process()
             raise
         except (EOFError, GivenUp) as error:
-            self._end_process()
-            raise Lost(f"the process {self.name} did not start") from error
+            self._terminate_process()
+            raise ProcessLost(f"the process {self.name} did not start") from error
         return self._pipe
 
-    def _end_process(self) -> None:
+    def _terminate_process(self) -> None:
         process, pipe = self.process, self._pipe
         self.process = self._pipe = None
         if pipe is not None:
@@ -318,7 +320,7 @@ def _receive(pipe: Connection) -> Any:
 
 
 def _settle(future: Future[Any], *, answer: Any = None, error: Exception | None = None) -> None:
-    """Put an end to a future that the last client may have cancelled."""
+    """Set the outcome of a running future."""
     if error is not None:
         future.set_exception(error)
     else:

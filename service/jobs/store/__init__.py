@@ -1,1 +1,1 @@
-"""Tables of jobs: schema, states, statements, admission and the cache of finished jobs."""
+"""The tables of jobs: schema, states, statements, admission and the cache of finished jobs."""

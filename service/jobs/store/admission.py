@@ -1,4 +1,4 @@
-"""How something new comes into the store: once, however often it is sent, and surely, whatever breaks in between."""
+"""Inserts into the store: each request is stored once, even if it is repeated or the connection breaks."""
 
 from __future__ import annotations
 
@@ -10,48 +10,47 @@ from typing import Any, TypeVar
 from sqlalchemy import ColumnElement, Connection, Engine, Table, func, select
 from sqlalchemy.exc import IntegrityError, SQLAlchemyError
 
-from service.jobs.store.database import QUEUE_LOCK, unreachable
+from service.jobs.store.database import QUEUE_LOCK, is_unreachable
 
 SETTLE_S = 5.0
-"""How long something new is tried to be stored when the database breaks off in the middle, so that nobody knows
-whether."""
+"""Time for which an insert is retried after the connection broke with its outcome unknown, seconds."""
 
 _SETTLE_PERIOD_S = 0.2
-"""Pause between two such attempts; a database that restarts needs seconds."""
+"""Pause between two such attempts, seconds; a database that restarts needs seconds."""
 
 T = TypeVar("T")
 
 
 @dataclass(frozen=True, slots=True)
 class Repeatable:
-    """A request that may come again: the key that its client gave it, and a hash of what it says."""
+    """A request that may be repeated: the key chosen by its client, and a hash of its content."""
 
     key: str
     request_hash: str
 
 
 class QueueFull(Exception):
-    """There are as many queued jobs of the tenant as there may be."""
+    """The tenant has the maximum number of queued jobs."""
 
 
 class KeyReused(Exception):
-    """A key came with another request than the one that it was first used for; carries the id of what that one made."""
+    """A key was reused for a different request; carries the id of the job or batch that the first one created."""
 
     def __init__(self, made: str) -> None:
         self.job_id = made
         super().__init__(f"the key was used for {made}")
 
 
-def surely(engine: Engine, there: Callable[[Connection], bool], insert: Callable[[Connection], bool]) -> None:
-    """Insert in one transaction.
+def insert_confirmed(engine: Engine, there: Callable[[Connection], bool], insert: Callable[[Connection], bool]) -> None:
+    """Insert a row in one transaction, and confirm it if the connection breaks.
 
-    A database that breaks off before it has answered may have stored what is new or not. Then it is asked again whether
-    it is ``there``, for :data:`SETTLE_S` seconds.
+    If the connection breaks before the answer, the row may or may not be stored. The database is then queried with
+    ``there`` and the insert repeated if necessary, for :data:`SETTLE_S` seconds.
 
     Raises
     ------
     QueueFull
-        When ``insert`` says that it has not.
+        If ``insert`` returns False.
     """
     asked_at: float | None = None
     broken = False
@@ -63,31 +62,31 @@ def surely(engine: Engine, there: Callable[[Connection], bool], insert: Callable
                     raise QueueFull
             return
         except SQLAlchemyError as error:
-            # Refused before anything was asked: nothing is stored, and the client may know at once.
+            # Without a connection nothing can have been stored: the client gets the error at once.
             broken = broken or getattr(error, "connection_invalidated", False)
-            if asked_at is None or not (broken and unreachable(error)) or time.monotonic() > asked_at + SETTLE_S:
+            if asked_at is None or not (broken and is_unreachable(error)) or time.monotonic() > asked_at + SETTLE_S:
                 raise
-            time.sleep(_SETTLE_PERIOD_S)  # the database is being started again
+            time.sleep(_SETTLE_PERIOD_S)  # the database may be restarting
 
 
-def one_after_the_other(connection: Connection, tenant: str) -> None:
-    """Let nobody else who asks for this insert jobs of the tenant before this transaction is at its end.
+def serialize_inserts(connection: Connection, tenant: str) -> None:
+    """Lock the tenant's inserts for all other callers of this function until this transaction ends.
 
-    SQLite has one writer at a time. PostgreSQL has many, who do not see each other's rows before the commit.
+    SQLite has one writer at a time. PostgreSQL has many, which do not see each other's rows before the commit.
     """
     if connection.dialect.name == "postgresql":
         connection.execute(select(func.pg_advisory_xact_lock(QUEUE_LOCK, func.hashtext(tenant))))
 
 
-def once(make: Callable[[], T], made: Callable[[], T | None]) -> tuple[T, bool]:
-    """What ``make`` stores under a key, or what the same request has ``made`` under it already; and whether it is new.
+def make_once(make: Callable[[], T], made: Callable[[], T | None]) -> tuple[T, bool]:
+    """Return the row that ``make`` stores under a key, or the one ``made`` finds there, and whether it is new.
 
     Raises
     ------
     KeyReused
-        By ``made``, when another request of the tenant has used the key.
+        By ``made``, if a different request of the tenant has used the key.
     QueueFull
-        When it would be new, and there is no room.
+        If the row is new and the queue is full.
     """
     while True:
         try:
@@ -98,18 +97,18 @@ def once(make: Callable[[], T], made: Callable[[], T | None]) -> tuple[T, bool]:
                 return earlier, False
             if isinstance(refusal, QueueFull):
                 raise
-            # What held the key has been removed since.
+            # The row that held the key has been removed since; try again.
 
 
-def made_by(
+def find_earlier(
     engine: Engine, table: Table, columns: Iterable[ColumnElement[Any]], tenant: str, repeatable: Repeatable
 ) -> Sequence[Any] | None:
-    """The columns of what the same request has made in the table already; None where it has made nothing.
+    """Return the columns of the row that the same request created before; None if there is none.
 
     Raises
     ------
     KeyReused
-        When another request of the tenant has used the key.
+        If a different request of the tenant has used the key.
     """
     query = select(*columns, table.c.id, table.c.request_hash).where(
         table.c.tenant == tenant, table.c.idempotency_key == repeatable.key

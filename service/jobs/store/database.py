@@ -1,4 +1,4 @@
-"""The connection to the job store, and the upgrade of its tables."""
+"""Connections to the job store, and the upgrade of its tables."""
 
 from __future__ import annotations
 
@@ -14,28 +14,28 @@ from sqlalchemy import URL, Connection, Engine, NullPool, create_engine, event, 
 from sqlalchemy.exc import ArgumentError, DBAPIError, InterfaceError, OperationalError, SQLAlchemyError, TimeoutError
 
 BUSY_TIMEOUT_S = 10.0
-"""How long a writer waits for another one. A write takes a millisecond, so this is never reached in good health."""
+"""Time that a writer waits for another one, seconds. A write takes a millisecond, so healthy systems never reach it."""
 
 
 POOL_SIZE = 10
-"""Connections to PostgreSQL that a server keeps; under load it takes as many again. PostgreSQL has 100 by default."""
+"""Number of PostgreSQL connections that a server keeps, doubled under load. PostgreSQL allows 100 by default."""
 
 UPGRADE_LOCK, QUEUE_LOCK = 0x6D656368, 0x6D656369
-"""The numbers of our advisory locks in PostgreSQL; any that nobody else in the database uses."""
+"""Keys of our advisory locks in PostgreSQL; arbitrary, but unique in the database."""
 
-UNREACHABLE = (OperationalError, InterfaceError, TimeoutError)
-"""What SQLAlchemy raises when the database is out of reach, is starting or stopping, or has no connection left."""
+UNREACHABLE_ERRORS = (OperationalError, InterfaceError, TimeoutError)
+"""Errors of SQLAlchemy for a database that is unreachable, starting, stopping, or out of connections."""
 
 RETRY_PERIOD_S = 0.5
-"""Pause before a write to a store that is out of reach is tried again."""
+"""Pause before a write to an unreachable store is retried, seconds."""
 
 P = ParamSpec("P")
 T = TypeVar("T")
 
 log = structlog.get_logger(__name__)
 
-# A host that vanishes without a word is noticed within 10 s; otherwise it would take the kernel a quarter of an hour.
-_POSTGRESQL = {
+# A host that vanishes silently is noticed within 10 s; with the kernel's defaults it would take a quarter of an hour.
+_POSTGRESQL_OPTIONS = {
     "application_name": "mechsynth",
     "connect_timeout": 3,
     "options": "-c synchronous_commit=on",
@@ -47,34 +47,34 @@ _POSTGRESQL = {
 
 
 class LaterTables(Exception):
-    """The tables are those of a later version, which this one cannot know; the message is for the operator."""
+    """The tables belong to a later version; the message is for the operator."""
 
 
 def connect(url: str, *, durable: bool) -> Engine:
-    """An engine for the store at ``url``.
+    """Create an engine for the store at ``url``.
 
-    ``durable`` decides what SQLite does at a commit. With ``synchronous=FULL`` the log is flushed to the disk each
-    time, so that a commit survives a loss of power; with ``NORMAL`` it is not, and a loss of power (not of a
-    process) may take the last commits back, though never break the file. The server is durable: a client that
-    was told 202 relies on it. A worker is not: the worst it can lose is a finished result, and then the job is
-    found unfinished and computed anew. A flush costs 0.3 ms on a virtual disk and up to 10 ms on a real one, so one
-    flush a job instead of three is worth the distinction.
+    ``durable`` sets the behaviour of SQLite at a commit. With ``synchronous=FULL`` it flushes the log to disk, so that
+    a commit survives a power failure. With ``NORMAL`` it does not: a power failure (not the death of a process) may
+    undo the last commits, but never corrupts the file. The server is durable, because a client relies on the answer
+    202. A worker is not: at worst a finished result is lost, and the job is computed again. A flush costs 0.3 ms on a
+    virtual disk and up to 10 ms on a real one, so one flush per job instead of three is worth the distinction.
 
-    PostgreSQL always waits for the disk. Its connections are looked at before they are used, so that those which a
-    restart of the database has broken are replaced by new ones.
+    PostgreSQL always waits for the disk. Its connections are tested before use, so that those broken by a restart of
+    the database are replaced.
     """
     parsed = _with_driver(make_url(url))
     if parsed.get_backend_name() == "postgresql":
         return create_engine(
             parsed,
             pool_pre_ping=True,
+            # Worker processes write one thing at a time and need few connections.
             pool_size=POOL_SIZE if durable else 2,
             max_overflow=POOL_SIZE,
             pool_timeout=BUSY_TIMEOUT_S,
-            connect_args=_POSTGRESQL,
+            connect_args=_POSTGRESQL_OPTIONS,
         )
     if parsed.get_backend_name() != "sqlite":
-        raise ArgumentError("the database has to be SQLite or PostgreSQL")
+        raise ArgumentError("the database must be SQLite or PostgreSQL")
     if parsed.database:
         Path(parsed.database).parent.mkdir(parents=True, exist_ok=True)
     engine = create_engine(parsed, pool_size=8, max_overflow=32, connect_args={"timeout": BUSY_TIMEOUT_S})
@@ -88,13 +88,13 @@ def connect(url: str, *, durable: bool) -> Engine:
     return engine
 
 
-def sqlite_file(url: str) -> Path | None:
-    """The file of a SQLite store, links followed; None for other databases.
+def find_sqlite_file(url: str) -> Path | None:
+    """Return the file of a SQLite store with links resolved; None for other databases.
 
     Raises
     ------
     ArgumentError
-        For what is no database URL, and for a database in memory, which the workers could not share.
+        If the URL is invalid, or names a database in memory, which the workers could not share.
     """
     parsed = make_url(url)
     if parsed.get_backend_name() != "sqlite":
@@ -103,39 +103,39 @@ def sqlite_file(url: str) -> Path | None:
     if path.startswith("file:"):
         path = unquote(urlsplit(path).path)
     if path in ("", ":memory:") or "mode=memory" in url:
-        raise ArgumentError("a database in memory cannot be shared by the server and its workers")
+        raise ArgumentError("the server and its workers cannot share a database in memory")
     file = Path(path).resolve()
     if file.is_dir():
-        raise ArgumentError("the database is a folder")
+        raise ArgumentError("the path of the database is a folder")
     return file
 
 
-def listening(url: str) -> Engine:
-    """An engine for one connection that stays open to hear what PostgreSQL has to tell."""
-    return create_engine(_with_driver(make_url(url)), poolclass=NullPool, connect_args=_POSTGRESQL)
+def create_listener_engine(url: str) -> Engine:
+    """Create an engine for one connection that stays open for PostgreSQL notifications."""
+    return create_engine(_with_driver(make_url(url)), poolclass=NullPool, connect_args=_POSTGRESQL_OPTIONS)
 
 
-def unreachable(error: BaseException) -> bool:
-    """Whether an error says that the store does not answer, and not that what it was asked is wrong.
+def is_unreachable(error: BaseException) -> bool:
+    """Return whether an error means that the store does not answer, as opposed to a wrong statement.
 
-    What was being written may or may not have been stored.
+    The outcome of a write that failed like this is unknown.
     """
-    return isinstance(error, UNREACHABLE) or (isinstance(error, DBAPIError) and error.connection_invalidated)
+    return isinstance(error, UNREACHABLE_ERRORS) or (isinstance(error, DBAPIError) and error.connection_invalidated)
 
 
-def patiently(write: Callable[P, T], *args: P.args, **options: P.kwargs) -> T:
-    """Write to the store, and wait for it while it is out of reach: what is to be written would be lost.
+def write_when_reachable(write: Callable[P, T], *args: P.args, **options: P.kwargs) -> T:
+    """Write to the store, retrying while it is unreachable: the data would be lost otherwise.
 
-    For writes that can be repeated where nobody knows whether they were done, since they name their claim or attempt.
+    The write must be repeatable with its outcome unknown; it is if it names its claim or attempt.
     """
     while True:
         try:
             return write(*args, **options)
         except SQLAlchemyError as error:
-            if not unreachable(error):
+            if not is_unreachable(error):
                 raise
             log.warning("the store is out of reach", error=type(error).__name__)
-            time.sleep(RETRY_PERIOD_S)  # a store that is started again needs seconds
+            time.sleep(RETRY_PERIOD_S)  # a store that restarts needs seconds
 
 
 def _with_driver(url: URL) -> URL:
@@ -143,36 +143,36 @@ def _with_driver(url: URL) -> URL:
 
 
 def upgrade(engine: Engine, revision: str = "head") -> None:
-    """Bring the tables to a revision, the newest by default: wholly or, whatever dies on the way, not at all.
+    """Upgrade the tables to a revision, the newest by default, in one transaction: completely or not at all.
 
     Raises
     ------
     LaterTables
-        When they are past every revision that is known here.
+        If they are beyond every revision known to this version.
     """
-    # Alembic takes a tenth of a second to import, which only the server has to spend.
+    # The import of Alembic takes a tenth of a second, which only the server needs to spend.
     from alembic import command
     from alembic.config import Config
     from alembic.util import CommandError
 
     config = Config()
     config.set_main_option("script_location", str(Path(__file__).parents[1] / "migrations").replace("%", "%%"))
-    with _alone(engine) as connection:
+    with _begin_exclusive(engine) as connection:
         config.attributes["connection"] = connection
         try:
             command.upgrade(config, revision)
-        except CommandError as error:  # there is no such revision
+        except CommandError as error:  # the revision of the tables is unknown here
             raise LaterTables(
-                "the tables of the database are of a later version of mechsynth; start that one, or go back to a dump"
+                "the database tables belong to a later version of mechsynth; start that version or restore a dump"
             ) from error
 
 
 @contextmanager
-def _alone(engine: Engine) -> Iterator[Connection]:
-    """A connection in one transaction around all that is done with it, changes of tables included, and no other such.
+def _begin_exclusive(engine: Engine) -> Iterator[Connection]:
+    """Open a connection with one exclusive transaction around all its work, changes of tables included.
 
-    Servers and worker hosts may start at once, hence the lock. Python's driver of SQLite begins a transaction before a
-    change of rows only, so that each change of a table would be committed by itself: it is told to leave that to us.
+    Servers and worker hosts may start at once, hence the lock. Python's SQLite driver begins transactions only before
+    changes of rows and would commit each change of a table by itself, so its transaction control is switched off.
     """
     with engine.connect() as connection:
         if engine.dialect.name == "postgresql":

@@ -1,6 +1,6 @@
-"""Finished jobs at hand. They never change, so what was read of them once need not be read again.
+"""Cache of finished jobs, which never change and so need not be read twice.
 
-Only for a store that no other server writes to: there a job is removed by this process alone, which says so here.
+Only for a store without other servers: there only this process removes jobs, and it notifies the cache.
 """
 
 from __future__ import annotations
@@ -10,17 +10,17 @@ from collections import OrderedDict
 from service.jobs.store.schema import JobRow
 
 CAPACITY_BYTES = 8 << 20
-"""Some hundreds of jobs with their results."""
+"""Size of the cache, bytes; enough for some hundreds of jobs with their results."""
 
-_SHARE = 8
-"""A job is kept if at least so many of its size find room."""
+_MIN_CAPACITY_RATIO = 8
+"""Minimum ratio of the capacity to the size of a cached job, so that one large job cannot displace all others."""
 
-_BESIDES = 1000
-"""What a job takes besides its problem, result and error, bytes, about."""
+_OVERHEAD_BYTES = 1000
+"""Approximate size of a job without its problem, result and error, bytes."""
 
 
 class FinishedJobs:
-    """The finished jobs that were asked for last. To be used on one event loop only."""
+    """The finished jobs that were requested last. For use on one event loop only."""
 
     def __init__(self, capacity_bytes: int) -> None:
         self._capacity = capacity_bytes
@@ -30,20 +30,20 @@ class FinishedJobs:
 
     @property
     def removals(self) -> int:
-        """How often jobs have been removed; to be noted before a job is read from the store, for :meth:`keep`."""
+        """Number of removals so far; callers note it before they read a job from the store, for :meth:`keep`."""
         return self._removals
 
     def get(self, job_id: str) -> JobRow | None:
-        """The job, where it is at hand."""
+        """Return the job if it is cached."""
         job = self._jobs.get(job_id)
         if job is not None:
             self._jobs.move_to_end(job_id)
         return job
 
     def keep(self, job: JobRow, removals: int) -> None:
-        """Keep a job if it is finished, and if nothing was removed since it was read: it might have been this one."""
+        """Cache a job if it is finished and no job was removed since it was read: that might have been this one."""
         size = _size(job)
-        if not job.status.finished or removals != self._removals or size * _SHARE > self._capacity:
+        if not job.status.finished or removals != self._removals or size * _MIN_CAPACITY_RATIO > self._capacity:
             return
         self._drop(job.id)
         self._jobs[job.id] = job
@@ -51,8 +51,8 @@ class FinishedJobs:
         while self._held > self._capacity:
             self._drop(next(iter(self._jobs)))
 
-    def removed(self, job_id: str | None = None) -> None:
-        """A job was removed from the store, or some that are not known by name."""
+    def note_removal(self, job_id: str | None = None) -> None:
+        """Note that a job was removed from the store; None stands for unknown jobs and clears the cache."""
         self._removals += 1
         if job_id is not None:
             self._drop(job_id)
@@ -67,4 +67,4 @@ class FinishedJobs:
 
 
 def _size(job: JobRow) -> int:
-    return len(job.problem) + len(job.result or "") + len(job.error or "") + _BESIDES
+    return len(job.problem) + len(job.result or "") + len(job.error or "") + _OVERHEAD_BYTES

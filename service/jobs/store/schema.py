@@ -1,4 +1,4 @@
-"""The table of jobs, and a row of it as a value."""
+"""The tables of jobs, batches, samples and worker hosts, and value classes of their rows."""
 
 from __future__ import annotations
 
@@ -11,19 +11,19 @@ from sqlalchemy import Boolean, Column, Float, Index, Integer, MetaData, String,
 from sqlalchemy.ext.compiler import compiles
 from sqlalchemy.sql.expression import FunctionElement
 
-from service.jobs.store.states import UNFINISHED, Cost, Status
+from service.jobs.store.states import UNFINISHED_STATES, Cost, Status
 
 metadata = MetaData()
 
-TENANT_LENGTH = 100
-"""Longest name of a tenant."""
+MAX_TENANT_LENGTH = 100
+"""Maximum length of a tenant's name, characters."""
 
-# Times are text of one width ("2026-01-31T12:00:00.000000Z"): the same on every database, sorted as they are, and what
-# the API shows. How long a running job is taken for alive (due_at) goes by the clock of the database instead, since
-# those of several machines differ: seconds since 1970, see StoreClock. Problem, result and error are JSON as text,
-# because nothing ever looks inside them here. Nothing reads queued_at; processes of the version before write it. A row
-# with a batch is no job that a client has posted but a share of that batch, its problem the range that is left; digest
-# is that of the problem and of the solvers, where the job has an answer that equal problems can be given.
+# Times are text of fixed width ("2026-01-31T12:00:00.000000Z"): the same on every database, sortable, and as the API
+# shows them. The expiry of a lease (due_at) uses the clock of the database instead, because the clocks of several
+# machines differ: seconds since 1970, see StoreClock. Problem, result and error are JSON text, because no query reads
+# inside them. queued_at is never read; processes of the previous version write it. A row with a batch is not a client's
+# job but a share of that batch, and its problem is the remaining range of samples. digest is the hash of the problem
+# and the solvers, set if the job has an answer that equal problems can reuse.
 jobs = Table(
     "jobs",
     metadata,
@@ -44,7 +44,7 @@ jobs = Table(
     Column("revision", Integer, nullable=False),
     Column("idempotency_key", String(200)),
     Column("request_hash", String(64)),
-    Column("tenant", String(TENANT_LENGTH), nullable=False, server_default=""),
+    Column("tenant", String(MAX_TENANT_LENGTH), nullable=False, server_default=""),
     Column("claim", String(26)),
     Column("queued_at", Float, nullable=False, server_default="0"),
     Column("due_at", Float, nullable=False, server_default="0"),
@@ -59,23 +59,28 @@ jobs = Table(
     Index("jobs_by_idempotency_key", "tenant", "idempotency_key", unique=True),
 )
 Index(
-    "jobs_by_due_at", jobs.c.due_at, postgresql_where=jobs.c.status.in_([s.value for s in sorted(UNFINISHED)])
+    "jobs_by_due_at", jobs.c.due_at, postgresql_where=jobs.c.status.in_([s.value for s in sorted(UNFINISHED_STATES)])
 ).ddl_if("postgresql")  # fmt: skip
 
-# What is queued is asked for many times, and is a small part of the table.
-QUEUED = text("status = 'queued'")
-"""As the indexes of queued jobs state it. A database uses them only where a query says the same."""
+# Queued jobs are queried often and are a small part of the table, hence the partial indexes.
+QUEUED_CONDITION = text("status = 'queued'")
+"""Condition of the partial indexes of queued jobs. A database uses them only for queries with the same condition."""
 
 for _name, _columns in (("turn", ("cost", "turn", "id")), ("tenant", ("tenant", "cost", "batch", "turn"))):
-    Index(f"jobs_queued_by_{_name}", *(jobs.c[c] for c in _columns), sqlite_where=QUEUED, postgresql_where=QUEUED)
+    Index(
+        f"jobs_queued_by_{_name}",
+        *(jobs.c[c] for c in _columns),
+        sqlite_where=QUEUED_CONDITION,
+        postgresql_where=QUEUED_CONDITION,
+    )
 
-# Many problems at once: what was stated and how far it is, which is shown, and the plan, the values of all problems,
-# which only their answers and the table need. Both are JSON. One that is removed is none; it is about to vanish.
+# Batches: the client's request and the counts, which the API shows, and the plan, the values of all samples, which only
+# the solution and the table need. Both texts are JSON. A row marked as removed is hidden and about to be deleted.
 batches = Table(
     "batches",
     metadata,
     Column("id", String(26), primary_key=True),
-    Column("tenant", String(TENANT_LENGTH), nullable=False),
+    Column("tenant", String(MAX_TENANT_LENGTH), nullable=False),
     Column("kind", String(40), nullable=False),
     Column("label", String(200)),
     Column("status", String(10), nullable=False),
@@ -96,15 +101,15 @@ batches = Table(
     Index("batches_by_idempotency_key", "tenant", "idempotency_key", unique=True),
 )
 
-# The problems of batches that have ended. They are known by their batch and number, and to clients by their id. One
-# that is the same as another of its batch has the answer of that one, by its number (same_as), and no digest: by a
-# digest a batch has few answers. What is small comes before what is large, which a database need not read then.
+# Ended samples of batches, identified by batch and number, for clients by their id. A sample equal to another one of
+# its batch refers to that one's answer by its number (same_as) and has no digest, so that a batch has few rows per
+# digest. Small columns come before large ones, which a database then need not read.
 samples = Table(
     "samples",
     metadata,
     Column("id", String(26), nullable=False),
     Column("batch", String(26), primary_key=True),
-    Column("tenant", String(TENANT_LENGTH), nullable=False),
+    Column("tenant", String(MAX_TENANT_LENGTH), nullable=False),
     Column("number", Integer, primary_key=True),
     Column("status", String(10), nullable=False),
     Column("cached", Boolean, nullable=False),
@@ -118,13 +123,13 @@ samples = Table(
     Index("samples_by_id", "id", unique=True),
 )
 
-# Single jobs have no batch, and what has no answer of its own has no digest.
-_BY_DIGEST = [samples.c.tenant, samples.c.digest, samples.c.batch]
-for _name, _key in (("batch", [jobs.c.batch]), ("digest", [jobs.c.tenant, jobs.c.digest]), ("digest", _BY_DIGEST)):
+# Partial indexes: single jobs have no batch, and rows without an answer of their own have no digest.
+_DIGEST_COLUMNS = [samples.c.tenant, samples.c.digest, samples.c.batch]
+for _name, _key in (("batch", [jobs.c.batch]), ("digest", [jobs.c.tenant, jobs.c.digest]), ("digest", _DIGEST_COLUMNS)):
     _given = text(f"{_name} IS NOT NULL")
     Index(f"{_key[0].table.name}_by_{_name}", *_key, sqlite_where=_given, postgresql_where=_given)
 
-# Who runs jobs for several servers: a row for each worker host that is there.
+# The worker hosts that run jobs for several servers, one row each.
 hosts = Table(
     "hosts",
     metadata,
@@ -134,8 +139,8 @@ hosts = Table(
 )
 
 
-def _written(function: type[FunctionElement[Any]], **databases: str) -> None:
-    """State how each database writes a function; its arguments, if it has any, stand in the braces."""
+def _register_sql(function: type[FunctionElement[Any]], **databases: str) -> None:
+    """Register the SQL of a function for each database; braces in it stand for the arguments."""
     for database, expression in databases.items():
 
         def write(element: Any, compiler: Any, expression: str = expression, **options: Any) -> str:
@@ -145,14 +150,14 @@ def _written(function: type[FunctionElement[Any]], **databases: str) -> None:
 
 
 class StoreClock(FunctionElement[float]):
-    """The present time by the clock of the database, which all who share it agree on; seconds since 1970."""
+    """The present time by the clock of the database, which all its clients share; seconds since 1970."""
 
     name = "store_clock"
     type = Float()
     inherit_cache = True
 
 
-_written(
+_register_sql(
     StoreClock,
     sqlite="((julianday('now') - 2440587.5) * 86400.0)",
     postgresql="CAST(extract(epoch FROM clock_timestamp()) AS double precision)",
@@ -160,19 +165,19 @@ _written(
 
 
 class Later(FunctionElement[int]):
-    """The greater of two numbers."""
+    """The maximum of two numbers, as SQL."""
 
     name = "later"
     type = Integer()
     inherit_cache = True
 
 
-_written(Later, sqlite="max({})", postgresql="greatest({})")
+_register_sql(Later, sqlite="max({})", postgresql="greatest({})")
 
 
 @dataclass(frozen=True, slots=True)
 class Entry:
-    """What jobs and batches have."""
+    """The fields that jobs and batches share."""
 
     id: str
     tenant: str
@@ -186,7 +191,7 @@ class Entry:
 
 @dataclass(frozen=True, slots=True)
 class JobSummary(Entry):
-    """A job without its problem and its answer."""
+    """A job without its problem and answer."""
 
     progress_fraction: float
     progress_message: str
@@ -197,7 +202,7 @@ class JobSummary(Entry):
 
 @dataclass(frozen=True, slots=True)
 class JobRow(JobSummary):
-    """A job with everything that is stored of it; ``problem``, ``result`` and ``error`` are JSON text."""
+    """A complete job; ``problem``, ``result`` and ``error`` are JSON text."""
 
     problem: str
     result: str | None
@@ -206,7 +211,7 @@ class JobRow(JobSummary):
 
 @dataclass(frozen=True, slots=True)
 class SampleRow(JobRow):
-    """A problem of a batch that has ended, as the job that it is; ``cached``: an equal problem had the answer."""
+    """An ended sample of a batch as a job; ``cached`` means that the answer of an equal problem was reused."""
 
     batch: str
     cached: bool
@@ -214,9 +219,9 @@ class SampleRow(JobRow):
 
 @dataclass(frozen=True, slots=True)
 class Claim:
-    """The right to run a job: its mark, the number of the attempt, the cost as estimated, the problem as JSON text.
+    """The right to run a job: its mark, the number of the attempt, the estimated cost, the problem as JSON text.
 
-    With a ``batch`` it is a share of that one, and the problem what is left of it.
+    With a ``batch`` the job is a share of that batch, and the problem is the rest of the share.
     """
 
     job_id: str
@@ -230,20 +235,20 @@ class Claim:
 
 
 def as_values(row: Sequence[Any]) -> list[Any]:
-    """The columns of an entry that were asked for in the order of its fields, as the values of these."""
+    """Convert a row, queried in the order of an entry's fields, to the values of these fields."""
     values = [*row]
-    values[_STATUS] = Status(values[_STATUS])
+    values[_STATUS_INDEX] = Status(values[_STATUS_INDEX])
     return values
 
 
-_STATUS = [field.name for field in fields(Entry)].index("status")
+_STATUS_INDEX = [field.name for field in fields(Entry)].index("status")
 
 
-def now() -> str:
-    """The present time as it is stored."""
+def format_now() -> str:
+    """Return the present time in its stored form."""
     return as_stored(datetime.now(UTC))
 
 
 def as_stored(time: datetime) -> str:
-    """A time (UTC) as it is stored."""
+    """Format a time (UTC) in its stored form."""
     return time.strftime("%Y-%m-%dT%H:%M:%S.%fZ")

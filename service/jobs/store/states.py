@@ -1,7 +1,7 @@
-"""The states of a job and who may move it from one to another: one table, ``MOVES``.
+"""The states of a job and the permitted moves between them, in the table ``MOVES``.
 
-The store turns every row of the table into the ``WHERE`` clause of an ``UPDATE``, so that a move that is not
-in the table cannot happen, whichever process asks for it and whatever happened in between.
+The store turns each entry of the table into the ``WHERE`` clause of an ``UPDATE``, so no process can make a move that
+is not in the table, even if the state has changed in between.
 """
 
 from __future__ import annotations
@@ -12,7 +12,7 @@ from typing import Literal
 
 
 class Status(StrEnum):
-    """Where a job stands."""
+    """State of a job."""
 
     QUEUED = "queued"
     RUNNING = "running"
@@ -22,24 +22,24 @@ class Status(StrEnum):
 
     @property
     def finished(self) -> bool:
-        """Whether the job will never change again."""
-        return self in FINISHED
+        """Whether the state is final."""
+        return self in FINISHED_STATES
 
 
 class Cost(StrEnum):
-    """How long a job is taken to compute: ``short`` is a fraction of a second. An estimate, made when it is stated."""
+    """Estimated computing time of a job, made when it is accepted: ``short`` means a fraction of a second."""
 
     SHORT = "short"
     LONG = "long"
 
 
-FINISHED = frozenset({Status.SUCCEEDED, Status.FAILED, Status.CANCELLED})
-UNFINISHED = frozenset({Status.QUEUED, Status.RUNNING})
+FINISHED_STATES = frozenset({Status.SUCCEEDED, Status.FAILED, Status.CANCELLED})
+UNFINISHED_STATES = frozenset({Status.QUEUED, Status.RUNNING})
 
 
 @dataclass(frozen=True, slots=True)
 class Move:
-    """A permitted change of state: from where, to where, and who makes it."""
+    """A permitted change of state: the source states, the target state and the party that makes it."""
 
     sources: frozenset[Status]
     target: Status
@@ -52,6 +52,6 @@ MOVES = {
     "fail": Move(frozenset({Status.RUNNING}), Status.FAILED, by="worker"),
     "requeue": Move(frozenset({Status.RUNNING}), Status.QUEUED, by="executor"),
     "give_up": Move(frozenset({Status.RUNNING}), Status.FAILED, by="executor"),
-    "cancel": Move(UNFINISHED, Status.CANCELLED, by="client"),
+    "cancel": Move(UNFINISHED_STATES, Status.CANCELLED, by="client"),
 }
 """Every permitted move by name. A finished job never moves; it can only be deleted."""

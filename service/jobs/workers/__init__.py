@@ -1,1 +1,1 @@
-"""Workers that solve jobs: scheduling, worker processes and their progress."""
+"""Workers that solve jobs: scheduling, worker processes, progress reports."""

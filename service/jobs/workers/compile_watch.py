@@ -1,8 +1,8 @@
-"""Jobs that come before their kernels have been compiled: they compile them, wait for no others, and say so.
+"""Compilation inside jobs: a job that arrives before its kernels are compiled compiles them itself and reports it.
 
-What is compiled stays on the disk, so that this happens once for each kernel, on a machine whose kernels have not been
-compiled ahead (:mod:`service.server.precompile`). The time that it takes is not the job's: it counts neither against
-the time that a job may take nor against that of a short one.
+Compiled kernels are kept on disk, so this happens once for each kernel, on a machine without compilation ahead of time
+(:mod:`service.server.precompile`). The time for it counts neither towards the time limit of the job nor towards that of
+a short job.
 """
 
 from __future__ import annotations
@@ -16,14 +16,14 @@ from numba.core import event
 
 from service.jobs.processes.stop_flag import Solving
 
-SAID = "compiling what this is the first job to need"
-"""The message of a job's progress meanwhile."""
+COMPILING_TEXT = "compiling what this is the first job to need"
+"""Progress message of a job during compilation."""
 
-_COMPILES = "numba:compile"
+_COMPILE_EVENT = "numba:compile"
 
 
 class FirstUse(event.Listener):
-    """Watches the compiler in a worker process. One job runs at a time."""
+    """Watches the compiler in a worker process, which runs one job at a time."""
 
     def __init__(self, solving: Solving) -> None:
         self._solving = solving
@@ -31,11 +31,11 @@ class FirstUse(event.Listener):
         self._progress: Callable[[float, str], None] = lambda fraction, message: None
         self._last = (0.0, "")
         self._depth = 0
-        event.register(_COMPILES, self)
+        event.register(_COMPILE_EVENT, self)
 
     @contextmanager
-    def told(self, progress: Callable[[float, str], None]) -> Iterator[Callable[[float, str], None]]:
-        """The progress of a job, which is told of each kernel that is compiled inside, by this thread."""
+    def watch_progress(self, progress: Callable[[float, str], None]) -> Iterator[Callable[[float, str], None]]:
+        """Yield a progress callback; compilations by this thread inside the block are reported through it too."""
 
         def report(fraction: float, message: str) -> None:
             self._last = fraction, message
@@ -49,18 +49,19 @@ class FirstUse(event.Listener):
             self._thread = None
 
     def on_start(self, event: Any) -> None:
-        """A kernel is to be compiled; those that it calls are compiled inside."""
+        """Note the start of a compilation; the kernels that it calls are compiled inside."""
+        # Other threads, such as the warm-up, compile too; they do not hold the job up.
         if self._thread == threading.get_ident():
             self._depth += 1
             if self._depth == 1:
                 self._solving.pause()
-                self._progress(self._last[0], SAID)
+                self._progress(self._last[0], COMPILING_TEXT)
 
     def on_end(self, event: Any) -> None:
-        """It is compiled, or cannot be."""
+        """Note the end of a compilation, successful or not."""
         if self._thread == threading.get_ident():
             self._depth -= 1
             if self._depth == 0:
-                self._solving.go_on()
+                self._solving.resume()
                 if self._last[1]:
                     self._progress(*self._last)

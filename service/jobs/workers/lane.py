@@ -1,12 +1,12 @@
-"""A lane: a thread of the server or worker host that has one worker process and gives it one job after the other.
+"""A lane: a thread of the server or worker host with one worker process, to which it gives one job at a time.
 
 Each lane has a pebble pool of a single worker, not a share in a pool of many, for two reasons. The workers of a pool
-share a pipe under a lock, and a worker that is killed while it holds the lock blocks the others for a minute. And a
-worker that is killed while it is idle makes pebble declare the whole pool broken, with the jobs of the other workers.
-With a pool for each worker both failures stay within a lane, and the remedy is the same for all of them (cancel,
-timeout, memory, death): stop the pool, which kills the worker, and start another.
+share a pipe under a lock, and a worker killed while it holds the lock blocks the others for a minute. And a worker
+killed while idle makes pebble declare the whole pool broken, with the jobs of the other workers. With one pool per
+worker both failures stay within a lane, and the remedy is always the same (for cancellation, timeout, memory, death):
+stop the pool, which kills the worker, and start another.
 
-A job that is cancelled is first left to stop by itself (:mod:`service.jobs.processes.stop_flag`), since a new worker
+A cancelled job is first given time to stop by itself (:mod:`service.jobs.processes.stop_flag`), since a new worker
 takes seconds to start.
 
 Words: a *lane* runs *jobs*; its *worker* is a process; a lane is *ready* when its worker has finished starting.
@@ -33,9 +33,9 @@ from service.jobs.batches.store import BatchStore
 from service.jobs.executor import Changed
 from service.jobs.faults import Fault
 from service.jobs.job_store import JobStore
-from service.jobs.processes.parent_death import tell_children
+from service.jobs.processes.parent_death import export_parent_pid
 from service.jobs.processes.stop_flag import Solving
-from service.jobs.store.database import unreachable
+from service.jobs.store.database import is_unreachable
 from service.jobs.store.schema import Claim
 from service.jobs.store.states import Cost, Status
 from service.jobs.workers import worker
@@ -43,33 +43,33 @@ from service.jobs.workers.scheduler import SHORT_S, Turns
 from service.observability.metrics import WorkerMetrics
 
 CHECK_PERIOD_S = 1.0
-"""Period at which a lane checks that its worker is alive: while idle, so that a job seldom meets a dead worker, and
-while it waits for a result, because pebble drops a call that arrives while it detects that the worker is dead."""
+"""Period at which a lane checks that its worker is alive, seconds: while idle, so that a job seldom meets a dead
+worker, and while it waits for a result, because pebble drops a call that arrives while it detects a dead worker."""
 
 START_TIMEOUT_S = 300.0
-"""A worker may compile all kernels when it starts for the first time; that takes a minute, not five."""
+"""Time limit for the start of a worker, seconds. The first start may compile all kernels, which takes a minute."""
 
 MAX_CANCELLED = 1000
-"""Cancelled jobs that a lane remembers; one that it has just been given is among the last few."""
+"""Number of cancelled jobs that a lane remembers; a job that it is just receiving is among the last few."""
 
 GRACE_S = 0.5
-"""How long a cancelled job may take to stop by itself before its worker is killed."""
+"""Time for a cancelled job to stop by itself before its worker is killed, seconds."""
 
 RETRY_PERIOD_S = 1.0
-"""Pause before a failed start of a worker, or a failed write to the store, is tried again."""
+"""Pause before a failed start of a worker, or a failed write to the store, is retried, seconds."""
 
-# Seconds from pebble's request that a worker end to its kill. Workers end at once when asked, unless they are
+# Seconds between pebble's request to a worker to end and its kill. Workers end at once on request unless they are
 # suspended, and waiting does not help a suspended worker.
 pebble.CONSTS.term_timeout = 0.3
 
 Reason = Literal["cancelled", "outstayed", "the service stops"]
-"""Why a job is stopped before its end; ``outstayed``: it takes too long for a lane that is kept for short jobs."""
+"""Reason for which a job is stopped early; ``outstayed``: it takes too long for a lane reserved for short jobs."""
 
 log = structlog.get_logger(__name__)
 
 
 class WorkerLost(Exception):
-    """The worker died or could not be started; ``killed`` from outside, which need not be the job's fault."""
+    """The worker died or did not start; ``killed`` means from outside, probably not through the job's fault."""
 
     def __init__(self, reason: str, *, killed: bool = False) -> None:
         self.killed = killed
@@ -77,10 +77,10 @@ class WorkerLost(Exception):
 
 
 class Lane(threading.Thread):
-    """Runs the jobs that it is given by turns, one at a time, in a worker process of its own.
+    """Runs the jobs that the scheduler assigns to it, one at a time, in its own worker process.
 
     The thread lives as long as the lane. The thread starts the worker, so the worker dies with it
-    (:func:`service.jobs.processes.parent_death.die_with`).
+    (:func:`service.jobs.processes.parent_death.bind_to_parent`).
     """
 
     def __init__(
@@ -110,7 +110,7 @@ class Lane(threading.Thread):
         self._future: Any = None
         self._stirred = threading.Event()
         self._job: Claim | None = None
-        # A job may be cancelled when it has been claimed already and the lane does not know of it yet.
+        # A job may be cancelled after it is claimed and before this lane has received it.
         self._cancelled: deque[str] = deque(maxlen=MAX_CANCELLED)
         self._why: Reason | None = None
         self._kill_at = float("inf")
@@ -122,12 +122,12 @@ class Lane(threading.Thread):
         """Set when the first worker has started, or has failed to."""
 
     @property
-    def begun(self) -> bool:
+    def is_settled(self) -> bool:
         """Whether the first worker has started, or has failed to."""
         return self.settled.is_set()
 
     def cancel(self, job_id: str) -> None:
-        """Stop the job if this lane is running it. Callable from any thread; the worker is killed where it must be."""
+        """Stop the job if this lane runs it, by killing the worker if necessary. Callable from any thread."""
         with self._lock:
             if self._job is not None and self._job.job_id == job_id:
                 self._stop_job("cancelled")
@@ -135,19 +135,19 @@ class Lane(threading.Thread):
                 self._cancelled.append(job_id)
 
     @property
-    def held(self) -> tuple[str, str] | None:
-        """The mark and the job of the current claim, until the last change of the job is stored."""
+    def current_claim(self) -> tuple[str, str] | None:
+        """The mark and the job id of the current claim, until the last change of the job is stored."""
         with self._lock:
             return None if self._job is None else (self._job.mark, self._job.job_id)
 
     def drop(self, mark: str) -> None:
-        """Stop the job if this lane is running it under this claim."""
+        """Stop the job if this lane runs it under this claim."""
         with self._lock:
             if self._job is not None and self._job.mark == mark:
                 self._stop_job("cancelled")
 
     def stop(self) -> None:
-        """Make the lane end soon. A job under way goes back into the queue of the store. Join the thread after."""
+        """Request the lane to end; a running job returns to the queue. The caller joins the thread."""
         with self._lock:
             self._stopping.set()
             self.settled.set()
@@ -161,7 +161,7 @@ class Lane(threading.Thread):
             self._stirred.set()
 
     def run(self) -> None:
-        """Take jobs until told to stop."""
+        """Take jobs until a stop is requested."""
         for lane in self._after:
             lane.settled.wait()
         while not self._stopping.is_set():
@@ -170,42 +170,42 @@ class Lane(threading.Thread):
                 self.settled.set()
                 job = self._turns.take(self, self._free_since)
             except WorkerLost as loss:
-                self._could_not_start(str(loss))
+                self._handle_failed_start(str(loss))
                 continue
-            except Exception as error:  # whatever it is, later jobs need the lane
+            except Exception as error:  # the lane survives any error, because later jobs need it
                 log.exception("the lane failed", lane=self.name)
-                self._could_not_start(f"{type(error).__name__} in the server")
+                self._handle_failed_start(f"{type(error).__name__} in the server")
                 continue
             if job is not None:
                 self._serve(job)
         self._discard_worker()
 
-    def _could_not_start(self, reason: str) -> None:
+    def _handle_failed_start(self, reason: str) -> None:
         log.error("worker could not be started", lane=self.name, reason=reason)
         self._replace_worker("start_failed")
         self.settled.set()
         self._stopping.wait(RETRY_PERIOD_S)
 
     def _serve(self, job: Claim) -> None:
-        """Run a job and announce its change. A defect of the lane fails the job; it does not end the lane."""
+        """Run a job and announce its change. A defect in this code fails the job and does not end the lane."""
         with self._lock:
             self._job = job
             if job.job_id in self._cancelled:
                 self._stop_job("cancelled")
         try:
             self._run_job(job)
-        except Exception:  # a defect of the lane's own fails this job, and none of the later ones
+        except Exception:  # a defect in this code fails this job only, not later ones
             log.exception("the lane failed", lane=self.name, job=job.job_id)
             self._replace_worker("defect")
             try:
                 self._give_up(job, faults.INTERNAL_ERROR)
-            except Exception:  # then the next start of the service requeues the job
+            except Exception:  # the next start of the service then requeues the job
                 log.exception("a job could not be failed", lane=self.name, job=job.job_id)
         with self._lock:
             self._job = None
             if not self._stopping.is_set():
                 self._why, self._kill_at = None, float("inf")
-        self._turns.done(self)
+        self._turns.release(self)
         self._free_since = time.monotonic()
         try:
             self._changed(job.batch or job.job_id)
@@ -217,8 +217,8 @@ class Lane(threading.Thread):
             return
         if self._pool is not None:
             self._replace_worker("died_idle")
-        tell_children()
-        # spawn: a forked child would inherit the server's threads' locks and open connections.
+        export_parent_pid()
+        # "spawn": a forked child would inherit the locks of the server's threads and its open connections.
         self._pool = pebble.ProcessPool(
             max_workers=1,
             initializer=worker.start,
@@ -226,7 +226,7 @@ class Lane(threading.Thread):
             context=get_context("spawn"),
         )
         try:
-            pid = self._call(worker.hello)
+            pid = self._call(worker.report_pid)
         except TimeoutError:
             self._discard_worker()
             raise WorkerLost(f"it did not start within {START_TIMEOUT_S:g} s") from None
@@ -239,8 +239,8 @@ class Lane(threading.Thread):
         log.info("worker ready", lane=self.name, pid=pid)
 
     def _replace_worker(self, reason: str) -> None:
-        """End the worker; the next check starts another."""
-        self._metrics.worker_restart(reason)
+        """End the worker; the next check starts another one."""
+        self._metrics.count_worker_restart(reason)
         self._discard_worker()
 
     def _discard_worker(self) -> None:
@@ -256,78 +256,78 @@ class Lane(threading.Thread):
 
     def _run_job(self, job: Claim) -> None:
         try:
-            ran: worker.Ran = self._call(worker.run, job, job=job)
+            ran: worker.EndedAttempt = self._call(worker.run, job, job=job)
         except TimeoutError:
-            self._metrics.attempt("timeout")
+            self._metrics.count_attempt("timeout")
             self._replace_worker("timeout")
-            if self._give_up(job, faults.timeout(self._timeout_s)):
+            if self._give_up(job, faults.make_timeout(self._timeout_s)):
                 log.warning("job failed", job=job.job_id, reason="timeout")
         except CancelledError:
             if self._stopping.is_set():
                 self._discard_worker()
             else:
                 self._replace_worker(self._why or "cancelled")
-            self._was_stopped(job)
+            self._handle_stopped_job(job)
         except WorkerLost as loss:
-            self._metrics.attempt("worker lost")
+            self._metrics.count_attempt("worker lost")
             self._replace_worker("lost")
-            status = self._crashed(job, killed=loss.killed)
+            status = self._record_crash(job, killed=loss.killed)
             log.warning("worker lost", lane=self.name, job=job.job_id, reason=str(loss), job_is_now=status)
             if status == Status.QUEUED:
                 self._turns.wake()
         else:
             if ran.outcome == "stopped":
-                self._was_stopped(job)
+                self._handle_stopped_job(job)
                 return
             if job.batch is None:
-                self._metrics.attempt(ran.outcome, ran.kind, ran.seconds)
+                self._metrics.count_attempt(ran.outcome, ran.kind, ran.seconds)
             else:
-                self._metrics.attempt(ran.outcome)
+                self._metrics.count_attempt(ran.outcome)
             if ran.outcome == "out of memory":
                 # A library that was refused memory in the middle of a call may be left in any state.
                 self._replace_worker("out_of_memory")
 
     def _give_up(self, job: Claim, fault: Fault) -> bool:
-        """Fail the job, or of a share of a batch the sample that its worker was at; whether the claim still counts."""
+        """Fail the job or, in a share of a batch, the sample at work; return whether the claim was still valid."""
         if job.batch is None:
-            return bool(self._stored(self._store.give_up, job.job_id, job.mark, fault.as_json(job.job_id)))
+            return bool(self._write_with_retries(self._store.give_up, job.job_id, job.mark, fault.as_json(job.job_id)))
         at = self._solving.sample
-        if self._stored(self._batches.give_up, job.job_id, job.mark, at, fault.as_json) is None:
+        if self._write_with_retries(self._batches.give_up, job.job_id, job.mark, at, fault.as_json) is None:
             return False
         self._turns.wake()
         return True
 
-    def _crashed(self, job: Claim, *, killed: bool) -> Status | None:
+    def _record_crash(self, job: Claim, *, killed: bool) -> Status | None:
         status: Status | None
         if job.batch is None:
-            status = self._stored(self._store.crashed, job.job_id, job.mark, killed=killed)
+            status = self._write_with_retries(self._store.record_crash, job.job_id, job.mark, killed=killed)
         else:
             at = self._solving.sample
-            status = self._stored(self._batches.crashed, job.job_id, job.mark, at, killed=killed)
+            status = self._write_with_retries(self._batches.record_crash, job.job_id, job.mark, at, killed=killed)
         return status
 
-    def _was_stopped(self, job: Claim) -> None:
+    def _handle_stopped_job(self, job: Claim) -> None:
         if self._stopping.is_set():
-            if self._stored(self._store.requeue, job.job_id, job.mark):
+            if self._write_with_retries(self._store.requeue, job.job_id, job.mark):
                 log.info("job requeued", job=job.job_id, reason="the service stops")
             return
-        self._metrics.attempt(self._why or "cancelled")
-        if self._why == "outstayed" and self._stored(self._store.requeue_as_long, job.job_id, job.mark):
+        self._metrics.count_attempt(self._why or "cancelled")
+        if self._why == "outstayed" and self._write_with_retries(self._store.requeue_as_long, job.job_id, job.mark):
             log.info("job requeued", job=job.job_id, reason="it is longer than expected")
             self._turns.wake()
 
     def _call(self, function: Any, *args: Any, job: Claim | None = None) -> Any:
-        """Call a function in the worker.
+        """Call a function in the worker and return its answer.
 
         Raises
         ------
         TimeoutError
-            The solver has been at work on the job for longer than it may, or the worker, where there is no job yet, has
-            not started in time; it is still running.
+            If the solver exceeds the time limit of the job or, without a job, the worker did not start in time; the
+            call is still running.
         CancelledError
-            The job was to stop and has not by itself, or the lane stops; it is still running.
+            If the job did not stop by itself after a request, or the lane stops; the call is still running.
         WorkerLost
-            The worker died, or the function raised.
+            If the worker died or the function raised.
         """
         with self._lock:
             if self._stopping.is_set():
@@ -335,19 +335,20 @@ class Lane(threading.Thread):
             self._solving.reset()
             try:
                 self._future = self._pool.schedule(function, args=args)
-            except (RuntimeError, OSError) as error:  # the idle worker has died, or no process or pipe can be had
+            except (RuntimeError, OSError) as error:  # the idle worker has died, or no process or pipe is available
                 raise WorkerLost(str(error), killed=True) from None
-            if self._why is not None:  # cancelled before it was given to the worker
+            if self._why is not None:  # cancelled before the worker received it
                 self._solving.stop()
         try:
             self._future.add_done_callback(lambda _: self._stirred.set())
-            return self._answer(job)
+            return self._wait_for_answer(job)
         except (CancelledError, TimeoutError, WorkerLost):
             raise
         except pebble.ProcessExpired as error:
+            # SIGKILL comes from outside: from the operator or from the system when memory runs out.
             killed = error.exitcode == -signal.SIGKILL
             raise WorkerLost(f"{error}; exit code {error.exitcode}", killed=killed) from None
-        except BrokenProcessPool as error:  # it had not started the job
+        except BrokenProcessPool as error:  # the worker died before it started the job
             raise WorkerLost(str(error), killed=True) from None
         except Exception as error:  # the worker could neither store nor handle it: its state is unknown
             log.exception("the worker raised", lane=self.name, job=None if job is None else job.job_id)
@@ -355,8 +356,8 @@ class Lane(threading.Thread):
         finally:
             self._future = None
 
-    def _answer(self, job: Claim | None) -> Any:
-        # Not pebble's own timeout, which counts the worker's waits for the store too, and by the wall clock.
+    def _wait_for_answer(self, job: Claim | None) -> Any:
+        # Not pebble's own timeout, which would include the worker's waits for the store.
         began = time.monotonic()
         limit_s = START_TIMEOUT_S if job is None else self._timeout_s
         short = job is not None and job.cost == Cost.SHORT
@@ -380,17 +381,17 @@ class Lane(threading.Thread):
             raise WorkerLost("unexpected TimeoutError in the worker") from None
 
     def _check_stay(self) -> None:
-        if self._turns.outstayed(self):
+        if self._turns.count_as_long(self):
             with self._lock:
                 self._stop_job("outstayed")
 
-    def _stored(self, write: Any, *args: Any, **options: Any) -> Any:
-        """Write to the store, retrying while it cannot be reached: else the job would be lost until a restart."""
+    def _write_with_retries(self, write: Any, *args: Any, **options: Any) -> Any:
+        """Write to the store, retrying while it is unreachable: the job would be lost until a restart otherwise."""
         while True:
             try:
                 return write(*args, **options)
             except SQLAlchemyError as error:
-                if not unreachable(error):  # it would be refused each time, and the lane be lost
+                if not is_unreachable(error):  # it would fail each time, and the lane would never end
                     raise
                 log.exception("the store is out of reach", lane=self.name)
                 if self._stopping.wait(RETRY_PERIOD_S):

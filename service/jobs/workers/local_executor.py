@@ -1,4 +1,4 @@
-"""The local executor: worker processes of the server itself, one to a lane."""
+"""The local executor: worker processes of the server, one for each lane."""
 
 from __future__ import annotations
 
@@ -17,35 +17,35 @@ from service.observability.metrics import WorkerMetrics
 from service.settings import Settings
 
 STOP_TIMEOUT_S = 5.0
-"""A lane stops within half a second; one that does not is left to the end of the process, which kills its worker."""
+"""Time limit for the end of a lane, seconds; normally it takes half a second. The end of the process kills the rest."""
 
 
 log = structlog.get_logger(__name__)
 
 
 class LocalExecutor:
-    """Runs jobs in ``settings.workers`` processes, and some in reserve, that end with the server.
+    """Runs jobs in ``settings.workers`` processes and some reserve processes, all of which end with the server.
 
     Raises
     ------
     SQLAlchemyError, OSError, ImportError
-        When the store cannot be reached.
+        If the store cannot be reached.
     """
 
     def __init__(self, settings: Settings, metrics: WorkerMetrics) -> None:
         self._settings = settings
         self._metrics = metrics
-        # What the executor writes is found out anew if it is lost, like what the workers write.
+        # Not durable: a lost write of the executor is repeated after the restart, like those of the workers.
         self._engine = connect(settings.store_url, durable=False)
         self._store = JobStore(self._engine)
-        # Besides, this makes the file of a new SQLite store before several processes come to do it at once.
+        # This also creates the file of a new SQLite store before several processes do so at once.
         self._store.ping()
         self._subscriber: Changed | None = None
         self._lanes: list[Lane] = []
         self._turns = Turns(self._store, self._lanes, settings.workers)
 
     def start(self) -> None:
-        """Start the lanes; their workers start while this returns."""
+        """Start the lanes; their workers may still be starting on return."""
         if self._lanes:
             return
         for_workers = WorkerSettings(
@@ -55,8 +55,8 @@ class LocalExecutor:
             log_level=self._settings.log_level,
             log_format=self._settings.log_format,
         )
-        # The first worker has the machine to itself until it is ready, so that the service is ready soon. And when it
-        # is the first ever and compiles the kernels, the others find them compiled. The reserve comes last.
+        # The first worker starts alone, so that the service is ready soon. If it is the first one ever, it compiles the
+        # kernels, and the others find them compiled. The reserve comes last.
         workers = self._settings.workers
         for n in range(workers + self._settings.reserve):
             lane = Lane(
@@ -66,7 +66,7 @@ class LocalExecutor:
                 BatchStore(self._engine),
                 for_workers,
                 self._settings.job_timeout_s,
-                self._changed,
+                self._notify_subscriber,
                 self._metrics,
                 after=self._lanes[: 0 if n == 0 else 1 if n < workers else workers],
             )
@@ -75,48 +75,48 @@ class LocalExecutor:
             lane.start()
 
     def resume(self) -> None:
-        """Take up what the server before this one has left; nobody else runs jobs of this store."""
+        """Take up the jobs left by the previous server; no other process runs jobs of this store."""
         unfinished = self._store.requeue_unfinished()
         if unfinished:
             log.info("unfinished jobs taken up again", jobs=unfinished)
         self.open()
 
     def open(self) -> None:
-        """Begin to give jobs to the lanes: the store has its tables, and what runs in it is somebody's."""
+        """Start to give jobs to the lanes: the store has its tables, and its running jobs have owners."""
         self._turns.open()
 
     def subscribe(self, changed: Changed) -> None:
-        """Tell ``changed`` from now on of each job that a worker is done with."""
+        """Call ``changed`` with the id of each job that a worker releases from now on."""
         self._subscriber = changed
 
     def submit(self, job_id: str) -> None:
-        """Have the queued job run when its turn comes."""
+        """Submit a queued job; it runs when its turn comes."""
         self.wake()
 
     def wake(self) -> None:
-        """Have a free lane ask for a job, where there is one."""
+        """Wake a free lane, if there is one, to ask for a job."""
         self._turns.wake()
 
     def cancel(self, job_id: str) -> None:
-        """Stop the job where a lane runs it; one that waits cannot be claimed when its turn comes."""
+        """Stop the job if a lane runs it; a waiting job, already cancelled in the store, cannot be claimed any more."""
         for lane in self._lanes:
             lane.cancel(job_id)
 
-    def claims(self) -> dict[str, str]:
-        """The jobs that the lanes see to now, by their claims."""
-        return dict(held for lane in self._lanes if (held := lane.held) is not None)
+    def list_claims(self) -> dict[str, str]:
+        """Return the ids of the jobs that the lanes run, by their claims."""
+        return dict(held for lane in self._lanes if (held := lane.current_claim) is not None)
 
     def drop(self, claim: str) -> None:
-        """Stop the job that a lane runs under a claim that is of no use any more."""
+        """Stop the job that a lane runs under a claim that is no longer valid."""
         for lane in self._lanes:
             lane.drop(claim)
 
-    def ready(self) -> int:
-        """How many workers have finished starting."""
+    def count_ready_workers(self) -> int:
+        """Return the number of workers that have finished starting."""
         return sum(lane.ready and lane.is_alive() for lane in self._lanes)
 
     def stop(self) -> None:
-        """Stop all lanes at once and wait for them."""
+        """Stop all lanes at the same time and wait for them."""
         for lane in self._lanes:
             lane.stop()
         self._turns.close()
@@ -124,6 +124,6 @@ class LocalExecutor:
             lane.join(STOP_TIMEOUT_S)
         self._engine.dispose()
 
-    def _changed(self, job_id: str | None) -> None:
+    def _notify_subscriber(self, job_id: str | None) -> None:
         if self._subscriber is not None:
             self._subscriber(job_id)

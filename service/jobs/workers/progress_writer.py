@@ -1,4 +1,4 @@
-"""Writes the progress of a worker process's job to the store."""
+"""Writes the progress of a worker's job to the store."""
 
 from __future__ import annotations
 
@@ -10,19 +10,20 @@ from contextlib import contextmanager
 import structlog
 
 from service.jobs.job_store import JobStore
-from service.jobs.store.database import unreachable
+from service.jobs.store.database import is_unreachable
 
 PERIOD_S = 0.2
-"""Progress is stored at most this often: each time is a write to the disk that all workers share."""
+"""Minimum period between two stored reports, seconds: each is a write to the disk that all workers share."""
 
 log = structlog.get_logger(__name__)
 
 
 class ProgressWriter:
-    """Stores the newest report of a job, every :data:`PERIOD_S`, from a thread of its own.
+    """Stores the newest report of a job, at most every :data:`PERIOD_S`, in its own thread.
 
-    A report that comes soon after another, or while the store is out of reach, is thus stored late and not lost: it may
-    be the last for minutes. The solver never waits for the store. A report not stored when its job ends is dropped.
+    A report that follows another one closely, or arrives while the store is unreachable, is stored late and not lost:
+    it may be the last one for minutes. The solver never waits for the store. A report not stored when its job ends is
+    dropped.
     """
 
     def __init__(self, store: JobStore) -> None:
@@ -35,10 +36,10 @@ class ProgressWriter:
         threading.Thread(target=self._run, name="progress", daemon=True).start()
 
     @contextmanager
-    def attempt(self, job_id: str, attempt: int) -> Iterator[Callable[[float, str], None]]:
-        """The progress callback of an attempt, one attempt at a time; first stored a period after the start."""
+    def track_attempt(self, job_id: str, attempt: int) -> Iterator[Callable[[float, str], None]]:
+        """Yield the progress callback of an attempt, one attempt at a time; the first write comes after one period."""
 
-        def progress(fraction: float, message: str) -> None:
+        def record_progress(fraction: float, message: str) -> None:
             with self._condition:
                 self._report = (job_id, attempt, fraction, message)
                 if self._idle:
@@ -48,12 +49,12 @@ class ProgressWriter:
             self._attempt = job_id, attempt
             self._due = time.monotonic() + PERIOD_S
         try:
-            yield progress
+            yield record_progress
         finally:
             with self._condition:
                 self._attempt = self._report = None
 
-    def _next(self) -> tuple[str, int, float, str]:
+    def _wait_for_report(self) -> tuple[str, int, float, str]:
         with self._condition:
             while True:
                 left = self._due - time.monotonic()
@@ -70,16 +71,17 @@ class ProgressWriter:
 
     def _retry(self, report: tuple[str, int, float, str]) -> None:
         with self._condition:
+            # A newer report supersedes the failed one, and after the attempt there is nothing to report.
             if self._report is None and self._attempt == report[:2]:
                 self._report = report
 
     def _run(self) -> None:
         while True:
-            report = self._next()
+            report = self._wait_for_report()
             try:
-                self._store.progress(*report)  # changes nothing once the attempt is over
-            except Exception as error:  # whatever it is, later jobs must have their progress stored
-                if unreachable(error):
+                self._store.record_progress(*report)  # changes nothing once the attempt has ended
+            except Exception as error:  # the thread survives any error, because later jobs need it
+                if is_unreachable(error):
                     self._retry(report)
                 else:
                     log.exception("progress could not be stored", job=report[0], attempt=report[1])

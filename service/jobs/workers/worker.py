@@ -1,7 +1,7 @@
-"""What runs in a worker process: solve a job, store the answer.
+"""The code of a worker process: solve a job, store the answer.
 
 This module is imported before the worker has set its number of threads, so it must not import numpy, directly or
-through the solvers; :func:`start` does that when everything is in place.
+through the solvers; :func:`start` imports them after that.
 """
 
 from __future__ import annotations
@@ -16,13 +16,13 @@ from typing import TYPE_CHECKING, Literal
 import structlog
 
 from service.jobs import faults
-from service.jobs.batches.identity import digest
-from service.jobs.batches.slices import Slices
+from service.jobs.batches.identity import hash_problem
+from service.jobs.batches.slices import SliceSolver
 from service.jobs.batches.store import BatchStore
 from service.jobs.job_store import JobStore
-from service.jobs.processes.limits import confine, limit_memory
-from service.jobs.processes.stop_flag import Solving, Stopped
-from service.jobs.store.database import connect, patiently
+from service.jobs.processes.limits import limit_memory, restrict_process
+from service.jobs.processes.stop_flag import SolverStopped, Solving
+from service.jobs.store.database import connect, write_when_reachable
 from service.jobs.store.schema import Claim
 from service.jobs.workers.progress_writer import ProgressWriter
 from service.observability import logs
@@ -31,19 +31,19 @@ if TYPE_CHECKING:
     from service.jobs.workers.compile_watch import FirstUse
 
 Outcome = Literal["succeeded", "failed", "out of memory", "superseded", "stopped", "slice"]
-"""What became of a job as its worker knows it; ``superseded``: it has its answer, and was cancelled or given to another
-attempt meanwhile; ``stopped``: it has none, because the lane has said so; ``slice``: of a share of a batch, which is in
-the queue again or at its end."""
+"""Outcome of an attempt as its worker knows it. ``superseded``: solved, but cancelled or given to another attempt
+meanwhile; ``stopped``: ended without an answer on request of the lane; ``slice``: part of a share of a batch, which is
+queued again or has ended."""
 
 LIBRARIES_MB = 400
-"""What solvers load after the worker has started, beside what a job is allowed: convex optimization, kernels."""
+"""Memory for code that solvers load after the start (convex optimization, kernels), added to a job's limit, MiB."""
 
 log = structlog.get_logger(__name__)
 
 
 @dataclass(frozen=True, slots=True)
-class Ran:
-    """An attempt that the worker has ended: what became of it, the kind of its problem, and how long it took."""
+class EndedAttempt:
+    """An attempt that the worker has ended: its outcome, the kind of the problem and the duration in seconds."""
 
     outcome: Outcome
     kind: str
@@ -52,7 +52,7 @@ class Ran:
 
 @dataclass(frozen=True, slots=True)
 class WorkerSettings:
-    """What a worker has to know; passed to it when it starts."""
+    """Settings of a worker, passed to it at its start."""
 
     store_url: str
     server_pid: int
@@ -67,7 +67,7 @@ class _Post:
     progress: ProgressWriter
     settings: WorkerSettings
     solving: Solving
-    slices: Slices
+    slices: SliceSolver
     first_use: FirstUse
 
 
@@ -75,9 +75,9 @@ _post: _Post | None = None
 
 
 def start(settings: WorkerSettings, solving: Solving) -> None:
-    """Prepare this process for its jobs: its end, its limits, the solvers. Called once, first of all."""
+    """Prepare this process for jobs: end with the server, limits, solvers. Called once, before anything else."""
     global _post
-    confine(settings.server_pid, settings.log_level, settings.log_format)
+    restrict_process(settings.server_pid, settings.log_level, settings.log_format)
     dispatch = importlib.import_module("synthesis.dispatch")
     dispatch.warm_up()
     engine = connect(settings.store_url, durable=False)
@@ -85,23 +85,23 @@ def start(settings: WorkerSettings, solving: Solving) -> None:
     progress = ProgressWriter(store)
     limit_memory(settings.memory_mb + LIBRARIES_MB)
     first_use: FirstUse = importlib.import_module("service.jobs.workers.compile_watch").FirstUse(solving)
-    slices = Slices(BatchStore(engine), solving, faults.out_of_memory(settings.memory_mb))
+    slices = SliceSolver(BatchStore(engine), solving, faults.make_out_of_memory(settings.memory_mb))
     _post = _Post(store, progress, settings, solving, slices, first_use)
     store.ping()
-    # Beside the first jobs: they find what is not loaded yet a little slower, but the service is ready seconds sooner.
+    # In parallel with the first jobs, which may run a little slower; but the service is ready seconds sooner.
     threading.Thread(target=dispatch.warm_up_rest, name="warm-up", daemon=True).start()
 
 
-def hello() -> int:
-    """The process id of the worker; the answer shows that the worker has finished starting."""
+def report_pid() -> int:
+    """Return the worker's process id; the answer shows that the worker has finished starting."""
     return os.getpid()
 
 
-def run(job: Claim) -> Ran:
-    """Run a claimed job to its end. The store has the answer when this returns.
+def run(job: Claim) -> EndedAttempt:
+    """Run a claimed job to its end; on return the store has the answer.
 
-    While the store is out of reach this waits for it. What else the store raises is raised: the executor then treats
-    the worker as dead and the job is tried again.
+    While the store is unreachable this waits. Other errors of the store propagate: the executor then treats the worker
+    as dead, and the job is retried.
     """
     assert _post is not None, "start() comes first"
     if job.batch is not None:
@@ -109,44 +109,53 @@ def run(job: Claim) -> Ran:
     bound = log.bind(job=job.job_id, attempt=job.attempt)
     bound.info("job running")
     began = time.perf_counter()
-    outcome = _attempt(_post, job)
+    outcome = _run_attempt(_post, job)
     seconds = time.perf_counter() - began
     bound.info(f"job {outcome}", seconds=round(seconds, 4))
-    return Ran(outcome, job.kind, seconds)
+    return EndedAttempt(outcome, job.kind, seconds)
 
 
-def _run_slice(post: _Post, share: Claim, batch_id: str) -> Ran:
+def _run_slice(post: _Post, share: Claim, batch_id: str) -> EndedAttempt:
     began = time.perf_counter()
-    with post.first_use.told(lambda fraction, message: None):
+    with post.first_use.watch_progress(lambda fraction, message: None):
         outcome = post.slices.run(share, batch_id)
     seconds = time.perf_counter() - began
     log.debug(f"batch {outcome}", batch=batch_id, share=share.job_id, seconds=round(seconds, 4))
-    return Ran(outcome, share.kind, seconds)
+    return EndedAttempt(outcome, share.kind, seconds)
 
 
-def _attempt(post: _Post, job: Claim) -> Outcome:
+def _run_attempt(post: _Post, job: Claim) -> Outcome:
     try:
-        with post.solving.at_work():
+        with post.solving.track_work():
             result, known_by = _solve(post, job)
-    except Stopped:
+    except SolverStopped:
         return "stopped"
     except MemoryError:
-        fault = faults.out_of_memory(post.settings.memory_mb)
-        stored = patiently(post.store.fail, job.job_id, job.attempt, fault.as_json(job.job_id))
+        fault = faults.make_out_of_memory(post.settings.memory_mb)
+        stored = write_when_reachable(post.store.fail, job.job_id, job.attempt, fault.as_json(job.job_id))
         return "out of memory" if stored else "superseded"
-    except Exception:  # the boundary of the solvers: whatever defect they have ends this job only
+    except Exception:  # the boundary of the solvers: a defect of theirs ends this job only
         log.exception("the solver raised", job=job.job_id, attempt=job.attempt)
-        stored = patiently(post.store.fail, job.job_id, job.attempt, faults.INTERNAL_ERROR.as_json(job.job_id))
+        stored = write_when_reachable(
+            post.store.fail, job.job_id, job.attempt, faults.INTERNAL_ERROR.as_json(job.job_id)
+        )
         return "failed" if stored else "superseded"
-    return "succeeded" if patiently(post.store.succeed, job.job_id, job.attempt, result, known_by) else "superseded"
+    return (
+        "succeeded"
+        if write_when_reachable(post.store.complete, job.job_id, job.attempt, result, known_by)
+        else "superseded"
+    )
 
 
 def _solve(post: _Post, job: Claim) -> tuple[str, str]:
-    """The answer in JSON, and the digest that equal problems know it by."""
-    from service.requests import read
+    """Solve a job; return the answer as JSON, and the digest by which equal problems find it."""
+    from service.requests import load_stored_problem
     from synthesis import dispatch
 
-    problem = read(job.kind, job.problem)
-    with post.progress.attempt(job.job_id, job.attempt) as progress, post.first_use.told(progress) as told:
-        result = dispatch.solve(problem, post.solving.stoppable(told)).model_dump_json()
-    return result, digest(problem)
+    problem = load_stored_problem(job.kind, job.problem)
+    with (
+        post.progress.track_attempt(job.job_id, job.attempt) as progress,
+        post.first_use.watch_progress(progress) as told,
+    ):
+        result = dispatch.solve(problem, post.solving.make_stoppable(told)).model_dump_json()
+    return result, hash_problem(problem)

@@ -23,6 +23,29 @@ Stack = list[tuple[float, float, float, float]]
 """Rings on top of one another: outer and inner radius, and the heights of their faces."""
 
 
+def _make_prisms(
+    place: complex, stack: Stack, shank: float, seats: Sequence[Prism], mirror: float | None
+) -> tuple[Prism, ...]:
+    """Make the solids of a stack; the shank has its keyed sections at the seats.
+
+    ``mirror`` is the sum of the heights of a pin's ends if the stack is upside down, else None.
+    """
+    found: list[Prism] = []
+    for outer, inner, z, end in stack:
+        if mirror is not None:
+            # Mirror about the middle of the pin.
+            z, end = mirror - end, mirror - z
+        region = make_ring(place, outer, inner)
+        if outer == shank and inner == 0.0:
+            for seat in seats:
+                # Replace the cylinder by the keyed section at each seat.
+                if z <= seat.low and seat.high <= end:
+                    found += [Prism(region, z, seat.low), seat]
+                    z = seat.high
+        found.append(Prism(region, z, end))
+    return tuple(body for body in found if body.high > body.low)
+
+
 def make_pin(
     name: str,
     described: str,
@@ -52,22 +75,10 @@ def make_pin(
     low, high = ends
     shank, top = 0.5 * sizes.pin, high + sizes.play
     steel = MATERIALS[sizes.process][1]
+    mirror = low + high if upside_down else None
 
     def make_prisms(stack: Stack, cut: Sequence[Prism] = ()) -> tuple[Prism, ...]:
-        found: list[Prism] = []
-        for outer, inner, z, end in stack:
-            if upside_down:
-                # Mirror about the middle of the pin.
-                z, end = low + high - end, low + high - z
-            region = make_ring(place, outer, inner)
-            if outer == shank and inner == 0.0:
-                for seat in cut:
-                    # Replace the cylinder by the keyed section at each seat.
-                    if z <= seat.low and seat.high <= end:
-                        found += [Prism(region, z, seat.low), seat]
-                        z = seat.high
-            found.append(Prism(region, z, end))
-        return tuple(body for body in found if body.high > body.low)
+        return _make_prisms(place, stack, shank, cut, mirror)
 
     def make_round_part(part: str, what: str, bodies: tuple[Prism, ...], colour: str, standard: str = "") -> Part:
         return Part(
@@ -82,12 +93,7 @@ def make_pin(
         cap = [(head, shank, top, top + sizes.cap)]
         return [
             make_round_part("pin", described, make_prisms(stack, seats), PIN_COLOUR),
-            make_round_part(
-                called,
-                f"cap of {described}, pressed or glued on",
-                make_prisms(cap),
-                FASTENER_COLOUR,
-            ),
+            make_round_part(called, f"cap of {described}, pressed or glued on", make_prisms(cap), FASTENER_COLOUR),
         ]
     held = sizes.ring
     groove, bottom = 0.5 * held.groove, low - held.width
@@ -101,14 +107,8 @@ def make_pin(
     below = [(0.5 * held.diameter, groove, low - held.thickness, low)]
     above = [(0.5 * held.diameter, groove, top, top + held.thickness)]
     what = f"retaining ring of {described}"
-    rings = [
-        make_round_part(
-            "ring_below", what, make_prisms(above if upside_down else below), FASTENER_COLOUR, held.standard
-        ),
-        make_round_part(
-            "ring_above", what, make_prisms(below if upside_down else above), FASTENER_COLOUR, held.standard
-        ),
-    ]
+    sides = ("ring_below", above if upside_down else below), ("ring_above", below if upside_down else above)
+    rings = [make_round_part(side, what, make_prisms(ring), FASTENER_COLOUR, held.standard) for side, ring in sides]
     return [make_round_part("pin", described, make_prisms(stack, seats), PIN_COLOUR, name_bar(sizes.pin)), *rings]
 
 

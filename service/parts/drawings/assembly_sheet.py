@@ -191,9 +191,7 @@ def _draw_side_view(assembly: Assembly, top: float) -> tuple[list[Element], floa
                 complex(x0 + scale * reach + 4.0, at), complex(names - 5.0, at), stroke="#d5dade", stroke_width=0.8
             )
         )
-        first = at - 0.5 * LINE_HEIGHT * (len(told) - 1) + 0.35 * FONT_SIZE
-        for n, (words, weight) in enumerate(told):
-            views.append(draw_text(names, first + n * LINE_HEIGHT, words, FONT_SIZE, fill=INK, font_weight=weight))
+        views += _write_lines(told, names, at)
         y += needed
     axes = [
         draw_line(
@@ -207,6 +205,15 @@ def _draw_side_view(assembly: Assembly, top: float) -> tuple[list[Element], floa
     bar, _ = draw_scale_bar(Viewport(panel, 0j, 0j, scale), "mm")
     seen = f"Exploded side view, the horizontal at {format_angle(math.degrees(cmath.phase(direction)), 0)} to x"
     return [draw_panel(panel, "side"), draw_caption(panel, seen), *views, *axes, *drawn, bar], panel.high
+
+
+def _write_lines(lines: Sequence[tuple[str, str]], x: float, middle: float) -> list[Element]:
+    """Write lines, each with its font weight, one below the other about a height."""
+    first = middle - 0.5 * LINE_HEIGHT * (len(lines) - 1) + 0.35 * FONT_SIZE
+    return [
+        draw_text(x, first + n * LINE_HEIGHT, words, FONT_SIZE, fill=INK, font_weight=weight)
+        for n, (words, weight) in enumerate(lines)
+    ]
 
 
 def _arrange_rows(pins: Sequence[Part], direction: complex) -> list[list[Part]]:

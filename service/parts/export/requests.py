@@ -27,7 +27,7 @@ from service.parts.export.zip_package import write_item_file, write_package
 from service.parts.registry import make_parts
 from service.render import make_heading
 from service.render.page.svg import clean_text
-from service.requests import read
+from service.requests import load_stored_problem
 from synthesis.registry import KINDS
 
 MAX_CACHED = 4
@@ -105,7 +105,7 @@ def make_item_file(order: dict[str, Any], name: str, form: PartFile) -> bytes | 
 
 
 def _make_title(order: PartsRequest) -> str:
-    return clean_text(make_heading(read(order.kind, order.problem), order.label, order.number))
+    return clean_text(make_heading(load_stored_problem(order.kind, order.problem), order.label, order.number))
 
 
 def _get_process(order: PartsRequest) -> Process:
@@ -126,7 +126,7 @@ def _get_assembly(order: PartsRequest) -> Assembly:
 @lru_cache(maxsize=MAX_CACHED)
 def _make_assembly(kind: str, problem: str, result: str, number: int, query: tuple[tuple[str, Any], ...]) -> Assembly:
     design = KINDS[kind].result.model_validate_json(result).designs[number]
-    return make_parts(design, read(kind, problem), PartsQuery.model_validate(dict(query)))
+    return make_parts(design, load_stored_problem(kind, problem), PartsQuery.model_validate(dict(query)))
 
 
 def _choose_input(assembly: Assembly, query: AssemblyQuery) -> float:

@@ -8,8 +8,8 @@ from collections.abc import Awaitable, Callable
 from importlib import import_module
 from typing import Any
 
-from service.jobs.processes.limits import confine, limit_memory
-from service.jobs.processes.request_pool import Limits, PoolMetrics, RequestPool, digest
+from service.jobs.processes.limits import limit_memory, restrict_process
+from service.jobs.processes.request_pool import Limits, PoolMetrics, RequestPool, hash_call
 from service.jobs.workers.worker import LIBRARIES_MB
 from service.observability.logs import Format
 from service.parts.export.cad_available import is_installed
@@ -59,7 +59,7 @@ class Workshop:
         Busy, GivenUp, Gone, Lost
             See :meth:`service.jobs.processes.request_pool.RequestPool.call`.
         """
-        key = digest(work, args)
+        key = hash_call(work, args)
         if key in self._kept:
             self._kept.move_to_end(key)
             return self._kept[key]
@@ -78,7 +78,7 @@ class Workshop:
 
 def _prepare(server_pid: int, log_level: str, log_format: Format, memory_mb: int) -> None:
     """Prepare the process: termination with the server, limits, libraries."""
-    confine(server_pid, log_level, log_format)
+    restrict_process(server_pid, log_level, log_format)
     import_module("service.parts.export.requests")
     if is_installed():
         import_module("build123d")

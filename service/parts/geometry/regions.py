@@ -79,7 +79,7 @@ def widen_hull(points: Sequence[complex], radius: float) -> Outline:
     --------
     A bar with round ends:
 
-    >>> widened([0j, 10 + 0j], 2.0)
+    >>> widen_hull([0j, 10 + 0j], 2.0)
     Loop(corners=(-2j, (10-2j), (10+2j), 2j), bulges=(0.0, 1.0, 0.0, 1.0))
     """
     around = find_hull(points)

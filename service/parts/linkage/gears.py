@@ -63,7 +63,7 @@ def find_teeth(ratio: float) -> tuple[int, int]:
 
     Examples
     --------
-    >>> teeth_for(-2.0), teeth_for(1.5)
+    >>> find_teeth(-2.0), find_teeth(1.5)
     ((36, 18), (27, 18))
     """
     size = abs(ratio)
@@ -76,8 +76,7 @@ def find_teeth(ratio: float) -> tuple[int, int]:
     ):
         raise NotMade(
             f"No gears with up to {MAX_TEETH} teeth have the ratio {ratio:.12g} exactly, and an approximate ratio "
-            "would let "
-            "the phase of the links drift."
+            "would let the phase of the links drift."
         )
     # Smallest multiple that avoids undercut on the smaller gear.
     times = math.ceil(MIN_TEETH / min(share.numerator, share.denominator))

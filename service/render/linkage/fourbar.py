@@ -199,7 +199,7 @@ def build_scene(design: LinkageDesign, problem: MotionProblem | PathProblem, mot
 def select_indices(count: int, most: int) -> list[int]:
     """Return at most ``most`` of ``count`` indices, evenly spread, including both ends.
 
-    >>> spread(3, 5), spread(200, 5)
+    >>> select_indices(3, 5), select_indices(200, 5)
     ([0, 1, 2], [0, 50, 100, 149, 199])
     """
     if count <= most:

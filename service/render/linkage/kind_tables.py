@@ -26,7 +26,7 @@ from service.render.page.diagrams import Diagram
 from service.render.page.numbers import format_angle, format_length, format_small
 from service.render.page.svg import Box, Element, Viewport, draw_circle, draw_line, draw_path
 from service.render.page.symbols import CURVE, OUTPUT, TARGET_COLOUR
-from service.units import symbols
+from service.units import list_symbols
 from synthesis.kinds.balancing.curves import compute_shaking_curves
 from synthesis.kinds.balancing.design import BalancedDesign
 from synthesis.kinds.balancing.problem import BalancingProblem
@@ -333,6 +333,28 @@ def make_straight_line(design: StraightLineDesign, problem: StraightLineProblem,
     )
 
 
+def _list_rests(design: DwellDesign, problem: DwellProblem) -> list[tuple[str, str]]:
+    """Return the rows of the table of dwells."""
+
+    def measure(value: float) -> str:
+        if problem.slides:
+            return f"{format_length(value, digits=4)} {problem.length_unit}"
+        return format_angle(value, 4)
+
+    rests = []
+    for rest in design.targets:
+        rests.append((f"dwell {rest.index + 1} from", format_angle(rest.input_angle, 2)))
+        if design.dwells is not None:
+            placed = design.dwells[rest.index]
+            share = f"{format_length(100.0 * placed.at, digits=3)} % of the way"
+            rests.append((f"over {format_angle(placed.angle, 2)}, at", share))
+        rests += [
+            ("jitter", measure(rest.jitter)),
+            (f"width at {measure(problem.max_movement)}", format_angle(rest.width, 2)),
+        ]
+    return rests
+
+
 def make_dwell(design: DwellDesign, problem: DwellProblem, linkage: DrivenLinkage) -> Content:
     """Return the content for a dwell sixbar: start and end of a dwell, and away from it; the output over a turn."""
     unit, mechanism = problem.length_unit, design.mechanism
@@ -356,9 +378,6 @@ def make_dwell(design: DwellDesign, problem: DwellProblem, linkage: DrivenLinkag
     bend = f"acceleration ({per})" if slides else "angular acceleration (rad per rad² of the crank)"
     what, over = f"slider ({unit})" if slides else "output angle (°)", "over the crank's rotation from the first dwell"
 
-    def measure(value: float) -> str:
-        return f"{format_length(value, digits=4)} {unit}" if slides else format_angle(value, 4)
-
     def draw_dwells(view: Viewport) -> list[Element]:
         drawn = (
             draw_path(view.clip_to_panel(at), stroke=TARGET_COLOUR, stroke_width=2.6, data_curve="dwell")
@@ -366,28 +385,13 @@ def make_dwell(design: DwellDesign, problem: DwellProblem, linkage: DrivenLinkag
         )
         return [curve for curve in drawn if curve is not None]
 
-    rests = []
-    for rest in design.targets:
-        rests.append((f"dwell {rest.index + 1} from", format_angle(rest.input_angle, 2)))
-        if design.dwells is not None:
-            placed = design.dwells[rest.index]
-            rests.append(
-                (
-                    f"over {format_angle(placed.angle, 2)}, at",
-                    f"{format_length(100.0 * placed.at, digits=3)} % of the way",
-                )
-            )
-        rests += [
-            ("jitter", measure(rest.jitter)),
-            (f"width at {measure(problem.max_movement)}", format_angle(rest.width, 2)),
-        ]
     name = TYPE_NAMES[mechanism.type]
     return Content(
         name,
         f"{name}, crank turns counter-clockwise",
         "a sixbar as a dwell begins and ends, and away from it",
         PlanarPicture(scene, unit, draw_dwells),
-        [blocks.make_rows("Dwells", rests)],
+        [blocks.make_rows("Dwells", _list_rests(design, problem))],
         titles={"way": "stroke" if slides else "swing"},
         standing="there",
         more_dimensions=_list_dwell_point(mechanism),
@@ -487,7 +491,7 @@ def make_balancing(design: BalancedDesign, problem: BalancingProblem, linkage: D
             drawn.append(draw_circle(view.point(at), size, stroke_width=2.4, **marks))
         return drawn
 
-    units, unit = symbols(problem), problem.length_unit
+    units, unit = list_symbols(problem), problem.length_unit
     mass = units[Dimension.MASS]
     rows = [
         (

@@ -117,4 +117,4 @@ def get_stance_curve(problem: Any) -> Complex | None:
         return None
     (first, last), points = stance.points, np.array([place.point for place in problem.points])
     # A stance of a closed path may pass its last point.
-    return np.concatenate([points[first:], points[: last + 1]]) if stance.around else points[first : last + 1]
+    return np.concatenate([points[first:], points[: last + 1]]) if stance.wraps_around else points[first : last + 1]

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import cmath
 import math
+from collections.abc import Mapping, Sequence
 
 import numpy as np
 
@@ -17,7 +18,7 @@ from service.render.page.diagrams import Diagram
 from service.render.page.numbers import format_angle, format_length
 from service.render.page.svg import Box, Element, Viewport, draw_circle, draw_path
 from service.render.page.symbols import CURVE, OUTPUT, PALE, TARGET_COLOUR
-from service.units import symbols
+from service.units import list_symbols
 from synthesis.kinds.spring_balancing.curves import drive_curves
 from synthesis.kinds.spring_balancing.design import SprungDesign
 from synthesis.kinds.spring_balancing.problem import SpringBalancingProblem
@@ -50,47 +51,39 @@ def make_spiral(at: complex, turned: float) -> Complex:
     return np.asarray(at + np.linspace(INNER_RADIUS, OUTER_RADIUS, 120) * np.exp(1j * (angles - angles[-1] + turned)))
 
 
-def make_spring_balancing(design: SprungDesign, problem: SpringBalancingProblem, linkage: DrivenLinkage) -> Content:
-    """Return the content for a spring-balanced linkage: places of its motion with springs; the drive without and with
-    them.
-    """
-    curves = drive_curves(problem, design)
-    inputs = np.linspace(curves.at[0], curves.at[-1], PLACE_COUNT)
-    scene = Scene(linkage, inputs, [])
-    now = Places(linkage.mechanism, linkage.drive_over(inputs, order=2))
-    ends = {
-        spring.number: [now.point(end.link, np.asarray(complex(*end.point)))[0] for end in spring.ends]
-        for spring in design.springs
-        if spring.ends is not None
-    }
-    held = [points[np.isfinite(points)] for pair in ends.values() for points in pair]
-    box = Box.enclose(np.concatenate([scene.list_places(), *held]))
+def _draw_coils(view: Viewport, ends: Mapping[int, Sequence[Complex]]) -> list[Element]:
+    """Draw springs between the places of their two ends, by number; the first place is drawn last, in colour."""
+    shapes: list[Element | None] = []
+    for number, (one, other) in ends.items():
+        # The first place is drawn last, on top of the pale ones.
+        for k in range(len(one) - 1, -1, -1):
+            if not (np.isfinite(one[k]) and np.isfinite(other[k])):
+                continue
+            start, end = view.point(complex(one[k])), view.point(complex(other[k]))
+            if k:
+                shapes.append(draw_path([np.array([start, end])], stroke=PALE, stroke_width=1.0))
+                continue
+            shapes.append(
+                draw_path([make_coil(start, end)], stroke=TARGET_COLOUR, stroke_width=1.8, data_spring=f"{number}")
+            )
+            shapes += [draw_circle(at, 3.0, fill=TARGET_COLOUR) for at in (start, end)]
+    return [shape for shape in shapes if shape is not None]
 
-    def draw_springs(view: Viewport) -> list[Element]:
-        shapes: list[Element | None] = []
-        for number, (one, other) in ends.items():
-            # The first place is drawn last, on top of the pale ones.
-            for k in range(len(inputs) - 1, -1, -1):
-                if not (np.isfinite(one[k]) and np.isfinite(other[k])):
-                    continue
-                start, end = view.point(complex(one[k])), view.point(complex(other[k]))
-                if k:
-                    shapes.append(draw_path([np.array([start, end])], stroke=PALE, stroke_width=1.0))
-                    continue
-                shapes.append(
-                    draw_path([make_coil(start, end)], stroke=TARGET_COLOUR, stroke_width=1.8, data_spring=f"{number}")
-                )
-                shapes += [draw_circle(at, 3.0, fill=TARGET_COLOUR) for at in (start, end)]
-        for spring in design.springs:
-            if spring.links is not None:
-                centre, turned = _find_torsion_place(linkage, scene, spring.links)
-                shape = make_spiral(view.point(centre), -turned)
-                shapes.append(
-                    draw_path([shape], stroke=TARGET_COLOUR, stroke_width=1.8, data_spring=f"{spring.number}")
-                )
-        return [shape for shape in shapes if shape is not None]
 
-    units, unit = symbols(problem), problem.length_unit
+def _draw_spirals(view: Viewport, places: list[tuple[int, complex, float]]) -> list[Element]:
+    """Draw torsion springs by number, centre and direction of their free end, radians."""
+    shapes = [
+        draw_path(
+            [make_spiral(view.point(centre), -turned)], stroke=TARGET_COLOUR, stroke_width=1.8, data_spring=f"{number}"
+        )
+        for number, centre, turned in places
+    ]
+    return [shape for shape in shapes if shape is not None]
+
+
+def _list_springs(design: SprungDesign, problem: SpringBalancingProblem, diagonal: float) -> list[tuple[str, str]]:
+    """Return the rows of the table of springs; ``diagonal`` is the size of the picture in length units."""
+    units, unit = list_symbols(problem), problem.length_unit
     rows = []
     for spring in design.springs:
         name = f"spring {spring.number + 1}"
@@ -109,8 +102,36 @@ def make_spring_balancing(design: SprungDesign, problem: SpringBalancingProblem,
             )
         )
         for end in spring.ends or ():
-            x, y = (format_length(value, box.diagonal) for value in end.point)
+            x, y = (format_length(value, diagonal) for value in end.point)
             rows.append((f"on {end.link}", f"({x}, {y})"))
+    return rows
+
+
+def make_spring_balancing(design: SprungDesign, problem: SpringBalancingProblem, linkage: DrivenLinkage) -> Content:
+    """Return the content for a spring-balanced linkage: places of its motion with springs; the drive without and with
+    them.
+    """
+    curves = drive_curves(problem, design)
+    inputs = np.linspace(curves.at[0], curves.at[-1], PLACE_COUNT)
+    scene = Scene(linkage, inputs, [])
+    now = Places(linkage.mechanism, linkage.drive_over(inputs, order=2))
+    ends = {
+        spring.number: [now.point(end.link, np.asarray(complex(*end.point)))[0] for end in spring.ends]
+        for spring in design.springs
+        if spring.ends is not None
+    }
+    held = [points[np.isfinite(points)] for pair in ends.values() for points in pair]
+    box = Box.enclose(np.concatenate([scene.list_places(), *held]))
+
+    def draw_springs(view: Viewport) -> list[Element]:
+        spirals = [
+            (spring.number, *_find_torsion_place(linkage, scene, spring.links))
+            for spring in design.springs
+            if spring.links is not None
+        ]
+        return [*_draw_coils(view, ends), *_draw_spirals(view, spirals)]
+
+    units, unit = list_symbols(problem), problem.length_unit
     places = [
         (name, f"({format_length(x, box.diagonal)}, {format_length(y, box.diagonal)})")
         for name, (x, y) in design.mechanism.skeleton.joints.items()
@@ -125,7 +146,7 @@ def make_spring_balancing(design: SprungDesign, problem: SpringBalancingProblem,
         f"Linkage with {count} spring{'s' * (count != 1)}",
         f"a linkage at {PLACE_COUNT} places of its motion, with its springs",
         PlanarPicture(scene, unit, draw_springs, box),
-        [blocks.make_rows("Springs", rows or [("none", "")])],
+        [blocks.make_rows("Springs", _list_springs(design, problem, box.diagonal) or [("none", "")])],
         titles={"value": "residual drive", "bound": "lower bound"},
         dimensions=blocks.make_rows(f"Joints in the reference ({unit})", places),
         diagrams=[

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from service.render.page.table import Cell, write_table
-from service.units import symbols
+from service.units import list_symbols
 from synthesis.kinds.balancing.design import RotorDesign
 from synthesis.kinds.balancing.problem import BalancingProblem
 from synthesis.model.dimension import Dimension
@@ -11,7 +11,7 @@ from synthesis.model.dimension import Dimension
 
 def write_rotor_table(design: RotorDesign, problem: BalancingProblem, title: str) -> str:
     """Write the unbalances of the rotor, and the masses added or removed, each with its place."""
-    units = symbols(problem)
+    units = list_symbols(problem)
     mechanism = design.mechanism
     rows: list[list[Cell]] = [["unbalance", None, e.z, e.angle, e.unbalance, None, None] for e in mechanism.unbalances]
     rows += [

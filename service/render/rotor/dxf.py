@@ -20,7 +20,7 @@ import math
 from service.render.page import dxf
 from service.render.page.numbers import format_angle, format_length
 from service.render.rotor.faces import make_faces
-from service.units import symbols
+from service.units import list_symbols
 from synthesis.kinds.balancing.design import RotorDesign
 from synthesis.kinds.balancing.problem import BalancingProblem
 from synthesis.model.dimension import Dimension
@@ -31,7 +31,7 @@ FACE_SPACING, LETTER_HEIGHT, MARK_SIZE = 3.2, 0.06, 0.05
 
 def write_rotor_dxf(design: RotorDesign, problem: BalancingProblem, title: str) -> str:
     """Write the templates of a balanced rotor as a DXF document (R2010)."""
-    units, shown = symbols(problem), make_faces(design.mechanism)
+    units, shown = list_symbols(problem), make_faces(design.mechanism)
     layers = {"ADDED": (5, "CONTINUOUS"), "REMOVED": (1, "CONTINUOUS"), "TEXT": (7, "CONTINUOUS")}
     layers |= {f"PLANE_{n}": (3, "CONTINUOUS") for n in range(1, len(shown) + 1)}
     document = dxf.create_drawing(title or "Balanced rotor", problem.length_unit, layers)

@@ -14,7 +14,7 @@ from service.render.page.sheet import BORDER, TOP, draw_panel, get_drawing_width
 from service.render.page.svg import Box, Element, draw_circle, draw_line, draw_text, make_element
 from service.render.page.symbols import COUPLER, GREY, GROUND, INK, INPUT, PALE, TARGET_COLOUR, draw_arrow
 from service.render.rotor.faces import Face, make_faces
-from service.units import symbols
+from service.units import list_symbols
 from synthesis.kinds.balancing.design import RotorDesign, RotorMechanism
 from synthesis.kinds.balancing.problem import BalancingProblem
 from synthesis.model.dimension import Dimension
@@ -31,7 +31,7 @@ RIM_RADIUS, MARK_RADIUS = 105.0, 88.0
 
 def draw_rotor_sheet(design: RotorDesign, problem: BalancingProblem, title: str) -> str:
     """Draw a balanced rotor as a complete SVG document."""
-    mechanism, metrics, units = design.mechanism, design.metrics, symbols(problem)
+    mechanism, metrics, units = design.mechanism, design.metrics, list_symbols(problem)
     planes = len(mechanism.planes)
     parts = [_draw_side_view(mechanism, units)]
     width = get_drawing_width(TABLE_WIDTH) / planes

@@ -37,7 +37,7 @@ from service.render.page.svg import (
 )
 from service.render.page.symbols import COUPLER, CURVE, GREY, GROUND, INK, INPUT, OUTPUT, draw_scale_bar
 from service.render.page.table import write_table
-from service.units import symbols
+from service.units import list_symbols
 from synthesis.kinds.engine.design import EngineDesign, EngineMechanism
 from synthesis.kinds.engine.problem import EngineProblem
 from synthesis.model.dimension import FORCE, TORQUE
@@ -60,7 +60,7 @@ COLUMN_ENDS = (0.1, 0.3, 0.5, 0.7, 0.85, 1.0)
 
 def draw_engine_sheet(design: EngineDesign, problem: EngineProblem, title: str) -> str:
     """Draw the engine from the front, its shaft from the side, torque, shaking force and tables as an SVG document."""
-    mechanism, units = design.mechanism, symbols(problem)
+    mechanism, units = design.mechanism, list_symbols(problem)
     view = Viewport.fit(
         _find_box(mechanism), Box(BORDER, TOP, BORDER + get_drawing_width(), TOP + PANEL_HEIGHT), MARGIN, MARGIN
     )

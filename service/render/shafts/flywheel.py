@@ -23,7 +23,7 @@ from service.render.page.sheet import BORDER, TOP, draw_panel, get_drawing_width
 from service.render.page.svg import Box, Element, Viewport, draw_circle, draw_line, draw_polygon
 from service.render.page.symbols import GREY, GROUND, INPUT, OUTPUT, draw_scale_bar
 from service.render.page.table import write_table
-from service.units import symbols
+from service.units import list_symbols
 from synthesis.kinds.flywheel.design import FlywheelDesign, FlywheelMechanism
 from synthesis.kinds.flywheel.problem import FlywheelProblem
 from synthesis.model.dimension import DENSITY, ROTATIONAL_SPEED, TORQUE
@@ -43,7 +43,7 @@ LETTER_HEIGHT = 0.05
 
 def draw_flywheel_sheet(design: FlywheelDesign, problem: FlywheelProblem, title: str) -> str:
     """Draw face and section of a flywheel to scale, its torque and speed, and tables as a complete SVG document."""
-    wheel, units = design.mechanism, symbols(problem)
+    wheel, units = design.mechanism, list_symbols(problem)
     box = _find_box(wheel)
     view = Viewport.fit(box, Box(BORDER, TOP, BORDER + get_drawing_width(), TOP + PANEL_HEIGHT), MARGIN, MARGIN)
     parts = [_draw_panel(wheel, view, problem.length_unit)]
@@ -91,7 +91,7 @@ def _list_dimensions(wheel: FlywheelMechanism, problem: FlywheelProblem) -> list
     rows = [("outer radius", f"{format_length(wheel.radius)} {unit}")]
     if wheel.form == "rim":
         rows.append(("inner radius", f"{format_length(wheel.inner_radius)} {unit}"))
-    density = add_unit(format_length(wheel.density), symbols(problem)[DENSITY])
+    density = add_unit(format_length(wheel.density), list_symbols(problem)[DENSITY])
     return [*rows, ("thickness", f"{format_length(wheel.thickness)} {unit}"), ("density", density)]
 
 

@@ -30,7 +30,7 @@ from service.render.page.sheet import BORDER, TOP, draw_panel, get_drawing_width
 from service.render.page.svg import Box, Element, Viewport, draw_circle, draw_line, draw_path, draw_polygon
 from service.render.page.symbols import COUPLER, GREY, GROUND, INPUT, OUTPUT, draw_scale_bar
 from service.render.page.table import write_table
-from service.units import symbols
+from service.units import list_symbols
 from synthesis.kinds.indexing.design import GenevaMechanism, IndexingDesign, SphericalGenevaMechanism
 from synthesis.kinds.indexing.problem import IndexingProblem
 from synthesis.mechanisms.geneva import build_drive
@@ -56,7 +56,7 @@ LETTER_HEIGHT = 0.03
 
 def draw_indexing_sheet(design: IndexingDesign, problem: IndexingProblem, title: str) -> str:
     """Draw wheel and crank as a roller enters, the program, torque and pin force, and tables as an SVG document."""
-    units, program, course = symbols(problem), design.program, design.course
+    units, program, course = list_symbols(problem), design.program, design.course
     parts = [_draw_panel(design, problem)]
     at = np.array(program.angle)
     low = TOP + PANEL_HEIGHT + 10.0

@@ -20,7 +20,8 @@ from synthesis.mechanisms.cam import GivenBarrelCam, GivenCurve
 
 
 def _build_example_wall(mean: float, sign: float) -> dict[str, Any]:
-    """Of a groove that goes up and down once in a turn, about a roller of 8 on a cylinder of 40."""
+    """Build a wall of a groove that rises and falls once per turn, for a roller of radius 8 on a cylinder of radius
+    40."""
     theta = [math.radians(2.0 * k) for k in range(180)]
     slope = [0.25 * math.sin(t) for t in theta]
     return {
@@ -57,7 +58,7 @@ class BarrelCamAnalysisRequest(DrivenRequest[GivenBarrelCam]):
     load: Load | None = None
 
     def build_answer(self) -> dict[str, Any]:
-        """Everything over the motion, in the shape of :class:`BarrelCamAnalysis`."""
+        """Build the answer over the motion, in the form of :class:`BarrelCamAnalysis`."""
         at, speed, time = self.motion.list_inputs()
         given = self.mechanism
         radius, roller = given.cylinder_radius, given.follower.roller_radius

@@ -28,16 +28,16 @@ from synthesis.model.answer import Answer
 from synthesis.model.problem import NonNegative, PositiveNumber, Statement
 
 MAX_EFFORT = 40_000_000
-"""Positions times points of the profile at most: about two seconds."""
+"""Maximum product of positions and points of the profile: about two seconds."""
 
 PROGRAM_SAMPLE_COUNT = 1440
-"""Cam angles at which the program of a profile is measured for vibrations."""
+"""Number of cam angles at which the program of a profile is measured for vibrations."""
 
 MIN_POSITIONS = 24
-"""Positions that a cutter's path with a chordal tolerance starts from."""
+"""Number of positions from which a cutter's path with a chordal tolerance starts."""
 
 MAX_CHORDS = 20_000
-"""Moves of a cutter's path at most: a finer tolerance than the profile itself has would never be met."""
+"""Maximum number of moves of a cutter's path: a tolerance finer than the profile's own would never be met."""
 
 
 class Load(Statement):
@@ -49,7 +49,7 @@ class Load(Statement):
     damping: NonNegative = Field(default=0.0, description="Damping force per unit of velocity.")
 
     def build_core(self) -> FollowerLoad:
-        """The load of the analysis core."""
+        """Build the load of the analysis core."""
         return FollowerLoad(self.mass, self.spring_rate, self.preload, self.damping)
 
 
@@ -63,7 +63,7 @@ class Train(Statement):
     preload: NonNegative = 0.0
 
     def build_core(self) -> FollowerTrain:
-        """The train of the analysis core."""
+        """Build the train of the analysis core."""
         return FollowerTrain(self.mass, self.stiffness, self.damping, self.spring_rate, self.preload)
 
 
@@ -114,14 +114,14 @@ class CamAnalysisRequest(DrivenRequest[GivenCam]):
     cutter: Cutter | None = None
 
     def find_errors(self) -> list[tuple[str, str]]:
-        """What no single field shows."""
+        """List errors that no single field shows."""
         faults = super().find_errors()
         if self.train is not None and self.motion.rate <= 0.0:
             faults.append(("/motion/speed", "a vibration needs a positive speed"))
         return faults
 
     def build_answer(self) -> dict[str, Any]:
-        """Everything over the motion, in the shape of :class:`CamAnalysis`."""
+        """Build the answer over the motion, in the form of :class:`CamAnalysis`."""
         at, speed, time = self.motion.list_inputs()
         contour, follower = self.mechanism.build_contour(), self.mechanism.build_follower()
         if len(at) * len(contour.points) > MAX_EFFORT:
@@ -228,7 +228,7 @@ class CamAnalysisRequest(DrivenRequest[GivenCam]):
 def compute_force_series(
     load: Load, s: Real, v: Real, pressure_angle: Real, velocity: Real, acceleration: Real
 ) -> dict[str, list[float]]:
-    """Along the follower's motion, between the surfaces, and the torque on the camshaft."""
+    """Compute forces along the follower's motion and between the surfaces, and the torque on the camshaft."""
     inertia = load.mass * acceleration + load.damping * velocity
     force = inertia + load.spring_rate * s + load.preload
     return {
@@ -239,7 +239,7 @@ def compute_force_series(
 
 
 def _find_min_radius(contour: Contour, side: float) -> float | None:
-    """Least radius of the convex (1) or hollow (−1) parts; None where there is none."""
+    """Find the minimum radius of the convex (1) or hollow (−1) parts; None without any."""
     greatest = float((side * contour.curvature()).max())
     return 1.0 / greatest if greatest > FLAT / float(np.abs(contour.points).max()) else None
 

@@ -19,7 +19,7 @@ from synthesis.model.answer import Answer
 from synthesis.model.problem import Number, Statement
 
 PROGRAM_SAMPLE_COUNT = 360
-"""Cam angles at which each cam's program is measured."""
+"""Number of cam angles at which each cam's program is measured."""
 
 Share = Annotated[float, Field(strict=True, gt=0.0, le=1.0)]
 
@@ -77,7 +77,7 @@ class CamshaftAnalysisRequest(DrivenRequest[GivenCamshaft]):
     )
 
     def find_errors(self) -> list[tuple[str, str]]:
-        """What no single field shows."""
+        """List errors that no single field shows."""
         faults = super().find_errors()
         if self.motion.rate <= 0.0:
             faults.append(("/motion/speed", "the shaft needs a positive speed"))
@@ -86,7 +86,7 @@ class CamshaftAnalysisRequest(DrivenRequest[GivenCamshaft]):
         return faults
 
     def build_answer(self) -> dict[str, Any]:
-        """The shaft's torque over the motion, in the shape of :class:`CamshaftAnalysis`."""
+        """Build the answer with the shaft's torque over the motion, in the form of :class:`CamshaftAnalysis`."""
         at, _, _ = self.motion.list_inputs()
         cams = []
         for n, stated in enumerate(self.mechanism.cams):

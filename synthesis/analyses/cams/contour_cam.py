@@ -40,7 +40,7 @@ class ContourCamAnalysisRequest(DrivenRequest[GivenContourCam]):
     )
 
     def build_answer(self) -> dict[str, Any]:
-        """Everything over the motion, in the shape of :class:`ContourCamAnalysis`."""
+        """Build the answer over the motion, in the form of :class:`ContourCamAnalysis`."""
         contour, follower = self.mechanism.build_core()
         at, speed, time = self.motion.list_inputs()
         rotation, alpha = self.mechanism.rotation, self.motion.acceleration

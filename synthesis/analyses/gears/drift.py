@@ -38,6 +38,7 @@ def describe_drift(ratio: Fraction | None, wanted: float | str | None) -> dict[s
     if ratio is None or wanted is None:
         return {}
     sign, target = parse_target(wanted)
+    # A train without motion has no meaningful drift.
     if ratio == 0:
         return {}
     low, high = target.enclose(ENCLOSURE_BITS)

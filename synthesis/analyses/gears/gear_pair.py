@@ -1,7 +1,7 @@
 """Analyses of pairs of helical gears (parallel or crossed), of bevel gears and of a worm with its gear: dimensions.
 
-The pairs stand by themselves, with the speeds that the first gear's gives. Lengths are in the unit of the module, which
-is the millimetre where nothing else is stated.
+The pairs are not part of a train; the speed of the first gear determines the other. Lengths are in the unit of the
+module, the millimetre by default.
 """
 
 from __future__ import annotations
@@ -45,7 +45,7 @@ class GivenHelicalPair(Statement):
     face_width: PositiveNumber | None = None
 
     def build_gears(self) -> tuple[HelicalGear, HelicalGear]:
-        """Both gears; raises MechanismError where the second helix angle is a right one or more."""
+        """Build both gears; raises MechanismError if the second helix angle is too large."""
         second = self.shaft_angle - self.helix_angle
         if not abs(second) < 85.0:
             raise MechanismError("/helix_angle", f"the second gear would need a helix angle of {second:g}°")
@@ -123,7 +123,7 @@ class _PairRequest(AnalysisRequest):
 
     @classmethod
     def analyze_cycle(cls, mechanism: dict[str, Any], steps: int) -> dict[str, Any]:
-        """The same at any input; these pairs are no designs that a job returns."""
+        """Build the answer at any input; jobs return no such pairs as designs."""
         return cls.model_validate({"mechanism": mechanism}).build_answer()
 
 
@@ -142,7 +142,7 @@ class HelicalPairRequest(_PairRequest):
     mechanism: GivenHelicalPair
 
     def build_answer(self) -> dict[str, Any]:
-        """Dimensions in the shape of :class:`GearPairAnalysis`."""
+        """Build the dimensions in the form of :class:`GearPairAnalysis`."""
         given = self.mechanism
         first, second = given.build_gears()
         parallel = given.shaft_angle == 0.0
@@ -182,13 +182,13 @@ class BevelPairRequest(_PairRequest):
     length_unit: Literal["mm", "cm", "m", "in"] = "mm"
 
     def find_errors(self) -> list[tuple[str, str]]:
-        """A gear that is smaller than its pinion."""
+        """List the error of a gear that is smaller than its pinion."""
         if self.mechanism.teeth[0] > self.mechanism.teeth[1]:
             return [("/mechanism/teeth", "give the pinion first; the gear has at least as many teeth")]
         return []
 
     def build_answer(self) -> dict[str, Any]:
-        """Dimensions in the shape of :class:`GearPairAnalysis`."""
+        """Build the dimensions in the form of :class:`GearPairAnalysis`."""
         given, speed = self.mechanism, self.speed_rpm * RAD_PER_S_PER_RPM
         pair = BevelPair(
             *given.teeth, 1.0 / given.module, math.radians(given.pressure_angle), BEVEL_TEETH[given.tooth_system],
@@ -223,7 +223,7 @@ class WormSetRequest(_PairRequest):
     mechanism: GivenWormSet
 
     def build_answer(self) -> dict[str, Any]:
-        """Dimensions in the shape of :class:`GearPairAnalysis`."""
+        """Build the dimensions in the form of :class:`GearPairAnalysis`."""
         given, speed = self.mechanism, self.speed_rpm * RAD_PER_S_PER_RPM
         pair = WormSet(given.threads, given.gear_teeth, given.axial_pitch, given.worm_diameter)
         gears = [

@@ -1,10 +1,10 @@
 """The analysis of an ordinary gear train: speeds, torques, mesh geometry, forces and losses.
 
 Speeds are exact fractions of the input's. The torque on a shaft is the power that reaches it over its speed; each mesh
-passes on a stated share of the power, or 1 − μ H with the friction coefficient μ and the loss factor H of its teeth. A
-torque against the speed of the input takes power out there: the output drives, and has to bring the losses too. A worm
-passes on what its own friction lets it, whatever is stated for the other meshes: its forces follow from that friction,
-and so must the torques that they carry.
+transmits a given share of the power, or 1 − μ H with the friction coefficient μ and the loss factor H of its teeth. A
+torque against the speed of the input takes power out there: the output drives and supplies the losses, too. A worm
+transmits the share that its own friction permits, regardless of the other meshes: its forces follow from that friction,
+and so must its torques.
 """
 
 from __future__ import annotations
@@ -83,7 +83,7 @@ class GearTrainAnalysisRequest(DrivenRequest[GivenGearTrain]):
     )
 
     def find_errors(self) -> list[tuple[str, str]]:
-        """What no single field shows."""
+        """List errors that no single field shows."""
         faults = super().find_errors()
         for number, idler in enumerate(self.mechanism.idlers):
             if idler.stage > len(self.mechanism.stages):
@@ -107,17 +107,19 @@ class GearTrainAnalysisRequest(DrivenRequest[GivenGearTrain]):
 
     @property
     def list_locked_worms(self) -> list[int]:
-        """Which stages, from 0, are worms that pass on no power, whether they drive or their gears."""
+        """Stages, from 0, whose worms transmit no power, driven by the worm or by the gear."""
         shares = list_power_shares(self)
         return [k for k, stage in enumerate(self.mechanism.stages) if stage.type == "worm" and 0.0 in shares[k]]
 
     def _find_locking_errors(self) -> list[tuple[str, str]]:
-        """Where friction lets no power through although there is a torque."""
+        """List errors of meshes that friction locks although there is a torque."""
         if self.input_torque == 0.0:
+            # Without torque friction locks nothing, and speeds can be analyzed all the same.
             return []
         worms, back = self.list_locked_worms, self.has_backward_flow
         detail = "the gear cannot drive the worm" if back else "the worm cannot drive its gear, whatever the torque"
         faults = [(f"/mechanism/stages/{k}/friction", f"with so much of it {detail}") for k in worms]
+        # Only a reversed flow divides by the shares; forwards a share of 0 merely leaves an output torque of 0.
         if back and not worms and any(0.0 in stage for stage in list_power_shares(self)):
             detail = "with this friction a mesh loses all power, so that the output cannot drive"
             faults.append(("/friction", detail))
@@ -125,13 +127,14 @@ class GearTrainAnalysisRequest(DrivenRequest[GivenGearTrain]):
 
     @classmethod
     def analyze_cycle(cls, mechanism: dict[str, Any], steps: int) -> dict[str, Any]:
-        """As that of every mechanism, and without a load where friction holds a worm."""
+        """Build the answer over a cycle, without a load if friction locks a worm."""
         request = cls.model_validate({"mechanism": mechanism, "motion": {"steps": steps}})
+        # The default torque of 1 would be rejected for a locked worm, so analyze such a train without it.
         return request.model_copy(update={"input_torque": 0.0} if request.list_locked_worms else {}).build_answer()
 
     @property
     def has_backward_flow(self) -> bool:
-        """Whether power leaves at the input, at the first position: the output drives."""
+        """Whether power leaves at the input at the first position: the output drives."""
         return self.input_torque * float(self.motion.list_inputs()[1][0]) < 0.0
 
     def _find_strength_errors(self) -> list[tuple[str, str]]:
@@ -149,6 +152,7 @@ class GearTrainAnalysisRequest(DrivenRequest[GivenGearTrain]):
             for number, stage in enumerate(self.mechanism.stages)
             if stage.type not in RATED_STAGE_TYPES
         ]
+        # Power sizes the faces; with a torque or a speed of zero every face would do.
         if self.input_torque == 0.0 or float(self.motion.list_inputs()[1][0]) == 0.0:
             faults.append(("/strength", "give a torque and a speed; without them no power is transmitted"))
         if stated.allowable_bending is None and stated.allowable_contact is None:
@@ -165,6 +169,7 @@ class GearTrainAnalysisRequest(DrivenRequest[GivenGearTrain]):
     def _find_distance_errors(self) -> list[tuple[str, str]]:
         try:
             distances = self.mechanism.build_train().centre_distances
+        # Errors of the stages are reported by the mechanism itself.
         except DimensionError:
             return []
         return [
@@ -174,19 +179,20 @@ class GearTrainAnalysisRequest(DrivenRequest[GivenGearTrain]):
         ]
 
     def _find_face_errors(self) -> list[tuple[str, str]]:
-        """Faces of bevel gears that would reach over the apex of their cones."""
+        """List errors of bevel gears whose faces would extend beyond the apex of their cones."""
         angle = math.radians(self.mechanism.pressure_angle)
         faults = []
         for number, stage in enumerate(self.mechanism.stages):
             if stage.type == "bevel" and stage.face_width is not None:
                 far = build_train_stage(stage, angle).cones(angle).cone_distance
+                # The negation also rejects a face as wide as the cone distance, where the teeth would end in a point.
                 if not stage.face_width < far:
                     detail = f"expected less than the cone distance of these gears, {far:.6g}"
                     faults.append((f"/mechanism/stages/{number}/face_width", detail))
         return faults
 
     def build_answer(self) -> dict[str, Any]:
-        """Everything about the train, in the shape of :class:`GearTrainAnalysis`."""
+        """Build the answer for the train, in the form of :class:`GearTrainAnalysis`."""
         return _analyze_train(self)
 
 
@@ -229,12 +235,15 @@ class GearTrainAnalysis(DrivenAnalysis):
 
 
 def _analyze_train(request: GearTrainAnalysisRequest) -> dict[str, Any]:
-    """Speeds, torques, gears and meshes of a train over the motion."""
+    """Compute speeds, torques, gears and meshes of a train over the motion."""
     at, speed, time = request.motion.list_inputs()
     train = request.mechanism.build_train()
     shares = list_power_shares(request)
+    # A mesh that cannot run passes torque without loss, so that the answer still shows torques; efficiency is None
+    # then.
     passed = tuple(tuple(1.0 if share is None else share for share in stage) for stage in shares)
     known = all(share is not None for stage in shares for share in stage)
+    # With reversed flow the input receives less than the output supplies: torques grow towards the output.
     gained = tuple(tuple(1.0 / share for share in stage) for stage in passed) if request.has_backward_flow else passed
     torques = train.torques(request.input_torque, gained)
     flow = Flow(
@@ -259,12 +268,13 @@ def _analyze_train(request: GearTrainAnalysisRequest) -> dict[str, Any]:
 
 
 def _clean_axis(axis: Real) -> tuple[float, ...]:
-    """An axis without what is left of a right angle in rounding."""
+    """Round an axis, so that right angles leave no rounding errors."""
+    # Adding zero turns −0.0 into 0.0.
     return tuple(round(float(part), 15) + 0.0 for part in axis)
 
 
 def list_power_shares(request: GearTrainAnalysisRequest) -> tuple[tuple[float | None, ...], ...]:
-    """Share of the power that each mesh of each stage passes on; None of one that cannot run."""
+    """List the share of the power that each mesh of each stage transmits; None for one that cannot run."""
     train = request.mechanism.build_train()
     return tuple(
         (_compute_worm_share(request, stage, train),)
@@ -275,24 +285,26 @@ def list_power_shares(request: GearTrainAnalysisRequest) -> tuple[tuple[float | 
 
 
 def _compute_worm_share(request: GearTrainAnalysisRequest, stage: TrainStage, train: OrdinaryTrain) -> float:
-    """Share of the power that a worm passes on, or its gear where that drives; 0 where friction holds it."""
+    """Compute the share of the power that a worm, or its driving gear, transmits; 0 if friction locks it."""
     worm = stage.worm(train.pressure_angle)
     return worm.back_efficiency(stage.friction) if request.has_backward_flow else worm.efficiency(stage.friction)
 
 
 def _compute_share(request: GearTrainAnalysisRequest, mesh: Mesh) -> float | None:
-    """Share of the power that a mesh passes on; None where it cannot run."""
+    """Compute the share of the power that a mesh transmits; None if it cannot run."""
+    # Below a contact ratio of 1 the teeth lose contact, so no efficiency is meaningful.
     if mesh.contact_ratio < 1.0:
         return None
     if request.mesh_efficiency is not None:
         return request.mesh_efficiency
+    # Large friction can make the estimate negative; a share below 0 has no meaning.
     return max(0.0, 1.0 - request.friction * mesh.loss_factor)
 
 
 def _describe_gears(
     request: GearTrainAnalysisRequest, train: OrdinaryTrain, at: NDArray[np.float64], speed: NDArray[np.float64]
 ) -> list[dict[str, Any]]:
-    """Every gear with its dimensions and its motion, from the input to the output."""
+    """Describe every gear with its dimensions and its motion, from the input to the output."""
     gears = []
     for number, (stage, speeds) in enumerate(zip(train.stages, train.speeds, strict=True), 1):
         roles = ["driver", *("idler" for _ in stage.idlers), "driven"]
@@ -306,12 +318,14 @@ def _describe_gears(
 
 
 def _describe_stage_gears(stage: TrainStage, train: OrdinaryTrain) -> list[dict[str, Any]]:
-    """Dimensions of the gears of a stage, in the order in which they mesh."""
+    """Describe the dimensions of the gears of a stage, in the order of their meshes."""
     cut, meshes = stage.cut_gears(train.pressure_angle), stage.meshes(train.pressure_angle)
     if stage.kind == "worm":
         return _describe_worm_stage(stage.worm(train.pressure_angle))
     if stage.kind == "bevel":
         pair = stage.cones(train.pressure_angle)
+        # Undercut of bevel gears is that of the virtual gears of the back cones, which the mesh sorts by tooth
+        # number.
         virtual = sorted((meshes[0].pinion, meshes[0].gear), key=lambda gear: gear.teeth)
         ordered = virtual if stage.driver <= stage.driven else virtual[::-1]
         return [
@@ -319,23 +333,26 @@ def _describe_stage_gears(stage: TrainStage, train: OrdinaryTrain) -> list[dict[
             for gear, back, cone in zip(cut, ordered, pair.cones, strict=True)
         ]
     if stage.shifts != (0.0, 0.0):
-        # As the mesh tells it: a shifted stage has one.
+        # A shifted stage has one mesh, which knows its undercut.
         helix = Helix(train.pressure_angle, stage.helix_angle) if stage.kind == "helical" else None
         undercut = list(find_undercut(meshes[0], helix))[:: 1 if stage.driver <= stage.driven else -1]
     elif stage.kind == "helical":
         undercut = [gear.is_undercut for gear in cut]
     else:
+        # Idlers can shorten teeth, but the rack's depth, which undercuts, is always the full one.
         undercut = [replace(gear, addendum=FULL_DEPTH_ADDENDUM).is_undercut for gear in cut]
     return [_describe_dimensions(gear, taken) for gear, taken in zip(cut, undercut, strict=True)]
 
 
 def _describe_dimensions(gear: Gear, undercut: bool, slope: float = 1.0) -> dict[str, Any]:
-    """Of a gear; the teeth of bevel gears rise from the axis by ``slope``, the cosine of the cone, of their height."""
+    """Describe a gear; bevel teeth extend from the axis by ``slope``, the cosine of the cone, times their height."""
     radii = gear.pitch_radius, gear.tip_radius, gear.root_radius
+    # Bevel teeth extend along the back cone, inclined to the axis by the cone angle.
     tip, root = (radii[0] + slope * (radius - radii[0]) for radius in radii[1:])
     return {
         "module": gear.module,
         "pitch_diameter": 2.0 * gear.pitch_radius,
+        # For parallel axes take the gear's radii as they are: the formula with slope 1 would add rounding errors.
         "outside_diameter": 2.0 * (gear.tip_radius if slope == 1.0 else tip),
         "root_diameter": 2.0 * (gear.root_radius if slope == 1.0 else root),
         "base_diameter": 2.0 * gear.base_radius,
@@ -345,7 +362,7 @@ def _describe_dimensions(gear: Gear, undercut: bool, slope: float = 1.0) -> dict
 
 
 def _describe_worm_stage(worm: WormDrive) -> list[dict[str, Any]]:
-    """The worm, as thick along its axis, and its gear in the middle plane."""
+    """Describe the worm, with its thickness along the axis, and its gear in the middle plane."""
     diameter, module = worm.dimensions.worm_diameter, worm.module
     threads = {
         "module": module,

@@ -43,7 +43,7 @@ class GivenGearbox(Statement):
     pressure_angle: Any = None
 
     def list_teeth(self) -> list[list[tuple[int, int]]]:
-        """Tooth numbers by stage and pair."""
+        """List tooth numbers by stage and pair."""
         return [[(pair.driver, pair.driven) for pair in stage.pairs] for stage in self.stages]
 
 
@@ -126,7 +126,7 @@ class GearboxAnalysisRequest(DrivenRequest[GivenGearbox]):
     )
 
     def find_errors(self) -> list[tuple[str, str]]:
-        """What no single field shows."""
+        """List errors that no single field shows."""
         faults = super().find_errors()
         stages = self.mechanism.stages
         if self.engaged is not None and len(self.engaged) != len(stages):
@@ -137,7 +137,7 @@ class GearboxAnalysisRequest(DrivenRequest[GivenGearbox]):
         return faults
 
     def build_answer(self) -> dict[str, Any]:
-        """Everything about the gearbox, in the shape of :class:`GearboxAnalysis`."""
+        """Build the answer for the gearbox, in the form of :class:`GearboxAnalysis`."""
         at, speed, time = self.motion.list_inputs()
         stages = self.mechanism.list_teeth()
         engaged = self.engaged or [0] * len(stages)
@@ -174,7 +174,7 @@ class LayshaftAnalysisRequest(DrivenRequest[GivenLayshaftGearbox]):
     gear: Annotated[int, Field(strict=True, ge=1, le=12)] | Literal["reverse"] = 1
 
     def find_errors(self) -> list[tuple[str, str]]:
-        """What no single field shows."""
+        """List errors that no single field shows."""
         faults = super().find_errors()
         for k, gear in enumerate(self.mechanism.gears):
             if (gear.layshaft is None) != (gear.mainshaft is None):
@@ -186,7 +186,7 @@ class LayshaftAnalysisRequest(DrivenRequest[GivenLayshaftGearbox]):
         return faults
 
     def build_answer(self) -> dict[str, Any]:
-        """Everything about the gearbox, in the shape of :class:`GearboxAnalysis`."""
+        """Build the answer for the gearbox, in the form of :class:`GearboxAnalysis`."""
         at, speed, time = self.motion.list_inputs()
         box, back = self.mechanism, self.mechanism.reverse
         gears = [
@@ -215,7 +215,7 @@ def _build_answer(
     ratios: list[tuple[str, Fraction]],
     speeds: list[tuple[list[int], Fraction]],
 ) -> dict[str, Any]:
-    """The answer that both kinds of gearbox have in common."""
+    """Build the answer common to both kinds of gearbox."""
     return {
         "input_angle": at.tolist(),
         "time": None if time is None else time.tolist(),

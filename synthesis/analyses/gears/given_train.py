@@ -75,7 +75,7 @@ class GivenStage(StageType):
         return driver
 
     def find_type_errors(self) -> list[tuple[str, str]]:
-        """Fields that another type has, gears that this type does not take, by their path below the stage."""
+        """List fields of other types, and gears that this type does not permit, by their path below the stage."""
         faults = super().find_type_errors()
         if self.type not in ("external", "helical") and self.shift is not None:
             faults.append(("/shift", f"a stage that is {self.type} has no shift"))
@@ -87,7 +87,7 @@ class GivenStage(StageType):
 
     @classmethod
     def list_types_with(cls, name: str) -> tuple[StageKind, ...]:
-        """Which types of stages have a field; a face width is asked of all that carry a force."""
+        """List the types of stages with a field; a face width belongs to all types with rated forces."""
         return ("external", "internal", "helical", "bevel") if name == "face_width" else super().list_types_with(name)
 
 
@@ -106,7 +106,7 @@ class GivenRatio(Statement):
     value: Number
 
     def find_errors(self, ratio: Fraction) -> list[tuple[str, str]]:
-        """What is wrong where the teeth have another ratio."""
+        """List the error of a ratio that differs from that of the teeth."""
         same = self.numerator == ratio * self.denominator
         if same and math.isclose(self.value, float(ratio), rel_tol=RATIO_TOLERANCE):
             return []
@@ -123,7 +123,7 @@ class GivenGearTrain(Statement):
     pressure_angle: PressureAngle = 20.0
 
     def build_train(self) -> OrdinaryTrain:
-        """The train for the analysis core."""
+        """Build the train for the analysis core."""
         idlers = {k: tuple(i.teeth for i in self.idlers if i.stage == k) for k in range(1, len(self.stages) + 1)}
         angle = math.radians(self.pressure_angle)
         return OrdinaryTrain(tuple(build_train_stage(s, angle, idlers[k]) for k, s in enumerate(self.stages, 1)), angle)

@@ -82,15 +82,15 @@ class LoadedMesh(MeshGeometry):
 def list_loaded_meshes(
     flow: Flow, strength: StrengthMethod | None, widths: Sequence[float | None]
 ) -> list[dict[str, Any]]:
-    """Every mesh with its contact, its forces and its stresses, in the shape of :class:`LoadedMesh`.
+    """List every mesh with its contact, its forces and its stresses, in the form of :class:`LoadedMesh`.
 
     Parameters
     ----------
     flow : Flow
     strength : StrengthMethod or None
-        How stresses are estimated; they are left out without.
+        Method of the stresses, which are left out without it.
     widths : sequence of float or None
-        Of the face of each stage, where it is stated; length units.
+        Face width of each stage, if given; length units.
     """
     train = flow.train
     geometries = iter(describe_meshes(train))
@@ -106,6 +106,7 @@ def list_loaded_meshes(
         # The tangential force passes through an idler; each mesh takes its losses from it. It is that of the gear that
         # drives: where the output does, a mesh has lost its share before its force reaches the driver.
         radius = _compute_force_radius(stage, train)
+        # Shifted gears run on working circles, which are larger than the pitch circles by the ratio of the distances.
         if stage.shifts != (0.0, 0.0):
             radius *= meshes[0].centre_distance / meshes[0].standard_distance
         force = abs(torque) / (radius * flow.unit)
@@ -115,8 +116,10 @@ def list_loaded_meshes(
             passed = 1.0 if share is None else share
             if flow.flows_back:
                 force /= passed
-            parts = mesh.approach, mesh.recess
-            approach, recess = parts if driver <= driven else parts[::-1]
+            on_pitch_circle = stage.shifts == (0.0, 0.0) and stage.kind == "external"
+            pitch_radius = 0.5 * stage.module * driver if on_pitch_circle else radius
+            # The mesh counts its approach for the smaller gear as driver; with a larger driver the two change places.
+            approach, recess = (mesh.approach, mesh.recess)[:: 1 if driver <= driven else -1]
             loaded.append(
                 {
                     **next(geometries).model_dump(),
@@ -125,14 +128,10 @@ def list_loaded_meshes(
                     "recess": recess,
                     "clearance": mesh.clearance,
                     "efficiency": share,
-                    "pitch_line_velocity": abs(float(turn) * flow.speed)
-                    * (
-                        radius
-                        if stage.shifts != (0.0, 0.0) or stage.kind != "external"
-                        else 0.5 * stage.module * driver
-                    ),
+                    "pitch_line_velocity": abs(float(turn) * flow.speed) * pitch_radius,
                     "tangential_force": force,
                     "radial_force": force * math.tan(mesh.pressure_angle),
+                    # The thrust changes sides with the direction of rotation and with the driving gear.
                     **_compute_side_forces(stage, train, force, 1.0 if (turn > 0) != flow.flows_back else -1.0),
                 }
             )
@@ -141,6 +140,8 @@ def list_loaded_meshes(
                 power = force * abs(float(turn) * flow.speed) * flow.unit * 0.5 * stage.module * driver
                 if stage.shifts != (0.0, 0.0):
                     power *= mesh.centre_distance / mesh.standard_distance
+                # The helical pitch circle is that of the plane of rotation, larger than module times teeth by the
+                # cosine.
                 power /= math.cos(stage.helix_angle)
                 turning = abs(float(turn) * flow.speed)
                 loaded[-1]["strength"] = _describe_strength(
@@ -152,21 +153,23 @@ def list_loaded_meshes(
 
 
 def _compute_force_radius(stage: TrainStage, train: OrdinaryTrain) -> float:
-    """Radius of the driver at which the force of an unshifted stage stands."""
+    """Compute the radius of the driver at which the force of an unshifted stage acts."""
     if stage.kind == "helical":
         return 0.5 * stage.module * stage.driver / math.cos(stage.helix_angle)
     radius = 0.5 * stage.module * stage.driver
     if stage.kind == "bevel" and stage.face_width is not None:
+        # The resultant of a bevel gear's face acts at its middle, nearer to the axis than the outer pitch circle.
         radius -= 0.5 * stage.face_width * math.sin(stage.cones(train.pressure_angle).cones[0])
     return radius
 
 
 def _compute_side_forces(stage: TrainStage, train: OrdinaryTrain, force: float, way: float) -> dict[str, Any]:
-    """Axial forces of helical and bevel gears, and the radial ones of the latter, at a tangential force."""
+    """Compute axial forces of helical and bevel gears, and radial ones of the latter, for a tangential force."""
     if stage.kind == "helical":
         axial = force * math.tan(stage.helix_angle) * way
         return {"axial_force": {"driver": axial, "driven": -axial}}
     if stage.kind == "bevel":
+        # The separating force acts at right angles to the pitch cone, so the cone angles divide it.
         apart, (one, two) = force * math.tan(train.pressure_angle), stage.cones(train.pressure_angle).cones
         return {
             "radial_force": apart * math.cos(one),
@@ -177,15 +180,17 @@ def _compute_side_forces(stage: TrainStage, train: OrdinaryTrain, force: float, 
 
 
 def _describe_loaded_worm(flow: Flow, stage: TrainStage, torque: float, turning: float) -> dict[str, Any]:
-    """Contact in the middle plane and forces of a worm and its gear."""
+    """Describe contact in the middle plane and forces of a worm and its gear."""
     worm, friction = stage.worm(flow.train.pressure_angle), stage.friction
-    # Where the gear drives, friction is against its way.
+    # If the gear drives, friction acts against its motion.
     sign = -1.0 if flow.flows_back else 1.0
     forces = worm.forces(abs(torque) / flow.unit, sign * friction)
     return {
         "path_of_contact": worm.approach + worm.recess,
         "approach": worm.approach,
         "recess": worm.recess,
+        # The gear of a worm is cut with full-depth teeth; the difference of addendum and dedendum is left between
+        # them.
         "clearance": (FULL_DEPTH_DEDENDUM - FULL_DEPTH_ADDENDUM) * worm.module,
         "pitch_line_velocity": abs(turning) * 0.5 * worm.dimensions.worm_diameter,
         "tangential_force": forces.gear,
@@ -203,7 +208,7 @@ def _describe_strength(
     power: float,
     turning: float,
 ) -> dict[str, Any]:
-    """Stresses of one mesh of a stage, its gears as they stand in the order of the power, in millimetres."""
+    """Describe the stresses of one mesh of a stage, its gears in the order of the power flow, in millimetres."""
     unit = 1000.0 * flow.unit
     contact = build_stage_contact(stage, place, flow.train.pressure_angle, unit)
     ways = mark_idlers(stage, place)

@@ -1,4 +1,4 @@
-"""The strength of a given planetary train: what of the design it needs, and the load of every mesh as it turns."""
+"""Strength of a given planetary train: the required fields of the design, and the load of every mesh in motion."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ class StrengthTrain(Statement):
     addendum: dict[str, Share] = Field(default={})
 
     def build_gears(self, arrangement: Arrangement, teeth: dict[str, int]) -> dict[str, Gear]:
-        """The gears by name, in the module's unit."""
+        """Build the gears by name, in the module's unit."""
         return {
             name: Gear(
                 count,
@@ -44,7 +44,7 @@ class StrengthTrain(Statement):
 
 
 def parse_strength_train(mechanism: Any) -> StrengthTrain:
-    """What strength needs of the mechanism of a request; raises pydantic's ValidationError where it lacks some."""
+    """Extract the fields that strength needs from a mechanism; raises pydantic's ValidationError if one is missing."""
     stated = {name: getattr(mechanism, name) for name in StrengthTrain.model_fields}
     return StrengthTrain.model_validate({name: value for name, value in stated.items() if value is not None})
 
@@ -60,6 +60,7 @@ def find_strength_errors(mechanism: Any, method: PlanetStrength) -> list[tuple[s
             *faults,
             ("/strength", "the strength of a bevel differential is not estimated, only that of spur teeth"),
         ]
+    # Such gears would need profile shifts, which the statement does not contain.
     if not is_coaxial(arrangement, mechanism.teeth):
         faults.append(
             (
@@ -91,14 +92,16 @@ def describe_mesh_strengths(
     speed: float,
     length_unit: str,
 ) -> list[dict[str, Any] | None]:
-    """The strength of every mesh in the shape of ``PairStrength``; None of one that carries nothing.
+    """Describe the strength of every mesh in the form of ``PairStrength``; None for an unloaded mesh.
 
     ``rates`` are speeds over the input's, ``speed`` is the input's, rad/s.
     """
     arrangement = ARRANGEMENTS[mechanism.arrangement]
     loads = []
     for mesh, load in zip(train.meshes, flow.meshes, strict=True):
+        # Teeth roll at the speed relative to the carrier; a member whose speed is not determined counts as at rest.
         past = (rates[mesh.first] or Fraction(0)) - (rates[mesh.carrier] or Fraction(0))
+        # The direction is in the torques, so the input's speed enters by its size only.
         loads.append(MeshLoad((float(load.first_torque), float(load.second_torque)), float(past) * abs(speed)))
     whole = parse_strength_train(mechanism)
     gears = whole.build_gears(arrangement, mechanism.teeth)

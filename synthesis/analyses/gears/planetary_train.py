@@ -1,7 +1,7 @@
 """The analysis of a planetary train: speeds, freedoms, torques, powers, efficiency, for any arrangement.
 
-A train is a known arrangement with its teeth, as in a design, or a list of meshes of the client's own: rows of gears on
-bodies with the carriers of their axes. Speeds are exact; what contradicts the train or stays open is told.
+A train is a known arrangement with its teeth, as in a design, or the client's own list of meshes: rows of gears on
+bodies with the carriers of their axes. Speeds are exact; contradictions and undetermined speeds are reported.
 """
 
 from __future__ import annotations
@@ -35,7 +35,7 @@ from synthesis.model.gears.strength import PairStrength
 from synthesis.model.problem import Flag, Number, PositiveNumber, Statement
 
 MAX_MESHES = 8
-"""The directions of power are tried mesh by mesh, 2^8 ways at worst: half a second."""
+"""Maximum number of meshes: directions of power are tried mesh by mesh, 2^8 combinations at worst, in half a second."""
 
 ToothCount = Annotated[int, Field(strict=True, ge=1, le=10_000)]
 Body = Annotated[str, Field(min_length=1, max_length=40)]
@@ -81,7 +81,7 @@ class GivenPlanetaryTrain(Statement):
     )
 
     def build_train(self) -> Train:
-        """The speed equations; for a statement without faults."""
+        """Build the speed equations of a valid mechanism."""
         if self.meshes is None:
             assert self.arrangement is not None
             assert self.teeth is not None
@@ -100,13 +100,14 @@ class GivenPlanetaryTrain(Statement):
         return Train(tuple(rows), frozenset(self.planet_bodies))
 
     def compute_ratio(self) -> Fraction | None:
-        """Input over output speed with the fixed member held; None where one of them is not stated, or none follows."""
+        """Compute input over output speed with the fixed member at rest; None if a member is not given or none
+        follows."""
         if self.input is None or self.output is None or self.fixed is None:
             return None
         return compute_speed_ratio(self.build_train(), self.input, self.output, [self.fixed])
 
     def find_errors(self) -> list[tuple[str, str]]:
-        """What no single field shows."""
+        """List errors that no single field shows."""
         if self.meshes is not None:
             if self.arrangement is not None or self.teeth is not None:
                 return [("/mechanism/meshes", "give an arrangement with teeth, or meshes, not both")]
@@ -191,12 +192,12 @@ class PlanetaryAnalysisRequest(DrivenRequest[GivenPlanetaryTrain]):
     )
 
     def find_errors(self) -> list[tuple[str, str]]:
-        """What no single field shows."""
+        """List errors that no single field shows."""
         faults = [*self.mechanism.find_errors(), *super().find_errors()]
         return faults or self._find_unknown_bodies()
 
     def _find_unknown_bodies(self) -> list[tuple[str, str]]:
-        """Names in speeds, clutches, torques and loads that the train does not have."""
+        """List names in speeds, clutches, torques and loads that the train lacks."""
         train = self.mechanism.build_train()
         named = [
             *((f"/speeds/{body}", body) for body in self.speeds or ()),
@@ -266,7 +267,7 @@ class PlanetaryAnalysisRequest(DrivenRequest[GivenPlanetaryTrain]):
         return faults
 
     def _list_elements(self) -> list[GivenElement]:
-        """The elements of the shift table, of a request without faults."""
+        """List the elements of the shift table of a valid request."""
         if self.elements is not None:
             return self.elements
         return list_default_elements(
@@ -274,7 +275,7 @@ class PlanetaryAnalysisRequest(DrivenRequest[GivenPlanetaryTrain]):
         )
 
     def build_table(self) -> list[dict[str, Any]]:
-        """The shift table."""
+        """Build the shift table."""
         mechanism = self.mechanism
         train = mechanism.build_train()
         return build_shift_table(
@@ -282,7 +283,7 @@ class PlanetaryAnalysisRequest(DrivenRequest[GivenPlanetaryTrain]):
         )
 
     def build_answer(self) -> dict[str, Any]:
-        """Everything about the train, in the shape of :class:`PlanetaryAnalysis`."""
+        """Build the answer for the train, in the form of :class:`PlanetaryAnalysis`."""
         return _analyze_train(self)
 
 
@@ -340,9 +341,10 @@ class PlanetaryAnalysis(DrivenAnalysis):
 
 
 def _analyze_train(request: PlanetaryAnalysisRequest) -> dict[str, Any]:
-    """Speeds of all bodies; torques and powers too where the speeds are complete."""
+    """Compute speeds of all bodies, and torques and powers if the speeds are complete."""
     at, speed, time = request.motion.list_inputs()
     mechanism, train = request.mechanism, request.mechanism.build_train()
+    # Known speeds are in the client's unit and need no motion; otherwise the input turns at speed 1 and is scaled.
     turning = request.speeds is None and mechanism.input is not None
     known = {body: parse_decimal(value) for body, value in (request.speeds or {}).items()}
     if turning:
@@ -350,7 +352,8 @@ def _analyze_train(request: PlanetaryAnalysisRequest) -> dict[str, Any]:
         known = {**held, str(mechanism.input): Fraction(1)}
     solution = solve_speeds(train, known, request.locked)
     complete = solution.open == 0 and solution.contradiction is None
-    # Which way power flows follows from the torques and the speeds as the motion has them at its first position.
+    # The direction of power follows from the torques and the speeds at the first position of the motion.
+    # Torques are solved for an input speed of ±1: only its sign decides which member of a mesh drives.
     backwards = turning and float(speed[0]) < 0.0
     flow = _compute_flow(request, train, solution, known, -1 if backwards else 1) if complete else None
     unit = abs(float(speed[0])) if turning else 1.0
@@ -361,12 +364,7 @@ def _analyze_train(request: PlanetaryAnalysisRequest) -> dict[str, Any]:
         share = None if rate is None else float(rate)
         bodies.append(
             {
-                "name": body,
-                "planet": body in train.planets,
-                "speed": None if share is None else share * (float(speed[0]) if turning else 1.0),
-                "exact_speed": None if rate is None else str(rate),
-                "torque": None if flow is None or body in train.planets else float(flow.torques[body]),
-                "power": None if flow is None or body in train.planets else float(flow.powers[body]) * unit,
+                **_describe_body(train, flow, body, rate, float(speed[0]) if turning else 1.0),
                 **(
                     request.motion.drive_geared(share, at, speed)
                     if turning and share is not None
@@ -375,6 +373,7 @@ def _analyze_train(request: PlanetaryAnalysisRequest) -> dict[str, Any]:
             }
         )
     asked: dict[str, Any] = {"shift_table": request.build_table()} if request.include else {}
+    # Without loads in the meshes no strength is described, but each mesh keeps its place in the list.
     strong: list[dict[str, Any] | None] = [None] * len(train.meshes)
     if request.strength is not None and flow is not None:
         drive = request.mechanism, request.strength, train, solution.values, flow, float(speed[0])
@@ -395,26 +394,48 @@ def _analyze_train(request: PlanetaryAnalysisRequest) -> dict[str, Any]:
         "circulating_power": None if flow is None else flow.circulates,
         "bodies": bodies,
         "meshes": [
-            {
-                "first": mesh.first,
-                "second": mesh.second,
-                "carrier": mesh.carrier,
-                "first_torque": None if flow is None else float(flow.meshes[k].first_torque),
-                "second_torque": None if flow is None else float(flow.meshes[k].second_torque),
-                "rolling_power": None if flow is None else float(flow.meshes[k].rolling_power) * unit,
-                "loss": None if flow is None else float(flow.meshes[k].loss) * unit,
-                **({} if strong[k] is None else {"strength": strong[k]}),
-            }
-            for k, mesh in enumerate(train.meshes)
+            {**_describe_mesh(train, flow, k, unit), **({} if strong[k] is None else {"strength": strong[k]})}
+            for k in range(len(train.meshes))
         ],
         **asked,
         **describe_drift(ratio, request.wanted_ratio),
     }
 
 
+def _describe_body(
+    train: Train, flow: PowerFlow | None, body: str, rate: Fraction | None, input_speed: float
+) -> dict[str, Any]:
+    """Return speed, torque and power of a body; ``rate`` is its speed over the input's."""
+    loaded = flow is not None and body not in train.planets
+    return {
+        "name": body,
+        "planet": body in train.planets,
+        "speed": None if rate is None else float(rate) * input_speed,
+        "exact_speed": None if rate is None else str(rate),
+        "torque": float(flow.torques[body]) if flow is not None and loaded else None,
+        "power": float(flow.powers[body]) * abs(input_speed) if flow is not None and loaded else None,
+    }
+
+
+def _describe_mesh(train: Train, flow: PowerFlow | None, number: int, input_speed: float) -> dict[str, Any]:
+    """Return torques and powers of a mesh; ``input_speed`` is positive."""
+    mesh = train.meshes[number]
+    loads = None if flow is None else flow.meshes[number]
+    return {
+        "first": mesh.first,
+        "second": mesh.second,
+        "carrier": mesh.carrier,
+        "first_torque": None if loads is None else float(loads.first_torque),
+        "second_torque": None if loads is None else float(loads.second_torque),
+        "rolling_power": None if loads is None else float(loads.rolling_power) * input_speed,
+        "loss": None if loads is None else float(loads.loss) * input_speed,
+    }
+
+
 def _compute_ratio(request: PlanetaryAnalysisRequest, solution: Speeds) -> Fraction | None:
-    """Input over output speed, where both are named and turn."""
+    """Compute input over output speed if both are named and turn."""
     one, other = request.mechanism.input, request.mechanism.output
+    # A ratio needs an output that turns.
     if one is None or other is None or not solution.values[other]:
         return None
     rates = solution.values[one], solution.values[other]
@@ -424,14 +445,17 @@ def _compute_ratio(request: PlanetaryAnalysisRequest, solution: Speeds) -> Fract
 def _compute_flow(
     request: PlanetaryAnalysisRequest, train: Train, solution: Speeds, known: dict[str, Fraction], sense: int
 ) -> PowerFlow | None:
-    """Torques and powers, where the known torques determine them; none with clutches, whose torque no mesh tells."""
+    """Compute torques and powers if the known torques determine them; None with clutches, whose torque is unknown."""
+    # The torque that a clutch transmits does not follow from speeds.
     if request.locked:
         return None
     torques = {body: parse_decimal(value) for body, value in (request.torques or {}).items()}
     if request.torques is None and request.mechanism.input is not None:
+        # Without given torques use a unit torque on the input, which suffices for efficiency and power shares.
         torques = {request.mechanism.input: Fraction(1)}
     loads = request.loads
     if loads is None:
+        # Members that are named anywhere carry external torques by default; all others are free of them.
         stated = [*known, *torques, request.mechanism.input, request.mechanism.output, request.mechanism.fixed]
         loads = [body for body in dict.fromkeys(stated) if body is not None and body in train.members]
     rates = {body: sense * rate for body, rate in solution.values.items() if rate is not None}

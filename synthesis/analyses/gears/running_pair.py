@@ -1,8 +1,8 @@
 """The analysis of two cylindrical gears as they run: shifted, helical or spur, with an external gear or a ring.
 
-Everything is told in the plane of rotation. External gears are cut by the rack of full-depth teeth, a ring is shaped by
-a cutter; both decide where an involute begins, and so whether contact reaches into a fillet. Lengths are in the unit of
-the module.
+All values are in the plane of rotation. External gears are cut by the rack of full-depth teeth, a ring is shaped by a
+cutter; both determine where an involute begins, and so whether contact extends into a fillet. Lengths are in the unit
+of the module.
 """
 
 from __future__ import annotations
@@ -63,7 +63,7 @@ class RunningPair:
 
     @property
     def compute_form_radii(self) -> tuple[float, float]:
-        """Radii at which the involutes begin; of a ring: end."""
+        """Radii at which the involutes begin, or end for a ring."""
         one, two = (
             math.hypot(gear.base_radius, form) for gear, form in zip(self.cut_gears, self.contact.forms, strict=True)
         )
@@ -73,6 +73,7 @@ class RunningPair:
     def compute_clearance(self) -> float:
         """The smaller clearance between a tip and the mate's root."""
         distance, (one, two), roots = self.contact.mesh.centre_distance, self.cut_gears, self.compute_root_radii
+        # In a ring the smaller gear's tips point to the ring's root, and the ring's tips to the smaller gear's root.
         if two.internal:
             return min(roots[1] - distance - one.tip_radius, two.tip_radius - distance - roots[0])
         return min(distance - one.tip_radius - roots[1], distance - two.tip_radius - roots[0])
@@ -102,17 +103,16 @@ class GivenGearPair(Statement):
     cutter_teeth: ToothNumber | None = Field(
         default=None,
         description=f"Of the cutter that shapes a ring; {DEFAULT_CUTTER_TEETH}, or half of the ring's where that is "
-        "less, "
-        "where left out. It has no shift, an addendum of 1.25 modules and sharp corners.",
+        "less, where left out. It has no shift, an addendum of 1.25 modules and sharp corners.",
     )
 
     def build_pair(self) -> RunningPair:
-        """The gears in mesh.
+        """Build the gears in mesh.
 
         Raises
         ------
         MechanismError
-            For teeth that do not make a pair.
+            For teeth that make no pair.
         """
         try:
             return self._build_pair()
@@ -126,20 +126,27 @@ class GivenGearPair(Statement):
     def _build_pair(self) -> RunningPair:
         angle, phi = math.radians(self.helix_angle), math.radians(self.pressure_angle)
         full = self._build_gear(0, angle, phi), self._build_gear(1, angle, phi)
+        # The tight mesh keeps the full tips: shortening does not change the distance without play.
         tight = Mesh(full[0], full[1])
+        # Shifted external gears at their distance would lose clearance, so their tips are shortened by as much.
         shortening = compute_tip_shortening(Mesh(full[0], full[1], self.centre_distance))
         one, two = (replace(gear, addendum=gear.addendum - shortening) for gear in full)
         for gear, name in ((one, "first"), (two, "second")):
+            # Without a flank above the base circle there is no involute to run on.
             if not gear.internal and gear.tip_radius <= gear.base_radius:
                 raise MechanismError("/shift", f"leaves the {name} gear no tooth above its base circle")
+        # The rack's straight flank ends above its rounded tip; only this depth cuts the involute. Cosine: plane of
+        # rotation.
         depth = compute_straight_depth(phi, FULL_DEPTH_DEDENDUM) * math.cos(angle)
         ring = ShapedRing(two, self._choose_cutter_teeth) if self.internal else None
         contact = apply_tool_contact(Mesh(one, two, self.centre_distance), ring, angle)
+        # The rack undercuts when its straight flank reaches below the tangent point of the line of action.
         cut, other = (compute_rack_form(gear, depth) < -LIMIT_TOLERANCE * one.module for gear in (one, two))
         return RunningPair(contact, tight, shortening, ring, (cut, other and ring is None))
 
     def _build_gear(self, place: int, angle: float, phi: float) -> Gear:
         plain = HelicalGear(self.teeth[place], self.module, angle, phi).transverse_gear
+        # Shift and addendum are given in modules of the normal plane, and the gear is that of the plane of rotation.
         shift, ring = self.shift[place] * math.cos(angle), self.internal and place == 1
         addendum = self.addendum[place] * math.cos(angle)
         return replace(plain, addendum=addendum, shift=shift, internal=ring)
@@ -252,11 +259,11 @@ class RunningPairRequest(AnalysisRequest):
 
     @classmethod
     def analyze_cycle(cls, mechanism: dict[str, Any], steps: int) -> dict[str, Any]:
-        """The same at any input; such a pair is no design that a job returns."""
+        """Build the answer at any input; jobs return no such pairs as designs."""
         return cls.model_validate({"mechanism": mechanism}).build_answer()
 
     def find_errors(self) -> list[tuple[str, str]]:
-        """What no single field shows."""
+        """List errors that no single field shows."""
         given, faults = self.mechanism, []
         if given.internal and given.teeth[1] <= given.teeth[0]:
             faults.append(("/mechanism/teeth", "a ring has more teeth than its pinion; give the ring second"))
@@ -283,12 +290,13 @@ class RunningPairRequest(AnalysisRequest):
         return faults
 
     def build_answer(self) -> dict[str, Any]:
-        """Everything about the pair, in the shape of :class:`RunningPairAnalysis`."""
+        """Build the complete answer for the pair, in the form of :class:`RunningPairAnalysis`."""
         given, pair = self.mechanism, self.mechanism.build_pair()
         mesh, angle = pair.contact.mesh, math.radians(given.helix_angle)
         slack = LIMIT_TOLERANCE * mesh.pinion.module
         gears = _describe_gears(given, pair, self.speed_rpm * RAD_PER_S_PER_RPM)
         deepest = pair.contact.reaches
+        # A ring has no tangent point within its teeth, so only its base circle limits the contact.
         interferes = deepest[0] < -slack or (deepest[1] < -slack and not given.internal)
         if given.internal:
             interferes = interferes or mesh.gear.tip_radius < mesh.gear.base_radius
@@ -322,7 +330,7 @@ class RunningPairRequest(AnalysisRequest):
         return answer
 
     def _describe_strength(self, method: StrengthSpec) -> dict[str, Any]:
-        """Stresses of the pair in millimetres, whatever its unit."""
+        """Describe the stresses of the pair, computed in millimetres because stresses are in MPa."""
         unit = 1.0 / MILLIMETRE[self.length_unit]
         given = self.mechanism
         distance = None if given.centre_distance is None else given.centre_distance * unit
@@ -338,18 +346,22 @@ class RunningPairRequest(AnalysisRequest):
 
 
 def _describe_space(pair: RunningPair, place: int, helix_angle: float) -> dict[str, list[float]] | None:
-    """A space as :class:`ToothSpace`: the first gear's beside a tooth on the line of centres, the second's upon it."""
+    """Draw a space as :class:`ToothSpace`: beside a tooth on the line of centres for gear 1, centred on it for gear
+    2."""
     gear = pair.cut_gears[place]
     try:
         half = draw_half_space(gear, helix_angle)
     except DimensionError:
         return None
+    # Turn the space by half a pitch for the first gear, so that its tooth meets the space of the second.
     toward = math.pi / gear.teeth if place == 0 else 0.0 if gear.internal else math.pi
+    # The half is drawn from the middle of the space; mirror it for the other flank, without its first point twice.
     points = np.concatenate([half[::-1].conj(), half[1:]]) * cmath.exp(1j * toward)
     return {"x": points.real.tolist(), "y": points.imag.tolist()}
 
 
 def _compute_overlap(given: GivenGearPair, angle: float) -> float | None:
+    # Spur teeth have no axial overlap.
     if given.face_width is None or angle == 0.0:
         return None
     return given.face_width * math.sin(abs(angle)) / (math.pi * given.module)
@@ -357,6 +369,7 @@ def _compute_overlap(given: GivenGearPair, angle: float) -> float | None:
 
 def _describe_gears(given: GivenGearPair, pair: RunningPair, speed: float) -> list[dict[str, Any]]:
     contact, mesh = pair.contact, pair.contact.mesh
+    # Working circles are larger than pitch circles by the ratio of the cosines, as the base circles stay the same.
     wide = math.cos(mesh.pinion.pressure_angle) / math.cos(mesh.pressure_angle)
     turns = speed, speed * given.teeth[0] / given.teeth[1] * (1.0 if given.internal else -1.0)
     depth = compute_straight_depth(math.radians(given.pressure_angle), FULL_DEPTH_DEDENDUM)
@@ -365,6 +378,7 @@ def _describe_gears(given: GivenGearPair, pair: RunningPair, speed: float) -> li
         left, sliding = contact.margins[place], contact.specific_sliding[place]
         tip, form = gear.thickness_at(gear.tip_radius), pair.compute_form_radii[place]
         sine = math.sin(gear.pressure_angle)
+        # The rack undercuts below the shift with which its straight flank ends at the tangent point, r sin²α.
         least = depth - gear.pitch_radius * sine**2 / given.module
         gears.append(
             {

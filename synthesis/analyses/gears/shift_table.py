@@ -102,24 +102,25 @@ def find_element_errors(train: Train, driving: str | None, elements: Sequence[Gi
 
 
 def count_states(train: Train, driving: str | None, elements: Sequence[GivenElement]) -> int:
-    """How many choices of engaged elements there are."""
+    """Count the choices of engaged elements."""
     return math.comb(len(elements), _count_engaged(train, driving))
 
 
 def _count_engaged(train: Train, driving: str | None) -> int:
+    # A member fixed to the input shaft takes one freedom.
     return max(0, solve_speeds(train, {}).freedom - (driving is not None))
 
 
 def build_shift_table(
     train: Train, driving: str | None, driven: str, elements: Sequence[GivenElement], efficiency: float
 ) -> list[dict[str, Any]]:
-    """The states of a train as :class:`ShiftState`, the largest ratio first, backward ones last.
+    """Build the states of a train as :class:`ShiftState`, largest ratio first, backward ones last.
 
     Parameters
     ----------
     train : Train
     driving : str or None
-        The member that the input sits on; None where clutches put it on one.
+        The member on the input shaft; None if clutches connect it.
     driven : str
         The member of the output.
     elements : sequence of GivenElement
@@ -128,6 +129,7 @@ def build_shift_table(
         Of every mesh as an ordinary pair.
     """
     found = list(_iterate_states(train, driving, driven, elements, efficiency))
+    # Ties in the ratio are ordered by name, so that the table does not depend on the order of the elements.
     return sorted(found, key=lambda state: (state["ratio"] < 0.0, -abs(state["ratio"]), state["engaged"]))
 
 
@@ -141,17 +143,21 @@ def _iterate_states(
         joined = [
             element.clutch for element in engaged if element.clutch and element.find_driven_member(driving) is None
         ]
+        # Without a driven member nothing turns, and a braked one cannot be driven.
         if not inputs or set(inputs) & set(held):
             continue
         known = {**dict.fromkeys(held, 0), **dict.fromkeys(inputs, 1)}
         solution = solve_speeds(train, known, joined)
         output = solution.values[driven]
+        # The elements may repeat or contradict each other, or leave the output at rest: no state of the train then.
         if solution.open or solution.contradiction is not None or not output:
             continue
         rates = {body: rate for body, rate in solution.values.items() if rate is not None}
         flow = None
+        # With a clutch or two driven members the speeds do not tell how torque divides, so efficiency stays unknown.
         if not joined and len(inputs) == 1:
             loads = [*inputs, driven, *held]
+            # The output may itself be the input or a braked member, and then carries no torque of its own.
             if len(set(loads)) == len(loads):
                 flow = solve_power_flow(train, rates, loads, {inputs[0]: Fraction(1)}, parse_decimal(efficiency))
         yield {

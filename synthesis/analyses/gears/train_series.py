@@ -29,12 +29,12 @@ class GivenTrainSeries(Statement):
     ratio: GivenRatio | None = Field(default=None, description="As in a design; compared with the ratio of the teeth.")
 
     def compute_ratio(self) -> Fraction:
-        """Input speed of the first unit over output speed of the last, of units without faults."""
+        """Compute input speed of the first unit over output speed of the last, for valid units."""
         return math.prod((compute_unit_ratio(unit) for unit in self.units), start=Fraction(1))
 
 
 def compute_unit_ratio(unit: GivenGearTrain | GivenPlanetaryTrain) -> Fraction:
-    """Input over output speed of a unit that passes its motion on."""
+    """Compute input over output speed of a unit that transmits its motion."""
     ratio = unit.compute_ratio() if isinstance(unit, GivenPlanetaryTrain) else unit.build_train().ratio
     assert ratio is not None
     return ratio
@@ -81,7 +81,7 @@ class TrainSeriesAnalysisRequest(DrivenRequest[GivenTrainSeries]):
     wanted_ratio: ExactRatio | None = Field(default=None, description=WANTED_DESCRIPTION)
 
     def find_errors(self) -> list[tuple[str, str]]:
-        """What no single field shows; faults of a unit are told at it."""
+        """List errors that no single field shows; errors of a unit are reported at it."""
         faults = super().find_errors()
         if faults:
             return faults
@@ -91,11 +91,12 @@ class TrainSeriesAnalysisRequest(DrivenRequest[GivenTrainSeries]):
                 named = [part for part in ("input", "output", "fixed") if getattr(unit, part) is None]
                 own += [(f"/mechanism/{part}", "state it") for part in named]
                 if not own:
+                    # Examine speeds only after the fields, because the equations need valid members.
                     own = PlanetaryAnalysisRequest(mechanism=unit).find_errors()
                 if not own and unit.compute_ratio() is None:
                     own = [("/mechanism", "with these members the train transmits no motion")]
             else:
-                # Its meshes lose what is stated here, its worms what their own friction takes.
+                # Worms lose power by their own friction; other meshes by the given efficiency.
                 driving = GearTrainAnalysisRequest(
                     mechanism=unit, input_torque=_choose_torque(self.has_backward_flow), friction=0.0
                 )
@@ -107,11 +108,11 @@ class TrainSeriesAnalysisRequest(DrivenRequest[GivenTrainSeries]):
 
     @property
     def has_backward_flow(self) -> bool:
-        """Whether power leaves at the input, at the first position: the output drives."""
+        """Whether power leaves at the input at the first position: the output drives."""
         return self.input_torque * float(self.motion.list_inputs()[1][0]) < 0.0
 
     def build_answer(self) -> dict[str, Any]:
-        """Everything about the series, in the shape of :class:`TrainSeriesAnalysis`."""
+        """Build the answer for the series, in the form of :class:`TrainSeriesAnalysis`."""
         return _analyze_series(self)
 
 
@@ -153,16 +154,19 @@ def _analyze_series(request: TrainSeriesAnalysisRequest) -> dict[str, Any]:
     for unit in request.mechanism.units:
         told = _analyze_unit(request, unit, back)
         units.append(told)
+        # Units report input over output speed, but shafts have their speed over the input's: its inverse.
         share /= compute_unit_ratio(unit)
         passed = told["efficiency"]
-        # Where the output drives, what comes in there is more than what leaves at the input.
+        # If the output drives, more power enters there than leaves at the input.
         known = known and passed is not None and not (back and passed == 0.0)
+        # Once a unit's efficiency is unknown, so are the torques on all later shafts.
         if known:
             power *= 1.0 / passed if back else passed
         turning = float(share)
         shafts.append(
             {
                 "speed_ratio": turning,
+                # Torque is power over speed, with the power in units of the input's.
                 "torque": request.input_torque * power / turning if known else None,
                 **request.motion.drive_geared(turning, at, speed),
             }
@@ -182,14 +186,14 @@ def _analyze_series(request: TrainSeriesAnalysisRequest) -> dict[str, Any]:
 
 
 def _choose_torque(back: bool) -> float:
-    """Torque on the input of a unit that is told alone."""
+    """Return the torque on the input of a unit that is analyzed alone."""
     return -1.0 if back else 1.0
 
 
 def _analyze_unit(
     request: TrainSeriesAnalysisRequest, unit: GivenGearTrain | GivenPlanetaryTrain, back: bool
 ) -> dict[str, Any]:
-    """A unit alone, its input at speed 1 and with torque 1, or −1 where the output drives."""
+    """Analyze a unit alone, its input at speed 1 and with torque 1, or −1 if the output drives."""
     torque = _choose_torque(back)
     stated: dict[str, Any] = {
         "mechanism": unit, "motion": {"at": 0.0}, "mesh_efficiency": request.mesh_efficiency,

@@ -9,11 +9,11 @@ from kinematics.linkage.planar.limits import find_branches, find_reference_branc
 from kinematics.linkage.planar.mechanism import Mechanism, TopologyError
 
 MAX_EFFORT = 200
-"""Greatest effort of an answer that a client waits for: some seconds."""
+"""Maximum effort of an answer that a client waits for: some seconds."""
 
 
 def estimate_effort(mechanism: Mechanism) -> int:
-    """The effort of listing the circuits of a mechanism: closures × assemblies × turns of a cycle.
+    """Estimate the effort of listing the circuits of a mechanism: closures × assemblies × turns of a cycle.
 
     A dyad closes two links, or one link and a slide, and has two assemblies. The turns are those of the fastest link
     that gears tie to the input. An eightbar has an effort of 24.
@@ -23,12 +23,12 @@ def estimate_effort(mechanism: Mechanism) -> int:
 
 
 def list_branches(mechanism: Mechanism) -> list[Branch]:
-    """All branches of a mechanism, the reference's circuit first.
+    """List all branches of a mechanism, the reference's circuit first.
 
     Raises
     ------
     TopologyError
-        Where they cannot be listed, or not while a client waits.
+        If they cannot be listed, or not while a client waits.
     """
     if estimate_effort(mechanism) > MAX_EFFORT:
         raise TopologyError("too many assemblies, or too many turns until the motion repeats, to list all circuits")
@@ -36,7 +36,7 @@ def list_branches(mechanism: Mechanism) -> list[Branch]:
 
 
 def find_branch(mechanism: Mechanism) -> Branch | None:
-    """The branch of the reference; None where it stands at a toggle of several, or the circuits cannot be listed."""
+    """Find the branch of the reference; None at a toggle of several branches, or if circuits cannot be listed."""
     try:
         return find_reference_branch(mechanism, list_branches(mechanism))
     except TopologyError:
@@ -44,16 +44,17 @@ def find_branch(mechanism: Mechanism) -> Branch | None:
 
 
 def find_cycle(mechanism: Mechanism) -> tuple[float, float]:
-    """First and last input of the cycle, radians, or lengths along the input slide; see :func:`find_cycle_along`."""
+    """Find first and last input of the cycle, radians, or lengths along the input slide; see
+    :func:`find_cycle_along`."""
     return find_cycle_along(mechanism, find_branch(mechanism))
 
 
 def find_cycle_along(mechanism: Mechanism, here: Branch | None) -> tuple[float, float]:
-    """First and last input of the cycle on the reference's branch, radians, or lengths along the input slide.
+    """Find first and last input of the cycle on the reference's branch, radians, or lengths along the input slide.
 
-    From the reference through a full turn (or as many as gears or a triad need) where the input is a crank, else from
-    toggle to toggle of the reference's branch. Where the branch is not known a full turn too, and as far as the
-    mechanism is wide where a slider drives it: ``valid`` then tells where the mechanism exists.
+    For a crank from the reference through a full turn (or as many as gears or a triad need), else from toggle to toggle
+    of the reference's branch. If the branch is unknown, also a full turn, or for a driving slider as far as the
+    mechanism is wide; ``valid`` then shows where the mechanism exists.
     """
     at = float(mechanism.reference_input)
     if (here is None or here.full) and mechanism.has_slide_input:

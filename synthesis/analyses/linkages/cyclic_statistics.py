@@ -22,10 +22,11 @@ from synthesis.model.dynamics.loads import FULL_TURN
 from synthesis.model.dynamics.request import FlywheelSpec
 
 CYCLE_TOLERANCE = 1e-9
-"""Share of a cycle by which a motion may miss it and be closed: rounding."""
+"""Tolerance of a closed motion, as a share of a cycle: rounding."""
 
 PERIODICITY_TOLERANCE = 1e-6
-"""Share of its peak by which the drive may differ at the ends of a cycle: rounding, magnified near a toggle."""
+"""Permitted difference of the drive at the ends of a cycle, as a share of its peak: rounding, magnified near a
+toggle."""
 
 MAX_ORDERS = 24
 """Maximum number of reported harmonics."""
@@ -45,12 +46,12 @@ def is_closed(mechanism: Mechanism, at: Real, drive: Real, turns: int) -> bool:
 
 
 def compute_mean(values: Real, closed: bool) -> float | None:
-    """Mean over a closed cycle, its end not counted twice: the trapezoid rule."""
+    """Compute the mean over a closed cycle by the trapezoid rule, without counting its end twice."""
     return float(values[:-1].mean()) if closed and np.isfinite(values).all() else None
 
 
 def compute_rms(values: Real, closed: bool) -> float | None:
-    """Root of the mean square over a closed cycle."""
+    """Compute the root mean square over a closed cycle."""
     squared = compute_mean(values**2, closed)
     return None if squared is None else math.sqrt(squared)
 
@@ -64,11 +65,12 @@ def _compute_orders(values: NDArray[Any], turns: float) -> list[tuple[str, compl
 
 
 def describe_harmonics(found: Reactions, at: Real, closed: bool) -> dict[str, Any]:
-    """In the shape of :class:`synthesis.model.dynamics.answer.Harmonics`; phases are those at input angle 0."""
+    """Describe harmonics as :class:`synthesis.model.dynamics.answer.Harmonics`; phases are those at input angle 0."""
     parts = {"shaking_force": found.shaking_force, "shaking_moment": found.shaking_moment, "drive": found.drive}
     if not closed or not all(np.isfinite(values).all() for values in parts.values()):
         return dict.fromkeys(parts)
     turns, start = abs(float(at[-1] - at[0])) / FULL_TURN, math.radians(float(at[0]))
+    # Harmonics are defined for an increasing angle, so reverse a motion that runs backward.
     if at[-1] < at[0]:
         parts, start = {name: values[::-1] for name, values in parts.items()}, math.radians(float(at[-1]))
     force = {
@@ -89,7 +91,7 @@ def describe_harmonics(found: Reactions, at: Real, closed: bool) -> dict[str, An
 
 
 def describe_flywheel(drive: Real, at: Real, speed: float, closed: bool, wanted: FlywheelSpec | None) -> dict[str, Any]:
-    """In the shape of :class:`synthesis.model.dynamics.answer.Flywheel`."""
+    """Describe the flywheel as :class:`synthesis.model.dynamics.answer.Flywheel`."""
     if not closed or not np.isfinite(drive).all():
         sized = {} if wanted is None else dict.fromkeys(("inertia", "inertia_exact", "coefficient_exact"))
         return {"energy": None, "mean_torque": None, **sized, "pulses": []}

@@ -1,4 +1,4 @@
-"""Forces of a linkage over its motion, as plain lists in the shape of :class:`DynamicsAnswer`."""
+"""Forces of a linkage over its motion, as plain lists in the form of :class:`DynamicsAnswer`."""
 
 from __future__ import annotations
 
@@ -29,10 +29,10 @@ from synthesis.mechanisms.machine import build_machine, find_first_fixed_pivot
 from synthesis.model.dynamics.request import DynamicsBlock, LengthUnit, LoadedLinkage
 
 HIGH_INDEX = 2.0
-"""Joint force index above which a client is warned (Norton, Sec. 11.12)."""
+"""Joint force index above which the client is warned (Norton, Sec. 11.12)."""
 
 DETERMINED_STATUSES = ("ok", "stick")
-"""States of a position at which forces are known, but for a friction that the motion does not determine."""
+"""States of a position in which forces are known, apart from friction that the motion does not determine."""
 
 AGREEMENT = 1e-6
 """Difference of two routes to the same force, as a share of its peak, with which it counts as known. They agree to 1e-9
@@ -57,7 +57,7 @@ class DrivenMachine(NamedTuple):
 def analyze_forces(
     mechanism: Mechanism, block: DynamicsBlock, unit: LengthUnit, at: Real, speed: Real, acceleration: float
 ) -> dict[str, Any]:
-    """The answer at inputs (degrees, or lengths along the input slide), their speeds and acceleration."""
+    """Build the answer at inputs (degrees, or lengths along the input slide), their speeds and acceleration."""
     machine, warnings = build_machine(block, mechanism, unit)
     indexed = block.is_reported("joint_force_index")
     course = _drive_machine(machine, at, speed, acceleration, indexed, block.minimum_norm)
@@ -131,7 +131,7 @@ def find_force_peaks(
 
 
 def _list_joint_forces(machine: Machine, course: DrivenMachine, reported: list[str], rubbing: bool) -> dict[str, Any]:
-    """Forces in joints, slides and gears, and friction."""
+    """List forces in joints, slides and gears, and friction."""
     found, slides = course.reactions, machine.mechanism.slides
     answer: dict[str, Any] = {
         "joints": {
@@ -149,7 +149,7 @@ def _list_joint_forces(machine: Machine, course: DrivenMachine, reported: list[s
 
 
 def _find_largest_index(course: DrivenMachine, extremes: dict[str, Any]) -> tuple[float | None, list[str]]:
-    """The largest joint force index, None where a dead centre makes it infinite; and what to warn of."""
+    """Find the largest joint force index, None if a dead centre makes it infinite; also return warnings."""
     dead = course.valid & ~(course.reactions.condition < MAX_CONDITION) & course.reactions.determined
     if dead.any():
         return None, ["joint_force_index: infinite at a dead centre"]
@@ -174,7 +174,7 @@ def _run_course(
 ) -> DrivenMachine:
     now, by_input = Places(machine.mechanism, motion, machine.scale), Places(machine.mechanism, paced, machine.scale)
     if machine.mechanism.has_slide_input:
-        # A unit of the input is one of the mechanism's own: the work of a metre is wanted, not of a millimetre.
+        # Work needs the input in the unit of the forces, metres instead of millimetres.
         by_input = Places(machine.mechanism, _slow_motion(paced, machine.scale), machine.scale)
     found = compute_reactions(machine, now, minimum_norm=minimum_norm)
     check = compute_balance(machine, now, by_input, found.rubbing)
@@ -184,7 +184,7 @@ def _run_course(
 
 
 def _slow_motion(paced: MechanismMotion, scale: float) -> MechanismMotion:
-    """The motion at an input speed of 1 in the unit that is ``scale`` of the mechanism's."""
+    """Rescale the motion to an input speed of 1 in the unit that is ``scale`` of the mechanism's."""
     powers = scale ** -np.arange(3.0)
 
     def scale_jets(jets: dict[str, Any]) -> dict[str, Any]:
@@ -217,7 +217,7 @@ def _list_status(course: DrivenMachine) -> list[str]:
 
 
 def _list_slide_frictions(found: Reactions) -> list[Real]:
-    """Friction of each slide's line on its pin, along the slide's direction."""
+    """List the friction of each slide's line on its pin, along the slide's direction."""
     frictions = [0.0 * normal for normal in found.slides]
     for contact, friction in zip(found.rubbing.contacts, found.rubbing.frictions, strict=True):
         if contact.slide >= 0:
@@ -238,7 +238,7 @@ def _describe_friction(course: DrivenMachine) -> dict[str, Any]:
 
 
 def _list_reported_joints(machine: Machine) -> list[str]:
-    """Joints that join links, or carry a slide, a mass or a load."""
+    """List the joints that join links, or carry a slide, a mass or a load."""
     mechanism = machine.mechanism
     carrying = {slide.joint for slide in mechanism.slides} | set(machine.pin_masses)
     carrying |= {load.joint for load in machine.loads if hasattr(load, "joint")}
@@ -250,7 +250,7 @@ def _list_reported_joints(machine: Machine) -> list[str]:
 
 
 def _list_quantities(machine: Machine, course: DrivenMachine) -> Samples:
-    """What has a peak, by name."""
+    """List the quantities with peaks, by name."""
     found = course.reactions
     return {
         "drive": found.drive,
@@ -269,7 +269,7 @@ def _list_quantities(machine: Machine, course: DrivenMachine) -> Samples:
 def _find_extremes(
     machine: Machine, course: DrivenMachine, at: Real, acceleration: float, closed: bool, minimum_norm: bool = False
 ) -> tuple[dict[str, Any], dict[str, Any]]:
-    """Of the drive, and of everything else by name."""
+    """Find the extremes of the drive, and of every other quantity by name."""
 
     def measure(inputs: Real, speeds: Real, machine: Machine) -> Samples:
         indexed = course.force_index is not None
@@ -287,7 +287,7 @@ def _find_extremes(
 
 
 def _compare_routes(found: Reactions, check: Balance) -> dict[str, float | None]:
-    """Largest differences of the two routes, as shares of the peaks."""
+    """Compute the largest differences of the two routes, as shares of the peaks."""
     if not found.solved.any():
         return {"virtual_work": None, "momentum": None}
     known = found.solved

@@ -1,6 +1,6 @@
-"""What is known of a pin-jointed fourbar and of no other mechanism: cognates, centrodes, curvature, its curve's sextic.
+"""Results available for pin-jointed fourbars only: cognates, centrodes, curvature, and the sextic of the coupler curve.
 
-Nothing of this is computed unless it is asked for. Cognates come as mechanisms that can be stated as they are.
+Only requested results are computed. Cognates are mechanisms that can be used as a request as they are.
 """
 
 from __future__ import annotations
@@ -122,7 +122,7 @@ class AssembledFourbar(NamedTuple):
 
 
 def extract_fourbar(mechanism: Mechanism) -> AssembledFourbar | None:
-    """The pin-jointed fourbar that a mechanism is, or None; the coupler's third joint is its coupler point, else A."""
+    """Extract the pin-jointed fourbar, or None; the coupler's third joint is its coupler point, else A."""
     if len(mechanism.links) != 4 or mechanism.slides or mechanism.gears:
         return None
     ground = set(mechanism.links[GROUND])
@@ -145,7 +145,7 @@ def extract_fourbar(mechanism: Mechanism) -> AssembledFourbar | None:
 
 
 def analyze_fourbar(mechanism: Mechanism, at: Real, topics: list[Topic]) -> dict[str, Any]:
-    """What is asked for, over input angles in radians, in the shape of :class:`FourbarAnalysis`.
+    """Compute the requested results over input angles in radians, in the form of :class:`FourbarAnalysis`.
 
     Raises
     ------
@@ -169,7 +169,7 @@ def analyze_fourbar(mechanism: Mechanism, at: Real, topics: list[Topic]) -> dict
 
 
 def _describe_cognates(assembled: AssembledFourbar, reference: float) -> dict[str, Any]:
-    """The two cognates of Roberts and Chebyshev and the geared fivebar of the same curve, as statements."""
+    """Describe the two cognates of Roberts and Chebyshev and the geared fivebar of the same curve as mechanisms."""
     linkage, assembly = assembled
     pair = build_cognates(linkage)
     fivebar = build_geared_fivebar_cognate(linkage)
@@ -227,7 +227,7 @@ def _describe_cognate(cognate: Cognate, reference: float, assembly: int) -> dict
 
 
 def _build_parallel_motion(linkage: Fourbar, a: complex, b: complex, p: complex) -> dict[str, Any]:
-    """The sixbar whose link moves parallel to itself along the coupler curve."""
+    """Build the sixbar whose link moves parallel to itself along the coupler curve."""
     translating = build_parallel_motion(linkage)
     o2 = complex(linkage.input_pivot)
     joints = {

@@ -1,4 +1,4 @@
-"""A linkage laid out in planes, as an answer has it: in degrees, with what it is made of."""
+"""Arrangement of a linkage in planes, in the form of an answer."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ PROBE_COUNT = 181
 """Number of inputs at which to test whether the mechanism can be driven through the motion."""
 
 CYCLE_TOLERANCE = 1e-9
-"""Share of a cycle by which a motion may miss it and be closed: rounding."""
+"""Tolerance of a closed motion, as a share of a cycle: rounding."""
 
 
 def lay_out_mechanism(mechanism: Mechanism, sizes: LayoutSizes, used: tuple[float, float] | None) -> Layout:
@@ -31,10 +31,10 @@ def lay_out_mechanism(mechanism: Mechanism, sizes: LayoutSizes, used: tuple[floa
     ----------
     mechanism : Mechanism
         One design, in its reference configuration.
-    stated : LayoutSizes
-        What it is made of.
+    sizes : LayoutSizes
+        Sizes of links and pins.
     used : pair of float or None
-        First and last input of the used range, radians or places along the input slide; None where no motion leads
+        First and last input of the used range, radians or positions along the input slide; None if no motion passes
         through it.
     """
     try:
@@ -43,17 +43,17 @@ def lay_out_mechanism(mechanism: Mechanism, sizes: LayoutSizes, used: tuple[floa
         return _build_empty_layout(str(error))
 
 
-def lay_out_range(mechanism: Mechanism, stated: LayoutSizes, used: tuple[float, float] | None) -> Layout:
-    """The same; a range of more than a cycle is looked at for one, after which all repeats.
+def lay_out_range(mechanism: Mechanism, requested: LayoutSizes, used: tuple[float, float] | None) -> Layout:
+    """Lay a linkage out for a range of its input; a range of more than a cycle is reduced to one cycle.
 
     Raises
     ------
     RangeError
-        For a range that is too long to be looked at.
+        For a range that is too long to be examined.
     """
     slides = mechanism.has_slide_input
     try:
-        if stated.over == "cycle":
+        if requested.over == "cycle":
             used = find_cycle(mechanism)
         if used is None:
             return _build_empty_layout("the mechanism cannot move through the used range")
@@ -67,10 +67,10 @@ def lay_out_range(mechanism: Mechanism, stated: LayoutSizes, used: tuple[float, 
             mechanism,
             low,
             high,
-            link_width=stated.link_width,
-            pin_diameter=stated.pin_diameter,
-            gap=stated.gap,
-            through=stated.shafts == "both_sides",
+            link_width=requested.link_width,
+            pin_diameter=requested.pin_diameter,
+            gap=requested.gap,
+            through=requested.shafts == "both_sides",
             closed=math.isfinite(turn) and abs(high - low - turn) <= CYCLE_TOLERANCE * turn,
         )
     except RangeError:
@@ -89,7 +89,7 @@ def lay_out_range(mechanism: Mechanism, stated: LayoutSizes, used: tuple[float, 
         planes=found.planes,
         count=count,
         least=True,
-        height=count * (stated.thickness + stated.gap),
+        height=count * (requested.thickness + requested.gap),
         pins=found.pins,
         stub_shafts=found.stub_shafts,
         crossings=found.crossings,

@@ -1,7 +1,7 @@
 """The analysis of a planar linkage: request and answer, in degrees.
 
-The answer is plain lists, made for speed; :class:`LinkageAnalysis` documents it. Where the mechanism cannot be
-assembled ``valid`` is False and the numbers are NaN, which JSON has as null.
+The answer consists of plain lists, for speed; :class:`LinkageAnalysis` documents it. If the mechanism cannot be
+assembled, ``valid`` is False and the numbers are NaN, which become null in JSON.
 """
 
 from __future__ import annotations
@@ -107,7 +107,7 @@ class LinkageAnalysisRequest(AnalysisRequest):
     )
 
     def find_errors(self) -> list[tuple[str, str]]:
-        """What no single field shows: (path, detail)."""
+        """List errors that no single field shows: (path, detail)."""
         faults = [*self.motion.find_errors(), *find_target_errors(self.mechanism, self.targets, self.manufacture)]
         if not self.points and self.dynamics is None:
             return faults
@@ -128,7 +128,7 @@ class LinkageAnalysisRequest(AnalysisRequest):
         return faults
 
     def build_answer(self) -> dict[str, Any]:
-        """Everything over the motion, in the shape of :class:`LinkageAnalysis`."""
+        """Build the answer over the motion, in the form of :class:`LinkageAnalysis`."""
         mechanism = self.mechanism.build_mechanism()
         if decompose(mechanism).left and estimate_effort(mechanism) > MAX_EFFORT:
             raise MechanismError("", "this mechanism has too many links outside dyads to be solved at once")
@@ -177,7 +177,7 @@ class LinkageAnalysisRequest(AnalysisRequest):
         }
 
     def _width(self) -> int:
-        """Numbers that the answer has at each position, about."""
+        """Estimate the count of numbers in the answer at each position."""
         mechanism = self.mechanism.build_mechanism()
         tracks = len(mechanism.joints) + len(self.points)
         width = 4 * len(mechanism.links) + 8 * tracks + 4 * len(mechanism.slides) + 2 * len(self.include)
@@ -187,7 +187,7 @@ class LinkageAnalysisRequest(AnalysisRequest):
 
     @classmethod
     def analyze_cycle(cls, mechanism: dict[str, Any], steps: int) -> dict[str, Any]:
-        """The same from the first target on, through a full turn or from toggle to toggle."""
+        """Build the answer from the first target on, through a full turn or from toggle to toggle."""
         given = _GIVEN_ADAPTER.validate_python(mechanism).build_mechanism()
         low, high = find_cycle(given)
         at = np.linspace(low, high, steps + 1)

@@ -1,6 +1,6 @@
-"""A mechanism with masses and loads that a problem states as an analysis does: its request, and what is wrong with it.
+"""A mechanism with masses and loads in a problem: its analysis request, and its errors.
 
-The mechanism is read here and not in the models of the problem: it brings the analysis core with it.
+The mechanism is parsed here and not in the models of the problem, because it needs the analysis core.
 """
 
 from __future__ import annotations
@@ -23,12 +23,12 @@ from synthesis.model.linkage.input_motion import Sweep
 def build_loaded_request(
     mechanism: dict[str, Any], dynamics: LoadedLinkage, unit: LengthUnit
 ) -> LinkageAnalysisRequest:
-    """The request for an analysis of a mechanism with masses and loads.
+    """Build the analysis request for a mechanism with masses and loads.
 
     Raises
     ------
     pydantic.ValidationError
-        For a mechanism that is none.
+        For an invalid mechanism.
     """
     block = DynamicsBlock.model_validate(dynamics.model_dump(exclude_unset=True, by_alias=True))
     return LinkageAnalysisRequest.model_validate({"mechanism": mechanism, "dynamics": block, "length_unit": unit})
@@ -37,7 +37,7 @@ def build_loaded_request(
 def find_loaded_errors(
     mechanism: dict[str, Any], dynamics: LoadedLinkage, unit: LengthUnit, *, shaft: bool = False
 ) -> list[tuple[str, str]]:
-    """What is wrong with them: (JSON pointer, detail) below /mechanism or /dynamics; with ``shaft`` a crank drives."""
+    """List errors as (JSON pointer, detail) below /mechanism or /dynamics; with ``shaft`` a crank must drive."""
     try:
         request = build_loaded_request(mechanism, dynamics, unit)
     except ValidationError as error:
@@ -64,7 +64,7 @@ def find_loaded_errors(
 def find_driven_errors(
     mechanism: dict[str, Any], dynamics: LoadedLinkage, unit: LengthUnit, motion: Sweep
 ) -> tuple[Mechanism | None, list[tuple[str, str]]]:
-    """The mechanism that is to be driven over a motion, None where it is none, and what is wrong with them."""
+    """Return the mechanism to be driven over a motion, None if it is invalid, and the errors."""
     faults = find_loaded_errors(mechanism, dynamics, unit)
     if faults:
         return None, faults

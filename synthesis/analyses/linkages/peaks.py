@@ -1,8 +1,8 @@
-"""Extremes of quantities along a motion, refined between its positions by looking there again.
+"""Extremes of quantities along a motion, refined between its positions.
 
-Near a toggle a force can rise and fall between two positions. Wherever the bend of a quantity allows a value above the
-highest one that is known, the motion is looked at more closely: a few times, and where that is in many places, first
-where a quantity may be highest above the known.
+Near a toggle a force can rise and fall between two positions. Wherever the bend of a quantity permits a value above the
+highest known one, the motion is sampled more closely, in a few rounds; with many such places, those with the highest
+possible values come first.
 """
 
 from __future__ import annotations
@@ -17,20 +17,20 @@ from kinematics.arrays import Real
 Samples = dict[str, Real]
 
 INTERVAL_PARTS, MAX_ROUNDS = 8, 5
-"""Into how many parts an interval is divided in which a higher value may be, and how often at most."""
+"""Number of parts into which a doubtful interval is divided, and maximum number of rounds."""
 
 MAX_BEND_FACTOR = 4.0
-"""How many times its neighbours' second difference a quantity may bend between two positions."""
+"""Assumed maximum bend between two positions, as a multiple of the neighbouring second differences."""
 
 PEAK_TOLERANCE = 1e-5
-"""Share of the highest value by which one between positions may be above it, before a parabola is laid through them."""
+"""Share of the highest value by which a value between positions may exceed it before a parabola is used."""
 
 MAX_ADDED_POSITIONS = 4096
-"""Positions that are added in a round, at most."""
+"""Maximum number of positions added in a round."""
 
 
 class Peak(NamedTuple):
-    """A greatest value and the input at which it stands; NaN where there is none."""
+    """A maximum and the input at which it occurs; NaN if there is none."""
 
     value: float
     at: float
@@ -39,7 +39,7 @@ class Peak(NamedTuple):
 def find_peaks(
     positions: Real, speeds: Real, samples: Samples, measure: Callable[[Real, Real], Samples], closed: bool
 ) -> dict[str, Peak]:
-    """The greatest value of each quantity.
+    """Find the maximum of each quantity.
 
     Parameters
     ----------
@@ -49,7 +49,7 @@ def find_peaks(
     samples : dict of str to float, shape (N,)
         Quantities there; NaN where there are none.
     measure : callable
-        The quantities at other inputs and speeds.
+        Computes the quantities at other inputs and speeds.
     closed : bool
         Whether the motion closes, so that a peak may lie beyond its end.
     """
@@ -71,7 +71,7 @@ def find_peaks(
 
 
 def _find_doubtful_places(places: Real, known: Samples) -> Real:
-    """Places between those of ``places`` where some quantity may be above its highest value."""
+    """Find places between those of ``places`` where some quantity may exceed its highest value."""
     steps = np.diff(places)
     above = np.zeros(len(steps))
     for values in known.values():
@@ -91,7 +91,7 @@ def _find_doubtful_places(places: Real, known: Samples) -> Real:
 
 
 def _interpolate(values: Real, places: Real) -> Real:
-    """What stands at whole numbers, between them by the parabola through the nearest three."""
+    """Interpolate values given at whole numbers, by the parabola through the nearest three."""
     middle = np.clip(np.rint(places).astype(int), 1, len(values) - 2)
     share = places - middle
     before, at, after = values[middle - 1], values[middle], values[middle + 1]
@@ -99,7 +99,7 @@ def _interpolate(values: Real, places: Real) -> Real:
 
 
 def _find_vertex(positions: Real, places: Real, values: Real, closed: bool) -> Peak:
-    """The top of the parabola through the highest value and its neighbours."""
+    """Find the vertex of the parabola through the highest value and its neighbours."""
     k, last = int(np.nanargmax(values)), len(values) - 1
     place, top = places[k], float(values[k])
     stands = Peak(top, float(_interpolate(positions, places[k : k + 1])[0]))
@@ -112,7 +112,7 @@ def _find_vertex(positions: Real, places: Real, values: Real, closed: bool) -> P
     else:
         return stands
     left, right = ((top - float(values[side])) / far for side, far in zip(sides, reach, strict=True))
-    # At a corner, or beside a position without value, the parabola tells nothing: the highest value stands.
+    # At a corner, or next to a position without a value, the parabola is meaningless: keep the highest value.
     bend = (left + right) / (reach[0] + reach[1])
     slope = (left * reach[1] - right * reach[0]) / (reach[0] + reach[1])
     if not bend > 0.0:

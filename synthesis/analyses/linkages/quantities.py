@@ -1,4 +1,4 @@
-"""What the analysis core knows of a linkage over given inputs, as plain lists in degrees."""
+"""Motion of a linkage over given inputs and all derived quantities, as plain lists in degrees."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ from synthesis.analyses.linkages.cycle import list_branches
 from synthesis.analyses.linkages.fourbar import extract_fourbar
 
 BRANCH_SAMPLE_COUNT = 181
-"""Places on a branch at which its joints are listed: enough for a smooth curve on a screen."""
+"""Number of samples on a branch at which its joints are listed: enough for a smooth curve on a screen."""
 
 
 def analyze_motion(
@@ -82,7 +82,7 @@ def _list_series(jet: Real) -> dict[str, list[float]]:
 
 
 def _unwrap_angle(angle: Real) -> Real:
-    """Angles without jumps of a full turn, the first in (−π, π]; gaps are passed over."""
+    """Unwrap angles, the first in (−π, π]; gaps are skipped."""
     known = np.isfinite(angle)
     out = angle.copy()
     if known.any():
@@ -105,7 +105,7 @@ def _describe_travel(jet: Real) -> dict[str, list[float]]:
 
 
 def _compute_ratios(motion: MechanismMotion, moved: dict[str, Real], outputs: list[str]) -> dict[str, list[float]]:
-    """Input speed over that of links or slides: by virtual work the output's torque or force over the input's."""
+    """Compute input speed over that of links or slides, by virtual work the ratio of the output's torque or force."""
     ratios = {}
     for name in outputs:
         with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
@@ -122,13 +122,13 @@ def _list_instant_centers(mechanism: Mechanism, motion: MechanismMotion) -> dict
 
 
 def _list_grounded_links(mechanism: Mechanism) -> list[str]:
-    """Links pinned to the ground, but for the input."""
+    """List the links pinned to the ground, except the input."""
     ground = set(mechanism.links[GROUND])
     return [n for n, listed in mechanism.links.items() if n not in (GROUND, mechanism.input) and ground & set(listed)]
 
 
 def _list_output_slides(mechanism: Mechanism) -> list[str]:
-    """Names of the slides on the ground, but for the input."""
+    """List the names of the slides on the ground, except the input."""
     named = zip(mechanism.slide_names, mechanism.slides, strict=True)
     return [name for name, slide in named if slide.link == GROUND and slide.joint != mechanism.input]
 
@@ -148,7 +148,7 @@ def _classify_linkage(mechanism: Mechanism) -> dict[str, Any]:
 
 
 def _sample_branch(mechanism: Mechanism, branch: Branch) -> dict[str, dict[str, list[float]]] | None:
-    """Joints along a branch, closest together at its ends; None where no assemblies tell the branches apart."""
+    """Sample the joints along a branch, densest at its ends; None if no assemblies distinguish the branches."""
     steps = build_program(mechanism).steps
     if not steps or len(branch.signs) != sum(step.has_two_solutions for step in steps):
         return None
@@ -165,7 +165,7 @@ def _sample_branch(mechanism: Mechanism, branch: Branch) -> dict[str, dict[str, 
 
 
 def _describe_undefined(mechanism: Mechanism, sines: dict[str, Real]) -> list[str]:
-    """What is not in the answer of a motion, and why."""
+    """Describe results that are missing in the answer, with the reason."""
     notes = []
     if decompose(mechanism).left and not sines:
         notes.append(
@@ -185,7 +185,7 @@ def _describe_undefined(mechanism: Mechanism, sines: dict[str, Real]) -> list[st
 
 
 def _describe_circuits(mechanism: Mechanism, tracked: bool, notes: list[str]) -> dict[str, Any]:
-    """Toggles, circuits and limits; empty where the mechanism's circuits cannot be listed, and the note says why."""
+    """Describe toggles, circuits and limits; empty with a note if the circuits cannot be listed."""
     try:
         branches = list_branches(mechanism)
     except TopologyError as error:

@@ -1,4 +1,4 @@
-"""A machine over the motion that a problem states: its positions, and what is driven along them."""
+"""A machine over the motion of a problem: its positions, and the machine driven along them."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from synthesis.model.dynamics.request import DynamicsBlock, LengthUnit
 from synthesis.model.linkage.input_motion import FULL_TURN, Sweep
 
 CYCLE_TOLERANCE = 1e-9
-"""Share of a turn by which a range may miss whole turns and be closed: rounding."""
+"""Tolerance of a range of whole turns, as a share of a turn: rounding."""
 
 
 class Task(NamedTuple):
@@ -31,7 +31,7 @@ class Task(NamedTuple):
 
     @property
     def is_closed(self) -> bool:
-        """Whether the range is whole turns, of which the last position is the first again."""
+        """Whether the range is whole turns, so that the last position repeats the first."""
         turns = abs(self.end - self.start) / (2.0 * np.pi)
         return (
             not self.machine.mechanism.has_slide_input
@@ -40,12 +40,12 @@ class Task(NamedTuple):
         )
 
     def list_positions(self, count: int) -> Real:
-        """So many positions of the input, at equal distances."""
+        """Return ``count`` positions of the input at equal distances."""
         return np.asarray(np.linspace(self.start, self.end, count, endpoint=not self.is_closed))
 
 
 def build_task(statement: dict[str, Any], dynamics: DynamicsBlock, unit: LengthUnit, motion: Sweep) -> Task:
-    """The machine of a consistent statement, and its motion."""
+    """Build the machine of a consistent problem, and its motion."""
     request = build_loaded_request(statement, dynamics, unit)
     mechanism = request.mechanism.build_mechanism()
     machine, _ = build_machine(dynamics, mechanism, unit)
@@ -59,12 +59,12 @@ def build_task(statement: dict[str, Any], dynamics: DynamicsBlock, unit: LengthU
 
 
 def place_machine(machine: Machine, at: Real, speed: float = 1.0, acceleration: float = 0.0) -> Places:
-    """A machine at inputs that go with a speed and an acceleration."""
+    """Drive a machine to inputs with a speed and an acceleration."""
     mechanism = machine.mechanism
     motion = drive(mechanism, at, speed=np.full(len(at), speed), acceleration=acceleration, order=2)
     return Places(mechanism, motion, machine.scale)
 
 
 def pace_machine(machine: Machine, at: Real) -> Places:
-    """A machine at inputs that go with a speed of 1 in the unit of its forces, by which work is told."""
+    """Drive a machine to inputs with speed 1 in the unit of its forces, in which work is computed."""
     return place_machine(machine, at, 1.0 / machine.scale if machine.mechanism.has_slide_input else 1.0)

@@ -22,7 +22,7 @@ UNSUPPORTED_MESSAGE = "only fourbars and slider-cranks given by their dimensions
 
 
 def find_target_errors(mechanism: Any, targets: Sequence[TargetSpec], block: Exactness | None) -> list[tuple[str, str]]:
-    """What no single field shows: (path, detail)."""
+    """List errors that no single field shows: (path, detail)."""
     if not targets:
         return [("/targets", "missing: the analysis of manufacture needs targets")] if block is not None else []
     linkage = extract_linkage(mechanism)
@@ -51,16 +51,16 @@ def find_target_errors(mechanism: Any, targets: Sequence[TargetSpec], block: Exa
 
 
 def analyze_targets(mechanism: Any, targets: Sequence[TargetSpec], block: Exactness | None) -> dict[str, Any]:
-    """What a linkage misses its targets by, and what becomes of it as it is made: fields of the answer.
+    """Measure a linkage's errors at its targets and its manufacturing results: fields of the answer.
 
     Parameters
     ----------
-    mechanism : a stated mechanism
-        Without faults as of :func:`find_target_errors`, as are the targets.
-    targets : sequence of StatedTarget
+    mechanism : a given mechanism
+        Without errors by :func:`find_target_errors`, like the targets.
+    targets : sequence of TargetSpec
         All of one sort.
     block : Exactness or None
-        How exactly it is made.
+        Manufacturing accuracy.
     """
     linkage = extract_linkage(mechanism)
     assert linkage is not None
@@ -91,7 +91,7 @@ def analyze_targets(mechanism: Any, targets: Sequence[TargetSpec], block: Exactn
 
 
 def _build_requirements(mechanism: Any, linkage: Linkage, targets: Sequence[TargetSpec]) -> RequiredTargets:
-    """What is stated; inputs that are not are NaN."""
+    """Build the requirements from the targets; inputs that are left out are NaN."""
     inputs = np.radians([math.nan if target.input_angle is None else target.input_angle for target in targets])
     if targets[0].sort == "outputs":
         places = np.array([target.output for target in targets], np.float64)
@@ -109,7 +109,7 @@ def _build_requirements(mechanism: Any, linkage: Linkage, targets: Sequence[Targ
 
 
 def _find_nearest_inputs(linkage: Linkage, held: RequiredTargets) -> RequiredTargets:
-    """The same with the inputs that are left out where the linkage comes nearest, all in one run."""
+    """Fill in omitted inputs at which the linkage comes nearest, all in one run."""
     known = np.isfinite(held.inputs)
     turn = np.linspace(0.0, math.tau, SAMPLE_COUNT, endpoint=False)
     inputs = np.where(known, held.inputs, 0.0)
@@ -132,7 +132,7 @@ def _find_nearest_inputs(linkage: Linkage, held: RequiredTargets) -> RequiredTar
     task = dataclasses.replace(task, adjusted=True, greatest=False)
     refined = measure_deviations(task, linkage.row[None, : task.dimensions]).inputs[0]
     inputs = np.where(known | ~np.isfinite(refined), inputs, refined)
-    # A stated input says which turn it is of; others go the shorter way from the one before.
+    # A given input determines its turn; the others follow the previous one by the shorter way.
     for k in range(1, len(inputs)):
         if not known[k]:
             inputs[k] -= math.tau * round((inputs[k] - inputs[k - 1]) / math.tau)

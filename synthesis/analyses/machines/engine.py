@@ -71,14 +71,14 @@ class EngineAnalysisRequest(DrivenRequest[GivenEngine]):
     )
 
     def find_errors(self) -> list[tuple[str, str]]:
-        """What no single field shows."""
+        """List errors that no single field shows."""
         faults = super().find_errors()
         if self.mechanism.rod <= self.mechanism.crank:
             faults.append(("/mechanism/rod", "the rod must be longer than the crank's radius"))
         return faults
 
     def build_answer(self) -> dict[str, Any]:
-        """Everything about the engine, in the shape of :class:`EngineAnalysis`."""
+        """Build the answer for the engine, in the form of :class:`EngineAnalysis`."""
         at, speed, time = self.motion.list_inputs()
         cylinders = []
         for number, cylinder in enumerate(self.mechanism.cylinders, 1):

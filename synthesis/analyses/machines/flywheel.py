@@ -63,14 +63,14 @@ class FlywheelAnalysisRequest(DrivenRequest[GivenFlywheel]):
     )
 
     def find_errors(self) -> list[tuple[str, str]]:
-        """What no single field shows."""
+        """List errors that no single field shows."""
         faults = super().find_errors()
         if self.mechanism.inner_radius >= self.mechanism.radius:
             faults.append(("/mechanism/inner_radius", "must be below the outer radius"))
         return faults
 
     def build_answer(self) -> dict[str, Any]:
-        """Everything about the flywheel, in the shape of :class:`FlywheelAnalysis`."""
+        """Build the answer for the flywheel, in the form of :class:`FlywheelAnalysis`."""
         at, speed, time = self.motion.list_inputs()
         scale = METRES_PER_UNIT[self.length_unit] if self.units == "si" else 1.0
         wheel = self.mechanism

@@ -13,7 +13,7 @@ from synthesis.mechanisms.geneva import build_drive
 from synthesis.model.problem import Count, Degrees, PositiveLength, Statement
 
 ENTRY_TOLERANCE = 1e-9
-"""Share by which a crank may be below the radius at which its roller reaches a slot: rounding."""
+"""Share by which a crank may be shorter than the radius at which its roller reaches a slot: rounding."""
 
 
 class GivenDragLink(Statement):
@@ -86,7 +86,7 @@ class GenevaAnalysisRequest(DrivenRequest[GivenGeneva]):
     )
 
     def find_errors(self) -> list[tuple[str, str]]:
-        """What no single field shows."""
+        """List errors that no single field shows."""
         faults, given = super().find_errors(), self.mechanism
         step = math.pi / given.stations
         if given.type == "geneva_spherical":
@@ -108,7 +108,7 @@ class GenevaAnalysisRequest(DrivenRequest[GivenGeneva]):
         return faults
 
     def build_answer(self) -> dict[str, Any]:
-        """Everything about the drive, in the shape of :class:`GenevaAnalysis`."""
+        """Build the answer for the drive, in the form of :class:`GenevaAnalysis`."""
         at, speed, time = self.motion.list_inputs()
         course, rollers = build_drive(self.mechanism), self.mechanism.rollers
         motion = course.wheel_motion(np.radians(at), rollers)

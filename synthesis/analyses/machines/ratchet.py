@@ -74,7 +74,7 @@ class RatchetAnalysisRequest(DrivenRequest[GivenRatchet]):
     )
 
     def find_errors(self) -> list[tuple[str, str]]:
-        """What no single field shows."""
+        """List errors that no single field shows."""
         faults, given = super().find_errors(), self.mechanism
         if given.tooth_height >= 0.9 * given.wheel_radius:
             faults.append(("/mechanism/tooth_height", "must be below nine tenths of the wheel's radius"))
@@ -83,7 +83,7 @@ class RatchetAnalysisRequest(DrivenRequest[GivenRatchet]):
         return faults
 
     def build_answer(self) -> dict[str, Any]:
-        """Everything about the ratchet, in the shape of :class:`RatchetAnalysis`."""
+        """Build the answer for the ratchet, in the form of :class:`RatchetAnalysis`."""
         at, _, time = self.motion.list_inputs()
         ratchet = self._build_ratchet()
         lifts = [np.degrees(ratchet.pawl_lift(np.radians(at - pawl.stop))) for pawl in self.mechanism.pawls]

@@ -17,7 +17,7 @@ from synthesis.model.dynamics.request import METRES_PER_UNIT, LengthUnit
 from synthesis.model.problem import Coordinate, Degrees, Flag, NonNegative, Statement
 
 GRAM_MILLIMETRES = 1e-6
-"""kg·m in a g·mm."""
+"""One g·mm in kg·m."""
 
 
 class GivenUnbalance(Statement):
@@ -78,14 +78,14 @@ class RotorRequest(DrivenRequest[GivenRotor]):
     )
 
     def find_errors(self) -> list[tuple[str, str]]:
-        """What no single field shows."""
+        """List errors that no single field shows."""
         bearings = self.mechanism.bearings
         alike = bearings is not None and bearings[0] == bearings[1]
         same = [("/mechanism/bearings", "two bearings at the same position cannot carry a couple")] if alike else []
         return [*super().find_errors(), *same]
 
     def build_answer(self) -> dict[str, Any]:
-        """Everything over the motion, in the shape of :class:`RotorAnalysis`."""
+        """Build the answer over the motion, in the form of :class:`RotorAnalysis`."""
         at, speed, time = self.motion.list_inputs()
         given, si = self.mechanism, self.units == "si"
         moment_unit, length = (GRAM_MILLIMETRES, METRES_PER_UNIT[self.length_unit]) if si else (1.0, 1.0)
@@ -97,7 +97,7 @@ class RotorRequest(DrivenRequest[GivenRotor]):
         )
         z = np.array([entry.z for _, entry in signed], np.float64)
         about = 0.0 if given.bearings is None else given.bearings[0]
-        # What the rotor exerts: − m a of a point that goes round.
+        # Force of the rotor on the frame: − m a of a point on a circle.
         turning = np.exp(1j * np.radians(at)) * (speed**2 - 1j * self.motion.acceleration)
         carried = (
             [] if given.bearings is None else compute_bearing_moments(moments, z, np.array(given.bearings)).tolist()

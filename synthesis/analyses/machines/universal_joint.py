@@ -21,7 +21,7 @@ from synthesis.model.answer import Answer
 from synthesis.model.problem import MAX_MAGNITUDE, NonNegative, Number, Statement
 
 SPEED_TOLERANCE = 1e-12
-"""Fluctuation of the speed that is rounding."""
+"""Fluctuation of the speed that counts as rounding."""
 
 
 class JointSpec(Statement):
@@ -56,7 +56,7 @@ class GivenUniversalJoint(Statement):
     torque: Number = Field(default=0.0, description="Constant load on the output shaft, e.g. N·m.")
 
     def build_core(self) -> list[Joint]:
-        """The joints of the analysis core."""
+        """Build the joints of the analysis core."""
         return [Joint(math.radians(joint.angle), math.radians(joint.offset)) for joint in self.joints]
 
 
@@ -84,7 +84,7 @@ class UniversalJointRequest(DrivenRequest[GivenUniversalJoint]):
     )
 
     def find_errors(self) -> list[tuple[str, str]]:
-        """What no single field shows."""
+        """List errors that no single field shows."""
         faults, limits = super().find_errors(), self.limits
         if limits is not None and (limits.fluctuation, limits.greatest_ratio, limits.least_ratio) == (None, None, 0.0):
             faults.append(("/limits", "give the fluctuation, or a minimum or maximum ratio"))
@@ -95,7 +95,7 @@ class UniversalJointRequest(DrivenRequest[GivenUniversalJoint]):
         return faults
 
     def build_answer(self) -> dict[str, Any]:
-        """Everything over the motion, in the shape of :class:`UniversalJointAnalysis`."""
+        """Build the answer over the motion, in the form of :class:`UniversalJointAnalysis`."""
         at, speed, time = self.motion.list_inputs()
         joints = self.mechanism.build_core()
         moved, extremes = compute_shaft_motion(joints, np.radians(at)), find_shaft_extremes(joints)
@@ -135,7 +135,7 @@ class UniversalJointRequest(DrivenRequest[GivenUniversalJoint]):
         }
 
     def _find_largest_angle(self) -> float | None:
-        """The largest joint angle (degrees) within the stated limits; None without limits."""
+        """Find the largest joint angle (degrees) within the given limits; None without limits."""
         limits = self.limits
         if limits is None:
             return None

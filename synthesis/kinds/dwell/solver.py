@@ -362,6 +362,5 @@ def _describe_result(problem: DwellProblem, sifting: CandidateLog[DwellDesign]) 
     return (
         f"{format_count(count, 'dwell sixbar')} found. In the {which} the output moves by at most "
         f"{best.metrics.jitter:.2g}{unit} during the dwell, and stays within {problem.max_movement:.3g}{unit} over "
-        f"{widths} "
-        "of the crank."
+        f"{widths} of the crank."
     )

@@ -12,7 +12,7 @@ from itertools import combinations
 
 import numpy as np
 
-from kinematics.arrays import Real
+from kinematics.arrays import Complex, Real
 from kinematics.errors import MechanismError
 from kinematics.linkage.planar.branches import FULL_TURN, compute_cycle_on_branch
 from kinematics.linkage.planar.drive import MechanismMotion, drive
@@ -53,6 +53,15 @@ SLIDER_TYPES = "dwell_slider", "dwell_watt_slider"
 """Types whose output slides."""
 
 
+def _turns_through(mechanism: Mechanism) -> bool:
+    """Return whether the crank turns through and the linkage repeats after one turn."""
+    try:
+        here = find_reference_branch(mechanism, find_branches(mechanism))
+    except MechanismError:
+        return False
+    return here is not None and here.full and compute_cycle_on_branch(mechanism, here) == FULL_TURN
+
+
 def verify_dwell(problem: DwellProblem, design: DwellMechanism) -> DwellDesign | None:
     """Drive a sixbar through a turn of its crank and measure the dwells that a problem requests.
 
@@ -71,12 +80,7 @@ def verify_dwell(problem: DwellProblem, design: DwellMechanism) -> DwellDesign |
     mechanism = rebuild_mechanism(design)
     if mechanism is None:
         return None
-    try:
-        here = find_reference_branch(mechanism, find_branches(mechanism))
-    except MechanismError:
-        return None
-    # The crank must turn through, and the linkage must repeat after one turn.
-    if here is None or not here.full or compute_cycle_on_branch(mechanism, here) != FULL_TURN:
+    if not _turns_through(mechanism):
         return None
     inputs = float(mechanism.reference_input) + np.linspace(0.0, FULL_TURN, GRID_STEP_COUNT + 1)
     motion = drive(mechanism, inputs, order=2)
@@ -110,11 +114,54 @@ def verify_dwell(problem: DwellProblem, design: DwellMechanism) -> DwellDesign |
     if not found:
         return None
     rates = [_find_peak(mechanism, inputs, motion, order, slides=slides) for order in (1, 2)]
+    crank = abs(complex(mechanism.joints["A"] - mechanism.joints["O2"]))
+    task_size = problem.way if slides else 2.0 * crank
+    measures = _measure_sixbar(mechanism, task_size, places, transmission, inputs, closed=closed)
+    metrics = DwellMetrics(
+        way=way,
+        jitter=max(rest.jitter for rest in found),
+        peak_velocity=rates[0],
+        peak_acceleration=rates[1],
+        **measures.select_fields(DwellMetrics),
+    )
+    targets = _list_rests(found)
+    checks = _check_design(problem, mechanism, measures, metrics.way, targets, found)
+    return DwellDesign(
+        mechanism=design,
+        targets=targets,
+        dwells=_list_placed_dwells(problem, found),
+        verification=Verification.from_checks(checks),
+        metrics=metrics,
+    )
+
+
+def _measure_sixbar(
+    mechanism: Mechanism,
+    task_size: float,
+    places: Complex,
+    transmission: dict[str, float],
+    inputs: Real,
+    *,
+    closed: bool,
+) -> Measures:
+    """Return the measures of a sixbar over its turn.
+
+    Parameters
+    ----------
+    task_size : float
+        Length by which the design's size is measured.
+    places : complex
+        Places of all joints over the turn.
+    transmission : dict
+        Minimum transmission angle of each dyad.
+    closed : bool
+        Whether all joints return after the turn.
+    """
     lengths = list_joint_distances(mechanism)
-    measures = measure_linkage(
+    return measure_linkage(
         lengths,
         max(lengths),
-        problem.way if slides else 2.0 * abs(complex(mechanism.joints["A"] - mechanism.joints["O2"])),
+        task_size,
         transmission,
         places,
         barker=classify_inner_fourbar(mechanism),
@@ -123,14 +170,11 @@ def verify_dwell(problem: DwellProblem, design: DwellMechanism) -> DwellDesign |
         full_rotation=closed,
         used=(float(inputs[0]), float(inputs[-1])),
     )
-    metrics = DwellMetrics(
-        way=way,
-        jitter=max(rest.jitter for rest in found),
-        peak_velocity=rates[0],
-        peak_acceleration=rates[1],
-        **measures.select_fields(DwellMetrics),
-    )
-    targets = [
+
+
+def _list_rests(found: list[MeasuredRest]) -> list[Rest]:
+    """Return measured rests as reported, angles in degrees."""
+    return [
         Rest(
             index=k,
             input_angle=math.degrees(rest.begin),
@@ -141,14 +185,6 @@ def verify_dwell(problem: DwellProblem, design: DwellMechanism) -> DwellDesign |
         )
         for k, rest in enumerate(found)
     ]
-    checks = _check_design(problem, mechanism, measures, metrics.way, targets, found)
-    return DwellDesign(
-        mechanism=design,
-        targets=targets,
-        dwells=_list_placed_dwells(problem, found),
-        verification=Verification.from_checks(checks),
-        metrics=metrics,
-    )
 
 
 def _find_rests(problem: DwellProblem, turn: OutputCycle, way: tuple[float, float]) -> list[MeasuredRest]:

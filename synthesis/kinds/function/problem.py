@@ -235,6 +235,7 @@ class FunctionProblem(LinkageProblem):
         if self.criterion is not None:
             return self.criterion
         if self.pairs is not None:
+            # Eight is the limit of the search; nine exact pairs need an explicit request.
             return "precision" if len(self.pairs) <= min(self.max_exact_pairs, MAX_SIXBAR_PAIRS) else "minimax"
         return "precision" if self.precision_points is not None else "minimax"
 
@@ -291,6 +292,7 @@ class FunctionProblem(LinkageProblem):
             assert self.function is not None
             outputs = self.function.values(values)
         dials = design.dials
+        # Convert dial readings to link angles or slider positions, as measured on the linkage.
         inputs, places = (
             dial.place + dial.scale * (shown - dial.at)
             for dial, shown in ((dials.input, values), (dials.output, outputs))
@@ -298,6 +300,7 @@ class FunctionProblem(LinkageProblem):
         pivots = self.fixed_pivots
         kept = list_fixed_coordinates((None, None) if pivots is None else (pivots.input, pivots.output))
         if self.slides:
+            # A slider's dial is fixed to the frame, so its targets are positions and not angles.
             return RequiredTargets(
                 np.radians(inputs), travels=places, free=False, size=float(np.ptp(places)) or 1.0, kept=kept
             )
@@ -343,6 +346,7 @@ class FunctionProblem(LinkageProblem):
         elif self.scales is not None:
             free = [self.scales.input, self.scales.output].count(None)
         else:
+            # A slider's output scale only changes the size of the linkage, so it is no degree of freedom.
             free = 1 if self.slides else 2
         return BASE_PAIR_COUNT + zeros + free
 
@@ -383,10 +387,12 @@ class FunctionProblem(LinkageProblem):
         if self.aim != "precision" or self.pairs is None or self.only_sixbars:
             return 1.0, 1.0
         zeros = sum(zero is None for zero in self.zero_choice)
+        # Each further pair needs one more open parameter; the output's scale is opened first.
         beyond = len(self.pairs) - BASE_PAIR_COUNT - zeros
         if beyond <= 0:
             return 1.0, 1.0
         if self.slides:
+            # The input's scale is the only one that changes the shape.
             return None, 1.0
         return (1.0, None) if beyond == 1 else (None, None)
 
@@ -411,6 +417,7 @@ class FunctionProblem(LinkageProblem):
     def open_scale(self, side: int) -> tuple[float, float]:
         """Open the scale of the input (0) or output (1): return its limits, with which no link makes a full turn."""
         low, high = self.scale_limits
+        # Values times scale must stay below a full turn.
         most = MAX_RANGE / float(np.ptp(self.values[:, side]))
         return low, max(min(high, most), low)
 
@@ -420,6 +427,7 @@ class FunctionProblem(LinkageProblem):
         n = self.precision_points or BASE_PAIR_COUNT + 2
         if self.spacing == "equal":
             return np.linspace(0.0, 1.0, n)
+        # Chebyshev's zeros: they nearly equalize the extremes of the error between the points.
         return np.asarray(0.5 - 0.5 * np.cos((2.0 * np.arange(n) + 1.0) * math.pi / (2.0 * n)))
 
     def find_contradictions(self) -> list[Contradiction]:
@@ -445,6 +453,7 @@ class FunctionProblem(LinkageProblem):
         return found
 
     def _check_statement(self) -> Iterator[Contradiction]:
+        # Later checks need exactly one of the two.
         if (self.pairs is None) == (self.function is None):
             where = "/pairs" if self.pairs is None else "/function"
             yield Contradiction(where, "give either pairs or a function")
@@ -470,6 +479,7 @@ class FunctionProblem(LinkageProblem):
         turned = [float(value) for value in self.values[:, 0]]
         for k, later in enumerate(turned):
             for j, earlier in enumerate(turned[:k]):
+                # Inputs that differ by full turns are the same position of the link.
                 if abs(math.remainder(later - earlier, FULL_TURN)) <= INPUT_TOLERANCE:
                     yield Contradiction(f"/pairs/{k}/input", f"equals that of pair {j}; inputs must differ")
                     return
@@ -478,12 +488,14 @@ class FunctionProblem(LinkageProblem):
             return
         steps = np.sign(np.diff(turned))
         wrong = np.flatnonzero(steps != steps[0])
+        # Without order, the input may oscillate between the pairs.
         if self.constraints.in_order and len(wrong):
             detail = "inputs must rise, or fall, from pair to pair, unless in_order is false"
             yield Contradiction(f"/pairs/{wrong[0] + 1}/input", detail)
         moved = [float(value) for value in self.values[:, 1]]
         if not self.slides and max(moved) - min(moved) > MAX_RANGE:
             yield Contradiction("/pairs", "the outputs cover a full turn or more")
+        # Angles are compared absolutely, lengths relative to their size.
         if max(moved) - min(moved) <= INPUT_TOLERANCE * (max(map(abs, moved)) if self.slides else 1.0):
             yield Contradiction("/pairs", "the output does not move")
         if self.aim == "precision" and len(pairs) > self.max_exact_pairs:
@@ -496,6 +508,7 @@ class FunctionProblem(LinkageProblem):
             span = self.span("input" if side == "input" else "output")
             if span is None:
                 continue
+            # A slider's range is a length, so limits in degrees do not apply.
             turns = side == "input" or not self.slides
             if turns and not MIN_RANGE <= abs(span) <= MAX_RANGE:
                 detail = f"a range must lie between {MIN_RANGE} and {MAX_RANGE} degrees"

@@ -16,6 +16,7 @@ UNIT_SCALE_TOLERANCE = 1e-7
 def get_error(problem: FunctionProblem, design: FunctionDesign) -> float:
     """Return the error by the problem's criterion, relative to the output's range if that is open."""
     error = design.structural_error.rms if problem.aim == "least_squares" else design.structural_error.max
+    # With an open range a smaller output would otherwise always look more accurate.
     return error / abs(design.metrics.output_range) if problem.is_output_open else error
 
 
@@ -24,6 +25,7 @@ def rank_by_error(problem: FunctionProblem, designs: list[FunctionDesign]) -> li
     approximates = problem.aim != "precision"
     error = partial(get_error, problem)
     own: dict[str, Callable[[FunctionDesign], float]] = {"accuracy": error}
+    # Approximations have one purpose, so even the default order is by error.
     if approximates or problem.function is not None:
         own["quality"] = error
     if problem.pairs is not None and not approximates:

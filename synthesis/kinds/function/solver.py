@@ -101,6 +101,7 @@ def _solve_simple(problem: FunctionProblem, progress: Progress) -> FunctionResul
     opened = _solve_with_zeros(
         problem.model_copy(update={"zeros": None}), scale_progress(progress, FIXED_ZERO_SHARE, 1.0)
     )
+    # Both searches count, because both were needed for the answer.
     account = opened.search.model_copy(
         update={
             "candidates": held.search.candidates + opened.search.candidates,
@@ -117,13 +118,14 @@ def _solve_simple(problem: FunctionProblem, progress: Progress) -> FunctionResul
 
 
 def _solve_with_zeros(problem: FunctionProblem, progress: Progress, *, fit_limits: bool = True) -> FunctionResult:
-    """Solve with the problem's zeros, given or open; ``steered`` as for :func:`_search_family`."""
+    """Solve with the problem's zeros, given or open; ``fit_limits`` as for :func:`_search_family`."""
     task = make_function_task(problem)
     progress(0.0, "reading the problem")
     rng = np.random.default_rng(problem.seed)
     harvest = _FunctionLog(task)
     if problem.aim != "precision":
         judged = improved = 0
+        # The limit is tightened only if the client set none.
         for least in (None, *(FALLBACK_ANGLES if problem.constraints.min_transmission_angle is None else ())):
             found = find_approximations(task, rng, progress, least)
             judged, improved = judged + found.judged, improved + found.improved
@@ -136,6 +138,7 @@ def _solve_with_zeros(problem: FunctionProblem, progress: Progress, *, fit_limit
         return harvest.build_approximation_result(judged, improved)
     # Degrees of freedom: three proportions and the open zeros, less one per pair; scales supply the difference.
     missing = 3 + sum(zero is None for zero in task.zeros) - len(task.inputs)
+    # Elements 5 and 6 of the parameters are the scales of input and output.
     open_scales = int(task.free[5]) + int(task.free[6])
     if missing == -2 or (missing == -1 and open_scales == 2):
         _solve_two_scales(task, harvest, missing, progress)
@@ -145,6 +148,7 @@ def _solve_with_zeros(problem: FunctionProblem, progress: Progress, *, fit_limit
         return harvest.build_exact_result(proved, "one_scale")
     if missing == 0 and open_scales == 0:
         proved = _solve_determined(task, harvest)
+        # If all solutions are known, none exists beyond them, even if none passed.
         if harvest.passed or proved:
             return harvest.build_exact_result(proved, "exact")
         # Pairs of a linkage with equivalents, for example a parallelogram, do not determine it: search the family.
@@ -172,6 +176,7 @@ def _list_scale_choices(task: FunctionTask) -> list[tuple[tuple[float, float], t
 def _solve_determined(task: FunctionTask, harvest: _FunctionLog) -> bool:
     """Verify all linkages if nothing is open; return whether these are proved to be all."""
     proved = True
+    # An interval of one value: the scale is given, so only its lower end matters.
     for (k, _), (scale, _) in _list_scale_choices(task):
         found = solve_exact(task.closure, k * task.inputs, scale * task.outputs, task.zeros)
         proved &= found.proved
@@ -183,6 +188,7 @@ def _solve_determined(task: FunctionTask, harvest: _FunctionLog) -> bool:
 
 def _solve_one_scale(task: FunctionTask, harvest: _FunctionLog) -> bool:
     """Verify all linkages if exactly one scale is open and must be found; return whether these are proved to be all."""
+    # The side of the open scale; the other one is fixed within its choice.
     side = 0 if task.free[5] else 1
     pairs = Scaling(task.closure, task.inputs, task.outputs, task.zeros)
     proved = True
@@ -207,9 +213,11 @@ def _solve_two_scales(task: FunctionTask, harvest: _FunctionLog, missing: int, p
                 harvest.refine_and_verify(generator)
         else:
             for k in (
+                # Geometric steps, since a scale is a factor; negative intervals have no logarithm.
                 np.geomspace(*first, SCALE_SLICE_COUNT) if first[0] > 0.0 else np.linspace(*first, SCALE_SLICE_COUNT)
             ):
                 for generator in solve_one_scale(pairs, second, 1, float(k)).dimensions:
+                    # The first scale was chosen on the grid, so the refinement must not move it.
                     harvest.refine_and_verify(generator, scales_given=True)
 
 
@@ -218,7 +226,7 @@ def _search_family(
 ) -> None:
     """Verify the best distinct members of a family.
 
-    If no sampled member satisfies the constraints and ``steered`` is set, others are fitted to the constraints.
+    If no sampled member satisfies the constraints and ``fit_limits`` is set, others are fitted to the constraints.
     """
     members = _sample_members(task, rng)
     limits = GeneratorLimits(task)
@@ -228,18 +236,22 @@ def _search_family(
     sine = limits.transmission(generators)
     lacking = limits.measure_violations(generators)
     worth = _rank_members(task, generators, signs, sine)
+    # A member that does not close between the points has a branch defect.
     closed = np.isfinite(worth)
     harvest.reject("branch_defect", int(np.count_nonzero(~closed)))
+    # Discard clear violations only; the estimate is coarse, and verification decides.
     worth = np.where(lacking > COARSE_TOLERANCE, np.inf, worth)
     harvest.reject("constraints", int(np.count_nonzero(closed & ~np.isfinite(worth))))
     order = np.argsort(worth)
     order = order[np.isfinite(worth[order])]
+    # Similar members differ little in the logarithms of lengths and in the zeros.
     features = np.column_stack([np.log(np.abs(generators[:, :3]) + 1e-12), generators[:, 3:5]])
     chosen: list[int] = []
     tried = 0
     most = VERIFIED_PER_DESIGN * task.problem.max_designs
     # Go down the ranking, skipping members too similar to one already verified.
     for j in order[:2000]:
+        # Two thousand of the ranking are enough to find distinct members.
         if tried == most or len(harvest.passed) >= task.problem.max_designs:
             break
         if chosen and np.abs(features[chosen] - features[j]).max(axis=1).min() < MIN_SEPARATION:
@@ -264,6 +276,7 @@ def _fit_to_limits(
         generators, signs = _select_one_assembly(task, _sample_members(task, rng))
         nearest = math.inf
         for j in descent.select_distinct(generators, limits.measure_violations(generators), FITS_PER_ROUND):
+            # Stop at the first feasible point: the constraints are all that is fitted.
             moved = descent.minimax(generators[j], float(signs[j]), MAX_FIT_STEPS, enough=CONVERGED_ERROR)
             nearest = min(nearest, moved.error)
             if moved.error > MAX_REFINABLE_ERROR:
@@ -280,6 +293,7 @@ def _fit_to_limits(
 def _select_one_assembly(task: FunctionTask, generators: Real) -> tuple[Real, Real]:
     """Return the members that meet all points in one assembly, and that assembly's sign."""
     signs = task.points().signs(generators)
+    # All signs equal means that their sum is plus or minus their number.
     same = np.abs(signs.sum(axis=1)) > signs.shape[1] - 0.5
     return generators[same], signs[same, 0]
 
@@ -293,6 +307,7 @@ def _sample_members(task: FunctionTask, rng: np.random.Generator) -> Real:
         count = MEMBER_COUNT // len(choices)
         k, scale = (_sample_scales(limits, count, rng) for limits in (first, second))
         pairs = k[:, None] * task.inputs, scale[:, None] * task.outputs
+        # Determined but for the scales: each sample of scales has finitely many members.
         if len(task.inputs) == most and task.free[5:].any():
             members = solve_many_exact(task.closure, *pairs, task.zeros)
         else:
@@ -304,6 +319,7 @@ def _sample_members(task: FunctionTask, rng: np.random.Generator) -> Real:
 
 def _sample_scales(limits: tuple[float, float], count: int, rng: np.random.Generator) -> Real:
     low, high = limits
+    # Uniform in the logarithm, because a scale is a factor.
     return np.asarray(low * (high / low) ** rng.random(count))
 
 
@@ -314,6 +330,7 @@ def _rank_members(task: FunctionTask, generators: Real, signs: Real, sine: Real)
     ratio = lengths.max(axis=1) / lengths.min(axis=1)
     if problem.function is not None:
         errors = np.abs(task.samples().errors(generators, signs)).max(axis=1)
+        # An open range would favour small outputs; relative errors do not.
         if task.free[6]:
             errors = errors / np.abs(generators[:, 6])
         if demanded.min_transmission_angle is None:
@@ -321,6 +338,7 @@ def _rank_members(task: FunctionTask, generators: Real, signs: Real, sine: Real)
             errors = errors * np.where(sine < USABLE_SINE, 10.0, 1.0)
         worth = errors
     else:
+        # Slider-cranks have a size of their own; fourbars are scaled to a unit ground.
         reach = lengths.max(axis=1) if problem.slides else 0.0
         worth = -sine / (1.0 + (ratio / 8.0) ** 2) / (1.0 + (reach / 3.0) ** 2)
     return np.where((sine <= 0.0) | ~np.isfinite(worth), np.inf, worth)
@@ -328,6 +346,7 @@ def _rank_members(task: FunctionTask, generators: Real, signs: Real, sine: Real)
 
 def _is_allowed_scale(scale: float, choices: list[tuple[float, float]]) -> bool:
     """Return whether a scale lies in one of the permitted intervals, to rounding."""
+    # The limit itself must pass after rounding.
     return any(low - 1e-9 * abs(low) <= scale <= high + 1e-9 * abs(high) for low, high in choices)
 
 
@@ -344,9 +363,11 @@ class _FunctionLog(CandidateLog[FunctionDesign]):
         """Refine an almost exact generator to full precision, and verify it unless it is a duplicate."""
         free = self.task.free.copy()
         if scales_given:
+            # Given scales are kept; only the dimensions are refined.
             free[5:] = False
         found = refine_generator(self.points, generator, free)
         if not all(_is_allowed_scale(float(found[5 + side]), self.task.scales[side]) for side in (0, 1)):
+            # Refinement left the permitted interval: the solution belongs to another choice, if any.
             return
         if any(np.allclose(found, other, DUPLICATE_TOLERANCE, DUPLICATE_TOLERANCE) for other in self._seen):
             return
@@ -358,6 +379,7 @@ class _FunctionLog(CandidateLog[FunctionDesign]):
         try:
             mechanism, dials = build_mechanism(self.task, generator, sign)
             design = verify_function(self.problem, mechanism, dials)
+        # Dimensions of infinite or zero length cannot be built.
         except (ZeroDivisionError, OverflowError):
             design = None
         self.record_candidate(design)
@@ -388,6 +410,7 @@ class _FunctionLog(CandidateLog[FunctionDesign]):
 
     def build_exact_result(self, proved: bool, method: str) -> FunctionResult:
         """Build the result if all linkages were computed."""
+        # A failed placement proves nothing about the linkage itself.
         unknown = _NUMERICAL_REASONS | (_PLACEMENT_REASONS if self.problem.fixed_pivots is None else set())
         complete = proved and not unknown & self.rejected.keys()
         passed, of = len(self.passed), format_count(self.candidates, "real linkage")

@@ -94,6 +94,7 @@ def _describe_dropped(problem: FunctionProblem) -> str:
 
 def _is_accurate(problem: FunctionProblem, design: FunctionDesign) -> bool:
     """Return whether a linkage is accurate enough that sixbars are not searched."""
+    # Precision points are met exactly, so accuracy is no criterion.
     if problem.aim == "precision":
         return True
     error = design.structural_error.rms if problem.aim == "least_squares" else design.structural_error.max
@@ -110,6 +111,7 @@ def solve_sixbars(problem: FunctionProblem, progress: Progress) -> FunctionResul
     types = problem.sixbars
     found = []
     for n, name in enumerate(types):
+        # A generator for each type, so that the result does not depend on which other types are requested.
         rng = np.random.default_rng([problem.seed, n])
         found += search.find_sixbars(
             name, rng, scale_progress(progress, 0.9 * n / len(types), 0.9 * (n + 1) / len(types))
@@ -123,6 +125,7 @@ def solve_sixbars(problem: FunctionProblem, progress: Progress) -> FunctionResul
         except (ValueError, ZeroDivisionError, OverflowError):
             return None  # at a toggle no position can be computed
 
+    # Several tries per design, because some fail verification.
     rows = range(min(len(found), ATTEMPTS_PER_DESIGN * problem.max_designs))
     tried = sifting.verify_candidates(rows, verify_sixbar, enough=problem.max_designs)
     sifting.reject(OUTRANKED_REASON, search.weighed - tried)
@@ -139,9 +142,11 @@ def merge_type_results(problem: FunctionProblem, simple: FunctionResult, found: 
     order = partial(rank_by_error, problem)
     plain, better = select_passing(simple.designs), select_passing(found.designs)
     sound = [design for design in plain if has_good_transmission(problem, design)]
+    # Compare errors with usable linkages, or with all if none is usable.
     least = min((get_error(problem, design) for design in sound or plain), default=np.inf)
     if sound:
         better = [design for design in better if get_error(problem, design) <= ERROR_RATIO * least]
+    # No usable fourbar: sixbars need only transmit better.
     elif plain:
         angle = max(design.metrics.min_transmission_angle for design in plain)
         better = [design for design in better if design.metrics.min_transmission_angle > angle]

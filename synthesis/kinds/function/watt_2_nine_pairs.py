@@ -72,6 +72,7 @@ def solve_nine_pairs(problem: FunctionProblem, reasons: dict[str, str], progress
     task = make_function_task(problem)
     rng = np.random.default_rng(problem.seed)
     sifting = CandidateLog[FunctionDesign](problem, reasons)
+    # Given scales: each choice is an interval of one value.
     choices = [(k, l_) for k, _ in task.scales[0] for l_, _ in task.scales[1]]
     complete, computed, real = True, 0, 0
     kept: list[SixbarCandidate] = []
@@ -103,7 +104,9 @@ def solve_nine_pairs(problem: FunctionProblem, reasons: dict[str, str], progress
         report_candidates(kept, progress, (CONTINUATION_SHARE, 1.0), "verifying {next} of {all} sixbars"), verify_sixbar
     )
     progress(1.0, "verified")
+    # Rejections by size or placement could be avoided by other placements, which were not searched.
     complete = complete and sifting.rejected.keys() <= PROVING_REASONS
+    # Added after the check of completeness: the reasons of the screening are proofs of their own.
     for reason in reasons_before:
         sifting.reject(reason)
     counts = f"{format_integer(computed)} of {format_integer(SOLUTION_COUNT * len(choices))}"
@@ -128,11 +131,13 @@ def _screen_solutions(task: FunctionTask, real: Complex, k: float, l_: float) ->
     low, high = places.dense[0].min(), places.dense[0].max()
     dense = np.union1d(np.linspace(low, high, SAMPLE_COUNT), places.dense[0])
     demanded = constraints.min_transmission_angle
+    # A margin, because the driven linkage is measured more accurately than here.
     greatest = 1.0 if demanded is None else math.cos(math.radians(demanded)) + LIMIT_MARGIN
     widest = constraints.max_link_ratio or math.inf
     kept, reasons = [], []
     for vectors in real:
         one = make_sixbar(vectors, k, l_, float(task.inputs[0]), float(task.outputs[0]))
+        # Positions 7 to 9 are the lengths of the second fourbar.
         if one.at[[A, B, C, 7, 8, 9]].min() < MIN_LENGTH_SHARE:
             reasons.append("degenerate_link")
             continue
@@ -144,6 +149,7 @@ def _screen_solutions(task: FunctionTask, real: Complex, k: float, l_: float) ->
         if not np.abs(errors).max() < PAIR_TOLERANCE:
             reasons.append("branch_defect")
             continue
+        # Continuation ends at single precision of the path; refine before driving between the pairs.
         one = descents.descend_one(one, 0.0, MAX_EXACT_STEPS, EXACT_TOLERANCE)
         between = follow_sixbar(WATT_2, one.assembly, one.at, dense, np.zeros_like(dense))
         if not np.isfinite(between.errors).all():

@@ -213,14 +213,12 @@ def _write_summary(problem: GearboxProblem, tried: list[Structure], passed: list
     if not passed:
         return (
             f"No gearbox ({format_count(len(tried), 'structure')}, {combinations} of tooth numbers) keeps all {count} "
-            "speeds "
-            f"within {100.0 * problem.widest:.3g} % and the limits."
+            f"speeds within {100.0 * problem.widest:.3g} % and the limits."
         )
     first = passed[0]
     error = first.metrics.max_error
     kept = f"within {100.0 * error:.3g} %" if error else "exactly"
     return (
         f"{first.mechanism.formula} keeps {count} speeds {kept}: the best of {format_count(len(tried), 'structure')} "
-        "and "
-        f"{combinations} of tooth numbers."
+        f"and {combinations} of tooth numbers."
     )

@@ -38,6 +38,7 @@ def _verify_with_tolerance(
 
 def _warm_up() -> None:
     """Compile the kernels of the exact methods by solving the first examples: users wait for these short jobs."""
+    # The first examples cover three, four and five exact positions; fits are compiled in the background.
     for example in KIND.examples[:4]:
         _solve(MotionProblem.model_validate(example), lambda fraction, message: None)
 

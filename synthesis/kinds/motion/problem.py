@@ -224,6 +224,7 @@ class MotionProblem(LinkageProblem):
                 sides = {"output_side": self.output_side.model_copy(update={"dyad": "PR"})}
         part = self.model_copy(update={"mechanisms": None, "chain": None, **sides})
         if isinstance(named, list):
+            # A named slider-crank has a slider on a fixed line; inverted ones have other types.
             part._kinds_of_slider = ("PR",)
         return part
 
@@ -259,6 +260,7 @@ class MotionProblem(LinkageProblem):
         """Return the positions and tolerances that a manufactured design must keep; angles in radians."""
         limits = np.array(self.limits)
         limits[:, 2] = np.radians(limits[:, 2])
+        # Without a body angle in the mechanism the reference configuration is the first position.
         stands = design.mechanism.reference_body_angle
         return RequiredTargets(
             inputs=np.radians([target.input_angle for target in design.targets]),
@@ -283,6 +285,7 @@ class MotionProblem(LinkageProblem):
     @property
     def slider(self) -> Literal["PR", "RP"] | None:
         """The type of the requested slider, on either side; None if both sides have pins."""
+        # The output side first, since a slider there is the usual case.
         for side in (self.output_side, self.input_side):
             if side.dyad in ("PR", "RP"):
                 return side.dyad
@@ -315,6 +318,7 @@ class MotionProblem(LinkageProblem):
 
     def _clip_tolerances(self, x: float, y: float, angle: float) -> tuple[float, float, float]:
         """Return the tolerances, with those below double-precision resolution set to 0."""
+        # Rounding is relative to coordinates, which may be far larger than the task.
         least = MIN_TOLERANCE * max(self.task_size, *(max(abs(p.x), abs(p.y)) for p in self.positions))
         turned = math.degrees(MIN_TOLERANCE)
         return x if x > least else 0.0, y if y > least else 0.0, angle if angle > turned else 0.0
@@ -327,6 +331,7 @@ class MotionProblem(LinkageProblem):
         """
         if self._has_tolerances:
             return False
+        # Five positions are normally exact, so they are fitted only on request; six or more always.
         enough = len(self.positions) >= MAX_EXACT_POSITIONS + (self.method == "auto")
         return self.method != "exact" and enough
 
@@ -376,6 +381,7 @@ class MotionProblem(LinkageProblem):
         points = [position.point for position in self.positions]
         moved = max(abs(p - q) for p in points for q in points)
         reach = max([self.chain_size, *(abs(z - points[0]) for z in self._list_given_points())])
+        # Zero remains if all positions and choices coincide: then lengths have no scale, and 1 will do.
         return max(moved, 0.0 if moved >= MIN_MOTION_RATIO * reach else reach) or 1.0
 
     @property
@@ -387,6 +393,7 @@ class MotionProblem(LinkageProblem):
     def turns(self) -> list[float]:
         """Rotation of the body from the first position to each, radians in [−π, π]."""
         first = self.positions[0].angle
+        # The shorter rotation: a position gives the angle only up to full turns.
         return [math.radians(math.remainder(position.angle - first, 360.0)) for position in self.positions]
 
     def _list_given_points(self) -> list[complex]:
@@ -396,6 +403,7 @@ class MotionProblem(LinkageProblem):
             for pivot in (side.fixed_pivot, side.moving_pivot):
                 if pivot is not None:
                     x, y = pivot
+                    # A half-given pivot is taken at P's coordinate in the open direction.
                     points.append(complex(first.x if x is None else x, first.y if y is None else y))
         for region in (self.constraints.fixed_pivot_region, self.constraints.moving_pivot_region):
             if region is not None:
@@ -406,6 +414,7 @@ class MotionProblem(LinkageProblem):
         """Return errors that involve several fields: equal positions, too many or conflicting choices."""
         listed = list_contradictions(self)
         part = None if self.mechanisms is None else self.two_dyad_problem
+        # Both problems list some of the same contradictions; keep the first of each, in order.
         return listed if part is None else list(dict.fromkeys([*listed, *part.find_contradictions()]))
 
     @property
@@ -414,6 +423,7 @@ class MotionProblem(LinkageProblem):
 
         The last position is included only if the first one is exact too: rotations are measured from the first.
         """
+        # Both x, y and angle must be exact for a pose to be known.
         ends = [k for k in (0, len(self.positions) - 1) if self.limits[k] == (0.0, 0.0, 0.0)]
         return self.list_poses(ends if 0 in ends else [])
 

@@ -34,10 +34,11 @@ from synthesis.kinds.motion.task.target_poses import make_target_poses
 from synthesis.kinds.motion.type_selection import solve_types
 from synthesis.model.answer import Search
 from synthesis.model.counting import choose_word, format_count, format_integer
-from synthesis.model.kind import Progress, scale_progress
+from synthesis.model.kind import Progress, return_true, scale_progress
 from synthesis.model.linkage.answer import LinkageDesign
 from synthesis.model.linkage.conversion import to_point
 from synthesis.model.linkage.problem import Constraints
+from synthesis.model.method_table import Method, solve_by_first
 from synthesis.results.candidate_log import (
     DEFECT_REASONS,
     LENGTH_REASONS,
@@ -72,25 +73,6 @@ def solve_motion(problem: MotionProblem, progress: Progress) -> MotionResult:
     return _solve_two_dyads(problem, progress)
 
 
-def _solve_two_dyads(problem: MotionProblem, progress: Progress) -> MotionResult:
-    """Solve for fourbars, slider-cranks, and fourbars with a driver dyad."""
-    if problem.driver is not None:
-        # A driver dyad is added to finished fourbars, so these are solved first, without it.
-        bare = _solve_two_dyads(remove_driver(problem), scale_progress(progress, 0.0, 0.8))
-        return add_driver_dyads(problem, bare, progress)
-    if problem.is_workspace_fit:
-        return _solve_in_workspace(problem, progress)
-    if problem.approximate:
-        return solve_least_squares(problem, progress)
-    if problem.is_constrained_fit:
-        # Designs that meet all positions exactly also satisfy any tolerance: they are cheap, so find them first.
-        exact = _solve_exact(problem, scale_progress(progress, 0.0, 0.3))
-        return solve_with_tolerances(problem, exact, scale_progress(progress, 0.3, 1.0))
-    if problem.has_few_tolerances:
-        return solve_sampled_poses(problem, _solve_exact, progress)
-    return _solve_exact(problem, progress)
-
-
 def continue_from_designs(
     problem: MotionProblem, designs: Sequence[LinkageDesign], progress: Progress
 ) -> list[LinkageDesign] | None:
@@ -101,18 +83,39 @@ def continue_from_designs(
     found = continue_constrained(bare, designs)
     if problem.driver is None:
         return found
+    # Driver dyads need a result as input; the counts do not matter here.
     search = CandidateLog[LinkageDesign](bare).build_search("tolerance_search")
     result = MotionResult(designs=found, curves=[], search=search, summary="")
     return list(add_driver_dyads(problem, result, progress).designs)
 
 
+def _solve_with_driver(problem: MotionProblem, progress: Progress) -> MotionResult:
+    """Solve without the driver dyad, which is then added to the finished fourbars."""
+    bare = _solve_two_dyads(remove_driver(problem), scale_progress(progress, 0.0, 0.8))
+    return add_driver_dyads(problem, bare, progress)
+
+
+def _solve_toleranced(problem: MotionProblem, progress: Progress) -> MotionResult:
+    """Solve for positions with tolerances by constrained fits, next to exact designs."""
+    # Designs that meet all positions exactly also satisfy any tolerance: they are cheap, so find them first.
+    exact = _solve_exact(problem, scale_progress(progress, 0.0, 0.3))
+    return solve_with_tolerances(problem, exact, scale_progress(progress, 0.3, 1.0))
+
+
 def _solve_in_workspace(problem: MotionProblem, progress: Progress) -> MotionResult:
     """Solve for positions with tolerances in a workspace; fall back to a fit that ignores it if no design passes."""
+    # Many positions have no exact solution to start from.
     exact = None if problem.approximate else _solve_exact(problem, scale_progress(progress, 0.0, 0.3))
     found = solve_in_workspace(problem, exact, scale_progress(progress, 0.3, 0.8))
+    # With few positions the exact designs already belong to the result, so it is final.
     if any(design.verification.passed for design in found.designs) or not problem.approximate:
         return found
     return solve_least_squares(problem, scale_progress(progress, 0.8, 1.0))
+
+
+def _solve_some_toleranced(problem: MotionProblem, progress: Progress) -> MotionResult:
+    """Solve for few positions with tolerances: exactly, for sampled poses within them."""
+    return solve_sampled_poses(problem, _solve_exact, progress)
 
 
 def _solve_exact(problem: MotionProblem, progress: Progress) -> MotionResult:
@@ -135,7 +138,24 @@ def _solve_exact(problem: MotionProblem, progress: Progress) -> MotionResult:
             # Only an enumeration without doubtful roots or residuals proves that no linkage exists.
             end = f"All are enumerated, so no {noun} exists." if result.search.complete else UNPROVEN_REMARK
             result = result.model_copy(update={"summary": f"{result.summary} {end}"})
+    # Sliders are the last resort: fourbars are preferred in practice.
     return result if result.designs else try_sliders(problem, result, progress)
+
+
+_METHODS: tuple[Method[MotionProblem, MotionResult], ...] = (
+    Method(lambda problem: problem.driver is not None, _solve_with_driver),
+    Method(lambda problem: problem.is_workspace_fit, _solve_in_workspace),
+    Method(lambda problem: problem.approximate, solve_least_squares),
+    Method(lambda problem: problem.is_constrained_fit, _solve_toleranced),
+    Method(lambda problem: problem.has_few_tolerances, _solve_some_toleranced),
+    Method(return_true, _solve_exact),
+)
+"""Methods for fourbars, slider-cranks, and fourbars with a driver dyad."""
+
+
+def _solve_two_dyads(problem: MotionProblem, progress: Progress) -> MotionResult:
+    """Solve for fourbars, slider-cranks, and fourbars with a driver dyad."""
+    return solve_by_first(_METHODS, problem, progress)
 
 
 def _report_missing_dyads(pairs: DyadPairs, side: str, cloud: Cloud) -> MotionResult:
@@ -149,6 +169,7 @@ def _verify_all_pairs(pairs: DyadPairs, progress: Progress) -> MotionResult:
     """Verify every pair of a few determined dyads, with either side as the input if both sides have the same dyads."""
     sifting = CandidateLog[LinkageDesign](pairs.problem, DEFECT_REASONS | LENGTH_REASONS)
     target = make_target_poses(pairs.problem)
+    # Each pair of equal dyads once; the other order swaps input and output.
     for i in range(len(pairs.inputs.fixed)):
         for j in range(i + 1 if pairs.same_dyads else 0, len(pairs.outputs.fixed)):
             reasons = [sifting.insert_design(pairs.verify_pair(target, (i, j)))]
@@ -172,6 +193,7 @@ def _search_pairs(pairs: DyadPairs, progress: Progress) -> MotionResult:
     # Lower the threshold only if the transmission angle is what rejects pairs: other constraints stay violated.
     for least in USABLE_TRANSMISSION_ANGLES if limit is None else (limit,):
         screening = pairs.screen_pairs(problem.constraints, least)
+        # Any candidate at this angle, or a different obstacle, ends the search.
         if screening.score.any() or "transmission_angle" not in screening.count_rejections():
             break
     sound = int(np.count_nonzero(screening.score))
@@ -185,6 +207,7 @@ def _search_pairs(pairs: DyadPairs, progress: Progress) -> MotionResult:
     if problem.include_failed and len(sifting.passed) < problem.max_designs:
         # Show the best linkages that move correctly but violate a limit; those that violate none are found already.
         stated = problem.constraints
+        # Only the constraints of a sound motion remain.
         motion_alone = Constraints(same_branch=stated.same_branch, in_order=stated.in_order)
         passed = list(sifting.passed)
         if LIMIT_REASONS & screening.count_rejections().keys():
@@ -232,8 +255,8 @@ def _describe_search(sifting: CandidateLog[LinkageDesign], sound: int) -> str:
     best = max(design.metrics.min_transmission_angle for design in sifting.passed)
     text = (
         f"{format_count(len(sifting.passed), 'design', 'designs')} verified, chosen from {format_integer(sound)} "
-        "feasible dyad "
-        f"pairs ({format_integer(sifting.candidates)} tried). Best minimum transmission angle: {best:.1f}°."
+        f"feasible dyad pairs ({format_integer(sifting.candidates)} tried). Best minimum transmission angle: "
+        f"{best:.1f}°."
     )
     if best < USABLE_TRANSMISSION_ANGLES[0]:
         text += f" No design found reaches {USABLE_TRANSMISSION_ANGLES[0]:.0f}°."
@@ -252,8 +275,7 @@ def _list_remarks(pairs: DyadPairs) -> list[str]:
             kinds = " and ".join(sorted({slider.kind for slider in cloud.sliders}))
             remarks.append(
                 f"{format_count(count, 'more dyad')} of the {name} {choose_word(count, 'has', 'have')} a pivot at "
-                "infinity, "
-                f"that is, a slider ({kinds})."
+                f"infinity, that is, a slider ({kinds})."
             )
     return list(dict.fromkeys(remarks))
 
@@ -268,6 +290,7 @@ def _sample_curves(task: MotionTask, designs: list[LinkageDesign]) -> list[Burme
     pivots = [joint for design in designs for joint in design.mechanism.skeleton.joints.values()]
     reach = max((abs(task.to_task(complex(*pivot))) for pivot in pivots), default=0.0)
     centres = complex(task.points.mean()), complex(task.points[0])
+    # Clip infinite branches: the window covers the designs and the surroundings of the task.
     window = Window(centres, max(MIN_CURVE_WINDOW, 1.5 * reach), math.inf)
     return [
         BurmesterBranch(

@@ -54,6 +54,7 @@ def solve_types(problem: MotionProblem, two_dyads: Solve, progress: Progress) ->
         partial(_is_sufficient, problem),
         partial(_merge_by_error if problem.is_least_squares else merge_type_results, problem),
         progress,
+        # A list of types was the client's choice, so only types with unsupported constraints are explained.
         describe_skipped_sixbars(list_unsupported(problem))
         if problem.mechanisms == "auto"
         else _describe_unclassed(problem),
@@ -95,10 +96,12 @@ def _merge_by_error(problem: MotionProblem, simple: MotionResult, found: MotionR
     elif not sound and alone:
         better, told = alone, "No fourbar or slider-crank found transmits well enough; sixbars do"
     else:
+        # Compare with simpler linkages that could be used; if none can, with all of them.
         least = min(map(get_rms_error, sound or plain))
         better = [design for design in better if get_rms_error(design) <= ERROR_RATIO * least]
         told = f"The best fourbar or slider-crank has a root-mean-square residual of {100.0 * least:.3g} %"
         told += "; sixbars have at most half of that" if better else ", and no sixbar found has half of that."
+    # Drop simpler linkages that transmit badly if sixbars can replace them.
     kept = (sound or plain) if better else plain
     offered = merge_alternatives(problem.max_designs, kept, better, make_ranking(problem))
     sixbars = [design for design in offered if any(design is one for one in better)]
@@ -116,6 +119,7 @@ def merge_type_results(problem: MotionProblem, simple: MotionResult, found: Moti
     plain, better = select_passing(simple.designs), select_passing(found.designs)
     best = max((design.metrics.min_transmission_angle for design in plain), default=0.0)
     if plain:
+        # Without a simpler linkage every sixbar is an improvement.
         better = [design for design in better if design.metrics.min_transmission_angle > best]
 
     order = make_ranking(problem)

@@ -85,34 +85,29 @@ def verify_parallel_motion(
     mechanism = rebuild_mechanism(design)
     if mechanism is None:
         return None
-    place = {name: complex(z) for name, z in mechanism.joints.items()}
-    configuration = FourbarConfiguration(*(place[name] for name in ("O2", "A", "B", "O4", "P")))
-    path = _verify_path(problem, configuration)
+    path = _verify_path(problem, mechanism)
     if problem.path is not None and path is None:
         return None
-    barker = classify_fourbar(mechanism)
-    turns = barker.motion in ROTATING_INPUT_CLASSES
+    turns = classify_fourbar(mechanism).motion in ROTATING_INPUT_CLASSES
     inputs = _list_inputs(mechanism, None if turns or path is None else path.rotation, turns=turns)
     motion = drive(mechanism, inputs, order=1)
     if not motion.smooth.all():
         return None
     p, q = motion.joints["P"][0], motion.joints["Q"][0]
+    translation = complex(q[0] - p[0])
     curve_size = measure_diagonal(p)
     joints = np.concatenate([jet[0] for jet in motion.joints.values()])
-    reach = float(np.abs(joints).max())
-    body = motion.angles["body"][0]
-    # Angles modulo a full turn.
-    rotation = float(np.abs(np.angle(np.exp(1j * (body - body[0])))).max())
+    rounding = ROUNDING_ALLOWANCE * float(np.abs(joints).max())
+    rotation = _measure_rotation(motion.angles["body"][0])
     transmission = find_min_transmission_angles(partial(drive, mechanism, order=0), inputs, motion)
     off_curve = None if problem.linkage is None else float(_measure_curve_distance(problem.linkage, p).max())
-    task = curve_size if problem.path is None else problem.path.task_size
     measures = measure_linkage(
         list_link_lengths(design),
         measure_reach(mechanism),
-        task,
+        curve_size if problem.path is None else problem.path.task_size,
         transmission,
         joints,
-        barker=barker,
+        barker=classify_fourbar(mechanism),
         same_branch=min(transmission.values()) > MIN_TOGGLE_SINE and (path is None or _has_passed(path, "same_branch")),
         visits_in_order=path is None or _has_passed(path, "visits_in_order"),
         full_rotation=turns,
@@ -124,25 +119,17 @@ def verify_parallel_motion(
         base=base,
         input_side=input_side,
         rotation=math.degrees(rotation),
-        translation=(float((q[0] - p[0]).real), float((q[0] - p[0]).imag)),
+        translation=(translation.real, translation.imag),
         curve_distance=off_curve,
         input_range=(math.degrees(float(inputs[0])), math.degrees(float(inputs[-1]))),
         **measures.select_fields(ParallelMotionMetrics),
     )
-    limit = TRANSLATION_TOLERANCE + ROUNDING_ALLOWANCE * reach / abs(complex(q[0] - p[0]))
-    checks = [check_error("translates", rotation, limit)]
+    checks = [check_error("translates", rotation, TRANSLATION_TOLERANCE + rounding / abs(translation))]
     if off_curve is not None:
-        limit = TRANSLATION_TOLERANCE + ROUNDING_ALLOWANCE * reach / curve_size
-        checks.append(
-            Check(name="on_curve", passed=off_curve <= limit * curve_size, value=off_curve / curve_size, limit=limit)
-        )
-    if path is not None:
-        checks += path.checks
-    pivots = list_fixed_pivots(mechanism), list_moving_pivots(mechanism)
-    # Checks that both the path and the sixbar contain are reported once, as failed if either fails.
-    own = {check.name: check for check in check_constraints(problem.constraints, measures, *pivots)}
-    checks = [check for check in checks if not check.passed or check.name not in own]
-    checks += [check for name, check in own.items() if name not in {check.name for check in checks}]
+        checks.append(_check_curve(off_curve, curve_size, rounding))
+    fixed, moving = list_fixed_pivots(mechanism), list_moving_pivots(mechanism)
+    constraints = check_constraints(problem.constraints, measures, fixed, moving)
+    checks = _merge_checks([*checks, *([] if path is None else path.checks)], constraints)
     return ParallelMotionDesign(
         mechanism=design,
         targets=[] if path is None else path.targets,
@@ -151,10 +138,29 @@ def verify_parallel_motion(
     )
 
 
-def _verify_path(problem: ParallelMotionProblem, configuration: FourbarConfiguration) -> _PathVerification | None:
+def _check_curve(distance: float, size: float, rounding: float) -> Check:
+    """Check the maximum distance of P from the curve; ``size`` is the curve's, ``rounding`` a length."""
+    limit = TRANSLATION_TOLERANCE + rounding / size
+    return Check(name="on_curve", passed=distance <= limit * size, value=distance / size, limit=limit)
+
+
+def _measure_rotation(angles: Real) -> float:
+    """Return the largest rotation from the first angle, radians, modulo full turns."""
+    return float(np.abs(np.angle(np.exp(1j * (angles - angles[0])))).max())
+
+
+def _merge_checks(checks: list[Check], constraints: list[Check]) -> list[Check]:
+    """Report checks that both lists contain once, as failed if either fails."""
+    own = {check.name: check for check in constraints}
+    kept = [check for check in checks if not check.passed or check.name not in own]
+    return kept + [check for name, check in own.items() if name not in {check.name for check in kept}]
+
+
+def _verify_path(problem: ParallelMotionProblem, mechanism: Mechanism) -> _PathVerification | None:
     """Drive the fourbar of the sixbar past the points of the requested path."""
     if problem.path is None:
         return None
+    configuration = FourbarConfiguration(*(complex(mechanism.joints[name]) for name in ("O2", "A", "B", "O4", "P")))
     driven = verify_path(problem.path, build_fourbar(configuration))
     if driven is None:
         return None

@@ -89,8 +89,7 @@ def _describe_misses(fitted: list[PathDesign], unit: str) -> str:
         return ""
     return (
         f" The best least-squares fit misses a point by {min(misses):.4g} {unit}, more than {MAX_FIT_MISS:.0%} of the "
-        "task's "
-        f"size; choose method least_squares to get such designs."
+        "task's size; choose method least_squares to get such designs."
     )
 
 

@@ -133,9 +133,9 @@ class _PointFits(PathCandidateLog):
             passed, of = len(self.passed), format_count(self.candidates, "fitted linkage")
             text = (
                 f"{format_integer(passed)} of {of} {choose_word(passed, 'satisfies', 'satisfy')} all constraints. The "
-                "best "
-                f"passes the {n} points {timing} with a root-mean-square distance of {best.rms_distance:.4g} {unit} "
-                f"and a maximum of {best.max_distance:.4g} {unit} (sum of squares {best.sum_of_squares:.6g} {unit}²)."
+                f"best passes the {n} points {timing} with a root-mean-square distance of {best.rms_distance:.4g} "
+                f"{unit} and a maximum of {best.max_distance:.4g} {unit} (sum of squares {best.sum_of_squares:.6g} "
+                f"{unit}²)."
             )
             if best.excursion:
                 text += f" Between the given points the curve strays by up to {best.excursion:.4g} {unit}."

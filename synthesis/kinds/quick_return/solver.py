@@ -137,9 +137,8 @@ def _describe_result(
         lines.insert(
             0,
             f"{format_count(count, 'design')} {choose_word(count, 'has', 'have')} a measured time ratio of "
-            f"{problem.time_ratio:g}. The "
-            f"best minimum transmission angle is {best.metrics.min_transmission_angle:.3f}°, of a "
-            f"{_format_type(best.mechanism.type)}.",
+            f"{problem.time_ratio:g}. The best minimum transmission angle is "
+            f"{best.metrics.min_transmission_angle:.3f}°, of a {_format_type(best.mechanism.type)}.",
         )
     else:
         lines.insert(0, "No design exists." if complete else "No design was found.")

@@ -67,6 +67,46 @@ class _SteeringMotion(NamedTuple):
     barker: BarkerClass | None = None
 
 
+class _SteeredTurn(NamedTuple):
+    """A turn to one side: angles of the wheels, radians, the outer one's error, degrees, and inputs."""
+
+    inner: Real
+    outer: Real
+    error: Real
+    inputs: Real
+
+
+def _check_error(problem: SteeringProblem, worst: float, *, exact: bool) -> list[Check]:
+    """Check the greatest steering error, degrees; ``exact``: the mechanism steers correctly by its principle."""
+    checks = [check_maximum("steers_correctly", worst, MAX_EXACT_ERROR, ANGLE)] if exact else []
+    if problem.max_steering_error is not None:
+        checks.append(check_maximum("steering_error", worst, problem.max_steering_error, ANGLE))
+    return checks
+
+
+def _compute_turning_radius(problem: SteeringProblem, outer: float) -> float:
+    """Return the radius of the outer front wheel's circle at the outer angle of the lock, radians."""
+    overhang = 0.5 * ((problem.track or problem.pivot_distance) - problem.pivot_distance)
+    return problem.wheelbase / math.sin(outer) + overhang
+
+
+def _list_positions(half: _SteeredTurn, ratio: float, *, turns: bool) -> list[SteeringPosition]:
+    """Return positions evenly spaced over a turn; ``turns``: whether the input turns rather than slides."""
+    listed = np.linspace(0, len(half.inner) - 1, REPORTED_COUNT, dtype=int)
+    return [
+        SteeringPosition(
+            index=n,
+            input_angle=math.degrees(float(half.inputs[k])) if turns else None,
+            input_place=None if turns else float(half.inputs[k]),
+            inner=math.degrees(float(half.inner[k])),
+            outer=math.degrees(float(half.outer[k])),
+            required=math.degrees(float(compute_outer_angle(half.inner[k], ratio))),
+            error=float(half.error[k]),
+        )
+        for n, k in enumerate(listed)
+    ]
+
+
 def verify_steering(problem: SteeringProblem, design: SteeringMechanisms) -> SteeringDesign | None:
     """Drive a steering mechanism from lock to lock and measure it.
 
@@ -85,6 +125,7 @@ def verify_steering(problem: SteeringProblem, design: SteeringMechanisms) -> Ste
     driven = _drive_fourbar(problem, design) if isinstance(design, FourbarMechanism) else _drive_gear(problem, design)
     if driven is None:
         return None
+    is_fourbar = isinstance(design, FourbarMechanism)
     ratio, lock = problem.pivot_distance / problem.wheelbase, math.radians(problem.lock)
     # Both turns are measured at once: the left wheel is the inner one in left turns only.
     inner, outer = _sort_wheels(driven.left, driven.right)
@@ -98,9 +139,8 @@ def verify_steering(problem: SteeringProblem, design: SteeringMechanisms) -> Ste
     joints = {name: complex(*place) for name, place in design.skeleton.joints.items()}
     arm = joints["A"] - joints["O2"]
     behind = arm.imag < 0.0
-    required = float(compute_outer_angle(lock, ratio))
     # The mechanism is symmetrical: positions of the left turn are enough for the report.
-    half = [values[SAMPLE_COUNT // 2 :] for values in (inner, outer, error, driven.inputs)]
+    half = _SteeredTurn(*(values[SAMPLE_COUNT // 2 :] for values in (inner, outer, error, driven.inputs)))
     measures = measure_linkage(
         list_link_lengths(design),
         problem.pivot_distance,
@@ -112,47 +152,30 @@ def verify_steering(problem: SteeringProblem, design: SteeringMechanisms) -> Ste
         visits_in_order=bool(np.all(np.diff(driven.left) > 0.0) and np.all(np.diff(driven.right) > 0.0)),
         full_rotation=False,
         used=(float(driven.inputs[0]), float(driven.inputs[-1])),
-        slides=not isinstance(design, FourbarMechanism),
+        slides=not is_fourbar,
     )
     metrics = SteeringMetrics(
         steering_error=worst,
-        correct_at=_find_sign_changes(np.degrees(half[0]), half[2]) if worst > MAX_EXACT_ERROR else [],
-        outer_lock=math.degrees(float(half[1][-1])),
+        correct_at=_find_sign_changes(np.degrees(half.inner), half.error) if worst > MAX_EXACT_ERROR else [],
+        outer_lock=math.degrees(float(half.outer[-1])),
         arm_length=abs(arm),
         arm_angle=math.degrees(math.atan2(arm.real if behind else -arm.real, abs(arm.imag))),
         tie_rod="behind" if behind else "ahead",
-        turning_radius=problem.wheelbase / math.sin(required)
-        + 0.5 * ((problem.track or problem.pivot_distance) - problem.pivot_distance),
+        turning_radius=_compute_turning_radius(problem, float(compute_outer_angle(lock, ratio))),
         **measures.select_fields(SteeringMetrics),
-        bar_travel=None if isinstance(design, FourbarMechanism) else float(np.abs(driven.inputs).max()),
+        bar_travel=None if is_fourbar else float(np.abs(driven.inputs).max()),
     )
     checks = [
         Check(name="reaches_locks", passed=abs(float(inner.max()) - lock) <= LOCK_TOLERANCE),
         Check(name="same_branch", passed=driven.on_branch),
     ]
-    if not isinstance(design, FourbarMechanism):
-        checks.append(check_maximum("steers_correctly", worst, MAX_EXACT_ERROR, ANGLE))
-    if problem.max_steering_error is not None:
-        checks.append(check_maximum("steering_error", worst, problem.max_steering_error, ANGLE))
+    checks += _check_error(problem, worst, exact=not is_fourbar)
     fixed = [joints.pop(name) for name in ("O2", "O4")]
     of_constraints = check_constraints(problem.constraints, measures, fixed, list(joints.values()))
     checks += [check for check in of_constraints if check.name != "same_branch"]  # always checked above
-    listed = np.linspace(0, len(half[0]) - 1, REPORTED_COUNT, dtype=int)
-    turns = isinstance(design, FourbarMechanism)
     return SteeringDesign(
         mechanism=design,
-        targets=[
-            SteeringPosition(
-                index=n,
-                input_angle=math.degrees(float(half[3][k])) if turns else None,
-                input_place=None if turns else float(half[3][k]),
-                inner=math.degrees(float(half[0][k])),
-                outer=math.degrees(float(half[1][k])),
-                required=math.degrees(float(compute_outer_angle(half[0][k], ratio))),
-                error=float(half[2][k]),
-            )
-            for n, k in enumerate(listed)
-        ],
+        targets=_list_positions(half, ratio, turns=is_fourbar),
         verification=Verification.from_checks(checks),
         metrics=metrics,
     )

@@ -294,8 +294,7 @@ def _describe_result(problem: StraightLineProblem, sifting: CandidateLog[Straigh
     if not sifting.passed:
         return (
             f"No straight-line mechanism was found that satisfies all constraints ({sifting.format_reasons()}). One "
-            "may still "
-            "exist."
+            "may still exist."
         )
     best = _rank_designs(problem, sifting.passed)[0].metrics
     exact = best.straightness_error <= ROUNDING_PERCENT

@@ -135,14 +135,19 @@ def verify_straight_line(
     checks = _check_design(problem, driven, metrics, sense, mechanism, measures)
     return StraightLineDesign(
         mechanism=design,
-        targets=[
-            LinePoint(index=k, input_angle=math.degrees(at), x=place.real, y=place.imag, deviation=abs(local.imag))
-            for k, (at, local) in enumerate(zip(inputs[[0, -1]].tolist(), driven.ends, strict=True))
-            for place in [start + along * local]
-        ],
+        targets=_list_ends(driven, inputs, start, along),
         verification=Verification.from_checks(checks),
         metrics=metrics,
     )
+
+
+def _list_ends(driven: _LineMeasurement, inputs: Real, start: complex, along: complex) -> list[LinePoint]:
+    """Return both ends of the line as reported; ``start`` and ``along`` place it in the problem's plane."""
+    places = [start + along * local for local in driven.ends]
+    return [
+        LinePoint(index=k, input_angle=math.degrees(at), x=place.real, y=place.imag, deviation=abs(local.imag))
+        for k, (at, local, place) in enumerate(zip(inputs[[0, -1]].tolist(), driven.ends, places, strict=True))
+    ]
 
 
 def _check_design(

@@ -42,7 +42,7 @@ class PowerPeak(AtInput):
 
 
 class DesignForces(Answer):
-    """Peaks of a linkage's forces at constant speed, refined between 72 positions (docs/dynamics.md)."""
+    """Peaks of a linkage's forces at constant speed, refined between 72 positions (docs/mechanisms/dynamics.md)."""
 
     units: Literal["si", "consistent"]
     over: Literal["cycle", "used"] | None = optional_field(

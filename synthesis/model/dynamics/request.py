@@ -1,4 +1,4 @@
-"""Block ``dynamics`` of a statement: masses, loads, friction and speed (docs/dynamics.md). Data only."""
+"""Block ``dynamics`` of a statement: masses, loads, friction and speed (docs/mechanisms/dynamics.md). Data only."""
 
 from __future__ import annotations
 

@@ -261,7 +261,7 @@ def _enclose_e(bits: int) -> tuple[int, int]:
 def format_ratio(ratio: str | float) -> str:
     """Format a ratio for a sentence: an expression as written, a number without superfluous zeros.
 
-    >>> as_stated("sqrt(2)"), as_stated(25.0), as_stated(332.96886)
+    >>> format_ratio("sqrt(2)"), format_ratio(25.0), format_ratio(332.96886)
     ('sqrt(2)', '25', '332.96886')
     """
     return ratio if isinstance(ratio, str) else f"{ratio:.12g}"

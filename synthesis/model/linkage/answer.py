@@ -280,14 +280,14 @@ class MotionMetrics(UsedRange):
     full_rotation: bool
     link_ratio: float = Field(description="Longest link over shortest link.")
     reach: float | None = optional_field(
-        "Maximum distance between two joints of one link, in sizes of the task (docs/ranking.md); left out if the task "
-        "has no size."
+        "Maximum distance between two joints of one link, in sizes of the task (docs/methods/ranking.md); left out if "
+        "the task has no size."
     )
     size: Length = Field(
         description="Diagonal of the box around all joints and the point P at all targets; without targets, over "
         "the verified motion."
     )
-    quality: float = Field(description="Between 0 and 1; see docs/ranking.md.")
+    quality: float = Field(description="Between 0 and 1; see docs/methods/ranking.md.")
 
 
 class LinkageMetrics(MotionMetrics):
@@ -334,7 +334,7 @@ class LayoutClash(Answer):
 
 
 class Layout(Answer):
-    """Arrangement of a linkage in planes (docs/layout.md)."""
+    """Arrangement of a linkage in planes (docs/mechanisms/layout.md)."""
 
     buildable: bool = Field(description="Whether no parts collide over the whole motion.")
     planes: dict[str, int] = Field(

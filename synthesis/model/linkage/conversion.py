@@ -89,6 +89,7 @@ def build_slide(joint: str, link: str, point: complex, angle: float) -> Slide:
 
 def build_coupler_point(a: complex, b: complex, p: complex) -> CouplerPoint:
     """Build the coupler point from the positions of A, B and P."""
+    # Divide by the unit vector A → B: the frame of the coupler.
     point = (p - a) / ((b - a) / abs(b - a))
     return CouplerPoint(distance=abs(point), angle=math.degrees(cmath.phase(point)))
 
@@ -119,6 +120,7 @@ def build_fourbar(joints: FourbarConfiguration, body_angle: float | None = None)
         fixed_pivots=FixedPivots(input=to_point(o2), output=to_point(o4)),
         links=FourbarLinks(ground=abs(o4 - o2), input=abs(crank), coupler=abs(coupler), output=abs(output)),
         coupler_point=build_coupler_point(a, b, p),
+        # The side of B from the line A → O4; a toggle counts as open.
         assembly="open" if (diagonal.conjugate() * coupler).imag >= 0.0 else "crossed",
         reference_input_angle=math.degrees(cmath.phase(crank)),
         reference_body_angle=body_angle,
@@ -174,6 +176,7 @@ def build_inverted_slider_crank(
     along = cmath.exp(1j * line_angle)
     # With the angle of the line from O4 → B at +90°, B lies to the right of the line's direction.
     if (1j * along.conjugate() * reach).real < 0.0:
+        # Reverse the line's direction, so that the output length is positive.
         along = -along
     output = (1j * along.conjugate() * reach).real
     point = (p - a) / (-reach / abs(reach))
@@ -196,6 +199,7 @@ def build_inverted_slider_crank(
 def compute_body_shift(mechanism: LinkageMechanism, demanded: float) -> float:
     """Return the body's rotation in the reference from the first requested angle (degrees), radians in [−π, π]."""
     stands = mechanism.reference_body_angle
+    # The shorter rotation, because angles of a body are known modulo a full turn.
     return 0.0 if stands is None else math.radians(math.remainder(stands - demanded, 360.0))
 
 

@@ -14,6 +14,7 @@ from pydantic import Field
 from synthesis.model.dimension import LENGTH
 from synthesis.model.problem import Degrees, NonNegative, Number, Point, PositiveLength, Statement
 
+# Users copy dimensions from drawings with six or seven digits.
 AGREEMENT_TOLERANCE = 1e-6
 """Relative tolerance of redundant dimensions (ground, offset), for the rounding of printed digits."""
 

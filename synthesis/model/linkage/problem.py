@@ -28,12 +28,12 @@ from synthesis.model.problem import (
 )
 
 Force = Literal["drive_torque", "joint_force", "shaking_force", "shaking_moment", "power", "joint_force_index"]
-"""Quantities of a linkage's forces that can be limited (docs/dynamics.md)."""
+"""Quantities of a linkage's forces that can be limited (docs/mechanisms/dynamics.md)."""
 
 FORCE_NAMES: tuple[Force, ...] = get_args(Force)
 
 RankBy = Literal["quality", "accuracy", "size", "transmission_angle", "planes", "yield"] | Force
-"""Criteria by which designs of linkages can be ordered (docs/ranking.md)."""
+"""Criteria by which designs of linkages can be ordered (docs/methods/ranking.md)."""
 
 
 class Region(Statement):
@@ -45,6 +45,7 @@ class Region(Statement):
     def contains(self, point: complex) -> bool:
         """Return whether a point lies in the region or, to rounding, on its edge."""
         (left, right), (low, high) = self.x, self.y
+        # Relative to the coordinates, as a region far from the origin has coarser rounding.
         slack = EDGE_TOLERANCE * max(abs(left), abs(right), abs(low), abs(high))
         return bool(left - slack <= point.real <= right + slack and low - slack <= point.imag <= high + slack)
 
@@ -60,6 +61,7 @@ class Region(Statement):
         (left, right), (low, high) = self.x, self.y
         across = np.maximum(np.maximum(left - points.real, points.real - right), 0.0)
         along = np.maximum(np.maximum(low - points.imag, points.imag - high), 0.0)
+        # Exactly 0 on the edge, where rounding might give a tiny distance.
         return np.where(self.mark_contained(points), 0.0, np.hypot(across, along))
 
     def sample_points(self, rng: np.random.Generator, count: int) -> NDArray[np.complex128]:
@@ -192,6 +194,7 @@ class LinkageProblem(ProblemBase):
     def list_later(self, order: str, most: int) -> Self:
         """Return the statement with another order and at least ``most`` designs, which are cut off later."""
         asked = self.model_copy(update={"rank_by": order, "max_designs": max(self.max_designs, most)})
+        # A private field: the client cannot set it, and it is not part of the answer.
         asked._listed_later = True
         return asked
 
@@ -237,6 +240,7 @@ class LinkageProblem(ProblemBase):
             detail = "ranking by yield needs `manufacture` with tolerances and a quality"
             listed.append(Contradiction("/rank_by", detail))
         listed += self._find_manufacture_errors()
+        # The remaining checks concern tasks without a body.
         if self.space is None or self.first_pose is not None:
             return listed
         if self.space.body is not None:
@@ -259,6 +263,7 @@ class LinkageProblem(ProblemBase):
         missing: dict[str, str] = {}
         if not self.dynamics.loads:
             missing["joint_force_index"] = "the joint force index needs at least one load in `dynamics`"
+        # Tasks whose input may rotate or slide are checked per design instead.
         if self.input_slides:
             missing["drive_torque"] = "a force drives the sliding input, no torque; limit joint_force or power instead"
         return [Contradiction(path, missing[name]) for path, name in demanded.items() if name in missing]

@@ -30,6 +30,7 @@ def list_lengths(joints: Mapping[str, complex], links: Links, *, point: str | No
     for name, listed in links.items():
         pins = [joint for joint in listed if joint != point]
         lengths[name] = abs(joints[pins[1]] - joints[pins[0]])
+        # Ternary links need two more distances to be determined.
         if len(pins) > 2:
             lengths[f"{name}_arm"] = abs(joints[pins[2]] - joints[pins[0]])
             lengths[f"{name}_side"] = abs(joints[pins[2]] - joints[pins[1]])

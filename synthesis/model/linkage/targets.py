@@ -36,6 +36,7 @@ class TargetSpec(Statement):
     @model_validator(mode="before")
     @classmethod
     def _validate_sort(cls, fields: Any) -> Any:
+        # Leave wrong types to pydantic's own message.
         if not isinstance(fields, dict):
             return fields
         has = {name for name in ("x", "y", "angle", "output", "input_angle") if fields.get(name) is not None}

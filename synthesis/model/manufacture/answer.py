@@ -1,4 +1,4 @@
-"""Reported properties of a manufactured design (docs/manufacture.md)."""
+"""Reported properties of a manufactured design (docs/mechanisms/manufacture.md)."""
 
 from __future__ import annotations
 

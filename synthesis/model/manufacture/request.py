@@ -1,7 +1,7 @@
 """Block ``manufacture`` of a statement: manufacturing accuracy of a linkage and the quality that it must keep.
 
-See docs/manufacture.md. This module also defines how a kind describes its task to the block, and the requirements on a
-design at its targets.
+See docs/mechanisms/manufacture.md. This module also defines how a kind describes its task to the block, and the
+requirements on a design at its targets.
 """
 
 from __future__ import annotations
@@ -91,7 +91,7 @@ class Quality(Statement):
 
 
 class Exactness(Statement):
-    """Manufacturing accuracy of a linkage, and the quality that it must keep (docs/manufacture.md)."""
+    """Manufacturing accuracy of a linkage, and the quality that it must keep (docs/mechanisms/manufacture.md)."""
 
     tolerances: Tolerances | None = None
     distribution: Literal["uniform", "normal"] = Field(
@@ -152,7 +152,7 @@ class Exactness(Statement):
 
 
 class Manufacture(Exactness):
-    """Manufacture of a linkage, and the quality that it must keep (docs/manufacture.md)."""
+    """Manufacture of a linkage, and the quality that it must keep (docs/mechanisms/manufacture.md)."""
 
     round: Rounding | None = Field(
         default=None, description="Replace each design by the best linkage on this grid near it."

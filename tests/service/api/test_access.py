@@ -8,7 +8,7 @@ import httpx
 import pytest
 
 from service.access.gate import Gate, NoKey
-from service.access.keys import KeyStore, TenantExists, digest
+from service.access.keys import KeyStore, TenantExists, hash_key
 from service.jobs.store.database import connect, upgrade
 from tests.campaign import further
 from tests.support.service.access import client_with, keys, made, post
@@ -57,7 +57,7 @@ def test_every_operation_needs_a_key(shared):
             ("Bearer", "Bearer"),
             ("Basic eDp5", "Bearer"),
             ("Bearer mechsynth_wrong", 'Bearer error="invalid_token"'),
-            (f"Bearer {digest(shared.keys['acme'])}", 'Bearer error="invalid_token"'),
+            (f"Bearer {hash_key(shared.keys['acme'])}", 'Bearer error="invalid_token"'),
             (b"Bearer \xff\xfe", 'Bearer error="invalid_token"'),
         ):
             headers = {} if authorization is None else {"Authorization": authorization}
@@ -167,7 +167,7 @@ def test_a_key_is_in_no_log_no_metric_and_no_file(shared):
     for key in shared.keys.values():
         for where in (shared.log(), httpx.get(f"{shared.url}/metrics").text):
             assert key not in where
-            assert digest(key) not in where
+            assert hash_key(key) not in where
         for file in shared.folder.rglob("*"):
             assert not file.is_file() or key.encode() not in file.read_bytes()
     assert "acme" not in httpx.get(f"{shared.url}/metrics").text
@@ -300,22 +300,22 @@ def engine(tmp_path):
 
 def test_keys_in_the_store(engine):
     store = KeyStore(engine)
-    assert not store.any(), "not even tables"
+    assert not store.has_keys(), "not even tables"
     upgrade(engine)
-    assert not store.any()
-    assert store.holders() is None
+    assert not store.has_keys()
+    assert store.load_holders() is None
     key, secret = store.create("acme")
     assert re.fullmatch(r"mechsynth_[A-Za-z0-9_-]{43}", secret)
-    assert store.holders() == {digest(secret): key}
+    assert store.load_holders() == {hash_key(secret): key}
     with pytest.raises(TenantExists):
         store.create("acme")
     assert store.revoke(key.id)
     assert not store.revoke(key.id)
     with pytest.raises(TenantExists):  # its jobs are still there
         store.create("acme")
-    assert store.holders() == {}
-    assert store.any()
-    assert [(k.id, k.revoked_at is None) for k in store.all()] == [(key.id, False)]
+    assert store.load_holders() == {}
+    assert store.has_keys()
+    assert [(k.id, k.revoked_at is None) for k in store.list_keys()] == [(key.id, False)]
 
 
 def test_the_keys_are_read_once_a_second(engine):
@@ -325,8 +325,8 @@ def test_the_keys_are_read_once_a_second(engine):
     store = KeyStore(engine)
     _, secret = store.create("acme")
     reads = []
-    holders = store.holders
-    store.holders = lambda: reads.append(time.monotonic()) or holders()
+    holders = store.load_holders
+    store.load_holders = lambda: reads.append(time.monotonic()) or holders()
 
     async def ask():
         gate = Gate(store, None)

@@ -6,7 +6,7 @@ import socket
 
 import pytest
 
-from service.api.http.prefer import wait_seconds
+from service.api.http.prefer import parse_wait_seconds
 from synthesis.registry import KINDS
 from tests.support.service.answers import finished
 
@@ -176,9 +176,9 @@ def test_the_examples_of_the_openapi_document_run(client, openapi):
 
 
 def test_a_wait_has_a_longest():
-    assert wait_seconds(["wait=99999"], longest=30) == 30
-    assert wait_seconds(["wait=999999999999"], longest=30) == 0
-    assert wait_seconds([], longest=30) == 0
+    assert parse_wait_seconds(["wait=99999"], longest=30) == 30
+    assert parse_wait_seconds(["wait=999999999999"], longest=30) == 0
+    assert parse_wait_seconds([], longest=30) == 0
 
 
 def test_no_request_here_was_met_with_a_defect(server):

@@ -2,7 +2,7 @@
 
 import pytest
 
-from service.api.http.metric_units import measures
+from service.api.http.metric_units import collect_measures
 from synthesis.registry import KINDS
 
 
@@ -23,11 +23,13 @@ def test_a_number_measures_what_its_field_says(client, kind, name, dimension):
 
 
 def test_pure_numbers_and_names_of_two_meanings_are_left_out():
-    assert "quality" not in measures(KINDS["motion"].result)
-    assert "rms_residual" not in measures(KINDS["motion"].result)
-    assert "driver" not in measures(KINDS["gear_train"].result), "teeth of a pinion, or the angle of a bevel gear"
+    assert "quality" not in collect_measures(KINDS["motion"].result)
+    assert "rms_residual" not in collect_measures(KINDS["motion"].result)
+    assert "driver" not in collect_measures(KINDS["gear_train"].result), (
+        "teeth of a pinion, or the angle of a bevel gear"
+    )
 
 
 @pytest.mark.parametrize("kind", KINDS)
 def test_every_kind_measures_something(kind):
-    assert len(measures(KINDS[kind].result)) >= 3
+    assert len(collect_measures(KINDS[kind].result)) >= 3

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from service.server.app import api_document, application
+from service.server.app import build_api_document, build_application
 
 KEPT = Path(__file__).parents[3] / "docs" / "openapi.json"
 
@@ -21,7 +21,7 @@ def parts(document):
 
 @pytest.mark.slow
 def test_the_document_is_the_one_that_is_kept():
-    says, kept = parts(json.loads(api_document())), parts(json.loads(KEPT.read_text(encoding="utf-8")))
+    says, kept = parts(json.loads(build_api_document())), parts(json.loads(KEPT.read_text(encoding="utf-8")))
     changed = sorted(name for name in says.keys() | kept.keys() if says.get(name) != kept.get(name))
     assert not changed, (
         f"docs/openapi.json is not what the service says. If the change is meant, run `make openapi` and commit the "
@@ -31,7 +31,7 @@ def test_the_document_is_the_one_that_is_kept():
 
 @pytest.mark.slow
 def test_the_document_is_written_the_same_way_each_time():
-    assert KEPT.read_text(encoding="utf-8") == api_document()
+    assert KEPT.read_text(encoding="utf-8") == build_api_document()
 
 
 def test_every_route_for_tenants_is_in_the_document():
@@ -41,7 +41,7 @@ def test_every_route_for_tenants_is_in_the_document():
     async def lifespan(app):
         yield
 
-    app = application(lifespan)
+    app = build_application(lifespan)
     served = {route.path for route in app.state.routes if getattr(route, "path", "").startswith("/v1")}
     assert served == {path for path in json.loads(KEPT.read_text(encoding="utf-8"))["paths"] if path.startswith("/v1")}
 

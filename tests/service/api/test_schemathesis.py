@@ -9,7 +9,7 @@ from pathlib import Path
 
 import pytest
 
-from service.server.app import api_document
+from service.server.app import build_api_document
 from synthesis.registry import get_first_example
 from tests.support.service.access import client_with, made
 from tests.support.service.running import RunningServer
@@ -115,7 +115,7 @@ REMOVING = ("--include-method", "DELETE")
 
 @pytest.fixture(scope="module")
 def operations():
-    paths = json.loads(api_document())["paths"]
+    paths = json.loads(build_api_document())["paths"]
     return sum(len(methods) for methods in paths.values())
 
 

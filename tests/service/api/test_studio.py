@@ -7,8 +7,8 @@ from pathlib import Path
 import pytest
 
 import service
-from service.api.routes.studio_bundle import BundleError, bundle_modules, bundle_path
-from service.api.routes.studio_page import POLICY, studio_files
+from service.api.routes.studio_bundle import BundleError, build_bundles, name_bundle
+from service.api.routes.studio_page import POLICY, load_studio_files
 from tests.support.loops import check_each
 
 FOLDER = Path(service.__file__).parent / "studio"
@@ -32,10 +32,10 @@ def path_of(name):
 
 
 def test_every_file_of_the_folder_is_served():
-    made = {name for name in studio_files() if name.endswith(".bundle.js")}
-    assert sorted(set(studio_files()) - made) == NAMES
+    made = {name for name in load_studio_files() if name.endswith(".bundle.js")}
+    assert sorted(set(load_studio_files()) - made) == NAMES
     assert made == {"studio.bundle.js", "assembly/assembly_scene.bundle.js"}
-    assert not [name for name in studio_files() if name.startswith("types/")]
+    assert not [name for name in load_studio_files() if name.startswith("types/")]
 
 
 def test_a_file_is_served_with_its_type_and_the_policy(client):
@@ -122,11 +122,11 @@ def test_the_page_asks_for_one_module_and_may_keep_what_it_asks_for_by_its_versi
 
 
 def versions():
-    return {name: file.version for name, file in studio_files().items()}
+    return {name: file.version for name, file in load_studio_files().items()}
 
 
 def test_a_bundle_has_each_module_once_after_those_that_it_imports():
-    bundle = studio_files()[bundle_path("studio.js")].content.decode()
+    bundle = load_studio_files()[name_bundle("studio.js")].content.decode()
     modules = follow_imports(STATIC)
     begun = re.findall(r"^const \$([\w$]+) = (?:await \(async |\()\(\) => \{$", bundle, re.MULTILINE)
     order = [f"{name.replace('$', '/')}.js" for name in begun]
@@ -143,7 +143,7 @@ def test_a_bundle_exports_what_its_first_module_does_and_leaves_what_is_of_other
         "b/d.js": 'import { C } from "../vendor/c.js";\nexport class D {}\nexport function d() {}\n',
         "e.js": "export const e = await fetch(1);\n",
     }
-    made = bundle_modules(own, "a.js")
+    made = build_bundles(own, "a.js")
     assert "const $e = await (async () => {\nconst e = await fetch(1);" in made["a.bundle.js"]
     assert sorted(made) == ["a.bundle.js", "b/d.bundle.js"]
     assert made["a.bundle.js"].startswith('import { C } from "./vendor/c.js";\n')
@@ -166,7 +166,7 @@ def test_a_bundle_exports_what_its_first_module_does_and_leaves_what_is_of_other
 )
 def test_what_a_bundle_would_change_the_meaning_of_is_refused(wrong, told):
     with pytest.raises(BundleError, match=told):
-        bundle_modules(wrong, "a.js")
+        build_bundles(wrong, "a.js")
 
 
 def test_what_is_of_others_has_its_licence_and_only_its_names_are_ours():

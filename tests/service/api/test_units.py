@@ -2,7 +2,7 @@
 
 import pytest
 
-from service.units import symbols
+from service.units import list_symbols
 from synthesis.registry import KINDS, get_first_example, list_examples, parse_problem
 
 # Numbers without a unit: ratios, shares, residuals by the task's size, relative errors, values of a function. A number
@@ -237,24 +237,24 @@ def test_lengths_and_angles_by_their_names(kind):
 
 @pytest.mark.parametrize("kind", KINDS)
 def test_every_dimension_has_a_symbol(kind):
-    units = symbols(parse_problem(get_first_example(kind)))
+    units = list_symbols(parse_problem(get_first_example(kind)))
     for _, _, schema in numbers(kind):
         found = schema.get("x-dimension")
         assert found is None or units[found]
 
 
 def test_the_units_are_those_of_the_problem():
-    inches = symbols(parse_problem({**get_first_example("cam"), "length_unit": "in"}))
+    inches = list_symbols(parse_problem({**get_first_example("cam"), "length_unit": "in"}))
     assert (inches["length"], inches["area"], inches["force"]) == ("in", "in²", "lbf")
-    linkage = symbols(parse_problem({**get_first_example("motion"), "length_unit": "in"}))
+    linkage = list_symbols(parse_problem({**get_first_example("motion"), "length_unit": "in"}))
     assert (linkage["length"], linkage["force"], linkage["torque"]) == ("in", "N", "N·m"), "SI unless stated otherwise"
     flat = next(one for one in list_examples("cam") if one["follower"]["type"] == "translating_flat")
-    assert symbols(parse_problem(flat))["displacement"] == "mm"
+    assert list_symbols(parse_problem(flat))["displacement"] == "mm"
     arm = {"type": "oscillating_roller", "roller_radius": 5.0, "arm": 40.0, "pivot_distance": 60.0}
-    turned = symbols(parse_problem({**get_first_example("cam"), "follower": arm}))
+    turned = list_symbols(parse_problem({**get_first_example("cam"), "follower": arm}))
     assert (turned["displacement"], turned["velocity"]) == ("°", "rad/rad")
-    assert symbols(parse_problem(list_examples("function")[2]))["output"] == "mm"
-    assert symbols(parse_problem(list_examples("function")[1]))["output"] == "°"
+    assert list_symbols(parse_problem(list_examples("function")[2]))["output"] == "mm"
+    assert list_symbols(parse_problem(list_examples("function")[1]))["output"] == "°"
 
 
 def test_a_schema_says_what_its_numbers_measure():

@@ -30,7 +30,7 @@ def test_help_lists_the_commands(tmp_path):
 def test_the_command_line_is_read_without_heavy_imports():
     heavy = "{'numpy', 'numba', 'scipy', 'cvxpy', 'fastapi', 'pydantic', 'sqlalchemy'}"
     program = (
-        f"import sys, service.command.cli; service.command.cli._parser(); sys.exit(', '.join({heavy} & "
+        f"import sys, service.command.cli; service.command.cli._build_parser(); sys.exit(', '.join({heavy} & "
         "set(sys.modules)) or None)"
     )
     done = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, timeout=60)

@@ -10,7 +10,7 @@ from typing import NamedTuple
 import pytest
 
 from service.command.cli import main
-from service.command.inputs import problem_of
+from service.command.inputs import read_problem
 from synthesis.registry import parse_problem
 
 TRAIN = {"kind": "gear_train", "ratio": "7/3", "max_stages": 1, "max_designs": 2}
@@ -101,7 +101,7 @@ def test_nothing_of_a_table_is_cut_in_a_file(server, tmp_path):
 def test_a_table_states_a_problem(tmp_path, table, expected):
     place = tmp_path / "task.csv"
     place.write_bytes(table.encode())
-    problem, label = problem_of(str(place))
+    problem, label = read_problem(str(place))
     assert label == "task"
     assert problem == expected
     assert parse_problem(problem).kind == expected["kind"]

@@ -118,7 +118,7 @@ def test_who_asks_a_service_loads_no_solver(server, tmp_path):
 
 @pytest.mark.slow
 def test_the_examples_of_the_page_run(server):
-    page = ROOT / "docs" / "library.md"
+    page = ROOT / "docs" / "start" / "library.md"
     outcome = doctest.testfile(str(page), module_relative=False, globs={"url": server.url})
     assert outcome.attempted > 25
     assert outcome.failed == 0

@@ -279,7 +279,7 @@ def asked(desk, content, door="imports"):
 
 @pytest.fixture
 def desk(monkeypatch):
-    monkeypatch.setattr(desks, "READERS", 1)  # each start takes a second
+    monkeypatch.setattr(desks, "READER_COUNT", 1)  # each start takes a second
     desk = ImportDesk("warning", "text", memory_mb=24)
     yield desk
     desk.stop()
@@ -298,7 +298,7 @@ def test_a_file_that_takes_too_much_is_given_up_and_the_next_one_is_read(desk, m
             asked(desk, content)
         assert type(caught.value) is error
     assert caught.value.reasons == (("text", "It is text; turn it into paths."),)
-    monkeypatch.setattr(desks, "READ_S", 1e-4)
+    monkeypatch.setattr(desks, "READ_TIMEOUT_S", 1e-4)
     impatient = ImportDesk("warning", "text")
     with pytest.raises(UnsuitableDrawing, match="takes longer"):
         asked(impatient, page('<rect width="9" height="9"/>' * 900), "outlines")

@@ -5,7 +5,7 @@ import time
 import pytest
 
 from service.api.http.problem_details import Refusal
-from service.api.routes.batch_plans import plan_of
+from service.api.routes.batch_plans import build_plan
 from service.api.routes.batch_schemas import BatchRequest
 from service.error_messages import MAX_FAULTS
 
@@ -18,7 +18,7 @@ SOON_S = 3.0
 def refused(problem, vary, **fields):
     began = time.thread_time()
     with pytest.raises(Refusal) as caught:
-        plan_of(BatchRequest.model_validate({"problem": problem, "vary": vary, **fields}))
+        build_plan(BatchRequest.model_validate({"problem": problem, "vary": vary, **fields}))
     assert time.thread_time() - began < SOON_S
     assert caught.value.status == 422
     return caught.value
@@ -60,5 +60,5 @@ def test_a_field_that_another_goes_by_does_not_condemn_the_problem():
     segment = next(k for k, each in enumerate(cam["segments"]) if "lift" in each)
     motions = ["dwell", cam["segments"][segment]["motion"]]
     body = {"problem": cam, "vary": [{"field": f"/segments/{segment}/motion", "values": motions}]}
-    _, plan, _ = plan_of(BatchRequest.model_validate(body))
+    _, plan, _ = build_plan(BatchRequest.model_validate(body))
     assert plan.total == 2

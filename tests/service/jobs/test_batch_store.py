@@ -11,9 +11,9 @@ from ulid import ULID
 
 from service.jobs.batches import removal
 from service.jobs.batches.plan import Plan
-from service.jobs.batches.reading import sample_id
-from service.jobs.batches.rows import Ended, OwnAnswer, Share
-from service.jobs.batches.store import SHARES, BatchStore, _one_result_each
+from service.jobs.batches.reading import make_sample_id
+from service.jobs.batches.rows import EndedSample, OwnAnswer, Share
+from service.jobs.batches.store import MAX_SHARES, BatchStore, _select_results
 from service.jobs.cluster.leases import LeaseStore
 from service.jobs.job_store import JobStore
 from service.jobs.store.admission import KeyReused, QueueFull, Repeatable
@@ -40,7 +40,7 @@ def made(store, total=3, tenant="", cost=Cost.SHORT, max_queued=1000, repeatable
 
 
 def ended(number, status=Status.SUCCEEDED, digest=None, cached=False):
-    return Ended(
+    return EndedSample(
         number, status, "2026-01-01T00:00:00.000000Z", "2026-01-01T00:00:01.000000Z", cached=cached, digest=digest,
         figures="[1, 2.5]", result=f'{{"of": {number}}}',
     )  # fmt: skip
@@ -57,21 +57,21 @@ def numbers(engine):
 
 def test_a_batch_is_dealt_into_shares_that_are_no_jobs_of_clients(store, single):
     batch = made(store, 100)
-    claims = [take(single, f"m{n}") for n in range(SHARES + 1)]
+    claims = [take(single, f"m{n}") for n in range(MAX_SHARES + 1)]
     assert claims.pop() is None
     shares = [Share.read(claim.problem) for claim in claims]
     assert {claim.batch for claim in claims} == {batch.id}
     assert [n for share in shares for n in range(share.first, share.end)] == list(range(100))
     assert single.page(tenant="", limit=10) == []
     assert single.get(claims[0].job_id) is None
-    assert single.summaries([claims[0].job_id]) == {}
+    assert single.load_summaries([claims[0].job_id]) == {}
 
 
 def test_a_slice_is_stored_whole_and_its_share_goes_on(store, single, engine):
-    batch = made(store, 5 * SHARES)
+    batch = made(store, 5 * MAX_SHARES)
     claim = take(single, "a")
     share = Share.read(claim.problem)
-    assert store.begun(batch.id).status is Status.RUNNING
+    assert store.start_batch(batch.id).status is Status.RUNNING
     left = Share(2, share.end)
     assert store.store(batch, claim.job_id, claim.attempt, left, [ended(0), ended(1, Status.FAILED)])
     assert not store.store(batch, claim.job_id, claim.attempt, left, [ended(2)]), "the share is another's now"
@@ -79,10 +79,10 @@ def test_a_slice_is_stored_whole_and_its_share_goes_on(store, single, engine):
     now = store.get(batch.id)
     assert (now.status, now.succeeded, now.failed, now.done) == (Status.RUNNING, 1, 1, 2)
     assert store.ended(batch, 0, 5) == {0, 1}
-    job = single.get(sample_id(batch.id, 0))
+    job = single.get(make_sample_id(batch.id, 0))
     assert (job.status, job.label, job.batch, job.cached) == (Status.SUCCEEDED, "many", batch.id, False)
     assert (job.problem, job.result) == ('{"kind": "motion", "seed": 0}', '{"of": 0}')
-    assert single.summaries([job.id])[job.id].status is Status.SUCCEEDED
+    assert single.load_summaries([job.id])[job.id].status is Status.SUCCEEDED
 
 
 def test_no_sample_is_stored_twice(store, single, engine):
@@ -102,7 +102,7 @@ def test_batches_and_jobs_of_one_millisecond_have_their_own_samples(store, singl
     made_at_once = [made(store, 40, tenant=tenant) for tenant in ("a", "b")]
     job = single.create(tenant="a", kind="motion", label=None, problem="{}", cost=Cost.LONG)
     ids = sorted(int(ULID.from_str(row.id)) for row in (*made_at_once, job))
-    assert ids[2] - ids[0] <= 2 * (1 + SHARES), "or this tests nothing"
+    assert ids[2] - ids[0] <= 2 * (1 + MAX_SHARES), "or this tests nothing"
     while (claim := single.take("m", [Cost.SHORT])) is not None:
         share = Share.read(claim.problem)
         [batch] = [batch for batch in made_at_once if batch.id == claim.batch]
@@ -112,7 +112,7 @@ def test_batches_and_jobs_of_one_millisecond_have_their_own_samples(store, singl
     for batch in made_at_once:
         rows = store.table(store.get(batch.id))
         assert [row.number for row in rows] == list(range(40))
-        assert single.get(sample_id(batch.id, 1)).batch == batch.id
+        assert single.get(make_sample_id(batch.id, 1)).batch == batch.id
     assert single.get(job.id).status is Status.QUEUED
     for gone, left in (made_at_once, made_at_once[::-1]):
         before = len(store.table(left)) if store.get(left.id) else 0
@@ -134,31 +134,31 @@ def test_a_batch_ends_with_its_last_sample(store, single, statuses, whole):
     now = store.get(batch.id)
     assert (now.status, now.done) == (Status(whole), 2)
     assert now.finished_at is not None
-    assert store.begun(batch.id) is None
+    assert store.start_batch(batch.id) is None
 
 
 def test_a_sample_that_kills_its_workers_fails_by_itself(store, single, engine):
-    batch = made(store, 3 * SHARES)
+    batch = made(store, 3 * MAX_SHARES)
     claim = take(single, "a")
     for _ in range(MAX_CRASHES):
-        assert store.crashed(claim.job_id, claim.mark, 1, killed=False) is Status.QUEUED
+        assert store.record_crash(claim.job_id, claim.mark, 1, killed=False) is Status.QUEUED
         claim = again(single, claim.job_id)
         assert Share.read(claim.problem) == Share(0, 3, alone=1), "it comes by itself"
-    assert store.crashed(claim.job_id, claim.mark, 1, killed=False) is Status.QUEUED
+    assert store.record_crash(claim.job_id, claim.mark, 1, killed=False) is Status.QUEUED
     assert numbers(engine) == [1]
-    assert single.get(sample_id(batch.id, 1)).status is Status.FAILED
+    assert single.get(make_sample_id(batch.id, 1)).status is Status.FAILED
     claim = again(single, claim.job_id)
     assert Share.read(claim.problem) == Share(0, 3)
-    assert store.crashed(claim.job_id, "another mark", 0, killed=False) is None
+    assert store.record_crash(claim.job_id, "another mark", 0, killed=False) is None
 
 
 @pytest.mark.parametrize("total", [1, 3, 40])
 def test_workers_that_die_before_any_sample_is_begun_fail_one_after_the_other(store, single, engine, total):
     batch = made(store, total)
-    most = total * (MAX_CRASHES + 1) + min(total, SHARES)  # and one of each share with nothing left to do
+    most = total * (MAX_CRASHES + 1) + min(total, MAX_SHARES)  # and one of each share with nothing left to do
     deaths = 0
     while (claim := take(single, f"m{deaths}")) is not None and deaths <= most:
-        assert store.crashed(claim.job_id, claim.mark, None, killed=False) is not None
+        assert store.record_crash(claim.job_id, claim.mark, None, killed=False) is not None
         deaths += 1
     assert numbers(engine) == list(range(total))
     assert (store.get(batch.id).status, deaths) == (Status.FAILED, most)
@@ -166,13 +166,13 @@ def test_workers_that_die_before_any_sample_is_begun_fail_one_after_the_other(st
 
 def test_what_is_stored_already_is_not_blamed(store, single, engine):
     """A share goes on past what was stored of it by itself."""
-    batch = made(store, 4 * SHARES)
+    batch = made(store, 4 * MAX_SHARES)
     claim = take(single, "a")
     assert Share.read(claim.problem) == Share(0, 4)
     assert store.give_up(claim.job_id, claim.mark, 0, lambda _: "{}") is Status.QUEUED
     for n in range(1, 4):
         claim = again(single, claim.job_id)
-        assert store.crashed(claim.job_id, claim.mark, 0, killed=False) is Status.QUEUED
+        assert store.record_crash(claim.job_id, claim.mark, 0, killed=False) is Status.QUEUED
         claim = again(single, claim.job_id)
         assert Share.read(claim.problem) == Share(0, 4, alone=n)
         assert store.give_up(claim.job_id, claim.mark, None, lambda _: "{}") is not None
@@ -194,10 +194,10 @@ def test_kills_from_outside_are_forgiven_more_often(store, single, engine):
     made(store, 1)
     for kill in range(MAX_KILLS):
         claim = take(single, f"m{kill}")
-        store.crashed(claim.job_id, claim.mark, None, killed=True)
+        store.record_crash(claim.job_id, claim.mark, None, killed=True)
         assert numbers(engine) == []
     claim = take(single, "last")
-    store.crashed(claim.job_id, claim.mark, None, killed=True)
+    store.record_crash(claim.job_id, claim.mark, None, killed=True)
     assert numbers(engine) == [0]
 
 
@@ -207,7 +207,7 @@ def test_a_sample_that_is_given_up_ends_the_batch_where_it_is_the_last(store, si
     assert store.give_up(claim.job_id, claim.mark, 0, lambda job_id: f'{{"detail": "{job_id}"}}') is Status.QUEUED
     now = store.get(batch.id)
     assert (now.status, now.failed) == (Status.FAILED, 1)
-    assert store.table(now)[0].error == f'{{"detail": "{sample_id(batch.id, 0)}"}}'
+    assert store.table(now)[0].error == f'{{"detail": "{make_sample_id(batch.id, 0)}"}}'
 
 
 def test_a_cancelled_batch_takes_no_more(store, single, engine):
@@ -216,7 +216,7 @@ def test_a_cancelled_batch_takes_no_more(store, single, engine):
     assert len(store.cancel(batch.id)) == 2
     assert store.cancel(batch.id) is None
     assert not store.store(batch, claim.job_id, claim.attempt, None, [ended(0)])
-    assert store.crashed(claim.job_id, claim.mark, 0, killed=True) is None
+    assert store.record_crash(claim.job_id, claim.mark, 0, killed=True) is None
     assert take(single, "b") is None
     assert (store.get(batch.id).status, numbers(engine)) == (Status.CANCELLED, [])
 
@@ -230,7 +230,7 @@ def test_what_a_lost_share_had_to_do_has_failed(store, single, engine):
     with engine.begin() as connection:
         connection.execute(update(jobs).where(jobs.c.id == lost.job_id).values(due_at=0.0, crashes=MAX_KILLS))
     assert LeaseStore(engine).take_back([lost.job_id]) == [(lost.job_id, Status.FAILED)]
-    [now] = store.summaries([batch.id]).values()
+    [now] = store.load_summaries([batch.id]).values()
     assert (now.status, now.succeeded, now.failed) == (Status.SUCCEEDED, 1, 1)
     assert now.revision > store.get(batch.id).revision - 1
 
@@ -251,7 +251,7 @@ def test_only_a_finished_batch_is_removed_and_then_with_all_that_it_has(store, s
 
 
 def test_of_a_batch_whose_removal_breaks_off_nothing_is_seen(store, single, engine, monkeypatch):
-    monkeypatch.setattr("service.jobs.batches.store.SHARES", 1)
+    monkeypatch.setattr("service.jobs.batches.store.MAX_SHARES", 1)
     key = Repeatable("key", "hash")
     batch, other = made(store, 250, repeatable=key), made(store, 2)
     solved(store, single, batch, [ended(n, digest=f"{n}") for n in range(250)])
@@ -267,10 +267,12 @@ def test_of_a_batch_whose_removal_breaks_off_nothing_is_seen(store, single, engi
         dying.setattr(removal.time, "sleep", dies)
         with pytest.raises(SystemError):
             store.delete(batch.id)
-    assert portions == [250 + 2 - removal.PORTION, 250 + 2 - 2 * removal.PORTION], "others may write in between"
-    left = sample_id(batch.id, numbers(engine)[-1])
-    assert (store.get(batch.id), store.summaries([batch.id]), store.plan(batch)) == (None, {}, None)
-    assert (single.get(left), single.summaries([left])) == (None, {})
+    assert portions == [250 + 2 - removal.PORTION_SIZE, 250 + 2 - 2 * removal.PORTION_SIZE], (
+        "others may write in between"
+    )
+    left = make_sample_id(batch.id, numbers(engine)[-1])
+    assert (store.get(batch.id), store.load_summaries([batch.id]), store.plan(batch)) == (None, {}, None)
+    assert (single.get(left), single.load_summaries([left])) == (None, {})
     assert [found.id for found in store.page(tenant="", limit=9, before=None)] == [other.id]
     assert store.delete_finished(datetime.now(UTC) + timedelta(seconds=1)) == 1, "the other one"
     assert not store.delete(batch.id)
@@ -284,12 +286,12 @@ def test_of_a_batch_whose_removal_breaks_off_nothing_is_seen(store, single, engi
 
 
 def test_nobody_waits_for_the_removal_of_a_very_large_batch(store, single, engine, monkeypatch):
-    monkeypatch.setattr("service.jobs.batches.store.SHARES", 1)
-    monkeypatch.setattr("service.jobs.batches.store.CLEARED_S", -1.0)
+    monkeypatch.setattr("service.jobs.batches.store.MAX_SHARES", 1)
+    monkeypatch.setattr("service.jobs.batches.store.CLEAR_TIMEOUT_S", -1.0)
     batch = made(store, 250)
     solved(store, single, batch, [ended(n) for n in range(250)])
     assert store.delete(batch.id)
-    assert (store.get(batch.id), len(numbers(engine))) == (None, 250 - removal.PORTION)
+    assert (store.get(batch.id), len(numbers(engine))) == (None, 250 - removal.PORTION_SIZE)
     assert store.tidy() == 0
     assert numbers(engine) == []
 
@@ -336,7 +338,7 @@ def test_a_full_queue_takes_no_batch(store, single):
             made(store, 2, max_queued=most)
     assert store.page(tenant="", limit=9, before=None) == []
     assert made(store, 2, max_queued=3) is not None
-    assert made(store, 100, tenant="other", max_queued=SHARES) is not None
+    assert made(store, 100, tenant="other", max_queued=MAX_SHARES) is not None
 
 
 def test_in_a_small_queue_a_batch_has_few_shares(store, single, engine):
@@ -352,7 +354,7 @@ def test_of_batches_that_come_at_once_the_queue_takes_as_many_as_it_has_room_for
     def post():
         begin.wait()
         try:
-            answers.append(made(store, 100, max_queued=2 * SHARES + 1))
+            answers.append(made(store, 100, max_queued=2 * MAX_SHARES + 1))
         except QueueFull as full:
             answers.append(full)
 
@@ -364,7 +366,7 @@ def test_of_batches_that_come_at_once_the_queue_takes_as_many_as_it_has_room_for
     assert sorted(isinstance(answer, QueueFull) for answer in answers) == [False] * 2 + [True] * 4
     with engine.connect() as connection:
         turns = list(connection.execute(select(jobs.c.turn).order_by(jobs.c.turn)).scalars())
-    assert turns == list(range(1, 2 * SHARES + 1)), "each has a turn of its own"
+    assert turns == list(range(1, 2 * MAX_SHARES + 1)), "each has a turn of its own"
 
 
 def test_the_same_request_that_comes_at_once_has_one_batch(store, engine):
@@ -416,7 +418,7 @@ def put_back(how, store, single, engine, claim):
     elif how == "stop":
         assert single.requeue(claim.job_id, claim.mark)
     elif how == "crash":
-        assert store.crashed(claim.job_id, claim.mark, None, killed=False) is Status.QUEUED
+        assert store.record_crash(claim.job_id, claim.mark, None, killed=False) is Status.QUEUED
     else:
         assert store.give_up(claim.job_id, claim.mark, None, lambda _: "{}") is Status.QUEUED
 
@@ -431,7 +433,7 @@ def test_a_batch_whose_samples_take_their_workers_along_holds_nobody_up(store, s
         if claim.batch is not None:
             put_back(how, store, single, engine, claim)
         else:
-            assert single.succeed(claim.job_id, claim.attempt, "{}")
+            assert single.complete(claim.job_id, claim.attempt, "{}")
     assert theirs == set()
 
 
@@ -453,14 +455,14 @@ def solved(store, single, batch, new):
 
 
 def test_answers_are_found_by_digest_and_are_ones_own(store, single, monkeypatch):
-    monkeypatch.setattr("service.jobs.batches.store.SHARES", 1)
+    monkeypatch.setattr("service.jobs.batches.store.MAX_SHARES", 1)
     for digest, result in (("one", "{1}"), ("none", None), ("two", "{2}")):
         job = single.create(tenant="a", kind="motion", label=None, problem="{}", cost=Cost.SHORT)
         claim = take(single, "m")
         if result is None:
             single.fail(job.id, claim.attempt, "{}")
         else:
-            single.succeed(job.id, claim.attempt, result, digest)
+            single.complete(job.id, claim.attempt, result, digest)
     earlier = made(store, 3, tenant="a")
     solved(store, single, earlier, [ended(0, digest="three"), failed(1), ended(2, digest="four")])
     now = made(store, 9, tenant="a")
@@ -474,7 +476,7 @@ def test_answers_are_found_by_digest_and_are_ones_own(store, single, monkeypatch
 
 
 def failed(number):
-    return Ended(number, Status.FAILED, "2026-01-01T00:00:00.000000Z", "2026-01-01T00:00:01.000000Z", error="{}")
+    return EndedSample(number, Status.FAILED, "2026-01-01T00:00:00.000000Z", "2026-01-01T00:00:01.000000Z", error="{}")
 
 
 def same(number, other):
@@ -483,27 +485,27 @@ def same(number, other):
 
 
 def test_of_many_equal_answers_one_is_read(store, single, engine, monkeypatch):
-    monkeypatch.setattr("service.jobs.batches.store.SHARES", 1)
+    monkeypatch.setattr("service.jobs.batches.store.MAX_SHARES", 1)
     for _ in range(2):
         many = made(store, 40, tenant="a")
         solved(store, single, many, [ended(n, digest="ab"[n % 2]) for n in range(40)])
     with engine.connect() as connection:
-        rows = connection.execute(_one_result_each("a", ["a", "b", "c"])).all()
+        rows = connection.execute(_select_results("a", ["a", "b", "c"])).all()
     assert [(digest, result is None) for digest, result in rows] == [("a", False), ("b", False), ("c", True)]
     found = store.answers(made(store, 1, tenant="a"), ["a", "b"])
     assert [int(found[digest][7:-1]) % 2 for digest in ("a", "b")] == [0, 1]
 
 
 def test_what_is_the_same_as_another_has_its_answer(store, single, monkeypatch):
-    monkeypatch.setattr("service.jobs.batches.store.SHARES", 1)
+    monkeypatch.setattr("service.jobs.batches.store.MAX_SHARES", 1)
     batch, other = made(store, 3), made(store, 2)
     solved(store, single, batch, [ended(1, digest="one"), same(0, 1), failed(2)])
     solved(store, single, other, [replace(ended(1), result="{3}"), same(0, 1)])
-    read = [single.get(sample_id(batch.id, n)) for n in range(3)]
+    read = [single.get(make_sample_id(batch.id, n)) for n in range(3)]
     assert [(job.result, job.error, job.cached) for job in read] == [
         ('{"of": 1}', None, True), ('{"of": 1}', None, False), (None, "{}", False),
     ]  # fmt: skip
-    assert single.get(sample_id(other.id, 0)).result == "{3}"
+    assert single.get(make_sample_id(other.id, 0)).result == "{3}"
     assert [row.figures for row in store.table(batch)] == [[1, 2.5], [1, 2.5], None]
     assert store.get(batch.id).cached == 1
 

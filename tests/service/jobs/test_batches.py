@@ -5,7 +5,7 @@ import time
 
 import pytest
 
-from service.api.routes.batch_schemas import EXAMPLE, MOST_SAMPLES
+from service.api.routes.batch_schemas import EXAMPLE, MAX_SAMPLES
 from tests.campaign import further
 from tests.support.service.access import client_with
 from tests.support.service.access import made as made_key
@@ -378,7 +378,7 @@ BAD = [
     ({"vary": [{"field": "/seed", "values": [1], "extra": 1}]}, "/vary/0/extra"),
     ({"sampling": "sobol"}, "/sampling"),
     ({"sampling": "latin_hypercube"}, "/samples"),
-    ({"sampling": "latin_hypercube", "samples": MOST_SAMPLES + 1}, "/samples"),
+    ({"sampling": "latin_hypercube", "samples": MAX_SAMPLES + 1}, "/samples"),
     ({"sampling": "latin_hypercube", "samples": 0}, "/samples"),
     ({"samples": 3}, "/samples"),
     ({"seed": 3}, "/seed"),
@@ -467,7 +467,7 @@ def test_a_front_is_of_metrics_of_the_batch(scripted, query):
 def test_a_batch_of_large_problems_is_taken_at_once(scripted):
     """They lie far off the right place, which fails each: only what the statement is by itself is looked at."""
     points = {"kind": "path", "points": [{"x": 1.0 * n, "y": 0.1 * n * n} for n in range(LARGE)]}
-    vary = [{"field": "/seed", "from": 0, "to": MOST_SAMPLES - 1, "count": MOST_SAMPLES}]
+    vary = [{"field": "/seed", "from": 0, "to": MAX_SAMPLES - 1, "count": MAX_SAMPLES}]
     began = time.monotonic()
     answer = scripted.client.post("/v1/batches", json={"problem": points, "vary": vary})
     assert time.monotonic() - began < SOON_S
@@ -475,10 +475,10 @@ def test_a_batch_of_large_problems_is_taken_at_once(scripted):
     assert scripted.client.delete(answer.headers["location"]).status_code == 202
 
 
-@pytest.mark.parametrize("sampling", [{}, {"sampling": "latin_hypercube", "samples": MOST_SAMPLES}])
+@pytest.mark.parametrize("sampling", [{}, {"sampling": "latin_hypercube", "samples": MAX_SAMPLES}])
 def test_a_table_of_very_large_values_is_refused(scripted, sampling):
     points = [{"x": 1.0 * n, "y": 0.1 * n * n} for n in range(LARGE)]
-    seeds = {"field": "/seed", "from": 0, "to": MOST_SAMPLES - 1} | ({} if sampling else {"count": MOST_SAMPLES})
+    seeds = {"field": "/seed", "from": 0, "to": MAX_SAMPLES - 1} | ({} if sampling else {"count": MAX_SAMPLES})
     body = {"problem": {"kind": "path"}, "vary": [{"field": "/points", "values": [points]}, seeds], **sampling}
     refused = scripted.client.post("/v1/batches", json=body)
     assert (refused.status_code, refused.json()["errors"][0]["path"]) == (422, "/vary")
@@ -489,7 +489,7 @@ def test_the_largest_batch_is_taken_at_once(scripted):
     began = time.monotonic()
     batch = post(scripted.client, {**stated(), "vary": ranges})
     assert time.monotonic() - began < SOON_S
-    assert batch["total"] == MOST_SAMPLES
+    assert batch["total"] == MAX_SAMPLES
     assert scripted.client.delete(f"/v1/batches/{batch['id']}").json()["status"] == "cancelled"
-    assert len(table(scripted.client, batch)) == MOST_SAMPLES
+    assert len(table(scripted.client, batch)) == MAX_SAMPLES
     assert scripted.client.delete(f"/v1/batches/{batch['id']}").status_code == 204

@@ -11,7 +11,7 @@ import pytest
 from starlette.requests import Request
 
 from service.api.http.problem_details import Refusal
-from service.api.http.schemas import list_item
+from service.api.http.schemas import describe_job
 from service.api.routes import events
 from service.jobs.events.notifier import ChangeNotifier
 from service.jobs.events.poller import PERIOD_S, JobPoller
@@ -216,9 +216,9 @@ def test_a_stopping_server_ends_the_streams_and_the_next_one_resumes_them(tmp_pa
 class CountingStore(JobStore):
     reads = 0
 
-    def summaries(self, job_ids):
+    def load_summaries(self, job_ids):
         self.reads += 1
-        return super().summaries(job_ids)
+        return super().load_summaries(job_ids)
 
 
 @pytest.fixture
@@ -248,7 +248,9 @@ def with_poller(store, listen):
 
 
 async def stream(poller, job, seen=None):
-    return events_of(b"".join([text async for text in events._events(poller, job, seen, list_item)]).decode())
+    return events_of(
+        b"".join([text async for text in events._generate_events(poller, job, seen, describe_job)]).decode()
+    )
 
 
 def new_job(store):
@@ -272,7 +274,7 @@ def test_the_store_is_read_once_for_all_listeners(store):
         await asyncio.sleep(1.0)  # the reads of a time are counted
         reads, most = store.reads, 2 + (time.monotonic() - began) / PERIOD_S
         claim = store.take("claim", [Cost.LONG])
-        store.succeed(job.id, claim.attempt, "{}")
+        store.complete(job.id, claim.attempt, "{}")
         return reads, most, await asyncio.gather(*streams)
 
     reads, most, seen = with_poller(store, listen)
@@ -339,7 +341,7 @@ def test_silence_is_broken_by_comments(store, monkeypatch):
 
     async def listen(poller):
         chunks = []
-        async for chunk in events._events(poller, job, None, list_item):
+        async for chunk in events._generate_events(poller, job, None, describe_job):
             chunks.append(chunk)
             if len(chunks) == 3:
                 store.cancel(job.id)
@@ -353,14 +355,14 @@ def test_silence_is_broken_by_comments(store, monkeypatch):
 @pytest.mark.slow
 def test_listeners_wait_while_the_store_does_not_answer(store):
     job = new_job(store)
-    summaries = store.summaries
+    summaries = store.load_summaries
 
     def out_of_reach(job_ids):
-        store.summaries = summaries
+        store.load_summaries = summaries
         raise OSError("no store")
 
     async def listen(poller):
-        store.summaries = out_of_reach
+        store.load_summaries = out_of_reach
         following = await begun(poller, job)
         store.cancel(job.id)
         return await following

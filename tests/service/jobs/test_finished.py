@@ -58,10 +58,10 @@ def test_a_removed_job_is_gone():
     jobs = FinishedJobs(CAPACITY)
     jobs.keep(job("a"), jobs.removals)
     jobs.keep(job("b"), jobs.removals)
-    jobs.removed("a")
+    jobs.note_removal("a")
     assert jobs.get("a") is None
     assert jobs.get("b") is not None
-    jobs.removed()
+    jobs.note_removal()
     assert jobs.get("b") is None
 
 
@@ -69,7 +69,7 @@ def test_a_job_that_was_read_before_a_removal_is_not_kept_after_it():
     jobs = FinishedJobs(CAPACITY)
     for removed in ("a", None):
         before = jobs.removals
-        jobs.removed(removed)
+        jobs.note_removal(removed)
         jobs.keep(job("a"), before)
         assert jobs.get("a") is None
 

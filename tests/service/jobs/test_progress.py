@@ -30,7 +30,7 @@ def store():
 
 
 def test_the_last_report_is_told(store):
-    with ProgressWriter(store).attempt("job", 1) as progress:
+    with ProgressWriter(store).track_attempt("job", 1) as progress:
         for n in range(1000):
             progress(n / 1000.0, f"{n}")
         until(lambda: store.told, SOON_S, "the report")
@@ -40,7 +40,7 @@ def test_the_last_report_is_told(store):
 
 def test_a_report_waits_for_a_store_that_is_out_of_reach(store):
     store.to_raise = [OperationalError("update", {}, Exception("locked")) for _ in range(3)]
-    with ProgressWriter(store).attempt("job", 1) as progress:
+    with ProgressWriter(store).track_attempt("job", 1) as progress:
         progress(0.5, "half")
         until(lambda: store.told, SOON_S, "the report")
     assert store.told == [("job", 1, 0.5, "half")]
@@ -49,7 +49,7 @@ def test_a_report_waits_for_a_store_that_is_out_of_reach(store):
 def test_a_newer_report_is_told_instead_of_one_that_could_not_be(store):
     store.is_open.clear()
     store.to_raise = [OperationalError("update", {}, Exception("locked"))]
-    with ProgressWriter(store).attempt("job", 1) as progress:
+    with ProgressWriter(store).track_attempt("job", 1) as progress:
         progress(0.5, "half")
         progress(0.6, "more")
         store.is_open.set()
@@ -61,10 +61,10 @@ def test_a_newer_report_is_told_instead_of_one_that_could_not_be(store):
 def test_whatever_the_store_raises_later_jobs_are_told_of(store, error):
     writer = ProgressWriter(store)
     store.to_raise = [error]
-    with writer.attempt("first", 1) as progress:
+    with writer.track_attempt("first", 1) as progress:
         progress(0.5, "half")
         until(lambda: not store.to_raise, SOON_S, "the error")
-    with writer.attempt("second", 1) as progress:
+    with writer.track_attempt("second", 1) as progress:
         progress(0.25, "a quarter")
         until(lambda: store.told, SOON_S, "the report")
     assert store.told == [("second", 1, 0.25, "a quarter")]
@@ -74,9 +74,9 @@ def test_what_was_not_told_of_a_job_that_has_ended_is_not_told_of_the_next(store
     writer = ProgressWriter(store)
     store.is_open.clear()
     store.to_raise = [OperationalError("update", {}, Exception("locked"))]
-    with writer.attempt("first", 1) as progress:
+    with writer.track_attempt("first", 1) as progress:
         progress(0.5, "half")
-    with writer.attempt("second", 1) as progress:
+    with writer.track_attempt("second", 1) as progress:
         store.is_open.set()
         progress(0.25, "a quarter")
         until(lambda: store.told, SOON_S, "the report")

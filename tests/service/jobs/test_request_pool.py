@@ -12,7 +12,7 @@ from typing import Any
 
 import pytest
 
-from service.jobs.processes.request_pool import Busy, GivenUp, Gone, Limits, Lost, RequestPool
+from service.jobs.processes.request_pool import Busy, ClientGone, GivenUp, Limits, ProcessLost, RequestPool
 from service.jobs.processes.request_queue import Call, RequestQueue
 from tests.support.service.request_pool import never
 
@@ -46,7 +46,7 @@ def test_a_call_that_is_left_or_takes_too_long_ends_its_process(pool: RequestPoo
     async def all_of_it() -> None:
         assert await pool.call(never, "acme", math.hypot, 3.0, 4.0) == 5.0
         began = time.monotonic()
-        with pytest.raises(Gone):
+        with pytest.raises(ClientGone):
             await pool.call(at_once, "acme", time.sleep, 30.0)
         with pytest.raises(GivenUp, match="time"):
             await pool.call(never, "acme", time.sleep, 30.0)
@@ -98,14 +98,14 @@ def test_requests_for_the_same_wait_for_one_call_until_the_last_has_gone(pool: R
             pool.call(never, "acme", time.sleep, 0.6),
             return_exceptions=True,
         )
-        assert isinstance(left, Gone)
+        assert isinstance(left, ClientGone)
         assert had is None
         assert await pool.call(never, "acme", os.getpid) == pid
 
         both = await asyncio.gather(
             *(pool.call(at_once, "acme", time.sleep, 0.9) for _ in range(2)), return_exceptions=True
         )
-        assert [type(one) for one in both] == [Gone, Gone]
+        assert [type(one) for one in both] == [ClientGone, ClientGone]
         assert await pool.call(never, "acme", os.getpid) != pid
 
     asyncio.run(all_of_it())
@@ -118,7 +118,7 @@ def _no_process(*_settings: Any) -> None:
 def test_a_process_that_cannot_start_is_no_fault_of_the_call() -> None:
     pool = RequestPool("pool", _no_process, (0,), Limits(1.0))
     try:
-        with pytest.raises(Lost):
+        with pytest.raises(ProcessLost):
             asyncio.run(pool.call(never, "acme", math.hypot, 3.0, 4.0))
     finally:
         pool.stop()
@@ -141,10 +141,10 @@ def test_long_calls_leave_a_process_to_short_ones() -> None:
         await asyncio.gather(*(pool.call(never, f"warm-{n}", math.hypot, 1.0, n) for n in range(6)))
         heavy = [asyncio.ensure_future(pool.call(never, f"tenant-{n % 4}", spin, 30.0 + n)) for n in range(8)]
         async with asyncio.timeout(60.0):  # processes that take the place of killed ones are started anew here
-            while pool.counts()["running_long"] == 0:
+            while pool.count_calls()["running_long"] == 0:
                 await asyncio.sleep(0.05)
         assert await pool.call(never, "fifth", math.hypot, 3.0, 4.0) == 5.0
-        assert pool.counts()["running_long"] <= 1
+        assert pool.count_calls()["running_long"] <= 1
         for task in heavy:
             task.cancel()
         await asyncio.gather(*heavy, return_exceptions=True)
@@ -191,7 +191,7 @@ def test_who_is_not_begun_in_time_is_told_so() -> None:
 def test_tenants_have_their_turns() -> None:
     queue = RequestQueue(max_long=1)
     for tenant, n in (("flood", 1), ("flood", 2), ("flood", 3), ("other", 4)):
-        queue.put(Call(math.hypot, (n,), tenant))
+        queue.add(Call(math.hypot, (n,), tenant))
     assert [queue.take(0.0).args[0] for _ in range(4)] == [1, 4, 2, 3]  # type: ignore[union-attr]
     assert queue.take(0.0) is None
 

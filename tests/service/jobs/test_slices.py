@@ -9,8 +9,8 @@ from service.error_messages import MAX_FAULTS
 from service.jobs import faults
 from service.jobs.batches import slices
 from service.jobs.batches.plan import Plan
-from service.jobs.batches.reading import sample_id
-from service.jobs.batches.slices import Slices
+from service.jobs.batches.reading import make_sample_id
+from service.jobs.batches.slices import SliceSolver
 from service.jobs.batches.store import BatchStore
 from service.jobs.job_store import JobStore
 from service.jobs.processes.stop_flag import Solving
@@ -42,7 +42,7 @@ class Bench:
     def __init__(self, engine):
         self.engine = engine
         self.store, self.single = BatchStore(engine), JobStore(engine)
-        self.slices = Slices(self.store, Solving(), faults.out_of_memory(1))
+        self.slices = SliceSolver(self.store, Solving(), faults.make_out_of_memory(1))
 
     def batch(self, *seeds, problem=PROBLEM, reuse=False, tenant=""):
         plan = Plan(problem, ["/seed"], [list(seeds)], True, ["size"], reuse)
@@ -62,7 +62,7 @@ class Bench:
     def ended(self, batch):
         """The batch, and of each sample the type of its error."""
         now = self.store.get(batch.id)
-        return now, [None if row.error is None else json.loads(row.error)["type"] for row in self.store.table(now)]
+        return now, [None if row.error is None else json.loads(row.error)["type"] for row in self.store.load_rows(now)]
 
 
 @pytest.fixture
@@ -102,8 +102,8 @@ def test_a_contradiction_that_only_the_solver_sees_fails_its_sample(bench):
 
 def test_whatever_is_raised_ends_one_sample_only(bench, solver, monkeypatch):
     solver.raises = {1: ContradictionError(Contradiction("/seed", "no")), 2: ValueError(), 3: RecursionError()}
-    broken_for(monkeypatch, "digest", lambda problem: problem.seed == 5)
-    broken_for(monkeypatch, "_figures", lambda result: json.loads(result)["search"]["seed"] == 6)
+    broken_for(monkeypatch, slices.hash_problem, lambda problem: problem.seed == 5)
+    broken_for(monkeypatch, slices._extract_figures, lambda result: json.loads(result)["search"]["seed"] == 6)
     batch = bench.batch(*range(7))
     assert set(bench.run()) == {"slice"}
     now, errors = bench.ended(batch)
@@ -111,16 +111,15 @@ def test_whatever_is_raised_ends_one_sample_only(bench, solver, monkeypatch):
     assert (now.status.value, now.succeeded, now.failed) == ("succeeded", 2, 5)
 
 
-def broken_for(monkeypatch, name, which):
+def broken_for(monkeypatch, sound, which):
     """A function of the slices has a defect where its first argument is such."""
-    sound = getattr(slices, name)
 
     def broken(first, *others):
         if which(first):
             raise TypeError("a defect")
         return sound(first, *others)
 
-    monkeypatch.setattr(slices, name, broken)
+    monkeypatch.setattr(slices, sound.__name__, broken)
 
 
 def test_a_plan_that_takes_too_much_memory_fails_its_batch(bench, solver, monkeypatch):
@@ -157,15 +156,15 @@ def test_a_plan_has_the_memory_of_those_that_are_kept(bench, solver, monkeypatch
 
 def test_what_takes_too_much_memory_fails_alone(bench, solver, monkeypatch):
     """Statements are read ahead, to look for their answers together; those before it are not blamed."""
-    read = slices.digest
+    read = slices.hash_problem
 
     def read_alone(problem):
         if problem.seed == 3:
             raise MemoryError
         return read(problem)
 
-    monkeypatch.setattr(slices, "digest", read_alone)
-    monkeypatch.setattr("service.jobs.batches.store.SHARES", 1)
+    monkeypatch.setattr(slices, "hash_problem", read_alone)
+    monkeypatch.setattr("service.jobs.batches.store.MAX_SHARES", 1)
     solver.raises = {6: MemoryError()}
     batch = bench.batch(*range(8), reuse=True)
     assert bench.run() == ["out of memory", "out of memory", "slice"]
@@ -184,10 +183,10 @@ def results(bench, batch):
 
 def test_equal_samples_are_solved_once_and_stored_once(bench, solver, monkeypatch):
     """Within those whose answers are looked for together, later in the slice, and in a later slice of the batch."""
-    monkeypatch.setattr("service.jobs.batches.store.SHARES", 1)
+    monkeypatch.setattr("service.jobs.batches.store.MAX_SHARES", 1)
     monkeypatch.setattr(slices, "SLICE_S", 60.0)
-    monkeypatch.setattr(slices, "MOST", 3 * slices.LOOKED_UP)
-    later, slice_after = 2 * slices.LOOKED_UP, 3 * slices.LOOKED_UP
+    monkeypatch.setattr(slices, "MAX_SAMPLES", 3 * slices.LOOKUP_GROUP_SIZE)
+    later, slice_after = 2 * slices.LOOKUP_GROUP_SIZE, 3 * slices.LOOKUP_GROUP_SIZE
     seeds = [5, 5, *range(10, 10 + slice_after)]
     seeds[later], seeds[slice_after] = 5, 5
     batch = bench.batch(*seeds, reuse=True)
@@ -198,7 +197,7 @@ def test_equal_samples_are_solved_once_and_stored_once(bench, solver, monkeypatc
     assert [(n, row) for n, row in enumerate(stored) if row != (True, None)] == [(n, (False, 0)) for n in again]
     now, errors = bench.ended(batch)
     assert (now.cached, set(errors)) == (3, {None})
-    jobs = [bench.single.get(sample_id(batch.id, n)) for n in (0, *again)]
+    jobs = [bench.single.get(make_sample_id(batch.id, n)) for n in (0, *again)]
     assert [job.cached for job in jobs] == [False, True, True, True]
     assert {job.result for job in jobs} == {jobs[0].result}
     assert json.loads(jobs[0].result)["search"]["seed"] == 5
@@ -206,7 +205,7 @@ def test_equal_samples_are_solved_once_and_stored_once(bench, solver, monkeypatc
 
 def test_an_answer_of_another_batch_is_copied_once(bench, solver, monkeypatch):
     """It may be removed there."""
-    monkeypatch.setattr("service.jobs.batches.store.SHARES", 1)
+    monkeypatch.setattr("service.jobs.batches.store.MAX_SHARES", 1)
     first = bench.batch(1, reuse=True)
     bench.run()
     second = bench.batch(1, 1, 1, reuse=True)
@@ -218,7 +217,7 @@ def test_an_answer_of_another_batch_is_copied_once(bench, solver, monkeypatch):
     assert results(bench, anew) == [(True, None)] * 2
     assert [bench.store.get(batch.id).cached for batch in (first, second, anew, theirs)] == [0, 3, 0, 0]
     assert bench.store.delete(first.id)
-    assert json.loads(bench.single.get(sample_id(second.id, 2)).result)["search"]["seed"] == 1
+    assert json.loads(bench.single.get(make_sample_id(second.id, 2)).result)["search"]["seed"] == 1
 
 
 def test_of_many_faults_of_a_sample_some_are_stored(bench):
@@ -231,12 +230,12 @@ def test_of_many_faults_of_a_sample_some_are_stored(bench):
     assert told["detail"].endswith("/points/0/y: This field is required.")
 
 
-@pytest.mark.parametrize(("length", "kept"), [(1000, 4), (slices.PLANS_SIZE // 3, 2), (slices.PLANS_SIZE, 1)])
+@pytest.mark.parametrize(("length", "kept"), [(1000, 4), (slices.MAX_PLANS_SIZE // 3, 2), (slices.MAX_PLANS_SIZE, 1)])
 def test_plans_are_kept_as_far_as_they_are_small(bench, solver, monkeypatch, length, kept):
     reads, read = [], slices.Plan.read
     monkeypatch.setattr(slices.Plan, "read", lambda *texts: reads.append(1) or read(*texts))
-    monkeypatch.setattr("service.jobs.batches.store.SHARES", 1)
-    monkeypatch.setattr(slices, "MOST", 1)
+    monkeypatch.setattr("service.jobs.batches.store.MAX_SHARES", 1)
+    monkeypatch.setattr(slices, "MAX_SAMPLES", 1)
     for n in range(4):
         bench.batch(n, n + 10, problem={**PROBLEM, "kind": "motion", "seed": 1} | {"note": "a" * length})
     assert bench.run() == ["slice"] * 8

@@ -43,12 +43,12 @@ def explicit(value: Any) -> Any:
 def keeps(statement: dict[str, Any]) -> ProblemBase:
     """What is stored of a statement is read as the same, with the same faults; so is what is shown of it."""
     problem = parse_problem(statement)
-    stored = requests.written(problem)
-    read = requests.read(problem.kind, stored)
+    stored = requests.dump_problem(problem)
+    read = requests.load_stored_problem(problem.kind, stored)
     assert read == problem
     assert explicit(read) == explicit(problem)
     assert read.find_contradictions() == problem.find_contradictions()
-    shown = json.loads(requests.filled_in(problem.kind, stored))
+    shown = json.loads(requests.fill_defaults(problem.kind, stored))
     again = parse_problem(shown)
     assert again == problem
     assert again.find_contradictions() == problem.find_contradictions(), (
@@ -112,7 +112,7 @@ def test_a_stock_is_a_statement() -> None:
 
 def test_a_problem_of_an_earlier_version_is_shown_as_it_was_stated() -> None:
     stored = '{"kind":"motion","former":1}'
-    assert requests.filled_in("motion", stored) == stored
+    assert requests.fill_defaults("motion", stored) == stored
 
 
 QUICK = {name: kind.examples[name == "path"] for name, kind in KINDS.items()}

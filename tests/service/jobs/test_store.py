@@ -14,16 +14,16 @@ from service.jobs.cluster.leases import LeaseStore
 from service.jobs.job_store import JobStore
 from service.jobs.store.admission import KeyReused, QueueFull, Repeatable
 from service.jobs.store.database import LaterTables, connect, upgrade
-from service.jobs.store.schema import StoreClock, hosts, jobs, metadata, now
-from service.jobs.store.statements import CLAIM, LEASE_S, MAX_CRASHES, MAX_KILLS, new_row
-from service.jobs.store.states import FINISHED, MOVES, Cost, Status
+from service.jobs.store.schema import StoreClock, format_now, hosts, jobs, metadata
+from service.jobs.store.statements import LEASE_S, MAX_CRASHES, MAX_KILLS, UPDATE_CLAIMED, build_row
+from service.jobs.store.states import FINISHED_STATES, MOVES, Cost, Status
 from tests.cluster.backend import CHOSEN
 
 ANY = tuple(Cost)
 
 ACTIONS = {
     "claim": lambda store, job, attempt: store.take("new", ANY) is not None,
-    "succeed": lambda store, job, attempt: store.succeed(job, attempt, "{}"),
+    "succeed": lambda store, job, attempt: store.complete(job, attempt, "{}"),
     "fail": lambda store, job, attempt: store.fail(job, attempt, "{}"),
     "requeue": lambda store, job, attempt: store.requeue(job, "old"),
     "give_up": lambda store, job, attempt: store.give_up(job, "old", "{}"),
@@ -65,7 +65,7 @@ def job(store):
 def claim(store, job_id, mark):
     """Claim this job as :meth:`JobStore.take` does, whosever turn it is; its row, or None."""
     with store._engine.begin() as connection:
-        return connection.execute(CLAIM, {"job": job_id, "mark": mark, "moment": now()}).one_or_none()
+        return connection.execute(UPDATE_CLAIMED, {"job": job_id, "mark": mark, "moment": format_now()}).one_or_none()
 
 
 def put(engine, job_id, status, attempt=1):
@@ -88,7 +88,7 @@ def test_a_move_happens_from_its_sources_only(engine, store, job, name, status):
     if moved:
         assert after.status == MOVES[name].target
         assert after.revision == before.revision + 1
-        assert (after.finished_at is not None) == (after.status in FINISHED)
+        assert (after.finished_at is not None) == (after.status in FINISHED_STATES)
     else:
         assert after == before
 
@@ -144,21 +144,21 @@ def test_many_who_ask_at_once_get_a_job_each(store):
 def test_a_job_whose_worker_keeps_dying_is_given_up(store, job):
     for crash in range(MAX_CRASHES):
         claim(store, job.id, "claim")
-        assert store.crashed(job.id, "claim", killed=False) == Status.QUEUED
+        assert store.record_crash(job.id, "claim", killed=False) == Status.QUEUED
         assert store.get(job.id).crashes == crash + 1
     claim(store, job.id, "claim")
-    assert store.crashed(job.id, "claim", killed=False) == Status.FAILED
+    assert store.record_crash(job.id, "claim", killed=False) == Status.FAILED
     given_up = store.get(job.id)
     assert "/problems/worker-died" in given_up.error
     assert given_up.finished_at is not None
-    assert store.crashed(job.id, "claim", killed=False) is None
+    assert store.record_crash(job.id, "claim", killed=False) is None
 
 
 def test_the_death_of_the_worker_of_a_cancelled_job_changes_nothing(store, job):
     claim(store, job.id, "claim")
     store.cancel(job.id)
     before = store.get(job.id)
-    assert store.crashed(job.id, "claim", killed=False) is None
+    assert store.record_crash(job.id, "claim", killed=False) is None
     assert not store.requeue(job.id, "claim")
     assert store.get(job.id) == before
 
@@ -168,7 +168,7 @@ def test_a_late_write_does_not_bring_a_deleted_job_back(store, job):
     assert not store.delete(job.id), "a running job must not be removed"
     store.cancel(job.id)
     assert store.delete(job.id)
-    assert not store.succeed(job.id, claimed.attempt, "{}")
+    assert not store.complete(job.id, claimed.attempt, "{}")
     assert store.get(job.id) is None
 
 
@@ -176,7 +176,7 @@ def test_running_jobs_are_queued_again_before_new_ones(store):
     ids = [store.create(tenant="", kind="motion", label=None, problem="{}").id for _ in range(4)]
     claim(store, ids[0], "claim")
     claim(store, ids[2], "claim")
-    store.succeed(ids[2], 1, "{}")
+    store.complete(ids[2], 1, "{}")
     claim(store, ids[3], "claim")
     assert store.requeue_unfinished() == 3
     assert [store.take("mark", ANY).job_id for _ in range(3)] == [ids[0], ids[3], ids[1]]
@@ -322,7 +322,7 @@ def test_a_downgrade_undoes_the_upgrade(tmp_path):
 def test_jobs_of_an_older_store_are_kept(tmp_path):
     engine = connect(f"sqlite:///{tmp_path / 'jobs.sqlite3'}", durable=False)
     upgrade(engine, "0001")
-    row = {**new_row("", "motion", "old", "{}"), "status": "succeeded"}
+    row = {**build_row("", "motion", "old", "{}"), "status": "succeeded"}
     del row["tenant"], row["cost"]  # there were none yet
     with engine.begin() as connection:
         connection.execute(insert(jobs).values(row))
@@ -355,14 +355,14 @@ def test_tables_of_a_later_version_are_left_alone(tmp_path):
 
 
 def test_who_does_not_know_whether_it_has_been_given_a_job_may_ask(store, job):
-    assert store.claimed("mine") is None
+    assert store.find_claim("mine") is None
     taken = store.take("mine", ANY)
-    assert store.claimed("mine") == taken
+    assert store.find_claim("mine") == taken
     assert (taken.job_id, taken.attempt, taken.problem, taken.cost) == (job.id, 1, job.problem, Cost.LONG)
-    assert store.claimed("another's") is None
+    assert store.find_claim("another's") is None
     assert store.take("another's", ANY) is None
-    assert store.succeed(job.id, taken.attempt, "{}")
-    assert store.claimed("mine") is None
+    assert store.complete(job.id, taken.attempt, "{}")
+    assert store.find_claim("mine") is None
 
 
 @pytest.mark.parametrize("name", ["requeue", "give_up", "crashed"])
@@ -375,7 +375,7 @@ def test_an_executor_does_nothing_to_an_attempt_of_another(engine, store, leases
     late = {
         "requeue": lambda: store.requeue(job.id, "first"),
         "give_up": lambda: store.give_up(job.id, "first", "{}"),
-        "crashed": lambda: store.crashed(job.id, "first", killed=False),
+        "crashed": lambda: store.record_crash(job.id, "first", killed=False),
     }
     assert not late[name]()
     assert store.get(job.id) == before
@@ -387,7 +387,7 @@ def test_only_abandoned_jobs_are_taken_back(engine, store, leases):
         claim(store, job_id, f"claim of {job_id[-4:]}")
     assert leases.take_back(leases.expired()) == []
     overdue(engine, *ids)
-    store.succeed(ids[0], 1, "{}")
+    store.complete(ids[0], 1, "{}")
     assert leases.renew({f"claim of {ids[1][-4:]}": ids[1]}) == set()
     assert leases.take_back(leases.expired()) == [(ids[2], Status.QUEUED)]
     assert leases.take_back(leases.expired()) == []
@@ -408,9 +408,9 @@ def test_a_job_that_takes_its_hosts_with_it_is_given_up_in_the_end(engine, store
 def test_kills_are_forgiven_more_often_than_deaths(store, job):
     for n in range(MAX_CRASHES + 3):
         claim(store, job.id, f"claim {n}")
-        assert store.crashed(job.id, f"claim {n}", killed=True) == Status.QUEUED
+        assert store.record_crash(job.id, f"claim {n}", killed=True) == Status.QUEUED
     claim(store, job.id, "one more")
-    assert store.crashed(job.id, "one more", killed=False) == Status.FAILED
+    assert store.record_crash(job.id, "one more", killed=False) == Status.FAILED
 
 
 def test_claims_that_are_of_no_use_are_named(store, leases):
@@ -421,7 +421,7 @@ def test_claims_that_are_of_no_use_are_named(store, leases):
     for job_id in (cancelled, removed):
         store.cancel(job_id)
     store.delete(removed)
-    store.succeed(done, 1, "{}")
+    store.complete(done, 1, "{}")
     store.requeue(taken, taken)
     claim(store, taken, "another")
     assert leases.renew({job_id: job_id for job_id in ids}) == {waiting, cancelled, removed, taken}
@@ -435,14 +435,14 @@ def test_the_clock_of_the_store_is_the_time(engine):
 
 def test_hosts_are_there_as_long_as_they_say_so(engine, leases):
     assert leases.workers() == 0
-    leases.host_is_there("one", 2)
-    leases.host_is_there("two", 3)
-    leases.host_is_there("one", 1)
+    leases.record_host("one", 2)
+    leases.record_host("two", 3)
+    leases.record_host("one", 1)
     assert leases.workers() == 4
     with engine.begin() as connection:
         connection.execute(update(hosts).where(hosts.c.id == "two").values(seen_at=hosts.c.seen_at - 2 * LEASE_S))
     assert leases.workers() == 1
-    leases.host_is_gone("one")
+    leases.remove_host("one")
     assert leases.workers() == 0
 
 

@@ -23,7 +23,7 @@ LONG = {**PROBLEM, "positions": [{"x": 10.0 * n, "y": 1.0 * n * n, "angle": 9.0 
 @dataclass(eq=False)
 class Seat:
     ready: bool = True
-    begun: bool = True
+    is_settled: bool = True
 
 
 @pytest.fixture
@@ -80,9 +80,9 @@ def test_a_tenant_whose_jobs_turn_out_to_be_long_gets_the_last_lane(store):
     seats = [Seat(), Seat(), Seat()]
     turns = opened(store, seats, 2)
     assert [cost_for(turns, seat) for seat in seats] == [Cost.SHORT, Cost.SHORT, None]
-    assert not turns.outstayed(seats[0])
+    assert not turns.count_as_long(seats[0])
     assert cost_for(turns, seats[2]) is None, "one of them is short still"
-    assert not turns.outstayed(seats[1])
+    assert not turns.count_as_long(seats[1])
     assert cost_for(turns, seats[2]) == Cost.SHORT
 
 
@@ -119,7 +119,7 @@ def test_the_last_worker_that_is_ready_is_not_given_to_a_long_job(store):
 
 def test_long_jobs_need_not_wait_for_the_first_start_of_the_others(store):
     made(store, Cost.LONG)
-    seats = [Seat(), Seat(ready=False, begun=False)]
+    seats = [Seat(), Seat(ready=False, is_settled=False)]
     assert cost_for(opened(store, seats, 1), seats[0]) == Cost.LONG
 
 
@@ -129,11 +129,11 @@ def test_a_job_that_turns_out_to_be_long_gives_the_last_lane_back(store):
     seats = [Seat(), Seat()]
     turns = opened(store, seats, 1)
     assert [cost_for(turns, seat) for seat in seats] == [Cost.SHORT, Cost.LONG]
-    assert turns.outstayed(seats[0])
+    assert turns.count_as_long(seats[0])
     turns.done(seats[0])
     turns.done(seats[1])
     assert cost_for(turns, seats[0]) == Cost.SHORT
-    assert not turns.outstayed(seats[0]), "the other is free for short ones"
+    assert not turns.count_as_long(seats[0]), "the other is free for short ones"
 
 
 def test_a_free_lane_hears_of_a_job_at_once(store, monkeypatch):

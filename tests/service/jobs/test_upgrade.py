@@ -73,13 +73,13 @@ def test_jobs_of_the_time_before_batches_are_as_they_were(engine):
     assert all_jobs(engine) == [{**row, "batch": None, "digest": None} for row in old]
     single, store = JobStore(engine), BatchStore(engine)
     assert {single.get(job_id(status)).status for status in OLD} == {Status(status) for status in OLD}
-    assert len(single.page(tenant="a", limit=9)) == len(OLD)
+    assert len(single.list_page(tenant="a", limit=9)) == len(OLD)
     batch, shares = made(store)
-    assert store.answers(batch, ["one"]) == {}, "an answer of that time has no digest"
+    assert store.find_answers(batch, ["one"]) == {}, "an answer of that time has no digest"
     taken = [single.take(f"m{n}", [Cost.SHORT]) for n in range(3)]
     assert {claim.job_id for claim in taken} == {job_id("queued"), *shares}
-    assert single.succeed(job_id("queued"), 1, "{}", "one")
-    assert store.answers(batch, ["one"]) == {"one": "{}"}
+    assert single.complete(job_id("queued"), 1, "{}", "one")
+    assert store.find_answers(batch, ["one"]) == {"one": "{}"}
     assert single.requeue_unfinished() == 3
 
 
@@ -96,4 +96,4 @@ def test_a_downgrade_keeps_the_jobs_and_drops_the_batches(engine):
     assert all_jobs(engine) == old
     upgrade(engine)
     assert [row["id"] for row in all_jobs(engine)] == [row["id"] for row in old]
-    assert BatchStore(engine).page(tenant="a", limit=9, before=None) == []
+    assert BatchStore(engine).list_page(tenant="a", limit=9, before=None) == []

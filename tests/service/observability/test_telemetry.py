@@ -9,7 +9,7 @@ import httpx
 import pytest
 
 from service.jobs.cluster import worker_host
-from service.jobs.cluster.worker_host import HostError, show
+from service.jobs.cluster.worker_host import HostError, serve_metrics
 from service.observability.metrics import HostMetrics, Metrics
 from service.settings import Settings
 from tests.support.service.running import PROBLEM, SCRIPTED, SOON_S, RunningServer, until
@@ -144,12 +144,12 @@ def test_a_store_that_does_not_answer_costs_only_the_queue():
 def test_a_worker_host_shows_its_metrics_where_it_is_told_to():
     metrics = HostMetrics()
     metrics.watch(lambda: 2, lambda: 1)
-    metrics.attempt("succeeded", "motion", 0.25)
-    metrics.worker_restart("timeout")
+    metrics.count_attempt("succeeded", "motion", 0.25)
+    metrics.count_worker_restart("timeout")
     with socket.socket() as free:
         free.bind(("127.0.0.1", 0))
         port = free.getsockname()[1]
-    show(metrics, Settings(worker_metrics_port=port))
+    serve_metrics(metrics, Settings(worker_metrics_port=port))
     text = httpx.get(f"http://127.0.0.1:{port}/metrics").text
     for line in (
         "mechsynth_workers_ready 2.0",
@@ -162,12 +162,12 @@ def test_a_worker_host_shows_its_metrics_where_it_is_told_to():
     assert "process_resident_memory_bytes" in text
     assert "mechsynth_http" not in text
     with pytest.raises(HostError, match=f"port {port}.*MECHSYNTH_WORKER_METRICS_PORT"):
-        show(metrics, Settings(worker_metrics_port=port))
+        serve_metrics(metrics, Settings(worker_metrics_port=port))
 
 
 def test_a_worker_host_that_is_not_told_to_shows_nothing(monkeypatch):
     monkeypatch.setattr(worker_host, "start_http_server", lambda *_: pytest.fail("it listens"))
-    show(HostMetrics(), Settings())
+    serve_metrics(HostMetrics(), Settings())
 
 
 def durations(answer):

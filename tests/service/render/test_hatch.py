@@ -1,4 +1,4 @@
-"""The lid of docs/space.md through HTTP: it is answered, and where the frame leaves no room the answer says so."""
+"""The lid of docs/mechanisms/space.md through HTTP: designs, and a message where the frame leaves no room."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from tests.campaign import further
 from tests.support.fit.verdict import violations
 from tests.support.service.answers import finished
 
-PAGE = Path(__file__).parents[3] / "docs" / "space.md"
+PAGE = Path(__file__).parents[3] / "docs" / "mechanisms" / "space.md"
 
 
 def stated() -> tuple[dict[str, Any], dict[str, Any]]:

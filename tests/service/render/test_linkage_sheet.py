@@ -9,7 +9,7 @@ import pytest
 
 from service.render import export_design
 from service.render.checks import format_check, make_checks_block
-from service.units import symbols
+from service.units import list_symbols
 from synthesis.dispatch import solve
 from synthesis.model.answer import Check, Verification
 from synthesis.model.dimension import ANGLE, LENGTH
@@ -80,7 +80,7 @@ def test_a_value_that_misses_its_limit_does_not_read_like_the_limit(
 ) -> None:
     problem = parse_problem({"kind": "motion", "positions": POSITIONS})
     check = Check(name="longest_link", passed=passed, value=value, limit=limit, dimension=LENGTH)
-    assert format_check(check, symbols(problem)) == written
+    assert format_check(check, list_symbols(problem)) == written
     block, _ = make_checks_block(Verification(passed=passed, checks=[check]), problem)(0.0, 0.0, 370.0)
     words = list(ET.fromstring(block.write()).itertext())
     assert words[2:] == ([f"{written[0]}  (limit {written[1]})"] if written[0] else [])

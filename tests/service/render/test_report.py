@@ -11,7 +11,7 @@ import pytest
 from service.render.outline import MAX_ROWS, make_outline
 from service.render.page.numbers import format_length
 from service.render.report import POLICY, ReportedJob, report
-from service.units import symbols
+from service.units import list_symbols
 from synthesis.dispatch import solve
 from synthesis.registry import KINDS, list_examples, parse_problem
 
@@ -101,7 +101,7 @@ def test_the_report_of_each_kind_has_problem_answer_drawings_checks_and_dimensio
                 row[0].lower() == name and row[1] in ("✓ passed", "✗ failed") for row in page.rows if len(row) > 1
             )
     # Every number of the mechanism that is a row of its own is there, with its unit beside it.
-    units = symbols(problem)
+    units = list_symbols(problem)
     rows = [
         row for design in shown for row in make_outline(design.mechanism, units, leave_out={"type", "skeleton"}).rows
     ]
@@ -129,7 +129,7 @@ def test_long_lists_are_thinned_with_both_ends_and_say_so():
     problem = parse_problem(list_examples("cam")[0])
     result = solve(problem)
     (program,) = [
-        one for one in make_outline(result.designs[0].mechanism, symbols(problem)).lists if one.title == "Program"
+        one for one in make_outline(result.designs[0].mechanism, list_symbols(problem)).lists if one.title == "Program"
     ]
     table = result.designs[0].mechanism.program
     assert [head for head, _ in program.heads] == ["Angle", "S", "V", "A", "J"]

@@ -12,7 +12,7 @@ from service.render import NoSuchExport, export_design
 from service.render.outline import MAX_NUMBERS, format_name, format_value
 from service.render.page.numbers import format_angle, format_length
 from service.render.report import ReportedJob, report
-from service.units import symbols
+from service.units import list_symbols
 from synthesis.dispatch import solve
 from synthesis.model.dimension import (
     ACCELERATION,
@@ -231,7 +231,7 @@ EXAMPLES = [
 @pytest.mark.parametrize(("kind", "n"), EXAMPLES)
 def test_numbers_of_a_report_are_those_of_the_answer_with_their_units(kind, n):
     problem, result = solved(kind, n)
-    units = symbols(problem)
+    units = list_symbols(problem)
     page = Tables(report(problem, result, OCCASION, len(result.designs)))
     check_written(page.under("Problem", ""), problem, units)
     check_written(page.under("Search", ""), result.search, units)
@@ -266,7 +266,7 @@ def test_checks_say_what_they_measure(kind, n):
 @pytest.mark.parametrize(("kind", "n"), EXAMPLES)
 def test_checks_on_a_sheet_are_those_of_the_answer_with_their_units(kind, n):
     problem, result = solved(kind, n)
-    units = symbols(problem)
+    units = list_symbols(problem)
     for design in result.designs:
         try:
             drawing = ElementTree.fromstring(export_design(design, problem, "sheet", "svg"))
@@ -297,7 +297,7 @@ LEFT_OUT = {
 @pytest.mark.parametrize(("kind", "n"), EXAMPLES)
 def test_quantities_on_a_sheet_are_those_of_the_answer_with_their_units(kind, n):
     problem, result = solved(kind, n)
-    units = symbols(problem)
+    units = list_symbols(problem)
     for design in result.designs:
         drawing = ElementTree.fromstring(export_design(design, problem, "sheet", "svg"))
         blocks = [group for group in drawing.iter() if group.get("data-block") == "metrics"]

@@ -14,7 +14,7 @@ import uvicorn
 from service.observability.metrics import Metrics
 from service.observability.telemetry import Telemetry
 from service.server import connections
-from service.server.connections import IDLE_S, MOST_AHEAD, MOST_HEAD_BYTES, ImpatientProtocol
+from service.server.connections import IDLE_TIMEOUT_S, MAX_HEAD_BYTES, MAX_PIPELINED, ImpatientProtocol
 
 IDLE_HERE_S = 1
 REQUEST = b"GET / HTTP/1.1\r\nHost: x\r\n\r\n"
@@ -107,7 +107,7 @@ def test_an_idle_connection_is_closed(url):
 def test_clients_let_go_of_idle_connections_before_the_server_does():
     usual = httpx.Limits().keepalive_expiry
     assert usual is not None
-    assert usual < IDLE_S
+    assert usual < IDLE_TIMEOUT_S
 
 
 def received(connection):
@@ -168,7 +168,7 @@ def test_a_head_without_end_is_refused(url, metrics, flood):
 def test_a_head_that_is_just_small_enough_is_taken(url):
     spent = len("/again") + sum(map(len, ("Host", "x", "Connection", "close", "X")))
     begun = b"GET /again HTTP/1.1\r\nHost: x\r\nConnection: close\r\nX: "
-    for room, status in ((MOST_HEAD_BYTES - spent, b"200"), (MOST_HEAD_BYTES - spent + 1, b"431")):
+    for room, status in ((MAX_HEAD_BYTES - spent, b"200"), (MAX_HEAD_BYTES - spent + 1, b"431")):
         assert sent_until_closed(url, begun + b"a" * room + b"\r\n\r\n", b"", 0).startswith(b"HTTP/1.1 " + status)
 
 
@@ -207,7 +207,7 @@ def test_noise_behind_a_request_is_told_so_too(url):
     "half", [b"GET /again", b"GET /again HTTP/1.1\r\nX", CHUNKED, REQUEST.replace(b"/ ", b"/again ") + b"GET /a"]
 )
 def test_a_request_that_is_not_complete_in_time_is_counted_once(url, metrics, monkeypatch, half):
-    monkeypatch.setattr(connections, "REQUEST_S", 0.3)
+    monkeypatch.setattr(connections, "REQUEST_TIMEOUT_S", 0.3)
     with socket.create_connection(url, timeout=10) as connection:
         connection.sendall(half)
         answer = received(connection)
@@ -220,8 +220,8 @@ def test_a_request_that_is_not_complete_in_time_is_counted_once(url, metrics, mo
 def test_requests_ahead_of_their_answers_are_answered_in_turn(url):
     request = REQUEST.replace(b"/ ", b"/again ")
     with socket.create_connection(url, timeout=10) as connection:
-        connection.sendall(request * (MOST_AHEAD - 1) + request.replace(b"Host: x", b"Host: x\r\nConnection: close"))
-        assert received(connection).count(b"HTTP/1.1 200") == MOST_AHEAD
+        connection.sendall(request * (MAX_PIPELINED - 1) + request.replace(b"Host: x", b"Host: x\r\nConnection: close"))
+        assert received(connection).count(b"HTTP/1.1 200") == MAX_PIPELINED
 
 
 def test_a_flood_of_requests_ends_with_its_connection(url, monkeypatch):
@@ -235,5 +235,5 @@ def test_a_flood_of_requests_ends_with_its_connection(url, monkeypatch):
     monkeypatch.setattr(ImpatientProtocol, "on_response_complete", watched)
     answer = sent_until_closed(url, b"", b"GET /again HTTP/1.1\r\n\r\n" * 100, pieces=2000)
     assert answer.count(b"HTTP/1.1 200") < 200_000
-    assert max(ahead, default=0) <= MOST_AHEAD
+    assert max(ahead, default=0) <= MAX_PIPELINED
     assert httpx.get(f"http://127.0.0.1:{url[1]}/again").text == "ok"

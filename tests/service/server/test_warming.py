@@ -11,9 +11,9 @@ from numba import njit
 
 from kinematics.kernel_marks import is_compiled
 from service.jobs.processes.stop_flag import Solving
-from service.jobs.workers.compile_watch import SAID, FirstUse
+from service.jobs.workers.compile_watch import COMPILING_TEXT, FirstUse
 from service.kernels import KernelsState, Progress
-from service.server.precompile import every_part
+from service.server.precompile import list_parts
 from synthesis.registry import KINDS
 from tests.support.service.running import ROOT, RunningServer, alive, until, workers_of
 
@@ -44,30 +44,33 @@ def heard():
 
 
 def test_a_job_that_compiles_says_so_and_goes_on_with_what_it_said(heard):
-    with FirstUse(Solving()).told(lambda fraction, message: heard.append((fraction, message))) as progress:
+    with FirstUse(Solving()).watch_progress(lambda fraction, message: heard.append((fraction, message))) as progress:
         progress(0.3, "searching")
         assert njit(quick)(1.0) == 2.0
         progress(0.6, "verifying")
-    assert heard == [(0.3, "searching"), (0.3, SAID), (0.3, "searching"), (0.6, "verifying")]
+    assert heard == [(0.3, "searching"), (0.3, COMPILING_TEXT), (0.3, "searching"), (0.6, "verifying")]
 
 
 def test_what_is_compiled_inside_a_kernel_is_said_once_and_of_no_other_thread(heard):
     inner = njit(quick)
     outer = njit(lambda x: inner(x) + 1.0)
-    with FirstUse(Solving()).told(lambda fraction, message: heard.append(message)):
+    with FirstUse(Solving()).watch_progress(lambda fraction, message: heard.append(message)):
         other = threading.Thread(target=lambda: njit(quick)(2.0))
         other.start()
         other.join()
         assert heard == []
         outer(1.0)
     njit(quick)(1.0)
-    assert heard == [SAID]
+    assert heard == [COMPILING_TEXT]
 
 
 def test_compilation_is_not_the_solvers_time():
     solving = Solving()
     during = []
-    with solving.at_work(), FirstUse(solving).told(lambda fraction, message: during.append(solving.seconds)):
+    with (
+        solving.track_work(),
+        FirstUse(solving).watch_progress(lambda fraction, message: during.append(solving.seconds)),
+    ):
         time.sleep(0.05)
         before = solving.seconds
         began = time.monotonic()
@@ -86,13 +89,13 @@ def test_what_is_compiled_is_known_once_somebody_has_looked():
     assert state.progress == Progress(compiled=1, total=3)
     assert state.has("dwell")
     assert not state.has("analysis")
-    state.compiled("analysis")
+    state.note_compiled("analysis")
     assert state.progress == Progress(compiled=2, total=3)
     assert state.has("analysis")
     assert not state.has("path")
-    assert not state.ended
-    state.end()
-    assert state.ended
+    assert not state.is_ended
+    state.note_end()
+    assert state.is_ended
     assert not state.has("path")
 
 
@@ -109,7 +112,7 @@ def test_what_cannot_be_compiled_keeps_nothing_else_from_it(tmp_path):
 def test_a_server_says_how_many_parts_are_compiled(server):
     kernels = until(lambda: server.client.get("/readyz").json()["kernels"], 30.0)
     assert kernels["total"] == len(KINDS) + 3
-    assert kernels["compiled"] == sum(is_compiled(part) for part in every_part())
+    assert kernels["compiled"] == sum(is_compiled(part) for part in list_parts())
 
 
 @pytest.mark.campaign
@@ -132,7 +135,7 @@ def test_a_first_start_takes_jobs_while_it_compiles_and_stops_in_good_order(tmp_
             return shown if shown["status"] in ("succeeded", "failed") else None
 
         assert until(ended, 300.0)["status"] == "succeeded"
-        assert SAID in messages
+        assert COMPILING_TEXT in messages
         assert "compiling kernels in the background" in running.log_path.read_text()
         children = workers_of(running.process.pid)
         assert len(children) > 1

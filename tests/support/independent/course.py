@@ -1,4 +1,4 @@
-"""The straight lines through points, and how far a curve goes from them (docs/path.md)."""
+"""The straight lines through points, and how far a curve goes from them (docs/tasks/path.md)."""
 
 from __future__ import annotations
 

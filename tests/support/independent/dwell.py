@@ -1,4 +1,4 @@
-"""Answers whose output rests (docs/dwell.md): where it moves least, and for how long it stays within the tolerance."""
+"""Answers whose output rests (docs/tasks/dwell.md): where it moves least, and how long it stays within tolerance."""
 
 from __future__ import annotations
 

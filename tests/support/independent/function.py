@@ -1,4 +1,4 @@
-"""Answers whose output follows the input by a function or by pairs (docs/function.md)."""
+"""Answers whose output follows the input by a function or by pairs (docs/tasks/function.md)."""
 
 from __future__ import annotations
 

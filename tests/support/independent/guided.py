@@ -1,4 +1,4 @@
-"""Answers that guide a point or carry a body: where they meet their targets, and what lies between (docs/path.md)."""
+"""Answers that guide a point or a body: errors at their targets and between them (docs/tasks/path.md)."""
 
 from __future__ import annotations
 

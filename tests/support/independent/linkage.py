@@ -1,4 +1,4 @@
-"""What answers with linkages state, measured: lengths, reach, box, transmission angles, quality (docs/ranking.md)."""
+"""Measured values of linkages: lengths, reach, box, transmission angles, quality (docs/methods/ranking.md)."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Answers whose output goes to and fro in unequal times (docs/quick_return.md)."""
+"""Answers whose output goes to and fro in unequal times (docs/tasks/quick_return.md)."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What a client fixes of the two sides of a linkage that carries a body, read off its joints (docs/motion.md)."""
+"""What a client fixes of the two sides of a linkage that carries a body, read off its joints (docs/tasks/motion.md)."""
 
 from __future__ import annotations
 

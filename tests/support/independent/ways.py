@@ -1,4 +1,4 @@
-"""Answers that lead a point along a line, or a body along a curve (docs/straight_line.md, parallel_motion.md)."""
+"""Answers that lead a point along a line, or a body along a curve (docs/tasks/straight_line.md, parallel_motion.md)."""
 
 from __future__ import annotations
 

@@ -2,7 +2,7 @@
 
 import synthesis.analyses  # noqa: F401  (for its loading alone)
 from service.jobs.processes.limits import use_one_thread
-from service.jobs.processes.parent_death import forget_parent
+from service.jobs.processes.parent_death import clear_parent_pid
 
 use_one_thread()
-forget_parent()
+clear_parent_pid()

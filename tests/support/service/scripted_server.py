@@ -219,7 +219,7 @@ def import_core_only():
     """Let the processes that analyse import the core and not warm it up: few of these tests analyse anything."""
     from service.answers import desk
 
-    desk.TEMPLATE = "tests.support.service.cold_template"
+    desk.TEMPLATE_MODULE = "tests.support.service.cold_template"
 
 
 if __name__ == "__main__":

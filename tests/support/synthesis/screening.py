@@ -9,7 +9,7 @@ from synthesis.model.linkage.answer import LinkageDesign
 
 
 def excess_of(design: LinkageDesign, stated: list[dict[str, float]], size: float) -> float:
-    """What the body travels and turns more than is needed, by the design's metrics and the text of docs/ranking.md."""
+    """Excess travel and turning of the body, by the design's metrics and docs/methods/ranking.md."""
     needed = sum(math.dist((p["x"], p["y"]), (q["x"], q["y"])) for p, q in pairwise(stated))
     turn = sum(abs(math.remainder(q["angle"] - p["angle"], 360.0)) for p, q in pairwise(stated))
     metrics = design.metrics

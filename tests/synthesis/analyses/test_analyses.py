@@ -172,7 +172,7 @@ def test_a_slider_runs_in_time_by_lengths():
 @pytest.mark.parametrize("mechanism", [FOURBAR, stated("stephenson_2 driven by its input")], ids=["dyads", "class III"])
 def test_a_run_in_time_that_turns_back_passes_the_same_positions_again(mechanism):
     """It stands still at 0.5 s; before and after, positions and accelerations are the same, velocities opposite."""
-    start = math.degrees(parse_request({"mechanism": mechanism}).mechanism.mechanism().reference_input)
+    start = math.degrees(parse_request({"mechanism": mechanism}).mechanism.build_mechanism().reference_input)
     found = answer(mechanism, time={"start": 0.0, "end": 1.0, "step": 0.05}, at=start, speed=0.02, acceleration=-0.04)
     assert all(found["valid"])
     assert found["input_angle"][10] == pytest.approx(max(found["input_angle"]))

@@ -233,7 +233,7 @@ def right_or_refused(statement, steps=72):
     begun = time.process_time()
     try:
         request = parse_request(body)
-        mechanism = request.mechanism.mechanism()
+        mechanism = request.mechanism.build_mechanism()
         if mechanism.has_slide_input:
             request = parse_request({"mechanism": statement})
         found = request.build_answer()
@@ -320,7 +320,7 @@ def test_gears_count_full_turns_of_the_stated_input(reference, with_skeleton):
     if reference is not None:
         statement["reference_input_angle"] = reference
     if with_skeleton and reference is not None:
-        bare = parse_request({"mechanism": statement}).mechanism.mechanism()
+        bare = parse_request({"mechanism": statement}).mechanism.build_mechanism()
         statement["skeleton"] = by_skeleton(bare)["skeleton"]
     for at in (30.0, 200.0, 390.0, -160.0, 1000.0):
         found = parse_request({"mechanism": statement, "motion": {"at": at}}).build_answer()
@@ -332,6 +332,6 @@ def test_a_wild_gear_ratio_is_driven_but_not_searched():
     found = parse_request({"mechanism": STATED["fivebar, a wild ratio"]}).build_answer()
     assert found["circuits"] == []
     assert any(note.startswith("circuits, toggles, limits: ") for note in found["notes"])
-    mechanism = parse_request({"mechanism": STATED["fivebar, a wild ratio"]}).mechanism.mechanism()
+    mechanism = parse_request({"mechanism": STATED["fivebar, a wild ratio"]}).mechanism.build_mechanism()
     with pytest.raises(KinematicsError, match="more than 1000 times"):
         find_branches(mechanism)

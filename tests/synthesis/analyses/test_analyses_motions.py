@@ -30,21 +30,21 @@ def test_nearly_all_families_are_driven():
 )
 def test_a_motion_that_cannot_be_meant_is_refused_at_its_field(request_, motion, path):
     stated = {**request_.model_json_schema()["examples"][0], "motion": motion}
-    assert path in [place for place, _ in request_.model_validate(stated).faults()]
+    assert path in [place for place, _ in request_.model_validate(stated).find_errors()]
 
 
 @pytest.mark.parametrize("request_", DRIVEN, ids=lambda model: model.__name__)
 def test_the_documented_example_has_no_faults(request_):
-    assert request_.example().faults() == []
+    assert request_.build_example().find_errors() == []
 
 
 @pytest.mark.parametrize("family", list_families(), ids=lambda family: family.request.__name__)
 def test_a_default_that_is_written_out_states_nothing(family):
-    request = family.request.example()
+    request = family.request.build_example()
     written = family.request.model_validate(request.model_dump(mode="json", by_alias=True))
     assert written == request
-    assert written.faults() == request.faults() == []
-    assert to_json(written.answer()) == to_json(request.answer())
+    assert written.find_errors() == request.find_errors() == []
+    assert to_json(written.build_answer()) == to_json(request.build_answer())
 
 
 @pytest.mark.parametrize(

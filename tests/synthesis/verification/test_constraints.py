@@ -2,7 +2,7 @@
 
 All goes through ``solve(parse_problem(...))``. One statement holds every constraint in a form that any linkage meets,
 another one in a form that none can meet; classes of fourbars and rotation, which exclude linkages, come one by one.
-What is ordered by is restated here from docs/ranking.md.
+What is ordered by is restated here from docs/methods/ranking.md.
 """
 
 from __future__ import annotations

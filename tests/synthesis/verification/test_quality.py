@@ -1,4 +1,4 @@
-"""Quality is the one that docs/ranking.md states, for every kind: recomputed here from the skeleton of each answer."""
+"""Quality of every kind agrees with docs/methods/ranking.md: recomputed here from the skeleton of each answer."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ def joints_of(mechanism: Any) -> dict[str, complex]:
 
 
 def restated(design: Any, task: float) -> float:
-    """Quality by the text of docs/ranking.md, from joints and links alone."""
+    """Quality by the text of docs/methods/ranking.md, from joints and links alone."""
     joints, skeleton = joints_of(design.mechanism), design.mechanism.skeleton
     links = design.mechanism.links if isinstance(design.mechanism.links, dict) else dict(design.mechanism.links)
     lengths = [length for length in links.values() if length > 0.0]

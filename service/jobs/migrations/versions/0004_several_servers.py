@@ -8,17 +8,17 @@ down_revision = "0003"
 branch_labels = None
 depends_on = None
 
-UNFINISHED = ("queued", "running")
+UNFINISHED_STATES = ("queued", "running")
 
 # Whatever process moves a job from one state to another: who listens is told its id when the move is stored.
-TELL = """
+NOTIFY_FUNCTION = """
 CREATE FUNCTION tell_of_job() RETURNS trigger LANGUAGE plpgsql AS $$
 BEGIN
     PERFORM pg_notify('mechsynth_jobs', NEW.id);
     RETURN NULL;
 END $$
 """
-TELL_OF_MOVES = """
+MOVES_TRIGGER = """
 CREATE TRIGGER jobs_tell AFTER UPDATE OF status ON jobs FOR EACH ROW
 WHEN (OLD.status IS DISTINCT FROM NEW.status) EXECUTE FUNCTION tell_of_job()
 """
@@ -35,9 +35,11 @@ def upgrade() -> None:
         sa.Column("seen_at", sa.Float, nullable=False),
     )
     if op.get_bind().dialect.name == "postgresql":
-        op.create_index("jobs_by_due_at", "jobs", ["due_at"], postgresql_where=sa.column("status").in_(UNFINISHED))
-        op.execute(TELL)
-        op.execute(TELL_OF_MOVES)
+        op.create_index(
+            "jobs_by_due_at", "jobs", ["due_at"], postgresql_where=sa.column("status").in_(UNFINISHED_STATES)
+        )
+        op.execute(NOTIFY_FUNCTION)
+        op.execute(MOVES_TRIGGER)
 
 
 def downgrade() -> None:

@@ -8,17 +8,17 @@ down_revision = "0004"
 branch_labels = None
 depends_on = None
 
-QUEUED = sa.text("status = 'queued'")
+QUEUED_CONDITION = sa.text("status = 'queued'")
 
 # Whatever process puts a job into the queue: worker hosts that have nothing to do are told when it is there.
-TELL = """
+NOTIFY_FUNCTION = """
 CREATE FUNCTION tell_of_work() RETURNS trigger LANGUAGE plpgsql AS $$
 BEGIN
     PERFORM pg_notify('mechsynth_work', '');
     RETURN NULL;
 END $$
 """
-TELL_OF_WORK = """
+WORK_TRIGGER = """
 CREATE TRIGGER jobs_tell_of_work AFTER INSERT OR UPDATE OF status ON jobs FOR EACH ROW
 WHEN (NEW.status = 'queued') EXECUTE FUNCTION tell_of_work()
 """
@@ -28,10 +28,12 @@ def upgrade() -> None:
     op.add_column("jobs", sa.Column("cost", sa.String(5), nullable=False, server_default="long"))
     op.add_column("jobs", sa.Column("turn", sa.Integer, nullable=False, server_default="0"))
     for name, columns in (("turn", ["cost", "turn", "id"]), ("tenant", ["tenant", "cost", "turn"])):
-        op.create_index(f"jobs_queued_by_{name}", "jobs", columns, sqlite_where=QUEUED, postgresql_where=QUEUED)
+        op.create_index(
+            f"jobs_queued_by_{name}", "jobs", columns, sqlite_where=QUEUED_CONDITION, postgresql_where=QUEUED_CONDITION
+        )
     if op.get_bind().dialect.name == "postgresql":
-        op.execute(TELL)
-        op.execute(TELL_OF_WORK)
+        op.execute(NOTIFY_FUNCTION)
+        op.execute(WORK_TRIGGER)
 
 
 def downgrade() -> None:

@@ -8,12 +8,14 @@ down_revision = "0005"
 branch_labels = None
 depends_on = None
 
-QUEUED = sa.text("status = 'queued'")
+QUEUED_CONDITION = sa.text("status = 'queued'")
 
 
 def _turns_of_tenants(*columns: str) -> None:
     op.drop_index("jobs_queued_by_tenant", "jobs")
-    op.create_index("jobs_queued_by_tenant", "jobs", columns, sqlite_where=QUEUED, postgresql_where=QUEUED)
+    op.create_index(
+        "jobs_queued_by_tenant", "jobs", columns, sqlite_where=QUEUED_CONDITION, postgresql_where=QUEUED_CONDITION
+    )
 
 
 def _of_those_given(table: str, *columns: str, name: str | None = None) -> None:

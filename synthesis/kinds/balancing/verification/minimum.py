@@ -7,6 +7,7 @@ energy. The sizes of the weights are measured on the answer as well.
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -16,11 +17,13 @@ from kinematics.dynamics.balance import compute_balance
 from kinematics.dynamics.machine import Machine
 from kinematics.dynamics.reactions import Reactions, compute_reactions
 from synthesis.analyses.linkages.requested_motion import Task, pace_machine, place_machine
-from synthesis.kinds.balancing.design import BalancedDesign, BalanceMetrics, ForceLevel
+from synthesis.kinds.balancing.design import BalancedDesign, BalanceMetrics, Counterweight, ForceLevel
+from synthesis.kinds.balancing.linkage.force_balance import Weight
 from synthesis.kinds.balancing.linkage.minimize import GRID_SIZE, Minimum
 from synthesis.kinds.balancing.problem import BalancingProblem
+from synthesis.kinds.balancing.statement.counterweights import Counterweights
 from synthesis.kinds.balancing.verification.linkage import build_answer, build_answer_machine, describe_weight
-from synthesis.model.answer import Verification
+from synthesis.model.answer import Check, Verification
 from synthesis.model.dimension import LENGTH, MASS
 from synthesis.verification.checks import check_error, check_maximum, check_minimum
 
@@ -98,6 +101,45 @@ def verify_minimum(problem: BalancingProblem, task: Task, found: Minimum) -> Bal
             checks.append(
                 check_maximum(f"max_{level.name.replace(' ', '_')}", level.ratio, level.cap, slack=CAP_TOLERANCE)
             )
+    checks += _check_counterweights(stated, weights, found.weights, scale)
+    metrics = BalanceMetrics(
+        value=value,
+        bound=found.bound,
+        gap=gap,
+        levels=levels,
+        shaking_force=after.compute_level("shaking_force", "max"),
+        unbalanced_shaking_force=before.compute_level("shaking_force", "max"),
+        shaking_moment=after.compute_level("shaking_moment", "max"),
+        unbalanced_shaking_moment=before.compute_level("shaking_moment", "max"),
+        drive=after.compute_level("drive", "max"),
+        unbalanced_drive=before.compute_level("drive", "max"),
+        added_mass=math.fsum(weight.mass for weight in weights),
+    )
+    return BalancedDesign(
+        mechanism=answer,
+        dynamics=block,
+        counterweights=weights,
+        geared=[],
+        verification=Verification.from_checks(checks),
+        metrics=metrics,
+    )
+
+
+def _check_counterweights(
+    stated: Counterweights, weights: Sequence[Counterweight], found: Sequence[Weight], scale: float
+) -> list[Check]:
+    """Check the counterweights of a design against the limits of their mass and size.
+
+    Parameters
+    ----------
+    stated : Counterweights
+        The limits.
+    weights, found
+        The counterweights as reported, and as the optimization found them.
+    scale : float
+        Factor of lengths in moments of inertia.
+    """
+    checks = []
     masses = [weight.mass for weight in weights]
     if stated.total_mass is not None:
         checks.append(check_maximum("total_mass", math.fsum(masses), stated.total_mass, MASS, SIZE_TOLERANCE))
@@ -114,34 +156,12 @@ def verify_minimum(problem: BalancingProblem, task: Task, found: Minimum) -> Bal
     if stated.max_disc_radius is not None and weights:
         radius = max(weight.disc_radius or 0.0 for weight in weights)
         checks.append(check_maximum("disc_radius", radius, stated.max_disc_radius, LENGTH, SIZE_TOLERANCE))
-    discs = [
-        (weight.inertia, stated.compute_inertia(weight.mass, scale)) for weight in found.weights if weight.mass > 0.0
-    ]
+    discs = [(weight.inertia, stated.compute_inertia(weight.mass, scale)) for weight in found if weight.mass > 0.0]
     if stated.density is not None and discs:
         checks.append(
             check_minimum("inertia_over_disc", min(own / disc for own, disc in discs), 1.0, slack=SIZE_TOLERANCE)
         )
-    metrics = BalanceMetrics(
-        value=value,
-        bound=found.bound,
-        gap=gap,
-        levels=levels,
-        shaking_force=after.compute_level("shaking_force", "max"),
-        unbalanced_shaking_force=before.compute_level("shaking_force", "max"),
-        shaking_moment=after.compute_level("shaking_moment", "max"),
-        unbalanced_shaking_moment=before.compute_level("shaking_moment", "max"),
-        drive=after.compute_level("drive", "max"),
-        unbalanced_drive=before.compute_level("drive", "max"),
-        added_mass=math.fsum(masses),
-    )
-    return BalancedDesign(
-        mechanism=answer,
-        dynamics=block,
-        counterweights=weights,
-        geared=[],
-        verification=Verification.from_checks(checks),
-        metrics=metrics,
-    )
+    return checks
 
 
 def _compare_levels(problem: BalancingProblem, before: MeasuredForces, after: MeasuredForces) -> list[ForceLevel]:

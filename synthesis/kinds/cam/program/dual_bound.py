@@ -150,12 +150,28 @@ def _bound_block(
     for condition, weight in zip(block.conditions, stated, strict=True):
         constant -= weight * condition.value
     _, switching = _integrate_costate(times, _with_conditions(block, stated, measure))
+    return _subtract_highest(_Lagrangian(constant, gains, 0.0), block, order, switching, rms == order, cap), cap
+
+
+def _subtract_highest(
+    lower: _Lagrangian,
+    block: Block,
+    order: int,
+    switching: Piecewise,
+    is_objective: bool,
+    cap: tuple[int, float] | None,
+) -> _Lagrangian:
+    """Subtract the greatest −∫ r u over the permitted highest derivatives u, by their switching function r.
+
+    ``is_objective``: the objective integrates u².
+    """
+    constant, gains = lower.constant, lower.gains
     square = 0.0
     at_order = [limit for limit in block.limits if limit.order == order]
     # The objective integrates u² without a limit on u: −min (u² + r u) = r²/4.
-    if rms == order and not at_order:
+    if is_objective and not at_order:
         square = 0.25 * switching.convex_integral(np.square)
-    elif rms == order:
+    elif is_objective:
         bound = at_order[0].constant
         constant -= switching.convex_integral(lambda r: _huber(r, bound))
     else:
@@ -166,7 +182,7 @@ def _bound_block(
             constant -= limit.constant * size
             if limit.gain:
                 gains[0] -= limit.gain * size
-    return _Lagrangian(constant, gains, square), cap
+    return _Lagrangian(constant, gains, square)
 
 
 def _huber(r: Real, bound: float) -> Real:

@@ -79,6 +79,30 @@ def _settle_link(outer: Complex, legs: Real, inner: Complex, pose: Real, work: R
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
+def _place_pins(
+    at: Real, begin: float, c: complex, o4: complex, poses: Real, legs: Real, inner: Complex, pins: Complex
+) -> bool:
+    """Fill the places of B, D and E at crank angles between the poses of a turn; return whether all were found."""
+    steps, pose, work = len(poses) - 1, np.empty(3), np.empty((4, LEG_COUNT))
+    outer = np.array([1.0 + 0.0j, c, o4])
+    for n in range(len(at)):
+        share = (at[n] - begin) / (2.0 * math.pi)
+        # Start Newton's method from the interpolated pose of the neighbouring steps.
+        share = (share - math.floor(share)) * steps
+        before = min(int(share), steps - 1)
+        for j in range(3):
+            pose[j] = poses[before, j] + (share - before) * (poses[before + 1, j] - poses[before, j])
+        crank = complex(math.cos(at[n]), math.sin(at[n]))
+        outer[0], outer[1] = crank, c * crank
+        if not _settle_link(outer, legs, inner, pose, work):
+            return False
+        along = complex(math.cos(pose[2]), math.sin(pose[2]))
+        for leg in range(LEG_COUNT):
+            pins[n, leg] = complex(pose[0], pose[1]) + inner[leg] * along
+    return True
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
 def drive_triad(shape: Real, at: Real, least: float, pins: Complex, course: Real, sines: Real) -> bool:
     """Drive a sixbar through a turn; return whether it completes the turn and transmits force throughout.
 
@@ -144,21 +168,7 @@ def drive_triad(shape: Real, at: Real, least: float, pins: Complex, course: Real
     # A triad may close its turn in another assembly, or only after several turns.
     if not np.abs(whole).sum() < CLOSURE_TOLERANCE:
         return False
-    for n in range(len(at)):
-        share = (at[n] - begin) / (2.0 * math.pi)
-        # Start Newton's method from the interpolated pose of the neighbouring steps.
-        share = (share - math.floor(share)) * steps
-        before = min(int(share), steps - 1)
-        for j in range(3):
-            pose[j] = poses[before, j] + (share - before) * (poses[before + 1, j] - poses[before, j])
-        crank = complex(math.cos(at[n]), math.sin(at[n]))
-        outer[0], outer[1] = crank, c * crank
-        if not _settle_link(outer, legs, inner, pose, work):
-            return False
-        along = complex(math.cos(pose[2]), math.sin(pose[2]))
-        for leg in range(LEG_COUNT):
-            pins[n, leg] = complex(pose[0], pose[1]) + inner[leg] * along
-    return True
+    return _place_pins(at, begin, c, o4, poses, legs, inner, pins)
 
 
 @njit(cache=True, nogil=True, error_model="numpy")

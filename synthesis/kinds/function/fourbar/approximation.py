@@ -89,12 +89,14 @@ def find_approximations(
     # That argument fails if scales are open or if the Grashof class is not among the inequalities.
     inside &= not task.free[5:].any() and task.problem.constraints.grashof in ("any", "crank_rocker", "double_crank")
     effort = LOW_EFFORT if inside else HIGH_EFFORT
+    # Levelled linkages compete with the other starts, as their levelling can have violated constraints.
     chosen = descent.select_best_distinct(pool, signs, effort.starts)
     improve = descent.minimax if task.problem.aim == "minimax" else descent.least_squares
     rough = []
     for n, j in enumerate(chosen):
         progress(0.2 + 0.3 * n / len(chosen), f"start {n + 1} of {len(chosen)}")
         rough.append(improve(pool[j], float(signs[j]), effort.first_rounds))
+    # Only a few steps decide which starts are continued.
     rough.sort(key=lambda optimum: optimum.error)
     optima: list[Approximation] = []
     for n, start in enumerate(rough[: effort.kept]):
@@ -111,6 +113,7 @@ def find_approximations(
         nearest = np.argsort(descent.compute_errors(level, theirs))[:CONTINUATION_COUNT]
         onward = [(best.generator, best.sign), *zip(level[nearest], theirs[nearest], strict=True)]
         again = [improve(generator, float(sign), HIGH_EFFORT.rounds) for generator, sign in onward]
+        # The continuation can fail, so the best so far stays a candidate.
         optima[0] = min([best, *again], key=lambda optimum: optimum.error)
     return Approximations([optimum for optimum in optima if math.isfinite(optimum.error)], judged, len(chosen))
 
@@ -130,6 +133,8 @@ def _find_starts(task: FunctionTask, limits: GeneratorLimits, rng: np.random.Gen
     found = []
     for first in task.scales[0]:
         for second in task.scales[1]:
+            # Fewer points leave families, which are sampled: the best approximation may meet fewer points than
+            # possible.
             for count in range(most, 1, -1):
                 inputs, outputs = _sample_points(task, min(count, len(task.sample_inputs)), rng)
                 k, scale = (_sample_scales(choice, len(inputs), rng) for choice in (first, second))
@@ -160,6 +165,7 @@ def _find_starts(task: FunctionTask, limits: GeneratorLimits, rng: np.random.Gen
 
 def _sample_turning(task: FunctionTask, limits: GeneratorLimits, rng: np.random.Generator) -> Real:
     """Sample random generators whose required link rotates fully."""
+    # The range is that of a length's logarithm on both sides of the ground's.
     reach = 0.5 * math.log(min(limits.ratio, MAX_RANDOM_RATIO))
     drawn = np.ones((RANDOM_COUNT, PARAMETER_COUNT))
     drawn[:, :3] = np.exp(rng.uniform(-reach, reach, (RANDOM_COUNT, 3)))
@@ -168,6 +174,7 @@ def _sample_turning(task: FunctionTask, limits: GeneratorLimits, rng: np.random.
         choice = rng.integers(len(task.scales[side]), size=RANDOM_COUNT)
         both = np.array([_sample_scales(choices, RANDOM_COUNT, rng) for choices in task.scales[side]])
         drawn[:, column] = both[choice, np.arange(RANDOM_COUNT)]
+        # Given zeros replace random angles.
         if task.zeros[side] is not None:
             drawn[:, 3 + side] = task.zeros[side]
     return np.asarray(drawn[limits.check_rotation(drawn)][:MAX_TURNING])
@@ -179,6 +186,7 @@ def _shift_to_mean(task: FunctionTask, generators: Real, sign: float) -> Real:
     if task.zeros[1] is None:
         errors = task.samples().errors(generators, np.full(len(generators), sign))
         errors = np.where(np.isfinite(errors), errors, 0.0)
+        # Angles have a mean direction, which does not depend on where they wrap.
         mean = errors.mean(axis=1) if task.problem.slides else np.angle(np.exp(1j * errors).mean(axis=1))
         centred[:, 4] += mean
     return centred
@@ -191,6 +199,7 @@ def _sample_points(task: FunctionTask, count: int, rng: np.random.Generator) -> 
         order = np.argsort(rng.random((SET_COUNT, len(task.sample_inputs))), axis=1)[:, :count]
         return task.sample_inputs[order], task.sample_outputs[order]
     moved = JITTER_SHARE * rng.uniform(-1.0, 1.0, (SET_COUNT, count))
+    # One set keeps the exact Chebyshev spacing.
     moved[0] = 0.0
     shares = 0.5 - 0.5 * np.cos((2.0 * np.arange(count) + 1.0 + moved) * math.pi / (2.0 * count))
     return shares, function.share_along(shares)
@@ -198,6 +207,7 @@ def _sample_points(task: FunctionTask, count: int, rng: np.random.Generator) -> 
 
 def _sample_scales(limits: tuple[float, float], count: int, rng: np.random.Generator) -> Real:
     low, high = limits
+    # Uniform in the logarithm, unless the interval contains zero.
     return np.asarray(low * (high / low) ** rng.random(count)) if low * high > 0.0 else rng.uniform(low, high, count)
 
 
@@ -216,6 +226,7 @@ class GeneratorDescent(Descent):
         self.coarse = task.points() if exact else task.samples()
         function = task.problem.function
         if function is None or exact:
+            # Pairs are the whole criterion; a function is followed between samples as well.
             dense = self.coarse
         else:
             shares = 0.5 - 0.5 * np.cos(np.linspace(0.0, math.pi, DENSE_SAMPLE_COUNT))
@@ -230,6 +241,7 @@ class GeneratorDescent(Descent):
         """Return error plus violation of the transmission angle of many generators; infinite for unusable ones."""
         size = self.compute_errors(pool, signs)
         if self.limits.cosine is not None:
+            # Compare sines: a missing transmission angle is then of the order of the error in radians.
             short = math.sqrt(max(1.0 - self.limits.cosine**2, 0.0)) - self.limits.transmission(pool)
             size = size + np.maximum(short, 0.0)
         return np.asarray(size)
@@ -246,11 +258,13 @@ class GeneratorDescent(Descent):
 
     def select_distinct(self, pool: Real, merit: Real, count: int, chosen: Sequence[int] = ()) -> list[int]:
         """Select the rows of a pool with the lowest merit that differ from each other and from those already chosen."""
+        # The offset of a slider-crank may be zero.
         features = np.column_stack([np.log(np.abs(pool[:, :3]) + 1e-12), pool[:, 3:5], np.log(np.abs(pool[:, 5:]))])
         found = list(chosen)
         for j in np.argsort(merit):
             if not math.isfinite(merit[j]) or len(found) >= count:
                 break
+            # Features of different units share one tolerance, because logarithms and radians are of the same order.
             gaps = np.abs(features[found] - features[j]).max(axis=1) if found else np.array([np.inf])
             if gaps.min() > START_SEPARATION:
                 found.append(int(j))
@@ -261,6 +275,7 @@ class GeneratorDescent(Descent):
         errors = np.abs(self.coarse.errors(pool, signs))
         errors = np.where(np.isfinite(errors), errors, np.inf)
         size = np.sqrt(np.mean(errors**2, axis=1)) if self.square else errors.max(axis=1)
+        # Larger errors wrap and would look small.
         size = np.where(errors.max(axis=1) < MAX_ERROR, size, np.inf)
         if self.relative:
             size = size / np.abs(pool[:, 6])

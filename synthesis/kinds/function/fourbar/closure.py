@@ -95,12 +95,14 @@ class FourbarClosure:
         # A projective point has no sign: choose the one for which m = −e^{…}.
         sign = np.where((m * (q * p.conj()).conj()).real >= 0.0, 1.0, -1.0)
         size = np.linalg.norm(v, axis=-1)
+        # p, q and m belong to links: if one vanishes, a length is zero or infinite.
         sound = np.minimum(np.minimum(np.abs(p), np.abs(q)), np.abs(m)) > MIN_LENGTH * size
         with np.errstate(divide="ignore", invalid="ignore"):
             a, c = np.abs(m) / np.abs(p), np.abs(m) / np.abs(q)
             psi, phi = -np.angle(sign * p), -np.angle(-sign * q)
             b = np.sqrt(1.0 + a * a + c * c - 2.0 * a * c * sign * v[..., 4] / np.abs(m))
         found = np.stack([a, b, c, phi, psi], axis=-1)
+        # Rounding can leave a vanishing coupler slightly positive.
         return np.where((sound & (b > MIN_LENGTH * np.maximum(a, c)))[..., None], found, np.nan)
 
 
@@ -135,9 +137,11 @@ class SliderClosure:
         """See :class:`Closure`."""
         sound = np.minimum(np.hypot(v[..., 0], v[..., 1]), np.abs(v[..., 6])) > MIN_LENGTH * np.linalg.norm(v, axis=-1)
         with np.errstate(divide="ignore", invalid="ignore"):
+            # Scale the projective point so that z = −1, as in the definition of the seven numbers.
             v = v / -v[..., 6:]
             u, w = _to_complex(v, 0), _to_complex(v, 2)
             a, theta, s = 0.5 * np.abs(u), -np.angle(u), -0.5 * v[..., 5]
+            # w/u = s₀ + i e.
             e = (w / u).imag
             b = np.sqrt(v[..., 4] + a * a + e * e + s * s)
         found = np.stack([a, b, e, theta, s], axis=-1)

@@ -48,6 +48,7 @@ class GeneratorLimits:
         problem, demanded = task.problem, task.problem.constraints
         self.slides = problem.slides
         ratio = (
+            # A given limit is tightened to the default one: more extreme linkages are of no practical use.
             DEFAULT_MAX_RATIO if demanded.max_link_ratio is None else min(demanded.max_link_ratio, DEFAULT_MAX_RATIO)
         )
         lengths = demanded.link_length
@@ -57,9 +58,12 @@ class GeneratorLimits:
             self.shortest, self.longest = low / task.unit, min(high / task.unit, DEFAULT_MAX_RATIO)
         elif problem.fixed_pivots is not None:
             ground = abs(complex(*problem.fixed_pivots.output) - complex(*problem.fixed_pivots.input))
+            # Lengths are relative to the ground, whose length the given pivots determine.
             self.shortest, self.longest = low / ground, high / ground
         elif low > 0.0 and math.isfinite(high):
+            # Without a given ground the size is free, so length limits only restrict the ratio.
             ratio = min(ratio, high / low)
+        # A margin keeps results within the limits in spite of the solver's tolerance.
         self.ratio = ratio / (1.0 + LIMIT_MARGIN)
         least = demanded.min_transmission_angle if demanded.min_transmission_angle is not None else least
         self.cosine = None if least is None else math.cos(math.radians(least)) - LIMIT_MARGIN
@@ -67,10 +71,12 @@ class GeneratorLimits:
         self.places = np.linspace(float(inputs.min()), float(inputs.max()), INPUT_SAMPLE_COUNT)
         self.shortest_link = {"crank_rocker": 1, "double_crank": 0, "double_rocker": 2}.get(demanded.grashof)
         if self.slides:
+            # A slider-crank has no Grashof class.
             self.shortest_link = None
         self.turns_through = demanded.full_rotation
         self.never_turns = demanded.grashof == "non_grashof"
         zones = (demanded.fixed_pivot_region, demanded.moving_pivot_region)
+        # With given pivots nothing is left to place.
         self.regions = Regions(task) if problem.fixed_pivots is None and zones != (None, None) else None
 
     def clip_lengths(self, generators: Real) -> Real:
@@ -84,6 +90,7 @@ class GeneratorLimits:
         middle = 0.5 * (logs.max(axis=1, keepdims=True) + logs.min(axis=1, keepdims=True))
         half = 0.5 * math.log(self.ratio)
         logs = np.clip(logs, middle - half, middle + half)
+        # Return to ground 1.
         if not self.slides:
             logs = logs[:, 1:] - logs[:, :1]
         found[:, columns] = np.clip(
@@ -97,6 +104,7 @@ class GeneratorLimits:
         """Return a mask of the generators whose required link rotates fully, with a margin; shape (k,)."""
         a, b, c = generators[:, :3].T
         if self.slides:
+            # Crank plus offset must not exceed the coupler.
             return np.asarray(a + np.abs(c) < b)
         lengths = np.stack([np.ones_like(a), a, b, c])
         shortest, total = lengths.argmin(axis=0), lengths.sum(axis=0)
@@ -109,6 +117,7 @@ class GeneratorLimits:
 
         n is 7, or 11 for a placed generator, for which the pivot regions are included.
         """
+        # The placement does not affect the linkage's own limits.
         g, slopes = self._evaluate_linkage(generator[:PARAMETER_COUNT], derivatives=derivatives)
         if len(generator) == PARAMETER_COUNT or self.regions is None:
             return g, slopes
@@ -130,6 +139,7 @@ class GeneratorLimits:
         It is infinite if a linkage cannot be assembled, or if its regions are not evaluated because too many others
         have smaller violations.
         """
+        # The offset of a slider-crank is not the length of a link.
         lengths = generators[:, :2] if self.slides else np.column_stack([np.ones(len(generators)), generators[:, :3]])
         least, most = lengths.min(axis=1), lengths.max(axis=1)
         rows = [np.log(most / least / self.ratio), self._measure_class_violation(lengths)]
@@ -143,6 +153,7 @@ class GeneratorLimits:
         worst = np.maximum(np.max(rows, axis=0), 0.0)
         if self.regions is None:
             return np.asarray(worst)
+        # Placements are expensive, so only the nearest generators have theirs examined.
         nearest = np.argsort(worst)[:MAX_PLACEMENTS]
         placed = np.full(len(worst), np.inf)
         placed[nearest] = np.maximum(worst[nearest], self.regions.measure_outside(generators[nearest]))
@@ -167,6 +178,7 @@ class GeneratorLimits:
         if self.cosine is None:
             return g, slopes
         cosines, turned = self._evaluate_transmission(generator, derivatives)
+        # The cosine is limited from both sides, as angles near 180° transmit as badly as those near 0°.
         g = np.concatenate([g, cosines - self.cosine, -cosines - self.cosine])
         return g, np.concatenate([slopes, turned, -turned])
 
@@ -181,6 +193,7 @@ class GeneratorLimits:
         first, last = theta[..., :1], theta[..., -1:]
         turned = 0.5 * math.pi if self.slides else 0.0
         inner = turned + math.pi * np.ceil((np.minimum(first, last) - turned) / math.pi)
+        # Extremes outside the range are replaced by its end, which does no harm.
         extremes = np.minimum(np.concatenate([inner, inner + math.pi], axis=-1), np.maximum(first, last))
         return np.concatenate([theta, extremes], axis=-1)
 
@@ -204,6 +217,7 @@ class GeneratorLimits:
                 slopes[:, 0] = -(2.0 * a * a - 2.0 * a * np.cos(theta)) / (2.0 * b * c)
                 slopes[:, 1], slopes[:, 2] = b / c - cosines, c / b - cosines
                 slopes[:, 3] = -2.0 * a * np.sin(theta) / (2.0 * b * c)
+            # Only inputs relative to the zero scale.
             slopes[:, 5] = slopes[:, 3] * (theta - start)
         return cosines, slopes
 

@@ -44,11 +44,13 @@ def minimize_design_error(task: FunctionTask, limits: GeneratorLimits, k: float,
     else:
         matrix = np.column_stack([np.cos(out), -np.cos(theta), np.ones_like(theta)])
         right = np.cos(theta - out)
+    # Columns of unit length keep the program well conditioned when inputs or outputs vary little.
     sizes = np.linalg.norm(matrix, axis=0)
     cp: Any = import_cvxpy()
     x = cp.Variable(3)
     # Normalise the columns for the solver; K = x / sizes.
     first, second = x[0] / sizes[0], x[1] / sizes[1]
+    # The floor keeps 1/K finite without limits of the client's own.
     least = max(limits.shortest, 1.0 / limits.longest, 1e-6)
     if task.problem.slides:
         demands = [first >= 2.0 * least]
@@ -56,7 +58,9 @@ def minimize_design_error(task: FunctionTask, limits: GeneratorLimits, k: float,
             demands.append(first <= 2.0 * limits.longest)
     else:
         ratio = limits.ratio
+        # The ground is 1, so K₁ and K₂ are the ratios of the ground to input and output.
         demands = [first >= 1.0 / ratio, first <= ratio, second >= 1.0 / ratio, second <= ratio]
+        # The ratio of input and output is that of K₁ and K₂, also linear.
         demands += [first <= ratio * second, second <= ratio * first]
         if math.isfinite(limits.longest):
             demands += [first >= 1.0 / limits.longest, second >= 1.0 / limits.longest]
@@ -71,6 +75,7 @@ def minimize_design_error(task: FunctionTask, limits: GeneratorLimits, k: float,
     else:
         a, e = 1.0 / one, 1.0 / two
         square = 1.0 + a * a + e * e - 2.0 * a * e * three
+    # The coupler is not part of the program; a negative square is no linkage.
     if not square > 0.0:
         return None
     return np.array([a, math.sqrt(square), e, start, zero, k, scale])

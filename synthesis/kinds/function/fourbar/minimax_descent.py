@@ -115,6 +115,7 @@ class Descent:
         unit = abs(at[6]) if self.relative else 1.0
         slopes = generators.derivatives(at, errors * unit, sign) / unit
         if self.relative:
+            # The quotient's second part: errors are divided by the scale, and steps change its logarithm.
             slopes[:, 6] -= errors
         return np.pad(slopes, ((0, 0), (0, len(at) - slopes.shape[1])))  # the placement does not affect errors
 
@@ -122,6 +123,7 @@ class Descent:
         """Scale limits: return the permitted decrease and increase of ln of each scale, shapes (n,)."""
         low, high = np.zeros(len(at)), np.zeros(len(at))
         for side, column in ((0, 5), (1, 6)):
+            # A step keeps the sign of a scale, so exactly one of the intervals applies.
             choice = [limits for limits in self.task.scales[side] if limits[0] * at[column] > 0.0]
             ends = sorted(abs(x) for x in choice[0])
             low[column], high[column] = (math.log(end / abs(at[column])) for end in ends)
@@ -138,17 +140,20 @@ class Descent:
         arrived = False
         for _ in range(rounds):
             step, promised = self._solve_program(at, sign, errors, trust)
+            # Negated, so that NaN ends the descent as well.
             if step is None or not merit - promised > MERIT_TOLERANCE * merit:
                 arrived = step is not None
                 break
             tried = self.dense_step(at, step)
             new = self._compute_errors(self.dense, tried, sign)
+            # A generator that cannot be assembled has an infinite merit, which shrinks the trust region.
             reached = math.inf
             if np.isfinite(new).all():
                 reached = float(np.abs(new).max())
                 reached += PENALTY_FACTOR * max(float(self.limits.values(tried)[0].max(initial=0.0)), 0.0)
             # Trust-region update by the ratio of actual to predicted decrease.
             share = (merit - reached) / (merit - promised)
+            # Accept any real decrease, and judge the trust region separately.
             if share > 0.05:
                 at, errors, merit = tried, new, reached
             if share > 0.75:
@@ -174,9 +179,11 @@ class Descent:
         unit = float(np.abs(errors).max()) or 1.0
         ones = np.ones((len(rows), 1))
         zero = np.zeros((len(rows), 1))
+        # Two additional variables: the largest error, and the largest violation of a limit.
         upper = np.hstack([slopes[:, free] / unit, -ones, zero])
         lower = np.hstack([-slopes[:, free] / unit, -ones, zero])
         limited = np.hstack([g_slopes[:, free], np.zeros((len(g), 1)), -np.ones((len(g), 1))])
+        # Scales have hard bounds; all other limits are soft, by the penalty, so that the program is always feasible.
         low, high = self._scale_rows(at)
         bounded = np.isin(np.arange(len(at)), SCALE_COLUMNS)
         floors = [max(-trust, low[j]) if bounded[j] else -trust for j in free]

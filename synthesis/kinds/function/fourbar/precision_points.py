@@ -60,6 +60,7 @@ def build_equations(closure: Closure, inputs: Real, outputs: Real, zeros: tuple[
 def find_null_space(rows: Real) -> tuple[Real, Real]:
     """Return a basis of the null space of the equations, shape (..., 7 − r, 7), and a measure of their independence."""
     _, s, vh = np.linalg.svd(rows)
+    # The smallest over the largest singular value tells whether the equations are independent.
     return vh[..., rows.shape[-2] :, :], np.asarray(s[..., -1] / s[..., 0])
 
 
@@ -67,6 +68,7 @@ def _find_common_null_space(rows: Real) -> Real:
     """Return bases of the null spaces of many sets of equations, all of the smallest dimension that occurs."""
     _, s, vh = np.linalg.svd(rows)
     rank = int((s > INDEPENDENCE_TOLERANCE * s[..., :1]).sum(axis=-1).max())
+    # At least one vector must remain, even where the equations have full rank by rounding.
     return np.asarray(vh[..., min(rank, UNKNOWN_COUNT - 1) :, :])
 
 
@@ -88,6 +90,7 @@ def intersect_lines(closure: Closure, one: Real, other: Real) -> tuple[Real, NDA
     one, other = cos * one + sin * other, cos * other - sin * one
     first, last = closure.cubic(one), closure.cubic(other)
     plus, minus = closure.cubic(one + other), closure.cubic(one - other)
+    # Values at the sum and the difference of the vectors give the two mixed coefficients of the cubic.
     second, third = 0.5 * (plus - minus) - last, 0.5 * (plus + minus) - first
     companion = np.zeros((*first.shape, 3, 3))
     companion[..., 1, 0] = companion[..., 2, 1] = 1.0
@@ -96,6 +99,7 @@ def intersect_lines(closure: Closure, one: Real, other: Real) -> tuple[Real, NDA
             companion[..., k, 2] = -coefficient / first
     sound = np.asarray(np.isfinite(companion).all(axis=(-1, -2)))
     roots = np.linalg.eigvals(np.where(sound[..., None, None], companion, 0.0)).astype(np.complex128)
+    # Roots count as directions on the line, so measure their gaps as chords of the circle, also for large ones.
     spread = np.sqrt(1.0 + np.abs(roots) ** 2)
     real = np.asarray((np.abs(roots.imag) <= REAL_ROOT_TOLERANCE * spread) & sound[..., None])
     gaps = np.abs(roots[..., [0, 1, 2]] - roots[..., [1, 2, 0]]) / (spread[..., [0, 1, 2]] * spread[..., [1, 2, 0]])
@@ -163,6 +167,7 @@ def sample_family(
     """Sample random linkages through sets of fewer pairs, shape (m, n); results as for :func:`solve_many_exact`."""
     basis = _find_common_null_space(build_equations(closure, inputs, outputs, zeros))
     count, left = basis.shape[:2]
+    # With both zeros the cubic is linear, so every point of the null space is a linkage.
     if None not in zeros:
         points = (rng.normal(size=(count, 1, left)) @ basis).reshape(count, 1, UNKNOWN_COUNT)
         points = points / np.linalg.norm(points, axis=-1, keepdims=True)
@@ -200,6 +205,7 @@ def refine_generator(generators: Generators, dimensions: Real, free: NDArray[np.
         if not np.isfinite(jacobian).all():
             break
         step = np.zeros(PARAMETER_COUNT)
+        # Limit each component, because Newton's method starts outside its region of convergence now and then.
         step[free] = np.clip(-np.linalg.lstsq(jacobian, errors, rcond=None)[0], -MAX_CHANGE, MAX_CHANGE)
         dimensions = generators.apply_step(dimensions, step)
     return best

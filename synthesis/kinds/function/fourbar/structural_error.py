@@ -44,11 +44,13 @@ class Generators:
 
     def errors(self, dimensions: Real, signs: Real) -> Real:
         """Return errors of generators (k, 7) with assembly signs (k,) or (k, n): shape (k, n), NaN if not assembled."""
+        # One sign for each generator holds for all inputs.
         signs = signs if signs.ndim == dimensions.ndim else signs[..., None]
         a, b, c, start, zero, k, scale = (dimensions[..., j, None] for j in range(PARAMETER_COUNT))
         theta = start + k * self.inputs
         with np.errstate(invalid="ignore", over="ignore"):
             if self.slides:
+                # The offset e is to the left of the slide's direction.
                 y = c - a * np.sin(theta)
                 s = a * np.cos(theta) + signs * np.sqrt(b * b - y * y)
                 return np.asarray(s - zero - scale * self.outputs)
@@ -57,6 +59,7 @@ class Generators:
             f = np.abs(1.0 - pin)
             x = (f * f + (b - c) * (b + c)) / (2.0 * f)
             joint = pin + (1.0 - pin) / f * (x + 1j * signs * np.sqrt(b * b - x * x))
+            # Taking the angle of the quotient wraps the error to half a turn.
             return np.asarray(np.angle((joint - 1.0) * np.exp(-1j * (zero + scale * self.outputs))))
 
     def signs(self, dimensions: Real) -> Real:
@@ -64,6 +67,7 @@ class Generators:
         a, _, c, start, zero, k, scale = (dimensions[..., j, None] for j in range(PARAMETER_COUNT))
         pin = a * np.exp(1j * (start + k * self.inputs))
         if self.slides:
+            # At inputs that are met, B is known, and its side of A (or of the diagonal) is the assembly.
             return np.asarray(np.sign(zero + scale * self.outputs - pin.real))
         joint = 1.0 + c * np.exp(1j * (zero + scale * self.outputs))
         return np.asarray(np.sign(((1.0 - pin).conj() * (joint - pin)).imag))
@@ -77,6 +81,7 @@ class Generators:
         a, b, c, start, zero, k, scale = dimensions[:PARAMETER_COUNT]
         theta = start + k * self.inputs
         if self.slides:
+            # The slider's true position is the required one plus the error, so no root and no sign are needed.
             x = zero + scale * self.outputs + errors - a * np.cos(theta)
             y = c - a * np.sin(theta)
             turned = -(x * a * np.sin(theta) - y * a * np.cos(theta)) / x
@@ -99,17 +104,21 @@ class Generators:
                 b / divisor,
                 -(c * np.exp(1j * output) * along.conj()).real / divisor,
                 (1j * pin * along.conj()).real / divisor,
+                # A zero shifts the required output, and so the error by the same amount with opposite sign.
                 -np.ones_like(theta),
             ]
             turned = columns[3]
+        # Derivatives by logarithms of scales: the chain rule multiplies by the scale.
         return np.stack([*columns, turned * k * self.inputs, -scale * self.outputs], axis=-1)
 
     def apply_step(self, dimensions: Real, step: Real) -> Real:
         """Apply a step to a generator: multiply lengths and scales by exponentials, add to the rest."""
         found = dimensions.copy()
+        # The slide's offset may be negative or zero, so it has no logarithm.
         logs = [0, 1, 5, 6] if self.slides else [0, 1, 2, 5, 6]
         adds = [2, 3, 4] if self.slides else [3, 4]
         found[logs] *= np.exp(step[logs])
         found[adds] += step[adds]
+        # Size, direction and position of a placed linkage are already logarithms, angles and shares.
         found[PARAMETER_COUNT:] += step[PARAMETER_COUNT:]
         return found

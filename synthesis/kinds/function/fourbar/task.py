@@ -88,6 +88,7 @@ def make_function_task(problem: FunctionProblem) -> FunctionTask:
         given = given - np.where([zero is None for zero in zeros], given[0], 0.0)
         inputs, outputs = given[:, 0] * radians, given[:, 1] * (1.0 / unit if problem.slides else radians)
         choices = tuple(
+            # An open scale has one interval, a given one an interval of no length.
             [problem.open_scale(side)] if scale is None else [(scale, scale)]
             for side, scale in enumerate(problem.scale_choice)
         )
@@ -96,10 +97,12 @@ def make_function_task(problem: FunctionProblem) -> FunctionTask:
     else:
         function = problem.function
         assert function is not None
+        # Five points suffice as the targets of an approximation, which is judged by its samples.
         inputs = problem.precision_shares if problem.aim == "precision" else np.linspace(0.0, 1.0, 5)
         dense = 0.5 - 0.5 * np.cos(np.linspace(0.0, math.pi, SAMPLE_COUNT))
         outputs = function.share_along(inputs)
         samples = dense, function.share_along(dense)
+        # A slider's positions are measured in its range, so that they are of the order of the ground of a fourbar.
         unit = abs(problem.span("output") or 1.0) if problem.slides else 1.0
         choices = (_list_ranges(problem, "input"), _list_ranges(problem, "output"))
         begins = problem.first_value("input"), problem.first_value("output")
@@ -120,10 +123,13 @@ def make_function_task(problem: FunctionProblem) -> FunctionTask:
 def _list_ranges(problem: FunctionProblem, side: str) -> list[ScaleRange]:
     """List the permitted ranges of a side, radians or slider units: given, both directions, or between limits."""
     span = problem.span("input" if side == "input" else "output")
+    # Without a given output span both directions of the output are possible.
     both = side == "output" and (span is None or problem.either_direction)
     if span is None:
         low, high = (math.radians(limit) for limit in problem.range_limits)
+        # The intervals must not contain zero, so one for each sign.
         return [(low, high), (-high, -low)] if both else [(low, high)]
+    # Slider units are the range itself, so only its sign is left.
     given = math.copysign(1.0, span) if side == "output" and problem.slides else math.radians(span)
     return [(given, given), (-given, -given)] if both else [(given, given)]
 
@@ -145,6 +151,7 @@ def build_mechanism(
     problem = task.problem
     # The square roots are clipped at 0: at a dead centre rounding may make them slightly negative.
     a, b, c, start, _, k, _ = (float(x) for x in generator[:PARAMETER_COUNT])
+    # The mechanism is drawn at its first target.
     place = float(task.inputs[0])
     theta = start + k * place
     pin = cmath.rect(a, theta)
@@ -172,9 +179,11 @@ def make_dials(task: FunctionTask, generator: Real, frame: float, turned: float)
     problem = task.problem
     start, zero, k, scale = (float(x) for x in generator[3:PARAMETER_COUNT])
     to_input = 180.0 / math.pi
+    # Sliders report positions in length units, cranks in degrees.
     to_output = task.unit if problem.slides else to_input
     if problem.pairs is not None:
         shift = [
+            # With an open zero the dial starts at the first pair, because the task counts from it.
             value if zero is None else 0.0
             for value, zero in zip((problem.pairs[0].input, problem.pairs[0].output), task.zeros, strict=True)
         ]
@@ -192,6 +201,7 @@ def make_dials(task: FunctionTask, generator: Real, frame: float, turned: float)
         output=OutputDial(
             at=first,
             place=turned + zero * to_output,
+            # A falling function turns the output's scale around.
             scale=scale * to_output * function.direction / (greatest - least),
         ),
     )

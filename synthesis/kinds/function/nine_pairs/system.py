@@ -69,6 +69,7 @@ def _fill_row(y: Complex, turns: Complex, moves: Complex, row: Complex) -> None:
     g = r * e * (1.0 - d_bar) + r_bar * e_bar * (1.0 - d)
     t, t_bar = g * beta_1 - f * beta_2, f * alpha_2 - g * alpha_1
     x = alpha_1 * beta_2 - alpha_2 * beta_1
+    # Derivatives of the equation by its intermediate quantities; the chain rule follows below.
     by_t, by_t_bar, by_x = t_bar + x, t + x, t + t_bar
     by_alpha_1, by_beta_1 = by_x * beta_2 - by_t_bar * g, by_t * g - by_x * alpha_2
     by_alpha_2, by_beta_2 = by_t_bar * f - by_x * beta_1, by_x * alpha_1 - by_t * f
@@ -81,6 +82,7 @@ def _fill_row(y: Complex, turns: Complex, moves: Complex, row: Complex) -> None:
     row[5] = -by_beta_2 * (1.0 + e * w) - by_g * r * e
     row[6] = -by_beta_2 * d_bar * w + by_g * r * (1.0 - d_bar)
     row[7] = -by_alpha_2 * d * z + by_g * r_bar * (1.0 - d)
+    # Columns 8 and 9 are the right sides of Newton's step and of the tangent.
     row[8] = -(t * t_bar + x * (t + t_bar))
     row[9] = (
         by_alpha_1 * c * a_bar * ds_bar
@@ -95,6 +97,7 @@ def _fill_row(y: Complex, turns: Complex, moves: Complex, row: Complex) -> None:
 @njit(cache=True, nogil=True)
 def _solve_steps(matrix: Complex, newton: Complex, tangent: Complex) -> int:
     """Solve for the Newton and tangent steps from rows scaled by their largest derivative; return 0 if singular."""
+    # Scaled rows make the pivots comparable.
     for row in matrix:
         largest = 0.0
         for k in range(8):
@@ -112,6 +115,7 @@ def _solve_steps(matrix: Complex, newton: Complex, tangent: Complex) -> int:
 def _expand_turns(p: Complex, dp: Complex, j: int, turns: Complex, moves: Complex) -> None:
     """Write s, s̄, r, r̄ of a pair, and their rates."""
     for k, at in ((0, j), (2, 8 + j)):
+        # s̄ = −s/(1 + s) and its derivative.
         back = 1.0 / (1.0 + p[at])
         turns[k], turns[k + 1] = p[at], -p[at] * back
         moves[k], moves[k + 1] = dp[at], -dp[at] * back * back
@@ -187,10 +191,12 @@ def nine_pair_system_extended(
             s, s_bar, r, r_bar = (turns[0], 0j), (turns[1], 0j), (turns[2], 0j), (turns[3], 0j)
         else:
             _expand_turns(p, dp, j, turns, moves)
+            # The parameters' low parts matter near almost singular solutions.
             s, r = (p[j], p_low[j]), (p[8 + j], p_low[8 + j])
             s_bar = _multiply((-s[0], -s[1]), _invert(_add(one, s)))
             r_bar = _multiply((-r[0], -r[1]), _invert(_add(one, r)))
         _fill_row(y, turns, moves, matrix[j])
+        # Only the right side needs the high precision: the matrix just directs the step.
         matrix[j, 8] = -_evaluate_equation(y, low, s, s_bar, r, r_bar)
     return _solve_steps(matrix, newton, tangent)
 
@@ -216,6 +222,7 @@ def compute_residuals(y: Complex, p: Complex) -> NDArray[np.float64]:
     f = -s * a * (1.0 + c_bar) - s_bar * a_bar * (1.0 + c)
     g = r * e * (1.0 - d_bar) + r_bar * e_bar * (1.0 - d)
     t, t_bar, x = g * beta_1 - f * beta_2, f * alpha_2 - g * alpha_1, alpha_1 * beta_2 - alpha_2 * beta_1
+    # Relative to the terms' magnitudes, so that the residual measures cancellation.
     terms = np.abs(t * t_bar) + np.abs(x * t) + np.abs(x * t_bar)
     with np.errstate(invalid="ignore", divide="ignore"):
         return np.asarray((np.abs(t * t_bar + x * (t + t_bar)) / terms).max(axis=-1))

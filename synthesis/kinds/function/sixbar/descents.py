@@ -114,6 +114,7 @@ class Descents:
                 reached,
                 ended,
             )
+            # Impossible starts keep their rows and an infinite cost.
             costs[own] = reached
             for n in np.flatnonzero(np.isfinite(reached)):
                 fit.decode_unknowns(kind, moved[n], setting, kept[n], at[own[n]])
@@ -136,7 +137,7 @@ class Descents:
 
         Parameters
         ----------
-        one : Found
+        one : SixbarCandidate
         weight : float
             Weight of limits.
         steps : int
@@ -149,18 +150,21 @@ class Descents:
 
         Returns
         -------
-        Found or None
+        SixbarCandidate or None
             None if the sixbar cannot be moved.
         """  # fmt: skip
         x, setting, state = self._pack_problem(one, weight)
         residuals, jacobian = np.zeros(self._most), np.zeros((self._most, len(x)))
         rows = fit.evaluate_rows(x, self.points, setting, NO_MULTIPLIERS, state, residuals, jacobian)
+        # Fixed unknowns have zero columns and must not be moved.
         free = np.flatnonzero(np.abs(jacobian[: max(rows, 0)]).sum(axis=0) > 0.0)
         if not len(free):
             return None
+        # The last right singular vectors change the residuals least.
         _, _, along = np.linalg.svd(jacobian[:rows, free], full_matrices=False)
         taken = int(rng.integers(1, min(directions, len(along)) + 1))
         step = along[-taken:].T @ rng.normal(size=taken)
+        # A random length, but never so short that the same minimum is found again.
         x[free] += rng.uniform(0.1, 1.0) * farthest * step / np.abs(step).max()
         return self._follow_unknowns(one, x, setting, state, steps)
 
@@ -181,6 +185,7 @@ class Descents:
         setting[[fit.KIND, fit.ASSEMBLY, fit.SIGN_K, fit.SIGN_L]] = kind, assembly, *signs
         setting[[fit.COSINE, fit.RATIO, fit.STRICT]] = self.cosine, self.logratio, weight
         setting[fit.FREE :] = IS_USED[kind]
+        # Scales are fixed in the descents; they are part of the samples.
         setting[[fit.FREE + K, fit.FREE + L]] = 0.0
         return setting
 
@@ -189,6 +194,7 @@ def _encode_unknowns(kind: int, at: Real) -> Real:
     """Encode one row, or many, as unknowns."""
     x = at.copy()
     logs = IS_LOGARITHMIC[kind]
+    # Logarithms of magnitudes: the signs of scales are kept in the setting.
     x[..., logs] = np.log(np.abs(x[..., logs]))
     return x
 

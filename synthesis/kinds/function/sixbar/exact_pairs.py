@@ -64,9 +64,11 @@ def select_pairs(points: Real, count: int) -> Real:
 
     ``points`` (4, m) as for :func:`~synthesis.kinds.function.sixbar.residuals.evaluate_rows`.
     """
+    # Positive weights mark pairs; the other points only carry limits.
     pairs = np.flatnonzero(points[2] > 0.0)
     picked = pairs[np.unique(np.round(np.linspace(0, len(pairs) - 1, count)).astype(int))]
     few = np.ascontiguousarray(points[:, picked])
+    # Weights that make the sum of squares the mean square.
     few[2:] = 1.0 / math.sqrt(len(picked))
     return few
 
@@ -118,9 +120,11 @@ class PairSearch:
         for _ in range(moves):
             if not found or found[0].error < self._met:
                 break
+            # Geometric choice: mostly the best, sometimes another to leave its basin.
             place = min(int(rng.geometric(SELECTION_PROBABILITY)), len(found)) - 1
             moved = self._all.perturb_and_follow(
                 found[place], LIMIT_WEIGHT, MAX_MOVE_STEPS, MAX_DIRECTIONS, MAX_CHANGE, rng
             )
+            # A perturbed sixbar joins the others only if it is distinct or better.
             found = select_best([*found, moved], most) if moved is not None else found
         return found

@@ -70,7 +70,9 @@ class SixbarFollower:
         found = dimensions.copy()
         logs = IS_LOGARITHMIC[self.kind]
         found[logs] *= np.exp(step[logs])
+        # Logarithmic numbers step by factors, so that lengths stay positive.
         found[~logs] += step[~logs]
+        # τ follows the dimensions; without it the next evaluation would start far from its solution.
         if self.kind == STEPHENSON_2:
             tau = follow_sixbar(self.kind, self.assembly, found, self.inputs[:1], self.outputs[:1]).tau
             found[-1] = tau if math.isfinite(tau) else found[-1]
@@ -96,6 +98,7 @@ class SixbarLimits:
     def __init__(
         self, task: FunctionTask, kind: int, assembly: int, inputs: Real, least: float, *, every: bool = False
     ) -> None:
+        # Regions depend on the placement, which is chosen later; the required angle includes the margin.
         free = {"fixed_pivot_region": None, "moving_pivot_region": None, "min_transmission_angle": least}
         constraints = task.problem.constraints.model_copy(update=free)
         alone = task.problem.model_copy(update={"constraints": constraints, "fixed_pivots": None})
@@ -115,14 +118,17 @@ class SixbarLimits:
         felt = self.felt if derivatives else math.inf
         there = follow_sixbar(self.kind, self.assembly, generator, self.inputs, np.zeros_like(self.inputs), felt)
         if not math.isfinite(there.tau):
+            # Clearly infeasible, with the usual number of rows.
             return np.full(self._rows, INFEASIBLE_VALUE), np.zeros((self._rows, ROW_SIZE))
         parts = [self._evaluate_ratios(generator)]
+        # A Stephenson II contains no fourbar on the ground.
         if self.kind != STEPHENSON_2:
             g, slopes = self.fourbar.values(generator[:PARAMETER_COUNT], derivatives=derivatives)
             parts.append((g, np.pad(slopes, ((0, 0), (0, ROW_SIZE - PARAMETER_COUNT)))))
         cosines, by_cosine = there.cosines[:, 1], there.by_cosine[:, 1]
         near = np.abs(cosines) >= self.felt
         side = np.sign(cosines[near])
+        # One row for the magnitude: the derivative takes the sign of the cosine.
         parts.append((np.abs(cosines[near]) - self.cosine, side[:, None] * by_cosine[near]))
         self._rows = sum(len(g) for g, _ in parts)
         return np.concatenate([g for g, _ in parts]), np.concatenate([slopes for _, slopes in parts])
@@ -133,6 +139,7 @@ class SixbarLimits:
         count = compute_log_lengths(self.kind, at, logs, by)
         own = slice(count // 2 if self.kind == WATT_2 else 0, count)
         logs, by = logs[own], by[own]
+        # All ordered pairs: their differences are smooth, unlike the ratio of longest to shortest.
         one, other = np.nonzero(~np.eye(len(logs), dtype=np.bool_))
         return logs[one] - logs[other] - self.logratio, by[one] - by[other]
 

@@ -101,8 +101,10 @@ def _close_dyad(
     r2 = across.real * across.real + across.imag * across.imag
     cosine = (d * d + e * e - r2) / (2.0 * d * e)
     r = math.sqrt(r2)
+    # Foot of the perpendicular from D on the line from the pivot to the pin.
     along = (e * e + r2 - d * d) / (2.0 * r)
     height2 = e * e - along * along
+    # The dyad does not close; also false for NaN.
     if not height2 > 0.0:
         return math.nan, cosine
     height = math.sqrt(height2)
@@ -111,11 +113,13 @@ def _close_dyad(
     arm = unit * complex(along, -height if left else height)
     v = (o + arm - q) / d
     turned = 1j * arm
+    # e times the sine of the transmission angle: 0 at a toggle.
     divisor = turned.real * v.real + turned.imag * v.imag
     for n in range(by_psi.size):
         moved = by_q[n] - by_o[n]
         by_psi[n] = (moved.real * v.real + moved.imag * v.imag) / divisor
         by_cosine[n] = -(moved.real * across.real + moved.imag * across.imag) / (d * e)
+    # Lengths enter as logarithms, so their derivatives are multiplied by the lengths themselves.
     one, other = columns
     by_psi[one] += d / divisor
     by_psi[other] -= (arm.real * v.real + arm.imag * v.imag) / divisor
@@ -160,15 +164,18 @@ def _solve_tau(at: Real, left: bool, turn: complex, tau: float, by: Complex) -> 
     step = math.inf
     for _ in range(MAX_NEWTON_STEPS):
         _, _, point, moves, found = _compute_relative_point(at, left, tau, by)
+        # The output's pivot O4 is at 1, in the frame of the ground.
         arm, rate = turn * point - 1.0, turn * moves
         slope = 2.0 * (arm.real * rate.real + arm.imag * rate.imag)
         step = (arm.real * arm.real + arm.imag * arm.imag - at[C] * at[C]) / slope
         if not found or not math.isfinite(step):
             return math.nan
+        # A long Newton step could end in another configuration.
         step = min(max(step, -MAX_TAU_STEP), MAX_TAU_STEP)
         tau -= step
         if abs(step) < STEP_TOLERANCE:
             break
+    # Near a toggle rounding prevents the full accuracy; such a τ is still usable.
     return tau if abs(step) < LOOSE_STEP_TOLERANCE else math.nan
 
 
@@ -191,6 +198,7 @@ def _close_triad(
     square = at[C] * at[C]
     for n in range(ROW_SIZE - 1):
         moved = turn * by[n]
+        # Turning the input moves the whole triad about O2.
         if n == START:
             moved += 1j * turn * point
         # A step of ln c changes the required |E − O4|² instead of E.
@@ -199,8 +207,10 @@ def _close_triad(
         moved += rate * by_tau[n]
         by_psi[n] = (arm.real * moved.imag - arm.imag * moved.real) / square
     cosine, _, leg = find_min_slant(point, turn.conjugate(), complex(at[A], 0.0), b, complex(at[7], at[8]), d)
+    # Derivatives of inactive cosines are not needed, and they are expensive here.
     if abs(cosine) < felt:
         return math.atan2(arm.imag, arm.real), tau, cosine
+    # Finite differences along the constraint surface: τ moves with each number.
     other = at.copy()
     for n in range(ROW_SIZE - 1):
         turned = turn
@@ -210,6 +220,7 @@ def _close_triad(
         b, d, point, _, found = _compute_relative_point(other, left, tau + DIFFERENCE_STEP * by_tau[n], by)
         o2, o4 = complex(other[A], 0.0), complex(other[7], other[8])
         other[n] = at[n]
+        # At the same leg as the value, so that the difference is smooth.
         there, _ = compute_leg_slant(leg, point, turned.conjugate(), o2, b, o4, d)
         by_cosine[n] = (there - cosine) / DIFFERENCE_STEP if found else 0.0
     return math.atan2(arm.imag, arm.real), tau, cosine
@@ -263,6 +274,7 @@ def _close_dyads(
     pin = at[A] * complex(math.cos(theta), math.sin(theta))
     q[:] = 0.0
     o[:] = 0.0
+    # Derivatives of A by its own numbers; the chain continues through both dyads.
     q[A], q[START], q[K] = pin, 1j * pin, 1j * pin * turned_by_k
     turned = by_psi.copy()
     angle, cosines[0] = _close_dyad(pin, q, complex(1.0, 0.0), o, (at[B], at[C]), (B, C), first, turned, by_cosine[0])
@@ -313,6 +325,7 @@ def follow(
     tau = begun = float(at[ROW_SIZE - 1])
     errors[:] = math.nan
     for j in range(inputs.size):
+        # K is a factor of the input, so its step turns the crank in proportion.
         turned_by_k = at[K] * inputs[j]
         theta = at[START] + turned_by_k
         row = slopes[j]
@@ -322,12 +335,14 @@ def follow(
             place, tau, cosines[j, 1] = _close_triad(at, assembly & 1 == 1, theta, tau, felt, row, by_cosine[j, 1])
             row[K] = row[START] * turned_by_k
             by_cosine[j, 1, K] = by_cosine[j, 1, START] * turned_by_k
+            # The next call starts from the first input again.
             if j == 0:
                 begun = tau
         else:
             place = _close_dyads(kind, at, assembly, theta, turned_by_k, q, o, row, cosines[j], by_cosine[j])
         if not math.isfinite(place):
             return math.nan
+        # Errors are angles: compare them modulo a full turn.
         errors[j] = _wrap_angle(place - at[ZERO] - at[L] * outputs[j])
         row[ZERO] -= 1.0
         row[L] -= at[L] * outputs[j]

@@ -44,8 +44,8 @@ def compute_log_lengths(kind: int, at: Real, logs: Real, slopes: Real) -> int:
     kind : int
     at : float, shape (NUMBERS,)
         The sixbar's row.
-    logs, slopes : float, shapes (LENGTHS,), (LENGTHS, NUMBERS)
-        Output. Steps are of logarithms for the numbers in :data:`sixbar_kernels.LOGARITHMIC`.
+    logs, slopes : float, shapes (MAX_LENGTHS,), (MAX_LENGTHS, ROW_SIZE)
+        Output. Steps are of logarithms for the numbers in :data:`kernels.IS_LOGARITHMIC`.
 
     Returns
     -------
@@ -54,11 +54,13 @@ def compute_log_lengths(kind: int, at: Real, logs: Real, slopes: Real) -> int:
     """
     logs[:], slopes[:] = 0.0, 0.0
     n = 0
+    # Column −1 is the ground, of length 1 and logarithm 0.
     for column in (-1, A, B, C):
         if column >= 0:
             logs[n], slopes[n, column] = math.log(at[column]), 1.0
         n += 1
     bars = (7, 8, 9) if kind == WATT_2 else ((11, 12, -1) if kind == STEPHENSON_3 else (9, 10, -1))
+    # The second fourbar has a ground of its own, also of length 1.
     if kind == WATT_2:
         n += 1
     for column in bars:

@@ -85,12 +85,14 @@ def build_function_sixbar(task: FunctionTask, found: SixbarCandidate) -> tuple[S
 
 def _select_frame(problem: FunctionProblem, found: SixbarCandidate, frames: list[_Frame]) -> tuple[_Frame, Placement]:
     """Select the frame with the most even link lengths that can be placed; without one, the most even of all."""
+    # Try the most even frame first; only Watt II sixbars have several.
     frames.sort(key=lambda frame: _measure_unevenness(found, frame.joints))
     first: tuple[_Frame, Placement] | None = None
     for frame in frames:
         there = _place_sixbar(problem, found, frame)
         if there.fits:
             return frame, there
+        # Nothing fits: report the most even frame with its violations.
         first = first or (frame, there)
     assert first is not None
     return first
@@ -106,6 +108,7 @@ def _list_frames(task: FunctionTask, found: SixbarCandidate) -> Iterator[_Frame]
     low = float(task.sample_inputs.min())
     over = np.linspace(low, last, SAMPLE_COUNT)
     inputs = np.concatenate([[first], over])
+    # The first sample is the first target, the configuration of the answer.
     pins = at[A] * np.exp(1j * (at[START] + at[K] * inputs))
     joints: dict[str, Complex] = {"O2": np.zeros_like(pins), "O4": np.ones_like(pins), "A": pins}
     bits = found.assembly & 1 == 1, found.assembly & 2 == 2
@@ -125,11 +128,13 @@ def _list_frames(task: FunctionTask, found: SixbarCandidate) -> Iterator[_Frame]
     crank = at[7] * np.exp(1j * at[10]) * rocker / at[C]
     pin = _close_dyad(crank, joints["O4"], at[8], at[9], left=bits[1])
     lengths = np.array([1.0, *at[:3]]), np.array([1.0, *at[7:10]])
+    # Size of the second fourbar at which both have the same geometric mean of longest and shortest link.
     agreeing = math.sqrt(math.prod([lengths[0].min() * lengths[0].max(), 1.0 / (lengths[1].min() * lengths[1].max())]))
     for size in SIZE_FACTORS:
         for turn in np.arange(DIRECTION_COUNT) * (math.tau / DIRECTION_COUNT):
             along = agreeing * size * cmath.rect(1.0, turn)
             second = {"C": 1.0 + along * crank, "D": 1.0 + along * pin, "O6": np.full_like(pins, 1.0 + along)}
+            # The second fourbar turns and grows about O4, which both share.
             yield _Frame(joints | second, math.degrees(turn))
 
 
@@ -139,6 +144,7 @@ def _close_dyad(q: Complex, o: Complex, d: float, e: float, *, left: bool) -> Co
     r = np.abs(across)
     with np.errstate(divide="ignore", invalid="ignore"):
         along = (d * d + r * r - e * e) / (2.0 * r)
+    # Rounding may give a small negative value at a toggle.
     height = np.sqrt(np.maximum(d * d - along * along, 0.0))
     with np.errstate(divide="ignore", invalid="ignore"):
         return np.asarray(q + across / r * (along + (1j if left else -1j) * height))
@@ -151,10 +157,12 @@ def _drive_stephenson_2(found: SixbarCandidate, first: float, ends: tuple[float,
     begun = follow_sixbar(STEPHENSON_2, found.assembly, at, np.array([first]), np.zeros(1)).tau
     places = [(first, begun)]
     for end in ends:
+        # Each half starts at the first target again, where τ is known.
         tau = begun
         for n, u in enumerate(np.linspace(first, end, SUBSTEP_COUNT * SAMPLE_COUNT + 1)):
             at[ROW_SIZE - 1] = tau
             tau = follow_sixbar(STEPHENSON_2, found.assembly, at, np.array([u]), np.zeros(1)).tau
+            # Substeps keep Newton's method on its branch; only the samples are stored.
             if n % SUBSTEP_COUNT == 0:
                 places.append((float(u), tau))
     inputs, taus = np.array(places).T
@@ -184,13 +192,16 @@ def _place_sixbar(problem: FunctionProblem, found: SixbarCandidate, frame: _Fram
     tables = [np.stack(convert_regions(regions))]
     if space is not None and space.box is not None:
         (left, low), (right, high) = space.box
+        # Joints have a width, so the box is shrunk before they are tested.
         sides = np.array(space.shrink_box_for_joints(BOX_INSET * min(right - left, high - low)))
         swept = np.concatenate([*(joints[name][:1] for name in still), *(joints[name][1:] for name in moving)])
+        # Only extreme points can leave the box first.
         outermost = swept[np.unique((swept[:, None] * HULL_DIRECTIONS.conj()).real.argmax(axis=0))]
         points.append(outermost)
         tables.append(np.repeat(sides[:, None], len(outermost), axis=1))
     least, most = _limit_sizes(problem, found, joints)
     limits = Boxes(*np.concatenate(tables, axis=1))
+    # Given pivots determine the placement completely; it can only be checked.
     if problem.fixed_pivots is not None:
         o2, there = to_complex(problem.fixed_pivots.input), to_complex(problem.fixed_pivots.output)
         ends = complex(joints[still[0]][0]), complex(joints[still[-1]][0])
@@ -198,9 +209,11 @@ def _place_sixbar(problem: FunctionProblem, found: SixbarCandidate, frame: _Fram
         origin = o2 - along * ends[0]
         kept = least <= abs(along) <= most and _is_within_boxes(origin + along * np.concatenate(points), limits)
         return Placement(origin, along, kept)
+    # Any placement fits: keep the direction and use the default size.
     if not np.isfinite(np.concatenate(tables, axis=1)).any() and constraints.link_length is None:
         return Placement(0j, complex(_get_preferred_size(joints)), True)
     tried = _try_placements(np.concatenate(points), limits, least, most, _get_preferred_size(joints))
+    # With a box the search over directions is final; without one the exact method follows.
     if tried.fits or len(points) > 1:
         return tried
     return place_in_boxes(points[0], limits, least, most, complex(_get_preferred_size(joints)))
@@ -231,6 +244,7 @@ def _try_placements(points: Complex, limits: Boxes, least: float, most: float, p
     room = np.minimum(right - left, high - low)
     fitting = room >= 0.0
     if fitting.any():
+        # Among large enough placements take the one with the largest margin.
         large = fitting & (np.abs(along) >= PREFERRED_SIZE_SHARE * np.abs(along[fitting]).max())
         best = int(np.argmax(np.where(large, room, -np.inf)))
     else:

@@ -45,6 +45,7 @@ def find_sixbars_through_nine(
     progress : callable
         Callback that receives the share of finished work.
     """
+    # Evenly spread pairs determine the function best over the whole range.
     nine = pairs[:, np.round(np.linspace(0, pairs.shape[1] - 1, PAIR_COUNT)).astype(int)]
     watts = find_all_watts(k * nine[0], l_ * nine[1], rng, progress, ways=1)
     found = []
@@ -65,6 +66,7 @@ def make_sixbar(vectors: Complex, k: float, l_: float, first_input: float, first
     a, c, d, e = (complex(z) for z in vectors)
     at = np.zeros(ROW_SIZE)
     at[[A, B, C, 7, 8, 9]] = abs(a), abs(1.0 + c - a), abs(c), abs(d), abs(1.0 + e - d), abs(e)
+    # Angles of the crank and the output at value 0 follow from those at the first pair.
     at[START], at[ZERO] = np.angle(a) - k * first_input, np.angle(e) - l_ * first_output
     at[K], at[L] = k, l_
     at[10] = np.angle(d) - np.angle(c)

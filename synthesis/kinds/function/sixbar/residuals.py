@@ -74,6 +74,7 @@ def evaluate_rows(
     cosines, by_cosine = np.zeros((m, 2)), np.zeros((m, 2, ROW_SIZE))
     felt, strict, free = setting[COSINE], setting[STRICT], setting[FREE:]
     tau = follow(kind, assembly, at, inputs, outputs, felt, errors, slopes, cosines, by_cosine)
+    # Not assembled at some input: the step is refused.
     if not math.isfinite(tau):
         return -1
     state[0] = tau
@@ -83,6 +84,7 @@ def evaluate_rows(
         jacobian[count] = weights[j] * slopes[j] * free
         count += 1
         for d in range(2):
+            # Always a row, even without a violation: the valley method needs the same rows at every point.
             over = abs(cosines[j, d]) - felt
             residuals[count] = limited[j] * strict * max(over, 0.0)
             jacobian[count] = 0.0
@@ -121,6 +123,7 @@ def evaluate_costs(
     cosines, by_cosine = np.zeros((m, 2)), np.zeros((m, 2, ROW_SIZE))
     for i in range(len(at)):
         costs[i] = math.inf
+        # A cosine threshold above 1 switches the expensive derivatives off.
         tau = follow(kind, assemblies[i], at[i], inputs, outputs, 2.0, errors, slopes, cosines, by_cosine)
         if not math.isfinite(tau):
             continue

@@ -123,10 +123,12 @@ def make_sample_points(task: FunctionTask) -> SamplePoints:
     """Make the sample points of a task."""
     function, exact = task.problem.function, task.problem.aim == "precision"
     if function is not None and not exact:
+        # Denser towards the ends, where errors of approximations are largest.
         u = 0.5 - 0.5 * np.cos(np.linspace(0.0, math.pi, SAMPLE_POINT_COUNT))
         weights = np.full(SAMPLE_POINT_COUNT, 1.0 / math.sqrt(SAMPLE_POINT_COUNT))
         square = task.problem.aim == "least_squares"
         if square:
+            # Weights equal to the spacing turn the sum into the mean over the range.
             weights = np.sqrt(np.gradient(u) / np.gradient(u).sum())
         limited = np.full(SAMPLE_POINT_COUNT, 1.0 / math.sqrt(SAMPLE_POINT_COUNT))
         dense = 0.5 - 0.5 * np.cos(np.linspace(0.0, math.pi, SQUARES_SAMPLE_COUNT if square else MINIMAX_SAMPLE_COUNT))
@@ -136,9 +138,11 @@ def make_sample_points(task: FunctionTask) -> SamplePoints:
     order = np.argsort(inputs)
     pairs = np.stack([inputs[order], outputs[order]])
     low, high = (0.0, 1.0) if function is not None else (pairs[0, 0], pairs[0, -1])
+    # Limits hold between the pairs, too, at points without an error.
     between = np.setdiff1d(np.linspace(low, high, MIN_LIMIT_POINTS), pairs[0])
     u = np.concatenate([pairs[0], between])
     v = np.concatenate([pairs[1], np.interp(between, *pairs)])
+    # Zero weight marks points that have no target.
     weights = np.concatenate([np.full(pairs.shape[1], 1.0 / math.sqrt(pairs.shape[1])), np.zeros(len(between))])
     points = np.stack([u, v, weights, np.full(len(u), 1.0 / math.sqrt(len(u)))])
     return SamplePoints(np.ascontiguousarray(points[:, np.argsort(u)]), pairs)
@@ -195,6 +199,7 @@ class SixbarSearch:
         searching = scale_progress(progress, 0.0, SEARCH_SHARE) if follows else progress
         reached: list[SixbarCandidate] = []
         for n in range(MAX_SEARCHES):
+            # Repeat only if the best is close to exact but not exact.
             if reached and not CONVERGED_ERROR < reached[0].error < PROMISING_ERROR:
                 break
             part = scale_progress(searching, n / MAX_SEARCHES, (n + 1) / MAX_SEARCHES)
@@ -202,6 +207,7 @@ class SixbarSearch:
             reached = select_best(
                 [*reached, *self._pairs.find_sixbars(name, drawn, MAX_IMPROVED, rng, part)], MAX_IMPROVED
             )
+        # All solutions through nine pairs are computed only if the search failed, since that takes many seconds.
         if follows and not (reached and reached[0].error < CONVERGED_ERROR):
             reached = select_best([*self._solve_nine_pairs(rng, progress), *reached], MAX_IMPROVED)
         return reached
@@ -223,6 +229,7 @@ class SixbarSearch:
             (
                 self._descents.descend_one(one, 0.0, MAX_EXACT_STEPS, EXACT_TOLERANCE)
                 if one.error < MAX_REFINABLE_ERROR
+                # Almost exact ones converge quadratically; the others follow their valleys.
                 else self._descents.follow_from(one, LIMIT_WEIGHTS[-1], MAX_FOLLOWED_STEPS)
                 for one in near
             ),
@@ -231,12 +238,12 @@ class SixbarSearch:
         if through.complete:
             nine = "the nine pairs" if self.places.dense.shape[1] == PAIR_COUNT else "nine of the pairs"
             met = sum(self._compute_max_error(one) < PAIR_TOLERANCE for one in reached)
+            # The list was cut off at this number, so more may exist.
             at_least = "at least " if met == MAX_FOLLOWED else ""
             which = f"{at_least}{met} of them {choose_word(met, 'meets', 'meet')}" if met else "none of them meets"
             self.told = (
-                f" All {format_integer(SOLUTION_COUNT)} Watt II solutions for {nine}, real and complex, were "
-                f"computed; {which} "
-                "all pairs to a millionth of a degree in one assembly."
+                f" All {format_integer(SOLUTION_COUNT)} Watt II solutions for {nine}, real and complex, were computed; "
+                f"{which} all pairs to a millionth of a degree in one assembly."
             )
         return reached
 
@@ -249,6 +256,7 @@ class SixbarSearch:
         found = []
         for one in begun:
             for weight in LIMIT_WEIGHTS:
+                # A small weight first lets the descent pass through infeasible sixbars.
                 one = descents.descend_one(one, weight, MAX_STEPS, DECREASE_TOLERANCE)
             found.append(descents.descend_one(one, 0.0, MAX_EXACT_STEPS, EXACT_TOLERANCE) if self.exact else one)
         reached = select_best(found, effort.valleys)
@@ -269,11 +277,13 @@ class SixbarSearch:
     def _optimize_sixbar(self, one: SixbarCandidate) -> SixbarCandidate:
         """Optimise a sixbar by the criterion under all constraints."""
         kind, greatest = TYPE_NUMBERS[one.type], self._compute_max_error(one)
+        # Exact pairs, or a rounding error: nothing is left to optimize.
         if self.exact or greatest < CONVERGED_ERROR:
             return one._replace(error=greatest)
         follower = SixbarFollower(kind, one.assembly, *self.places.dense)
         limits = SixbarLimits(self.task, kind, one.assembly, self.places.points[0], self.least, every=self.square)
         free = IS_USED[kind].copy()
+        # The final optimization may move open scales.
         free[[K, L]] = self.task.free[5:]
         descent = Descent(self.task, follower, limits, free)
         improve = descent.least_squares if self.square else descent.minimax

@@ -67,6 +67,7 @@ def sample_starts(
     at = np.zeros((count, kernels.ROW_SIZE))
     logs = rng.uniform(-LOG_LENGTH_RANGE, LOG_LENGTH_RANGE, (count, 3))
     if wider:
+        # A share of samples with very short or long links, which some pairs need.
         logs[rng.random(count) < WIDE_SHARE] *= WIDE_LOG_LENGTH_RANGE / LOG_LENGTH_RANGE
     at[:, :3] = np.exp(logs)
     at[:, kernels.START] = rng.uniform(-math.pi, math.pi, count)
@@ -81,11 +82,13 @@ def sample_starts(
     # With zero output the structural error is the rocker's angle itself.
     still = np.concatenate([at[:, :4], np.zeros((count, 1)), at[:, 5:6], np.zeros((count, 1))], axis=1)
     angles = Generators(False, inputs, outputs).errors(still, signs)
+    # Fourbars that do not reach all inputs are useless as a first step.
     known = np.isfinite(angles).all(axis=1)
     at, signs, angles = at[known], signs[known], np.unwrap(angles[known], axis=1)
     if kind == kernels.WATT_2:
         swing = np.ptp(angles, axis=1)
         turned = np.abs(at[:, kernels.K]) * np.ptp(inputs)
+        # The first step must turn enough to drive the second, and must not pass a toggle.
         kept = (swing > MIN_SWING_RATIO * turned) & (swing < MAX_SWING)
         return _compose_watt_2(task, at[kept], signs[kept], angles[kept], outputs, rng)
     return _compose_stephenson_3(at, signs, angles, inputs, outputs, rng)
@@ -104,6 +107,7 @@ def _compose_watt_2(
     spaced = 0.5 - 0.5 * np.cos((2.0 * np.arange(EXACT_POINT_COUNT) + 1.0 + shifts) * math.pi
                                 / (2.0 * EXACT_POINT_COUNT))  # fmt: skip
     columns = np.clip(np.round(spaced * (m - 1)), 0, m - 1).astype(np.int64)
+    # Rounding to samples may merge two points.
     distinct = (np.diff(columns, axis=1) > 0).all(axis=1)
     at, signs, angles, columns = at[distinct], signs[distinct], angles[distinct], columns[distinct]
     turned = np.take_along_axis(angles, columns, axis=1) - angles[:, :1]
@@ -117,6 +121,7 @@ def _compose_watt_2(
     ones = np.ones((len(rows), 1))
     second = np.concatenate([found[:, :5], ones, ones], axis=1)
     there = Generators(False, turned[own], wanted[own]).signs(second)
+    # All signs equal: the second fourbar meets its points in one assembly.
     same = np.abs(there.sum(axis=1)) > EXACT_POINT_COUNT - 0.5
     return Starts(rows[same], _encode_assemblies(signs[own[same]], there[same, 0]))
 
@@ -127,6 +132,7 @@ def _compose_stephenson_3(
     size = _measure_sizes(at)
     at[:, 7:9] = _sample_around(size, DISTANCES_FROM_A, rng)
     at[:, 9:11] = _sample_around(size, DISTANCES_FROM_MIDDLE, rng)
+    # Around the midpoint of O2 and O4.
     at[:, 9] += 0.5
     theta = at[:, kernels.START, None] + at[:, kernels.K, None] * inputs
     pin = at[:, :1] * np.exp(1j * theta)
@@ -147,6 +153,7 @@ def _compose_stephenson_3(
     at[:, 11], at[:, 12] = np.sqrt(np.maximum(square, 0.0)), np.abs(w)
     # D is left of C → O6 exactly if it is right of O6 → C, hence the sign below.
     sides = np.sign((w[:, None] * seen.conj()).imag)
+    # Nine tenths on one side suffice for a start; the descent does the rest.
     closes = (square > 0.0) & (np.abs(w) > 0.0) & (np.abs(sides.sum(axis=1)) > 0.9 * seen.shape[1])
     return Starts(at[closes], _encode_assemblies(signs[closes], -sides[closes].sum(axis=1)))
 

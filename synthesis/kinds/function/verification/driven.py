@@ -84,6 +84,7 @@ class _Fourbar(Drive):
     def __init__(self, mechanism: FourbarMechanism) -> None:
         fourbar = build_driven_fourbar(mechanism)
         self.linkage, self.assembly = fourbar.linkage, fourbar.assembly
+        # Some dimensions satisfy the model but close at no input angle.
         if not can_assemble(self.linkage):
             raise DimensionError("input", "lengths that can be assembled", math.nan)
         self.pivots = [complex(self.linkage.input_pivot), complex(self.linkage.output_pivot)]
@@ -144,6 +145,7 @@ class _Sixbar(Drive):
         if mechanism is None:
             raise DimensionError("input", "lengths that can be assembled", math.nan)
         try:
+            # Only the branch of the reference counts: a generator never changes its assembly.
             own = find_reference_branch(mechanism, find_branches(mechanism))
         except MechanismError as fault:
             raise DimensionError("input", "a sixbar whose circuits are known", math.nan) from fault
@@ -153,6 +155,7 @@ class _Sixbar(Drive):
         ground = mechanism.links[GROUND]
         self.pivots = [complex(mechanism.joints[name]) for name in ground]
         self._moving = [name for name in mechanism.joints if name not in ground]
+        # Sixbars are measured with absolute angles, so their frame is not turned.
         self.frame = 0.0
         self.full = own.full
         self.dyads = ("link_3", "link_5", "output") if design.type == "stephenson_2" else ("coupler", "link_5")
@@ -160,6 +163,7 @@ class _Sixbar(Drive):
 
     def _remove_full_turns(self, angles: Real | float) -> Real:
         """Remove the full turns between the first input angle and the reference."""
+        # Branch ranges are given around the reference, angles of the dial in any turn.
         first = np.ravel(angles)[0]
         return np.asarray(angles - math.tau * round((first - float(self.mechanism.reference_input)) / math.tau))
 
@@ -171,6 +175,7 @@ class _Sixbar(Drive):
     def is_on_branch(self, start: float, end: float) -> bool:
         low, high = self.own.range
         way = self._remove_full_turns(np.array([start, end]))
+        # A full branch contains every range.
         return self.full or bool(np.all((way >= low - RANGE_TOLERANCE) & (way <= high + RANGE_TOLERANCE)))
 
     def compute_min_transmissions(self, start: float, end: float) -> dict[str, float]:

@@ -68,6 +68,39 @@ class _DialTargets(NamedTuple):
     places: Real
 
 
+def _is_monotonic(values: Real) -> bool:
+    """Return whether values always rise or always fall."""
+    steps = np.diff(values)
+    return bool(np.all(steps > 0.0) or np.all(steps < 0.0))
+
+
+def _check_range(
+    problem: FunctionProblem, dials: Dials, drive: Drive, *, on_circuit: bool, covered: bool
+) -> list[Check]:
+    """Check that the targets lie on one circuit, that the range is covered, and that the dials are as requested."""
+    checks = [Check(name="same_circuit", passed=on_circuit)]
+    if problem.function is not None:
+        # A function must be generated over the whole range, not only at its targets.
+        checks.append(Check(name="covers_range", passed=covered))
+    return [*checks, check_error("dials", _measure_dial_deviation(problem, dials, drive), DIAL_TOLERANCE)]
+
+
+def _list_targets(targets: _DialTargets, errors: Real, residuals: Real, unit: float) -> list[FunctionTarget]:
+    """Return the targets as reported; ``unit`` converts the output's positions, as 180/π does radians to degrees."""
+    return [
+        FunctionTarget(
+            index=k,
+            input=float(targets.values[k]),
+            output=float(targets.outputs[k]),
+            input_angle=math.degrees(targets.angles[k]),
+            output_place=float(targets.places[k] + errors[k]) * unit,
+            error=float(errors[k]) * unit,
+            residual=float(residuals[k]),
+        )
+        for k in range(len(residuals))
+    ]
+
+
 def verify_function(problem: FunctionProblem, mechanism: FunctionMechanism, dials: Dials) -> FunctionDesign | None:
     """Drive a linkage through a problem's range and measure its structural error.
 
@@ -93,6 +126,7 @@ def verify_function(problem: FunctionProblem, mechanism: FunctionMechanism, dial
     met, assemblies = _drive_to_targets(drive, targets)
     if not np.all(np.isfinite(met.place)):
         return None
+    # All targets in the reference's own assembly.
     own = bool(np.all(assemblies == drive.assembly))
     errors = _compute_error(met.place, targets.places, drive.turns)
     structural = _measure_structural_error(problem, dials, drive, targets, errors)
@@ -102,16 +136,16 @@ def verify_function(problem: FunctionProblem, mechanism: FunctionMechanism, dial
     unit = _get_output_unit(problem)
     residuals = np.abs(errors) / (unit if problem.slides else 1.0)
     start, end = _find_input_range(problem, dials, targets)
+    # The used range is meaningless if targets lie in different assemblies.
     same_branch = own and drive.is_on_branch(start, end)
     on_circuit = same_branch or drive.is_one_circuit(targets.angles, assemblies)
+    # A motion through a toggle transmits nothing there.
     least = drive.compute_min_transmissions(start, end) if same_branch else dict.fromkeys(drive.dyads, 0.0)
-    steps = np.diff(targets.angles)
-    in_order = on_circuit and bool(np.all(steps > 0.0) or np.all(steps < 0.0))
+    in_order = on_circuit and _is_monotonic(targets.angles)
     joints = np.concatenate([met.moving.ravel(), drive.pivots])
-    lengths = list_link_lengths(mechanism)
     measures = measure_linkage(
-        lengths,
-        max(lengths),
+        list_link_lengths(mechanism),
+        max(list_link_lengths(mechanism)),
         unit if problem.slides else math.inf,  # with angular outputs the size of the linkage is free
         least,
         joints,
@@ -121,7 +155,6 @@ def verify_function(problem: FunctionProblem, mechanism: FunctionMechanism, dial
         full_rotation=drive.full,
         used=(start, end) if same_branch else None,
     )
-    degrees = 1.0 if problem.slides else 180.0 / math.pi
     metrics = FunctionMetrics(
         input_rotation=math.degrees(end - start),
         rms_residual=math.sqrt(float(np.mean(residuals**2))),
@@ -130,31 +163,16 @@ def verify_function(problem: FunctionProblem, mechanism: FunctionMechanism, dial
         rms_structural_error=error.rms,
         output_range=_compute_output_range(problem, dials),
     )
-    checks = []
-    if problem.aim == "precision":
-        checks.append(check_targets_reached(float(residuals.max())))
-    checks.append(Check(name="same_circuit", passed=on_circuit))
-    if problem.function is not None:
-        checks.append(Check(name="covers_range", passed=whole and drive.is_on_branch(start, end)))
-    kept = _measure_dial_deviation(problem, dials, drive)
-    checks.append(check_error("dials", kept, DIAL_TOLERANCE))
+    checks = [check_targets_reached(float(residuals.max()))] if problem.aim == "precision" else []
+    checks += _check_range(
+        problem, dials, drive, on_circuit=on_circuit, covered=whole and drive.is_on_branch(start, end)
+    )
     first = [complex(z) for z in met.moving[:, 0]]
     checks += check_constraints(problem.constraints, measures, drive.pivots, first)
     return FunctionDesign(
         mechanism=mechanism,
         dials=dials,
-        targets=[
-            FunctionTarget(
-                index=k,
-                input=float(targets.values[k]),
-                output=float(targets.outputs[k]),
-                input_angle=math.degrees(targets.angles[k]),
-                output_place=float(targets.places[k] + errors[k]) * degrees,
-                error=float(errors[k]) * degrees,
-                residual=float(residuals[k]),
-            )
-            for k in range(len(residuals))
-        ],
+        targets=_list_targets(targets, errors, residuals, 1.0 if problem.slides else 180.0 / math.pi),
         verification=Verification.from_checks(checks),
         metrics=metrics,
         structural_error=error,
@@ -180,6 +198,7 @@ def verify_with_tolerance(
     driven = verify_function(problem, mechanism, dials)
     if driven is None:
         return None
+    # Rounded dimensions meet no target exactly; quality limits apply instead.
     checks = [check for check in driven.verification.checks if check.name != REACHES_TARGETS]
     return driven.model_copy(update={"verification": Verification.from_checks(checks)})
 

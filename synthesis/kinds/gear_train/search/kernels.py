@@ -69,6 +69,23 @@ def _compute_window(ranked: float, front: float, tolerance: float) -> float:
 
 
 @njit(cache=True, nogil=True)
+def _compute_ranked_error(size: int, shortlist: Shortlist, by_size: bool) -> float:
+    """Return the error up to which a train of a size enters the shortlist by its rank; 0 if none does."""
+    last = len(shortlist.error) - 1
+    if shortlist.kept[0] <= last:
+        return np.inf
+    if by_size:
+        return 0.0 if size > shortlist.size[last] else np.inf
+    return float(shortlist.error[last])
+
+
+@njit(cache=True, nogil=True)
+def _is_empty(starts: Integers, size: int) -> bool:
+    """Return whether no rows have a size."""
+    return size > len(starts) - 2 or starts[size] == starts[size + 1]
+
+
+@njit(cache=True, nogil=True)
 def match(
     k: int,
     drivers: Gears,
@@ -88,7 +105,6 @@ def match(
     ``driven`` likewise. For each pair of sizes one pass over both lists finds every pair whose error could matter.
     """
     teeth = np.zeros(3 * MAX_STAGES, np.int64)
-    most_drivers, most_driven = len(driver_starts) - 2, len(driven_starts) - 2
     # The Pareto front so far: a train must be nearer than all smaller ones to enter it.
     front = np.inf
     for s in range(min(from_size, len(shortlist.least_error))):
@@ -98,12 +114,7 @@ def match(
             # All pairs (u, v) with u + v = size, or with max(u, v) = size if the largest gear counts.
             u = min(step, size)
             v = (2 * size - step if step > size else size) if rule.largest else size - step
-            if (
-                u > most_drivers
-                or v > most_driven
-                or driver_starts[u] == driver_starts[u + 1]
-                or driven_starts[v] == driven_starts[v + 1]
-            ):
+            if _is_empty(driver_starts, u) or _is_empty(driven_starts, v):
                 continue
             start, end = driven_starts[v], driven_starts[v + 1]
             middle = start
@@ -113,21 +124,14 @@ def match(
                 # Both lists rise, so that the nearest driven product only moves upward.
                 while middle < end and driven_products[middle] < wanted:
                     middle += 1
-                capacity = len(shortlist.error)
                 # From the nearest product outward, first downward, until the error leaves the window.
                 for upward in range(2):
                     j = middle if upward else middle - 1
                     while start <= j < end:
-                        full = shortlist.kept[0] == capacity
-                        if rule.by_size:
-                            ranked = 0.0 if full and size > shortlist.size[capacity - 1] else np.inf
-                        else:
-                            ranked = shortlist.error[capacity - 1] if full else np.inf
+                        ranked = _compute_ranked_error(size, shortlist, rule.by_size)
                         near = abs(driven_products[j] - wanted)
-                        if (
-                            near
-                            > _compute_window(ranked, min(front, shortlist.least_error[size]), rule.tolerance) * wanted
-                        ):
+                        window = _compute_window(ranked, min(front, shortlist.least_error[size]), rule.tolerance)
+                        if near > window * wanted:
                             break
                         e = compute_error(driven_products[j], d, rule.target, rule.target_rest)
                         if e <= rule.tolerance and is_improvement(e, size, shortlist, rule.by_size):
@@ -282,6 +286,99 @@ def has_common_distance(distances: Real, place: Integers, k: int) -> bool:
 
 
 @njit(cache=True, nogil=True)
+def _find_ratio(ratio: Real, wanted: float, low: int, end: int) -> int:
+    """Return the first place from ``low`` on with a ratio of at least the wanted one; ratios do not fall."""
+    while low < end:
+        half = (low + end) // 2
+        if ratio[half] < wanted:
+            low = half + 1
+        else:
+            end = half
+    return low
+
+
+@njit(cache=True, nogil=True)
+def _is_tied(numerator: int, denominator: int, tied: Integers) -> bool:
+    """Return whether a fraction is one of those whose trains are counted."""
+    for t in range(len(tied)):
+        common = compute_divisor(numerator, denominator)
+        if numerator // common == tied[t, 0] and denominator // common == tied[t, 1]:
+            return True
+    return False
+
+
+@njit(cache=True, nogil=True)
+def _is_counted(
+    teeth: Integers, canonical: Integers, distances: Real, place: Integers, k: int, coaxial: bool, rule: Rule
+) -> bool:
+    """Return whether a train is possible, and the one of its gears that counts; ``canonical`` is scratch."""
+    sound = has_common_distance(distances, place, k) and is_within_limits(teeth, k, rule)
+    if sound and not coaxial and not rule.ordered:
+        # The canonical train has drivers and driven gears sorted: its best pairing must be the
+        # present one.
+        for i in range(2 * MAX_STAGES):
+            canonical[i] = teeth[i]
+        sort(canonical, 0, k)
+        sort(canonical, MAX_STAGES, k)
+        sound = arrange_pairs(canonical, k, rule) and has_same_meshes(teeth, canonical, k)
+    elif sound and rule.ordered:
+        sound = is_foremost(teeth, k, rule, coaxial)
+    return sound
+
+
+@njit(cache=True, nogil=True)
+def _complete_trains(
+    k: int, g: int, begin: int, end: int, place: Integers, front: float, a: Integers, b: Integers, mark: Integers,
+    ratio: Real, least_size: Integers, distances: Real, coaxial: bool, rule: Rule, shortlist: Shortlist, tied: Integers,
+    teeth: Integers, canonical: Integers,
+) -> float:  # fmt: skip
+    """Complete the meshes at ``place`` by those of the last stage; return the error of the Pareto front.
+
+    The last stage is searched from ``begin`` to ``end``; other parameters as for :func:`combine`.
+    """
+    up, down, so_far, gears, widest = 1, 1, 1.0, 0, 0
+    for i in range(k - 1):
+        up *= b[place[i]]
+        down *= a[place[i]]
+        so_far *= ratio[place[i]]
+        gears += a[place[i]] + b[place[i]]
+        widest = max(widest, a[place[i]], b[place[i]])
+    # The last stage must supply the rest of the ratio: bisect for it, then search outward on both sides.
+    wanted = rule.target / so_far
+    low = begin if rule.ordered or k == 1 else place[k - 2]
+    middle = _find_ratio(ratio, wanted, low, end)
+    for upward in range(2):
+        j = middle if upward else middle - 1
+        while low <= j < end:
+            ranked = _compute_ranked_error(least_size[g], shortlist, rule.by_size)
+            if len(tied) > 0:
+                # Counting ties: exactly the error of the best train is of interest.
+                ranked = front = shortlist.error[0]
+            if abs(ratio[j] - wanted) > _compute_window(ranked, front, rule.tolerance) * wanted:
+                break
+            e = compute_error(up * b[j], down * a[j], rule.target, rule.target_rest)
+            size = max(widest, a[j], b[j]) if rule.largest else gears + a[j] + b[j]
+            wanted_tie = _is_tied(up * b[j], down * a[j], tied)
+            few = size < len(shortlist.least_error)
+            if wanted_tie or (
+                len(tied) == 0 and few and e <= rule.tolerance and is_improvement(e, size, shortlist, rule.by_size)
+            ):
+                place[k - 1] = j
+                for i in range(k):
+                    teeth[i], teeth[MAX_STAGES + i] = a[place[i]], b[place[i]]
+                    teeth[2 * MAX_STAGES + i] = mark[place[i]]
+                sound = _is_counted(teeth, canonical, distances, place, k, coaxial, rule)
+                if sound and wanted_tie:
+                    shortlist.ties[0] += 1
+                elif sound:
+                    enter(e, size, teeth, shortlist, rule.by_size)
+                    if size <= least_size[g]:
+                        front = min(front, e)
+            j += 1 if upward else -1
+    return front
+
+
+@njit(cache=True, nogil=True)
 def combine(
     k: int,
     a: Integers,
@@ -311,7 +408,6 @@ def combine(
     """
     teeth, canonical = np.zeros(3 * MAX_STAGES, np.int64), np.zeros(3 * MAX_STAGES, np.int64)
     place = np.zeros(MAX_STAGES + 1, np.int64)
-    capacity = len(shortlist.error)
     for g in range(first, last):
         front = np.inf
         for s in range(least_size[g] + 1):
@@ -331,72 +427,10 @@ def combine(
                 stage += 1
                 place[stage] = groups[g, stage] if rule.ordered else place[stage - 1]
                 continue
-            up, down, so_far, gears, widest = 1, 1, 1.0, 0, 0
-            for i in range(k - 1):
-                up *= b[place[i]]
-                down *= a[place[i]]
-                so_far *= ratio[place[i]]
-                gears += a[place[i]] + b[place[i]]
-                widest = max(widest, a[place[i]], b[place[i]])
-            # The last stage must supply the rest of the ratio: bisect for it, then search outward on both sides.
-            wanted = rule.target / so_far
-            low = begin if rule.ordered or k == 1 else place[k - 2]
-            middle, top = low, end
-            while middle < top:
-                half = (middle + top) // 2
-                if ratio[half] < wanted:
-                    middle = half + 1
-                else:
-                    top = half
-            for upward in range(2):
-                j = middle if upward else middle - 1
-                while low <= j < end:
-                    full = shortlist.kept[0] == capacity
-                    if rule.by_size:
-                        ranked = 0.0 if full and least_size[g] > shortlist.size[capacity - 1] else np.inf
-                    else:
-                        ranked = shortlist.error[capacity - 1] if full else np.inf
-                    if len(tied) > 0:
-                        # Counting ties: exactly the error of the best train is of interest.
-                        ranked = front = shortlist.error[0]
-                    if abs(ratio[j] - wanted) > _compute_window(ranked, front, rule.tolerance) * wanted:
-                        break
-                    e = compute_error(up * b[j], down * a[j], rule.target, rule.target_rest)
-                    size = max(widest, a[j], b[j]) if rule.largest else gears + a[j] + b[j]
-                    wanted_tie = False
-                    for t in range(len(tied)):
-                        common = compute_divisor(up * b[j], down * a[j])
-                        if up * b[j] // common == tied[t, 0] and down * a[j] // common == tied[t, 1]:
-                            wanted_tie = True
-                    few = size < len(shortlist.least_error)
-                    if wanted_tie or (
-                        len(tied) == 0
-                        and few
-                        and e <= rule.tolerance
-                        and is_improvement(e, size, shortlist, rule.by_size)
-                    ):
-                        place[k - 1] = j
-                        for i in range(k):
-                            teeth[i], teeth[MAX_STAGES + i] = a[place[i]], b[place[i]]
-                            teeth[2 * MAX_STAGES + i] = mark[place[i]]
-                        sound = has_common_distance(distances, place, k) and is_within_limits(teeth, k, rule)
-                        if sound and not coaxial and not rule.ordered:
-                            # The canonical train has drivers and driven gears sorted: its best pairing must be the
-                            # present one.
-                            for i in range(2 * MAX_STAGES):
-                                canonical[i] = teeth[i]
-                            sort(canonical, 0, k)
-                            sort(canonical, MAX_STAGES, k)
-                            sound = arrange_pairs(canonical, k, rule) and has_same_meshes(teeth, canonical, k)
-                        elif sound and rule.ordered:
-                            sound = is_foremost(teeth, k, rule, coaxial)
-                        if sound and wanted_tie:
-                            shortlist.ties[0] += 1
-                        elif sound:
-                            enter(e, size, teeth, shortlist, rule.by_size)
-                            if size <= least_size[g]:
-                                front = min(front, e)
-                    j += 1 if upward else -1
+            front = _complete_trains(
+                k, g, begin, end, place, front, a, b, mark, ratio, least_size, distances, coaxial, rule, shortlist,
+                tied, teeth, canonical,
+            )  # fmt: skip
             stage -= 1
             if stage >= 0:
                 place[stage] += 1

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 from dataclasses import dataclass
 from fractions import Fraction
 
@@ -120,15 +121,25 @@ def _place_numbers(numbers: list[int]) -> Integers:
     return placed
 
 
+def _list_positions(problem: GearTrainProblem, counts: Mapping[int, int]) -> list[Integers]:
+    """Return the tooth numbers of each position, drivers and driven gears by turns."""
+    if counts:
+        # With a stock all positions choose from the same gears.
+        return [np.array(sorted(counts), np.int64)] * (2 * problem.most_stages)
+    return [np.arange(low, high + 1, dtype=np.int64) for low, high in problem.list_position_ranges()]
+
+
+def _find_idled_meshes(sound: NDArray[np.bool_], idlers: Integers) -> NDArray[np.bool_]:
+    """Return the pairs between which an idler can stand: some idler meshes soundly with both."""
+    # In floats, because the matrix product of integers is slow.
+    before, after = sound[:, idlers].astype(np.float32), sound[idlers].astype(np.float32)
+    return np.asarray(before @ after > 0.0)
+
+
 def build_task(problem: GearTrainProblem, coprime: bool) -> Task:
     """Build the task of a problem; ``coprime``: only meshes without a common divisor."""
-    # With a stock all positions choose from the same gears.
     counts = problem.count_stock()
-    if counts:
-        numbers = np.array(sorted(counts), np.int64)
-        positions = [numbers] * (2 * problem.most_stages)
-    else:
-        positions = [np.arange(low, high + 1, dtype=np.int64) for low, high in problem.list_position_ranges()]
+    positions = _list_positions(problem, counts)
     most = int(max(values[-1] for values in positions))
     stock = np.zeros(most + 1 if counts else 0, np.int64)
     for teeth, count in counts.items():
@@ -147,10 +158,7 @@ def build_task(problem: GearTrainProblem, coprime: bool) -> Task:
     idlers = np.unique(np.concatenate(positions)) if counts else np.arange(min(v[0] for v in positions), most + 1)
     allowed, idled = sound & limited, np.zeros_like(sound)
     if idler_counts:
-        # In floats, because the matrix product of integers is slow.
-        # An idler can stand between a and b if some idler meshes soundly with both.
-        before, after = sound[:, idlers].astype(np.float32), sound[idlers].astype(np.float32)
-        idled = (before @ after > 0.0) & limited
+        idled = _find_idled_meshes(sound, idlers) & limited
     own = _find_own_meshes(problem, most, sound, limited)
     stages = [allowed | idled] * len(drivers)
     if own:

@@ -79,10 +79,9 @@ class GearTrainBase(ProblemBase):
     direction: Literal["any", "same", "opposite"] = Field(
         default="any",
         description="Relative direction of input and output. With `any` a positive ratio only gives the magnitude and "
-        "no "
-        "idler is used. An idler has teeth within the ranges of the other gears, or is one more gear of the stock; in "
-        "its stage the two meshes with it satisfy the mesh constraints, and driver and driven gear the stage ratio "
-        "limit.",
+        "no idler is used. An idler has teeth within the ranges of the other gears, or is one more gear of the "
+        "stock; in its stage the two meshes with it satisfy the mesh constraints, and driver and driven gear the "
+        "stage ratio limit.",
     )
     max_stages: Annotated[Count, Field(ge=1, le=4)] | None = Field(
         default=None, description=f"Default {DEFAULT_MAX_STAGES}; not together with `stages`."
@@ -116,8 +115,7 @@ class GearTrainBase(ProblemBase):
     hunting_tooth: Literal["any", "prefer", "require"] = Field(
         default="any",
         description="Whether the teeth of every mesh must have no common divisor, so that each tooth meets every "
-        "other; "
-        "`prefer` ranks such trains first among those of equal error (or equal size and error).",
+        "other; `prefer` ranks such trains first among those of equal error (or equal size and error).",
     )
     reverted: Flag = Field(
         default=False, description="Every stage has the same centre distance, so that output and input can be coaxial."
@@ -149,8 +147,7 @@ class GearTrainBase(ProblemBase):
     shift: ShiftRange | None = Field(
         default=None,
         description=f"Profile shift of every gear, in modules. Default: {DEFAULT_SHIFT_LIMITS[0]} to "
-        f"{DEFAULT_SHIFT_LIMITS[1]} with a "
-        "given centre distance, none without.",
+        f"{DEFAULT_SHIFT_LIMITS[1]} with a given centre distance, none without.",
     )
     min_contact_ratio: ContactRatio | None = Field(
         default=None,
@@ -159,8 +156,7 @@ class GearTrainBase(ProblemBase):
     min_tip_thickness: TipThickness | None = Field(
         default=None,
         description=f"Minimum tip thickness of every gear, in modules; default {DEFAULT_MIN_TIP_THICKNESS} if teeth "
-        "are "
-        "fitted.",
+        "are fitted.",
     )
     pressure_angle: PressureAngle = Field(default=20.0, description="Pressure angle, degrees.")
     strength: CarriedPower | None = Field(

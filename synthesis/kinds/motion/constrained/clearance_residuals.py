@@ -39,6 +39,7 @@ SCAN_STEP_COUNT = 4
 @njit(**OPTIONS)
 def _apply_deviations(x: Real, points: Real, k: int, pose: Real) -> None:
     """Write pose k with its deviations; these follow the eight pivot coordinates in x."""
+    # Deviations are stored pose by pose, but only for coordinates with a tolerance, hence the counting.
     at = 8
     for j in range(k + 1):
         for c in range(3):
@@ -65,7 +66,7 @@ def compute_chart(x: Real, points: Real, assembly: float, steps: Real, beyond: R
     beyond : float64, shape (2,)
         Offsets of the ends of the motion from the first and last pose, radians: start of the search on input, result on
         output. NaN requests a scan of the neighbourhood.
-    chart : float64, shape (CHART,)
+    chart : float64, shape (CHART_SIZE,)
         Output.
     """
     n = len(points)
@@ -82,6 +83,7 @@ def compute_chart(x: Real, points: Real, assembly: float, steps: Real, beyond: R
         after = complex(pose[0], pose[1]) + compute_unit_vector(pose[2]) * arm_a - o2
         step = after * crank.conjugate()
         off = math.atan2(step.imag, step.real) - steps[k - 1]
+        # Take the branch of the rotation nearest to the start's, so that it changes continuously during the fit.
         turned += steps[k - 1] + off - 2.0 * math.pi * round(off / (2.0 * math.pi))
         crank = after
     ground, bar = o4 - o2, arm_b - arm_a
@@ -89,11 +91,13 @@ def compute_chart(x: Real, points: Real, assembly: float, steps: Real, beyond: R
     lengths[0], lengths[1], lengths[2], lengths[3] = abs(ground), abs(a - o2), abs(bar), abs(b - o4)
     if not lengths.min() > 0.0:
         return False
+    # P in the coupler's frame, whose real axis goes from A to B.
     own = (p - a) * (b - a).conjugate() / lengths[2]
     chart[0], chart[1], chart[2] = o2.real, o2.imag, math.atan2(ground.imag, ground.real)
     chart[POINT], chart[POINT + 1], chart[BODY] = own.real, own.imag, math.atan2(bar.imag, bar.real)
     first = (a - o2) * ground.conjugate()
     begin = math.atan2(first.imag, first.real)
+    # The motion ends where the driven linkage is nearest to its end poses, not at the fitted poses themselves.
     for end in range(2):
         angle, row = (begin, points[0]) if end == 0 else (begin + turned, points[n - 1])
         chart[ENDS + end] = _find_nearest_angle(chart, assembly, angle, beyond[end], row)
@@ -110,6 +114,7 @@ def _find_nearest_angle(chart: Real, assembly: float, angle: float, beyond: floa
     """
     if not row[3:].min() > 0.0:
         return angle
+    # Alternate on both sides: 0, +1, −1, +2, −2 … maximum steps.
     shares, slopes = np.empty(3), np.empty(3)
     ahead, after = np.empty(3), np.empty(3)
     missed, at = np.inf, angle
@@ -119,6 +124,7 @@ def _find_nearest_angle(chart: Real, assembly: float, angle: float, beyond: floa
         if _compute_shares(chart, assembly, tried, row, ahead, after) and np.abs(ahead).max() < missed:
             missed, at = np.abs(ahead).max(), tried
             shares[:], slopes[:] = ahead, after
+    # The linkage does not close near the pose: keep the angle and let other margins decide.
     if missed == np.inf:
         return angle
     angle = at
@@ -171,11 +177,13 @@ def _compute_shares(chart: Real, assembly: float, angle: float, row: Real, share
     if not closes:
         return False
     last = crank + lengths[2] * along - ground
+    # The coupler's rotation per rotation of the crank; the output's length stays constant.
     turn = -(last.conjugate() * 1j * crank).real / (last.conjugate() * 1j * lengths[2] * along).real
     arm = complex(chart[POINT], chart[POINT + 1]) * along
     place = complex(chart[0], chart[1]) + crank + arm
     moves = 1j * (crank + turn * arm)
     off = math.atan2(along.imag, along.real) - chart[BODY] - row[2]
+    # Angles are compared modulo a full turn.
     off -= 2.0 * math.pi * round(off / (2.0 * math.pi))
     shares[0], shares[1], shares[2] = (place.real - row[0]) / row[3], (place.imag - row[1]) / row[4], off / row[5]
     slopes[0], slopes[1], slopes[2] = moves.real / row[3], moves.imag / row[4], turn / row[5]
@@ -209,6 +217,7 @@ def append_room_rows(
     chart, turns, beyond = np.empty(CHART_SIZE), np.zeros((2, CHART_SIZE)), np.full(2, np.nan)
     if not compute_chart(x, points, assembly, steps, beyond, chart):
         return -1
+    # The ends of the motion are chart entries of their own, so their derivatives are unit vectors.
     turns[0, ENDS], turns[1, ENDS + 1] = 1.0, 1.0
     # Chain rule: derivatives of the margins by the chart are exact, those of the chart by x are differenced below.
     by_chart = np.empty((count_margins(room), CHART_SIZE))
@@ -216,11 +225,13 @@ def append_room_rows(
         chart, chart[LENGTHS : LENGTHS + 4].copy(), np.eye(4), assembly, chart[ENDS : ENDS + 2].copy(), turns, False,
         BODY, room, multipliers, values, residuals[m:], by_chart, 0,
     )  # fmt: skip
+    # No active margin, or −1 if the motion does not close.
     if count <= 0:
         return m if count == 0 else -1
     changed, ahead, behind = x.copy(), np.empty(CHART_SIZE), np.empty(CHART_SIZE)
     jacobian[m : m + count] = 0.0
     for i in range(len(x)):
+        # Start each search from the unperturbed result, so that the difference contains no scanning noise.
         changed[i] = x[i] + DIFFERENCE_STEP
         if not compute_chart(changed, points, assembly, steps, beyond.copy(), ahead):
             return -1

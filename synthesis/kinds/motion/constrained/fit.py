@@ -91,6 +91,7 @@ def make_constrained_fit(
     """Set up a fit that stays near its start."""
     pivots = np.ascontiguousarray(start.pivots).view(np.float64)
     setting = _pack_setting(problem, task, start, room)
+    # The term near the start keeps fits of different starts different.
     setting[HOME_PIVOTS : HOME_PIVOTS + PIVOT_COORDINATE_COUNT], setting[HOME_WEIGHT_INDEX] = pivots, HOME_WEIGHT
     return ConstrainedFit(np.concatenate([pivots, start.deviations[rows[:, 3:] > 0.0]]), setting)
 
@@ -105,6 +106,7 @@ def release_from_start(linkage: ConstrainedFit) -> ConstrainedFit:
 def with_angle(linkage: ConstrainedFit, degrees: float) -> ConstrainedFit:
     """Return the fit with another minimum transmission angle, degrees."""
     setting = linkage.setting.copy()
+    # Below 90°, where no linkage could satisfy the limit.
     setting[COSINE] = math.cos(math.radians(min(degrees, 89.0)))
     return linkage._replace(setting=setting)
 
@@ -122,12 +124,14 @@ def pack_task_workspace(problem: MotionProblem, task: MotionTask, aim: float = A
 
 def replace_workspace(linkages: Sequence[ConstrainedFit], rows: Real, room: Real) -> list[ConstrainedFit]:
     """Return the fits with another workspace."""
+    # The workspace stands last in the setting, so it can be exchanged without touching the rest.
     end = STEPS + len(rows) - 1
     return [one._replace(setting=np.concatenate([one.setting[:end], room])) for one in linkages]
 
 
 def measure_workspace_margins(linkages: Sequence[ConstrainedFit], rows: Real, room: Real) -> Real:
     """Return the minimum workspace margin of each linkage, in task sizes; infinite without a workspace."""
+    # Without a workspace everything fits.
     if not len(room) or not linkages:
         return np.full(len(linkages), math.inf)
     settings = np.array([one.setting[: STEPS + len(rows) - 1] for one in linkages])
@@ -142,6 +146,7 @@ def solve_constrained(rows: Real, linkages: Sequence[ConstrainedFit]) -> list[Co
 
     def fit_linkage(linkage: ConstrainedFit) -> ConstrainedFit | None:
         roomy = int(count_margins(linkage.setting[STEPS + n - 1 :]))
+        # Only accept fits that satisfy all constraints; the workspace has its own tolerance.
         count = roomy + count_pose_margins(n)
         x, state = linkage.x.copy(), np.zeros(count)
         status, cost = fit_constrained(
@@ -170,6 +175,7 @@ def _pack_setting(problem: MotionProblem, task: MotionTask, start: Start, room: 
     o2, o4, a, b = (complex(z) for z in start.pivots)
     spins = np.exp(1j * start.poses[:, 2])
     places = start.poses[:, 0] + 1j * start.poses[:, 1]
+    # Angles of the crank at the poses decide the direction in which the targets are met in order.
     pins = places + spins * (a - task.points[0])
     others = places + spins * (b - task.points[0])
     turned = np.angle((pins - o2) / (pins[0] - o2))
@@ -184,17 +190,20 @@ def _pack_setting(problem: MotionProblem, task: MotionTask, start: Start, room: 
         forward = bool(steps.sum() > 0.0)
     setting[DIRECTION] = 1.0 if forward else -1.0
     setting[STEPS:] = steps
+    # The cross product of coupler and output at the first pose is positive for one assembly.
     setting[ASSEMBLY] = math.copysign(1.0, float(((others - pins)[0].conjugate() * (others[0] - o4)).imag))
     setting[SHORTEST] = _SHORTEST_INDEX.get(constraints.grashof, -1)
     # A fully rotating input needs the ground or the input as shortest link: take the shorter one of the start.
     if constraints.full_rotation and setting[SHORTEST] < 0:
         setting[SHORTEST] = 0 if abs(o4 - o2) < abs(pins[0] - o2) else 1
+    # Without a limit a small angle keeps the fit away from toggles.
     setting[COSINE] = math.cos(math.radians(max(constraints.min_transmission_angle or 0.0, MIN_ANGLE)))
     lengths = constraints.link_length
     setting[LINKS] = 0.0 if lengths is None else lengths.min / task.size
     setting[LINKS + 1] = math.inf if lengths is None or lengths.max is None else lengths.max / task.size
     setting[RATIO] = math.inf if constraints.max_link_ratio is None else constraints.max_link_ratio
     for k, region in enumerate((constraints.fixed_pivot_region, constraints.moving_pivot_region)):
+        # The same region applies to both pivots of a pair.
         setting[BOXES + 8 * k : BOXES + 8 * (k + 1)] = np.tile(make_box(task, region), 2)
     setting[GIVEN_COORDINATES : GIVEN_COORDINATES + PIVOT_COORDINATE_COUNT] = list_given_coordinates(task, problem)
     setting[LINE : LINE + 3] = math.nan
@@ -223,6 +232,7 @@ def verify_fit(
     pose[free] += rows[0, 3:][free] * x[PIVOT_COORDINATE_COUNT : PIVOT_COORDINATE_COUNT + int(free.sum())]
     place, spin = complex(pose[0], pose[1]), cmath.exp(1j * float(pose[2]))
     o2, o4, a, b = (complex(z) for z in np.ascontiguousarray(x[:PIVOT_COORDINATE_COUNT]).view(np.complex128))
+    # Given pivots keep their exact values instead of the fitted ones.
     o2, o4 = task.pivot(problem.input_side.fixed_pivot, o2), task.pivot(problem.output_side.fixed_pivot, o4)
     a, b = (task.to_problem(place + spin * (z - complex(task.points[0]))) for z in (a, b))
     joints = FourbarConfiguration(o2, a, b, o4, task.to_problem(place))

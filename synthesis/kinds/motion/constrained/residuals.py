@@ -32,7 +32,7 @@ import math
 
 import numpy as np
 
-from kinematics.arrays import Real
+from kinematics.arrays import Complex, Real
 from kinematics.compiling import njit
 from synthesis.fit.workspace_margins import count_margins
 from synthesis.kinds.motion.constrained.clearance_residuals import append_room_rows
@@ -96,11 +96,98 @@ def _cross(u: complex, v: complex) -> float:
 
 
 @njit(cache=True, nogil=True)
+def _evaluate_input_steps(a: Complex, o2: complex, setting: Real, margins: Real, m: int) -> float:
+    """Write the margins of the input's rotations from index m on; return their sum."""
+    n, turned = len(a), 0.0
+    for k in range(n - 1):
+        step = (a[k + 1] - o2) * (a[k] - o2).conjugate()
+        # Unwrap the rotation towards its value at the start, so that it changes continuously during the fit.
+        off = math.atan2(step.imag, step.real) - setting[STEPS + k]
+        step_turned = setting[STEPS + k] + off - 2.0 * math.pi * round(off / (2.0 * math.pi))
+        margins[m + k] = setting[DIRECTION] * step_turned - MIN_INPUT_STEP
+        turned += step_turned
+    margins[m + n - 1] = 2.0 * math.pi - MIN_INPUT_STEP - abs(turned)
+    return turned
+
+
+@njit(cache=True, nogil=True)
+def _evaluate_equations(x: Real, a: Complex, b: Complex, lengths: Real, setting: Real, margins: Real, m: int) -> None:
+    """Write the margins of the equations from index m on: constant links, given coordinates, and a given line."""
+    o2, o4 = complex(x[0], x[1]), complex(x[2], x[3])
+    for k in range(len(a) - 1):
+        # Constant link lengths, the equations of the problem.
+        margins[m], margins[m + 1] = abs(a[k + 1] - o2) - lengths[1], abs(b[k + 1] - o4) - lengths[3]
+        m += 2
+    for k in range(PIVOT_COORDINATE_COUNT):
+        if not math.isnan(setting[GIVEN_COORDINATES + k]):
+            margins[m + k] = x[k] - setting[GIVEN_COORDINATES + k]
+    m += PIVOT_COORDINATE_COUNT
+    if not math.isnan(setting[LINE]):
+        for k in range(2):
+            margins[m + k] = setting[LINE] * x[2 * k] + setting[LINE + 1] * x[2 * k + 1] - setting[LINE + 2]
+
+
+@njit(cache=True, nogil=True)
+def _write_soft_residuals(
+    x: Real, lengths: Real, arm_a: complex, arm_b: complex, setting: Real, residuals: Real, rows: int
+) -> int:
+    """Write the weak residuals that prefer usual proportions and the start's pivots; return the number of rows."""
+    # Deviation from the geometric mean favours links of similar length, whatever the size.
+    mean = np.log(lengths).mean()
+    for k in range(4):
+        residuals[rows + 2 * k] = RATIO_WEIGHT * (math.log(lengths[k]) - mean)
+        residuals[rows + 2 * k + 1] = LENGTH_WEIGHT * lengths[k]
+    residuals[rows + 8], residuals[rows + 9] = ARM_WEIGHT * abs(arm_a), ARM_WEIGHT * abs(arm_b)
+    rows += 10
+    for k in range(PIVOT_COORDINATE_COUNT):
+        residuals[rows + k] = setting[HOME_WEIGHT_INDEX] * (x[k] - setting[HOME_PIVOTS + k])
+    return rows + PIVOT_COORDINATE_COUNT
+
+
+@njit(cache=True, nogil=True)
+def _evaluate_transmission(
+    a: Complex, o2: complex, o4: complex, lengths: Real, turned: float, setting: Real, residuals: Real, margins: Real,
+    rows: int, m: int,
+) -> None:  # fmt: skip
+    """Write four residuals and four pairs of margins of transmission angles, where they can be extreme.
+
+    These are the crank on the ground line, if the input's range contains it, and the first and the last position.
+    """
+    n, d, crank, coupler, output = len(a), lengths[0], lengths[1], lengths[2], lengths[3]
+    ground = o4 - o2
+    first = (a[0] - o2) * ground.conjugate()
+    start = math.atan2(first.imag, first.real)
+    low, high = min(start, start + turned), max(start, start + turned)
+    for k in range(4):
+        if k < 2:
+            # Find the multiple of π (even for k = 0, odd for k = 1) that lies in the used range.
+            passed = 2.0 * math.pi * math.ceil((low - k * math.pi) / (2.0 * math.pi)) + k * math.pi
+            used = passed <= high
+            # On the ground line the diagonal is the difference or the sum of ground and crank.
+            diagonal = d - crank if k == 0 else d + crank
+        else:
+            used = True
+            diagonal = abs(o4 - a[0 if k == 2 else n - 1])
+        cosine = (coupler * coupler + output * output - diagonal * diagonal) / (2.0 * coupler * output)
+        # Always a residual, even if 0: the number of rows must not change between difference steps.
+        residuals[rows] = 0.0
+        if used:
+            residuals[rows] = COSINE_WEIGHT * cosine
+            margins[m], margins[m + 1] = (
+                setting[COSINE] - LIMIT_TIGHTENING - cosine,
+                setting[COSINE] - LIMIT_TIGHTENING + cosine,
+            )
+        rows += 1
+        m += 2
+
+
+@njit(cache=True, nogil=True)
 def _evaluate_margins(x: Real, points: Real, setting: Real, residuals: Real, margins: Real) -> int:
     """Write residuals and margins at x; return the number of residuals, or −1 if a link has no length."""
     n = len(points)
     o2, o4 = complex(x[0], x[1]), complex(x[2], x[3])
     arm_a, arm_b = complex(x[4] - points[0, 0], x[5] - points[0, 1]), complex(x[6] - points[0, 0], x[7] - points[0, 1])
+    # Infinite margins bear no load; those that apply are overwritten below.
     margins[:] = np.inf
     a, b = np.empty(n, np.complex128), np.empty(n, np.complex128)
     at, m, rows = PIVOT_COORDINATE_COUNT, 0, 0
@@ -110,10 +197,12 @@ def _evaluate_margins(x: Real, points: Real, setting: Real, residuals: Real, mar
             pose[c] = points[k, c]
             if points[k, 3 + c] > 0.0:
                 pose[c] += points[k, 3 + c] * x[at]
+                # Tightened, so that a tolerance used to the limit passes verification after rounding.
                 margins[m], margins[m + 1] = 1.0 - LIMIT_TIGHTENING - x[at], 1.0 - LIMIT_TIGHTENING + x[at]
                 residuals[rows] = DEVIATION_WEIGHT * x[at]
                 at += 1
                 rows += 1
+            # Reserve both margins of every coordinate, since multipliers belong to fixed places.
             m += 2
         spin, place = complex(math.cos(pose[2]), math.sin(pose[2])), complex(pose[0], pose[1])
         a[k], b[k] = place + spin * arm_a, place + spin * arm_b
@@ -127,42 +216,14 @@ def _evaluate_margins(x: Real, points: Real, setting: Real, residuals: Real, mar
         margins[m + 2], margins[m + 3] = z.imag - setting[box + 2], setting[box + 3] - z.imag
         m += 4
     m = _evaluate_length_margins(lengths, setting, margins, m)
-    d, crank, coupler, output = lengths[0], lengths[1], lengths[2], lengths[3]
-    ground = o4 - o2
-    turned = 0.0
-    order = m + 8 + 3 + n
-    for k in range(n - 1):
-        step = (a[k + 1] - o2) * (a[k] - o2).conjugate()
-        # Unwrap the rotation towards its value at the start, so that it changes continuously during the fit.
-        off = math.atan2(step.imag, step.real) - setting[STEPS + k]
-        step_turned = setting[STEPS + k] + off - 2.0 * math.pi * round(off / (2.0 * math.pi))
-        margins[order + k] = setting[DIRECTION] * step_turned - MIN_INPUT_STEP
-        turned += step_turned
-    margins[order + n - 1] = 2.0 * math.pi - MIN_INPUT_STEP - abs(turned)
-    first = (a[0] - o2) * ground.conjugate()
-    start = math.atan2(first.imag, first.real)
-    low, high = min(start, start + turned), max(start, start + turned)
-    for k in range(4):
-        if k < 2:
-            # Find the multiple of π (even for k = 0, odd for k = 1) that lies in the used range.
-            passed = 2.0 * math.pi * math.ceil((low - k * math.pi) / (2.0 * math.pi)) + k * math.pi
-            used = passed <= high
-            diagonal = d - crank if k == 0 else d + crank
-        else:
-            used = True
-            diagonal = abs(o4 - a[0 if k == 2 else n - 1])
-        cosine = (coupler * coupler + output * output - diagonal * diagonal) / (2.0 * coupler * output)
-        residuals[rows] = 0.0
-        if used:
-            residuals[rows] = COSINE_WEIGHT * cosine
-            margins[m], margins[m + 1] = (
-                setting[COSINE] - LIMIT_TIGHTENING - cosine,
-                setting[COSINE] - LIMIT_TIGHTENING + cosine,
-            )
-        rows += 1
-        m += 2
+    # Margins of order follow those of transmission (8), Grashof (3) and circuit (n).
+    turned = _evaluate_input_steps(a, o2, setting, margins, m + 8 + 3 + n)
+    _evaluate_transmission(a, o2, o4, lengths, turned, setting, residuals, margins, rows, m)
+    rows += 4
+    m += 8
     shortest = int(setting[SHORTEST])
     if shortest >= 0:
+        # P + Q − L − S = sum − 2 (L + S), for each possible longest link.
         around = lengths.sum()
         place_of = m
         for k in range(4):
@@ -171,27 +232,11 @@ def _evaluate_margins(x: Real, points: Real, setting: Real, residuals: Real, mar
                 place_of += 1
     m += 3
     for k in range(n):
-        margins[m + k] = setting[ASSEMBLY] * _cross(b[k] - a[k], b[k] - o4) / (coupler * output) - MIN_SINE
+        # The sign of the cross product gives the assembly; at 0 the linkage is at a toggle.
+        margins[m + k] = setting[ASSEMBLY] * _cross(b[k] - a[k], b[k] - o4) / (lengths[2] * lengths[3]) - MIN_SINE
     m += 2 * n
-    for k in range(n - 1):
-        margins[m], margins[m + 1] = abs(a[k + 1] - o2) - crank, abs(b[k + 1] - o4) - output
-        m += 2
-    for k in range(PIVOT_COORDINATE_COUNT):
-        if not math.isnan(setting[GIVEN_COORDINATES + k]):
-            margins[m + k] = x[k] - setting[GIVEN_COORDINATES + k]
-    m += PIVOT_COORDINATE_COUNT
-    if not math.isnan(setting[LINE]):
-        for k in range(2):
-            margins[m + k] = setting[LINE] * x[2 * k] + setting[LINE + 1] * x[2 * k + 1] - setting[LINE + 2]
-    mean = np.log(lengths).mean()
-    for k in range(4):
-        residuals[rows + 2 * k] = RATIO_WEIGHT * (math.log(lengths[k]) - mean)
-        residuals[rows + 2 * k + 1] = LENGTH_WEIGHT * lengths[k]
-    residuals[rows + 8], residuals[rows + 9] = ARM_WEIGHT * abs(arm_a), ARM_WEIGHT * abs(arm_b)
-    rows += 10
-    for k in range(PIVOT_COORDINATE_COUNT):
-        residuals[rows + k] = setting[HOME_WEIGHT_INDEX] * (x[k] - setting[HOME_PIVOTS + k])
-    return rows + PIVOT_COORDINATE_COUNT
+    _evaluate_equations(x, a, b, lengths, setting, margins, m)
+    return _write_soft_residuals(x, lengths, arm_a, arm_b, setting, residuals, rows)
 
 
 @njit(cache=True, nogil=True)
@@ -230,6 +275,7 @@ def evaluate_rows(
     if rows < 0:
         return -1
     gradients = np.zeros((count, unknowns))
+    # One work array, restored after each difference.
     changed = x.copy()
     ahead, behind = np.empty(rows), np.empty(rows)
     further, back = np.empty(count), np.empty(count)
@@ -259,4 +305,5 @@ def evaluate_rows(
         )
         if rows < 0:
             return -1
+    # Equations are the last margins of the fit.
     return int(append_limit_rows(own, gradients, count_equations(n), multipliers[roomy:], residuals, jacobian, rows))

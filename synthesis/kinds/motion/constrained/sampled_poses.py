@@ -65,11 +65,14 @@ def solve_sampled_poses(
         )
         results.append(result)
         sifting.rejected.update(result.search.rejected)
+        # Designs beyond the requested number were accepted but not returned by the exact solver.
         sifting.reject(OUTRANKED_REASON, max(0, result.search.accepted - len(result.designs)))
         for design in result.designs:
+            # The body's angle at the reference differs from the target's if it has a tolerance.
             angle = problem.positions[0].angle + float(poses[0, 2]) if tolerances[0, 2] > 0.0 else None
             mechanism = design.mechanism.model_copy(update={"reference_body_angle": angle})
             sifting.record_candidate(verify(problem, mechanism, target))
+        # Designs with poor transmission do not end the search early.
         usable = [design for design in sifting.passed if design.metrics.min_transmission_angle >= USABLE_ANGLE]
         if len(usable) >= problem.max_designs:
             break
@@ -87,6 +90,7 @@ def _select_distinct(problem: MotionProblem, designs: list[LinkageDesign]) -> li
     chosen: list[LinkageDesign] = []
     alike: dict[str, list[LinkageDesign]] = {}
     for design in rank_designs(designs, problem.rank_by):
+        # Compare within a type only: others have other joints.
         alike.setdefault(design.mechanism.type, []).append(design)
     for listed in alike.values():
         joints = [[complex(*place) for place in design.mechanism.skeleton.joints.values()] for design in listed]
@@ -108,6 +112,7 @@ def _displace_positions(problem: MotionProblem, by: Real) -> MotionProblem:
         )
         for position, (x, y, angle) in zip(problem.positions, by, strict=True)
     ]
+    # Choices that refer to the body must move with it.
     first = problem.positions[0].point
     moved = positions[0].point, cmath.exp(1j * math.radians(float(by[0, 2])))
     sides = {
@@ -129,6 +134,7 @@ def _move_choices(side: DyadChoices, first: complex, moved: tuple[complex, compl
         update["moving_pivot"] = to_point(moved[0] + moved[1] * (pivot - first))
     if vector is not None and vector.angle is not None:
         update["coupler_vector"] = vector.model_copy(update={"angle": vector.angle + turned})
+    # An RP slide is a line of the body and turns with it; a PR slide is fixed.
     if side.dyad == "RP" and side.slide_angle is not None:
         update["slide_angle"] = side.slide_angle + turned
     return side.model_copy(update=update)

@@ -71,6 +71,7 @@ def solve_with_tolerances(problem: MotionProblem, exact: MotionResult, progress:
     first = [make_constrained_fit(problem, task, rows, start) for start in listed]
     steered = solve_constrained(rows, first)
     sifting = CandidateLog[LinkageDesign](problem, REASONS)
+    # Both searches belong to the answer, so their counts are added.
     sifting.merge_search(exact.search)
     sifting.passed = [design for design in exact.designs if design.verification.passed]
     sifting.failed = [design for design in exact.designs if not design.verification.passed]
@@ -79,6 +80,7 @@ def solve_with_tolerances(problem: MotionProblem, exact: MotionResult, progress:
     unlike = select_distinct_fits(steered)
     free = [release_from_start(linkage) for linkage in unlike[:MAX_IMPROVED]]
     bettered = solve_constrained(rows, free)
+    # Improved designs first; the originals remain as alternatives.
     offered = select_distinct_fits([*bettered, *unlike])
     sifting.reject("not_steered", len(first) - len(steered) + len(free) - len(bettered))
     sifting.reject(OUTRANKED_REASON, len(steered) + len(bettered) - len(offered))
@@ -98,6 +100,7 @@ def continue_constrained(problem: MotionProblem, designs: Sequence[LinkageDesign
     """Continue designs of a looser problem to this one by constrained fits; driver dyads are removed first."""
     task, target = make_motion_task(problem), make_target_poses(problem)
     rows = make_target_rows(problem, task)
+    # The looser problem's designs may have drivers, which are fitted to the fourbar later.
     bare = (verify(problem, _extract_fourbar(design.mechanism), target) for design in designs[:MAX_IMPROVED])
     room = pack_task_workspace(problem, task)
     free = [
@@ -131,8 +134,10 @@ def _make_start(problem: MotionProblem, task: MotionTask, rows: Real, design: Li
     off = at.coupler_angle - first + shift - rows[:, 2]
     offsets = np.stack([places.real - rows[:, 0], places.imag - rows[:, 1], off - math.tau * np.round(off / math.tau)])
     poses = rows[:, :3] + offsets.T
+    # Deviations in tolerances; exact coordinates have none.
     shares = np.divide(offsets.T, rows[:, 3:], out=np.zeros_like(poses), where=rows[:, 3:] > 0.0)
     fixed = [task.to_task(complex(pivot)) for pivot in (fourbar.linkage.input_pivot, fourbar.linkage.output_pivot)]
+    # Rotate the pins back to the body's first target pose, the frame of the unknowns.
     back = cmath.exp(-1j * float(poses[0, 2]))
     body = [task.points[0] + back * (pin[0] - at.p[0]) / task.size for pin in (at.a, at.b)]
     return Start(np.array([*fixed, *body]), shares, poses)
@@ -142,10 +147,8 @@ def _describe_result(sifting: CandidateLog[LinkageDesign], started: int, fit_cou
     if not sifting.passed:
         return (
             f"No design found: fits from {format_count(started, 'start')} within the tolerances all violate a "
-            "constraint "
-            f"(rejected: {sifting.format_reasons(OUTRANKED_REASON) or 'none'}). The search is not exhaustive, so a "
-            "solution may still "
-            "exist."
+            f"constraint (rejected: {sifting.format_reasons(OUTRANKED_REASON) or 'none'}). The search is not "
+            "exhaustive, so a solution may still exist."
         )
     best = max(design.metrics.min_transmission_angle for design in sifting.passed)
     return (

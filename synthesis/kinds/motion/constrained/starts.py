@@ -89,11 +89,13 @@ def list_starts(problem: MotionProblem, task: MotionTask, tolerances: Real, coun
         Maximum number of starts.
     """
     rng = np.random.default_rng(problem.seed)
+    # Without tolerances every set would be the same.
     shares = sample_deviations(tolerances, SET_COUNT if tolerances.any() else 1)
     demanded = np.stack([task.points.real, task.points.imag, np.angle(task.turns)], axis=1)
     poses = demanded + shares * tolerances
     sides, areas = (problem.input_side, problem.output_side), list_side_areas(problem)
     inputs = _sample_side(task, poses, sides[0], areas[0], rng)
+    # Equal choices have equal dyads, so sample them once.
     alike = sides[0] == sides[1] and areas[0] == areas[1]
     outputs = inputs if alike else _sample_side(task, poses, sides[1], areas[1], rng)
     softened = relax_constraints(problem.constraints)
@@ -105,6 +107,7 @@ def list_starts(problem: MotionProblem, task: MotionTask, tolerances: Real, coun
             continue
         set_of = _make_task(poses[k])
         score = screen(set_of, one.dyads, other.dyads, wanted).score * np.outer(one.weight, other.weight)
+        # A fixed share per set keeps the variety of poses among the starts.
         best = np.argpartition(-score, min(POOL_SIZE // SET_COUNT, score.size - 1), axis=None)[: POOL_SIZE // SET_COUNT]
         best = best[score.ravel()[best] > 0.0]
         i, j = np.unravel_index(best, score.shape)
@@ -113,6 +116,7 @@ def list_starts(problem: MotionProblem, task: MotionTask, tolerances: Real, coun
     if not chosen:
         return []
     score, pivots, sets = (np.concatenate(column) for column in zip(*chosen, strict=True))
+    # Stable sort: the result is reproducible for equal scores.
     order = np.argsort(-score, kind="stable")
     picked = order[select_most_distinct(pivots[order], count, MIN_SEPARATIONS)]
     found = []
@@ -139,6 +143,7 @@ def sample_deviations(tolerances: Real, sets: int) -> Real:
         for _ in range(60):
             ratio = (1.0 + ratio) ** (1.0 / (d + 1.0))
         powers = ratio ** -np.arange(1.0, d + 1.0)
+        # Centred on 0.5, so that the sequence begins away from the limits.
         shares[1:, free] = 2.0 * np.mod(0.5 + np.outer(np.arange(1, sets), powers), 1.0) - 1.0
     return shares
 
@@ -165,8 +170,10 @@ def _sample_side(
     places, spins = poses[..., 0] + 1j * poses[..., 1], np.exp(1j * poses[..., 2])
     fixed, moving, off = _fit_dyads_to_poses(places[of], spins[of], fixed, moving - task.points[0], free)
     pins = places[of, 0] + spins[of, 0] * moving
+    # The farther pivot decides whether the dyad is usable.
     reach = np.maximum(np.abs(fixed), np.abs(pins))
     astray = measure_outside_distance(task, areas.fixed, fixed) + measure_outside_distance(task, areas.moving, pins)
+    # The last test also rejects NaN.
     sound = (off <= LENGTH_TOLERANCE) & (reach < MAX_DISTANCE) & np.isfinite(reach)
     rank = np.where(sound, astray, np.inf)
     found = []
@@ -175,6 +182,7 @@ def _sample_side(
         best = np.argsort(rank[rows], kind="stable")[:MAX_DYADS]
         best = best[np.isfinite(rank[rows][best])] + k * SAMPLES_PER_SET
         dyads = Dyads(fixed[best].copy(), pins[best].copy())
+        # Weight 1 inside the regions, 1/2 at the given distance outside.
         found.append(_DyadSample(dyads, 1.0 / (1.0 + (astray[best] / HALF_WEIGHT_DISTANCE) ** 2)))
     return found
 
@@ -188,6 +196,7 @@ def sample_pivots(
     """
     fixed = _sample_in_areas(task, areas.fixed, complex(task.points.mean()), rng, count)
     moving = _sample_in_areas(task, areas.moving, complex(task.points[0]), rng, count)
+    # Given pivots replace the samples and are not moved by the fit.
     stated = [find_given_pivot(task, choices, fixed=side) for side in (True, False)]
     if stated[0] is not None:
         fixed[:] = stated[0]
@@ -237,7 +246,9 @@ def _fit_dyads_to_poses(
         by_fixed = -(units[:, 1:] - units[:, :1])
         turned = units * np.conj(spins)
         by_arm = turned[:, 1:] - turned[:, :1]
+        # Fixed coordinates get zero columns, so that the step does not move them.
         jacobian = np.stack([by_fixed.real, by_fixed.imag, by_arm.real, by_arm.imag], axis=-1) * free
+        # Minimum-norm step through JJᵀ; the ridge covers dyads with dependent conditions.
         square = jacobian @ jacobian.swapaxes(-1, -2)
         trace = np.trace(square, axis1=-2, axis2=-1)[:, None, None]
         square += (RIDGE_SHARE * trace + np.finfo(np.float64).tiny) * np.eye(square.shape[-1])
@@ -265,6 +276,7 @@ def list_given_coordinates(task: MotionTask, problem: MotionProblem) -> Real:
     for side, choices in enumerate((problem.input_side, problem.output_side)):
         for moving, partial in ((False, choices.fixed_pivot), (True, choices.moving_pivot)):
             at = 4 * moving + 2 * side
+            # A completely given pivot may also follow from other choices of the side.
             whole = find_given_pivot(task, choices, fixed=not moving)
             if whole is not None:
                 stated[at : at + 2] = whole.real, whole.imag

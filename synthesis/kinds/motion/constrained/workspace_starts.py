@@ -85,6 +85,7 @@ def list_workspace_starts(problem: MotionProblem, task: MotionTask, rows: Real) 
     if not len(one.dyads.fixed) or not len(other.dyads.fixed):
         return [], np.empty(0)
     least = problem.constraints.min_transmission_angle or 0.0
+    # Relaxed, because the fit can improve a start that narrowly violates a limit.
     wanted = make_screening_constraints(
         relax_constraints(problem.constraints), task, ANGLE_RELAXATION * least, problem.rank_by
     )
@@ -100,7 +101,9 @@ def list_workspace_starts(problem: MotionProblem, task: MotionTask, rows: Real) 
     pivots = np.stack([one.dyads.fixed[i], other.dyads.fixed[j], one.dyads.moving[i], other.dyads.moving[j]], axis=1)
     deviations = _compute_min_deviations(rows, pivots, task.points[0])
     far = np.abs(deviations).max(axis=(1, 2))
+    # Deviations within the tolerances cost nothing; larger ones must be removed by the fit.
     value = score.ravel()[best] / np.maximum(far, 1.0) ** 2
+    # A start must lie within the tolerances itself.
     shares = np.clip(deviations, -1.0, 1.0)
     order = np.argsort(-value, kind="stable")
     poses = rows[:, :3] + shares * rows[:, 3:]
@@ -115,6 +118,7 @@ def _sample_side(
     fixed, moving, needed = _fit_dyads(rows, fixed, moving, task.points[0], free)
     reach = np.maximum(np.abs(fixed), np.abs(moving))
     astray = measure_outside_distance(task, areas.fixed, fixed) + measure_outside_distance(task, areas.moving, moving)
+    # Both factors are 1 for a dyad in its zones that needs no more than its tolerances.
     weight = 1.0 / (1.0 + (astray / HALF_WEIGHT_DISTANCE) ** 2) / np.maximum(needed, 1.0) ** 2
     sound = (needed <= MAX_DEVIATION) & (reach < MAX_DISTANCE) & np.isfinite(reach)
     order = np.argsort(-np.where(sound, weight, 0.0), kind="stable")[:MAX_DYADS]
@@ -147,9 +151,11 @@ def _fit_dyads(rows: Real, fixed: Complex, moving: Complex, home: complex, free:
     """
     spins = np.exp(1j * rows[:, 2])
     drawn = np.stack([fixed.real, fixed.imag, moving.real, moving.imag], axis=1)
+    # The first guess of the link's length: its mean over the poses.
     length = np.abs(_compute_links(rows, fixed, moving, home).vectors).mean(axis=1)
     for step in range(STEP_COUNT + 1):
         links = _compute_links(rows, fixed, moving, home)
+        # Standard deviation of the length for unit deviations; exact poses have a small one instead of 0.
         sigma = np.hypot(np.linalg.norm(links.by_deviation, axis=-1), EXACT_SIGMA)
         off = (links.lengths - length[:, None]) / sigma
         if step == STEP_COUNT:
@@ -166,6 +172,7 @@ def _fit_dyads(rows: Real, fixed: Complex, moving: Complex, home: complex, free:
         right[:, :4] -= (here[:, :4] - drawn) * pulled[:4]
         square += np.diag(pulled)
         move = np.linalg.solve(square, right[..., None])[..., 0]
+        # At most one task size per step, as the linearization is not valid farther away.
         move /= np.maximum(np.linalg.norm(move[:, :4], axis=1, keepdims=True), 1.0)
         fixed = fixed + (move[:, 0] * free[0] + 1j * move[:, 1] * free[1])
         moving = moving + (move[:, 2] * free[2] + 1j * move[:, 3] * free[3])
@@ -178,6 +185,7 @@ def _compute_min_deviations(rows: Real, pivots: Complex, home: complex) -> Real:
     links = [_compute_links(rows, pivots[:, k], pivots[:, k + 2], home) for k in (0, 1)]
     weights = [1.0 / np.hypot(np.linalg.norm(one.by_deviation, axis=-1), EXACT_SIGMA) ** 2 for one in links]
     off = np.stack(
+        # The weighted mean is the length with the smallest deviations.
         [
             one.lengths - ((weight * one.lengths).sum(axis=1) / weight.sum(axis=1))[:, None]
             for one, weight in zip(links, weights, strict=True)
@@ -185,5 +193,6 @@ def _compute_min_deviations(rows: Real, pivots: Complex, home: complex) -> Real:
         axis=-1,
     )
     by = np.stack([one.by_deviation for one in links], axis=-2)
+    # A small ridge keeps exact poses, whose derivatives are 0, solvable.
     square = by @ by.swapaxes(-1, -2) + EXACT_SIGMA**2 * np.eye(2)
     return np.asarray(-(by.swapaxes(-1, -2) @ np.linalg.solve(square, off[..., None]))[..., 0])

@@ -60,6 +60,7 @@ def find_coupler_drivers(
     fourbar = build_driven_fourbar(mechanism)
     inputs = np.radians([target.position for target in design.targets])
     steps = np.diff(inputs)
+    # If the input reverses on the way, C would pass through the same place twice; one crank turn cannot do that.
     if not (np.all(steps > 0.0) or np.all(steps < 0.0)):
         return []
     at = positions(fourbar.linkage, np.linspace(inputs[0], inputs[-1], STEP_COUNT), fourbar.assembly)
@@ -68,10 +69,12 @@ def find_coupler_drivers(
     joints = np.concatenate([at.a, at.b, at.p, [fourbar.linkage.input_pivot, fourbar.linkage.output_pivot]])
     alone = float(measure_diagonal(joints))
     pins, paths = _trace_paths(at.a, at.b)
+    # A pin that hardly moves needs a crank of almost no length.
     long = np.abs(paths[:, -1] - paths[:, 0]) > MIN_CHORD * alone
     pins, paths = pins[long], paths[long]
     chord = paths[:, -1] - paths[:, 0]
     around = (PIVOT_DISTANCES[:, None] * np.exp(1j * PIVOT_DIRECTIONS)).ravel()
+    # O6 lies around the middle of C's path, at distances in units of its chord.
     pivots = 0.5 * (paths[:, :1] + paths[:, -1:]) + chord[:, None] * around
     along = np.gradient(paths, axis=1)
     score = np.ones(pivots.shape)
@@ -83,8 +86,10 @@ def find_coupler_drivers(
     bars = np.array([at.a, at.b, *(arm / np.abs(arm) for arm in arms)])
     compute_min_sines(paths, along / np.maximum(np.abs(along), np.finfo(np.float64).tiny), pivots, bars, score)
     score[score < least] = 0.0
+    # The limit is known in advance, so drivers that violate it are not verified.
     first, last = (np.abs(paths[:, k, None] - pivots) for k in (0, -1))
     with np.errstate(divide="ignore"):
+        # The triangle of crank and link degenerates if C's distance from O6 does not change.
         uneven = (first + last) / np.abs(last - first)
     score = score / (1.0 + ((_measure_diagonals(joints, paths, pivots) / alone - 1.0) / SIZE_SCALE) ** 2)
     score = score / (1.0 + (uneven / LINK_RATIO_SCALE) ** 2)
@@ -95,6 +100,7 @@ def find_coupler_drivers(
         if len(found) == count or not score[k, m] > 0.0:
             break
         o6, c = complex(pivots[k, m]), complex(paths[k, 0])
+        # Neighbours on the grid give nearly the same driver, so keep only clearly different ones.
         if all(abs(o6 - z) + abs(c - w) > MIN_SEPARATION * alone for z, w in kept):
             kept.append((o6, c))
             found.append((float(score[k, m]), build_coupler_driver(mechanism, c, o6, complex(paths[k, -1]))))
@@ -157,12 +163,15 @@ def compute_min_sines(paths: Complex, along: Complex, pivots: Complex, bars: Com
                 c = paths[k, n]
                 reach = o6 - c
                 r = abs(reach)
+                # C's distance from O6 must change in one direction only, as the crank needs one half turn for it.
                 if n and not (r - before) * (last - first) > 0.0:
                     found = 0.0
                     break
                 before = r
                 # The link's direction differs from that of O6 by the angle of the triangle (r, link, crank) at C.
                 forward = reach * along[k, n].conjugate() / r
+                # The sign of the angle is that of the assembly; the crank passes both halves of its turn, so both
+                # must transmit.
                 cosine = min(max((r * r + link * link - crank * crank) / (2.0 * r * link), -1.0), 1.0)
                 sine = math.sqrt(1.0 - cosine * cosine)
                 one, other = forward.real * cosine - forward.imag * sine, forward.real * cosine + forward.imag * sine

@@ -91,6 +91,7 @@ def add_driver_dyads(problem: MotionProblem, result: MotionResult, progress: Pro
     assert wanted is not None
     sifting = CandidateLog[LinkageDesign](problem)
     sifting.rejected.update(result.search.rejected)
+    # Every accepted fourbar counts as outranked until a driver dyad is added to it.
     sifting.reject(OUTRANKED_REASON, result.search.accepted)
     usable: list[LinkageDesign] = []
     tried = 0
@@ -101,6 +102,7 @@ def add_driver_dyads(problem: MotionProblem, result: MotionResult, progress: Pro
         best = _add_best_driver(problem, design, wanted)
         # A linkage that can be driven from either side appears twice in the designs, but was accepted once.
         sifting.rejected[OUTRANKED_REASON] -= sifting.rejected[OUTRANKED_REASON] > 0
+        # A failed driver is a rejection of this stage; the fourbar itself was good.
         kept = not sifting.insert_design(best)
         sifting.count("" if kept else "driver_dyad")
         if kept and _is_good_enough(problem, sifting.passed[-1]):
@@ -125,6 +127,7 @@ def remove_driver(problem: MotionProblem) -> MotionProblem:
     return problem.model_copy(
         update={
             "driver_dyad": False,
+            # The driver dyad has the full rotation, so the fourbar's own input need not have it.
             "method": "auto" if problem.approximate or problem.has_few_tolerances else "exact",
             "max_designs": min(max(FOURBARS_PER_DESIGN * problem.max_designs, MIN_FOURBARS), 200),
             "include_failed": False,
@@ -145,6 +148,7 @@ def _add_best_driver(
     """
     assert isinstance(design.mechanism, FourbarMechanism)
     best = None
+    # Without the limit drivers that fail can still be shown on request.
     least = math.sin(math.radians(problem.constraints.min_transmission_angle or 0.0)) if limited else 0.0
     for link in ("input", "output", "coupler"):
         # The coupler is the last resort: it is tried only on request or if no ground link can be driven well.
@@ -156,6 +160,7 @@ def _add_best_driver(
             drivers = find_coupler_drivers(design, design.mechanism, wanted, MAX_COUPLER_DRIVERS, least)
         else:
             drivers = sorted(_list_drivers(design, design.mechanism, link, wanted, least), key=lambda c: -c[0])
+        # Only a few of the best are verified, because a verification costs far more than the whole grid.
         kept = [mechanism for _, mechanism in drivers if not limited or _is_within_lengths(problem, mechanism)]
         for mechanism in kept[:MAX_VERIFIED]:
             found = verify(problem, mechanism)
@@ -172,6 +177,7 @@ def _is_within_lengths(problem: MotionProblem, mechanism: SixbarMechanism) -> bo
     """Return whether a sixbar's links satisfy the limits of lengths and link ratio, apart from rounding."""
     lengths, constraints = list_link_lengths(mechanism), problem.constraints
     stated, ratio = constraints.link_length, constraints.max_link_ratio
+    # Without the client's own limit the transmission angle must at least be usable.
     short, long = min(lengths), max(lengths)
     within = stated is None or (
         short >= (1.0 - LENGTH_TOLERANCE) * stated.min and long <= (1.0 + LENGTH_TOLERANCE) * (stated.max or long)
@@ -203,6 +209,7 @@ def _list_drivers(
     turned = np.unwrap(np.angle(arms / arms[0]))
     steps = np.diff(turned)
     swing = float(turned[-1])
+    # The driven link must turn in one direction only, otherwise a rocker's limits would not be its end positions.
     one_way = bool(np.all(steps > 0.0) or np.all(steps < 0.0))
     if not one_way or not MIN_SWING < abs(swing) <= MAX_SWING:
         return []
@@ -214,7 +221,7 @@ def _list_drivers(
     middle = arms[0] / length * cmath.exp(0.5j * swing)
     found = []
     for n in range(len(stage.score)):
-        # Shapes have their swing symmetrical about the real axis; C leads the link by an angle of PLACES.
+        # Shapes have their swing symmetrical about the real axis; C leads the link by an angle of PIN_DIRECTIONS.
         turn = middle * np.exp(1j * PIN_DIRECTIONS)[None, :] * (ARM_RATIOS * length)[:, None]
         o6 = pivot + stage.pivot[n] * turn
         c = pivot + turn[..., None] * np.exp(np.array([-0.5j, 0.5j]) * swing)
@@ -246,9 +253,11 @@ def _list_stages(swing: float, least: float = 0.0) -> _Stage:
     sides = (np.conj(reach) * (0.0 - ends)).imag
     lengths = np.stack([crank, link, ground, np.ones_like(crank)])
     shortest, longest = lengths.min(axis=0), lengths.max(axis=0)
+    # Grashof's condition with the crank as the shortest link; tiny cranks are no practical drivers.
     rocks = (crank == shortest) & (2.0 * (shortest + longest) < lengths.sum(axis=0)) & (crank > 0.02)
     rocks &= sides[:, 0] * sides[:, 1] > 0.0
     with np.errstate(divide="ignore", invalid="ignore"):
+        # The transmission angle is extreme where the crank lies on the line of the fixed pivots, on either side.
         cosines = [(link**2 + 1.0 - (ground + sign * crank) ** 2) / (2.0 * link) for sign in (-1.0, 1.0)]
         sine = np.sqrt(np.maximum(1.0 - np.max(np.square(cosines), axis=0), 0.0))
         score = np.where(rocks & (sine >= least), sine, 0.0) / (

@@ -110,8 +110,10 @@ class Cone(NamedTuple):
     def points(self, back: Real, beta: Real) -> Real:
         """Return the point of the curve on the line of each β: unit vectors (len(beta), 7)."""
         u = np.exp(0.5j * beta)
+        # This ρ satisfies n·(X, Y) = 0 for every β, so x₀ is a real point of the line.
         start = _place_on_line(back, beta, 1j * (np.conj(u) * self.normal[0] + u * self.normal[1]))
         own = np.einsum("ki,ij,kj->k", start, self.quadric, start)
+        # The line through the vertex and x₀ meets the quadric in the vertex and in this one point.
         return _normalize_points(
             2.0 * (start @ self.quadric @ self.vertex)[:, None] * start - own[:, None] * self.vertex
         )
@@ -146,6 +148,7 @@ class BurmesterCurve(NamedTuple):
             return self.cone.points(self.back, t)
         beta = loop.middle - loop.half * np.cos(t) if loop.sheet == 0 else loop.middle + t
         a, b, c = self.coefficients @ np.stack([np.ones_like(beta), np.cos(beta), np.sin(beta)])
+        # Rounding makes Δ slightly negative at the ends of a loop, where it vanishes.
         root = np.sqrt(np.maximum(b * b - a * c, 0.0)) * (np.sign(np.sin(t)) if loop.sheet == 0 else loop.sheet)
         # Use the form of each root of the quadratic that does not suffer cancellation.
         adding = b * root > 0.0
@@ -206,6 +209,7 @@ class Window(NamedTuple):
     def contains(self, dyads: Dyads) -> np.ndarray:
         """Return a mask of the dyads with both pivots within reach."""
         fixed, moving = self.centres
+        # The farther of the two pivots decides, because both must be practical.
         return np.asarray(np.maximum(np.abs(dyads.fixed - fixed), np.abs(dyads.moving - moving)) <= self.reach)
 
     def distances(self, dyads: Dyads) -> Real:
@@ -215,6 +219,7 @@ class Window(NamedTuple):
             step = np.abs(np.diff(pivots))
             if not math.isinf(self.near):
                 away = np.abs(pivots - centre)
+                # The nearer end of the step gives the scale, so that a step towards the centre is not underestimated.
                 step = step / np.hypot(self.near, np.minimum(away[1:], away[:-1]))
             squares += step * step
         return np.sqrt(squares)
@@ -234,6 +239,7 @@ def sample_dyads(curve: BurmesterCurve, window: Window, count: int, phase: float
     total = sum(strand.arc[-1] for strand in strands)
     fixed, moving = [], []
     for strand in strands:
+        # Each branch has its share of the samples by arc length; tiny branches may get none.
         number = int(count * strand.arc[-1] / total) if total > 0.0 else 0
         if number:
             t = np.interp((np.arange(number) + phase) * strand.arc[-1] / number, strand.arc, strand.t)
@@ -251,6 +257,7 @@ def sample_branches(curve: BurmesterCurve, window: Window, count: int) -> list[B
     total = sum(strand.arc[-1] for strand in strands)
     found = []
     for strand in strands:
+        # A curve that is drawn must show small branches, too.
         number = max(int(count * strand.arc[-1] / total), MIN_BRANCH_SAMPLES) if strand.arc[-1] > 0.0 else 0
         if number:
             t = np.interp(np.arange(number) * strand.arc[-1] / number, strand.arc, strand.t)
@@ -260,6 +267,7 @@ def sample_branches(curve: BurmesterCurve, window: Window, count: int) -> list[B
 
 def _cut_branches(curve: BurmesterCurve, window: Window, loop: Loop | float, t: Real, gap: float) -> list[Branch]:
     """Cut a loop where it leaves the window or passes through infinity, which shows as a gap between samples."""
+    # Add the first sample again one period later, so that the step that closes the loop is examined like all others.
     dyads, finite, through = _evaluate_dyads(curve, loop, np.append(t, t[0] + _parameter_period(loop)))
     inside = finite & window.contains(dyads)
     joined = inside[1:] & inside[:-1] & ~through & (window.distances(dyads) <= gap)
@@ -286,6 +294,7 @@ def _make_strands(curve: BurmesterCurve, window: Window) -> list[_Strand]:
 
 def _spread_samples(curve: BurmesterCurve, window: Window, loop: Loop | float) -> _Strand:
     """Choose parameters of a loop at roughly equal steps of its arc length inside the window."""
+    # One more than the steps: the last sample repeats the first, one period later.
     t = np.linspace(0.0, _parameter_period(loop), COARSE_SAMPLE_COUNT + 1)
     arc = np.zeros_like(t)
     for k in range(RESAMPLING_COUNT + 1):
@@ -294,6 +303,7 @@ def _spread_samples(curve: BurmesterCurve, window: Window, loop: Loop | float) -
         with np.errstate(invalid="ignore", over="ignore"):
             steps = window.distances(dyads)
         cap = MAX_STEP * (window.reach if math.isinf(window.near) else 1.0)
+        # Steps outside the window or through infinity have no arc length, so no samples are spent there.
         steps = np.where((inside[1:] | inside[:-1]) & ~through, np.minimum(np.nan_to_num(steps, nan=cap), cap), 0.0)
         arc = np.concatenate([[0.0], np.cumsum(steps)])
         if k == RESAMPLING_COUNT or arc[-1] == 0.0:
@@ -314,7 +324,9 @@ def _evaluate_dyads(curve: BurmesterCurve, loop: Loop | float, t: Real) -> tuple
     points = curve.points(loop, t) if isinstance(loop, Loop) else curve.line_points(loop, t)
     misfit = np.abs(np.einsum("ki,qij,kj->kq", points, VARIETY_FORMS, points)).max(axis=1)
     p = points[:, 0]
+    # A pivot is a quotient by p, so its error grows as p shrinks: compare the misfit with p.
     finite = (np.abs(p) > INFINITY_TOLERANCE) & (misfit <= CURVE_TOLERANCE * np.minimum(np.abs(p), 1.0))
+    # Divide the masked points by one instead, to avoid warnings.
     divisor = np.where(np.abs(p) > INFINITY_TOLERANCE, p, 1.0).astype(np.complex128)
     dyads = Dyads((points[:, 3] + 1j * points[:, 4]) / divisor, (points[:, 1] + 1j * points[:, 2]) / divisor)
     # x is continuous up to sign: p changes sign relative to x only where the curve passes through infinity.
@@ -342,6 +354,7 @@ def _find_ruling(task: MotionTask, basis: Real, rank: int) -> _Ruling | None:
     for j, k in combinations(range(len(task.points)), 2):
         forms = np.concatenate([_build_link_forms(task, k), _build_link_forms(task, j)]) @ basis
         u, s, vh = np.linalg.svd(forms)
+        # The smallest singular value that counts decides how many digits survive the change of coordinates.
         if s[rank - 1] > condition * s[0]:
             condition = float(s[rank - 1] / s[0])
             back = (vh[:rank].T / s[:rank]) @ u[:, :rank].T
@@ -359,6 +372,7 @@ def _place_on_line(back: Real, beta: Real, rho: Complex) -> Real:
 
 def _normalize_points(points: Real) -> Real:
     size = np.linalg.norm(points, axis=1)
+    # A zero point stays zero and is later rejected because p vanishes.
     unit: Real = points / np.where(size > 0.0, size, 1.0)[:, None]
     return unit
 
@@ -399,7 +413,9 @@ def _find_loops(coefficients: Real) -> tuple[Loop, ...]:
 
     zeros = _find_zeros(_multiply_waves(b, b) - _multiply_waves(a, c))
     if not len(zeros):
+        # Without zeros Δ has one sign everywhere: two full loops or no real curve.
         return (Loop(0.0, math.pi, 1), Loop(0.0, math.pi, -1)) if evaluate_discriminant(0.0) > 0.0 else ()
+    # The last interval passes through π, so it ends at the first zero one turn later.
     ends = np.append(zeros[1:], zeros[0] + 2.0 * math.pi)
     loops = [Loop(float(low + high) / 2.0, float(high - low) / 2.0, 0) for low, high in zip(zeros, ends, strict=True)]
     return tuple(loop for loop in loops if evaluate_discriminant(loop.middle) > 0.0)
@@ -408,8 +424,10 @@ def _find_loops(coefficients: Real) -> tuple[Loop, ...]:
 def _find_ruled_lines(coefficients: Real) -> tuple[float, ...]:
     """Find β at which a, b and c vanish together: double zeros of a² + 2b² + c², hence zeros of its derivative."""
     a, b, c = coefficients
+    # The weight 2 counts the mixed coefficient b twice, as in the norm of the symmetric form.
     squares = _multiply_waves(a, a) + 2.0 * _multiply_waves(b, b) + _multiply_waves(c, c)
     kept: list[float] = []
+    # Differentiation multiplies each Fourier coefficient by i times its degree.
     for beta in _find_zeros(squares * 1j * np.arange(-2, 3)):
         size = np.linalg.norm(coefficients @ np.array([1.0, math.cos(beta), math.sin(beta)]))
         if size <= RULING_TOLERANCE * np.linalg.norm(coefficients):
@@ -430,5 +448,6 @@ def _find_zeros(fourier: Complex) -> Real:
     if size == 0.0:
         return np.empty(0)
     roots = np.roots(fourier[::-1] / size)
+    # On the unit circle e^{iβ} is a root for a real β.
     zeros: Real = np.sort(np.angle(roots[np.abs(np.abs(roots) - 1.0) <= UNIT_CIRCLE_TOLERANCE]))
     return zeros

@@ -111,6 +111,7 @@ def build_conditions(task: MotionTask, problem: MotionProblem, choices: DyadChoi
 
     def make_line(point: PartialPoint | None) -> tuple[Line, ...]:
         if point is None or to_complete_point(point) is not None:
+            # A point with both coordinates is a given pivot, not a line.
             return ()
         normal, offset = (1.0 + 0j, point[0]) if point[1] is None else (1j, point[1])
         assert offset is not None
@@ -128,6 +129,7 @@ def build_conditions(task: MotionTask, problem: MotionProblem, choices: DyadChoi
     if problem.ground_line is not None and fixed is None:
         normal = 1j * cmath.rect(1.0, math.radians(problem.ground_line.angle))
         ground = Line(normal, -problem.ground_line.offset(task.origin) / task.size)
+        # With one coordinate given, the ground line determines the other; otherwise the line is the only condition.
         fixed, fixed_lines = (_intersect_lines(fixed_lines[0], ground), ()) if fixed_lines else (None, (ground,))
     return DyadConditions(
         fixed_pivot=fixed,
@@ -162,6 +164,7 @@ def find_side_dyads(task: MotionTask, problem: MotionProblem, side: int, rng: np
     conditions = build_conditions(task, problem, choices)
     essential, conditions, lost = _drop_redundant_positions(task, conditions)
     free = 5 - len(essential.points) - conditions.count()
+    # With a pivot given, everything else is linear and needs neither Burmester's curve nor random conditions.
     if conditions.is_linear and (free <= 0 or _get_given_pivot(conditions) is not None):
         cloud = _sample_family(essential, conditions, areas, rng, count)
     elif free <= 0:
@@ -195,6 +198,7 @@ def _drop_redundant_positions(task: MotionTask, conditions: DyadConditions) -> _
     """
     rows = build_pose_rows(task)
     s = np.linalg.svd(rows, compute_uv=False)
+    # Singular values bound the independent parts from below, so usually no row needs to be examined.
     if s[-1] > REDUNDANCY_TOLERANCE:
         return _ReducedTask(task, conditions, False)
     kept: list[int] = []
@@ -206,6 +210,7 @@ def _drop_redundant_positions(task: MotionTask, conditions: DyadConditions) -> _
             kept.append(k)
     if len(kept) == len(rows):
         return _ReducedTask(task, conditions, False)
+    # The first position is the reference of all conditions and always stays.
     order = [0, *(k + 1 for k in kept)]
     reduced = task._replace(points=task.points[order], turns=task.turns[order])
     rotations = tuple(conditions.rotations[k] for k in kept)
@@ -254,6 +259,7 @@ def _sample_sections(task: MotionTask, conditions: DyadConditions, rng: np.rando
         )
         # Lines for the fixed and the moving pivot alternate: each finds dyads that the other rarely meets.
         intersection = find_section(task, lines)
+        # Samples farther away make no practical linkage.
         near = np.maximum(np.abs(intersection.dyads.fixed), np.abs(intersection.dyads.moving)) <= MAX_CURVE_DISTANCE
         fixed.append(intersection.dyads.fixed[near])
         moving.append(intersection.dyads.moving[near])
@@ -285,6 +291,7 @@ def _sample_choices(
     task: MotionTask, conditions: DyadConditions, areas: SideAreas, rng: np.random.Generator, count: int
 ) -> Cloud:
     """Sample a cloud of dyads with two or more random freedoms."""
+    # Without given numbers a step of Newton's method is exact and cheap, so the cloud can be larger.
     if _get_given_pivot(conditions) is not None or conditions.count() > 0:
         count = min(count, MAX_NEWTON_DYADS)
     fixed, moving = [], []
@@ -295,6 +302,7 @@ def _sample_choices(
             kept &= _inside_areas(task, areas, dyads)
             fixed.append(dyads.fixed[kept])
             moving.append(dyads.moving[kept])
+        # Half of a cloud suffices; a small region would otherwise need many more draws.
         if sum(map(len, fixed)) >= count // 2:
             break
     cloud = Dyads(np.concatenate(fixed)[:count], np.concatenate(moving)[:count])
@@ -319,15 +327,18 @@ def explain_no_dyads(task: MotionTask) -> ImpossibilityReason | None:
     None exists for a translation through three or more positions, unless P moves on a circle; nor for a rotation about
     one point, which would be the fixed pivot of every dyad.
     """
+    # Two positions can always be reached by a dyad.
     if len(task.points) < 3:
         return None
     if np.abs(task.turns - 1.0).max() <= EQUALITY_TOLERANCE:
         sides = task.points[1:] - task.points[0]
+        # For pure translations all turns are equal to one, so only the sides decide.
         if np.abs((np.conj(sides[0]) * sides).imag).max() <= EQUALITY_TOLERANCE:
             return ImpossibilityReason(
                 "The positions are a translation along a straight line: every point of the body moves on a line, so "
                 "only a slider can guide it. No pin-jointed fourbar exists."
             )
+        # For a translation along a circle |c|² is linear in c, which leaves rows of rank two.
         if np.linalg.svd(build_pose_rows(task), compute_uv=False)[2:].max(initial=0.0) <= REDUNDANCY_TOLERANCE:
             return None
         return ImpossibilityReason(
@@ -338,7 +349,9 @@ def explain_no_dyads(task: MotionTask) -> ImpossibilityReason | None:
     turning = int(np.abs(task.turns - 1.0).argmax())
     pole = _find_pole(task, turning)
     turned = float(abs(task.turns[turning] - 1.0))
+    # The positions carry rounding errors of the client's coordinates, which grow with the distance from the origin.
     rounding = POLE_ROUNDING_FACTOR * np.finfo(np.float64).eps * (1.0 + abs(task.origin) / task.size + abs(pole))
+    # A rotation about the pole keeps it in place; if one position moves it, dyads exist.
     if np.abs(task.images(np.asarray(pole)) - pole).max() > rounding:
         return None
     about = "All positions are rotations about one point: a plain pin joint there carries the body"
@@ -368,11 +381,13 @@ def _sample_family(
     free = len(family.directions)
     if not free:
         reach = max(abs(family.dyad.fixed[0]), abs(family.dyad.moving[0]))
+        # A pivot that far away moves on an almost straight line.
         if reach >= MAX_PIVOT_DISTANCE:
             text = f"The other pivot of the side would lie about {reach:.0e} task sizes away; use a slider instead."
             return Cloud(_NO_DYADS, False, False, text)
         return _select_forward(task, conditions, family.dyad, sampled=False, proved=family.proved)
     distance = sample_distances(rng, count, free)
+    # Distances are positive; random signs use both directions of the family.
     moved = (distance * rng.choice([-1.0, 1.0], (count, free))) @ family.directions
     dyads = Dyads(
         family.dyad.fixed + (moved[:, 0] + 1j * moved[:, 1]), family.dyad.moving + (moved[:, 2] + 1j * moved[:, 3])
@@ -446,7 +461,9 @@ def _add_random_conditions(
     conditions = _project_on_lines(conditions, pivots)
     missing = 5 - len(task.points) - conditions.count()
     stated_vector = (conditions.coupler_length, conditions.coupler_angle).count(None) < 2
+    # Two freedoms can fix a whole pivot, unless the client's own choices are about the link or the coupler vector.
     if missing >= 2 and _get_given_pivot(conditions) is None and not stated_vector and conditions.link_angle is None:
+        # With a region for one pivot only, sample that pivot, since otherwise most dyads would miss the region.
         moving_share = 0.5 if bool(areas.moving) == bool(areas.fixed) else float(bool(areas.moving))
         half = int(len(pivots.fixed) * moving_share)
         by_moving = Dyads(pivots.fixed[:half], pivots.moving[:half])
@@ -490,6 +507,7 @@ def _add_random_numbers(
         elif conditions.coupler_angle is None and conditions.coupler_length is not None:
             conditions, missing = replace(conditions, coupler_angle=np.angle(vector)), missing - 1
     rotations = list(conditions.rotations)
+    # Rotations come first, as they leave linear systems; the coupler angle is the last resort.
     for k, rotation in enumerate(rotations):
         if missing and rotation is None:
             rotations[k] = rng.uniform(-np.pi, np.pi, len(vector))

@@ -134,9 +134,12 @@ def solve_dyads(task: MotionTask, conditions: DyadConditions, start: Dyads) -> t
         arrived = np.abs(values).max(axis=-1) <= CONVERGENCE_TOLERANCE * size * size
         done[active[arrived]] = True
         norms = np.sqrt((jacobian * jacobian).sum(axis=-1))
+        # A row without gradient (all zero) would divide by zero; its determinant is zero, so the dyad is dropped
+        # below.
         norms[norms == 0.0] = 1.0
         # Unit rows make the determinant a measure of independence; dyads that run off to infinity are dropped.
         jacobian = jacobian / norms[..., None]
+        # Ten times the maximum distance, because a dyad may pass far away before it converges.
         going = ~arrived & (size < 10.0 * MAX_PIVOT_DISTANCE) & (np.abs(np.linalg.det(jacobian)) > MIN_DETERMINANT)
         active = active[going]
         if not len(active):
@@ -145,6 +148,7 @@ def solve_dyads(task: MotionTask, conditions: DyadConditions, start: Dyads) -> t
         fixed[active] += step[:, 0] + 1j * step[:, 1]
         moving[active] += step[:, 2] + 1j * step[:, 3]
     dyads = Dyads(fixed, moving)
+    # Dyads beyond the maximum distance are solutions, but count as sliders.
     near = (np.abs(fixed) < MAX_PIVOT_DISTANCE) & (np.abs(moving) < MAX_PIVOT_DISTANCE)
     return dyads, done & near & check_directions(task, conditions, dyads)
 
@@ -208,10 +212,12 @@ def solve_linear_family(task: MotionTask, conditions: DyadConditions) -> Family:
         np.asarray(0j if conditions.moving_pivot is None else conditions.moving_pivot, np.complex128)
     )
     # A given pivot stays in place; the conditions are linear in the remaining coordinates.
+    # A pivot is given as a whole; its coordinates must not take part in the least-norm step.
     first, last = (2, 4) if conditions.fixed_pivot is not None else (0, 2 if conditions.moving_pivot is not None else 4)
     values, jacobian = _evaluate_rows(task, conditions, fixed, moving)
     value, matrix = values[0], jacobian[0][:, first:last]
     u, s, vh = np.linalg.svd(matrix, full_matrices=True)
+    # The floor avoids a rank from rounding if all rows vanish.
     largest = max(float(s[0]), RANK_TOLERANCE)
     rank = int(np.sum(s > RANK_TOLERANCE * largest))
     proved = not np.any(s[rank:] > REPETITION_TOLERANCE * largest)
@@ -245,6 +251,7 @@ def _evaluate_rows(task: MotionTask, conditions: DyadConditions, fixed: Complex,
     for k, rotation in enumerate(conditions.rotations, start=1):
         image, turn = images[:, k], task.turns[k]
         if rotation is None:
+            # |A_k − O|² = |A − O|² with A_k = turn A + shift, after the squares of A and O have cancelled.
             shift = task.points[k] - turn * task.points[0]
             half_square = abs(shift) ** 2 / 2.0
             value = (np.conj(shift) * turn * moving).real - (np.conj(fixed) * (image - moving)).real + half_square

@@ -87,6 +87,7 @@ def find_sliders(
         points, sampled, plain = _solve_with_angle(images, angle, rng, count)
     else:
         points, sampled, plain = _solve_any_angle(task, images, rng, count, inverted)
+    # Infinite points come from a vanishing y and belong to no slider.
     near = np.isfinite(points) & (np.abs(points) < MAX_DISTANCE)
     proved = plain and not sampled and bool(near.all())
     points = points[near]
@@ -98,14 +99,17 @@ def find_sliders(
         off = np.abs((np.conj(unit) * d).imag).max(axis=0, initial=0.0)
     angles = np.angle(unit)
     if angle is not None:
+        # The distance from a line of the given direction counts over the whole displacement.
         off = np.maximum(off, np.abs(np.sin(angles - angle)) * np.abs(along))
         angles = np.full(len(points), angle)
+    # A point that does not move slides on no line, or on all of them.
     good = (off <= LINE_TOLERANCE) & (np.abs(along) > LINE_TOLERANCE)
     reason = f"No {name} has all its images on one line."
     return Sliders(points[good], angles[good], sampled, proved, reason)
 
 
 def _compute_images(task: MotionTask, inverted: bool) -> _Images:
+    # Seen from the body, the ground turns the other way: the same equations then give RP dyads.
     t = np.conj(task.turns) if inverted else task.turns
     s = task.points[0] - t * task.points if inverted else task.points - t * task.points[0]
     return _Images((s - s[0])[1:], (t - t[0])[1:])
@@ -125,6 +129,7 @@ def _solve_with_angle(
     point, free, plain = _solve_linear(matrix, right)
     if not len(free):
         return np.array([point]), False, plain
+    # Random signs sample both directions of the line.
     spread = sample_distances(rng, count, len(free)) * rng.choice([-1.0, 1.0], (count, len(free)))
     return np.asarray(point + spread @ free), True, False
 
@@ -148,6 +153,7 @@ def _solve_any_angle(
     right = -(np.conj(images.b[j]) * b).imag
     y, free, plain = _solve_linear(matrix, right)
     nobody = np.empty(0, np.complex128)
+    # All positions have the same pole, so y drops out: either all points move on lines, or none.
     if len(free) == 2:
         parallel = np.abs(right).max() <= PARALLEL_TOLERANCE
         return around if parallel else nobody, bool(parallel), plain and not parallel
@@ -156,11 +162,13 @@ def _solve_any_angle(
         return (np.array([pole + 1.0 / y]), False, plain) if abs(y) > STRAIGHT_TOLERANCE else (nobody, False, False)
     direction = complex(free[0])
     if abs(y) <= STRAIGHT_TOLERANCE:
+        # A line of y through the origin makes the circle of points a straight line through the pole.
         spread = sample_distances(rng, count) * rng.choice([-1.0, 1.0], count)
         return np.asarray(pole + spread * direction.conjugate()), True, False
     # u lies on a circle through the pole with diameter 1/|y|: half of the samples are uniform, half dense near it.
     turned = rng.uniform(-0.5 * np.pi, 0.5 * np.pi, count - count // 2)
     distance = sample_distances(rng, count // 2)
+    # No point of the circle is farther from the pole than its diameter.
     distance = distance[distance * abs(y) < 1.0]
     close = np.arccos(distance * abs(y)) * rng.choice([-1.0, 1.0], len(distance))
     along = np.concatenate([turned, close])
@@ -173,6 +181,7 @@ def _solve_linear(matrix: Real, right: Real) -> tuple[complex, Complex, bool]:
     The third value is False if too few digits remain to determine the number of directions.
     """
     u, s, vh = np.linalg.svd(matrix, full_matrices=True)
+    # The rows are formed from unit turns and task units, so an absolute tolerance is adequate.
     rank = int(np.sum(s > PARALLEL_TOLERANCE))
     x = (vh[:rank].T / s[:rank]) @ (u[:, :rank].T @ right)
     plain = not np.any((s > RESOLUTION_LIMIT) & (s <= PARALLEL_TOLERANCE))

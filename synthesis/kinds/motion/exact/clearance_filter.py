@@ -35,6 +35,7 @@ CLEARANCE_TOLERANCE = 1e-6
 def limit_batches(space: Space, portions: int) -> int:
     """Return the number of batches to test, at least one: ``portions``, reduced if obstacles have many corners."""
     corners = sum(len(points) for points, _ in (zone.outline for zone in space.obstacles))
+    # The cost grows with the number of corners, so fewer linkages are tested then.
     return max(int(portions * min(FULL_CORNER_COUNT / max(corners, 1), 1.0)), 1)
 
 
@@ -55,10 +56,12 @@ def check_fourbar_clearance(problem: MotionProblem, task: MotionTask, joints: Co
     o2, a, b, o4 = (np.ascontiguousarray(task.origin + column * task.size) for column in joints.T)
     point = complex(task.origin)
     linkages = Fourbar(o2, o4, np.abs(a - o2), np.abs(b - a), np.abs(b - o4), (point - a) / (b - a) * np.abs(b - a))
+    # The sign of the assembly that meets the first target.
     sign = np.where((np.conj(b - a) * (b - o4)).imag >= 0.0, 1, -1)
     inputs = _sample_inputs(space, task, o2, a)
     at = positions(linkages, inputs, sign)
     home = positions(linkages, np.angle(a - o2)[:, None], sign)
+    # The body turns with the coupler, from its angle at the first target.
     spin = np.exp(1j * (at.coupler_angle - home.coupler_angle))
     return _check_clearance(space, task, _MotionSamples(o2, o4[:, None], at.a, at.b, at.p, spin, at.valid))
 
@@ -81,8 +84,10 @@ def check_slider_clearance(
     point, along = complex(task.origin), np.exp(1j * angles)
     turned = np.exp(1j * (_sample_inputs(space, task, o2, a) - np.angle(a - o2)[:, None]))
     at_a = o2[:, None] + (a - o2)[:, None] * turned
+    # The side on which the slider stays: ahead of A along its line, or behind it.
     reach = ((b - a) * np.conj(along)).real
     off = ((b[:, None] - at_a) * np.conj(along)[:, None]).imag
+    # Negative squares: the coupler does not reach the line at this input.
     square = np.abs(b - a)[:, None] ** 2 - off**2
     at_b = at_a + along[:, None] * (np.sign(reach)[:, None] * np.sqrt(np.maximum(square, 0.0)) + 1j * off)
     spin = (at_b - at_a) / (b - a)[:, None]
@@ -125,7 +130,7 @@ def _check_clearance(space: Space, task: MotionTask, way: _MotionSamples) -> NDA
 
 
 def _sample_inputs(space: Space, task: MotionTask, o2: Complex, a: Complex) -> Real:
-    """Return the sampled input angles, radians, shape (n, LOOKED_AT)."""
+    """Return the sampled input angles, radians, shape (n, SAMPLE_COUNT)."""
     stands = np.angle(a - o2)
     shares = np.linspace(0.0, 1.0, SAMPLE_COUNT)
     if space.over == "cycle":
@@ -144,6 +149,7 @@ def _get_box(space: Space) -> Real:
 def _order_coarse_first(count: int) -> NDArray[np.int64]:
     """Return the integers below a count in order of decreasing spacing, so that gross collisions show early."""
     order: dict[int, None] = {}
+    # Start with the power of two above the count and halve the spacing.
     step = 1 << (count - 1).bit_length()
     while step:
         order.update(dict.fromkeys([*range(0, count, step), count - 1]))
@@ -181,6 +187,7 @@ def _check_samples(
         for m in order:
             if not valid[n, m]:
                 continue  # the linkage cannot be assembled here; the verification decides about that
+            # With an outline of the body the coupler is the bar A–B; without it, the triangle with P.
             hull[0], hull[1], hull[2] = a[n, m], b[n, m], p[n, m]
             for k in range(len(outline)):
                 body[k] = p[n, m] + spin[n, m] * outline[k]
@@ -199,6 +206,7 @@ def _check_samples(
             free = free and _is_clear(bar, half, corners, starts, radii, middles, reaches, clearance)
             bar[0], bar[1] = o2[n], a[n, m]
             free = free and _is_clear(bar, half, corners, starts, radii, middles, reaches, clearance)
+            # One collision suffices: the linkage is dropped.
             if not free:
                 break
         out[n] = free
@@ -233,6 +241,7 @@ def _is_clear(
     for z in core:
         reach = max(reach, abs(z - middle))
     for k in range(len(radii)):
+        # Gap of the outlines at which the clearance is just kept.
         wanted = clearance + half + radii[k]
         # Enclosing circles decide most cases without the distance of the outlines.
         if abs(middle - middles[k]) - reach - reaches[k] >= wanted:

@@ -115,6 +115,7 @@ class DyadPairs:
         """Build and verify the linkage of an input and an output dyad."""
         o2, a = self._resolve_pivots(self.problem.input_side, self.inputs, pair[0])
         o4, b = self._resolve_pivots(self.problem.output_side, self.outputs, pair[1])
+        # Too short a link cannot be built.
         joints = FourbarConfiguration(o2, a, b, o4, self.task.origin)
         if not joints.has_no_link_below(MIN_LINK_SHARE):
             return "degenerate"
@@ -148,6 +149,7 @@ class DyadPairs:
         if self.problem.rank_by != "quality" or not best:
             return best
         good = np.flatnonzero(score >= MIN_SCORE_SHARE * score.max())
+        # Thin evenly by index, and always keep the best pair itself.
         good = np.union1d(good[:: -(-len(good) // MAX_GOOD_PAIRS)], shortlist[score[shortlist].argmax()])
         offered = self._select_distinct(screening, good, self.problem.max_designs, WIDE_SEPARATIONS)
         return list(dict.fromkeys([*offered, *best]))
@@ -160,6 +162,7 @@ class DyadPairs:
         sound = np.flatnonzero(score > 0.0)
         best = sound[np.argsort(-score[sound], kind="stable")]
         # The best pairs lie close together and may all hit the same obstacle, so test some of the others too.
+        # Negative floor division rounds up: a stride that covers all of the rest.
         rest = best[CLEARANCE_POOL_SIZE :: -(-len(best) // CLEARANCE_POOL_SIZE) or 1]
         fitting, portions = np.zeros_like(score), CLEARANCE_POOL_SIZE // CLEARANCE_BATCH_SIZE
         for k in range(limit_batches(self.problem.space, portions)):
@@ -224,8 +227,10 @@ def make_pairs(problem: MotionProblem) -> DyadPairs:
     clouds = [find_side_dyads(task, problem, 0, rng, pair)]
     areas = list_side_areas(problem)
     alike = problem.input_side == problem.output_side and areas[0] == areas[1]
+    # A sampled cloud differs for each side, so that the pairs are more varied.
     clouds.append(clouds[0] if alike and not clouds[0].sampled else find_side_dyads(task, problem, 1, rng, pair))
     for k in (0, 1):
         if clouds[k].sampled and not clouds[1 - k].sampled:
+            # With one determined side the product of both numbers stays the same for a larger cloud.
             clouds[k] = find_side_dyads(task, problem, k, rng, single)
     return DyadPairs(problem, task, (clouds[0], clouds[1]))

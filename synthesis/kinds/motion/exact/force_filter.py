@@ -43,6 +43,7 @@ PEAK_COLUMNS = {
 def can_check_forces(problem: MotionProblem) -> bool:
     """Return whether the problem limits forces that the closed form covers."""
     stated = problem.dynamics
+    # The closed form needs a rotating input at a given speed.
     if stated is None or not problem.constraints.force_limits or stated.speed_rpm is None:
         return False
     return is_closed_form(stated)
@@ -76,6 +77,7 @@ def check_force_limits(problem: MotionProblem, task: MotionTask, joints: Complex
             if name == "joint_force_index"
             else found[:, PEAK_COLUMNS[name]]
         )
+        # NaN fails the comparison, hence the linkage.
         kept &= value <= limit
     return kept
 
@@ -84,6 +86,7 @@ def _measure_span(task: MotionTask, joints: Complex) -> Real:
     """Return the input rotations, radians: a full turn for Grashof cranks, else from the first target to the last."""
     o2, a, b, o4 = joints[:, :4].T
     lengths = np.abs(np.stack([a - o2, b - a, b - o4, o4 - o2], axis=1))
+    # Grashof, with the ground or the input shortest: the input rotates fully.
     turns = 2.0 * (lengths.min(axis=1) + lengths.max(axis=1)) < lengths.sum(axis=1)
     turns &= np.minimum(lengths[:, 0], lengths[:, 3]) == lengths.min(axis=1)
     return np.where(turns, math.tau, measure_input_rotation(task, o2, a))
@@ -109,5 +112,6 @@ def _compute_force_index(dynamics: DesignDynamics, linkages: Fourbars, carried: 
         turning=carried.turning[acts],
         couples=couples,
     )
+    # A zero load has no ratio; dividing by 1 leaves 0.
     strength = 1.0 if first.force is None else abs(complex(*(first.force.constant or (1.0, 0.0))))
     return compute_peaks(linkages, alone, 0.0, STEP_COUNT + 1)[:, JOINT] / (strength or 1.0)

@@ -25,5 +25,6 @@ def measure_input_rotation(task: MotionTask, o2: Complex, a: Complex) -> Real:
     turned[:, 0] = 0.0  # rounding could make it slightly negative, which would count as a full turn
     onward, backward = np.mod(turned, math.tau), -np.mod(-turned, math.tau)
     rises, falls = (np.diff(onward) > 0.0).all(axis=1), (np.diff(backward) < 0.0).all(axis=1)
+    # With two targets both directions keep the order; the shorter rotation is used.
     forward = rises & ~(falls & (-backward[:, -1] < onward[:, -1]))
     return np.where(forward, onward[:, -1], backward[:, -1])

@@ -145,10 +145,11 @@ def screen(task: MotionTask, inputs: Dyads, outputs: Dyads, wanted: ScreeningCon
         n positions.
     inputs, outputs : Dyads
         Shapes (i,) and (o,), task coordinates.
-    wanted : Demands
+    wanted : ScreeningConstraints
         The constraints on a pair.
     """
     shape = (len(inputs.fixed), len(outputs.fixed))
+    # The verdict of dyads that the kernel skips.
     verdict, score = np.full(shape, ORDER_DEFECT, np.int8), np.zeros(shape, np.float32)
     _screen(
         np.ascontiguousarray(task.images(inputs.moving)),
@@ -183,6 +184,7 @@ def _screen(
         in_order = _compute_turns(a_images[i], o2, turned)
         if wanted.in_order and not (in_order[0] or in_order[1]):
             continue  # an order defect with every output
+        # Sorted rotations serve the test of branches for all outputs.
         around = np.sort(turned[0])
         _screen_row(
             i, a_images, o2, inputs[i], b_images, o4s, outputs, turned, around, in_order, points, wanted, verdict, score
@@ -224,12 +226,14 @@ def _compute_turns(a: NDArray[np.complex128], o2: complex, turned: NDArray[np.fl
     Return for each direction whether the targets are met in order.
     """
     n = len(a)
+    # Multiplication by the conjugate subtracts angles without trigonometry.
     first = (a[0] - o2).conjugate()
     for k in range(n):
         rotation = 0.0
         if k > 0:
             z = (a[k] - o2) * first
             rotation = math.atan2(z.imag, z.real)
+        # Both directions measured over a full turn: 0 to 2π, and −2π to 0.
         turned[0, k] = rotation if rotation >= 0.0 else rotation + 2.0 * math.pi
         turned[1, k] = rotation if rotation <= 0.0 else rotation - 2.0 * math.pi
     rising = falling = True
@@ -266,6 +270,7 @@ def _screen_row(
         ground = o4 - o2
         b, d = _compute_abs(b_images[j, 0] - a_images[i, 0]), _compute_abs(ground)
         shortest, longest = min(a, b, c, d), max(a, b, c, d)
+        # Extremely short links make all later tests meaningless.
         if shortest <= MIN_LINK_SHARE * longest:
             verdict[i, j] = DEGENERATE
             continue
@@ -275,6 +280,7 @@ def _screen_row(
         if longest > wanted.link_ratio * shortest:
             verdict[i, j] = LINK_RATIO
             continue
+        # Strict: a change point (equality) has an undetermined motion.
         grashof = 2.0 * (shortest + longest) < a + b + c + d
         if wanted.grashof != ANY_GRASHOF:
             crank = grashof and shortest == a
@@ -314,6 +320,7 @@ def _screen_row(
 
         best = 2.0  # largest |cos γ| over the chosen range; above 1 no range is free of toggles
         swept = 0.0  # rotation of the input over that range, radians
+        # Without one assembly at all targets no range can work.
         if one_assembly:
             first, last = (a_images[i, 0] - o2) * ground.conjugate(), (a_images[i, n - 1] - o2) * ground.conjugate()
             near, far = min(first.real, last.real) / (a * d), max(first.real, last.real) / (a * d)
@@ -340,11 +347,13 @@ def _screen_row(
         if best > wanted.least_transmission_cosine:
             verdict[i, j] = TRANSMISSION_ANGLE
             continue
+        # A motion through a toggle still gets a rank, below all others.
         sine = max(math.sqrt(1.0 - best * best), PAST_TOGGLE_SINE)
         verdict[i, j] = SOUND
         if wanted.rank_by == BY_TRANSMISSION:
             score[i, j] = sine
         elif wanted.rank_by == BY_SIZE:
+            # Smaller is better, and scores are positive.
             score[i, j] = 1.0 / _measure_diagonal(a_images, i, o2, b_images, j, o4, points)
         else:
             reach = max(longest, _compute_abs(a_images[i, 0]), _compute_abs(b_images[j, 0]))
@@ -381,6 +390,7 @@ def _find_unordered_range(
     the input rotations of the targets in ascending order.
     """
     best, longest = 2.0, 0.0
+    # The range that omits the widest gap is the shortest one.
     for k in range(len(around)):
         after = around[k + 1] if k + 1 < len(around) else around[0] + 2.0 * math.pi
         gap = after - around[k]
@@ -409,7 +419,9 @@ def _check_ground_line(first: complex, last: complex, turned: float) -> tuple[bo
 
     The two are directions relative to the ground line; the turn, within one revolution, fixes the direction of motion.
     """
+    # A clockwise turn is the mirror image of a counter-clockwise one.
     start, end = (first.imag, last.imag) if turned >= 0.0 else (-first.imag, -last.imag)
+    # Up to half a turn: the ground line is passed if the imaginary part changes its sign in the right direction.
     if abs(turned) <= math.pi:
         return start >= 0.0 and end <= 0.0, start <= 0.0 and end >= 0.0
     return not (start < 0.0 and end > 0.0), not (start > 0.0 and end < 0.0)
@@ -418,6 +430,7 @@ def _check_ground_line(first: complex, last: complex, turned: float) -> tuple[bo
 @njit(cache=True, nogil=True)
 def _find_larger_cosine(a: float, b: float, c: float, d: float, near: float, far: float) -> float:
     """Return the larger |cos γ| of two input angles, given by their cosines relative to the ground line."""
+    # cos γ is linear in the cosine of the input angle, so its extremes are at the ends.
     constant = b * b + c * c - a * a - d * d
     gamma_one = (constant + 2.0 * a * d * far) / (2.0 * b * c)
     gamma_two = (constant + 2.0 * a * d * near) / (2.0 * b * c)

@@ -115,6 +115,7 @@ def solve_sliders(problem: MotionProblem, kind: Literal["PR", "RP"], progress: P
     stated = (problem.input_side, problem.output_side)[side]
     areas = list_side_areas(problem)[side]
     inside_of = areas.moving if kind == "PR" else areas.fixed
+    # Zones are small targets for random samples, so sample more and keep those inside.
     more = ZONE_OVERSAMPLING if problem.space is not None and inside_of else 1
     dyads = find_sliders(task, stated, inverted=kind == "RP", rng=rng, count=SLIDER_COUNT * more)
     if not len(dyads.points):
@@ -126,6 +127,7 @@ def solve_sliders(problem: MotionProblem, kind: Literal["PR", "RP"], progress: P
             problem, links.reason.replace("the side", "the side with pins"), complete=links.complete
         )
     most = SLIDER_COUNT if links.sampled else SINGLE_SIDE_COUNT
+    # Only the sliders are sampled: use a larger cloud of them.
     if dyads.sampled and not links.sampled:
         dyads = find_sliders(task, stated, inverted=kind == "RP", rng=rng, count=SINGLE_SIDE_COUNT * min(more, 10))
     inside = np.flatnonzero(inside_mask(task, inside_of, dyads.points))
@@ -139,6 +141,7 @@ def try_sliders(problem: MotionProblem, result: MotionResult, progress: Progress
 
     If an incomplete search found no fourbar, the result is left unchanged: sliders must then be requested.
     """
+    # An incomplete search with candidates might still have a fourbar.
     if result.search.candidates and not result.search.complete:
         return result
     for kind, asked in _propose_slider_problems(problem):
@@ -163,6 +166,7 @@ def merge_sliders(
     for kind, asked in _propose_slider_problems(problem):
         answer = solve_sliders(asked, kind, lambda fraction, message: progress(1.0, message))
         met[kind] = met.get(kind, False) or answer.search.candidates > 0
+        # A search without candidates found no dyads; it adds nothing to the counts.
         if answer.search.candidates:
             parts.append(answer)
     if not met:
@@ -187,11 +191,14 @@ def merge_sliders(
 def _propose_slider_problems(problem: MotionProblem) -> Iterator[tuple[Literal["PR", "RP"], MotionProblem]]:
     """Yield the problem with a slider requested on each side whose dyad is open."""
     for kind in problem.slider_kinds:
+        # An inverted slider-crank is driven by its crank, so the slider is on the output side.
         for name in ("output_side", "input_side") if kind == "PR" else ("output_side",):
             choices: DyadChoices = getattr(problem, name)
+            # A ground line needs two fixed pivots; a slider has none.
             if choices.dyad != "any" or problem.ground_line is not None:
                 continue
             asked = problem.model_copy(update={name: choices.model_copy(update={"dyad": kind})})
+            # Choices for pins may exclude a slider.
             if not asked.find_contradictions():
                 yield kind, asked
 
@@ -213,12 +220,14 @@ def solve_slider_pairs(
     limit = problem.constraints.min_transmission_angle
     progress(0.3, f"screening {len(links.fixed) * len(sliders.points)} pairs of links and sliders")
     few = len(links.fixed) * len(sliders.points) <= MIN_ATTEMPTS  # all of them can be driven: no filter is needed
+    # Few pairs can all be driven, which is more accurate than any filter.
     wanted = (0.0 if few else USABLE_TRANSMISSION_ANGLE) if limit is None else limit
     screened = _screen(problem, task, links, sliders, kind, driving, wanted)
     # Lower the default angle only if no pair reaches it; a limit of the client is never lowered.
     if limit is None and not screened.score.any():
         screened = _screen(problem, task, links, sliders, kind, driving, 0.0)
     sound = int(np.count_nonzero(screened.score))
+    # The collision test covers slider-cranks driven by their crank only.
     if kind == "PR" and not driving and not few:
         screened = _filter_by_clearance(problem, task, links, sliders, screened)
     if problem.constraints.force_limits and not few:

@@ -106,6 +106,40 @@ def evaluate_constraint(
 
 
 @njit(cache=True, nogil=True)
+def _linearize_constraint(
+    inverted: bool,
+    origin: complex,
+    numbers: NDArray[np.float64],
+    x: NDArray[np.float64],
+    target: NDArray[np.float64],
+    by_pose: NDArray[np.float64],
+    by_number: NDArray[np.float64],
+) -> float:
+    """Linearize the constraint of a dyad at x; return its value extrapolated to the target pose."""
+    ahead: float = evaluate_constraint(inverted, origin, numbers, x, by_pose, by_number)
+    for c in range(3):
+        ahead += by_pose[c] * (target[c] - x[c])
+    return ahead
+
+
+@njit(cache=True, nogil=True)
+def _move_pose(
+    x: NDArray[np.float64],
+    target: NDArray[np.float64],
+    weighted: NDArray[np.float64],
+    first: float,
+    second: float,
+) -> float:
+    """Move x to the nearest pose of the linearized constraints, by their multipliers; return the largest change."""
+    moved = 0.0
+    for c in range(3):
+        step = target[c] + weighted[0, c] * first + weighted[1, c] * second - x[c]
+        x[c] += step
+        moved = max(moved, abs(step))
+    return moved
+
+
+@njit(cache=True, nogil=True)
 def find_nearest_poses(
     inverted: NDArray[np.bool_],
     origins: NDArray[np.complex128],
@@ -131,7 +165,7 @@ def find_nearest_poses(
         Output arrays: residuals whose squares add up to the squared weighted distance, and the nearest poses.
     """
     by_pose, by_number = np.empty((2, 3)), np.empty((2, DYAD_NUMBER_COUNT))
-    value, weighted, x, ahead = np.empty(2), np.empty((2, 3)), np.empty(3), np.empty(2)
+    weighted, x, ahead = np.empty((2, 3)), np.empty(3), np.empty(2)
     for k in range(len(targets)):
         target, variance = targets[k], variances[k]
         x[:] = target
@@ -139,15 +173,10 @@ def find_nearest_poses(
         l11 = l21 = l22 = first = second = 0.0
         for _ in range(linearizations):
             for side in range(2):
-                value[side] = evaluate_constraint(
-                    inverted[side], origins[side], numbers[side], x, by_pose[side], by_number[side]
-                )
+                by = by_pose[side], by_number[side]
+                ahead[side] = _linearize_constraint(inverted[side], origins[side], numbers[side], x, target, *by)
                 for c in range(3):
                     weighted[side, c] = by_pose[side, c] * variance[c]
-                # Linearise at x, but measure from the target: ahead is f extrapolated to the target pose.
-                ahead[side] = value[side]
-                for c in range(3):
-                    ahead[side] += by_pose[side, c] * (target[c] - x[c])
             s11 = s12 = s22 = 0.0
             for c in range(3):
                 s11 += by_pose[0, c] * weighted[0, c]
@@ -164,11 +193,7 @@ def find_nearest_poses(
             l22 = math.sqrt(determinant / s11)
             if linearizations == 1:
                 break
-            moved = 0.0
-            for c in range(3):
-                step = target[c] + weighted[0, c] * first + weighted[1, c] * second - x[c]
-                x[c] += step
-                moved = max(moved, abs(step))
+            moved = _move_pose(x, target, weighted, first, second)
             # Also true for NaN: a divergent iteration must end.
             if not moved < MAX_STEP:
                 break

@@ -61,9 +61,11 @@ def fit_dyads(points: Complex, angles: Real) -> tuple[Complex, Complex]:
     a, c = basis[..., 0].astype(np.complex128), basis[..., 5] - 1j * basis[..., 6]
     u, v = basis[..., 1] - 1j * basis[..., 2], basis[..., 3] + 1j * basis[..., 4]
     form = 2.0 * a[:, :, None] * c[:, None, :] - np.conj(v)[:, :, None] * u[:, None, :]
+    # Only the symmetric part of a quadratic form has a meaning.
     form = 0.5 * (form + np.swapaxes(form, 1, 2))
     x, y, which = _intersect_conics(form.real, form.imag)
     k = np.einsum("nd,ndk->nk", np.stack([x, y, np.ones_like(x)], axis=1), basis[which])
+    # Unit coefficients make the limit of the curvature independent of the scale of x and y.
     k /= np.linalg.norm(k, axis=1, keepdims=True)
     finite = np.abs(k[:, 0]) > MIN_CURVATURE
     k = k[finite]
@@ -81,9 +83,11 @@ def _intersect_conics(first: Real, second: Real) -> tuple[Real, Real, NDArray[np
     ac = _subtract(_multiply(a1, c2), _multiply(a2, c1))
     ab = _subtract(_multiply(a1, b2), _multiply(a2, b1))
     bc = _subtract(_multiply(b1, c2), _multiply(b2, c1))
+    # The resultant of two quadratics in y is (ac)² − (ab)(bc) with these two-by-two determinants.
     quartic = _subtract(_multiply(ac, ac), _multiply(ab, bc))
     # The roots are the eigenvalues of the companion matrix; a vanishing leading coefficient would make it infinite.
     leading = quartic[:, 0]
+    # Below the root of the smallest number, the quotients could overflow.
     sound = np.abs(leading) > np.finfo(float).tiny ** 0.5
     which = np.flatnonzero(sound)
     companion = np.zeros((len(which), 4, 4))
@@ -96,6 +100,7 @@ def _intersect_conics(first: Real, second: Real) -> tuple[Real, Real, NDArray[np
     x, which = x[s, n], which[s]
     numerator = np.array([np.polyval(ac[k], at) for k, at in zip(which, x, strict=True)])
     denominator = np.array([np.polyval(ab[k], at) for k, at in zip(which, x, strict=True)])
+    # y follows from eliminating y²; where the denominator vanishes the two points share x and are given up.
     with np.errstate(divide="ignore", invalid="ignore"):
         y = -numerator / denominator
     good = np.isfinite(y)

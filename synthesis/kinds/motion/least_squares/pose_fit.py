@@ -76,7 +76,7 @@ class PoseFit:
 
     Parameters
     ----------
-    demands : PoseDemands
+    demands : PoseConstraints
         At least one pose is not wholly exact.
     surfaces : pair of Surface
         Input and output dyad.
@@ -92,7 +92,9 @@ class PoseFit:
     ) -> None:
         held = demands.exact_count
         self.demands, self.surfaces = demands, surfaces
+        # A pose with at most one exact coordinate has a nearest allowed pose in the plane of the others.
         self._near = np.flatnonzero(held <= 1)
+        # With two exact coordinates only one is left: it becomes an unknown, and both surfaces become equations.
         self._loose = np.flatnonzero(held == 2)
         self._exact = np.flatnonzero(held == 3)
         self._targets = np.ascontiguousarray(demands.poses[self._near])
@@ -101,6 +103,7 @@ class PoseFit:
         self._origins = np.array([s.origin for s in surfaces])
         free = ~np.concatenate(fixed)
         for side, surface in enumerate(surfaces):
+            # A slider's curvature is zero and stays zero.
             free[DYAD_NUMBER_COUNT * side + 4] &= surface.curved
         nothing = np.empty(0)
         self._last: tuple[tuple[int, bytes], tuple[Real, Real, Real]] = ((0, b""), (nothing, nothing, nothing))
@@ -110,6 +113,7 @@ class PoseFit:
     @property
     def freedom(self) -> int:
         """Number of unknowns minus number of constraint equations; if negative, a solution exists only by chance."""
+        # Each of these poses must lie on both surfaces: two equations.
         return int(self._free.sum()) - 2 * (len(self._loose) + len(self._exact))
 
     def start(self, one: Real, other: Real) -> Real:
@@ -131,11 +135,13 @@ class PoseFit:
         """Find the minimum in the basin of a point; return None if the constraints cannot be satisfied nearby."""
         if self.freedom < 0:
             return None
+        # Repeat with a new chart about the result, because a chart is accurate only near its centre.
         before = np.inf
         ended: Fit | None = None
         for _ in range(MAX_CHARTS):
             held = self._project_on_surface(x)
             if held is None:
+                # If a later projection fails, the result of the previous chart still stands.
                 return ended
             chart = _Chart(self, held)
             ended = chart.minimize(tolerance, evaluations)
@@ -154,6 +160,7 @@ class PoseFit:
         """Return the pose nearest to each target that the dyads allow, shape (n, 3)."""
         out = self.demands.poses.copy()
         out[self._near] = self._find_nearest(x, MAX_LINEARIZATIONS)[2]
+        # The unknown is measured in tolerances.
         out[self._loose, self._axis] += x[2 * DYAD_NUMBER_COUNT :] * self.demands.tolerances[self._loose, self._axis]
         return out
 
@@ -193,6 +200,7 @@ class PoseFit:
         rows, extra = len(jacobian), len(self._loose)
         out = np.zeros((rows + extra, 2 * DYAD_NUMBER_COUNT + extra))
         out[:rows, : 2 * DYAD_NUMBER_COUNT] = jacobian
+        # The deviations are residuals themselves, measured in tolerances, so their derivatives are one.
         out[rows:, 2 * DYAD_NUMBER_COUNT :] = np.eye(extra)
         return out
 
@@ -228,10 +236,11 @@ class PoseFit:
             values, jacobian = self._evaluate_constraints(x)
             if not len(values) or np.abs(values).max() <= CONSTRAINT_TOLERANCE:
                 return x
+            # Minimum norm changes the dyads as little as possible.
             x[self._free] -= np.linalg.lstsq(jacobian[:, self._free], values, rcond=None)[0]
             if not np.all(np.isfinite(x)):
                 return None
-        # Distant pivots leave more rounding than HOLDS allows: accept these, too, before giving up.
+        # Distant pivots leave more rounding than CONSTRAINT_TOLERANCE allows: accept these, too, before giving up.
         return x if np.abs(self._evaluate_constraints(x)[0]).max() <= 1e3 * CONSTRAINT_TOLERANCE else None
 
 
@@ -242,6 +251,7 @@ class _Chart:
         self.problem, self.x0 = problem, x
         jacobian = problem._evaluate_constraints(x)[1][:, problem._free]
         rank = len(jacobian)
+        # The right singular vectors beyond the rank span the directions in which the constraints do not change.
         self.tangent = np.linalg.svd(jacobian)[2][rank:] if rank else np.eye(jacobian.shape[1])
         self._last: tuple[bytes, Real | None, Real | None] = (b"", None, None)
 
@@ -273,6 +283,7 @@ class _Chart:
         if not len(values):
             return x, self.tangent.T
         for _ in range(NEWTON_STEPS):
+            # Steps are orthogonal to the tangent space, so y stays the coordinates of the point.
             matrix = np.concatenate([jacobian[:, free], self.tangent])
             try:
                 if np.abs(values).max() <= CONSTRAINT_TOLERANCE:
@@ -281,6 +292,7 @@ class _Chart:
                 x[free] -= np.linalg.solve(matrix, np.concatenate([values, np.zeros(len(y))]))
             except np.linalg.LinAlgError:
                 return None, None
+            # The comparison is negated to catch NaN as well.
             if not np.abs(x).max() < LOST_RESIDUAL:
                 return None, None
             values, jacobian = self.problem._evaluate_constraints(x)
@@ -289,6 +301,7 @@ class _Chart:
     def _compute_residuals(self, y: Real) -> Real:
         x, _ = self._evaluate_point(y)
         if x is None:
+            # A huge constant residual makes the solver shorten its step.
             return np.full(2 * len(self.problem._near) + len(self.problem._loose), LOST_RESIDUAL)
         return self.problem._compute_residuals(x, MAX_LINEARIZATIONS)
 
@@ -305,6 +318,7 @@ def fit_surface(demands: PoseConstraints, surface: Surface, numbers: Real, fixed
     The result is a starting point for pairs: most good pairs consist of such dyads.
     """
     least = float(np.min(demands.tolerances[demands.tolerances > 0.0], initial=1.0))
+    # Exact coordinates are soft here, with a small tolerance, because a single dyad often cannot meet them.
     variances = np.where(demands.tolerances > 0.0, demands.tolerances, EXACT_TOLERANCE_SHARE * least) ** 2
     free = ~fixed
     free[4] &= surface.curved

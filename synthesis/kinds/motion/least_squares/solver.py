@@ -97,6 +97,7 @@ def solve_least_squares(problem: MotionProblem, progress: Progress) -> MotionRes
     rng = np.random.default_rng(problem.seed)
     progress(0.0, "fitting single dyads")
     sides = problem.input_side, problem.output_side
+    # With equal choices for both sides the dyads are interchangeable, so fit them once.
     alike = sides[0] == sides[1]
     inputs = _fit_dyads(task, demands, problem, 0, rng)
     outputs = inputs if alike else _fit_dyads(task, demands, problem, 1, rng)
@@ -113,9 +114,11 @@ def solve_least_squares(problem: MotionProblem, progress: Progress) -> MotionRes
         elif math.isfinite(ended.cost):
             rough.append(pair._replace(point=ended.point, cost=ended.cost))
     rough.sort(key=lambda pair: pair.cost)
+    # Slots are replaced in place: the list is sorted again below, because refinement changes the order.
     for n, pair in enumerate(rough[:REFINED_PAIR_COUNT]):
         progress(0.65 + 0.2 * n / REFINED_PAIR_COUNT, f"refining pair {n + 1} of {REFINED_PAIR_COUNT}")
         ended = pair.problem.minimize(pair.point)
+        # A refinement that loses the exact positions keeps the rough fit.
         rough[n] = pair if ended is None else pair._replace(point=ended.point, cost=ended.cost)
     for n, pair in enumerate(sorted(rough, key=lambda pair: pair.cost)):
         progress(0.85 + 0.15 * n / len(rough), "verifying the fitted linkages")
@@ -129,6 +132,7 @@ def make_pose_constraints(problem: MotionProblem, task: MotionTask) -> PoseConst
     poses = np.stack([task.points.real, task.points.imag, np.array(problem.turns)], axis=1)
     limits = np.array(problem.limits)
     tolerances = np.stack([limits[:, 0] / task.size, limits[:, 1] / task.size, np.radians(limits[:, 2])], axis=1)
+    # Infinite tolerances mean that the client gave none: weigh by the task's size and the radian.
     return PoseConstraints(poses, np.where(np.isfinite(tolerances), tolerances, 1.0))
 
 
@@ -147,12 +151,14 @@ def _fit_dyads(
             # An almost straight circle means a distant pivot: offer the slider that replaces it, too.
             if choices.dyad == "any" and abs(numbers[4]) * MAX_REACH < 1.0 and not start.fixed.any():
                 fits.append(as_slider(fits[-1]))
+    # Rough starts stay in the list, because a fit to all poses can run away from a good start.
     return _select_dyads(demands, [*fits, *rough], DYAD_COUNT)
 
 
 def _select_dyads(demands: PoseConstraints, listed: list[Start], count: int) -> list[Start]:
     """Select the distinct dyads with the smallest weighted distance from the poses."""
     cost = [
+        # At REACH_SCALE the factor is 4 (see there); it grows with the square beyond.
         _evaluate_single_cost(demands, start) * (1.0 + 3.0 * _measure_reach(start) ** 2 / REACH_SCALE**2)
         for start in listed
     ]
@@ -172,6 +178,7 @@ def _select_dyads(demands: PoseConstraints, listed: list[Start], count: int) -> 
 
 
 def _evaluate_single_cost(demands: PoseConstraints, start: Start) -> float:
+    # All five numbers are fixed: only the cost of the start is evaluated.
     fitted = fit_surface(demands, start.surface, start.numbers, np.ones(5, np.bool_))
     return fitted.cost
 
@@ -191,6 +198,7 @@ def _get_coordinates(start: Start) -> Real:
     point, foot, angle = compute_line(start.surface, start.numbers)
     along = complex(math.cos(angle), math.sin(angle))
     return np.array(
+        # The angle of a line has the period π, so compare its double angle by sine and cosine.
         [point.real, point.imag, (foot * along.conjugate()).imag, math.sin(2.0 * angle), math.cos(2.0 * angle)]
     )
 
@@ -205,14 +213,17 @@ def _select_pairs(
     alike = inputs is outputs
     sound = _screen_pairs(problem, task, inputs, outputs)
     if alike:
+        # A pair may be driven from either side, so it passes if either order does.
         sound |= sound.T
     pairs = []
     for i, one in enumerate(inputs):
         for j, other in enumerate(outputs):
+            # Skip a dyad with itself and repeated pairs; two sliders cannot be assembled to a linkage of this kind.
             if (alike and j <= i) or (one.dyad != "RR" and other.dyad != "RR"):
                 continue
             fitting = PoseFit(demands, (one.surface, other.surface), (one.fixed, other.fixed))
             point = fitting.start(one.numbers, other.numbers)
+            # First order is fast enough for all pairs, and orders them well.
             cost = fitting.cost(point, first_order=True)
             if math.isfinite(cost):
                 pairs.append((not sound[i, j], _Pair(one, other, fitting, point, cost)))
@@ -220,6 +231,7 @@ def _select_pairs(
     kept: dict[int, _Pair] = {}
     count = MAX_EXACT_PAIRS if demands.exact_count.max() > 1 else MAX_PAIRS
     by_cost = sorted(range(len(pairs)), key=lambda n: pairs[n][1].cost)
+    # Half of the places go by cost alone, because the screening can err for pairs that do not yet meet the positions.
     for order, size in ((by_cost, count // 2), (sorted(by_cost, key=lambda n: pairs[n][0]), count)):
         for n in order:
             pair = pairs[n][1]
@@ -237,6 +249,7 @@ def _screen_pairs(
     """Return a mask of the pairs that pass the screening as if they met all positions exactly; sliders always pass."""
     links = []
     for listed in (inputs, outputs):
+        # Sliders have no second pivot: unit dummies fill the table, and their verdict is overruled below.
         pivots = [compute_pivots(s.surface, s.numbers) if s.surface.curved else (0j, 1.0 + 0j) for s in listed]
         table = np.array(pivots, np.complex128).reshape(-1, 2)
         links.append(Dyads(table[:, 0].copy(), table[:, 1].copy()))
@@ -260,13 +273,16 @@ class _FitLog(CandidateLog[LinkageDesign]):
         """Verify the linkage of a fitted pair, unless another pair has converged to the same linkage."""
         one = pair.one._replace(numbers=pair.point[:5])
         other = pair.other._replace(numbers=pair.point[5:10])
+        # Sort the dyads, so that the same linkage with exchanged sides is recognised.
         places = np.concatenate(sorted((_get_coordinates(one), _get_coordinates(other)), key=lambda z: float(z[0])))
+        # Different numbers of coordinates mean different types of dyads.
         if any(
             len(places) == len(s) and np.abs(places - s).max() < DUPLICATE_LINKAGE_TOLERANCE * (1.0 + abs(s).max())
             for s in self.seen
         ):
             return
         self.seen.append(places)
+        # Later pairs have higher costs, so they cannot rank before those that passed; without that order, verify all.
         if self.problem.is_least_squares and len(self.passed) >= max(self.problem.max_designs, MIN_VERIFIED):
             self.reject(OUTRANKED_REASON)
             return
@@ -295,6 +311,7 @@ class _FitLog(CandidateLog[LinkageDesign]):
         def to_ground(z: complex) -> complex:
             return self.task.to_problem(place + turn * z)
 
+        # The linkage is built with its slider on the output side; exchange the sides and drive the slider instead.
         if one.dyad != "RR":
             if one.dyad == "RP" or other.dyad != "RR":
                 return None

@@ -83,12 +83,11 @@ class Pool(NamedTuple):
 
     Attributes
     ----------
-    x : float, shape (POOL, unknowns)
-        Unknowns of :mod:`synthesis.kinds.motion.sixbar.residuals`.
-    costs : float, shape (POOL,)
+    x : float, shape (POOL_SIZE, unknowns)
+    costs : float, shape (POOL_SIZE,)
         Sums of squares; infinite for an empty place.
-    settings : float, shape (POOL, SETTINGS)
-    starts : int, shape (POOL,)
+    settings : float, shape (POOL_SIZE, SETTING_SIZE)
+    starts : int, shape (POOL_SIZE,)
         Index of each linkage's first pose.
     """
 
@@ -104,8 +103,8 @@ class ConvergedSixbars(NamedTuple):
     Attributes
     ----------
     joints, makes, values, starts
-        Joints in the first position, topology numbers, values (:func:`chain_kernels.weighed`) and indices of the first
-        poses: shapes (most, 7), (most,), (most,), (most,).
+        Joints in the first position, topology numbers, values (:func:`quality.evaluate_sixbar`) and indices of the
+        first poses: shapes (most, 7), (most,), (most,), (most,).
     counts : int, shape (3,)
         Number of linkages; of descents; of steps in descents.
     """
@@ -147,10 +146,12 @@ class DescentBuffers(NamedTuple):
 @njit(cache=True, nogil=True, error_model="numpy")
 def _evaluate_cost(x: Real, points: Real, setting: Real, room: DescentBuffers) -> float:
     """Return the sum of squared residuals; infinite if the linkage does not close."""
+    # No rows of the Jacobian: only the residuals are computed.
     m = evaluate_residuals(x, points, setting, room.trial, room.jacobian[:0])
     cost = 0.0
     for k in range(m):
         cost += room.trial[k] ** 2
+    # A negative row count means that the linkage does not close somewhere.
     return cost if m >= 0 else np.inf
 
 
@@ -166,6 +167,7 @@ def _solve_normal_step(m: int, damping: float, room: DescentBuffers, step: Real)
     for row in range(m):
         for i in range(n):
             at = jacobian[row, i]
+            # Most entries of a row are 0, so skipping them saves most products.
             if at != 0.0:
                 step[i] -= at * room.residuals[row]
                 for j in range(i + 1):
@@ -178,6 +180,7 @@ def _solve_step(m: int, damping: float, room: DescentBuffers, step: Real) -> boo
     """Compute the damped minimum-norm step −Jᵀ(JJᵀ + μ)⁻¹ r of m rows; return False if it is singular."""
     matrix, right, jacobian = room.matrix[:m, :m], room.right[:m], room.jacobian
     # Solve the smaller of the two equivalent systems.
+    # With more rows than unknowns JJᵀ is singular without damping; otherwise it is the smaller system.
     if m > step.size:
         return _solve_normal_step(m, damping, room, step)
     for i in range(m):
@@ -214,8 +217,10 @@ def descend(
     m = evaluate_residuals(x, points, setting, room.residuals, room.jacobian)
     before, damping = cost, INITIAL_DAMPING
     for n in range(steps):
+        # Written so that NaN ends the descent, too.
         if not CONVERGED_COST < cost < np.inf or damping > MAX_DAMPING:
             break
+        # A slow descent is left to basin hopping, which finds better minima in the same time.
         if n % BLOCK_SIZE == BLOCK_SIZE - 1:
             if cost > worth * before:
                 break
@@ -234,6 +239,7 @@ def descend(
         if lower < cost:
             _copy_row(trial, x)
             cost = lower
+            # A cut step says less about the model, so the damping falls more slowly.
             damping = max(damping * (FULL_STEP_FACTOR if share == 1.0 else CUT_STEP_FACTOR), MIN_DAMPING)
             m = evaluate_residuals(x, points, setting, room.residuals, room.jacobian)
         else:
@@ -249,6 +255,7 @@ def select_first_pose(poses: Poses, start: int, setting: Real, points: Real) -> 
     for k in range(len(poses.later)):
         for i in range(POSE_SIZE):
             points[k, i] = poses.later[k, i]
+        # Angles relative to the first pose, which each linkage chooses for itself.
         points[k, 2] -= poses.first[start, 2]
 
 
@@ -264,8 +271,10 @@ def _sample_linkage(
         centre += complex(points[k, 0], points[k, 1])
     centre /= intervals + 1
     side = np.empty(SETTING_SIZE)
+    # Most random linkages do not close over the whole rotation, hence the many tries.
     for _ in range(MAX_TRIES):
         _copy_row(setting, side)
+        # Logarithmically uniform: small and large linkages are sampled alike.
         spread = MIN_SPREAD * (MAX_SPREAD / MIN_SPREAD) ** rng.random()
         for j in range(JOINT_COORDINATE_COUNT):
             trial[j] = (centre.imag if j % 2 else centre.real) + spread * rng.normal()
@@ -277,10 +286,12 @@ def _sample_linkage(
         turn = MIN_START_TURN + (MAX_START_TURN - MIN_START_TURN) * rng.random()
         total = 0.0
         for k in range(JOINT_COORDINATE_COUNT, x.size):
+            # Random shares of the rotation between the positions; none is nearly 0.
             trial[k] = 0.2 + 0.8 * rng.random()
             total += trial[k]
         for k in range(JOINT_COORDINATE_COUNT, x.size):
             trial[k] = math.log(turn * trial[k] / total)
+        # Whatever assemblies the sample has are its branch.
         _note_sides(trial, side)
         cost = _evaluate_cost(trial, points, side, room)
         if cost < np.inf:
@@ -299,6 +310,7 @@ def _perturb_linkage(rng: np.random.Generator, x: Real, spread: float, setting: 
     """Perturb a linkage at random, except for a Stephenson II's crank between body and ground, which is isolated."""
     for k in range(x.size):
         to[k] = x[k] + spread * rng.normal()
+    # A step would leave the isolated cranks, which are exact solutions of their own conditions.
     if int(setting[TOPOLOGY]) == STEPHENSON_2 and len(poses.cranks) > 0:
         for j in (Q1, J):
             to[2 * j], to[2 * j + 1] = x[2 * j], x[2 * j + 1]
@@ -337,15 +349,18 @@ def _optimize_value(
                 for k in range(len(other)):
                     joints[k] = other[k]
                 setting[FIRST_SIDE], setting[SECOND_SIDE] = aims[FIRST_SIDE], aims[SECOND_SIDE]
+                # Tighten the aims to what was reached; other attempts left them unchanged.
                 if n % 3:
                     angle, reach, ratio = math.acos(aims[COSINE]), aims[REACH], aims[RATIO]
                 continue
+        # Failure: the next attempt stays nearer.
         spread *= 0.8
     return value
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
 def _insert_in_pool(pool: Pool, n: int, x: Real, cost: float, setting: Real, start: int) -> None:
+    # Insertion sort from the end: the pool is small and nearly sorted.
     """Replace the n-th linkage of the pool and move the new one up to its rank by cost."""
     while n > 0 and pool.costs[n - 1] > cost:
         _copy_row(pool.x[n - 1], pool.x[n])
@@ -355,6 +370,16 @@ def _insert_in_pool(pool: Pool, n: int, x: Real, cost: float, setting: Real, sta
     _copy_row(x, pool.x[n])
     _copy_row(setting, pool.settings[n])
     pool.costs[n], pool.starts[n] = cost, start
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def _store_sixbar(joints: Complex, make: int, value: float, start: int, arrived: ConvergedSixbars) -> None:
+    """Append a sixbar to the output."""
+    n = int(arrived.counts[0])
+    for k in range(len(joints)):
+        arrived.joints[n, k] = joints[k]
+    arrived.makes[n], arrived.values[n], arrived.starts[n] = make, value, start
+    arrived.counts[0] = n + 1
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
@@ -389,11 +414,11 @@ def run_descents(
     )
     joints = np.empty(7, np.complex128)
     for _ in range(descents):
-        n = int(arrived.counts[0])
-        if n == len(arrived.makes):
+        # The output arrays are full.
+        if arrived.counts[0] == len(arrived.makes):
             return
-        parent, start = POOL_SIZE, 0
-        cost = np.inf
+        parent, start, cost = POOL_SIZE, 0, np.inf
+        # The pool must be full before hops may start from it.
         if rng.random() < FRESH_SHARE or not pool.costs[POOL_SIZE - 1] < np.inf:
             start = int(rng.random() * len(poses.first))
             _copy_row(plain, setting)
@@ -408,24 +433,25 @@ def run_descents(
             _copy_row(pool.settings[parent], setting)
             select_first_pose(poses, start, setting, points)
             spread = MIN_HOP * (MAX_HOP / MIN_HOP) ** rng.random()
+            # A hop may open the linkage; another random step often closes it.
             for _hop in range(MAX_FAILED_HOPS):
                 _perturb_linkage(rng, pool.x[parent], spread, setting, poses, x)
                 _note_sides(x, setting)
                 cost = _evaluate_cost(x, points, setting, room)
                 if cost < np.inf:
                     break
+        # Neither start closed; the descent counts only linkages that do.
         if not cost < np.inf:
             continue
         arrived.counts[1] += 1
         cost = descend(x, points, setting, room, arrived.counts, MAX_COST_RATIO)
         if cost < CONVERGED_COST:
+            # Negative values are infeasible beyond repair by small hops.
             value = evaluate_sixbar(x, points, setting, poses, joints)
             if value >= 0.0:
                 value = _optimize_value(rng, x, points, setting, poses, joints, value, room, arrived.counts)
-            for k in range(len(joints)):
-                arrived.joints[n, k] = joints[k]
-            arrived.makes[n], arrived.values[n], arrived.starts[n] = int(setting[TOPOLOGY]), value, start
-            arrived.counts[0] = n + 1
+            _store_sixbar(joints, int(setting[TOPOLOGY]), value, start, arrived)
+        # A fresh linkage replaces the worst of the pool, a hop only its own parent, which keeps the pool diverse.
         elif parent == POOL_SIZE:
             if cost < pool.costs[POOL_SIZE - 1]:
                 _insert_in_pool(pool, POOL_SIZE - 1, x, cost, setting, start)

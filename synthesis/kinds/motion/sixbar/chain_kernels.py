@@ -109,6 +109,7 @@ def _compute_crank_poses(
     for k in range(POSITION_COUNT):
         place[k] = _move_point(fixed, one, one_turn, k)
         turn[k] = _move_point(moving, other, other_turn, k) - place[k]
+    # Rotations count from the first position.
     first = turn[0]
     for k in range(POSITION_COUNT):
         turn[k] /= first
@@ -135,8 +136,10 @@ def compute_chain_poses(
         end = points[k] + turns[k] * (pin - points[0])
         reach = end - pivot
         square = reach.real * reach.real + reach.imag * reach.imag
+        # The law of cosines, divided by the squared reach: the knee's place along the line from G to H₂.
         along = (first * first - second * second + square) / (2.0 * square)
         height = first * first / square - along * along
+        # The links are too short or too long for this position; also true for NaN.
         if not height > 0.0:
             return False
         knee = pivot + reach * complex(along, elbow * math.sqrt(height))
@@ -173,6 +176,7 @@ def close_dyad(pin: complex, other: complex, first: float, second: float, side: 
     base = other - pin
     square = base.real * base.real + base.imag * base.imag
     cosine = (first * first + second * second - square) / (2.0 * first * second)
+    # Negated, so that NaN counts as not closing.
     if not abs(cosine) < 1.0:
         return pin, cosine
     along, height = (
@@ -204,15 +208,18 @@ def find_input_run(input_turns: Complex, demanded: NDArray[np.bool_], inputs: Re
     float
         0 if there is such a run; otherwise a value down to −1, decreasing with the angle that the input reverses.
     """
+    # The input may turn either way; the shorter run wins.
     best, shorter = -1.0, 2.0 * math.pi
     for way in (1.0, -1.0):
         at, back, before = 0.0, 0.0, input_turns[0]
         for k in range(1, len(demanded)):
             if demanded[k]:
                 turned = measure_angle(before, input_turns[k]) * way
+                # Backward steps must go round the long way; they are also summed as a measure of infeasibility.
                 back += min(turned, 0.0)
                 at += turned if turned >= 0.0 else turned + 2.0 * math.pi
                 before = input_turns[k]
+        # More than one turn in total is infeasible, too, but less so the closer it is to a turn.
         best = max(best, (back if back < 0.0 else 2.0 * math.pi - at) / (math.pi * len(demanded)))
         if at >= shorter:
             continue
@@ -246,9 +253,11 @@ def _measure_class_gap(lengths: Real, wanted: float) -> float:
     ``lengths`` are input, coupler, output, ground.
     """
     total, shortest, longest = lengths.sum(), lengths.min(), lengths.max()
+    # Shortest plus longest over the mean of all pairs: positive if not Grashof.
     over = 2.0 * (shortest + longest) / total - 1.0
     if wanted == NON_GRASHOF:
         return float(max(-over, 0.0))
+    # The link that must be the shortest in this class.
     own = lengths[0] if wanted == CRANK_ROCKER else (lengths[3] if wanted == DOUBLE_CRANK else lengths[1])
     return float(max(over, 0.0) + (own - shortest) / total)
 
@@ -265,6 +274,7 @@ def _measure_rotation_gap(
         a = joints[O2] + into * (joints[A] - joints[O2])
         b, cosine = close_dyad(a, joints[O4], lengths[1], lengths[2], first_side)
         sine = _compute_sine(cosine)
+        # Far from closing counts at least one full unit, so that the sum measures the missing part of the turn.
         if sine <= 0.0:
             missing += sine - 1.0
             continue
@@ -273,6 +283,122 @@ def _measure_rotation_gap(
         two = place_on_link(c2, joints[Q2], joints, a, into, through, out)
         missing += min(_compute_sine(close_dyad(one, two, lengths[4], lengths[5], second_side)[1]), 0.0)
     return missing / STEP_COUNT
+
+
+@njit(**JIT_OPTIONS)
+def _measure_links(joints: Complex, c1: int, c2: int, tip: complex, lengths: Real) -> tuple[float, float, float]:
+    """Write the lengths of the dyads' links; return the shortest and longest link, and the reach with P (``tip``)."""
+    lengths[0], lengths[1] = abs(joints[A] - joints[O2]), abs(joints[B] - joints[A])
+    lengths[2], lengths[3] = abs(joints[B] - joints[O4]), abs(joints[O4] - joints[O2])
+    lengths[4], lengths[5] = abs(joints[J] - joints[Q1]), abs(joints[J] - joints[Q2])
+    shortest, longest = lengths.min(), lengths.max()
+    # The reach covers P, the ratio below only pins: P is a point of the body, not a pin.
+    reach = max(longest, abs(tip - joints[Q1]), abs(tip - joints[J]))
+    for n in range(2):
+        link, point = (c1, joints[Q1]) if n == 0 else (c2, joints[Q2])
+        one, two = LINK_PINS[link, 0], LINK_PINS[link, 1]
+        near, far = abs(point - joints[one]), abs(point - joints[two])
+        shortest, longest = min(shortest, near, far), max(longest, near, far)
+    reach = max(reach, longest)
+    return shortest, longest, reach
+
+
+@njit(**JIT_OPTIONS)
+def _drive_to_last(
+    joints: Complex, c1: int, c2: int, lengths: Real, point: complex, last: float, first_side: float,
+    second_side: float, flattest: float, limits: Real,
+) -> tuple[float, float, float, float, float]:  # fmt: skip
+    """Drive from the first position to the last, and look for toggles between the targets.
+
+    Returns
+    -------
+    flattest : float
+        Minimum sine of a transmission angle, at most the given one.
+    beyond : float
+        Sum of what closures lack.
+    travelled, turned : float
+        Path of P and rotation of the body.
+    outside : float
+        Greatest distance of a joint from its box.
+    """
+    beyond = 0.0
+    travelled = turned = outside = 0.0
+    place_before, turn_before = point, 1.0 + 0.0j
+    for n in range(1, STEP_COUNT + 1):
+        rotation = last * n / STEP_COUNT
+        into = complex(math.cos(rotation), math.sin(rotation))
+        a = joints[O2] + into * (joints[A] - joints[O2])
+        b, cosine = close_dyad(a, joints[O4], lengths[1], lengths[2], first_side)
+        sine = _compute_sine(cosine)
+        flattest = min(flattest, sine)
+        if sine <= 0.0:
+            # A dyad that does not close leaves the positions of the others undefined: continue with the next step.
+            beyond += 2.0 * sine - 1.0
+            continue
+        through, out = (b - a) / (joints[B] - joints[A]), (b - joints[O4]) / (joints[B] - joints[O4])
+        one = place_on_link(c1, joints[Q1], joints, a, into, through, out)
+        two = place_on_link(c2, joints[Q2], joints, a, into, through, out)
+        j, cosine = close_dyad(one, two, lengths[4], lengths[5], second_side)
+        sine = _compute_sine(cosine)
+        flattest, beyond = min(flattest, sine), beyond + min(sine, 0.0)
+        # Once a toggle was passed, path and rotation have no meaning.
+        if flattest <= 0.0:
+            continue
+        body = (j - one) / (joints[J] - joints[Q1])
+        p = one + body * (point - joints[Q1])
+        outside = max(
+            outside,
+            measure_outside(a, limits[JOINT_BOX:]),
+            measure_outside(b, limits[JOINT_BOX:]),
+            measure_outside(one, limits[JOINT_BOX:]),
+        )
+        outside = max(
+            outside,
+            measure_outside(two, limits[JOINT_BOX:]),
+            measure_outside(j, limits[JOINT_BOX:]),
+            measure_outside(p, limits[JOINT_BOX:]),
+        )
+        travelled += abs(p - place_before)
+        turned += abs(measure_angle(turn_before, body))
+        place_before, turn_before = p, body
+    return flattest, beyond, travelled, turned, outside
+
+
+@njit(**JIT_OPTIONS)
+def _measure_other_assembly(
+    joints: Complex, c1: int, c2: int, points: Complex, turns: Complex, input_turns: Complex, output_turns: Complex,
+    inputs: Real, demanded: NDArray[np.bool_], first_side: float, second_side: float,
+) -> tuple[float, float]:  # fmt: skip
+    """Return the sum of sines, not positive, of dyads in another assembly at a target, and the last input."""
+    other, last = 0.0, 0.0
+    for k in range(1, len(points)):
+        if not demanded[k]:
+            continue
+        last = inputs[k]
+        into, out = input_turns[k], output_turns[k]
+        a, b = joints[O2] + into * (joints[A] - joints[O2]), joints[O4] + out * (joints[B] - joints[O4])
+        through = (b - a) / (joints[B] - joints[A])
+        one, two = (
+            place_on_link(c1, joints[Q1], joints, a, into, through, out),
+            place_on_link(c2, joints[Q2], joints, a, into, through, out),
+        )
+        # Both dyads must be on the same side at every target; wrong ones are summed as a guide for the climb.
+        j = points[k] + turns[k] * (joints[J] - points[0])
+        other += min(first_side * compute_signed_sine(a, joints[O4], b), 0.0)
+        other += min(second_side * compute_signed_sine(one, two, j), 0.0)
+    return other, last
+
+
+@njit(**JIT_OPTIONS)
+def _measure_outside_boxes(joints: Complex, c2: int, outside: float, limits: Real) -> float:
+    """Return the greatest distance of a joint from its box in the first position, at least the given one."""
+    for joint in range(7):
+        fixed = joint in (O2, O4) or (joint == Q2 and c2 == GROUND)
+        outside = max(
+            outside,
+            measure_outside(joints[joint], limits[FIXED_BOX:MOVING_BOX] if fixed else limits[MOVING_BOX:JOINT_BOX]),
+        )
+    return outside
 
 
 @njit(**JIT_OPTIONS)
@@ -298,17 +424,7 @@ def evaluate_candidate(
     """
     c1, c2 = TOPOLOGY_LINKS[make, 0], TOPOLOGY_LINKS[make, 1]
     lengths = np.empty(6)
-    lengths[0], lengths[1] = abs(joints[A] - joints[O2]), abs(joints[B] - joints[A])
-    lengths[2], lengths[3] = abs(joints[B] - joints[O4]), abs(joints[O4] - joints[O2])
-    lengths[4], lengths[5] = abs(joints[J] - joints[Q1]), abs(joints[J] - joints[Q2])
-    shortest, longest = lengths.min(), lengths.max()
-    reach = max(longest, abs(points[0] - joints[Q1]), abs(points[0] - joints[J]))
-    for n in range(2):
-        link, point = (c1, joints[Q1]) if n == 0 else (c2, joints[Q2])
-        one, two = LINK_PINS[link, 0], LINK_PINS[link, 1]
-        near, far = abs(point - joints[one]), abs(point - joints[two])
-        shortest, longest = min(shortest, near, far), max(longest, near, far)
-    reach = max(reach, longest)
+    shortest, longest, reach = _measure_links(joints, c1, c2, points[0], lengths)
     if not shortest > MIN_LINK_LENGTH:
         return -3.0
     inputs = np.zeros(len(points))
@@ -318,80 +434,33 @@ def evaluate_candidate(
     # The signed sine between two links is positive exactly if their joint is to the left of the pins' line.
     first_sine = compute_signed_sine(joints[A], joints[O4], joints[B])
     second_sine = compute_signed_sine(joints[Q1], joints[Q2], joints[J])
+    # Assemblies of the first position, which all others must share.
     first_side, second_side = math.copysign(1.0, first_sine), math.copysign(1.0, second_sine)
-    other, last = 0.0, 0.0
-    for k in range(1, len(points)):
-        if not demanded[k]:
-            continue
-        last = inputs[k]
-        into, out = input_turns[k], output_turns[k]
-        a, b = joints[O2] + into * (joints[A] - joints[O2]), joints[O4] + out * (joints[B] - joints[O4])
-        through = (b - a) / (joints[B] - joints[A])
-        one, two = (
-            place_on_link(c1, joints[Q1], joints, a, into, through, out),
-            place_on_link(c2, joints[Q2], joints, a, into, through, out),
-        )
-        j = points[k] + turns[k] * (joints[J] - points[0])
-        other += min(first_side * compute_signed_sine(a, joints[O4], b), 0.0)
-        other += min(second_side * compute_signed_sine(one, two, j), 0.0)
+    other, last = _measure_other_assembly(
+        joints, c1, c2, points, turns, input_turns, output_turns, inputs, demanded, first_side, second_side
+    )
     if other < 0.0:
-        return -1.0 + other / (2.0 * len(points))
-    flattest, beyond = min(abs(first_sine), abs(second_sine)), 0.0
-    travelled = turned = outside = 0.0
-    place_before, turn_before = points[0], 1.0 + 0.0j
-    for n in range(1, STEP_COUNT + 1):
-        rotation = last * n / STEP_COUNT
-        into = complex(math.cos(rotation), math.sin(rotation))
-        a = joints[O2] + into * (joints[A] - joints[O2])
-        b, cosine = close_dyad(a, joints[O4], lengths[1], lengths[2], first_side)
-        sine = _compute_sine(cosine)
-        flattest = min(flattest, sine)
-        if sine <= 0.0:
-            beyond += 2.0 * sine - 1.0
-            continue
-        through, out = (b - a) / (joints[B] - joints[A]), (b - joints[O4]) / (joints[B] - joints[O4])
-        one = place_on_link(c1, joints[Q1], joints, a, into, through, out)
-        two = place_on_link(c2, joints[Q2], joints, a, into, through, out)
-        j, cosine = close_dyad(one, two, lengths[4], lengths[5], second_side)
-        sine = _compute_sine(cosine)
-        flattest, beyond = min(flattest, sine), beyond + min(sine, 0.0)
-        if flattest <= 0.0:
-            continue
-        body = (j - one) / (joints[J] - joints[Q1])
-        p = one + body * (points[0] - joints[Q1])
-        outside = max(
-            outside,
-            measure_outside(a, limits[JOINT_BOX:]),
-            measure_outside(b, limits[JOINT_BOX:]),
-            measure_outside(one, limits[JOINT_BOX:]),
-        )
-        outside = max(
-            outside,
-            measure_outside(two, limits[JOINT_BOX:]),
-            measure_outside(j, limits[JOINT_BOX:]),
-            measure_outside(p, limits[JOINT_BOX:]),
-        )
-        travelled += abs(p - place_before)
-        turned += abs(measure_angle(turn_before, body))
-        place_before, turn_before = p, body
+        return float(-1.0 + other / (2.0 * len(points)))
+    # Drive from the first position to the last: toggles may lie between the targets.
+    flattest = min(abs(first_sine), abs(second_sine))
+    flattest, beyond, travelled, turned, outside = _drive_to_last(
+        joints, c1, c2, lengths, points[0], last, first_side, second_side, flattest, limits
+    )
     if flattest <= 0.0:
         # Map the accumulated gap to (−1, 0): smaller gaps guide the climb towards a motion without toggles.
         beyond /= STEP_COUNT
-        return beyond / (1.0 - beyond)
+        return float(beyond / (1.0 - beyond))
     ratio = longest / shortest
+    # All size limits as ratios: the largest one measures the violation.
     over = max(reach / limits[MAX_REACH], ratio / limits[MAX_RATIO])
     over = max(over, limits[MIN_LENGTH] / shortest, longest / limits[MAX_LENGTH])
-    for joint in range(7):
-        fixed = joint in (O2, O4) or (joint == Q2 and c2 == GROUND)
-        outside = max(
-            outside,
-            measure_outside(joints[joint], limits[FIXED_BOX:MOVING_BOX] if fixed else limits[MOVING_BOX:JOINT_BOX]),
-        )
-    over = max(over, 1.0) + outside
+    # Ratios below 1 are satisfied and must not compensate violations of boxes.
+    over = max(over, 1.0) + _measure_outside_boxes(joints, c2, outside, limits)
     if limits[GRASHOF_CLASS] != ANY_CLASS:
         over += _measure_class_gap(lengths[:4], limits[GRASHOF_CLASS])
     if limits[FULL_TURN]:
         over -= _measure_rotation_gap(joints, c1, c2, lengths, first_side, second_side)
+    # The cap at 0.999 keeps infeasible candidates below 1, where feasible ones begin.
     if not (flattest >= limits[MIN_SINE] and over <= 1.0):
         return float(min(flattest, 0.999) / over)
     excess = max((travelled - needed[0]) / max(needed[0], 1.0), (turned - needed[1]) / max(needed[1], MIN_BODY_TURN))
@@ -416,6 +485,7 @@ def _record_candidate(
     if value > found[0]:
         found[0] = value
     n = int(found[1])
+    # Infeasible candidates are kept as a fallback, but never fill the array.
     if n < (len(makes) if value >= 1.0 else (len(makes) // 2 if value > 0.0 else 0)):
         joints[n], makes[n], scores[n], owners[n] = bar, make, value, int(found[3])
         found[1] = n + 1
@@ -469,6 +539,21 @@ class ChainResults(NamedTuple):
 
 
 @njit(**JIT_OPTIONS)
+def _try_input(
+    bar: Complex, make: int, driver: int, turn: Complex, n: int, given: ChainConstraints, results: ChainResults
+) -> None:
+    """Evaluate and record a sixbar of chain n; ``driver``: 0 if link 1 of the chain is the input, 1 if the crank."""
+    every_points, every_turns, demanded, needed, _, limits = given
+    joints, makes, scores, found, owners = results
+    if driver:
+        bar[A], bar[B], bar[O2], bar[O4] = bar[B], bar[A], bar[O4], bar[O2]
+    value = evaluate_candidate(
+        bar, make, turn[3 * driver], turn[3 - 3 * driver], every_points[n], every_turns[n], demanded, needed, limits
+    )
+    _record_candidate(bar, make, value, joints, makes, scores, found, owners)
+
+
+@njit(**JIT_OPTIONS)
 def evaluate_chain(chain: Real, n: int, given: ChainConstraints, results: ChainResults) -> float:
     """Evaluate all sixbars of one chain; return the value of the best (:func:`evaluate_candidate`).
 
@@ -481,10 +566,9 @@ def evaluate_chain(chain: Real, n: int, given: ChainConstraints, results: ChainR
     given, results
         Constraints and output.
     """
-    every_points, every_turns, demanded, needed, wanted, limits = given
-    joints, makes, scores, found, owners = results
-    points, turns = every_points[n], every_turns[n]
+    points, turns, wanted, found = given[0][n], given[1][n], given.wanted, results.found
     found[3] = n
+    # Lower than any value of a candidate.
     found[0] = -4.0
     place, turn = np.empty((4, POSITION_COUNT), np.complex128), np.empty((4, POSITION_COUNT), np.complex128)
     pivot, pin = complex(chain[0], chain[1]), complex(chain[2], chain[3])
@@ -495,26 +579,27 @@ def evaluate_chain(chain: Real, n: int, given: ChainConstraints, results: ChainR
     fixed, moving = np.empty((4, MAX_DYADS), np.complex128), np.empty((4, MAX_DYADS), np.complex128)
     none, knee = complex(math.nan, math.nan), place[1, 0]
     bar = np.empty(7, np.complex128)
+    # Dyads on body M are shared by several types; compute them once per chain.
     with_m = with_1 = 0
     if wanted[STEPHENSON_3] or wanted[STEPHENSON_1_IN]:
         compute_relative_poses(still, upright, place[2], turn[2], shift, spin)
         with_m = solve_relative_dyads(shift, spin, none, none, fixed[0], moving[0])
     if wanted[WATT_1_IN]:
+        # Between link 1 and M, link 2 itself is a dyad and is excluded.
         compute_relative_poses(place[0], turn[0], place[2], turn[2], shift, spin)
         with_1 = solve_relative_dyads(shift, spin, knee, pin, fixed[1], moving[1])
     if wanted[WATT_1_IN] or wanted[STEPHENSON_3]:
         compute_relative_poses(still, upright, place[1], turn[1], shift, spin)
         for i in range(solve_relative_dyads(shift, spin, pivot, knee, fixed[2], moving[2])):
             _compute_crank_poses(fixed[2, i], moving[2, i], still, upright, place[1], turn[1], place[3], turn[3])
+            # The three rows of the table above: to the ground, to link 1, to the crank itself.
             for sort in range(3):
                 count = with_m if sort == 0 else with_1
                 if sort == 2:
                     compute_relative_poses(place[3], turn[3], place[2], turn[2], shift, spin)
-                    count = (
-                        solve_relative_dyads(shift, spin, moving[2, i], pin, fixed[3], moving[3])
-                        if wanted[WATT_1_IN]
-                        else 0
-                    )
+                    count = 0
+                    if wanted[WATT_1_IN]:
+                        count = solve_relative_dyads(shift, spin, moving[2, i], pin, fixed[3], moving[3])
                 for second in range(count):
                     row = 0 if sort == 0 else (1 if sort == 1 else 3)
                     # Try both inputs: the chain's link 1, or the crank.
@@ -524,14 +609,9 @@ def evaluate_chain(chain: Real, n: int, given: ChainConstraints, results: ChainR
                         make = (
                             STEPHENSON_3 if sort == 0 else (WATT_1_IN if (sort == 1) == (driver == 0) else WATT_1_OUT)
                         )
-                        if driver:
-                            bar[A], bar[B], bar[O2], bar[O4] = bar[B], bar[A], bar[O4], bar[O2]
                         if wanted[make]:
-                            value = evaluate_candidate(
-                                bar, make, turn[3 * driver], turn[3 - 3 * driver], points, turns, demanded, needed,
-                                limits,
-                            )  # fmt: skip
-                            _record_candidate(bar, make, value, joints, makes, scores, found, owners)
+                            _try_input(bar, make, driver, turn, n, given, results)
+    # Stephenson I: the second crank joins the first one to link 1 of the chain.
     if wanted[STEPHENSON_1_IN]:
         for i in range(with_m):
             _compute_crank_poses(fixed[0, i], moving[0, i], still, upright, place[2], turn[2], place[3], turn[3])
@@ -540,14 +620,8 @@ def evaluate_chain(chain: Real, n: int, given: ChainConstraints, results: ChainR
                 for driver in range(2):
                     bar[A], bar[B], bar[O2], bar[O4] = moving[3, second], fixed[3, second], pivot, fixed[0, i]
                     bar[Q1], bar[Q2], bar[J] = moving[0, i], knee, pin
-                    if driver:
-                        bar[A], bar[B], bar[O2], bar[O4] = bar[B], bar[A], bar[O4], bar[O2]
                     make = STEPHENSON_1_IN if driver else STEPHENSON_1_OUT
-                    value = evaluate_candidate(
-                        bar, make, turn[3 * driver], turn[3 - 3 * driver], points, turns, demanded, needed,
-                        limits,
-                    )  # fmt: skip
-                    _record_candidate(bar, make, value, joints, makes, scores, found, owners)
+                    _try_input(bar, make, driver, turn, n, given, results)
     return float(found[0])
 
 
@@ -573,6 +647,7 @@ def search_chains(
     tried, order = np.empty(7), np.zeros(len(chains), np.bool_)
     for n in range(len(chains)):
         values[n] = evaluate_chain(chains[n], n, given, results)
+    # Rank by the values before climbing, so that the order does not change on the way.
     before = values.copy()
     for m in range(climbing):
         n = -1
@@ -582,14 +657,17 @@ def search_chains(
         order[n] = True
         size = INITIAL_STEP
         for k in range(len(noise)):
+            # A stride through one table: cheaper than new random numbers, and different for each chain.
             step = noise[(m * NOISE_STRIDE + k) % len(noise)]
             tried[:] = chains[n]
+            # Coordinates change by steps, lengths by factors, so that they stay positive.
             tried[:4] += size * step[:4]
             tried[4] *= math.exp(0.5 * size * step[4])
             tried[5] *= math.exp(0.5 * size * step[5])
             value = evaluate_chain(tried, n, given, results)
             if value > values[n]:
                 values[n], chains[n] = value, tried
+                # Grow after success, shrink slowly after failure: about one success in seven keeps the size constant.
                 size = min(1.7 * size, MAX_STEP)
             else:
                 size *= 0.93

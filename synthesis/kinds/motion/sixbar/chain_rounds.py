@@ -56,10 +56,17 @@ class ChainSearch:
         )
         results = kernels.ChainResults(joints, makes, np.empty(MAX_KEPT), np.zeros(4), owners)
         kernels.search_chains(
-            chains, rng.normal(size=(MAX_STEPS, 6)) * free, CLIMBER_COUNT, given, results, np.empty(CHAINS_PER_ROUND)
+            # Given values have no freedom, so their steps are 0.
+            chains,
+            rng.normal(size=(MAX_STEPS, 6)) * free,
+            CLIMBER_COUNT,
+            given,
+            results,
+            np.empty(CHAINS_PER_ROUND),
         )
         self.weighed += int(results.found[2])
         rows = int(results.found[1])
+        # Each candidate keeps the sampled poses of its own chain.
         own = owners[:rows]
         return SixbarCandidates(
             makes[:rows], joints[:rows], poses.points[own, 0], poses.stands[own], results.scores[:rows]

@@ -1,4 +1,4 @@
-"""Sixbars from descents that stay on their branch (:mod:`branch_walk`): rounds of descents for one problem."""
+"""Sixbars from descents that stay on their branch (:mod:`basin_hopping`): rounds of descents for one problem."""
 
 from __future__ import annotations
 
@@ -80,8 +80,10 @@ class BranchSearch:
         self, problem: MotionProblem, task: MotionTask, target: TargetPoses, wanted: NDArray[np.bool_], limits: Real
     ) -> None:
         exactly = len(target.exact_mask) == kernels.POSITION_COUNT and bool(target.exact_mask.all())
+        # A family of cranks does not exclude a Stephenson II, and cannot be listed.
         exactly = exactly and not _has_many_cranks(task)
         self.cranks = _find_cranks(task) if exactly else np.empty((0, 2), np.complex128)
+        # Only requested topologies are sampled.
         drawn = np.where(wanted, SAMPLING_WEIGHTS, 0)
         # A Stephenson II contains a crank between body and ground: without a crank through five poses none exists.
         if exactly and not len(self.cranks):
@@ -91,6 +93,7 @@ class BranchSearch:
         self.held: NDArray[np.bool_] = np.all(target.exact_mask, axis=1)
         self.each = math.ceil(DESCENTS_PER_ROUND * min(1.0, MAX_EXACT_POSITIONS / len(self.held)))
         self.needed, self.limits = compute_needed_motion(task), limits
+        # Two pools: with the limits, and without the default ones; a round uses one of them.
         self.settings = (
             _make_aims(problem, limits, AIM_MARGINS, relaxed=False),
             _make_aims(problem, limits, AIM_MARGINS, relaxed=True),
@@ -127,6 +130,7 @@ class BranchSearch:
             ends = SixbarCandidates.allocate(len(pool.costs))
             n = int(fit.fit_pool(poses, self.held, pool, self.bare, ends))
             found = found.merge(ends.select_rows(np.arange(n)))
+            # The pool's members have been used; the next descents refill it.
             pool.costs[:] = np.inf
         return found
 
@@ -161,34 +165,39 @@ def _find_cranks(task: MotionTask) -> NDArray[np.complex128]:
 def _sample_poses(
     problem: MotionProblem, task: MotionTask, target: TargetPoses, rng: np.random.Generator
 ) -> tuple[Real, Real]:
-    """Sample first poses and pack later poses in the form of :class:`branch_walk.Poses`."""
+    """Sample first poses and pack later poses in the form of :class:`quality.Poses`."""
     unit = np.array([target.size, target.size, 1.0])
     first = (
         rng.uniform(-1.0, 1.0, (FIRST_POSE_COUNT, 3))
         * TOLERANCE_SHARE
         * np.where(np.isfinite(target.limits[0]), target.limits[0], 0)
     )
+    # Every other first pose is the target itself, which is always permitted.
     first[::2] = 0.0
     places = np.stack([task.points.real, task.points.imag, np.angle(task.turns)], axis=1)
+    # Infinite tolerances mark fitted coordinates, which aim at the target.
     off = np.where(np.isfinite(target.limits), TOLERANCE_SHARE * target.limits / unit, 0.0)
     weights = np.ones((len(places), 1)) * (1.0, rows.ANGLE_WEIGHT)
     if problem.is_least_squares:
+        # Exact positions weigh more in a fit, so that they are nearly met before the final projection.
         weights[np.all(target.exact_mask, axis=1)] *= fit.EXACT_WEIGHT
     return first / unit, np.concatenate([places, off, weights], axis=1)[1:]
 
 
 def _make_aims(problem: MotionProblem, limits: Real, aside: LimitMargins, *, relaxed: bool) -> Real:
-    """Pack the limits that descents aim at into a setting, from :data:`branch_rows.COSINE` on."""
+    """Pack the limits that descents aim at into a setting, from :data:`residuals.COSINE` on."""
     aims = np.zeros(rows.SETTING_SIZE)
     angle = math.asin(limits[kernels.MIN_SINE]) + aside.angle
     reach, ratio = limits[[kernels.MAX_REACH, kernels.MAX_RATIO]]
     if relaxed:
+        # Only defaults are relaxed; limits of the client stay.
         angle = RELAXED_ANGLE if problem.constraints.min_transmission_angle is None else angle
         ratio *= RELAXED_SIZE_FACTOR if problem.constraints.max_link_ratio is None else 1.0
         reach *= RELAXED_SIZE_FACTOR
     aims[rows.COSINE], aims[rows.REACH], aims[rows.RATIO] = math.cos(angle), aside.size * reach, aside.size * ratio
     aims[rows.SHORTEST] = max(aside.shortest * kernels.MIN_LINK_LENGTH, limits[kernels.MIN_LENGTH] / aside.size)
     aims[rows.LONGEST] = aside.size * limits[kernels.MAX_LENGTH]
+    # The boxes have the same order in both arrays.
     aims[rows.FIXED_BOX : rows.TARGET_X] = limits[kernels.FIXED_BOX :]
     return aims
 

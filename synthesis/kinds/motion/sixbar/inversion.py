@@ -47,11 +47,13 @@ def transform_to_ground(z: Complex, start: complex, at: Complex, turns: Complex)
     """
     _, first, _ = find_min_slant(z[Q1], z[J], z[O2], z[A], z[O4], z[B])
     cosine, sine, _ = find_min_slant(at[2], at[4], z[O2], at[0], z[O4], at[1])
+    # Rotation that turns the line Q₂–J back to its first direction; the factor removes rounding of its length.
     back = ((z[J] - z[Q2]) / (at[4] - at[3])) * (abs(at[4] - at[3]) / abs(z[J] - z[Q2]))
     p = at[0] + turns[1] * (start - z[A])
     at[0], at[1], at[2] = z[Q2] + back * (at[0] - z[Q2]), z[Q2] + back * (at[1] - z[Q2]), z[Q2] + back * (at[2] - z[Q2])
     at[3], at[4], at[5] = z[Q2] + back * (z[O2] - z[Q2]), z[Q2] + back * (z[O4] - z[Q2]), z[Q2] + back * (p - z[Q2])
     turns[0], turns[3] = back, back * turns[1]
+    # The sign changes only at a toggle.
     return cosine if first * sine > 0.0 else FLIPPED_COSINE
 
 
@@ -87,6 +89,7 @@ def transform_rates(
     turned = (at[4] - at[3]) / base
     back = turned.conjugate()
     pins = at[2], at[4], z[O2], at[0], z[O4], at[1]
+    # The derivative is that of the leg with the smallest angle, as in the value.
     _, _, leg = find_min_slant(*pins)
     p = at[0] + turns[1] * (start - z[A])
     for m in range(len(units)):
@@ -94,6 +97,7 @@ def transform_rates(
         a, b, q, j = moving[0, m], moving[1, m], moving[2, m], moving[4, m]
         bending[m] = differentiate_leg_slant(leg, pins, (q, j, unit[O2], a, unit[O4], b))
         moved = (j - unit[Q2] - turned * (unit[J] - unit[Q2])) / base
+        # Angular rate of the ground relative to the input link.
         spin = (moved * back).imag
         body = a + 1j * through[m] * turns[1] * (start - z[A]) - turns[1] * unit[A]
         moving[3, m] = _transform_rate(z[O2], unit[O2], z[Q2], unit[Q2], back, spin)
@@ -110,4 +114,5 @@ def _transform_rate(
     point: complex, rate: complex, pin: complex, pin_rate: complex, back: complex, spin: float
 ) -> complex:
     """Transform the rate of a point to the ground frame, which turns at ``spin`` relative to the input link."""
+    # Subtract the rotation of the ground frame, then turn into it.
     return pin_rate + back * (rate - pin_rate - 1j * spin * (point - pin))

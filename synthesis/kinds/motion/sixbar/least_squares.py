@@ -1,8 +1,8 @@
 """Least-squares fit of sixbars to more positions than they can meet, from the pool of branch-preserving descents.
 
 Eight positions determine a sixbar. If more are fitted, or if the constraints exclude exact solutions, the linkages with
-the lowest cost (:class:`branch_walk.Pool`) are descended until their least squares converge, with the first pose among
-the unknowns. Exact positions have a larger weight there and are finally met by minimum-norm steps.
+the lowest cost (:class:`basin_hopping.Pool`) are descended until their least squares converge, with the first pose
+among the unknowns. Exact positions have a larger weight there and are finally met by minimum-norm steps.
 """
 
 from __future__ import annotations
@@ -70,6 +70,7 @@ def _compute_rms_error(x: Real, points: Real, setting: Real, free: int) -> float
     for j in range(7):
         z[j] = complex(x[2 * j], x[2 * j + 1])
     compute_dimensions(z, lengths, inverses)
+    # If the first pose is fitted, it adds its own error, and rotations are relative to it.
     stands = x[free + 2] if free > 0 else 0.0
     total = (setting[FIRST_X] - setting[TARGET_X]) ** 2 + (setting[FIRST_Y] - setting[TARGET_Y]) ** 2 + stands**2
     angle = 0.0
@@ -87,9 +88,11 @@ def _project_on_exact(x: Real, points: Real, setting: Real, held: NDArray[np.boo
     """Move a linkage onto the exact positions, ignoring its limits; return whether that succeeds."""
     only, free = points.copy(), setting.copy()
     for k in range(len(points)):
+        # Full weight on exact positions; the others get a tolerance that disables them.
         only[k, 6], only[k, 7] = 1.0, 1.0
         if not held[k + 1]:
             only[k, 3:6] = IGNORED_TOLERANCE
+    # Without limits, because the projection is a tiny step; the evaluation checks them again.
     free[COSINE], free[REACH], free[RATIO], free[SHORTEST], free[LONGEST] = 1.0, np.inf, np.inf, 0.0, np.inf
     for n in range(FIXED_BOX, TARGET_X):
         free[n] = np.inf if (n - FIXED_BOX) % 2 else -np.inf
@@ -104,6 +107,7 @@ def _minimize_cost(x: Real, points: Real, setting: Real, room: DescentBuffers) -
     cost = before
     for _ in range(MAX_DESCENTS):
         cost = descend(x, points, setting, room, counts, MAX_COST_RATIO, MAX_STEPS)
+        # A descent stops when it slows down; start it again with fresh damping until nothing is gained.
         if not cost < MAX_COST_RATIO * before:
             break
         before = cost
@@ -119,6 +123,7 @@ def _retry_at_bare_limits(x: Real, points: Real, setting: Real, bare: Real, pose
     for k in range(COSINE, FIRST_X):
         limits[k] = bare[k]
     met = _minimize_cost(further, points, limits, room) < EXACT_FIT_COST
+    # Accept only feasible linkages: the retry had no margins for the motion between samples.
     if met and evaluate_sixbar(further, points, limits, poses, joints) >= 1.0:
         for k in range(len(x)):
             x[k] = further[k]
@@ -136,9 +141,9 @@ def fit_pool(poses: Poses, held: NDArray[np.bool_], pool: Pool, bare: Real, foun
         Mask of the exact positions.
     pool : Pool
         Starting points.
-    bare : float, shape (SETTINGS,)
+    bare : float, shape (SETTING_SIZE,)
         The limits without the margins of the starts' aims.
-    found : Found
+    found : SixbarCandidates
         Output.
 
     Returns
@@ -147,6 +152,7 @@ def fit_pool(poses: Poses, held: NDArray[np.bool_], pool: Pool, bare: Real, foun
         Number of linkages written.
     """
     later = len(poses.later)
+    # A fitted first pose adds three unknowns.
     unknowns = JOINT_COORDINATE_COUNT + later + (0 if held[0] else FREE_POSE_SIZE)
     free = -1 if held[0] else JOINT_COORDINATE_COUNT + later
     x, setting, points = np.empty(unknowns), np.empty(SETTING_SIZE), np.empty((later, POSE_SIZE))
@@ -157,6 +163,7 @@ def fit_pool(poses: Poses, held: NDArray[np.bool_], pool: Pool, bare: Real, foun
     joints = np.empty(7, np.complex128)
     n = 0
     for row in range(len(pool.costs)):
+        # An empty place of the pool.
         if not pool.costs[row] < np.inf:
             continue
         for k in range(SETTING_SIZE):
@@ -183,6 +190,7 @@ def fit_pool(poses: Poses, held: NDArray[np.bool_], pool: Pool, bare: Real, foun
             found.joints[n, k] = joints[k]
         found.bodies[n] = complex(setting[FIRST_X], setting[FIRST_Y])
         found.stands[n] = x[free + 2] if free > 0 else 0.0
+        # Fits without tolerance are ranked by their error, not by quality.
         found.values[n] = compute_fit_value(error) if value >= 1.0 else value
         n += 1
     return n

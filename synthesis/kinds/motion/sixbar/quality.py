@@ -51,7 +51,7 @@ class Poses(NamedTuple):
     first : float, shape (n, 3)
         P and the body's angle in the first position; each linkage uses one row.
     later : float, shape (k, 8)
-        Later positions in the form of :data:`branch_rows.OF_POSE`, with angles from the first target position.
+        Later positions in the form of :data:`residuals.POSE_SIZE`, with angles from the first target position.
     needed : float, shape (2,)
         Path length and rotation that the body needs at least.
     limits : float, shape (19,)
@@ -86,6 +86,7 @@ def evaluate_sixbar(x: Real, points: Real, setting: Real, poses: Poses, joints: 
         drive_linkage(joints, lengths, inverses, setting, setting[INPUT_DIRECTION] * angle, at, turns)
         place[k], turn[k], into[k], out[k] = at[5], turns[3], turns[0], turns[2]
     make = int(setting[TOPOLOGY])
+    # The general evaluation assumes a fourbar on the ground, which a Stephenson II lacks.
     if make == STEPHENSON_2:
         return _evaluate_stephenson_2(joints, lengths, inverses, setting, angle, poses)
     return float(evaluate_candidate(joints, make, into, out, place, turn, demanded, poses.needed, poses.limits))
@@ -102,10 +103,12 @@ def _evaluate_stephenson_2(
     limits, start = poses.limits, complex(setting[FIRST_X], setting[FIRST_Y])
     shortest, longest, reach = np.inf, 0.0, 0.0
     for i, k in JOINT_PAIRS[STEPHENSON_2]:
+        # The list is padded with −1.
         if i < 0:
             break
         length = abs(joints[i] - (start if k == P_INDEX else joints[k]))
         reach = max(reach, length)
+        # P belongs to the body, so its distances are no link lengths.
         if k != P_INDEX:
             shortest, longest = min(shortest, length), max(longest, length)
     if not shortest > MIN_LINK_LENGTH:
@@ -117,6 +120,7 @@ def _evaluate_stephenson_2(
         cosine, other = drive_linkage(
             joints, lengths, inverses, setting, setting[INPUT_DIRECTION] * angle * n / STEP_COUNT, at, turns
         )
+        # The linkage jams on the way, or passes a toggle of the triad.
         if not (abs(cosine) < 1.0 and abs(other) < 1.0):
             return -1.0
         flattest = min(flattest, math.sqrt((1.0 - cosine) * (1.0 + cosine)))
@@ -126,6 +130,7 @@ def _evaluate_stephenson_2(
         bent += abs(measure_angle(body_before, turns[3]))
         travelled += abs(at[5] - place_before)
         input_before, body_before, place_before = turns[0], turns[3], at[5]
+    # The input must not pass the same position twice.
     if not abs(input_turn) < 2.0 * math.pi:
         return -2.0
     ratio = longest / shortest
@@ -139,6 +144,7 @@ def _evaluate_stephenson_2(
     if not (flattest >= limits[MIN_SINE] and over <= 1.0):
         return float(min(flattest, 0.999) / over)
     excess = max(
+        # Denominators have a floor, so that short motions do not exaggerate the excess.
         (travelled - poses.needed[0]) / max(poses.needed[0], 1.0),
         (bent - poses.needed[1]) / max(poses.needed[1], MIN_BODY_TURN),
     )

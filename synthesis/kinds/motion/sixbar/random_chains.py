@@ -50,6 +50,7 @@ class PoseSample(NamedTuple):
 def sample_poses(task: MotionTask, target: TargetPoses, rng: np.random.Generator, count: int) -> PoseSample:
     """Sample poses within the tolerances (every other set exactly), and add poses between them up to five."""
     n = len(task.points)
+    # Infinite tolerances mark fitted coordinates; they get no deviation here.
     deviations = rng.uniform(-1.0, 1.0, (count, n, 3)) * np.where(np.isfinite(target.limits), target.limits, 0.0)
     # Every other set meets the targets exactly, so that tolerances never make a solvable problem harder.
     deviations[::2] = 0.0
@@ -57,6 +58,7 @@ def sample_poses(task: MotionTask, target: TargetPoses, rng: np.random.Generator
     angles = np.angle(task.turns) + deviations[..., 2]
     demanded = np.ones(POSITION_COUNT, np.bool_)
     if n < POSITION_COUNT:
+        # Distribute the additional poses among the intervals at random.
         between = np.sort(rng.integers(0, n - 1, POSITION_COUNT - n))
         places = np.sort(np.concatenate([np.arange(n), between + 0.5]), kind="stable")
         demanded = places == np.floor(places)
@@ -64,6 +66,7 @@ def sample_poses(task: MotionTask, target: TargetPoses, rng: np.random.Generator
         after = np.minimum(before + 1, n - 1)
         share = np.where(demanded, 0.0, np.sort(rng.uniform(0.15, 0.85, (count, POSITION_COUNT)), axis=1))
         off = np.where(demanded, 0.0, POSE_SPREAD) * rng.normal(size=(3, count, POSITION_COUNT))
+        # The shorter rotation between the two targets.
         step = np.angle(np.exp(1j * (angles[:, after] - angles[:, before])))
         points = points[:, before] + share * (points[:, after] - points[:, before]) + off[0] + 1j * off[1]
         angles = angles[:, before] + share * step + off[2]
@@ -93,13 +96,17 @@ def sample_chains(
     pivots = _apply_given(task, requested.fixed_pivot, pivots, free[:2]).reshape(tries, count)
     reach = np.abs(end - pivots[..., None])
     near, far = reach.min(axis=2), reach.max(axis=2)
+    # argmax gives the first pivot that fits, or the first of all if none does.
     chosen = _check_reach(near, far, one, two).argmax(axis=0), np.arange(count)
     pivot, near, far = pivots[chosen], near[chosen], far[chosen]
+    # Both links together must exceed the farthest position by at least 2 %, or the elbow is straight there.
     total = far * (1.02 + rng.exponential(MEAN_EXCESS, count))
+    # Their difference must stay below the nearest position.
     first = 0.5 * (total + MAX_LENGTH_DIFFERENCE * near * rng.uniform(-1.0, 1.0, count))
     second = total - first
     share = rng.uniform(0.0, 1.0, count)
     if one is not None:
+        # The other link must reach from the nearest to the farthest position.
         first, free[4] = np.full(count, one), 0.0
         second = np.maximum(far - one, MIN_LENGTH) + share * (one + near - np.maximum(far - one, MIN_LENGTH))
     if two is not None:

@@ -60,6 +60,7 @@ def compute_relative_poses(
     for k in range(len(one)):
         back = one_turn[k].conjugate()
         turn[k] = back * other_turn[k]
+        # Undo the first body's motion, applied to the second body's.
         shift[k] = one[0] + back * (other[k] - one[k]) - turn[k] * other[0]
 
 
@@ -82,6 +83,7 @@ def solve_relative_dyads(
         Output: pins on the first and on the second body, in the first position.
     """
     basis = np.empty((7, 3))
+    # Dependent conditions leave a family of dyads, of which none is preferred.
     if not _solve_plane(shift, turn, basis):
         return 0
     first, second = np.empty((3, 3)), np.empty((3, 3))
@@ -92,6 +94,7 @@ def solve_relative_dyads(
     for n in range(found):
         for i in range(7):
             x[i] = basis[i, 0] * points[n, 0] + basis[i, 1] * points[n, 1] + basis[i, 2] * points[n, 2]
+        # A small p means pivots far away: nearly a slider.
         if abs(x[0]) * MAX_DISTANCE <= math.hypot(x[1], x[2]) or abs(x[0]) * MAX_DISTANCE <= math.hypot(x[3], x[4]):
             continue
         pair[0], pair[1] = complex(x[3], x[4]) / x[0], complex(x[1], x[2]) / x[0]
@@ -126,6 +129,7 @@ def _solve_plane(shift: Complex, turn: Complex, basis: Real) -> bool:
         for i in range(7):
             size += rows[k, i] * rows[k, i]
         for i in range(7):
+            # Unit rows make the pivot tolerance meaningful.
             rows[k, i] /= math.sqrt(size)
     order = np.arange(7)
     for n in range(CONDITION_COUNT):
@@ -140,6 +144,7 @@ def _solve_plane(shift: Complex, turn: Complex, basis: Real) -> bool:
             rows[n, j], rows[row, j] = rows[row, j], rows[n, j]
         order[n], order[column] = order[column], order[n]
         pivot = rows[n, order[n]]
+        # Gauss–Jordan: the columns of the free unknowns then give the null space directly.
         for j in range(7):
             rows[n, j] /= pivot
         for i in range(CONDITION_COUNT):
@@ -154,6 +159,7 @@ def _solve_plane(shift: Complex, turn: Complex, basis: Real) -> bool:
         basis[free, m] = 1.0
         for n in range(CONDITION_COUNT):
             basis[order[n], m] = -rows[n, free]
+        # Unit vectors keep the conics well scaled.
         size = 0.0
         for i in range(7):
             size += basis[i, m] * basis[i, m]
@@ -179,6 +185,7 @@ def _restrict_conics(basis: Real, first: Real, second: Real) -> None:
             sizes[1] += second[i, j] ** 2
     for i in range(3):
         for j in range(3):
+            # The tiny summand avoids 0/0 for a conic that vanishes on the plane.
             first[i, j] /= math.sqrt(sizes[0]) + 1e-300
             second[i, j] /= math.sqrt(sizes[1]) + 1e-300
 
@@ -211,6 +218,7 @@ def _intersect_conics(first: Real, second: Real, points: Real) -> int:
     roots = np.empty((3, 2))
     pair, bars = np.empty((3, 3)), np.empty((2, 3))
     for n in range(_solve_cubic(c0, c1, c2, c3, roots)):
+        # Any real line pair of the pencil gives all common points; try the next root only if its lines are complex.
         for i in range(3):
             for j in range(3):
                 pair[i, j] = roots[n, 0] * first[i, j] + roots[n, 1] * second[i, j]
@@ -243,17 +251,20 @@ def _solve_proper_cubic(c0: float, c1: float, c2: float, c3: float, roots: Real)
     a, b, c = c2 / c3, c1 / c3, c0 / c3
     q, r = (a * a - 3.0 * b) / 9.0, (2.0 * a * a * a - 9.0 * a * b + 27.0 * c) / 54.0
     values = np.empty(3)
+    # Three real roots: the trigonometric form avoids complex numbers.
     if r * r < q * q * q:
         angle = math.acos(min(max(r / math.sqrt(q * q * q), -1.0), 1.0))
         for n in range(3):
             values[n] = -2.0 * math.sqrt(q) * math.cos((angle + 2.0 * math.pi * n) / 3.0) - a / 3.0
         count = 3
     else:
+        # One real root; copysign avoids cancellation in the cube root's argument.
         big = -math.copysign((abs(r) + math.sqrt(r * r - q * q * q)) ** (1.0 / 3.0), r)
         values[0] = big + (q / big if big != 0.0 else 0.0) - a / 3.0
         count = 1
     for n in range(count):
         x = values[n]
+        # Cardano loses digits for clustered roots; three Newton steps restore them.
         for _ in range(3):
             slope = (3.0 * x + 2.0 * a) * x + b
             if slope != 0.0:
@@ -268,17 +279,21 @@ def _split_lines(pair: Real, bars: Real) -> bool:
     """Split a conic of rank two into its two lines (2, 3); return whether they are real."""
     adjugate = np.empty((3, 3))
     _compute_adjugate(pair, adjugate)
+    # Divide by the largest diagonal entry: the lines' intersection.
     i = 0
     for j in range(1, 3):
         if abs(adjugate[j, j]) > abs(adjugate[i, i]):
             i = j
+    # A positive minor means a pair of complex lines.
     if not adjugate[i, i] < 0.0:
         return False
     root = math.sqrt(-adjugate[i, i])
     x, y, z = adjugate[0, i] / root, adjugate[1, i] / root, adjugate[2, i] / root
     single = pair.copy()
+    # Adding the cross-product matrix of the intersection leaves a matrix of rank one: line times line.
     single[0, 1], single[0, 2], single[1, 2] = single[0, 1] + z, single[0, 2] - y, single[1, 2] + x
     single[1, 0], single[2, 0], single[2, 1] = single[1, 0] - z, single[2, 0] + y, single[2, 1] - x
+    # Read both lines from the largest entry, for accuracy.
     row, column = 0, 0
     for m in range(3):
         for n in range(3):
@@ -312,12 +327,15 @@ def _intersect_line(line: Real, first: Real, second: Real, points: Real, count: 
                 u += along[0, m] * conic[m, o] * along[0, o]
                 v += along[0, m] * conic[m, o] * along[1, o]
                 w += along[1, m] * conic[m, o] * along[1, o]
+        # The line may lie on one conic, whose restriction then vanishes.
         if abs(u) + abs(v) + abs(w) > abs(a) + abs(b) + abs(c):
             a, b, c = u, v, w
     square = b * b - a * c
+    # No real intersection; also false for NaN.
     if not square >= 0.0:
         return count
     # a s² + 2 b s t + c t² = 0
+    # The stable form of the quadratic formula: no cancellation.
     q = -(b + math.copysign(math.sqrt(square), b))
     for n in range(2):
         s, t = (q, a) if n == 0 else (c, q)
@@ -348,8 +366,10 @@ def _refine_dyad(shift: Complex, turn: Complex, pair: Complex) -> bool:
             system[k, 0], system[k, 1], system[k, 2], system[k, 3] = -gap.real, -gap.imag, by_a.real, by_a.imag
             worst = max(worst, abs(values[k]))
         size = 1.0 + abs(o) + abs(a)
+        # Leave diverging iterations early, also those with NaN.
         if not size < 3.0 * MAX_DISTANCE:
             return False
+        # The conditions are quadratic in the coordinates, hence the squared size.
         if worst <= CONVERGENCE_TOLERANCE * size * size:
             return True
         if not factor(system, pivots):

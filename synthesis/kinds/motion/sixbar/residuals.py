@@ -60,7 +60,7 @@ TOPOLOGY, INPUT_DIRECTION, FIRST_SIDE, SECOND_SIDE, COSINE, REACH, SHORTEST, LON
 )
 FIXED_BOX, MOVING_BOX, JOINT_BOX, TARGET_X, TARGET_Y, SETTING_SIZE = 11, 15, 19, 23, 24, 25
 """Indices into a setting: topology number; direction of the input (±1); assemblies of both dyads (±1); cosine of the
-minimum transmission angle; size limits as for :data:`chain_kernels.MOST_REACH`; P in the first position; boxes
+minimum transmission angle; size limits as for :data:`chain_kernels.MAX_REACH`; P in the first position; boxes
 (x min, x max, y min, y max) as there; target of P in the first position, if that is fitted; number of entries. Task
 coordinates."""
 
@@ -107,6 +107,7 @@ JOINT_PAIRS = _list_pairs()
 @njit(cache=True, nogil=True, error_model="numpy")
 def count_max_rows(positions: int) -> int:
     """Return the maximum number of residuals."""
+    # Poses; cosines and boxes at each input; pairs; ratio; pivots; a fitted first pose.
     return 3 * positions + (2 + 12) * (SAMPLE_COUNT + positions) + 16 + 1 + 14 + FREE_POSE_SIZE
 
 
@@ -121,6 +122,7 @@ def _compute_joint_rate(
 ) -> complex:
     """Return the rate of the joint of links u and v from pins p and q, by half the rates of their squared lengths."""
     along, across = first + _dot(u, p_rate), second + _dot(v, q_rate)
+    # The denominator is 0 at a toggle, which the barrier keeps away.
     scale = 1.0 / (u.real * v.imag - u.imag * v.real)
     return complex((along * v.imag - across * u.imag) * scale, (u.real * across - v.real * along) * scale)
 
@@ -162,6 +164,7 @@ def assemble_linkage(
     turns[0] = complex(math.cos(angle), math.sin(angle))
     at[0] = z[O2] + turns[0] * (z[A] - z[O2])
     at[1], cosine = close_dyad(at[0], z[O4], lengths[0], lengths[1], setting[FIRST_SIDE])
+    # Without a closed first dyad the second one has no pins.
     if not abs(cosine) < 1.0:
         return cosine, 0.0
     turns[1], turns[2] = (at[1] - at[0]) * inverses[0], (at[1] - z[O4]) * inverses[1]
@@ -226,13 +229,16 @@ def _compute_rates(
     rates = np.empty(4, np.complex128)
     for m in range(JOINT_COORDINATE_COUNT + 1):
         unit = UNIT_RATES[m]
+        # The last row is the input: it turns the crank, and no joint moves by itself.
         rates[1] = 1j * turns[0] if m == JOINT_COORDINATE_COUNT else 0j
         rates[0] = unit[O2] + turns[0] * (unit[A] - unit[O2]) + rates[1] * (z[A] - z[O2])
+        # Half the rates of the squared lengths of both bars of the first dyad.
         one, two = _dot(ab, unit[B] - unit[A]), _dot(db, unit[B] - unit[O4])
         b = _compute_joint_rate(at[1] - at[0], at[1] - z[O4], rates[0], unit[O4], one, two)
         rates[2] = (b - rates[0] - turns[1] * (unit[B] - unit[A])) * inverses[0]
         rates[3] = (b - unit[O4] - turns[2] * (unit[B] - unit[O4])) * inverses[1]
         bending[0, m] = (one + two - _dot(z[O4] - at[0], unit[O4] - rates[0])) / products[0]
+        # Quotient rule: the lengths in the denominator change as well.
         bending[0, m] -= cosines[0] * (one / squares[0] + two / squares[1])
         moving[0, m], moving[1, m] = rates[0], b
         moving[2, m] = _compute_point_rate(first, z[Q1], unit[Q1], z, unit, at, turns, rates)
@@ -251,6 +257,7 @@ def _compute_rates(
 @njit(cache=True, nogil=True, error_model="numpy")
 def _subtract_tolerance(off: float, tolerance: float) -> float:
     """Return the excess of a deviation over its tolerance, with the deviation's sign."""
+    # The sign matters: the row is a linearization of the deviation itself.
     return math.copysign(max(abs(off) - tolerance, 0.0), off)
 
 
@@ -267,6 +274,7 @@ def _append_size_rows(z: Complex, setting: Real, residuals: Real, jacobian: Real
     start = complex(setting[FIRST_X], setting[FIRST_Y])
     least, most = np.inf, 0.0
     shortest = longest = 0
+    # Distances between pins are lengths; those from P only count for the reach.
     for n in range(len(JOINT_PAIRS[make])):
         i, k = JOINT_PAIRS[make, n]
         if i < 0:
@@ -287,6 +295,7 @@ def _append_size_rows(z: Complex, setting: Real, residuals: Real, jacobian: Real
                 jacobian[m] = 0.0
                 _add_gradient(i, k, free, SIZE_WEIGHT * way / length, jacobian[m])
             m += 1
+    # Smooth except when two links exchange roles, which the descent tolerates.
     # The logarithm of the ratio involves only the longest and the shortest link.
     if most > setting[RATIO] * least:
         residuals[m] = SIZE_WEIGHT * math.log(most / (setting[RATIO] * least))
@@ -298,6 +307,7 @@ def _append_size_rows(z: Complex, setting: Real, residuals: Real, jacobian: Real
                 _add_gradient(i, k, free, sense * SIZE_WEIGHT * way / abs(way) ** 2, jacobian[m])
         m += 1
     for i in range(7):
+        # In a Stephenson II the ground pins are Q₂ and J, as everything else is relative to the input link.
         fixed = (
             i in (Q2, J) if make == STEPHENSON_2 else i in (O2, O4) or (i == Q2 and TOPOLOGY_LINKS[make, 1] == GROUND)
         )
@@ -345,6 +355,100 @@ def _write_body_entries(turn: complex, axis: int, weight: float, row: Real) -> N
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
+def _append_first_pose_rows(
+    pose: Real, setting: Real, stands: float, free: int, residuals: Real, jacobian: Real
+) -> int:
+    """Write the rows of a fitted first pose, with weights as of ``pose``; return their number."""
+    m, derived = 0, len(jacobian) > 0
+    for axis in range(FREE_POSE_SIZE):
+        weight = pose[7 if axis == 2 else 6]
+        residuals[m] = weight * (stands if axis == 2 else setting[FIRST_X + axis] - setting[TARGET_X + axis])
+        if derived:
+            jacobian[m] = 0.0
+            jacobian[m, free + axis] = weight
+        m += 1
+    return m
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def _compute_turn_slopes(parts: Real, share: float, target: int, direction: float, by_turn: Real) -> None:
+    """Write the input's derivatives by the logarithms of the intervals, at a share of all or at a target."""
+    for k in range(len(parts)):
+        by_turn[k] = (
+            direction
+            * parts[k]
+            # A sample depends on all intervals in proportion; a target only on those before it.
+            * (share if target < 0 else (1.0 if k <= target else 0.0))
+        )
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def _append_bound_rows(
+    at: Complex, turn: complex, cosines: Real, rates: Complex, bending: Real, by_turn: Real, setting: Real,
+    everywhere: bool, free: int, residuals: Real, jacobian: Real, m: int,
+) -> int:  # fmt: skip
+    """Append the rows of violated transmission angles and boxes at one input; return the number of rows."""
+    derived, room = len(jacobian) > 0, setting[JOINT_BOX : JOINT_BOX + 4]
+    for dyad in range(2):
+        over = abs(cosines[dyad]) - setting[COSINE]
+        if over > 0.0:
+            residuals[m] = COSINE_WEIGHT * over
+            if derived:
+                _write_row(bending[dyad], math.copysign(COSINE_WEIGHT, cosines[dyad]), by_turn, jacobian[m])
+            m += 1
+    for j in range(0 if everywhere else 6):
+        for axis in range(2):
+            off = _measure_excess(at[j].imag if axis else at[j].real, room[2 * axis], room[2 * axis + 1])
+            if off != 0.0:
+                residuals[m] = BOX_WEIGHT * off
+                if derived:
+                    _write_row(rates[j].imag if axis else rates[j].real, BOX_WEIGHT, by_turn, jacobian[m])
+                    if free > 0 and j == 5:
+                        _write_body_entries(turn, axis, BOX_WEIGHT, jacobian[m, free:])
+                m += 1
+    return m
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def _append_pose_rows(
+    pose: Real, place: complex, turn: complex, stands: float, rates: Complex, turning: Real, by_turn: Real, free: int,
+    residuals: Real, jacobian: Real, m: int,
+) -> int:  # fmt: skip
+    """Append the rows of the deviations from a target pose; return the number of rows."""
+    derived = len(jacobian) > 0
+    back = turn * complex(math.cos(pose[2]), -math.sin(pose[2]))
+    # x, y and the angle of the body.
+    for axis in range(3):
+        weight, at_axis = pose[6], rates.real
+        off = place.real - pose[0]
+        if axis == 1:
+            off, at_axis = place.imag - pose[1], rates.imag
+        elif axis == 2:
+            off, at_axis, weight = math.atan2(back.imag, back.real) + stands, turning, pose[7]
+        # Within its tolerance a coordinate has no residual, so it leaves a freedom to the others.
+        if pose[3 + axis] == 0.0 or abs(off) > pose[3 + axis]:
+            residuals[m] = weight * _subtract_tolerance(off, pose[3 + axis])
+            if derived:
+                _write_row(at_axis, weight, by_turn, jacobian[m])
+                if free > 0 and axis < 2:
+                    _write_body_entries(turn, axis, weight, jacobian[m, free:])
+                elif free > 0:
+                    jacobian[m, free + 2] = weight
+            m += 1
+    return m
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def _compute_intervals(x: Real, parts: Real) -> float:
+    """Write the rotations of the input between positions, from their logarithms; return their sum."""
+    total = 0.0
+    for k in range(len(parts)):
+        parts[k] = math.exp(x[JOINT_COORDINATE_COUNT + k])
+        total += parts[k]
+    return total
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
 def evaluate_residuals(x: Real, points: Real, setting: Real, residuals: Real, jacobian: Real) -> int:
     """Evaluate the residuals of a sixbar and their Jacobian.
 
@@ -365,6 +469,7 @@ def evaluate_residuals(x: Real, points: Real, setting: Real, residuals: Real, ja
         The number of rows; −1 if the linkage does not close.
     """
     intervals, derived = len(points), len(jacobian) > 0
+    # Three extra unknowns mean that the first pose is fitted.
     free, stands = JOINT_COORDINATE_COUNT + intervals if x.size > JOINT_COORDINATE_COUNT + intervals else -1, 0.0
     if free > 0:
         setting[FIRST_X], setting[FIRST_Y], stands = x[free], x[free + 1], x[free + 2]
@@ -373,52 +478,37 @@ def evaluate_residuals(x: Real, points: Real, setting: Real, residuals: Real, ja
     parts, by_turn = np.empty(intervals), np.empty(intervals)
     for j in range(7):
         z[j] = complex(x[2 * j], x[2 * j + 1])
-    total = 0.0
-    for k in range(intervals):
-        parts[k] = math.exp(x[JOINT_COORDINATE_COUNT + k])
-        total += parts[k]
+    total = _compute_intervals(x, parts)
     # A dyad that changed its assembly in the first position has left its branch.
     if not total < MAX_TURN or setting[FIRST_SIDE] * compute_signed_sine(z[A], z[O4], z[B]) <= 0.0:
         return -1
     if setting[SECOND_SIDE] * compute_signed_sine(z[Q1], z[Q2], z[J]) <= 0.0:
         return -1
     compute_dimensions(z, lengths, inverses)
-    rates, turning, through = (
-        np.empty((6, JOINT_COORDINATE_COUNT + 1), np.complex128),
-        np.empty(JOINT_COORDINATE_COUNT + 1),
-        np.empty(JOINT_COORDINATE_COUNT + 1),
-    )
+    rates = np.empty((6, JOINT_COORDINATE_COUNT + 1), np.complex128)
+    turning, through = np.empty(JOINT_COORDINATE_COUNT + 1), np.empty(JOINT_COORDINATE_COUNT + 1)
     bending, cosines = np.empty((2, JOINT_COORDINATE_COUNT + 1)), np.empty(2)
     room = setting[JOINT_BOX : JOINT_BOX + 4]
+    # Without a box no sample needs rates unless a cosine is active; that saves most of the work.
     everywhere = math.isinf(room[1] - room[0]) and math.isinf(room[3] - room[2])
     m, angle, inverted = 0, 0.0, int(setting[TOPOLOGY]) == STEPHENSON_2
     if free > 0:
-        for axis in range(FREE_POSE_SIZE):
-            weight = points[0, 7 if axis == 2 else 6]
-            residuals[m] = weight * (stands if axis == 2 else setting[FIRST_X + axis] - setting[TARGET_X + axis])
-            if derived:
-                jacobian[m] = 0.0
-                jacobian[m, free + axis] = weight
-            m += 1
+        m = _append_first_pose_rows(points[0], setting, stands, free, residuals, jacobian)
     # First SAMPLES evenly spaced inputs between the end positions, then the later positions themselves.
     for n in range(SAMPLE_COUNT + intervals):
         target = n - SAMPLE_COUNT
+        # Samples in equal shares of the whole rotation; targets at the end of each interval.
         angle = total * n / SAMPLE_COUNT if target < 0 else parts[target] + (angle if target > 0 else 0.0)
-        cosines[0], cosines[1] = assemble_linkage(
-            z, lengths, inverses, setting, setting[INPUT_DIRECTION] * angle, at, turns
-        )
+        rotation = setting[INPUT_DIRECTION] * angle
+        cosines[0], cosines[1] = assemble_linkage(z, lengths, inverses, setting, rotation, at, turns)
+        # A barrier: a trial step over a toggle is rejected, so the descent keeps its branch.
         if not (abs(cosines[0]) < BARRIER_COSINE and abs(cosines[1]) < BARRIER_COSINE):
             return -1
         plain = everywhere and not inverted and max(abs(cosines[0]), abs(cosines[1])) <= setting[COSINE]
         if target < 0 and plain:
             continue  # no residual is active at this sample, so its rates are not needed
         if derived:
-            for k in range(intervals):
-                by_turn[k] = (
-                    setting[INPUT_DIRECTION]
-                    * parts[k]
-                    * (n / SAMPLE_COUNT if target < 0 else (1.0 if k <= target else 0.0))
-                )
+            _compute_turn_slopes(parts, n / SAMPLE_COUNT, target, setting[INPUT_DIRECTION], by_turn)
             _compute_rates(z, lengths, inverses, setting, at, turns, cosines, rates, turning, through, bending)
         if inverted:
             start = complex(setting[FIRST_X], setting[FIRST_Y])
@@ -427,41 +517,12 @@ def evaluate_residuals(x: Real, points: Real, setting: Real, residuals: Real, ja
             cosines[0], cosines[1] = transform_to_ground(z, start, at, turns), 0.0
             if not abs(cosines[0]) < BARRIER_COSINE:
                 return -1
-        for dyad in range(2):
-            over = abs(cosines[dyad]) - setting[COSINE]
-            if over > 0.0:
-                residuals[m] = COSINE_WEIGHT * over
-                if derived:
-                    _write_row(bending[dyad], math.copysign(COSINE_WEIGHT, cosines[dyad]), by_turn, jacobian[m])
-                m += 1
-        for j in range(0 if everywhere else 6):
-            for axis in range(2):
-                off = _measure_excess(at[j].imag if axis else at[j].real, room[2 * axis], room[2 * axis + 1])
-                if off != 0.0:
-                    residuals[m] = BOX_WEIGHT * off
-                    if derived:
-                        _write_row(rates[j].imag if axis else rates[j].real, BOX_WEIGHT, by_turn, jacobian[m])
-                        if free > 0 and j == 5:
-                            _write_body_entries(turns[3], axis, BOX_WEIGHT, jacobian[m, free:])
-                    m += 1
+        m = _append_bound_rows(
+            at, turns[3], cosines, rates, bending, by_turn, setting, everywhere, free, residuals, jacobian, m
+        )
         if target < 0:
             continue
-        pose = points[target]
-        back = turns[3] * complex(math.cos(pose[2]), -math.sin(pose[2]))
-        for axis in range(3):
-            weight, at_axis = pose[6], rates[5].real
-            off = at[5].real - pose[0]
-            if axis == 1:
-                off, at_axis = at[5].imag - pose[1], rates[5].imag
-            elif axis == 2:
-                off, at_axis, weight = math.atan2(back.imag, back.real) + stands, turning, pose[7]
-            if pose[3 + axis] == 0.0 or abs(off) > pose[3 + axis]:
-                residuals[m] = weight * _subtract_tolerance(off, pose[3 + axis])
-                if derived:
-                    _write_row(at_axis, weight, by_turn, jacobian[m])
-                    if free > 0 and axis < 2:
-                        _write_body_entries(turns[3], axis, weight, jacobian[m, free:])
-                    elif free > 0:
-                        jacobian[m, free + 2] = weight
-                m += 1
+        m = _append_pose_rows(
+            points[target], at[5], turns[3], stands, rates[5], turning, by_turn, free, residuals, jacobian, m
+        )
     return int(_append_size_rows(z, setting, residuals, jacobian, m, free))

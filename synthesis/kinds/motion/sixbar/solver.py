@@ -1,11 +1,11 @@
 """Motion generation by sixbars: descents that stay on their branch, and constrained chains if a chain is given.
 
-Descents from random linkages (:mod:`branch_search`) find sixbars for almost all problems, including many that random
-chains (:mod:`chain_search`) do not solve in hours. Chains are sampled if one is given; they alternate with descents if
+Descents from random linkages (:mod:`descent_rounds`) find sixbars for almost all problems, including many that random
+chains (:mod:`chain_rounds`) do not solve in hours. Chains are sampled if one is given; they alternate with descents if
 a Grashof class, a full rotation, a region or a box is required, which a descent ignores or reaches with difficulty.
 Chains support at most five positions. If positions are fitted without tolerances, the candidates with the smallest
-errors are fitted by least squares until convergence (:mod:`branch_fit`). All returned designs are driven and verified
-like any linkage.
+errors are fitted by least squares until convergence (:mod:`least_squares`). All returned designs are driven and
+verified like any linkage.
 """
 
 from __future__ import annotations
@@ -117,10 +117,12 @@ class SixbarSearch:
         stated = self.problem.constraints
         regions = stated.fixed_pivot_region, stated.moving_pivot_region, self.problem.space
         mixed = stated.full_rotation or stated.grashof != "any" or any(region is not None for region in regions)
+        # A Stephenson II contains no chain, so chains cannot help it.
         mixed = mixed and len(self.problem.positions) <= MAX_EXACT_POSITIONS and self.types != (UNCLASSED_SIXBAR,)
         found = SixbarCandidates.make_empty()
         spent, until, n = 0.0, 1.0, 0
         while spent < until:
+            # Alternate, because neither search dominates for these constraints.
             if self.problem.chain is not None or (mixed and n % 2):
                 found, spent = self._select_distinct(found.merge(self.chains.round(rng))), spent + CHAIN_ROUND_SHARE
             else:
@@ -133,6 +135,8 @@ class SixbarSearch:
             # One feasible sixbar shows how hard the problem is: bound the rest of the search by that effort.
             if sound_ones and until == 1.0:
                 until = min(1.0, (1.0 + EXTENSION_FACTOR) * spent + EXTENSION_SHARE)
+            # Enough distinct feasible sixbars after at least two rounds, so that a lucky first one is not the only
+            # source.
             if n >= MIN_ROUNDS and sound_ones >= self.problem.max_designs:
                 break
             progress(min(spent, 1.0), f"{self.candidate_count} sixbars examined")
@@ -155,13 +159,16 @@ class SixbarSearch:
                 return found
             since = 0 if self.branches.min_cost < MIN_COST_RATIO * least else since + 1
             least = min(least, self.branches.min_cost)
+            # The pools no longer improve: converge what they contain and start afresh.
             if since >= MAX_STALE_ROUNDS or n * BRANCH_ROUND_SHARE >= until:
                 found = self._select_distinct(found.merge(self.branches.fit_pools()))
                 if np.count_nonzero(found.values >= enough) >= self.problem.max_designs:
                     return found
                 least, since = math.inf, 0
+                # A nearly exact fit suggests that an exact solution exists, so search on.
                 if np.any(found.values >= nearly):
                     until = EXTENDED_FIT_BUDGET
+            # The budget may be extended, but reported progress must not decrease.
             told = max(told, min(n * BRANCH_ROUND_SHARE / until, 1.0))
             progress(told, f"{self.candidate_count} sixbars examined")
         return found
@@ -181,6 +188,7 @@ class SixbarSearch:
         make, row = TOPOLOGIES[found.makes[n]], found.joints[n]
         joints = {name: self.task.to_problem(complex(row[k])) for name, k in make.joints.items()}
         joints["P"] = self.task.to_problem(complex(found.bodies[n]))
+        # A body angle within a tolerance differs from the requested one.
         angle = None
         if not self.target.exact_mask[0, 2]:
             angle = self.problem.positions[0].angle + math.degrees(float(found.stands[n]))
@@ -201,6 +209,7 @@ def solve_sixbars(problem: MotionProblem, types: tuple[Sixbar, ...], progress: P
         return verify(problem, search.mechanism(found, n), search.target)
 
     tried = sifting.verify_candidates(rows.tolist(), verify_sixbar, enough=problem.max_designs)
+    # All others were examined, but not verified.
     sifting.reject("unsound", search.candidate_count - tried)
     progress(1.0, "verified")
     return MotionResult(
@@ -211,17 +220,19 @@ def solve_sixbars(problem: MotionProblem, types: tuple[Sixbar, ...], progress: P
 
 
 def _pack_limits(problem: MotionProblem, task: MotionTask) -> Real:
-    """Pack the limits of a problem for the kernel (:data:`chain_kernels.LEAST_SINE`)."""
+    """Pack the limits of a problem for the kernel (:data:`chain_kernels.MIN_SINE`)."""
     stated = problem.constraints
     angle = (
         SOUND_TRANSMISSION_ANGLE
         if stated.min_transmission_angle is None
+        # Below 90°, where the cosine would demand perfection.
         else min(stated.min_transmission_angle + ANGLE_MARGIN, 89.9)
     )
     lengths = stated.link_length
     shortest = 0.0 if lengths is None else lengths.min / task.size
     longest = np.inf if lengths is None or lengths.max is None else lengths.max / task.size
     ratio = MAX_RATIO if stated.max_link_ratio is None else stated.max_link_ratio
+    # A given chain sets the scale of the mechanism; the default limit must not exclude it.
     reach = max(MAX_REACH, CHAIN_REACH_FACTOR * problem.chain_size / task.size)
     plain = [math.sin(math.radians(angle)), reach, ratio, shortest, longest]
     plain += [GRASHOF_CLASSES.index(stated.grashof), stated.full_rotation]

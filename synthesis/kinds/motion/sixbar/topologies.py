@@ -74,7 +74,7 @@ TOPOLOGIES = (
          "link_5": ("C", "D"), "output": ("O4", "E")},
     ),
 )  # fmt: skip
-"""Topologies in the order of their kernel numbers (:data:`chain_kernels.MAKES`)."""
+"""Topologies in the order of their kernel numbers (:data:`chain_kernels.TOPOLOGY_LINKS`)."""
 
 
 class SixbarCandidates(NamedTuple):

@@ -62,7 +62,7 @@ def find_motion_sixbar_contradictions(problem: Any) -> list[Contradiction]:
     if problem.chain is not None and not (isinstance(stated, list) and set(stated) <= set(SIXBARS)):
         detail = "applies only to sixbars; list only sixbar types in mechanisms"
         listed.append(Contradiction("/chain", detail))
-    elif problem.chain is not None and (len(problem.positions) > MAX_EXACT_POSITIONS or problem.fitted):
+    elif problem.chain is not None and (len(problem.positions) > MAX_EXACT_POSITIONS or problem.is_least_squares):
         detail = (
             f"applies only to at most {MAX_EXACT_POSITIONS} positions that are met exactly or within tolerances; omit "
             "it"
@@ -132,6 +132,7 @@ def _check_chain_reach(problem: Any) -> list[Contradiction]:
     first, second = (length or 0.0 for length in chain.links)
     start = problem.positions[0].point
     for k, (position, turn) in enumerate(zip(problem.positions, problem.turns, strict=True)):
+        # H₂ moves with the body; the chain must span its distance from G in every exact position.
         reach = abs(position.point + cmath.exp(1j * turn) * (pin - start) - pivot)
         if position.tolerance is None and not abs(first - second) < reach < first + second:
             detail = f"cannot span G to H₂ at position {k}: the distance is {reach:.6g} {problem.length_unit}"

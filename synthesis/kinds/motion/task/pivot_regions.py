@@ -53,6 +53,7 @@ def measure_outside_distance(task: MotionTask, areas: tuple[Area, ...], points: 
     places = task.origin + points * task.size
     away = np.zeros(points.shape)
     for area in areas:
+        # A point must lie in all areas, so the farthest one counts.
         away = np.maximum(away, area.compute_distances(places) / task.size)
     return away
 

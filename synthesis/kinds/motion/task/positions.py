@@ -52,6 +52,7 @@ class MotionTask(NamedTuple):
     def pivot(self, requested: PartialPoint | None, computed: complex) -> complex:
         """Return a pivot in the problem's coordinates: the given value, to the last digit, or the computed one."""
         whole = to_complete_point(requested)
+        # A given pivot must not pick up rounding errors from the conversion.
         return self.to_problem(computed) if whole is None else whole
 
 
@@ -62,6 +63,7 @@ def find_given_pivot(task: MotionTask, choices: DyadChoices, *, fixed: bool) -> 
     """
     whole = to_complete_point(choices.fixed_pivot if fixed else choices.moving_pivot)
     vector = choices.coupler_vector
+    # A complete coupler vector is another way to give the moving pivot.
     if not fixed and vector is not None and vector.length is not None and vector.angle is not None:
         return complex(task.points[0] - cmath.rect(vector.length / task.size, math.radians(vector.angle)))
     return None if whole is None else task.to_task(whole)

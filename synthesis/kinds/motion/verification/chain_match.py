@@ -19,7 +19,7 @@ def measure_chain_gap(requested: Chain, links: Links, joints: Mapping[str, Compl
 
     Parameters
     ----------
-    stated : Chain
+    requested : Chain
         Given values of G, H₁ and H₂.
     links : mapping
         The joints on each link.
@@ -42,6 +42,7 @@ def _list_chains(links: Links) -> Iterator[tuple[str, str, str]]:
     body = next(name for name, listed in links.items() if BODY_POINT in listed)
     for first, of_first in links.items():
         for second, of_second in links.items():
+            # Four different links: ground, both of the chain, and the body.
             if len({GROUND, first, second, body}) == 4:
                 for pivot in set(of_first) & set(links[GROUND]):
                     for knee in set(of_first) & set(of_second):
@@ -57,6 +58,7 @@ def _measure_gap(requested: Chain, pivot: Complex, knee: Complex, pin: Complex, 
     lengths = abs(knee[0] - pivot[0]), abs(pin[0] - knee[0])
     for length, wanted in zip(lengths, requested.links or (None, None), strict=True):
         gaps.append(0.0 if wanted is None else abs(float(length) - wanted))
+    # The side of H₁ from the line G → H₂, which must be the same at all targets.
     side = ((pin - pivot).conjugate() * (knee - pivot)).imag
     bent = {"any": True, "left": bool((side > 0.0).all()), "right": bool((side < 0.0).all())}[requested.elbow]
     return max(gaps) / size if bent else math.inf

@@ -152,6 +152,7 @@ def _check_motion(target: TargetPoses, driven: DrivenLinkage, on_circuit: bool) 
     """Check the task itself: exact coordinates are met, others are within tolerance, all on one circuit."""
     checks = []
     if target.exact_mask.any():
+        # Only exact coordinates count here; tolerances have a check of their own.
         held = np.where(target.exact_mask, driven.offsets, 0.0)
         checks.append(check_targets_reached(float(target.residuals(held).max())))
     tolerated = np.isfinite(target.limits) & ~target.exact_mask
@@ -166,12 +167,14 @@ def _check_choices(problem: MotionProblem, target: TargetPoses, driven: DrivenLi
 
     Points and lines of the body are compared with the body in the first target position, which a fit may miss.
     """
+    # Undo the deviation of the first pose, so that body points are compared in the target position.
     back = cmath.exp(-1j * float(driven.turns[0]))
     checks = []
     for name, choices, side in (
         ("input_side", problem.input_side, driven.input_side),
         ("output_side", problem.output_side, driven.output_side),
     ):
+        # A side without choices has nothing to compare.
         if choices.count() == 0:
             continue
         point = complex(target.points[0])
@@ -190,12 +193,14 @@ def _list_gaps(choices: DyadChoices, side: Side, point: complex, pin: complex | 
     """List the deviations from each given number; infinite if the dyad lacks that element."""
     gaps = [0.0]
     for pivot, stated in ((side.pivot, choices.fixed_pivot), (pin, choices.moving_pivot)):
+        # A missing pivot misses every given coordinate.
         coordinates = (math.inf, math.inf) if pivot is None else (pivot.real, pivot.imag)
         for value, wanted in zip(coordinates, stated or (None, None), strict=True):
             if wanted is not None:
                 gaps.append(abs(value - wanted) / size)
     if choices.slide_angle is not None:
         turned = math.inf if side.slide_angle is None else side.slide_angle - math.radians(choices.slide_angle)
+        # Lines have no direction, so compare modulo half a turn.
         gaps.append(abs(math.remainder(turned, math.pi)) if math.isfinite(turned) else math.inf)
     links = None if side.pivot is None or side.pins is None else side.pins - side.pivot
     if choices.link_angle is not None:

@@ -53,6 +53,7 @@ def verify_fourbar(problem: MotionProblem, mechanism: FourbarMechanism, target: 
         return None
     linkage = fourbar.linkage
     kind = int(barker_type(linkage))
+    # Type 0: the lengths cannot be assembled.
     if not kind:
         return None
     shift = compute_body_shift(mechanism, problem.positions[0].angle)
@@ -61,6 +62,7 @@ def verify_fourbar(problem: MotionProblem, mechanism: FourbarMechanism, target: 
         if target.exact_mask.all()
         else _drive_to_nearest(target, fourbar, shift)
     )
+    # Exact targets determine the input; fitted ones need a search.
     if met is None:
         return None
     way = traverse(linkage, met.angles, met.assemblies)
@@ -83,6 +85,7 @@ def verify_fourbar(problem: MotionProblem, mechanism: FourbarMechanism, target: 
 
         way_of_body = measure_body_motion(compute_pose, (way.start, way.end), p, met.turns, target.size, slides=False)
     inputs = np.degrees(way.angles)
+    # Report angles in the turn of the reference, as the client knows it.
     inputs += 360.0 * np.round((mechanism.reference_input_angle - inputs[0]) / 360.0)
     away = math.radians(inputs[0]) - float(way.angles[0])
     measures = measure_linkage(
@@ -115,6 +118,7 @@ def _drive_to_exact_targets(target: TargetPoses, fourbar: DrivenFourbar, shift: 
     signs = np.array([fourbar.assembly, -fourbar.assembly])
     driven = positions(linkage, angles, signs)
     off = driven.coupler_angle - coupler_angles
+    # Compare angles modulo a full turn, in the same scale as distances in task sizes.
     turned_off = np.abs(off - 2.0 * np.pi * np.round(off / (2.0 * np.pi)))
     residuals = np.where(driven.valid, np.maximum(np.abs(driven.p - target.points) / target.size, turned_off), np.inf)
     # The first target must be met by the reference configuration itself.
@@ -152,6 +156,7 @@ def _drive_to_nearest(target: TargetPoses, fourbar: DrivenFourbar, shift: float)
     closest = [find_closest_inputs(make_motion(int(sign)), target, -math.pi, math.pi) for sign in signs]
     misses = np.stack([missed for _, missed in closest])
     row = np.where(misses[0] <= OWN_ASSEMBLY_FACTOR * misses[1], 0, 1)
+    # The first target defines the reference, hence its assembly.
     row[0] = 0
     angles = np.stack([inputs for inputs, _ in closest])[row, np.arange(len(row))]
     # The minimum of a smooth deviation is known to half of the digits only; the reference input is exact.

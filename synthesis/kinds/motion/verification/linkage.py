@@ -99,6 +99,7 @@ def verify_mechanism(problem: MotionProblem, design: LinkageMechanism, target: T
     way = _order_inputs(mechanism, here, met.inputs) if same_branch else _InputRun(met.inputs, False)
     joints, turns = _collect_joints(bodies, met)
     driven = _describe_sides(design, mechanism, joints, turns, target)
+    # A driver's crank turns through its whole cycle; other inputs only through the used range.
     whole = DRIVER_LINK in mechanism.links
     used = (here.low, here.high) if whole else (float(way.inputs.min()), float(way.inputs.max()))
     slides = mechanism.has_slide_input
@@ -151,6 +152,7 @@ class _Body(MechanismOnBranch):
 
 def _find_closest(bodies: list[_Body], target: TargetPoses, own: int) -> _TargetStates | None:
     """Find the inputs at which the targets are met best, on the reference's branch if that is as good as any."""
+    # Own branch first, so that index 0 means the reference's branch.
     rows = [own, *(n for n, body in enumerate(bodies) if n != own and body.branch.signs)]
     inputs, misses = [], []
     for n in rows:
@@ -168,6 +170,7 @@ def _find_closest(bodies: list[_Body], target: TargetPoses, own: int) -> _Target
     home = float(bodies[own].mechanism.reference_input)
     if is_as_near(bodies[own].pose, target, 0, home, at[0]):
         at[0] = home
+    # A driver's last target is a dead centre of its crank, which can be located more exactly.
     if DRIVER_LINK in bodies[own].mechanism.links and best[-1] == 0 and math.isfinite(at[-1]):
         end = _find_dead_centre(bodies[own], float(at[-1]))
         if end is not None and is_as_near(bodies[own].pose, target, -1, end, at[-1]):
@@ -183,6 +186,7 @@ def _find_dead_centre(body: _Body, near: float) -> float | None:
         joints = body.evaluate_motion(inputs).joints
         crank, link = joints["D"][0] - joints["O6"][0], joints["C"][0] - joints["D"][0]
         across = (crank.conjugate() * link).imag
+        # No sign change: crank and link are never collinear nearby.
         passed = np.flatnonzero(across[:-1] * across[1:] <= 0.0)
         if not len(passed):
             return None
@@ -194,6 +198,7 @@ def _find_dead_centre(body: _Body, near: float) -> float | None:
 def _order_inputs(mechanism: Mechanism, here: Branch, inputs: Real) -> _InputRun:
     """Arrange the inputs in one run through the targets; on a full branch in the direction that meets them in order."""
     if not here.full or mechanism.has_slide_input:
+        # Without a full rotation there is only one way through the inputs.
         steps = np.diff(inputs)
         return _InputRun(inputs, bool(np.all(steps > 0.0) or np.all(steps < 0.0)))
     period = compute_cycle_on_branch(mechanism, here)
@@ -203,6 +208,7 @@ def _order_inputs(mechanism: Mechanism, here: Branch, inputs: Real) -> _InputRun
     ways = [way for way in (onward, backward) if np.all(np.diff(way) > 0.0) or np.all(np.diff(way) < 0.0)]
     if not ways:
         return _InputRun(inputs, False)
+    # Both directions meet the targets in order: take the shorter run.
     return _InputRun(inputs[0] + min(ways, key=lambda way: abs(float(way[-1]))), True)
 
 
@@ -211,7 +217,7 @@ def _collect_joints(bodies: list[_Body], met: _TargetStates) -> tuple[dict[str, 
     joints: dict[str, list[complex]] = {}
     turns = []
     for at, row in zip(met.inputs[:, None], met.rows, strict=True):
-        for name, point in bodies[row].at(at).joints.items():
+        for name, point in bodies[row].evaluate_motion(at).joints.items():
             joints.setdefault(name, []).append(complex(point[0, 0]))
         turns.append(float(bodies[row].pose(at)[1][0]))
     return {name: np.array(points) for name, points in joints.items()}, np.array(turns)

@@ -49,13 +49,16 @@ def find_closest_inputs(motion: Motion, target: TargetPoses, low: float, high: f
     def measure_miss(points: Complex, turns: Real, by: Real) -> Real:
         return measure_misses(target, target.offsets(points, turns) * by[:, None, :])
 
+    # The grid uses all coordinates, to choose among several minima.
     grid = np.linspace(low, high, GRID_STEP_COUNT + 1)
     best = grid[measure_miss(*motion(grid[None]), weights).argmin(axis=1)]
     rows = np.arange(n)
     step = (high - low) / GRID_STEP_COUNT
     spread = np.linspace(-1.0, 1.0, SAMPLE_COUNT)
     for _ in range(REFINEMENT_COUNT):
+        # Clip to the branch, beyond which the linkage does not close.
         inputs = np.clip(best[:, None] + step * spread, low, high)
+        # Keep the best input itself among the samples, so that a refinement never gets worse.
         inputs[:, SAMPLE_COUNT // 2] = best
         best = inputs[rows, measure_miss(*motion(inputs), alone).argmin(axis=1)]
         step *= 2.0 / (SAMPLE_COUNT - 1)

@@ -43,6 +43,7 @@ def move_to_first_target(problem: MotionProblem, design: LinkageDesign) -> Linka
     place, angle = design.targets[0].input_place, design.targets[0].input_angle
     at = math.radians(angle or 0.0) if place is None else place
     away = at - float(driven.reference_input)
+    # Rotations are compared modulo a full turn, strokes relative to the task.
     away = math.remainder(away, math.tau) if place is None else away / problem.task_size
     if abs(away) <= INPUT_TOLERANCE:
         return None

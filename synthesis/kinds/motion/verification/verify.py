@@ -41,6 +41,7 @@ def verify(
     """
     target = make_target_poses(problem) if target is None else target
     design = _drive_mechanism(problem, mechanism, target)
+    # An exact first position is the reference already.
     if design is None or target.exact_mask[0].all():
         return design
     moved = move_to_first_target(problem, design)

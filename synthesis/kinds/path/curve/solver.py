@@ -409,8 +409,8 @@ def _describe_result(problem: PathProblem, sifting: CandidateLog[PathDesign], sw
     else:
         text = (
             f"{format_integer(sweep.curves)} curves of {format_count(sweep.linkages, 'linkage')} were compared with "
-            "the target and "
-            f"{format_integer(sweep.refined)} of them refined. {counts} designs, cognates included, {satisfy}."
+            f"the target and {format_integer(sweep.refined)} of them refined. {counts} designs, cognates included, "
+            f"{satisfy}."
         )
     if sifting.passed:
         ordered = rank_by_nearness(sifting.passed, problem)

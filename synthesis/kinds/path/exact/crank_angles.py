@@ -127,8 +127,7 @@ def _solve_five_points(problem: PathProblem, progress: Progress) -> PathResult:
     complete, passed = proved and not harvest.unproven, len(harvest.passed)
     text = (
         f"{format_count(inputs, 'input dyad')} and {format_count(fourbars, 'fourbar')} pass the five points at their "
-        "crank "
-        f"angles; {passed} of them {choose_word(passed, 'satisfies', 'satisfy')} all constraints."
+        f"crank angles; {passed} of them {choose_word(passed, 'satisfies', 'satisfy')} all constraints."
     )
     text += harvest.describe_reasons()
     if sliders:
@@ -143,8 +142,7 @@ def _describe_family(problem: PathProblem, harvest: PathCandidateLog) -> str:
     passed = len(harvest.passed)
     text = (
         f"{passed} of {format_count(harvest.candidates, 'linkage')} through the {len(problem.points)} points at their "
-        "crank "
-        f"angles {choose_word(passed, 'satisfies', 'satisfy')} all constraints. The points leave freedom; the linkages "
-        "are random samples of it."
+        f"crank angles {choose_word(passed, 'satisfies', 'satisfy')} all constraints. The points leave freedom; the "
+        "linkages are random samples of it."
     )
     return text + harvest.describe_reasons() + harvest.describe_completeness(complete=False)

@@ -187,8 +187,7 @@ def _build_result(problem: PathProblem, members: list[Member], brought: int, pro
     progress(1.0, "verified")
     text = (
         f"{format_count(brought, 'start')} near a curve through the points {choose_word(brought, 'was', 'were')} "
-        "fitted; "
-        f"{format_integer(len(ordered))} reached all points exactly, with the required pivots. "
+        f"fitted; {format_integer(len(ordered))} reached all points exactly, with the required pivots. "
         f"{format_integer(sifting.accepted)} of {format_integer(len(driven))} distinct linkages "
         f"{choose_word(sifting.accepted, 'satisfies', 'satisfy')} all constraints."
     )

@@ -122,6 +122,10 @@ _FAMILIES = {
 }
 
 
+Case = tuple[int, int, float]
+"""Direction of the crank, family, and sign of the assembly."""
+
+
 class PointTask(NamedTuple):
     """Points in task coordinates: rows (x, y, crank angle in radians, weight); the origin's place, the unit's length.
 
@@ -217,6 +221,37 @@ def find_minima(
         restrict_to_zones(pack_setting(problem, task.origin, task.size, sign=sign, family=family, usable=usable))
         for _, family, sign in cases
     ]
+    populations = _search_populations(problem, task, thinned, cases, settings, rng, progress)
+    pool = [
+        candidate
+        for (way, _, _), setting, population in zip(cases, settings, populations, strict=True)
+        for candidate in _list_candidates(
+            _drop_duplicates(_select_best(population, len(population.costs)), finalists), setting, way
+        )
+    ]
+    pool.sort(key=lambda candidate: candidate.cost)
+    most = finalists if len(task.rows) <= MAX_FAST_POINTS else MAX_DENSE_FINALISTS
+    minima = _solve_all_constrained(
+        _select_distinct(pool, most), task, thinned, lambda share: progress(0.6 + 0.2 * share, "refining fits")
+    )
+    for _ in range(RETURN_ROUNDS if thinned is task else 0):
+        again = _perturb_minima(problem, minima, thinned, cases, settings, rng, progress)
+        minima += _solve_all_constrained(
+            _select_distinct(again, MAX_RETURN_REFINED), task, thinned, lambda share: progress(0.9, "refining fits")
+        )
+    return sorted(minima, key=lambda candidate: candidate.cost)
+
+
+def _search_populations(
+    problem: PathProblem,
+    task: PointTask,
+    thinned: PointTask,
+    cases: list[Case],
+    settings: list[Real],
+    rng: np.random.Generator,
+    progress: Progress,
+) -> list[_Population]:
+    """Descend from random starts in every case, and perturb the best results."""
     drawn: dict[int, WorkspaceStarts] = {}
     if is_workspace_constrained(problem) and not problem.prescribed:
         points = thinned.rows[:, 0] + 1j * thinned.rows[:, 1]
@@ -239,37 +274,38 @@ def find_minima(
             populations[n] = _join_populations(
                 [populations[n], _perturb_population(problem, pair, rows, settings[n], rng)]
             )
-    pool = [
-        Candidate(x, state, float(cost), Status(status), setting, way)
-        for (way, _, _), setting, population in zip(cases, settings, populations, strict=True)
-        for x, state, cost, status in zip(
-            *_drop_duplicates(_select_best(population, len(population.costs)), finalists), strict=True
-        )
-    ]
-    pool.sort(key=lambda candidate: candidate.cost)
-    most = finalists if len(task.rows) <= MAX_FAST_POINTS else MAX_DENSE_FINALISTS
-    minima = _solve_all_constrained(
-        _select_distinct(pool, most), task, thinned, lambda share: progress(0.6 + 0.2 * share, "refining fits")
-    )
-    for _ in range(RETURN_ROUNDS if thinned is task else 0):
-        # A perturbation may leave a minimum on a limit for a better one that no descent within the limits would find.
-        again: list[Candidate] = []
+    return populations
+
+
+def _perturb_minima(
+    problem: PathProblem,
+    minima: list[Candidate],
+    thinned: PointTask,
+    cases: list[Case],
+    settings: list[Real],
+    rng: np.random.Generator,
+    progress: Progress,
+) -> list[Candidate]:
+    """Perturb minima within the limits, and return the results, nearest first.
+
+    A perturbation may leave a minimum on a limit for a better one that no descent within the limits would find.
+    """
+    again: list[Candidate] = []
+    for n, (way, family, sign) in enumerate(cases):
+        progress(0.8 + 0.1 * n / len(cases), "perturbing the best fits")
         # The minima of this case, and those of the other assembly, which may be flipped into it.
-        for n, (way, family, sign) in enumerate(cases):
-            progress(0.8 + 0.1 * n / len(cases), "perturbing the best fits")
-            held = _select_population(minima, (way, family, sign)), _select_population(minima, (way, family, -sign))
-            population = _perturb_population(problem, held, _orient_rows(thinned.rows, way), settings[n], rng)
-            again += [
-                Candidate(x, state, float(cost), Status(status), settings[n], way)
-                for x, state, cost, status in zip(
-                    *_drop_duplicates(_select_best(population, MAX_KICKED), MAX_KICKED), strict=True
-                )
-            ]
-        again.sort(key=lambda candidate: candidate.cost)
-        minima += _solve_all_constrained(
-            _select_distinct(again, MAX_RETURN_REFINED), task, thinned, lambda share: progress(0.9, "refining fits")
-        )
-    return sorted(minima, key=lambda candidate: candidate.cost)
+        held = _select_population(minima, (way, family, sign)), _select_population(minima, (way, family, -sign))
+        population = _perturb_population(problem, held, _orient_rows(thinned.rows, way), settings[n], rng)
+        again += _list_candidates(_drop_duplicates(_select_best(population, MAX_KICKED), MAX_KICKED), settings[n], way)
+    again.sort(key=lambda candidate: candidate.cost)
+    return again
+
+
+def _list_candidates(population: _Population, setting: Real, way: int) -> list[Candidate]:
+    return [
+        Candidate(x, state, float(cost), Status(status), setting, way)
+        for x, state, cost, status in zip(*population, strict=True)
+    ]
 
 
 def descend_from(start: FourbarConfiguration, problem: PathProblem, task: PointTask) -> list[Candidate]:
@@ -318,7 +354,7 @@ def _solve_all_constrained(
     return [candidate for candidate in minima if candidate is not None]
 
 
-def _select_population(minima: list[Candidate], case: tuple[int, int, float]) -> _Population:
+def _select_population(minima: list[Candidate], case: Case) -> _Population:
     """Return the best distinct candidates of a case: the crank's direction, the family and the assembly."""
     way, family, sign = case
     own = [c for c in minima if c.way == way and c.setting[FAMILY_INDEX] == family and c.setting[SIGN_INDEX] == sign]

@@ -18,7 +18,7 @@ import math
 
 import numpy as np
 
-from kinematics.arrays import Real
+from kinematics.arrays import Complex, Real
 from kinematics.compiling import njit
 from synthesis.fit.chart import FOURBAR, LENGTHS, POINT, compute_lengths, write_unknowns
 from synthesis.fit.constraints import FAMILY_INDEX, FULL_TURN_INDEX, GIVEN_PIVOTS, SIGN_INDEX
@@ -80,6 +80,30 @@ ALTERNATION_COUNT = 3
 
 
 @njit(cache=True, nogil=True)
+def _fit_ground(
+    crank: Complex, coupler: Complex, target: Complex, mean_crank: complex, mean_coupler: complex, mean_target: complex
+) -> tuple[complex, complex, complex]:
+    """Return the projections of crank and target on the coupler, and the ground vector that fits the target."""
+    n = len(crank)
+    # Eliminate the coupler vector first (Gram-Schmidt), then solve for the ground vector alone.
+    square, on_crank, on_target = MIN_SPREAD, 0.0j, 0.0j
+    for k in range(n):
+        e = coupler[k] - mean_coupler
+        square += e.real * e.real + e.imag * e.imag
+        on_crank += e.conjugate() * (crank[k] - mean_crank)
+        on_target += e.conjugate() * (target[k] - mean_target)
+    on_crank /= square
+    on_target /= square
+    across, mixed = MIN_SPREAD, 0.0j
+    for k in range(n):
+        e = coupler[k] - mean_coupler
+        f = crank[k] - mean_crank - on_crank * e
+        across += f.real * f.real + f.imag * f.imag
+        mixed += f.conjugate() * (target[k] - mean_target - on_target * e)
+    return on_crank, on_target, mixed / across
+
+
+@njit(cache=True, nogil=True)
 def fit_place(lengths: Real, sign: float, angles: Real, points: Real, setting: Real, turn: float, x: Real) -> float:
     """Fit place, size and coupler point of a shape at crank angles from the ground line; return half the sum of
     squares.
@@ -106,22 +130,7 @@ def fit_place(lengths: Real, sign: float, angles: Real, points: Real, setting: R
         mean_target = complex(setting[GIVEN_PIVOTS], setting[GIVEN_PIVOTS + 1])
     else:
         mean_crank, mean_coupler, mean_target = crank.mean(), coupler.mean(), target.mean()
-    # Eliminate the coupler vector first (Gram-Schmidt), then solve for the ground vector alone.
-    square, on_crank, on_target = MIN_SPREAD, 0.0j, 0.0j
-    for k in range(n):
-        e = coupler[k] - mean_coupler
-        square += e.real * e.real + e.imag * e.imag
-        on_crank += e.conjugate() * (crank[k] - mean_crank)
-        on_target += e.conjugate() * (target[k] - mean_target)
-    on_crank /= square
-    on_target /= square
-    across, mixed = MIN_SPREAD, 0.0j
-    for k in range(n):
-        e = coupler[k] - mean_coupler
-        f = crank[k] - mean_crank - on_crank * e
-        across += f.real * f.real + f.imag * f.imag
-        mixed += f.conjugate() * (target[k] - mean_target - on_target * e)
-    ground = mixed / across
+    on_crank, on_target, ground = _fit_ground(crank, coupler, target, mean_crank, mean_coupler, mean_target)
     if ground_given:
         ground = complex(
             setting[GIVEN_PIVOTS + 2] - setting[GIVEN_PIVOTS], setting[GIVEN_PIVOTS + 3] - setting[GIVEN_PIVOTS + 1]

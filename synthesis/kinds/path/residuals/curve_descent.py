@@ -285,18 +285,9 @@ def _apply_step(
 
 @njit(**OPTIONS)
 def _descend(
-    family: int,
-    x: Real,
-    sign: float,
-    ratio: float,
-    theta: Real,
-    points: Complex,
-    weights: Real,
-    longest: float,
-    cycle: float,
-    within: Real,
-    iterations: int,
-) -> float:
+    family: int, x: Real, sign: float, ratio: float, theta: Real, points: Complex, weights: Real, longest: float,
+    cycle: float, within: Real, iterations: int,
+) -> float:  # fmt: skip
     """Descend in place; return the sum of squared distances, infinite if the start does not close."""
     m, n = len(x), len(points)
     count = count_links(family)

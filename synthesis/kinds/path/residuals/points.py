@@ -154,6 +154,48 @@ def _compute_end_turn(by: Complex, timed: bool, absolute: bool, turn: Real) -> N
             turn[i] = -(by[9].real * by[i].real + by[9].imag * by[i].imag) / square
 
 
+@njit(cache=True, nogil=True)
+def _write_normal_row(
+    root: float, gap: complex, speed: complex, by: Complex, m: int, residuals: Real, jacobian: Real
+) -> bool:
+    """Write the row of a point's gap across the curve; return False where the curve has no direction.
+
+    ``gap`` and ``speed`` contain the root of the weight.
+    """
+    fast = math.sqrt(speed.real * speed.real + speed.imag * speed.imag)
+    if not fast > MIN_SPEED:
+        return False
+    # Unit normal of the path.
+    nx, ny = -speed.imag / fast, speed.real / fast
+    residuals[m] = nx * gap.real + ny * gap.imag
+    for i in range(9):
+        jacobian[m, i] = root * (nx * by[i].real + ny * by[i].imag)
+    return True
+
+
+@njit(cache=True, nogil=True)
+def _append_margin_rows(
+    x: Real, lengths: Real, slopes: Real, sign: float, ends: Real, turns: Real, setting: Real, multipliers: Real,
+    state: Real, residuals: Real, jacobian: Real, m: int,
+) -> int:  # fmt: skip
+    """Append the rows of the workspace and of the constraints; return the number of rows, −1 if the motion does not
+    close."""
+    values, gradients = state[state.size - LIMIT_COUNT :], np.empty((LIMIT_COUNT, x.size))
+    compute_margins(x, lengths, slopes, ends, turns[0], setting, values, gradients)
+    room = setting[PATH_SETTING_SIZE:]
+    roomy = count_margins(room)
+    if roomy > 0:
+        kept = state[state.size - LIMIT_COUNT - roomy : state.size - LIMIT_COUNT]
+        whole = setting[FULL_TURN_INDEX] > 0.0
+        m = append_workspace_rows(
+            x, lengths, slopes, sign, ends, turns, whole, NO_BODY, room, multipliers, kept, residuals, jacobian, m
+        )  # fmt: skip
+        if m < 0:
+            return -1
+    rows: int = append_limit_rows(values, gradients, EQUATION_COUNT, multipliers[roomy:], residuals, jacobian, m)
+    return rows
+
+
 @njit(ROWS, cache=True, nogil=True)
 def compute_path_rows(
     x: Real, points: Real, setting: Real, multipliers: Real, state: Real, residuals: Real, jacobian: Real
@@ -172,8 +214,7 @@ def compute_path_rows(
         if not -MAX_ABS_LOG < x[i] < MAX_ABS_LOG:
             return -1
     compute_lengths(int(setting[FAMILY_INDEX]), x, lengths, slopes)
-    sign = setting[SIGN_INDEX]
-    timed = setting[TIMING_INDEX] > 0.0
+    sign, timed = setting[SIGN_INDEX], setting[TIMING_INDEX] > 0.0
     absolute = setting[PHASE_REFERENCE_INDEX] == PHASE_ABSOLUTE
     unknowns = x.size
     blocks = np.empty(n, np.int64)
@@ -182,8 +223,7 @@ def compute_path_rows(
             state[k] = points[k, 2] + (-x[2] if absolute else x[PHASE_UNKNOWN] if unknowns > PHASE_UNKNOWN else 0.0)
     elif not settle_angles(x, lengths, setting, points, state, blocks):
         return -1
-    m = 0
-    first = 0
+    m, first = 0, 0
     for k in range(n):
         good, p = place_with_slopes(FOURBAR, x, lengths, slopes, sign, 0.0, x[2] + state[k], by)
         if not good:
@@ -198,17 +238,11 @@ def compute_path_rows(
             _compute_end_turn(by, timed, absolute, turns[0])
         if k + 1 == n:
             _compute_end_turn(by, timed, absolute, turns[1])
-        if not timed and (k + 1 == n or blocks[k + 1] != blocks[k]) and (k == 0 or blocks[k - 1] != blocks[k]):
-            # A point with an angle of its own: only the component across the curve remains.
-            fast = math.sqrt(tx * tx + ty * ty)
-            if fast > MIN_SPEED:
-                # Unit normal of the path.
-                nx, ny = -ty / fast, tx / fast
-                residuals[m] = nx * gx + ny * gy
-                for i in range(9):
-                    jacobian[m, i] = root * (nx * by[i].real + ny * by[i].imag)
-                m += 1
-                continue
+        alone = not timed and (k + 1 == n or blocks[k + 1] != blocks[k]) and (k == 0 or blocks[k - 1] != blocks[k])
+        # A point with an angle of its own: only the component across the curve remains.
+        if alone and _write_normal_row(root, complex(gx, gy), complex(tx, ty), by, m, residuals, jacobian):
+            m += 1
+            continue
         one, two = jacobian[m], jacobian[m + 1]
         residuals[m], residuals[m + 1] = gx, gy
         for i in range(9):
@@ -225,16 +259,7 @@ def compute_path_rows(
                 _project(jacobian, first, m + 2, state[n : n + m + 2 - first])
         m += 2
     ends = np.array([state[0], state[n - 1]])
-    values, gradients = state[state.size - LIMIT_COUNT :], np.empty((LIMIT_COUNT, unknowns))
-    compute_margins(x, lengths, slopes, ends, turns[0], setting, values, gradients)
-    room = setting[PATH_SETTING_SIZE:]
-    roomy = count_margins(room)
-    if roomy > 0:
-        kept = state[state.size - LIMIT_COUNT - roomy : state.size - LIMIT_COUNT]
-        whole = setting[FULL_TURN_INDEX] > 0.0
-        m = append_workspace_rows(
-            x, lengths, slopes, sign, ends, turns, whole, NO_BODY, room, multipliers, kept, residuals, jacobian, m
-        )  # fmt: skip
-        if m < 0:
-            return -1
-    return append_limit_rows(values, gradients, EQUATION_COUNT, multipliers[roomy:], residuals, jacobian, m)
+    rows: int = _append_margin_rows(
+        x, lengths, slopes, sign, ends, turns, setting, multipliers, state, residuals, jacobian, m
+    )
+    return rows

@@ -286,6 +286,31 @@ def write_back_row(off: complex, slopes: Complex, weight: float, m: int, residua
             jacobian[m, j] = weight / far * (off.real * slopes[j].real + off.imag * slopes[j].imag)
 
 
+@njit(**OPTIONS)
+def _write_edge_margins(
+    x: Real, lengths: Real, chart: Real, setting: Real, multipliers: Real, weight: float, angle: float, places: Complex,
+    number: int, values: Real, gradients: Real, turns: Real, by_c: Complex, by_d: Complex, slopes: Complex,
+) -> None:  # fmt: skip
+    """Write the margins of the joints from the four edges of the box at one crank angle, from ``number`` on.
+
+    Derivatives are written only for margins that bear a load. The last four arrays are scratch.
+    """
+    for edge in range(4):
+        limit, toward = setting[ROOM + edge], 1.0 if edge % 2 == 0 else -1.0
+        least, nearest = np.inf, 0
+        for joint in range(6):
+            at = places[joint].real if edge < 2 else places[joint].imag
+            # The margin is that of the most critical joint.
+            if toward * (at - limit) < least:
+                least, nearest = toward * (at - limit), joint
+        values[number + edge] = least
+        if least < multipliers[number + edge] / weight:
+            _compute_joint_slopes(nearest, x, lengths, chart, setting, angle, turns, by_c, by_d, slopes)
+            for j in range(UNKNOWNS):
+                by = slopes[j].real if edge < 2 else slopes[j].imag
+                gradients[number + edge, j] = toward * by
+
+
 @njit(ROWS, **OPTIONS)
 def compute_sixbar_rows(
     x: Real, points: Real, setting: Real, multipliers: Real, state: Real, residuals: Real, jacobian: Real
@@ -303,10 +328,8 @@ def compute_sixbar_rows(
     # Logarithms of lengths beyond this overflow in their products.
     if not (np.abs(x[3:7]).max() < 30.0 and max(abs(x[DYAD]), abs(x[DYAD + 1])) < 30.0):
         return -1
-    turns = np.zeros((2, UNKNOWNS + 1))
+    turns, slopes, m = np.zeros((2, UNKNOWNS + 1)), np.empty(UNKNOWNS + 1, np.complex128), 0
     by_c, by_d = np.empty(UNKNOWNS + 1, np.complex128), np.empty(UNKNOWNS + 1, np.complex128)
-    slopes = np.empty(UNKNOWNS + 1, np.complex128)
-    m = 0
     for i in range(n):
         z, root = complex(points[i, 0], points[i, 1]), points[i, 3]
         angle = _settle_angle(x, lengths, setting, z, state[i])
@@ -337,20 +360,10 @@ def compute_sixbar_rows(
         at_e = compute_cosine(x, places[2], places[3])
         # |cos| is bounded by two one-sided margins, which are smooth.
         values[number], values[number + 1] = setting[COSINE] - at_e, setting[COSINE] + at_e
-        for edge in range(4):
-            limit, toward = setting[ROOM + edge], 1.0 if edge % 2 == 0 else -1.0
-            least, nearest = np.inf, 0
-            for joint in range(6):
-                at = places[joint].real if edge < 2 else places[joint].imag
-                # The margin is that of the most critical joint.
-                if toward * (at - limit) < least:
-                    least, nearest = toward * (at - limit), joint
-            values[number + 2 + edge] = least
-            if least < multipliers[number + 2 + edge] / weight:
-                _compute_joint_slopes(nearest, x, lengths, chart, setting, angle, turns, by_c, by_d, slopes)
-                for j in range(UNKNOWNS):
-                    by = slopes[j].real if edge < 2 else slopes[j].imag
-                    gradients[number + 2 + edge, j] = toward * by
+        _write_edge_margins(
+            x, lengths, chart, setting, multipliers, weight, angle, places, number + 2, values, gradients, turns, by_c,
+            by_d, slopes,
+        )  # fmt: skip
         loaded = values[number] < multipliers[number] / weight or values[number + 1] < multipliers[number + 1] / weight
         if not (loaded or back):
             continue

@@ -291,6 +291,30 @@ def compute_sixbar_stance_rows(
     return rows
 
 
+@njit(**OPTIONS)
+def _settle_simple_angle(
+    family: int, x: Real, lengths: Real, chart: Real, sign: float, ratio: float, z: complex, angle: float, by: Complex
+) -> float:
+    """Return the crank angle at the place of the path nearest to z, by Newton's method from ``angle``.
+
+    The last angle is returned where the linkage does not close. ``by`` is scratch.
+    """
+    for _ in range(MAX_SETTLING_STEPS):
+        closes, p = place_with_slopes(family, x, lengths, chart, sign, ratio, angle, by)
+        if not closes:
+            return angle
+        gap, along = p - z, by[len(x)]
+        square = along.real * along.real + along.imag * along.imag
+        if square < MIN_SPEED * MIN_SPEED:
+            break
+        turn = -(along.real * gap.real + along.imag * gap.imag) / square
+        turn = min(max(turn, -MAX_TURN_STEP), MAX_TURN_STEP)
+        if abs(turn) < TURN_TOLERANCE:
+            break
+        angle += turn
+    return angle
+
+
 @njit(ROWS, **OPTIONS)
 def compute_simple_stance_rows(
     x: Real, points: Real, setting: Real, multipliers: Real, state: Real, residuals: Real, jacobian: Real
@@ -313,19 +337,7 @@ def compute_simple_stance_rows(
     m = 0
     for i in range(n):
         z, root, angle = complex(points[i, 0], points[i, 1]), points[i, 3], state[i]
-        for _ in range(MAX_SETTLING_STEPS):
-            closes, p = place_with_slopes(family, x, lengths, chart, sign, ratio, angle, by)
-            if not closes:
-                return -1
-            gap, along = p - z, by[unknowns]
-            square = along.real * along.real + along.imag * along.imag
-            if square < MIN_SPEED * MIN_SPEED:
-                break
-            turn = -(along.real * gap.real + along.imag * gap.imag) / square
-            turn = min(max(turn, -MAX_TURN_STEP), MAX_TURN_STEP)
-            if abs(turn) < TURN_TOLERANCE:
-                break
-            angle += turn
+        angle = _settle_simple_angle(family, x, lengths, chart, sign, ratio, z, angle, by)
         closes, p = place_with_slopes(family, x, lengths, chart, sign, ratio, angle, by)
         if not closes:
             return -1

@@ -13,7 +13,7 @@ import math
 
 import numpy as np
 
-from kinematics.arrays import Real
+from kinematics.arrays import Complex, Real
 from kinematics.compiling import njit
 from synthesis.fit.chart import OPTIONS, compute_lengths
 from synthesis.fit.constraints import (
@@ -128,6 +128,43 @@ def _compute_pivot_margins(x: Real, setting: Real, values: Real, rows: Real) -> 
                 rows[number] = by
 
 
+@njit(**OPTIONS)
+def _write_edge_margins(
+    setting: Real, multipliers: Real, weight: float, places: Complex, number: int, values: Real
+) -> bool:
+    """Write the margins of the joints from the four edges of the box, from ``number`` on; return whether one is
+    loaded."""
+    pressed = False
+    for edge in range(4):
+        limit, toward = setting[ROOM + edge], 1.0 if edge % 2 == 0 else -1.0
+        values[number + edge] = np.inf
+        for joint in range(GROUND_JOINT_COUNT):
+            at = places[joint].real if edge < 2 else places[joint].imag
+            values[number + edge] = min(values[number + edge], toward * (at - limit))
+        pressed |= values[number + edge] < multipliers[number + edge] / weight
+    return pressed
+
+
+@njit(**OPTIONS)
+def _differentiate_edge_margins(
+    x: Real, setting: Real, multipliers: Real, weight: float, places: Complex, turns: Real, joints: Complex,
+    by: Complex, slopes: Complex, number: int, values: Real, gradients: Real,
+) -> None:  # fmt: skip
+    """Write the derivatives of those margins of :func:`_write_edge_margins` that bear a load; ``slopes`` is scratch."""
+    for edge in range(4):
+        if not values[number + edge] < multipliers[number + edge] / weight:
+            continue
+        limit, toward = setting[ROOM + edge], 1.0 if edge % 2 == 0 else -1.0
+        for joint in range(GROUND_JOINT_COUNT):
+            at = places[joint].real if edge < 2 else places[joint].imag
+            # Only the joint that is nearest to the edge determines the margin.
+            if toward * (at - limit) > values[number + edge]:
+                continue
+            transform_to_ground(x, joint, turns, joints, by, slopes)
+            for j in range(UNKNOWNS):
+                gradients[number + edge, j] = toward * (slopes[j].real if edge < 2 else slopes[j].imag)
+
+
 @njit(ROWS, **OPTIONS)
 def compute_inverted_rows(
     x: Real, points: Real, setting: Real, multipliers: Real, state: Real, residuals: Real, jacobian: Real
@@ -177,14 +214,7 @@ def compute_inverted_rows(
         # |cos| is bounded by two one-sided margins, which are smooth.
         values[number], values[number + 1] = setting[COSINE] - cosine, setting[COSINE] + cosine
         loaded = values[number] < multipliers[number] / weight or values[number + 1] < multipliers[number + 1] / weight
-        pressed = False
-        for edge in range(4):
-            limit, toward = setting[ROOM + edge], 1.0 if edge % 2 == 0 else -1.0
-            values[number + 2 + edge] = np.inf
-            for joint in range(GROUND_JOINT_COUNT):
-                at = places[joint].real if edge < 2 else places[joint].imag
-                values[number + 2 + edge] = min(values[number + 2 + edge], toward * (at - limit))
-            pressed |= values[number + 2 + edge] < multipliers[number + 2 + edge] / weight
+        pressed = _write_edge_margins(setting, multipliers, weight, places, number + 2, values)
         # Derivatives are expensive, and needed only for margins that bear a load.
         if not (loaded or back or pressed):
             continue
@@ -192,18 +222,9 @@ def compute_inverted_rows(
         if loaded:
             differentiate_slant(joints, by, gradients[number + 1])
             gradients[number] = -gradients[number + 1]
-        for edge in range(4):
-            if not values[number + 2 + edge] < multipliers[number + 2 + edge] / weight:
-                continue
-            limit, toward = setting[ROOM + edge], 1.0 if edge % 2 == 0 else -1.0
-            for joint in range(GROUND_JOINT_COUNT):
-                at = places[joint].real if edge < 2 else places[joint].imag
-                # Only the joint that is nearest to the edge determines the margin.
-                if toward * (at - limit) > values[number + 2 + edge]:
-                    continue
-                transform_to_ground(x, joint, turns, joints, by, slopes)
-                for j in range(UNKNOWNS):
-                    gradients[number + 2 + edge, j] = toward * (slopes[j].real if edge < 2 else slopes[j].imag)
+        _differentiate_edge_margins(
+            x, setting, multipliers, weight, places, turns, joints, by, slopes, number + 2, values, gradients
+        )
         if back:
             transform_to_ground(x, POINT, turns, joints, by, slopes)
             write_back_row(find_nearest_side(places[POINT], points), slopes, setting[BACK], m, residuals, jacobian)
