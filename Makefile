@@ -134,7 +134,7 @@ check: $(STAMP)
 
 format: $(STAMP) $(NODE)
 	$(BIN)/ruff format .
-	cd service/studio && ../../tests/node/node_modules/.bin/prettier --print-width 120 --write '*.js'
+	cd service/studio && ../../tests/node/node_modules/.bin/prettier --print-width 120 --write '**/*.js' '!vendor/**'
 
 # The inner loop: everything but the tests marked slow, or the TESTS that are named: make quick TESTS=tests/synthesis
 quick: $(STAMP)

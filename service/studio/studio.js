@@ -1,57 +1,57 @@
-/** The studio: enter a problem, follow its job, view the answers. It is a client of the public API only. */
+/** The studio: edit a problem, follow its job, inspect the answers. It uses the public API only. */
 
-import { Unreadable, holds, sentIn } from "./address.js";
-import * as api from "./api.js";
-import * as answers from "./answers.js";
-import { Backdrop } from "./backdrop.js";
-import { CurveImport } from "./curve_import.js";
-import { Desk } from "./desk.js";
-import { byId, el } from "./dom.js";
-import { draftOf, forgetDraft, keepDraft, lastKind, lastSteps } from "./drafts.js";
-import { Gallery, listed } from "./gallery.js";
-import { Leader } from "./guide.js";
-import { History } from "./history.js";
-import { keymap } from "./keymap.js";
-import { Keys } from "./keys.js";
-import { Link } from "./link.js";
-import { choose, language, languages, t, translatePage, translated } from "./messages.js";
-import { Opening } from "./opening.js";
-import * as running from "./run.js";
-import { SentLinkage } from "./sent.js";
-import { Store } from "./store.js";
-import { Task } from "./task.js";
+import { UnreadableAddress, holdsStatement, decodeFragment } from "./core/address_fragment.js";
+import * as api from "./core/api.js";
+import * as answers from "./answers/answers.js";
+import { Backdrop } from "./canvas/backdrop.js";
+import { CurveImport } from "./canvas/curve_import.js";
+import { Workbench } from "./design/workbench.js";
+import { byId, createElement } from "./core/dom.js";
+import { readDraft, forgetDraft, keepDraft, readLastKind, readLastSteps } from "./core/drafts.js";
+import { Gallery, listExamples } from "./task/gallery.js";
+import { GuideRunner } from "./task/guide.js";
+import { JobHistory } from "./task/job_history.js";
+import { listBindings } from "./page/keymap.js";
+import { Keyboard } from "./page/keyboard.js";
+import { CopyLink } from "./page/copy_link.js";
+import { switchLanguage, language, languages, t, translatePage, translate } from "./core/messages.js";
+import { OpeningExample } from "./task/opening_example.js";
+import * as running from "./task/job_progress.js";
+import { SharedLinkage } from "./task/shared_linkage.js";
+import { Store } from "./core/store.js";
+import { TaskPane } from "./task/task.js";
 
 /** @import { Linked, Problem } from "./types/values.js" */
 
-/** @type {History} */
-let history;
+/** @type {JobHistory} */
+let jobHistory;
 /** @type {CurveImport | undefined} */
-let imported;
+let curveImport;
 /** @type {Gallery | undefined} */
 let gallery;
-/** Whether the gallery was requested before it was loaded. */
-let wanted = false;
+/** Whether the gallery has been asked for before it was there. */
+let galleryWanted = false;
 
 translatePage();
 
-const desk = new Desk();
-const opening = new Opening(desk, "Hatch lid");
-/** The view that is shown until a problem is entered. @type {{leave: () => void}} */
-let guest = opening;
+const workbench = new Workbench();
+const opening = new OpeningExample(workbench, "Hatch lid");
+/** What is shown until somebody states something. @type {{leave: () => void}} */
+let openingView = opening;
 
-const label = byId("label", HTMLInputElement);
+const jobLabel = byId("label", HTMLInputElement);
 const store = new Store();
 const backdrop = new Backdrop(() => task.draw());
-/** @type {Task} */
-const task = new Task(store, backdrop, {
-  solve,
-  state,
+/** @type {TaskPane} */
+const task = new TaskPane(store, backdrop, {
+  solve: solveStatement,
+  state: beginStatement,
   resume: (kind) => {
-    vacate();
+    clearGuest();
     resume(kind);
-    desk.stage.show("state");
+    workbench.stage.showMode("state");
   },
-  picture: (name) => gallery?.picture(name),
+  picture: (name) => gallery?.findPicture(name),
 });
 store.listen(({ edited }) => {
   const { stale } = store;
@@ -60,85 +60,85 @@ store.listen(({ edited }) => {
   byId("undo", HTMLButtonElement).disabled = !store.past.steps.past.length;
   byId("redo", HTMLButtonElement).disabled = !store.past.steps.future.length;
   if (!edited) return;
-  drafted();
-  vacate();
-  if (store.answered === null) desk.stage.show("state");
+  saveDraft();
+  clearGuest();
+  if (store.answered === null) workbench.stage.showMode("state");
 });
 
 /** @param {unknown} error */
-function tell(error) {
+function showError(error) {
   byId("status").textContent = error instanceof Error ? error.message : String(error ?? "");
 }
 
-/** Remove the linkage from the address, for the current problem. Undo brings it back. */
-function vacate() {
-  guest.leave();
-  if (holds(location.hash)) window.history.pushState(null, "", location.pathname);
+/** Make room for what is stated now. What came in the address is there again when one goes back. */
+function clearGuest() {
+  openingView.leave();
+  if (holdsStatement(location.hash)) window.history.pushState(null, "", location.pathname);
 }
 
 /** The job in the address; empty where there is none. */
-function asked() {
+function addressedJob() {
   return /^#job=([0-9A-Z]{26})$/.exec(location.hash)?.[1] ?? "";
 }
 
 /** Keep the statement as it is now, unless the service has it as an example. */
-function drafted() {
+function saveDraft() {
   const { problem } = store;
   if (store.example >= 0) forgetDraft(problem.kind);
-  else keepDraft(problem, label.value, store.past.steps, store.answered === null ? "" : asked());
+  else keepDraft(problem, jobLabel.value, store.past.steps, store.answered === null ? "" : addressedJob());
 }
 
 /**
  * Go on with the statement that was left, or begin with the example.
  * @param {string} kind
- * @param {import("./undo.js").Steps} [steps] that led to it
+ * @param {import("./core/undo.js").Steps} [steps] that led to it
  */
 function resume(kind, steps) {
-  const draft = draftOf(kind);
-  // The draft may be from another version of the service.
-  if (!draft || !store.fits(draft.problem)) {
+  const draft = readDraft(kind);
+  // It may have been stated on another version of the service.
+  if (!draft || !store.matchesSchema(draft.problem)) {
     store.begin((store.kinds.find((one) => one.kind === kind) ?? store.kinds[0]).example);
     return;
   }
   store.begin(draft.problem, steps);
-  label.value = draft.label;
+  jobLabel.value = draft.label;
   byId("draft").hidden = false;
 }
 
-/** Begin with another statement. @param {Problem} statement @param {boolean} [solved] at once */
-function state(statement, solved = false) {
-  vacate();
+/** Start with another problem. @param {Problem} statement @param {boolean} [solved] at once */
+function beginStatement(statement, solved = false) {
+  clearGuest();
   store.begin(statement);
-  desk.stage.show("state");
-  if (solved) solve();
+  workbench.stage.showMode("state");
+  if (solved) solveStatement();
 }
 
-async function solve() {
+async function solveStatement() {
   const button = byId("solve", HTMLButtonElement);
   button.disabled = true;
-  busy(true);
-  tell("");
-  task.clear();
+  markBusy(true);
+  showError("");
+  task.clearErrors();
   try {
     const statement = store.problem;
-    const job = await api.solve(statement, label.value || null);
-    store.post(job.id, statement);
-    desk.drawer.select("answers");
-    const note = el("p", { class: "note" }, t`Designs stand here as soon as they are found.`);
+    const job = await api.submitJob(statement, jobLabel.value || null);
+    store.recordSubmission(job.id, statement);
+    workbench.drawer.selectTab("answers");
+    const note = createElement("p", { class: "note" }, t`Designs appear here as soon as they are found.`);
     if (store.answered === null) byId("result").replaceChildren(note);
     location.hash = `job=${job.id}`;
   } catch (error) {
-    busy(false);
-    desk.drawer.select("task");
-    if (error instanceof api.Refused) task.refused(error);
-    else tell(error);
+    markBusy(false);
+    workbench.drawer.selectTab("task");
+    if (error instanceof api.Refusal) task.showRefusal(error);
+    else showError(error);
   } finally {
     button.disabled = false;
   }
 }
 
-/** Mark that an answer is awaited: the previous one is shown faintly. @param {boolean} is */
-function busy(is) {
+/** An answer is awaited: what is shown of the one before is faint. @param {boolean} is */
+function markBusy(is) {
   for (const place of [byId("answers"), byId("watch"), byId("numbers"), byId("beside")]) {
     if (is) place.setAttribute("aria-busy", "true");
     else place.removeAttribute("aria-busy");
@@ -146,29 +146,31 @@ function busy(is) {
 }
 
 /** Show what the address holds: its statement, and its linkage as this service drives it. */
-async function unpack() {
+async function openFragment() {
   const fragment = location.hash;
   try {
-    const sent = await sentIn(fragment, store.kinds);
+    const sent = await decodeFragment(fragment, store.kinds);
     if (location.hash !== fragment) return;
-    guest.leave();
-    running.leave(byId("progress"));
-    answers.leave(byId("result"), desk);
-    busy(false);
-    store.forget();
+    openingView.leave();
+    running.stopFollowing(byId("progress"));
+    answers.clearAnswers(byId("result"), workbench);
+    markBusy(false);
+    store.forgetAnswer();
     store.begin(sent.problem);
-    label.value = sent.label;
+    jobLabel.value = sent.label;
     byId("result").replaceChildren(
-      el("p", { class: "note" }, t`This statement came in the address. Solve finds its answers.`),
+      createElement("p", { class: "note" }, t`This problem came in the address. Press Solve to find designs.`),
     );
-    desk.stage.show("state");
-    const linkage = new SentLinkage(desk, sent, state);
-    guest = linkage;
+    workbench.stage.showMode("state");
+    const linkage = new SharedLinkage(workbench, sent, beginStatement);
+    openingView = linkage;
     await linkage.show().catch((error) => {
-      throw new Unreadable(t`The linkage in the address is not shown: ${error.errors?.[0]?.detail ?? error.message}`);
+      throw new UnreadableAddress(
+        t`The linkage in the address is not shown: ${error.errors?.[0]?.detail ?? error.message}`,
+      );
     });
   } catch (error) {
-    tell(error);
+    showError(error);
   }
 }
 
@@ -176,9 +178,13 @@ async function unpack() {
  * What had been edited of the statement of a job, beside its answers, is as it was left.
  * @param {string} job
  */
-function editedBeside(job) {
-  const draft = draftOf(store.problem.kind);
-  if (draft?.job === job && store.fits(draft.problem) && store.spelt(draft.problem) !== store.spelt(store.problem))
+function restoreDraft(job) {
+  const draft = readDraft(store.problem.kind);
+  if (
+    draft?.job === job &&
+    store.matchesSchema(draft.problem) &&
+    store.canonicalText(draft.problem) !== store.canonicalText(store.problem)
+  )
     store.begin(draft.problem);
 }
 
@@ -186,149 +192,167 @@ function editedBeside(job) {
  * Show what the address names: a job with its problem, its progress and its answer, or what has been sent.
  * @param {boolean} [reloaded] whether the page has just been opened
  */
-async function restore(reloaded = false) {
-  if (holds(location.hash)) {
-    tell("");
-    return unpack();
+async function openAddress(reloaded = false) {
+  if (holdsStatement(location.hash)) {
+    showError("");
+    return openFragment();
   }
-  const id = asked();
+  const id = addressedJob();
   if (!id) return;
-  tell("");
-  running.leave(byId("progress"));
-  busy(true);
+  showError("");
+  running.stopFollowing(byId("progress"));
+  markBusy(true);
   try {
-    let job = await api.job(id);
-    if (store.posted.id !== id) state(store.plain(job.problem));
-    store.answer(id);
-    if (reloaded) editedBeside(id);
-    label.value = job.label ?? "";
+    let job = await api.fetchJob(id);
+    if (store.posted.id !== id) beginStatement(store.removeDefaults(job.problem));
+    store.recordAnswer(id);
+    if (reloaded) restoreDraft(id);
+    jobLabel.value = job.label ?? "";
     if (["queued", "running"].includes(job.status)) {
-      history.load().catch(tell);
-      const ended = await running.run(byId("progress"), id);
+      jobHistory.load().catch(showError);
+      const ended = await running.showJob(byId("progress"), id);
       if (location.hash !== `#job=${id}`) return;
-      if (!ended) return busy(false);
+      if (!ended) return markBusy(false);
       job = ended;
     }
-    busy(false);
-    guest.leave();
-    answers.answer(byId("result"), desk, job, state, (statement) => {
+    markBusy(false);
+    openingView.leave();
+    answers.showAnswer(byId("result"), workbench, job, beginStatement, (statement) => {
       store.begin(statement);
-      solve();
+      solveStatement();
     });
     // Where what had the focus is hidden now, the keys go on at the answers.
     if (store.posted.id === id && document.activeElement === document.body)
       byId("answers").focus({ preventScroll: true });
-    history.load().catch(tell);
+    jobHistory.load().catch(showError);
   } catch (error) {
-    busy(false);
-    tell(error);
+    markBusy(false);
+    showError(error);
   }
 }
 
-/** Leave the shown job: the next problem has no answers yet. */
-function left() {
-  running.leave(byId("progress"));
-  busy(false);
-  store.forget();
-  answers.leave(byId("result"), desk);
-  desk.stage.offer(false);
-  byId("result").replaceChildren(el("p", { class: "note" }, t`State a problem, or take an example, and solve it.`));
+/** Leave the job that is shown: what is stated next has no answers yet. */
+function leaveJob() {
+  running.stopFollowing(byId("progress"));
+  markBusy(false);
+  store.forgetAnswer();
+  answers.clearAnswers(byId("result"), workbench);
+  workbench.stage.offerMotion(false);
+  byId("result").replaceChildren(
+    createElement("p", { class: "note" }, t`Enter a problem or choose an example, then solve it.`),
+  );
   window.history.replaceState(null, "", location.pathname);
 }
 
 /** Begin with an example, by the name that it has in the gallery. @param {{problem: Problem, name: string}} example */
-function exemplify({ problem, name }) {
-  state(problem);
-  label.value = translated(name);
+function openExample({ problem, name }) {
+  beginStatement(problem);
+  jobLabel.value = translate(name);
 }
 
-async function begin() {
+async function start() {
   try {
-    store.kinds = await api.kinds();
+    store.kinds = await api.fetchKinds();
   } catch (error) {
-    if (error instanceof api.Refused && error.status === 401) byId("key", HTMLDetailsElement).open = true;
-    return tell(error);
+    if (error instanceof api.Refusal && error.status === 401) byId("key", HTMLDetailsElement).open = true;
+    return showError(error);
   }
-  tell("");
-  task.choices();
-  imported ??= new CurveImport(byId("import"), backdrop, store);
-  history = new History(byId("jobs"), store.kinds);
+  showError("");
+  task.createChoices();
+  curveImport ??= new CurveImport(byId("import"), backdrop, store);
+  jobHistory = new JobHistory(byId("jobs"), store.kinds);
   gallery = new Gallery(store.kinds, (example) => {
-    exemplify(example);
-    solve();
+    openExample(example);
+    solveStatement();
   });
-  const leader = new Leader({
-    desk,
+  const leader = new GuideRunner({
+    desk: workbench,
     problem: () => store.problem,
     answered: () => store.answered !== null && !store.stale && !byId("answers").hasAttribute("aria-busy"),
     state: (kind, name) => {
-      const example = listed(store.kinds).find((one) => one.kind === kind && one.name === name);
+      const example = listExamples(store.kinds).find((one) => one.kind === kind && one.name === name);
       if (!example) return;
-      left();
-      exemplify(example);
+      leaveJob();
+      openExample(example);
     },
   });
   byId("guides").replaceChildren(
-    el("p", { class: "note" }, t`Guided, a minute each`),
-    ...leader.list(() => gallery?.dialog.close()),
+    createElement("p", { class: "note" }, t`Guided tasks of one minute`),
+    ...leader.createButtons(() => gallery?.dialog.close()),
   );
-  if (wanted) gallery.open();
-  opening.measured();
-  const last = location.hash ? "" : lastKind();
-  resume(last || store.kinds[0].kind, last ? lastSteps() : undefined);
-  history.load().catch(tell);
-  await restore(true);
+  if (galleryWanted) gallery.open();
+  opening.addUnits();
+  const last = location.hash ? "" : readLastKind();
+  resume(last || store.kinds[0].kind, last ? readLastSteps() : undefined);
+  jobHistory.load().catch(showError);
+  await openAddress(true);
 }
 
 /** Open the gallery, as soon as the service has said what it has. */
-function browse() {
-  wanted = !gallery;
+function openGallery() {
+  galleryWanted = !gallery;
   gallery?.open();
 }
 
-/** What a link to this page as it is now holds. @returns {import("./address.js").Sent} */
-function sending() {
+/** What a link to this page as it is now holds. @returns {import("./core/address_fragment.js").SharedContent} */
+function collectShared() {
   // What answers an earlier statement is no part of this one.
-  const design = store.stale ? null : desk.shown;
+  const design = store.stale ? null : workbench.shown;
   const { type, skeleton, driven_by } = design?.mechanism ?? {};
   return {
     problem: store.problem,
-    label: label.value,
+    label: jobLabel.value,
     placed: Boolean(design?.placement),
     mechanism: skeleton ? /** @type {Linked} */ ({ type, skeleton, ...(driven_by && { driven_by }) }) : null,
   };
 }
 
-const link = new Link(byId("link"), byId("link-told"), sending);
+const link = new CopyLink(byId("link"), byId("link-told"), collectShared);
 
-/** @type {Keys} */
-const keys = new Keys(keymap({ answers, desk, store, solve, browse, link, sheet: () => keys.open() }));
+/** @type {Keyboard} */
+const keys = new Keyboard(
+  listBindings({
+    answers,
+    desk: workbench,
+    store,
+    solve: solveStatement,
+    browse: openGallery,
+    link,
+    sheet: () => keys.open(),
+  }),
+);
 byId("undo", HTMLButtonElement).addEventListener("click", () => store.undo());
 byId("redo", HTMLButtonElement).addEventListener("click", () => store.redo());
-byId("stale-solve").addEventListener("click", () => solve());
+byId("stale-solve").addEventListener("click", () => solveStatement());
 byId("stale-back").addEventListener("click", () => {
   if (!store.answered) return;
   store.begin(store.answered);
-  drafted();
+  saveDraft();
 });
-byId("gallery-open").addEventListener("click", () => browse());
+byId("gallery-open").addEventListener("click", () => openGallery());
 byId("keys-open").addEventListener("click", () => keys.open());
 byId("key-form").addEventListener("submit", (event) => {
   event.preventDefault();
-  api.useKey(byId("key-value", HTMLInputElement).value.trim());
+  api.writeKey(byId("key-value", HTMLInputElement).value.trim());
   byId("key-value", HTMLInputElement).value = "";
   byId("key", HTMLDetailsElement).open = false;
-  begin();
+  start();
 });
 byId("language", HTMLSelectElement).replaceChildren(
   ...Object.entries(languages).map(([code, { name }]) =>
-    el("option", { value: code, lang: code, selected: code === language }, `${code.toUpperCase()} · ${name}`),
+    createElement(
+      "option",
+      { value: code, lang: code, selected: code === language },
+      `${code.toUpperCase()} · ${name}`,
+    ),
   ),
 );
-byId("language", HTMLSelectElement).addEventListener("change", () => choose(byId("language", HTMLSelectElement).value));
-window.addEventListener("hashchange", () => restore());
-label.addEventListener("input", () => {
-  if (draftOf(store.problem.kind)) drafted();
+byId("language", HTMLSelectElement).addEventListener("change", () =>
+  switchLanguage(byId("language", HTMLSelectElement).value),
+);
+window.addEventListener("hashchange", () => openAddress());
+jobLabel.addEventListener("input", () => {
+  if (readDraft(store.problem.kind)) saveDraft();
 });
-if (!location.hash && !lastKind()) opening.show();
-begin();
+if (!location.hash && !readLastKind()) opening.show();
+start();

@@ -119,7 +119,7 @@ def test_a_lid_is_drawn_solved_compared_changed_taken_home_and_sent(studio, chro
     # Gauge, checks and plots say what the answer says.
     page.click("#tab-numbers")
     best = designs[0]["metrics"]
-    least = re.search(r"least ([\d.]+°)", page.inner_text(".gauge")).group(1)
+    least = re.search(r"minimum ([\d.]+°)", page.inner_text(".gauge")).group(1)
     assert told(best["min_transmission_angle"], least, "°")
     for name, unit in (("size", " mm"), ("min_transmission_angle", "°"), ("link_ratio", ""), ("input_travel", "°")):
         row = page.get_by_role("row", name=re.compile(f"^{name.replace('_', ' ').capitalize()} ")).locator("td")
@@ -164,10 +164,10 @@ def test_a_lid_is_drawn_solved_compared_changed_taken_home_and_sent(studio, chro
         zip(page.locator("#explore dt").all_inner_texts(), page.locator("#explore dd").all_inner_texts(), strict=True)
     )
     least = least_transmission(joints)
-    assert said["Least transmission angle"].endswith("°")
+    assert said["Minimum transmission angle"].endswith("°")
     # At a toggle it is nothing, and the samples stop a little before.
-    toggles = said["Input turns through"] == "no"
-    assert least - 0.2 <= number(said["Least transmission angle"]) <= least + (25.0 if toggles else 1.0)
+    toggles = said["Full input rotation"] == "no"
+    assert least - 0.2 <= number(said["Minimum transmission angle"]) <= least + (25.0 if toggles else 1.0)
     # One length is typed: it alone changes, and that is undone, as the drag before it is.
     dragged = lengths(page)
     field = page.locator(".sizes-of input[aria-label='Coupler A–B']")
@@ -181,12 +181,12 @@ def test_a_lid_is_drawn_solved_compared_changed_taken_home_and_sent(studio, chro
     assert lengths(page) == dragged
     page.keyboard.press("Control+Shift+Z")
     assert lengths(page) == typed
-    page.get_by_role("button", name="Undo the last change of the linkage").click()
-    page.get_by_role("button", name="Undo the last change of the linkage").click()
+    page.get_by_role("button", name="Undo the last change to the linkage").click()
+    page.get_by_role("button", name="Undo the last change to the linkage").click()
     assert lengths(page) == untouched
     # It begins a statement, and that is undone.
     drawn = stated(page)
-    page.get_by_role("button", name="Begin a statement with these fixed pivots").click()
+    page.get_by_role("button", name="Start a problem with these fixed pivots").click()
     assert stated(page) != drawn
     page.keyboard.press("Control+z")
     assert stated(page) == drawn
@@ -209,7 +209,7 @@ def test_a_lid_is_drawn_solved_compared_changed_taken_home_and_sent(studio, chro
     # Its address, opened by somebody else who has nothing but that, shows the same.
     studio.context.grant_permissions(["clipboard-read", "clipboard-write"])
     page.click("#link")
-    page.wait_for_selector("#link-told:has-text('the statement and the linkage')")
+    page.wait_for_selector("#link-told:has-text('the problem and the linkage')")
     link = page.evaluate("navigator.clipboard.readText()")
     other = Studio(chromium, studio.url, viewport=dict(DESKTOP), opened=link)
     try:

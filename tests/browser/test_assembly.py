@@ -198,7 +198,7 @@ def test_what_leaves_no_room_is_said_with_a_button_for_the_scale_that_works(open
     page.locator(CANVAS).wait_for(timeout=120_000)
     scale = float(page.input_value("#assembly-scale"))
     assert scale > 1.0
-    assert f"{scale:g} times the design" in page.locator("#assembly .note[role=status]").inner_text()
+    assert f"{scale:g} times the size of the design" in page.locator("#assembly .note[role=status]").inner_text()
     assert fault.inner_text() == ""
     assert [text for text in studio.wrong if "422" not in text] == []
     studio.wrong.clear()

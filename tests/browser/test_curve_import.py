@@ -67,7 +67,7 @@ def test_a_dropped_drawing_becomes_a_path_and_areas(studio):
         width="100mm", height="100mm", viewBox="0 0 100 100",
     )  # fmt: skip
     drop(page, "way.svg", drawing)
-    assert "2 curves; a unit of the file is 1 mm" in told(page)
+    assert "2 curves; one unit of the file is 1 mm" in told(page)
     assert "open" in page.inner_text("#curves li:has-text('way')")
     assert page.locator("#curve0 option").evaluate_all("all => all.map(one => one.value)") == ["", "points"]
     assert "obstacle" in page.locator("#curve1 option").evaluate_all("all => all.map(one => one.value)")
@@ -182,7 +182,7 @@ def test_a_picture_is_laid_behind_the_canvas_scaled_by_two_points_and_traced(stu
     assert trail["y"] + trail["height"] / 2 == pytest.approx(image["y"] + 0.4 * image["height"], abs=5)
     page.fill("#backdrop-width", "200")
     page.press("#backdrop-width", "Tab")
-    assert "A pixel is 1 mm" in page.inner_text("#backdrop")
+    assert "One pixel is 1 mm" in page.inner_text("#backdrop")
     page.click("#backdrop-clear")
     assert page.locator("#sketch image.backdrop").count() == 0
 

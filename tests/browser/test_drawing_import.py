@@ -50,7 +50,7 @@ def test_an_obstacle_and_a_zone_come_from_drawings_and_the_answers_keep_them(stu
     state(page, {**LID, "input_side": {"dyad": "RR"}, "output_side": {"dyad": "RR"}, "max_designs": 2})
     import_(page, "frame.svg", FRAME)
     assert "2 closed outlines" in told(page)
-    assert "a unit of the drawing is 0.5 mm" in told(page)
+    assert "one unit of the drawing is 0.5 mm" in told(page)
     assert page.input_value("#drawing-scale") == "0.5"
     lintel = page.locator(".drawn li:has-text('lintel on FRAME')")
     assert "220 × 40 mm, 4 corners" in lintel.inner_text()
@@ -66,7 +66,7 @@ def test_an_obstacle_and_a_zone_come_from_drawings_and_the_answers_keep_them(stu
     page.click("#drawing-place")
     assert "2 areas placed from frame.svg" in told(page)
     import_(page, "wall.dxf", WALL)
-    assert "a unit of the drawing is 10 mm" in told(page)
+    assert "one unit of the drawing is 10 mm" in told(page)
     page.locator(".drawn select").select_option("o2")
     page.click("#drawing-place")
 

@@ -179,7 +179,7 @@ def test_dimensions_are_typed_held_and_made_equal_and_the_fit_goes_on_from_there
         assert typed[name] == pytest.approx(first[name], rel=1e-4), name
     # What no linkage has is refused, and changes nothing.
     type_in(page, "Output O4–B", 1000 * typed["Output O4–B"])
-    page.get_by_text("No linkage near this one has these dimensions together.").wait_for()
+    page.get_by_text("No linkage near this one has all these dimensions.").wait_for()
     assert sizes(page) == typed
     # Held, it stays while a pin is drawn; others do not.
     page.get_by_label("Hold Coupler A–B").check()
@@ -199,7 +199,7 @@ def test_dimensions_are_typed_held_and_made_equal_and_the_fit_goes_on_from_there
     begun = sizes(page)
     before = page.url
     # A fit knows nothing of what is equal or held, and its button says so.
-    assert page.get_by_role("button", name="Optimise from here, what is held let go").count() == 1
+    assert page.get_by_role("button", name="Optimise from here, with held dimensions free").count() == 1
     page.get_by_role("button", name="Optimise from here").click()
     until(lambda: page.evaluate("location.href") != before, 30, "the job")
     studio.answered()

@@ -123,8 +123,8 @@ def test_arrows_and_cursors_say_what_the_service_says(open_studio, server):
     )
     extremes = told["extremes"]
     peaks = {
-        "Drive torque, greatest": (extremes["drive"]["max"], extremes["drive"]["at"], "N·m"),
-        "Drive torque, least": (extremes["drive"]["min"], extremes["drive"]["at_min"], "N·m"),
+        "Drive torque, maximum": (extremes["drive"]["max"], extremes["drive"]["at"], "N·m"),
+        "Drive torque, minimum": (extremes["drive"]["min"], extremes["drive"]["at_min"], "N·m"),
         **{f"Pin force {name}": (one["max"], one["at"], "N") for name, one in extremes["joints"].items()},
         "Shaking force": (*extremes["shaking_force"].values(), "N"),
         "Shaking moment": (*extremes["shaking_moment"].values(), "N·m"),
@@ -168,7 +168,7 @@ def test_where_a_force_is_not_determined_there_is_a_gap_with_its_reason(open_stu
     (gap,) = page.locator(".gaps li").all_inner_texts()
     said = [float(one.replace("−", "-")) for one in re.findall(r"([−\d.]+)°", gap)]
     assert said == pytest.approx([inputs[low], inputs[high]], abs=0.051)
-    reason = "it jams by friction"
+    reason = "friction jams it"
     assert gap.endswith(f"° {reason}")
     lead(page, PLACE)
     assert page.locator(".force:not([hidden])").count() == 4
@@ -200,7 +200,7 @@ def test_a_load_is_stated_on_the_drawing_and_a_fault_is_told_at_its_field(open_s
     studio_steps.solved(studio, PLAIN, shown=".moving .live .link")
     page.click("#tab-plots")
     page.locator("#forces summary").first.press("Enter")
-    assert "not known until that is stated" in page.inner_text(".borne")
+    assert "states no masses and loads" in page.inner_text(".borne")
     assert page.locator(".peaks").count() == 0, "nothing is shown that nobody has stated"
     for path, value in {"speed_rpm": 60, "links/density": 7800, "links/thickness": 10, "links/width": 2}.items():
         page.fill(f'[data-path="/dynamics/{path}"]', str(value))

@@ -62,12 +62,12 @@ def test_units_stand_beside_the_fields_and_follow_the_length_unit(studio):
 def test_a_number_becomes_a_range_and_a_number_again(studio):
     page = studio.page
     show(page, get_first_example("cam"))
-    way = page.get_by_label("Roller radius: how it is stated")
+    way = page.get_by_label("Roller radius: form of the value")
     way.select_option("a range")
     page.fill(at("follower/roller_radius/min"), "6")
     page.fill(at("follower/roller_radius/max"), "12")
     assert stated(page)["follower"]["roller_radius"] == {"min": 6, "max": 12}
-    page.get_by_label("Roller radius: how it is stated").select_option("a number")
+    page.get_by_label("Roller radius: form of the value").select_option("a number")
     page.fill(at("follower/roller_radius"), "8")
     assert stated(page)["follower"]["roller_radius"] == 8
 
@@ -116,7 +116,7 @@ def test_choices_names_and_stocks(studio):
     assert stated(page)["stock"] == [20, {"teeth": 24, "count": 3}, 30]
 
     show(page, get_first_example("planetary_train"))
-    page.get_by_label("Name of another one").fill("sun")
+    page.get_by_label("Name of a new entry").fill("sun")
     page.locator(at("teeth/gears")).get_by_role("button", name="Add").click()
     page.fill(at("teeth/gears/sun/min"), "20")
     assert stated(page)["teeth"]["gears"]["sun"]["min"] == 20

@@ -240,7 +240,7 @@ def test_what_moves_fills_the_stage_of_another_window(own_studio):
             "all => all.map(one => [one.cells[0].textContent, one.cells[1].textContent])"
         )
     )
-    assert peaks["Drive torque, greatest"] == peaks["Drive torque, least"] == "0 N·m"
+    assert peaks["Drive torque, maximum"] == peaks["Drive torque, minimum"] == "0 N·m"
     assert peaks["Pin force O"] == "81 N"
 
 

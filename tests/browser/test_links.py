@@ -14,10 +14,10 @@ pytestmark = [pytest.mark.browser, pytest.mark.timeout(300)]
 
 
 MISFITS = """async every => {
-  const { misfit } = await import("/studio/schema.js");
+  const { findMismatch } = await import("/studio/core/schema.js");
   const told = (await (await fetch("/v1/problems")).json()).problems;
   const schemas = Object.fromEntries(told.map(({ kind, schema }) => [kind, schema]));
-  return every.map(([kind, one]) => misfit(one, schemas[kind], schemas[kind]));
+  return every.map(([kind, one]) => findMismatch(one, schemas[kind], schemas[kind]));
 }"""
 
 
@@ -38,7 +38,7 @@ def test_a_link_has_the_statement_and_a_linkage_that_is_driven_where_it_is_opene
     own_studio.solve()
     page.wait_for_selector(".moving .live .link")
     page.click("#link")
-    page.wait_for_selector("#link-told:has-text('the statement and the linkage')")
+    page.wait_for_selector("#link-told:has-text('the problem and the linkage')")
     own_studio.screen("link_copied")
     link = page.evaluate("navigator.clipboard.readText()")
     assert len(link) < 2000
@@ -152,8 +152,8 @@ def test_what_is_edited_beside_answers_is_there_again_with_them(own_studio):
     page.wait_for_selector(".card")
     page.wait_for_selector("#stale:visible")
     assert stated(page)["max_designs"] == 2
-    assert page.locator("#example option:checked").inner_text() == "as edited"
-    page.get_by_role("button", name="Go back to it").click()
+    assert page.locator("#example option:checked").inner_text() == "edited"
+    page.get_by_role("button", name="Restore it").click()
     assert stated(page).get("max_designs") != 2
     page.reload()
     page.wait_for_selector(".card")

@@ -214,9 +214,9 @@ def test_every_number_beside_a_cognate_is_the_cognates_own(studio, server):
 
     checked = page.locator("#design .checks li").count()
     assert checked > 0
-    assert f"least {own:g}°" in gauge()
+    assert f"minimum {own:g}°" in gauge()
     page.get_by_label("Left cognate").check()
-    until(lambda: f"least {used:g}°" in gauge(), what="the cognate's own angle")
+    until(lambda: f"minimum {used:g}°" in gauge(), what="the cognate's own angle")
     assert crank() == pytest.approx(cognate["mechanism"]["links"]["input"], rel=1e-3)
     assert crank() != pytest.approx(design["mechanism"]["links"]["input"], rel=1e-3)
     assert page.locator("#design .checks li").count() == 0, "its checks are the design's"
@@ -229,12 +229,12 @@ def test_every_number_beside_a_cognate_is_the_cognates_own(studio, server):
     facts = page.locator("#explore .facts")
     right = next(each for each in design["cognates"] if each["side"] == "right")
     whole = least_transmission(right["mechanism"]["links"])
-    until(lambda: re.search(r"Least transmission angle\s+[\d.]+°", facts.inner_text()), what="the explorer's answer")
-    told = float(re.search(r"Least transmission angle\s+([\d.]+)°", facts.inner_text()).group(1))
+    until(lambda: re.search(r"Minimum transmission angle\s+[\d.]+°", facts.inner_text()), what="the explorer's answer")
+    told = float(re.search(r"Minimum transmission angle\s+([\d.]+)°", facts.inner_text()).group(1))
     assert told == pytest.approx(whole, abs=0.1)
     page.click("#tab-numbers")
     page.check("#cognate-0")
-    until(lambda: f"least {own:g}°" in gauge(), what="the design's angle again")
+    until(lambda: f"minimum {own:g}°" in gauge(), what="the design's angle again")
     assert page.locator("#design .checks li").count() == checked
 
 

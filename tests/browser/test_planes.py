@@ -80,7 +80,7 @@ def test_links_have_the_colour_of_their_plane_and_stand_in_it(open_studio):
         assert (y, y + height) == pytest.approx((top, bottom), abs=1e-6)
     assert page.locator(".side .shaft.stub").count() == len(layout["stub_shafts"]) == 2
     assert "Stub shafts at O2, O4" in page.inner_text(".planes")
-    assert "Nothing clashes" in page.inner_text(".planes")
+    assert "No collision" in page.inner_text(".planes")
     assert violations(page) == []
     studio.screen("planes")
 

@@ -62,7 +62,7 @@ def test_points_of_a_path_are_clicked_and_its_pivots_chosen(studio):
 def test_pairs_of_a_function_are_dragged_on_its_graph(studio):
     page = studio.page
     page.select_option("#kind", "function")
-    page.get_by_role("button", name="State pairs instead").click()
+    page.get_by_role("button", name="Use pairs instead").click()
     before = stated(page)["pairs"]
     drag(page, handle("2") + " .dot", (0, -30))
     after = stated(page)["pairs"]
@@ -84,7 +84,7 @@ def test_a_quick_return_is_stated_by_its_limit_positions(studio):
     press(page, "O2", "ArrowRight", "PageUp", "PageUp")
     assert stated(page)["ground_angle"] == 10
     press(page, "O2", "Delete")
-    page.get_by_role("button", name="State both limit positions").click()
+    page.get_by_role("button", name="Add both limit positions").click()
     drag(page, handle("2") + " .dot", (20, -10))
     positions = stated(page)["positions"]
     assert len(positions) == 2

@@ -30,7 +30,7 @@ def test_a_linkage_is_stated_solved_and_moves(open_studio, name, options):
     state(page, PLAIN)
     studio.solve()
     assert page.locator(".card").count() == 1
-    assert "Complete: the search has left out nothing" in page.inner_text("#result")
+    assert "Complete: the search covered everything" in page.inner_text("#result")
     page.wait_for_selector(".moving .live .link")
     before = link_now(page)
     until(lambda: link_now(page) != before, what="another frame")
@@ -128,9 +128,9 @@ def test_a_stroke_whose_ends_meet_is_a_closed_curve(studio):
     steps = [math.dist(one, points[(k + 1) % 24]) for k, one in enumerate(points)]
     assert max(steps) < 1.5 * min(steps), "evenly, from the last to the first too"
     assert "Closed: the whole curve is matched" in page.inner_text("#sketch")
-    page.get_by_role("button", name="Keep it open").click()
+    page.get_by_role("button", name="Leave it free").click()
     assert not {"closed", "method"} & set(stated(page))
-    assert page.get_by_role("button", name="Keep it open").count() == 0
+    assert page.get_by_role("button", name="Leave it free").count() == 0
 
 
 def test_rows_are_pasted_from_a_spreadsheet(studio):
@@ -232,7 +232,7 @@ def test_a_pin_is_dragged_and_the_analysis_follows(studio):
     drag(page, "#exploring .target:has(text:text-is('O4')) .dot", (40, 25))
     until(lambda: page.get_attribute("#exploring .curve", "d") != curve, 30, "another curve")
     until(lambda: page.inner_text("#explore .facts") != figures, 30, "other figures")
-    page.get_by_role("button", name="Begin a statement with these fixed pivots").click()
+    page.get_by_role("button", name="Start a problem with these fixed pivots").click()
     begun = stated(page)
     assert begun["input_side"]["fixed_pivot"] == [0, -20]
     assert begun["output_side"]["fixed_pivot"][0] > 20
@@ -246,7 +246,7 @@ def test_where_nothing_is_found_the_page_shows_what_comes_nearest(studio):
     studio.solve()
     page.wait_for_selector("#miss")
     told = page.inner_text("#miss")
-    gap = re.search(r"Transmission angle ([\d.]+)°, demanded 88.5°", told)
+    gap = re.search(r"Transmission angle ([\d.]+)°, required 88.5°", told)
     reach = re.search(r"min transmission angle (\d+\.\d+)", told, re.IGNORECASE)
     assert gap is not None, told
     assert float(gap.group(1)) == pytest.approx(float(reach.group(1)), abs=0.01)
@@ -268,7 +268,7 @@ def test_answers_to_an_earlier_statement_say_so(studio):
     assert not note.is_visible()
     state(page, {**PLAIN, "input_side": {**PLAIN["input_side"], "rotations": [55.0]}})
     until(note.is_visible, what="the note")
-    page.get_by_role("button", name="Go back to it").click()
+    page.get_by_role("button", name="Restore it").click()
     until(lambda: not note.is_visible(), what="the statement of the answers again")
     assert stated(page)["input_side"]["rotations"] == PLAIN["input_side"]["rotations"]
     state(page, {**PLAIN, "length_unit": "in"})

@@ -136,14 +136,14 @@ def test_a_plot_is_looked_at_nearer_and_taken_home(studio):
         page.evaluate("location.hash.slice(5)"),
     )
     with page.expect_download() as waiting:
-        plot.get_by_role("button", name="Take the numbers home").click()
+        plot.get_by_role("button", name="Download the numbers").click()
     head, *rows = csv.reader(Path(waiting.value.path()).read_text().splitlines())
     assert head == ["Input (°)", *(f"Velocity of P (mm/rad): {name}" for name in ("total", "x", "y"))]
     told = [[float(cell) if cell else None for cell in row] for row in rows]
     assert [row[0] for row in told] == motion["input_angle"]
     assert [row[2] for row in told] == motion["joints"]["P"]["vx"]
     with page.expect_download() as waiting:
-        plot.get_by_role("button", name="Take the picture home").click()
+        plot.get_by_role("button", name="Download the picture").click()
     with Image.open(waiting.value.path()) as picture:
         assert picture.width == 1200
         assert len(picture.convert("RGB").getcolors(1 << 20)) > 10

@@ -10,8 +10,8 @@ from tests.support.browser.studio import PLAIN, state
 pytestmark = pytest.mark.browser
 
 ASKED = """async asked => {
-  const { symbolOf } = await import("/studio/units.js");
-  return asked.map(([problem, dimensions]) => dimensions.map(one => symbolOf(one, problem)));
+  const { unitSymbol } = await import("/studio/core/units.js");
+  return asked.map(([problem, dimensions]) => dimensions.map(one => unitSymbol(one, problem)));
 }"""
 
 
@@ -76,8 +76,8 @@ def test_only_what_is_missed_by_rounding_is_exact(kept_studio):
     ]
     told = kept_studio.page.evaluate(
         """async asked => {
-          const { exact } = await import("/studio/figures.js");
-          return asked.map(([name, value, dimension, size]) => exact(name, value, dimension ?? undefined, size));
+          const { isExact } = await import("/studio/design/design_metrics.js");
+          return asked.map(([name, value, dimension, size]) => isExact(name, value, dimension ?? undefined, size));
         }""",
         asked,
     )

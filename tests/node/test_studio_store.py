@@ -13,7 +13,7 @@ from tests.support.service.running import ROOT
 STUDIO = ROOT / "service" / "studio"
 
 PROGRAM = """
-import { Store } from "./store.js";
+import { Store } from "./core/store.js";
 const store = new Store();
 store.kinds = [
   { kind: "path", schema: { type: "object", properties: { kind: {}, points: {}, seed: { default: 0 } } },
@@ -36,8 +36,8 @@ seen.origin = store.origin;
 seen.written = tries(() => store.problem.points.push([6, 6]));
 seen.failed = tries(() => store.change((statement) => { statement.points = []; throw new RangeError(); }));
 seen.now = store.problem.points;
-store.post("A", store.problem);
-store.answer("A");
+store.recordSubmission("A", store.problem);
+store.recordAnswer("A");
 time = 2000;
 store.change((statement) => (statement.seed = 0));
 seen.defaults = store.stale;
@@ -50,8 +50,8 @@ seen.forth = store.problem.points;
 store.undo();
 store.undo();
 seen.all = [store.problem.points, store.past.steps.past.length, store.past.steps.future.length];
-store.write({ kind: "cam" }, "text");
-seen.kind = [store.kind.kind, store.past.steps.future.length, store.fits({ kind: "lid" })];
+store.replace({ kind: "cam" }, "text");
+seen.kind = [store.kind.kind, store.past.steps.future.length, store.matchesSchema({ kind: "lid" })];
 console.log(JSON.stringify({ ...seen, told }));
 """
 
@@ -59,8 +59,7 @@ pytestmark = [pytest.mark.browser, pytest.mark.timeout(60)]
 
 
 def test_changes_make_statements_steps_and_news(tmp_path):
-    for module in STUDIO.glob("*.js"):
-        shutil.copy(module, tmp_path)
+    shutil.copytree(STUDIO, tmp_path, dirs_exist_ok=True)
     (tmp_path / "package.json").write_text('{"type": "module"}')
     (tmp_path / "program.js").write_text(PROGRAM)
     done = subprocess.run(["node", "program.js"], cwd=tmp_path, capture_output=True, text=True, timeout=30)
@@ -85,9 +84,9 @@ def test_changes_make_statements_steps_and_news(tmp_path):
 
 SPELT = """
 import { readFileSync } from "node:fs";
-import { spelling } from "./schema.js";
+import { canonicalText } from "./core/schema.js";
 const cases = JSON.parse(readFileSync("cases.json"));
-console.log(JSON.stringify(cases.map(([schema, ...both]) => both.map((one) => spelling(one, schema)))));
+console.log(JSON.stringify(cases.map(([schema, ...both]) => both.map((one) => canonicalText(one, schema)))));
 """
 
 
@@ -97,8 +96,7 @@ def test_an_example_whose_defaults_are_written_out_is_the_example_yet(tmp_path):
         for kind in KINDS
         for one in list_examples(kind)
     ]
-    for name in ("schema.js", "pointer.js"):
-        shutil.copy(STUDIO / name, tmp_path)
+    shutil.copytree(STUDIO / "core", tmp_path / "core")
     (tmp_path / "cases.json").write_text(json.dumps(cases))
     (tmp_path / "package.json").write_text('{"type": "module"}')
     (tmp_path / "spelt.js").write_text(SPELT)

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from tests.support.service.running import ROOT
+from tools.studio.messages import STUDIO
 from tools.studio.types import DOCUMENT, TYPES, written
 
 HERE = Path(__file__).parent
@@ -21,20 +21,21 @@ pytestmark = [pytest.mark.browser, pytest.mark.timeout(400)]
 
 def test_the_studio_is_well_typed(tmp_path):
     assert (MODULES / ".installed").exists(), "make test-browser installs what this needs of node"
-    for module in (ROOT / "service" / "studio").glob("*.js"):
-        shutil.copy(module, tmp_path)
-    shutil.copytree(TYPES.parent, tmp_path / "types")
+    shutil.copytree(STUDIO, tmp_path, ignore=shutil.ignore_patterns("vendor"), dirs_exist_ok=True)
     (tmp_path / "vendor").mkdir()
     (tmp_path / "node_modules").symlink_to(MODULES)
     for name, module in VENDORED.items():
         (tmp_path / "vendor" / name).write_text(f'export * from "{module}";\n')
     # What must be refused, so that nothing passes because nothing is looked at.
     (tmp_path / "mistaken.js").write_text(
-        'import { View } from "./view.js";\n/** @param {View} view */\nexport const wrong = (view) => view.at("one");\n'
+        'import { View } from "./core/view.js";\n'
+        '/** @param {View} view */\nexport const wrong = (view) => view.toPicture("one");\n'
         '/** @param {import("./types/values.js").Design} one */\nexport const no = (one) => one.mechanism.cranc;\n'
     )
     settings = json.loads((HERE / "studio.json").read_text())
-    (tmp_path / "tsconfig.json").write_text(json.dumps({**settings, "include": ["*.js", "types/*.d.ts"]}))
+    (tmp_path / "tsconfig.json").write_text(
+        json.dumps({**settings, "include": ["**/*.js", "types/*.d.ts"], "exclude": ["node_modules", "vendor"]})
+    )
     done = subprocess.run(
         [str(MODULES / ".bin" / "tsc"), "-p", "."], cwd=tmp_path, capture_output=True, text=True, timeout=300
     )

@@ -24,7 +24,7 @@ STUDIO = ROOT / "service" / "studio"
 _TAG = re.compile(r"(?<![\w$.])t`")
 _READ = ("aria-label", "title", "placeholder", "content")
 _CHECK = re.compile(
-    r"\b(?:Check\(\s*name=|(?:_?check(?:_minimum|_maximum|_error|_zone)?|reject)\(\s*|name, \w+ = )"
+    r"\b(?:Check\(\s*name=|(?:_?check(?:_\w+)?|_?reject(?:_\w+)?)\(\s*|name, \w+ = )"
     r"\"([a-z]\w*)\""
     r"|^[A-Z_]+ = \"([a-z]+_[a-z_]+|outranked)\"$",
     re.MULTILINE,
@@ -55,9 +55,14 @@ def spoken() -> list[str]:
     return list(dict.fromkeys([*of_the_page(), *of_the_service(), *names(), *progress()]))
 
 
+def studio_modules() -> list[Path]:
+    """Return the paths of the page's own modules."""
+    return [path for path in sorted(STUDIO.rglob("*.js")) if path.parent.name != "vendor"]
+
+
 def of_the_page() -> Iterator[str]:
     """Texts of the modules and of the markup."""
-    for module in sorted(STUDIO.glob("*.js")):
+    for module in studio_modules():
         yield from tagged(module.read_text("utf-8"))
     markup = _Markup()
     markup.feed((STUDIO / "index.html").read_text("utf-8"))

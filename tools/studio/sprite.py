@@ -31,12 +31,12 @@ WIDTH, HEIGHT = 150, 84
 CHROMIUM = "/usr/bin/chromium"
 
 DRAW = """async ([design, motion]) => {
-  const { thumbnail } = await import("/studio/thumbnail.js");
-  const { telling } = await import("/studio/circuits.js");
+  const { createThumbnail } = await import("/studio/motion/thumbnail.js");
+  const { findTracedJoint } = await import("/studio/motion/circuits.js");
   const skeleton = design.mechanism.skeleton;
-  const track = skeleton && motion && motion.joints[telling(skeleton)];
+  const track = skeleton && motion && motion.joints[findTracedJoint(skeleton)];
   const curve = track ? track.x.map((x, k) => (x === null ? [NaN, NaN] : [x, track.y[k]])) : [];
-  return [...thumbnail(design, curve).children].map(one => new XMLSerializer().serializeToString(one)).join("");
+  return [...createThumbnail(design, curve).children].map(one => new XMLSerializer().serializeToString(one)).join("");
 }"""
 
 

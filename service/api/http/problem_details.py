@@ -32,10 +32,12 @@ __all__ = [
     "FieldError",
     "ProblemDetails",
     "Refusal",
+    "describe_responses",
+    "install",
     "refuse_busy",
     "refuse_compiling",
+    "refuse_full_queue",
     "refuse_gone",
-    "install",
     "refuse_invalid_body",
     "refuse_invalid_drawing",
     "refuse_invalid_mechanism",
@@ -44,8 +46,6 @@ __all__ = [
     "refuse_malformed_drawing",
     "refuse_malformed_json",
     "refuse_not_found",
-    "refuse_full_queue",
-    "describe_responses",
     "refuse_without_store",
 ]
 

@@ -1,117 +1,152 @@
-"""Bundles of the page's modules, so that a browser needs one request instead of one for each module.
+"""Bundle the modules of the page, so that a browser sends one request and not one for each module.
 
-A module becomes a function that is called at once and returns its exports; its imports are taken from the returned
-values of the modules before it::
+Each module becomes a function that is called at once and returns the exports of the module. Imports become references
+to what the modules before it returned. In ``canvas/grid.js``::
 
-    import { el } from "./dom.js";                    const $grid = (() => {
-    export function grid(view) { ... }       becomes  const { el } = $dom;
+    import { el } from "../core/dom.js";              const $canvas$grid = (() => {
+    export function grid(view) { ... }       becomes  const { el } = $core$dom;
                                                       function grid(view) { ... }
                                                       return { grid };
                                                       })();
 
-This is correct for modules of the form that the page uses, and any other form is refused: imports and exports begin a
-line and name their bindings, exported bindings are never reassigned, and no modules import each other. A module with a
-top-level ``await`` becomes an async function that is awaited. Nothing is minified, so that positions in browser
-messages can be found in the sources.
+This keeps the meaning only of modules written as ours are, and anything else is refused: imports and exports begin a
+line and name every binding, exported bindings are never reassigned, and no two modules import each other. A module with
+a top-level ``await`` becomes an async function that is awaited. The bundle is not minified: an error message of a
+browser can be found in the sources.
 """
 
 from __future__ import annotations
 
+import posixpath
 import re
 from collections.abc import Mapping
 from graphlib import CycleError, TopologicalSorter
 
-BUNDLE_SUFFIX = ".bundle.js"
-"""Suffix of a bundle's name, which replaces ``.js`` of its first module."""
+SUFFIX = ".bundle.js"
+"""Ending of the name of a bundle, in place of the ``.js`` of its first module."""
 
 _IMPORT = re.compile(
-    r'^import (?:\{ (?P<names>[^}]+) \}|\* as (?P<all>\w+)) from "\./(?P<module>[\w./]+)";$', re.MULTILINE
+    r'^import (?:\{\s+(?P<names>[^}]+?),?\s+\}|\* as (?P<namespace>\w+)) from "(?P<specifier>\.\.?/[\w./]+)";$',
+    re.MULTILINE,
 )
 _EXPORT = re.compile(r"^export (?=(?:async )?(?:function|class|const) (\w+))", re.MULTILINE)
-_OTHER_STATEMENT = re.compile(r"^(?:import|export)\b.*$", re.MULTILINE)
-_AWAITING_CONST = re.compile(r"^(?:export )?const \w+ = (?:.* )?await ", re.MULTILINE)
-"""A module with a top-level ``await``."""
-_LAZY_IMPORT = re.compile(r'import\("\./(\w+)\.js"\)(?=[,;)\]])')
-"""A dynamic import, which begins a bundle of its own. Types in comments have another form."""
+_UNSUPPORTED = re.compile(r"^(?:import|export)\b.*$", re.MULTILINE)
+_TOP_LEVEL_AWAIT = re.compile(r"^(?:export )?const \w+ = (?:.* )?await ", re.MULTILINE)
+
+# A dynamic import. The types in comments have the same form, but a bracket, a space or a dot follows them.
+_DYNAMIC_IMPORT = re.compile(r'import\("(\.\.?/[\w./]+\.js)"\)(?=[,;)\]])')
 
 
 class BundleError(Exception):
-    """The modules cannot be bundled; the message has the reason."""
+    """The modules cannot be bundled; the message says why."""
 
 
 def build_bundles(modules: Mapping[str, str], first: str) -> dict[str, str]:
-    """Return the bundle that begins with the module ``first``, and all bundles imported dynamically, by name.
+    """Bundle the module ``first`` with its imports, and likewise every module that these import dynamically.
 
     Parameters
     ----------
     modules
-        The text of each module by name, such as ``dom.js``. Imports of other modules are kept as they are.
+        The text of each module by its path, such as ``core/dom.js``. Imports of other modules stay imports.
+    first
+        The path of the module that the page loads.
+
+    Returns
+    -------
+    dict[str, str]
+        The text of each bundle by its path.
 
     Raises
     ------
     BundleError
-        If a module has an unsupported import or export, or modules import each other.
+        If a module imports or exports in an unsupported way, or if modules import each other.
     """
-    made: dict[str, str] = {}
-    wanted = [first]
-    while wanted:
-        begins = wanted.pop()
-        if name_bundle(begins) in made:
+    bundles: dict[str, str] = {}
+    pending = [first]
+    while pending:
+        entry = pending.pop()
+        if name_bundle(entry) in bundles:
             continue
-        order = _sort_modules(modules, begins)
-        wanted += [f"{later}.js" for name in order for later in _LAZY_IMPORT.findall(modules[name])]
-        made[name_bundle(begins)] = _join_modules(modules, order)
-    return made
+        order = _sort_by_imports(modules, entry)
+        pending += [_resolve(name, found) for name in order for found in _DYNAMIC_IMPORT.findall(modules[name])]
+        bundles[name_bundle(entry)] = _concatenate(modules, order)
+    return bundles
 
 
 def name_bundle(module: str) -> str:
-    """Return the name of the bundle that begins with a module.
+    """Return the path of the bundle that starts at a module.
 
-    >>> name_of("studio.js")
-    'studio.bundle.js'
+    >>> name_bundle("assembly/assembly_scene.js")
+    'assembly/assembly_scene.bundle.js'
     """
-    return module.removesuffix(".js") + BUNDLE_SUFFIX
+    return module.removesuffix(".js") + SUFFIX
 
 
-def _sort_modules(modules: Mapping[str, str], first: str) -> list[str]:
-    needs: dict[str, list[str]] = {}
-    new = [first]
-    while new:
-        name = new.pop()
-        if name not in needs:
-            imported = [found["module"] for found in _IMPORT.finditer(modules[name])]
-            needs[name] = [one for one in imported if one in modules]
-            new += needs[name]
+def _sort_by_imports(modules: Mapping[str, str], entry: str) -> list[str]:
+    """List the entry and all that it imports, each module after its own imports."""
+    imports: dict[str, list[str]] = {}
+    pending = [entry]
+    while pending:
+        name = pending.pop()
+        if name not in imports:
+            targets = [_resolve(name, match["specifier"]) for match in _IMPORT.finditer(modules[name])]
+            imports[name] = [target for target in targets if target in modules]
+            pending += imports[name]
     try:
-        return list(TopologicalSorter(needs).static_order())
+        return list(TopologicalSorter(imports).static_order())
     except CycleError as error:
         raise BundleError(f"these modules import each other: {', '.join(error.args[1])}") from None
 
 
-def _join_modules(modules: Mapping[str, str], order: list[str]) -> str:
-    outside: dict[str, None] = {}
-
-    def replace_import(found: re.Match[str]) -> str:
-        if found["module"] not in modules:
-            outside[found.group()] = None
-            return ""
-        what = found["all"] or f"{{ {found['names'].replace(' as ', ': ')} }}"
-        return f"const {what} = {_name_variable(found['module'])};"
-
+def _concatenate(modules: Mapping[str, str], order: list[str]) -> str:
+    """Write the modules as functions, one after the other; the last one is the entry."""
+    entry = order[-1]
+    external: dict[str, None] = {}  # a dictionary keeps the order of the imports
     parts: list[str] = []
-    exported: list[str] = []
+    exports: list[str] = []
     for name in order:
-        exported = _EXPORT.findall(modules[name])
-        text = _EXPORT.sub("", _IMPORT.sub(replace_import, modules[name]))
-        if other := _OTHER_STATEMENT.search(text):
-            raise BundleError(f"{name}: unsupported import or export: {other.group()}")
-        text = _LAZY_IMPORT.sub(lambda found: f'import("./{found[1]}{BUNDLE_SUFFIX}")', text)
-        made = "await (async () =>" if _AWAITING_CONST.search(text) else "(() =>"
-        parts.append(f"const {_name_variable(name)} = {made} {{\n{text}return {{ {', '.join(exported)} }};\n}})();\n")
-    # The last module in order is the first one of the bundle; the bundle has the same exports.
-    parts.append(f"export const {{ {', '.join(exported)} }} = {_name_variable(order[-1])};\n")
-    return "\n".join([*outside, *parts])
+        exports = _EXPORT.findall(modules[name])
+        body = _EXPORT.sub("", _replace_imports(modules, name, entry, external))
+        if unsupported := _UNSUPPORTED.search(body):
+            raise BundleError(f"{name}: a bundle cannot contain the line: {unsupported.group()}")
+        call = "await (async () =>" if _TOP_LEVEL_AWAIT.search(body) else "(() =>"
+        parts.append(f"const {_variable(name)} = {call} {{\n{body}return {{ {', '.join(exports)} }};\n}})();\n")
+    parts.append(f"export const {{ {', '.join(exports)} }} = {_variable(entry)};\n")
+    return "\n".join([*external, *parts])
 
 
-def _name_variable(module: str) -> str:
-    return f"${module.removesuffix('.js')}"
+def _replace_imports(modules: Mapping[str, str], name: str, entry: str, external: dict[str, None]) -> str:
+    """Replace the imports of a module by references, and collect in ``external`` those of modules outside."""
+
+    def refer(match: re.Match[str]) -> str:
+        target = _resolve(name, match["specifier"])
+        if target not in modules:
+            external[match.group().replace(match["specifier"], _specifier(entry, target))] = None
+            return ""
+        bindings = match["namespace"] or f"{{ {match['names'].replace(' as ', ': ')} }}"
+        return f"const {bindings} = {_variable(target)};"
+
+    def load_bundle(match: re.Match[str]) -> str:
+        return f'import("{_specifier(entry, name_bundle(_resolve(name, match[1])))}")'
+
+    return _DYNAMIC_IMPORT.sub(load_bundle, _IMPORT.sub(refer, modules[name]))
+
+
+def _resolve(importer: str, specifier: str) -> str:
+    """Return the path of the module that a specifier names, seen from the module that imports it."""
+    return posixpath.normpath(posixpath.join(posixpath.dirname(importer), specifier))
+
+
+def _specifier(importer: str, target: str) -> str:
+    """Return the relative specifier by which a module imports another one.
+
+    >>> _specifier("assembly/assembly_scene.js", "vendor/three.module.min.js"), _specifier("studio.js", "core/dom.js")
+    ('../vendor/three.module.min.js', './core/dom.js')
+    """
+    path = posixpath.relpath(target, posixpath.dirname(importer) or ".")
+    return path if path.startswith(".") else f"./{path}"
+
+
+def _variable(module: str) -> str:
+    """Return the name of the variable that holds the exports of a module."""
+    return f"${module.removesuffix('.js').replace('/', '$')}"

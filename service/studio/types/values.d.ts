@@ -62,8 +62,8 @@ export type Layout = NonNullable<Design["layout"]>;
 
 /** What shows one type of mechanism takes the designs and the motions of that type only, which is its name's affair. */
 export declare class MovingView {
-  constructor(frame: import("../stage.js").Frame, design: Design, motion: Analysis, problem: Problem);
+  constructor(frame: import("../canvas/stage.js").Frame, design: Design, motion: Analysis, problem: Problem);
   stop(): void;
   pause?(): void;
-  player: import("../player.js").Player;
+  player: import("../core/player.js").Player;
 }
