@@ -107,10 +107,10 @@ __all__ = [
     "FieldFaults",
     "Refusal",
     "count_faults",
+    "refuse_faults",
     "refuse_invalid_body",
     "refuse_invalid_mechanism",
     "refuse_invalid_problem",
     "refuse_invalid_request",
     "refuse_not_found",
-    "refuse_faults",
 ]

@@ -55,9 +55,7 @@ class Settings(BaseSettings):
         default=True, description="Compile missing kernels in parallel with the jobs, not when a job first needs them."
     )
     max_body_bytes: Annotated[int, Field(ge=1024, le=1 << 30, description="Largest request body, bytes.")] = 1 << 20
-    job_timeout_s: Annotated[float, Field(gt=0, le=86_400, description="Time limit of a job, seconds.")] = (
-        600.0
-    )
+    job_timeout_s: Annotated[float, Field(gt=0, le=86_400, description="Time limit of a job, seconds.")] = 600.0
     job_memory_mb: Annotated[
         int, Field(ge=64, le=1 << 20, description="Memory limit of a job beyond its idle worker's memory, MiB.")
     ] = 4096
@@ -65,12 +63,9 @@ class Settings(BaseSettings):
         1000
     )
     retention_days: (
-        Annotated[float, Field(gt=0, le=36_500, description="Days to keep finished jobs; by default forever.")]
-        | None
+        Annotated[float, Field(gt=0, le=36_500, description="Days to keep finished jobs; by default forever.")] | None
     ) = None
-    max_wait_s: Annotated[
-        int, Field(ge=0, le=30, description="Longest wait granted to Prefer: wait, seconds.")
-    ] = 30
+    max_wait_s: Annotated[int, Field(ge=0, le=30, description="Longest wait granted to Prefer: wait, seconds.")] = 30
     rate_limit: Annotated[
         str,
         Field(

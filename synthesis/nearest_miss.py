@@ -11,7 +11,7 @@ constraint that nevertheless satisfies it is a regular answer. Kinds that declar
 without their tolerance, and kinds that declare an ``easing`` (dwells) with an easier task. All other problems have
 their nearest miss among the designs that were driven and failed.
 
-:mod:`synthesis.results.time_budget` limits the time of all of this; whatever was found by then is reported.
+:mod:`synthesis.results.time_budget` limits the time of all of this; the best miss found by then is reported.
 """
 
 from __future__ import annotations

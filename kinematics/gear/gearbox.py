@@ -1,7 +1,7 @@
 """Gearboxes of several speeds on fixed shafts: analysis of given tooth numbers.
 
-A machine-tool gearbox is a row of shafts; between each two neighbours one of several gear pairs is engaged, so that the
-spindle has as many speeds as there are ways to choose one pair from every stage (Rao, Sec. 8.5). A layshaft gearbox of
+A machine-tool gearbox is a row of shafts; between each two neighbours one of several gear pairs is engaged. The number
+of spindle speeds is the product of the numbers of pairs of all stages (Rao, Sec. 8.5). A layshaft gearbox of
 a vehicle has a head pair that always turns the layshaft, a pair from there to the main shaft for every gear, and an
 idler in the pair that reverses.
 """

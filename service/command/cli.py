@@ -186,9 +186,7 @@ def _build_parser() -> argparse.ArgumentParser:
         help="formats of the files to write for each design, separated by commas; '' for none",
     )  # fmt: skip
     analyze = commands.add_parser("analyze", help="analyse the mechanism in a file: angles, joints, ...")
-    analyze.add_argument(
-        "mechanism", help="a JSON file with a mechanism or a request body; - for standard input"
-    )
+    analyze.add_argument("mechanism", help="a JSON file with a mechanism or a request body; - for standard input")
     _add_service_options(analyze)
     analyze.add_argument("-o", "--output", type=Path, help="output file, .json or .csv; by default JSON is printed")
     draw = commands.add_parser("draw", help="draw a design of an answer, without a service")

@@ -56,7 +56,7 @@ class _Counter:
             total += 1
             if entity.dxftype() == "INSERT" and self._shown(entity):
                 rows, columns = grid_of(entity)
-                # What is copied and empty is looked at all the same.
+                # Empty blocks count as one element per copy, because each copy takes time.
                 total += rows * columns * max(self._count_block(entity, depth), 1)
         return total
 

@@ -29,14 +29,14 @@ let jobHistory;
 let curveImport;
 /** @type {Gallery | undefined} */
 let gallery;
-/** Whether the gallery has been asked for before it was there. */
+/** Whether the gallery was requested before it was loaded. */
 let galleryWanted = false;
 
 translatePage();
 
 const workbench = new Workbench();
 const opening = new OpeningExample(workbench, "Hatch lid");
-/** What is shown until somebody states something. @type {{leave: () => void}} */
+/** The view that is shown until a problem is entered. @type {{leave: () => void}} */
 let openingView = opening;
 
 const jobLabel = byId("label", HTMLInputElement);
@@ -70,7 +70,7 @@ function showError(error) {
   byId("status").textContent = error instanceof Error ? error.message : String(error ?? "");
 }
 
-/** Make room for what is stated now. What came in the address is there again when one goes back. */
+/** Clear the view for the current problem. The browser's Back returns to the linkage from the address. */
 function clearGuest() {
   openingView.leave();
   if (holdsStatement(location.hash)) window.history.pushState(null, "", location.pathname);
@@ -95,7 +95,7 @@ function saveDraft() {
  */
 function resume(kind, steps) {
   const draft = readDraft(kind);
-  // It may have been stated on another version of the service.
+  // The draft may be from another version of the service.
   if (!draft || !store.matchesSchema(draft.problem)) {
     store.begin((store.kinds.find((one) => one.kind === kind) ?? store.kinds[0]).example);
     return;
@@ -137,7 +137,7 @@ async function solveStatement() {
   }
 }
 
-/** An answer is awaited: what is shown of the one before is faint. @param {boolean} is */
+/** Mark that an answer is awaited: the previous one is shown faintly. @param {boolean} is */
 function markBusy(is) {
   for (const place of [byId("answers"), byId("watch"), byId("numbers"), byId("beside")]) {
     if (is) place.setAttribute("aria-busy", "true");
@@ -231,7 +231,7 @@ async function openAddress(reloaded = false) {
   }
 }
 
-/** Leave the job that is shown: what is stated next has no answers yet. */
+/** Leave the shown job: the next problem has no answers yet. */
 function leaveJob() {
   running.stopFollowing(byId("progress"));
   markBusy(false);

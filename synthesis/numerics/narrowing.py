@@ -7,7 +7,7 @@ their maximum is narrowest, while other values h(x) stay in a band of given widt
 
 Each step replaces e, h, g by their tangents and bounds the step (Madsen, "An algorithm for minimax solution of
 overdetermined systems of non-linear equations", J. Inst. Math. Appl. 16 (1975) 321, doi:10.1093/imamat/16.3.321). For
-smooth motions as many values touch the edges of the band as there are unknowns (Chebyshev). The steps are then Newton
+smooth motions one value per unknown touches the edges of the band (Chebyshev). The steps are then Newton
 steps and converge quadratically. Constraints are elastic, so that a start need not satisfy them.
 """
 

@@ -136,7 +136,7 @@ class Scene:
         inputs, halves = around.real.copy(), around.imag.copy()
         pose = self._evaluate_pose(inputs)
         shift = pose.places[self._pins] - pose.turn * self._program.code.joints[0][self._pins, None]
-        # The ground does not move, whatever rounding the formula leaves.
+        # The ground does not move: remove the rounding errors of the formula.
         shift[0] = 0.0
         items = np.stack([pair, item], axis=1)
         cores = self._vertices, self._starts, self._links, self.pairs

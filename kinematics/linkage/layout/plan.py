@@ -6,8 +6,8 @@ joined by a pin; a plate that meets a pin must not lie between the planes that t
 range of the input is found: it starts and ends where some pair begins or ceases to keep the gap, and a collision in a
 range is one in every wider range, so a single pass over these ends finds it.
 
-A through shaft at a fixed pivot is held by two bases and occupies every plane. A plate that meets it would have no
-place: the shaft is replaced by a stub shaft, from one of the bases (whichever is better) to the farthest of its plates.
+A through shaft at a fixed pivot rests in two bases and occupies every plane. If a plate meets it, the shaft is replaced
+by a stub shaft from the better one of the bases to the farthest of its plates.
 """
 
 from __future__ import annotations

@@ -10,8 +10,9 @@ it, both keyed to a shaft through it. From below there are
 * the planes above it: the upper plate, and the links joined to that.
 
 The second base itself separates both sides. A shaft of an inside link stands on the first base or hangs from the
-second, whichever is better, and one above stands on the second; a slide on the ground is a slot in that base. Each side
-is arranged in the minimum number of planes by :mod:`~kinematics.linkage.layout.planes`, for every choice of bases.
+second, depending on which is better, and one above stands on the second; a slide on the ground is a slot in that base.
+Each side is arranged in the minimum number of planes by :mod:`~kinematics.linkage.layout.planes`, for every choice of
+bases.
 """
 
 from __future__ import annotations

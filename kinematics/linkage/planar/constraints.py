@@ -187,7 +187,7 @@ class Constraints:
             further = np.zeros_like(poses.places[:1]), np.zeros_like(poses.rotations[:1])
             poses = Poses(*(np.concatenate([jet, none]) for jet, none in zip(poses, further, strict=True)))
             change = self._compute_step(inverse, self._compute_residuals(self._evaluate_jets(poses), input[: n + 1])[n])
-            # With the unknown derivative set to zero the residual is what it must cancel.
+            # With the unknown derivative set to zero, the residual equals the terms that it must cancel.
             poses.places[n], poses.rotations[n] = -change[0], -change[1]
         return poses, misfit, least
 

@@ -190,7 +190,8 @@ def describe_progress(job: JobSummary) -> dict[str, Any]:
 
 def dump_job(job: JobRow) -> bytes:
     """Return a job as :class:`Job` in JSON; result and error are sent as stored, without parsing them."""
-    stored = f'"problem":{fill_defaults(job.kind, job.problem)},"result":{job.result or "null"},"error":{job.error or "null"}'
+    problem, result, error = fill_defaults(job.kind, job.problem), job.result or "null", job.error or "null"
+    stored = f'"problem":{problem},"result":{result},"error":{error}'
     if isinstance(job, SampleRow):
         stored += f',"batch":"{job.batch}","cached":{"true" if job.cached else "false"}'
     return to_json(describe_job(job))[:-1] + b"," + stored.encode() + b"}"

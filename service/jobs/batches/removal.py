@@ -32,7 +32,7 @@ def mark(engine: Engine, batch_id: str) -> bool:
 
 
 def clear(engine: Engine, batch_id: str, seconds: float = math.inf) -> None:
-    """Delete the rest of a marked batch, or as much of it as the time allows."""
+    """Delete the rest of a marked batch, within the time limit."""
     began = time.monotonic()
     portion = select(samples.c.number).where(samples.c.batch == batch_id).limit(PORTION_SIZE)
     some = delete(samples).where(samples.c.batch == batch_id, samples.c.number.in_(portion))

@@ -1,7 +1,7 @@
 """The work on a share of a batch: a worker solves a slice of it and stores the slice in one transaction.
 
-A slice ends after :data:`SLICE_S` seconds or :data:`MAX_SAMPLES` samples, the earlier of the two. That is soon enough to
-free the worker for the next job in turn, and late enough to make claiming and storing, which take as long as a quick
+A slice ends after :data:`SLICE_S` seconds or :data:`MAX_SAMPLES` samples, the earlier of the two. That is soon enough
+to free the worker for the next job in turn, and late enough to make claiming and storing, which take as long as a quick
 problem, a small part of the work.
 
 This module is imported before the worker has set its number of threads, so it must not import numpy.
@@ -41,7 +41,7 @@ LOOKUP_GROUP_SIZE = 16
 
 MAX_PLANS_SIZE = 2 << 20
 """Size of the plans that a worker caches, characters of JSON; in memory they take about ten times as much. Parsing a
-plan for each of many slices would take long. The plan in use is kept whatever its size."""
+plan for each of many slices would take long. The plan in use is kept even if it is larger."""
 
 Outcome = Literal["slice", "superseded", "stopped", "out of memory"]
 

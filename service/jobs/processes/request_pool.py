@@ -18,7 +18,7 @@ from typing import Any, Protocol
 from service.jobs.processes.request_queue import Call, RequestQueue
 from service.jobs.processes.request_worker import ClientGone, GivenUp, Hand, Limits, ProcessLost, ProcessStart
 
-__all__ = ["Busy", "GivenUp", "ClientGone", "Limits", "ProcessLost", "PoolMetrics", "RequestPool", "hash_call"]
+__all__ = ["Busy", "ClientGone", "GivenUp", "Limits", "PoolMetrics", "ProcessLost", "RequestPool", "hash_call"]
 
 MAX_WAIT_S = 20.0
 """Default time that a call waits for its turn, seconds."""

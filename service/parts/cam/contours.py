@@ -1,4 +1,4 @@
-"""Contours of cams as outlines: the curve of the analysis in millimetres, through as few points as a tolerance allows.
+"""Contours of cams as outlines: the curve of the analysis in millimetres, through the fewest points within a tolerance.
 
 The analysis fits curves of degree five through the points of the answer's profile
 (:mod:`kinematics.cam.finished.contact`). An outline is a cubic spline through points of those curves. It is compared
@@ -68,7 +68,7 @@ def fit_outline(contour: Contour, factor: float, offset: float = 0.0) -> Curve:
         curve = Curve(tuple(places[kept].tolist()))
         if measure_deviation(curve, places, kept) <= allowed:
             return curve
-        # Too inaccurate: use twice as many points.
+        # Too inaccurate: double the number of points.
         stride //= 2
     raise NotMade(f"The cam has a bend that no smooth curve follows within {allowed:.2g} mm.")
 

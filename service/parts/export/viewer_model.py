@@ -118,7 +118,7 @@ def _is_endless(motion: Motion) -> bool:
 def _make_carrier_views(assembly: Assembly, carriers: list[Carrier], positions: int) -> list[CarrierView]:
     motion = assembly.motion
     inputs = _sample_inputs(motion, positions)
-    # Track angles through as many inputs as needed, and return them at the requested ones.
+    # Track angles through enough inputs to follow each turn, and return them at the requested ones.
     steps = max(1, math.ceil(MIN_TRACKED_INPUTS / positions))
     between = inputs
     if positions > 1:

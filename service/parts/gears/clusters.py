@@ -9,7 +9,7 @@ driven gears are fixed::
     neutral                     a    b
     sliding, B in mesh               a    b
 
-So no sliding gear passes a fixed one, whatever their teeth, and one pair leaves mesh before the other enters. A cluster
+So no sliding gear passes a fixed one for any teeth, and one pair leaves mesh before the other enters. A cluster
 of one gear needs two levels, in mesh and next to it. The pair of a fixed stage is always in mesh and needs one level.
 """
 

@@ -75,7 +75,7 @@ def draw_gear_train_sheet(design: GearTrainDesign, problem: GearTrainProblem, ti
 
 
 def _fit_captions(gears: list[TrainGear], captions: list[tuple[Box, str]]) -> tuple[Viewport, list[Element]]:
-    """Return a panel with captions of all views, in as many rows below as keep the words separate."""
+    """Return a panel with captions of all views below, in enough rows to keep the words separate."""
     shown, depth = enclose_gears(gears), 0
     while True:
         view = fit_panel(shown, get_drawing_width(), PANEL_HEIGHTS, MARGIN, MARGIN_BELOW + depth * CAPTION_HEIGHT)

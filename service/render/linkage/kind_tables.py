@@ -298,7 +298,7 @@ def make_straight_line(design: StraightLineDesign, problem: StraightLineProblem,
     along = cmath.rect(1.0, math.radians(problem.direction))
     end = start + problem.length * along
     box = Box.enclose(np.concatenate([scene.list_places(), [start, end], scene.used]))
-    # Diagrams run from the start, whatever the input's direction.
+    # Diagrams run from the start in either direction of the input.
     turned, sense = np.linspace(0.0, abs(last - first), SAMPLE_COUNT), math.copysign(1.0, last - first)
     point, rate = linkage.drive_over(first + sense * turned, order=1).joints["P"]
     at = np.degrees(turned)

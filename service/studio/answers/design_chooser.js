@@ -17,7 +17,7 @@ export class DesignChooser {
    * @param {HTMLElement} place
    * @param {import("../design/workbench.js").Workbench} desk
    * @param {Solved} job with two designs at least
-   * @param {import("./design_strip.js").DesignStrip} strip @param {() => void} narrowed told when bounds hide designs
+   * @param {import("./design_strip.js").DesignStrip} strip @param {() => void} narrowed called when bounds hide designs
    */
   constructor(place, desk, job, strip, narrowed) {
     this.place = place;

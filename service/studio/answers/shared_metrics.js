@@ -21,7 +21,7 @@ import { unitSymbol } from "../core/units.js";
 /** Quantities for which larger is better; for all others smaller is. */
 const MORE_IS_BETTER = /^(quality|yield|min_.*|.*efficiency|.*_share|locking_angle|transmission_angle)$/;
 
-/** @param {Design[]} designs @param {Problem} problem @returns {Quantity[]} the telling ones first */
+/** @param {Design[]} designs @param {Problem} problem @returns {Quantity[]} the most important first */
 export function collectQuantities(designs, problem) {
   const names = [
     ...new Set(

@@ -33,7 +33,7 @@ export function canDraw() {
 export class AssemblyScene {
   /**
    * @param {HTMLCanvasElement} canvas @param {Assembly} assembly
-   * @param {{hover: (item: string | null) => void, choose: (item: string | null) => void}} told what the pointer is on
+   * @param {{hover: (item: string | null) => void, choose: (item: string | null) => void}} told pointer callbacks
    */
   constructor(canvas, assembly, told) {
     this.canvas = canvas;

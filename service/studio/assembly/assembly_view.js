@@ -217,7 +217,7 @@ export class AssemblyView {
     );
   }
 
-  /** @param {Assembly} assembly @param {Record<string, string>} query by which it was asked for */
+  /** @param {Assembly} assembly @param {Record<string, string>} query of the request */
   present(assembly, query) {
     this.scene?.stop();
     this.scene = null;

@@ -228,7 +228,7 @@ export class BurmesterCurves {
         );
         if (found) this.showSolved(/** @type {Solved} */ (job));
       }
-      // Only now, when nothing of it is asked for any more.
+      // Remove the previous job only now, when nothing more is requested of it.
       if (before) api.removeJob(before).catch(() => undefined);
     } catch (error) {
       if (asking.signal.aborted || this.gone.signal.aborted) return;

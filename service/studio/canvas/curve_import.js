@@ -29,7 +29,7 @@ const PATH_POINT_COUNT = 24;
 const CAM_POINT_COUNT = 48;
 const AREA_POINT_COUNT = 1000;
 
-/** Fewer points are asked for anew, from the file. */
+/** Minimum number of points for a curve; a smaller number is requested anew from the file. */
 const MIN_POINTS = 3;
 
 export class CurveImport {
@@ -70,7 +70,7 @@ export class CurveImport {
     this.acceptFiles(place.ownerDocument);
   }
 
-  /** Files that are dropped on the page are taken, whatever lies under them. @param {Document} page */
+  /** Accept files that are dropped anywhere on the page. @param {Document} page */
   acceptFiles(page) {
     const files = (/** @type {DragEvent} */ event) => event.dataTransfer?.types.includes("Files");
     const over = (/** @type {boolean} */ is) => page.body.classList.toggle("dropping", is);
@@ -149,7 +149,7 @@ export class CurveImport {
     this.chooser.value = "";
   }
 
-  /** Read the file that was taken, with so many points for a curve. @param {number} most */
+  /** Read the accepted file with at most `most` points for each curve. @param {number} most */
   async readCurves(most) {
     const { file } = this;
     if (!file) return;

@@ -20,7 +20,7 @@ const COORDINATE_DIGITS = 9;
 export class DrawingImport {
   /**
    * @param {import("../core/store.js").Store} store
-   * @param {(path: string | undefined) => void} placed told the area that is chosen before anything shows it
+   * @param {(path: string | undefined) => void} placed called with the chosen area before anything shows it
    */
   constructor(store, placed) {
     this.store = store;

@@ -21,11 +21,11 @@ const FINE_KEY_TURN = 1;
 export class Grip {
   /**
    * @param {object} looks
-   * @param {string} [looks.name] what stands beside it
+   * @param {string} [looks.name] label next to it
    * @param {Point} [looks.beside] where the name stands, pixels from its middle
    * @param {string} [looks.kind] class of the whole
-   * @param {string} [looks.dot] class of what is seen
-   * @param {number} [looks.radius] of what is seen, pixels
+   * @param {string} [looks.dot] class of the visible dot
+   * @param {number} [looks.radius] of the visible dot, pixels
    * @param {string} [looks.key] by which it is found again in a picture that is made anew
    * @param {string} [looks.role]
    */

@@ -14,13 +14,13 @@ import { smoothCurve, makeSymmetric } from "./curve_shaping.js";
 
 /**
  * @typedef {object} Handle
- * @property {string} name what stands beside it
+ * @property {string} name label next to it
  * @property {string} label what it is
  * @property {() => Point} get
  * @property {(x: number, y: number) => void} put
  * @property {{get: () => number, set: (degrees: number) => void}} [turn]
  * @property {() => void} [remove]
- * @property {string} [path] JSON pointer of what has the fields x, y and angle
+ * @property {string} [path] JSON pointer of the object with the fields x, y and angle
  */
 
 /**
@@ -30,7 +30,7 @@ import { smoothCurve, makeSymmetric } from "./curve_shaping.js";
  * @property {string} [word] what a double click adds
  * @property {(x: number, y: number) => void} [add]
  * @property {boolean} [freehand] a curve may be drawn
- * @property {{text: string, make: (at: Point, size: number) => void}[]} offers what may be stated on the canvas too
+ * @property {{text: string, make: (at: Point, size: number) => void}[]} offers further entries on the canvas
  * @property {{text: string, title: string, make: (fine: (value: number) => number) => void}[]} [shapes] what is done to
  *   a curve as a whole
  */

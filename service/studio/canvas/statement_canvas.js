@@ -40,7 +40,7 @@ const toolChoices = { grid: true, snap: false };
  * @typedef {object} CanvasState
  * @property {number} origin of the statement whose view it is
  * @property {View | null} view
- * @property {boolean} led whether somebody has led the view somewhere; otherwise all is to be seen
+ * @property {boolean} led whether the user has moved the view; otherwise it shows everything
  * @property {import("./workspace_editor.js").EditorState} room
  * @property {{ends: [[number, number], [number, number]] | null}} ruler
  */

@@ -32,7 +32,7 @@ export class Zoom {
    * @param {SVGSVGElement} picture
    * @param {object} [on]
    * @param {() => boolean} [on.busy] whether the pointer draws just now
-   * @param {(seen: Seen) => void} [on.settled] told what is seen when it has been chosen
+   * @param {(seen: Seen) => void} [on.settled] called with the view when it has been chosen
    */
   constructor(picture, { busy, settled } = {}) {
     this.picture = picture;

@@ -17,8 +17,8 @@ const MAX_STATEMENT_LENGTH = 1_000_000;
  * @property {Problem} problem
  * @property {string} label of the task
  * @property {Linked | null} mechanism
- * @property {boolean} placed whether the linkage was shifted, turned and sized to what is stated, which it then need
- *   not pass as stated
+ * @property {boolean} placed whether the linkage was shifted, rotated and scaled to the given points; it then need not
+ *   pass through them as they were drawn
  */
 
 /** An address that cannot be read; the message says why. */
@@ -50,7 +50,7 @@ export async function decodeFragment(fragment, kinds) {
     );
   const text = await unpack(fragment.slice(FRAGMENT_PREFIX.length));
   /**
-   * What it should be: whoever made the address may have written what they liked.
+   * The expected form; an address from elsewhere may contain anything.
    * @type {{problem?: Problem, label?: unknown, mechanism?: Linked | null, placed?: unknown} | null}
    */
   let told;

@@ -263,7 +263,7 @@ export async function fetchForces(id, design, steps, block, signal) {
 }
 
 /**
- * @template {Analysis} [Answer=LinkageAnalysis] as that of a linkage, where nothing else is asked about
+ * @template {Analysis} [Answer=LinkageAnalysis] type of the answer; by default that of a linkage
  * @param {Question} question @param {AbortSignal} signal @returns {Promise<Answer>}
  */
 export async function analyse(question, signal) {

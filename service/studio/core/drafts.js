@@ -36,7 +36,7 @@ export function readLastSteps() {
 
 /**
  * @param {Problem} problem @param {string} label @param {Steps} steps
- * @param {string} job whose answers stand beside it; empty where there are none
+ * @param {string} job the job of its answers; empty without answers
  */
 export function keepDraft(problem, label, { past, future }, job) {
   localStore.write(`${STORAGE_PREFIX}.${problem.kind}`, JSON.stringify({ problem, label, job }));

@@ -2,7 +2,7 @@
  * Translate the texts of the page and format their numbers. The English text is the key.
  *
  * The sources say what they say in English. The tag t looks a text of the page up among the messages of the chosen
- * language, and translated a text of the service; what is not found there stays English. English itself has no messages
+ * language, and translated a text of the service; texts not found there stay English. English itself has no messages
  * and waits for none.
  */
 

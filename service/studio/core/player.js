@@ -16,9 +16,9 @@ const READING_INTERVAL_MS = 100;
  * @property {boolean} [endless] the place counts on beyond the last sample: what turns need not come back after a cycle
  * @property {string} label what the scrubber moves
  * @property {string} [name] before the ids of its controls, where a page has a second one
- * @property {(at: number) => string} reading what stands beside the scrubber
+ * @property {(at: number) => string} reading text next to the scrubber
  * @property {(at: number, told: boolean) => void} show called with a place of the arrays, between two samples as a
- *   fraction, and whether numbers are told of it
+ *   fraction, and whether its numbers are shown
  */
 
 export class Player {
@@ -34,7 +34,7 @@ export class Player {
     /** Where it goes back and forth, instead of over all of it. @type {[number, number] | null} */
     this.range = null;
     this.last = moved.count - 1;
-    /** Told the share of the way whenever it changes. @type {Set<(share: number, told: boolean) => void>} */
+    /** Listeners, called at every change of the share. @type {Set<(share: number, told: boolean) => void>} */
     this.followers = new Set();
     this.button = createElement(
       "button",
@@ -105,7 +105,7 @@ export class Player {
     else this.at = clampIndex(this.at, this.last);
   }
 
-  /** @param {number} at @param {boolean} [told] whether numbers are told of it */
+  /** @param {number} at @param {boolean} [told] whether its numbers are shown */
   seek(at, told = true) {
     this.at = at;
     if (!this.moved.endless) at = clampIndex(at, this.last);
@@ -150,7 +150,7 @@ export class Player {
     this.button.textContent = t`Play`;
     if (!this.playing) return;
     this.playing = false;
-    // What stands still is told.
+    // Show the numbers of a motion that stands still.
     this.seek(this.at);
   }
 }

@@ -36,7 +36,7 @@ import { isContainer } from "./pointer.js";
  * @property {boolean} nullable
  * @property {string[]} [choices]
  * @property {Schema} [item] schema of the rows of a table, or of the members of a map
- * @property {number} [count] rows of a table that has always so many
+ * @property {number} [count] fixed number of rows of a table
  */
 
 /** Return the fields of an object by name. @param {Schema} schema */
@@ -291,7 +291,7 @@ function withoutDefaults(value, schema, root) {
       const of = properties[name] ?? additionalProperties;
       if (typeof of !== "object") return [[name, inner]];
       const open = resolveReference(of, root);
-      // What tells alternatives apart is needed.
+      // The property that distinguishes alternatives is required.
       return (open.const === undefined || options.length === 1) &&
         JSON.stringify(open.default) === JSON.stringify(inner)
         ? []
@@ -313,7 +313,7 @@ function valueType(value) {
  */
 export function removeDefaults(statement, schema) {
   if (!schema) return statement;
-  // Only what the service holds for stated anyway is left out.
+  // Leave out only values that equal the service's defaults.
   const plain = /** @type {unknown} */ (
     withoutDefaults(/** @type {Json} */ (/** @type {unknown} */ (statement)), schema, schema)
   );

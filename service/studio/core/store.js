@@ -10,11 +10,11 @@ import { Undo } from "./undo.js";
 /** @typedef {"form" | "canvas" | "text"} Editor */
 
 /**
- * What listeners are told.
+ * A change, as listeners receive it.
  * @typedef {object} Change
- * @property {boolean} stated whether the statement is another one; otherwise its answer is
+ * @property {boolean} stated whether the problem has changed; otherwise its answer has
  * @property {Editor | null} by where it was changed and is seen already; null where all that shows it is made anew
- * @property {boolean} edited whether somebody changed it, or went a step back or forth
+ * @property {boolean} edited whether the user changed it, by an edit, undo or redo
  * @property {boolean} begun whether it was begun with, and not made of the one before
  */
 

@@ -82,7 +82,7 @@ export class View {
     return [this.middle[0] + (u - this.width / 2) / this.scale, this.middle[1] - (v - this.height / 2) / this.scale];
   }
 
-  /** Look at a place of the picture, from so much nearer. @param {number[]} place pixels @param {number} nearness */
+  /** Zoom in on a place of the picture by a factor. @param {number[]} place pixels @param {number} nearness */
   zoomTo([u, v], nearness) {
     this.middle = this.toPlane(u, v);
     this.scale *= nearness;

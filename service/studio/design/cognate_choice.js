@@ -74,7 +74,7 @@ function describeCognate(one) {
 
 /** @param {Choice[]} choices @param {(choice: Choice) => void} choose */
 export function createPicker(choices, choose) {
-  // Of the design the service tells, of the others the page.
+  // The note on the design is the service's, to be translated; the page writes the others.
   const notes = choices.map((one, k) =>
     k
       ? createElement("span", {}, one.note)

@@ -187,8 +187,8 @@ export class DesignView {
   }
 
   /**
-   * The motion of a cognate; null where it cannot be driven. Of the design it shares the curve only: it has numbers of
-   * its own.
+   * Return the motion of a cognate, or null if it cannot be driven. It shares only the curve with the design and has
+   * its own figures.
    * @param {import("./cognate_choice.js").Choice} choice @returns {Promise<Film | null>}
    */
   async fetchFilm(choice) {
@@ -409,7 +409,7 @@ export class DesignView {
 }
 
 /**
- * The numbers of a cognate: what was measured of it, and its dimensions.
+ * The figures of a cognate: its measurements and its dimensions.
  * @param {Film} film
  * @param {Problem} problem
  */

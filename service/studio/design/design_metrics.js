@@ -36,7 +36,7 @@ const ROUNDING_RESIDUES = /** @type {Record<string, string>} */ ({
 });
 
 /**
- * The metrics that are plain numbers or words, the telling ones first.
+ * The metrics that are plain numbers or words, the most important first.
  * @param {Partial<Design>} design
  * @returns {[string, string | number | boolean][]}
  */
@@ -53,7 +53,7 @@ export function listFigures(design) {
 }
 
 /**
- * Digits of a number for reading, where it is no dimension that is made; all of them are told where the pointer rests.
+ * Digits shown of a number that is not a dimension to be made; all digits are shown under the pointer.
  */
 const DIGITS = 3;
 
@@ -88,7 +88,7 @@ export function isRounding(left, of) {
  * @param {string} name
  * @param {unknown} value
  * @param {string | undefined} dimension
- * @param {number} [size] of the mechanism, where lengths are asked for
+ * @param {number} [size] of the mechanism, for lengths
  */
 export function isExact(name, value, dimension, size = 0) {
   if (typeof value !== "number" || !MISS_PATTERN.test(name)) return false;
@@ -100,10 +100,10 @@ export function isExact(name, value, dimension, size = 0) {
 }
 
 /**
- * A figure of a design: few digits, `exact` where nothing is missed, and all of its digits where the pointer rests.
+ * A figure of a design: few digits, `exact` for an error of zero, and all digits under the pointer.
  * @param {string} name
  * @param {unknown} value
- * @param {Problem | null} problem whose units stand beside it
+ * @param {Problem | null} problem whose units are shown with it
  * @param {number} [size] of the mechanism
  * @returns {{text: string, title: string | null}}
  */
@@ -126,7 +126,7 @@ export function typeName({ mechanism, springs }) {
 /** What is written short. @type {Record<string, string>} */
 const ABBREVIATIONS = { cw: t`clockwise`, ccw: t`counterclockwise` };
 
-/** @param {unknown} value @param {string} [unit] beside a number */
+/** @param {unknown} value @param {string} [unit] shown after a number */
 export function formatWithUnit(value, unit = "") {
   if (typeof value === "string" && value in ABBREVIATIONS) return ABBREVIATIONS[value];
   return typeof value === "number"
@@ -163,7 +163,7 @@ export function formatAmount(value, check, problem) {
 }
 
 /**
- * Value and limit of a check; with as many digits as it takes to tell the two apart.
+ * Value and limit of a check, with enough digits to distinguish them.
  * @param {Schemas["Check"]} check
  * @param {Problem} problem
  */
@@ -211,7 +211,7 @@ export function createChecks(design, problem) {
 /**
  * @param {string} title
  * @param {[string, unknown][]} rows
- * @param {Problem | null} [problem] whose units stand beside the numbers
+ * @param {Problem | null} [problem] whose units are shown with the numbers
  */
 export function createTable(title, rows, problem = null) {
   const size = Number(rows.find(([name]) => name === "size")?.[1]) || undefined;
@@ -249,7 +249,7 @@ function createNumberTable(title, rows) {
 /**
  * What becomes of a design as a shop makes it: nothing where the problem does not ask.
  * @param {Partial<Design>} design
- * @param {Problem} problem whose units stand beside the numbers
+ * @param {Problem} problem whose units are shown with the numbers
  * @returns {HTMLElement[]}
  */
 export function createTolerances(design, problem) {

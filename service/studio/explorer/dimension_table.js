@@ -18,9 +18,9 @@ export class DimensionTable {
   /**
    * @param {Skeleton} skeleton
    * @param {string} unit of lengths
-   * @param {(places: Joints, apart: boolean) => void} moved told where the joints have gone, and whether that is a step
+   * @param {(places: Joints, apart: boolean) => void} moved called with the new joints, and whether that is a step
    *   of its own
-   * @param {() => void} bound told when something else is held or equal
+   * @param {() => void} bound called when the fixed or equal dimensions change
    */
   constructor(skeleton, unit, moved, bound) {
     this.still = groundedJoints(skeleton);
@@ -134,7 +134,7 @@ export class DimensionTable {
     this.applySolution(solveDemands({ ...this.places, [name]: at }, this.demands, still));
   }
 
-  /** The joints stand elsewhere, whatever is held. @param {Joints} places */
+  /** Move the joints regardless of fixed dimensions. @param {Joints} places */
   moveJoints(places) {
     this.told.textContent = "";
     this.places = { ...this.places, ...places };

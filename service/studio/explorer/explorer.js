@@ -26,7 +26,7 @@ const BURST_MS = 700;
 export class Explorer {
   /**
    * @param {HTMLElement} board of the stage
-   * @param {HTMLElement} place what is told of it
+   * @param {HTMLElement} place of its figures
    * @param {Linked} mechanism with its skeleton
    * @param {Problem} problem
    * @param {import("../motion/linkage_motion.js").Target[]} targets as demanded
@@ -294,7 +294,7 @@ export class Explorer {
   }
 
   /**
-   * The checks of the problem, as far as they can be told at once.
+   * List the checks of the problem that can be evaluated at once.
    * @param {boolean} turns
    * @param {number | null} least
    * @param {string | null} grashof
@@ -307,7 +307,7 @@ export class Explorer {
     );
     /** @type {[string, boolean][]} */
     const checks = [];
-    // The curve is known at so many places only: nearer than their distance nothing can be told.
+    // The curve is sampled: distances below the spacing of the samples are not resolved.
     if (missed.length)
       checks.push([
         t`Passes the targets within ${`${formatNumber(Number((0.01 * size).toPrecision(2)))} ${this.unit}`}`,

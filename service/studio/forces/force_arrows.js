@@ -14,7 +14,7 @@ import { interpolate } from "../core/player.js";
  *   which side it comes from
  */
 
-/** The greatest force is so much of the picture's height. */
+/** Length of the arrow of the greatest force, as a share of the picture's height. */
 const PEAK_SHARE = 0.2;
 
 /** Length and half the width of a head, pixels; a short arrow has a shorter one. */

@@ -1,9 +1,9 @@
 /**
  * Scales of forces and torques of a linkage; values below rounding of these scales are zero.
  *
- * A balanced linkage needs no drive, but the sum of what its loads ask for ends at 1e-15 and not at 0. The scale of
- * forces is the greatest that there is at a pin, or that shakes the frame; that of torques the greatest drive or
- * moment, or the same force on an arm as long as the linkage.
+ * A balanced linkage needs no drive, but the computed sum of its loads is 1e-15 instead of 0. The scale of forces is
+ * the greatest force at a pin or on the frame; that of torques is the greatest drive or moment, or this force on an arm
+ * as long as the linkage.
  */
 
 import { isRounding } from "../design/design_metrics.js";
@@ -16,7 +16,7 @@ import { isRounding } from "../design/design_metrics.js";
 /** Length units in metres. @type {Record<string, number>} */
 const METRES = { mm: 1e-3, cm: 1e-2, m: 1, in: 0.0254 };
 
-/** How far apart joints are. @param {Skeleton} skeleton */
+/** Return the diagonal of the box around all joints. @param {Skeleton} skeleton */
 function linkageSize({ joints }) {
   const [xs, ys] = [0, 1].map((axis) => Object.values(joints).map((at) => at[axis]));
   return Math.hypot(Math.max(...xs) - Math.min(...xs), Math.max(...ys) - Math.min(...ys));

@@ -17,7 +17,7 @@ import { unitSymbol } from "../core/units.js";
 /** Samples of a turn, or of the range. */
 const STEP_COUNT = 360;
 
-/** Lines of one plot: so many colours there are. */
+/** Maximum number of lines in one plot: the number of colours. */
 const MAX_LINES = 4;
 
 /** Why numbers are missing, or are to be read with care, by the status of a position. @type {Record<string, string>} */
@@ -111,7 +111,7 @@ export class ForcesPane {
     this.drawArrows();
   }
 
-  /** The arrows, in the picture of the motion that there is. */
+  /** Draw the arrows in the current picture of the motion. */
   drawArrows() {
     const { answer, mover } = this;
     if (!answer || !mover) return;
@@ -390,7 +390,7 @@ export class ForcesPane {
     );
   }
 
-  /** @param {number} input @param {boolean} told whether numbers are told of it */
+  /** @param {number} input @param {boolean} told whether its numbers are shown */
   show(input, told) {
     const at = this.findIndex(input);
     this.at = at;

@@ -13,12 +13,12 @@ import { unitSymbol } from "../core/units.js";
 /** How near to a pin a click means it, pixels of the picture. */
 const PIN_REACH = 22;
 
-/** What is edited here; all else of a stated block is kept. */
+/** Fields that are edited here; the others of a given block are kept. */
 const EDITED_FIELDS = ["units", "gravity", "speed_rpm", "speed", "links", "point_masses", "loads"];
 
 /** @typedef {import("../motion/linkage_motion.js").LinkageMotion} Mover */
 /** @typedef {Schemas["DesignForcesBlock"]} Block */
-/** A mass that is being stated: its number may be missing yet. @typedef {Partial<Schemas["PointMass"]>} Mass */
+/** A mass that is being entered: its number may still be missing. @typedef {Partial<Schemas["PointMass"]>} Mass */
 /** @typedef {Schemas["StatedLoad"]} Load */
 /** @typedef {{select: HTMLSelectElement, button: HTMLElement}} PlacedRow */
 

@@ -62,7 +62,7 @@ export function formatPoints(points) {
 }
 
 /**
- * Points of the plane, one to a line: `120, 35`. What is no number stays as it is written, and the service says so.
+ * Points of the plane, one to a line: `120, 35`. Text that is not a number stays as typed, and the service reports it.
  * @param {unknown} value @param {(value: Json | undefined) => void} set
  */
 export function createPointsBox(value, set) {
@@ -177,7 +177,7 @@ export function createStockBox(value, set) {
   return box;
 }
 
-/** What is no number stays as it is written, and the service says so. @param {string} part */
+/** Text that is not a number stays as typed, and the service reports it. @param {string} part */
 function parseStock(part) {
   const [, teeth, count] = /^(\d+)\s*[×x*]\s*(\d+)$/.exec(part) ?? [];
   if (teeth) return { teeth: Number(teeth), count: Number(count) };

@@ -39,7 +39,7 @@ import { fieldUnit } from "../core/units.js";
 /** Fields of every problem that few people touch; they come last. */
 const LAST_FIELDS = ["length_unit", "rank_by", "max_designs", "include_failed", "seed"];
 
-/** Fewer fields than these that nobody has stated need not be folded away. */
+/** Minimum number of empty optional fields that are folded away. */
 const MIN_FOLDED = 3;
 
 let ids = 0;
@@ -71,7 +71,7 @@ function createControls(sheet, schema, path, order = Object.keys(propertiesOf(sc
 }
 
 /**
- * What is stated, and what must be; the rest is one click away.
+ * Show given and required fields; the others are one click away.
  * @param {FormState} sheet @param {Schema} schema @param {string} path @param {string[]} [order]
  * @returns {Node[]}
  */
@@ -101,7 +101,7 @@ function foldControls(sheet, schema, path, order = Object.keys(propertiesOf(sche
  */
 function createField(sheet, schema, name, path, required) {
   const what = classifyField(schema, sheet.root);
-  // The units beside the other fields are those of the length unit, or of the mechanism that is asked for.
+  // The units of other fields depend on the length unit and on the requested mechanism.
   const set = (/** @type {Json | undefined} */ value) =>
     sheet.writeValue(path, value, name === "length_unit" || (name === "mechanism" && typeof value === "string"));
   const value = sheet.readValue(path);
@@ -212,7 +212,7 @@ function shapeName(option) {
 }
 
 /**
- * A value that is stated in one of several ways, as a number or a range: the way is chosen first.
+ * A value with several forms, such as a number or a range: the form is chosen first.
  *
  * A word that stands for itself, and null where leaving the field out means something else, have nothing below them.
  * @param {FormState} sheet
@@ -305,7 +305,7 @@ function createMembers(sheet, item, path) {
 }
 
 /**
- * @param {FormState} sheet that looks at the first of them where none is stated
+ * @param {FormState} sheet that shows the first of them if none is given
  * @param {Schema[]} options @param {string} path
  */
 function createUnion(sheet, options, path) {
@@ -328,7 +328,7 @@ function createUnion(sheet, options, path) {
 }
 
 /**
- * A group of fields that opens; what may be absent is stated by a flag.
+ * A group of fields that opens; a flag switches an optional group on.
  * @param {FormState} sheet @param {Schema} schema @param {string} name @param {string} note @param {string} path
  * @param {boolean} always @param {() => (Node | null)[]} inside
  */
@@ -446,7 +446,7 @@ function parseNames(text) {
 }
 
 /**
- * `0, open` or `90`; what is no number stays as it is written, and the service says so.
+ * `0, open` or `90`; text that is not a number stays as typed, and the service reports it.
  * @param {string} text
  * @param {Schema[]} options
  */

@@ -12,8 +12,8 @@ export const STATEMENT_POINTER = "/problem";
 export class FormState {
   /**
    * @param {Store} store
-   * @param {{path: string, value: Json}[]} [looked] what is shown where nothing is stated, and stated with the first
-   *   change below it: what is only looked at is not
+   * @param {{path: string, value: Json}[]} [looked] values shown for fields without an entry; they become part
+   *   of the problem with the first change below them
    */
   constructor(store, looked = []) {
     this.store = store;
@@ -52,7 +52,7 @@ export class FormState {
    * @param {boolean} [remade] whether the form has other controls then
    */
   writeValue(path, value, remade = false) {
-    // Nothing is stated by leaving something out.
+    // Removing a field must not write the values that are only shown.
     if (value === undefined)
       this.store.change((statement) => writePointer(statement, statementPointer(path), value), editorFor(remade));
     else this.change((statement) => writePointer(statement, statementPointer(path), value), remade);
@@ -63,7 +63,7 @@ export class FormState {
     this.store.change((statement) => change(this.fillPreviews(statement)), editorFor(remade));
   }
 
-  /** The same with a value that is looked at where none is stated. @param {string} path @param {Json} value */
+  /** Return a form state that shows a value where none is given. @param {string} path @param {Json} value */
   preview(path, value) {
     return new FormState(this.store, [...this.looked, { path, value }]);
   }

@@ -27,22 +27,22 @@ import { fieldUnit } from "../core/units.js";
 /** Columns that stay at least where others are folded away. */
 const MIN_COLUMNS = 2;
 
-/** Columns that rows have in one line, where nothing of them is chosen. */
+/** Maximum number of columns of rows in one line, if none of them is a choice. */
 const MAX_ONE_LINE_COLUMNS = 3;
 
-/** Tables of which all columns have been asked for. @type {Set<string>} */
+/** Tables that show all columns. @type {Set<string>} */
 const unfoldedTables = new Set();
 
-/** Whether nobody has stated a value. @param {unknown} value */
+/** Return whether a value is empty. @param {unknown} value */
 function isEmpty(value) {
   return value === undefined || value === null || value === false;
 }
 
 /**
- * @param {FormState} sheet that looks at an empty list where none is stated @param {Schema} item schema of a row
+ * @param {FormState} sheet that shows an empty list if none is given @param {Schema} item schema of a row
  * @param {string} path JSON pointer of the list
  * @param {Controls} controls of what a cell cannot state
- * @param {number} [count] where there are always so many rows
+ * @param {number} [count] fixed number of rows, if there is one
  */
 export function createTable(sheet, item, path, controls, count) {
   const rows = readRows(sheet.problem, path);
@@ -203,7 +203,7 @@ function createCell(sheet, head, row, list, k, item) {
   const tells = options.length > 1 && name === findDiscriminator(options);
   const set = (/** @type {Json | undefined} */ value) => {
     if (!tells) return sheet.writeValue(`${path}/${name}`, value);
-    // Another alternative has other fields: what it does not know goes.
+    // Another alternative has other fields: remove those that it lacks.
     const before = { ...readRows(sheet.problem, list)[k], [name]: value };
     const now = findOption(options, before);
     const known = Object.entries(before).filter(([one]) => propertiesOf(now)[one]);
@@ -246,7 +246,7 @@ function findRowOption(sheet, item, row) {
  */
 function createRowDetails(sheet, item, row, path, controls, width, k) {
   const option = findRowOption(sheet, item, row);
-  // What a cell can state as a number stands here only where it is stated in detail.
+  // A value that fits a cell as a number is shown here only if it is given in detail.
   const names = listOtherFields(option, sheet.root).filter(
     (name) => classifyField(propertiesOf(option)[name], sheet.root).control !== "shapes" || isContainer(row[name]),
   );

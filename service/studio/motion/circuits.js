@@ -25,7 +25,7 @@ export function otherBranches(motion) {
   );
 }
 
-/** The joint whose path tells the most: P, or the last pin that moves. @param {Skeleton} skeleton */
+/** Return the joint whose path describes the motion best: P, or the last pin that moves. @param {Skeleton} skeleton */
 export function findTracedJoint(skeleton) {
   const still = groundedJoints(skeleton);
   const names = drawnJoints(skeleton).filter((name) => !still.includes(name));

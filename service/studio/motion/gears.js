@@ -88,7 +88,7 @@ export class GearsView extends RotaryView {
     ]);
   }
 
-  /** Of a gearbox: which gear is engaged, in the drawing and in the assembly beside it. */
+  /** Build the choice of the engaged gear of a gearbox, for the drawing and the assembly. */
   createGearChoice() {
     const { mechanism } = this.design;
     const { speeds } = this.motion;

@@ -17,10 +17,10 @@ const FOOT_HEIGHT = 44;
 /** Height of a base, pixels. */
 const BASE_HEIGHT = 14;
 
-/** Planes are never drawn thicker than so many pixels: the side view is not to scale upward. */
+/** Maximum thickness of a drawn plane, pixels: the side view is not to scale in height. */
 const MAX_THICKNESS = 26;
 
-/** The colours that there are; with more planes they begin again. */
+/** Colours of the planes; with more planes they repeat. */
 const COLOUR_COUNT = 8;
 
 /** @param {number} plane */
@@ -66,7 +66,7 @@ export class LinkPlanes {
    * @param {Skeleton} skeleton
    * @param {Layout} layout
    * @param {Problem} problem
-   * @param {Schemas["StatedLayout"]} stated what planes are asked for
+   * @param {Schemas["StatedLayout"]} stated the requested layout
    * @param {(input: number) => void} lead leads the motion to an input
    */
   constructor(view, skeleton, layout, problem, stated, lead) {

@@ -10,7 +10,7 @@ import { t } from "../core/messages.js";
 /** @typedef {[number, number]} Point */
 
 /**
- * The curve of the point that tells a linkage, over a motion; NaN where it is not reached.
+ * The curve of a linkage's characteristic point over a motion; NaN where it is not reached.
  * @param {LinkageAnalysis} answer
  * @param {Skeleton} skeleton
  * @returns {Point[]}

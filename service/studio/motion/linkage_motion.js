@@ -27,12 +27,12 @@ const PLANES_HEIGHT = 300;
 /** @typedef {{x: number, y: number, angle?: number}} Target */
 
 /**
- * What goes with the motion: a layer of the picture that is told the input.
+ * A layer of the picture that follows the motion: it receives the input.
  * @typedef {object} Companion
  * @property {SVGElement} node
  * @property {import("../core/view.js").Box} extent what the picture has to show with it, pixels
- * @property {(input: number, now: import("../canvas/linkage_drawing.js").Places, told: boolean) => void} show with
- *   whether numbers are told of it
+ * @property {(input: number, now: import("../canvas/linkage_drawing.js").Places, told: boolean) => void} show the
+ *   layer at an input; `told`: whether its numbers are shown
  */
 
 export class LinkageMotion {
@@ -276,7 +276,7 @@ export class LinkageMotion {
   /**
    * Show the motion at a place of its arrays, between samples on a straight line.
    * @param {number} at
-   * @param {boolean} [told] whether numbers are told of it
+   * @param {boolean} [told] whether its numbers are shown
    */
   show(at, told = true) {
     const now = jointPositions(this.motion, at);

@@ -16,7 +16,7 @@ import { RotorView } from "./rotor.js";
 /** Samples of a cycle of a linkage. */
 export const STEP_COUNT = 240;
 
-/** Of a turn of what has no toggles: a sample a degree. */
+/** Number of samples of a full turn without toggles: one per degree. */
 export const TURN_STEP_COUNT = 360;
 
 /**

@@ -73,7 +73,7 @@ export class RotaryView {
   /**
    * Show it at a place of its arrays, between samples as a fraction.
    * @param {number} _at
-   * @param {boolean} _told whether numbers are told of it
+   * @param {boolean} _told whether its numbers are shown
    */
   show(_at, _told) {}
 

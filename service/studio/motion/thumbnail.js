@@ -17,7 +17,7 @@ const HEIGHT = 84;
  */
 /** @typedef {{stages: Stage[], idlers?: {stage: number, teeth: number}[]}} Train */
 
-/** @param {Design} design @param {Point[]} [curve] the path of a linkage's telling point */
+/** @param {Design} design @param {Point[]} [curve] the path of a linkage's characteristic point */
 export function createThumbnail(design, curve = []) {
   const drawing = thumbnailShapes(design, curve);
   return (
@@ -153,8 +153,8 @@ function circleShapes(mechanism, metrics) {
       const idle = (idlers ?? []).filter((one) => one.stage === n + 1).reduce((sum, one) => sum + one.teeth, 0);
       const size = stage.module ?? module;
       const from = at;
-      // Of a ring and its pinion the axes are as far apart as the radii differ; a worm is as thick as it is, whatever
-      // its threads.
+      // The axes of a ring and its pinion are the difference of the radii apart. The thickness of a worm does not
+      // depend on its threads.
       const first = stage.type === "worm" ? Number(stage.diameter_quotient) : pairs[0].driver;
       const wide = stage.type === "helical" ? 1 / Math.cos(((stage.helix_angle ?? 0) * Math.PI) / 180) : 1;
       at +=

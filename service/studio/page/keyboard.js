@@ -51,7 +51,7 @@ export class Keyboard {
   }
 }
 
-/** As bindings have it; of what is typed alone Shift is no part. @param {KeyboardEvent} event */
+/** Name a key as in the bindings; Shift is left out for typed characters. @param {KeyboardEvent} event */
 function keyName(event) {
   const ctrl = event.ctrlKey || event.metaKey;
   const typed = event.key.length === 1;

@@ -22,7 +22,7 @@ export class Hodograph {
       (most, point) => (Number.isFinite(point[0]) ? Math.max(most, Math.hypot(...point)) : most),
       0,
     );
-    // Both axes have one scale, and the origin is the middle: what is seen is a direction.
+    // Both axes have the same scale and the origin is in the middle, so that directions are true.
     this.view = new View(
       [
         [-peak, -peak],
@@ -66,7 +66,7 @@ export class Hodograph {
     );
   }
 
-  /** @param {number | null} at a place of the series @param {boolean} told whether its numbers are told */
+  /** @param {number | null} at a place of the series @param {boolean} told whether its numbers are shown */
   show(at, told) {
     const [x, y] = at === null ? [null, null] : [interpolate(this.x, at), interpolate(this.y, at)];
     const known = x !== null && y !== null;

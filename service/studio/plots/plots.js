@@ -9,16 +9,16 @@ const WIDTH = 300;
 const HEIGHT = 120;
 const MARGIN = { left: 58, right: 10, top: 8, bottom: 20 };
 
-/** Characters that a number beside the plot has room for; one of more is set narrower. */
+/** Maximum length of a number next to the plot, characters; longer ones are set narrower. */
 const NUMBER_CHARACTERS = 7;
 
-/** Greatest number of points of a line; more cannot be told apart. */
+/** Maximum number of points of a line; more cannot be distinguished. */
 const MAX_POINTS = 400;
 
 /** Values that differ by less than this share of their size are equal but for rounding. */
 const NOISE_SHARE = 1e-9;
 
-/** A line whose range is so many times that of its middle four fifths is shown without its peaks. */
+/** Minimum ratio of a line's range to that of its middle four fifths for which its peaks are cut off. */
 const STEEP_RATIO = 8;
 
 /** How much of a plot a nearer look has of the one before, and the fewest samples of one. */
@@ -30,7 +30,7 @@ const MIN_SAMPLES = 8;
 /**
  * What of a plot is seen.
  * @typedef {object} SeenRange
- * @property {boolean} whole whether peaks are shown whatever becomes of the rest
+ * @property {boolean} whole whether peaks are always shown in full
  * @property {[number, number]} range first and last sample
  */
 
@@ -46,7 +46,7 @@ const MIN_SAMPLES = 8;
  */
 
 /**
- * A plot whose mark follows the motion; its number is told where that is asked for.
+ * A plot whose mark follows the motion; its number is shown on request.
  * @typedef {{figure: HTMLElement, show: (at: number, told: boolean) => void}} PlotMark
  */
 
@@ -185,7 +185,7 @@ function createPlot(plotted, input, lead, unit, { whole = false, range: looked }
     );
   };
   const follow = (/** @type {PointerEvent} */ event) => lead(under(event));
-  // What stands at the pointer is told as long as it rests on the plot.
+  // Show the value at the pointer while it rests on the plot.
   picture.addEventListener("pointermove", (/** @type {PointerEvent} */ event) => {
     const k = under(event);
     pointed = k;
@@ -344,7 +344,7 @@ export function listRuns(used) {
   return found;
 }
 
-/** Three digits; what is below `noise` is nothing. @param {number | null | undefined} value @param {number} [noise] */
+/** Format with three digits; 0 below `noise`. @param {number | null | undefined} value @param {number} [noise] */
 export function formatBriefly(value, noise = 0) {
   if (value === null || value === undefined) return "–";
   return Math.abs(value) < noise ? "0" : formatNumber(Number(value.toPrecision(3)));

@@ -107,7 +107,7 @@ export class Gallery {
   }
 }
 
-/** What a person may want, the most wanted first. */
+/** Fields of application, the most common first. */
 const PURPOSE_ORDER = [
   "Carry a body",
   "Draw a curve",

@@ -18,8 +18,8 @@ const NOTE_GAP = 12;
  * What a guide has of the page.
  * @typedef {object} Page
  * @property {(kind: string, example: string) => void} state begins with an example by its name
- * @property {() => Problem} problem as it is stated
- * @property {() => boolean} answered whether there are answers to what is stated
+ * @property {() => Problem} problem in its present state
+ * @property {() => boolean} answered whether the present problem has answers
  * @property {import("../design/workbench.js").Workbench} desk
  */
 

@@ -7,9 +7,9 @@ import { t } from "../core/messages.js";
 /**
  * What a step is judged by.
  * @typedef {object} StepContext
- * @property {Problem} problem as it is stated
+ * @property {Problem} problem in its present state
  * @property {Problem} before as it was when the step began
- * @property {boolean} answered whether there are answers to what is stated
+ * @property {boolean} answered whether the present problem has answers
  * @property {string} chosen the number of the design that was chosen when the step began
  */
 

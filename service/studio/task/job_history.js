@@ -95,7 +95,7 @@ export class JobHistory {
     return item;
   }
 
-  /** Show the lines that have all the words looked for. */
+  /** Show the lines that contain all words of the search. */
   filter() {
     const sought = this.words.value.toLowerCase().split(/\s+/);
     for (const line of this.list.querySelectorAll("li"))

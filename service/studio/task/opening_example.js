@@ -55,7 +55,7 @@ export class OpeningExample {
     this.tabulate();
   }
 
-  /** The service has told what numbers measure: their units stand beside them now. */
+  /** The service has returned the dimensions of the numbers: show their units. */
   addUnits() {
     if (!this.gone.signal.aborted) this.tabulate?.();
   }

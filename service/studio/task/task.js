@@ -103,7 +103,7 @@ export class TaskPane {
     byId("about").textContent = firstParagraph(kind.description);
   }
 
-  /** Show what is stated now; where it was changed it is seen already. @param {Change} change */
+  /** Show the present problem everywhere except where it was changed. @param {Change} change */
   show({ by, begun }) {
     const { store, text } = this;
     const { kind } = store.problem;
@@ -122,7 +122,7 @@ export class TaskPane {
     byId("json-error").replaceChildren();
   }
 
-  /** Draw what is stated, as large as there is room now. */
+  /** Draw the problem as large as the available space permits. */
   draw() {
     if (!this.introduced) return;
     drawCanvas(this.sketch, this.store, this.backdrop);

@@ -118,8 +118,8 @@ class GearTrainAnalysisRequest(DrivenRequest[GivenGearTrain]):
             # Without torque friction locks nothing, and speeds can be analyzed all the same.
             return []
         worms, back = self.list_locked_worms, self.has_backward_flow
-        detail = "the gear cannot drive the worm" if back else "the worm cannot drive its gear, whatever the torque"
-        faults = [(f"/mechanism/stages/{k}/friction", f"with so much of it {detail}") for k in worms]
+        detail = "the gear cannot drive the worm" if back else "the worm cannot drive its gear at any torque"
+        faults = [(f"/mechanism/stages/{k}/friction", f"with this friction {detail}") for k in worms]
         # Only a reversed flow divides by the shares; forwards a share of 0 merely leaves an output torque of 0.
         if back and not worms and any(0.0 in stage for stage in list_power_shares(self)):
             detail = "with this friction a mesh loses all power, so that the output cannot drive"

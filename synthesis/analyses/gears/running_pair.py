@@ -350,8 +350,8 @@ class RunningPairRequest(AnalysisRequest):
 
 
 def _describe_space(pair: RunningPair, place: int, helix_angle: float) -> dict[str, list[float]] | None:
-    """Draw a space as :class:`ToothSpace`: beside a tooth on the line of centres for gear 1, centred on it for gear
-    2."""
+    """Draw a space as :class:`ToothSpace`: for gear 1 next to a tooth on the line of centres, for gear 2 centred on
+    that line."""
     gear = pair.cut_gears[place]
     try:
         half = draw_half_space(gear, helix_angle)

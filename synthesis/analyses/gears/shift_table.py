@@ -1,8 +1,8 @@
 """The shift table of a planetary train: which clutches and brakes give which ratio, and how fast all its bodies turn.
 
-A brake holds a member. A clutch joins two members, or the input shaft to a member. With a freedom of f as many elements
-are engaged at a time as leave every speed determined: f − 1 where the input sits on a member, f where clutches put it
-on one. Each such choice is a state; states that hold the output, or whose elements contradict one another, are none.
+A brake holds a member. A clutch joins two members, or the input shaft to a member. With a freedom of f the number of
+elements engaged at a time is the one that determines every speed: f − 1 if the input sits on a member, f if clutches
+connect it to one. Each such choice is a state, unless it holds the output or its elements contradict one another.
 """
 
 from __future__ import annotations
@@ -45,7 +45,7 @@ class GivenElement(Statement):
         return self.clutch or (str(self.brake),)
 
     def find_driven_member(self, driving: str | None) -> str | None:
-        """The member that it puts on the input shaft; None where the input sits on a member, whatever that is named."""
+        """Return the member that it connects to the input shaft; None if the input sits on a member of any name."""
         if driving is not None or self.clutch is None or INPUT_NAME not in self.clutch:
             return None
         return next((body for body in self.clutch if body != INPUT_NAME), INPUT_NAME)

@@ -1,9 +1,9 @@
 """Structures of machine-tool gearboxes: the number of pairs in every stage, and the steps between them.
 
 A gearbox of z speeds has stages of p₁, p₂, ... pairs with p₁ p₂ ... = z. In one stage neighbouring pairs differ by one
-step of the progression, characteristic 1; in the next by as many steps as the first has pairs; and so on, so that every
-speed comes once. The *structural formula* 3(1) 2(3) names the stages in the order of the shafts with their
-characteristics (Rao, Sec. 8.5; Acherkan, Machine Tool Design, vol. 3).
+step of the progression, characteristic 1; in the next by the number of pairs of the first; in the third by the product
+of both numbers; and so on, so that every speed comes once. The *structural formula* 3(1) 2(3) names the stages in the
+order of the shafts with their characteristics (Rao, Sec. 8.5; Acherkan, Machine Tool Design, vol. 3).
 """
 
 from __future__ import annotations

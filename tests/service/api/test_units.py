@@ -27,7 +27,7 @@ PURE = {
     "DesignForces": {"joint_force_index"},
     "DwellMetrics": {"link_ratio", "reach", "quality"},
     "PlacedDwell": {"at"},
-    "StatedDwell": {"at"},
+    "DwellRequest": {"at"},
     "EngineCylinder": {"place"},  # in spacings of the throws
     "EngineFlywheel": {"coefficient"},
     "EngineHarmonic": {"coefficient", "cos", "place_cos", "place_sin", "sin", "torque"},
@@ -46,11 +46,11 @@ PURE = {
     "ExactDesign": {"rms_residual"},
     "FollowerDynamics": {"damping_ratio", "min_frequency_ratio", "train_damping_ratio"},
     "ForceCaps": {"shaking_force", "shaking_moment", "drive", "joint_forces"},  # over what they were
-    "Flattest": {"max"},  # radius over thickness
+    "MaxSlenderness": {"max"},  # radius over thickness
     "Fluctuation": {"first_order_coefficient"},
     "FlywheelMetrics": {"coefficient"},
     "FlywheelProblem": {"coefficient"},
-    "ForceCourse": {"table"},  # columns of several units
+    "ForceCurve": {"table"},  # columns of several units
     "ForceLevel": {"weight", "cap", "ratio"},
     "ForceWeights": {"shaking_force", "shaking_moment", "drive", "joint_forces"},
     "FunctionConstraints": {"max_link_ratio", "max_joint_force_index"},
@@ -62,15 +62,15 @@ PURE = {
     "GasPressure": {"pressure"},  # columns of several units
     "GearPair": {"ratio"},
     "GearedInertia": {"ratio"},
-    "StatedFlywheel": {"coefficient"},
+    "FlywheelSpec": {"coefficient"},
     "IdleFlywheel": {"coefficient"},
     "Overbalance": {"share"},
     "Stance": {"speed_tolerance"},
-    "StatedGear": {"ratio"},
+    "GearSpec": {"ratio"},
     "GearTrainUnit": {"max_stage_ratio", "min_contact_ratio", "min_tip_thickness"},
     "CarriedPower": CARRIED_POWER,  # kW, MPa
     "PlanetPower": {*CARRIED_POWER, "load_sharing"},
-    "StatedFactors": {
+    "StrengthFactors": {
         "form",
         "overload",
         "dynamic",
@@ -118,7 +118,7 @@ PURE = {
     "MeshContact": {"contact_ratio"},
     "MeshGeometry": {"contact_ratio", "efficiency", "overlap_ratio", "total_contact_ratio"},
     "Optimality": {"value", "bound", "gap"},  # of its criterion
-    "OfGears": {"driver", "driven"},
+    "GearNumbers": {"driver", "driven"},
     "OutputDial": {"at"},
     "ParallelMotionMetrics": {"link_ratio", "reach", "rms_residual", "quality", *CARRIED},
     "ParetoLayshaft": {"max_error"},
@@ -154,9 +154,9 @@ PURE = {
     "SpringMetrics": {"value", "bound", "gap", "energy_variation"},  # shares of what was before
     "Stage": {"diameter_quotient", "friction"},
     "StageRatio": {"min", "max"},
-    "StatedSpring": {"damping"},  # by the sort of spring
-    "StatedStage": {"diameter_quotient", "friction"},
-    "StatedTorque": {"table"},  # columns of two units
+    "SpringSpec": {"damping"},  # by the sort of spring
+    "RequestedStage": {"diameter_quotient", "friction"},
+    "TorqueTable": {"table"},  # columns of two units
     "SteeringMetrics": {"link_ratio"},
     "StraightLineMetrics": {"link_ratio", "reach", "quality"},
     "StructureVerdict": {"max_error"},
@@ -168,7 +168,7 @@ PURE = {
     "Holding": {"from", "to", "speed", "acceleration"},  # of an input that turns or slides
     "Sweep": {"from", "to", "speed", "acceleration"},  # of an input that turns or slides
     "Target": {"residual"},
-    "TorqueCourse": {"table"},  # columns of several units
+    "TorqueCurve": {"table"},  # columns of several units
     "TrainVibration": {"frequency_ratio", "period_ratio"},
     "TurningShaft": {"axis"},  # a direction
     "VectorHarmonic": {"backward", "forward", "major", "minor"},

@@ -138,7 +138,8 @@ def crash_points():
         setattr(store, name, wrapped)
 
     for name in (
-        "create", "create_once", "take", "record_progress", "complete", "fail", "give_up", "cancel", "delete", "requeue",
+        "create", "create_once", "take", "record_progress", "complete", "fail", "give_up", "cancel", "delete",
+        "requeue",
         "requeue_unfinished", "record_crash",
     ):  # fmt: skip
         deadly(name)

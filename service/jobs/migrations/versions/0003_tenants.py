@@ -19,7 +19,7 @@ def upgrade() -> None:
         sa.Column("revoked_at", sa.String(27)),
     )
     op.create_index("api_keys_by_hash", "api_keys", ["hash"], unique=True)
-    # Jobs from before belong to nobody: they are there for a service without keys.
+    # Earlier jobs belong to no tenant: a service without keys shows them.
     op.add_column("jobs", sa.Column("tenant", sa.String(100), nullable=False, server_default=""))
     op.drop_index("jobs_by_idempotency_key", "jobs")
     op.drop_index("jobs_by_kind", "jobs")

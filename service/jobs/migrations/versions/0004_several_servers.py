@@ -1,4 +1,4 @@
-"""Whose a running job is, when somebody has to look after an unfinished one, which worker hosts there are, and news."""
+"""Leases of running jobs, the time of the next check of unfinished ones, the worker hosts, and notifications."""
 
 import sqlalchemy as sa
 from alembic import op
@@ -10,7 +10,7 @@ depends_on = None
 
 UNFINISHED_STATES = ("queued", "running")
 
-# Whatever process moves a job from one state to another: who listens is told its id when the move is stored.
+# When any process stores a new state of a job, all listeners are notified of the job's id.
 NOTIFY_FUNCTION = """
 CREATE FUNCTION tell_of_job() RETURNS trigger LANGUAGE plpgsql AS $$
 BEGIN

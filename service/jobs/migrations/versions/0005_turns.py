@@ -10,7 +10,7 @@ depends_on = None
 
 QUEUED_CONDITION = sa.text("status = 'queued'")
 
-# Whatever process puts a job into the queue: worker hosts that have nothing to do are told when it is there.
+# When any process queues a job, idle worker hosts are notified.
 NOTIFY_FUNCTION = """
 CREATE FUNCTION tell_of_work() RETURNS trigger LANGUAGE plpgsql AS $$
 BEGIN

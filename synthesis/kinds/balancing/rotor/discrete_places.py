@@ -94,7 +94,7 @@ def find_best_choices(target: complex, places: Sequence[Complex], most: int) -> 
     for branch in _list_branches([len(places[n]) for n in rest], most):
         picked = {n: pick - 1 for n, pick in zip(rest, branch, strict=True) if pick}
         left = target - sum((complex(places[n][pick]) for n, pick in picked.items()), 0j)
-        # A branch uses at least these places: prune it if as few places already come nearer than it ever can.
+        # A branch uses at least these places: prune it if no more places already come nearer than it ever can.
         few = [abs(choice.residual) for count, choice in best.items() if count <= len(picked)]
         if asked > MAX_QUERIES:
             complete = False

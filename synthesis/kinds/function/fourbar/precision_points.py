@@ -60,7 +60,7 @@ def build_equations(closure: Closure, inputs: Real, outputs: Real, zeros: tuple[
 def find_null_space(rows: Real) -> tuple[Real, Real]:
     """Return a basis of the null space of the equations, shape (..., 7 − r, 7), and a measure of their independence."""
     _, s, vh = np.linalg.svd(rows)
-    # The smallest over the largest singular value tells whether the equations are independent.
+    # The ratio of the smallest to the largest singular value measures the independence of the equations.
     return vh[..., rows.shape[-2] :, :], np.asarray(s[..., -1] / s[..., 0])
 
 

@@ -49,7 +49,7 @@ def _add_type(problem: GearTrainProblem, task: Task, number: int, stage: Stage) 
 
 
 def list_choices(problem: GearTrainProblem, task: Task, train: Train, known: Known) -> list[list[Stage]]:
-    """List the meshes with every module that fits beside the other meshes, the smallest module first.
+    """List the meshes with every module that is compatible with the other meshes, the smallest module first.
 
     ``known`` caches the stages with a distance of their own; it is written to.
     """

@@ -109,7 +109,7 @@ class Halves:
         return self.least_size + part
 
     def finish(self, first: int, rule: Rule, shortlist: Shortlist) -> bool:
-        """Search both lists in one pass by product, if so few trains are near that sizes need no separate passes."""
+        """Search both lists in one pass by product, if too few trains are near for separate passes by size."""
         size = self.bound_size(first)
         # Until the shortlist is full, or for sizes that still rank, a pass would meet too many trains.
         settled = shortlist.kept[0] == len(shortlist.error) and (not rule.by_size or size > shortlist.size[-1])

@@ -287,7 +287,7 @@ def has_common_distance(distances: Real, place: Integers, k: int) -> bool:
 
 @njit(cache=True, nogil=True)
 def _find_ratio(ratio: Real, wanted: float, low: int, end: int) -> int:
-    """Return the first place from ``low`` on with a ratio of at least the wanted one; ratios do not fall."""
+    """Return the first place from ``low`` on with a ratio of at least ``wanted``; ratios do not fall."""
     while low < end:
         half = (low + end) // 2
         if ratio[half] < wanted:

@@ -131,7 +131,7 @@ class Fit:
         return total if math.isfinite(total) else beyond
 
     def _fit_at_distance(self, row: int, a: int, b: int, place: int, distance: float) -> FittedStage:
-        """Fit a mesh at its distance; the smaller gear is treated first, whichever one drives."""
+        """Fit a mesh at its distance; the smaller gear is treated first, whether it drives or not."""
         small, large, demands = min(a, b), max(a, b), self.demands[row]
         # The distance determines the sum of shifts; the split balances specific sliding.
         working = shifting.from_distance(small, large, distance / self._get_module(row, place), demands)

@@ -132,7 +132,7 @@ def _write_soft_residuals(
     x: Real, lengths: Real, arm_a: complex, arm_b: complex, setting: Real, residuals: Real, rows: int
 ) -> int:
     """Write the weak residuals that prefer usual proportions and the start's pivots; return the number of rows."""
-    # Deviation from the geometric mean favours links of similar length, whatever the size.
+    # Deviation from the geometric mean favours links of similar length, independently of the size.
     mean = np.log(lengths).mean()
     for k in range(4):
         residuals[rows + 2 * k] = RATIO_WEIGHT * (math.log(lengths[k]) - mean)

@@ -71,7 +71,7 @@ DUPLICATE_LINKAGE_TOLERANCE = 0.03
 """Relative difference of the pivots below which two linkages count as the same design; the closer one is kept."""
 
 MIN_VERIFIED = 10
-"""Minimum number of linkages that are verified, whatever the number of requested designs."""
+"""Minimum number of linkages that are verified, even if fewer designs are requested."""
 
 MIN_LINK_SHARE = 1e-4
 """Minimum length of a link, relative to the longest; below it the linkage is degenerate."""

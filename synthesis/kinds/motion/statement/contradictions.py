@@ -108,7 +108,7 @@ def _check_exact_count(problem: Any) -> list[Contradiction]:
 def _check_tolerated_choices(problem: Any) -> list[Contradiction]:
     """Return the choices that conflict with tolerances: link rotations, and a link angle at a tolerated first position.
 
-    A position with a tolerance is met at the point of closest approach, whatever the rotation of the links.
+    A position with a tolerance is met at the point of closest approach, for any rotation of the links.
     """
     contradictions = []
     for name, side in (("input_side", problem.input_side), ("output_side", problem.output_side)):

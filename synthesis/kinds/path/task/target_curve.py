@@ -44,7 +44,7 @@ class TargetCurve:
         self.steps, self.places = sample_equal_steps(self.points, self.closed, SHAPE_POINT_COUNT)
         few = len(given) < MIN_DEFINING_POINTS
         self.fitted = np.concatenate([self.points, self.steps]) if few else self.points
-        # The fill points together weigh a fixed share of the given points, whatever their number.
+        # The fill points together weigh a fixed share of the given points, independently of their number.
         fill = FILL_WEIGHT * len(given) / SHAPE_POINT_COUNT
         self.weights = np.concatenate([(widths.min() / widths) ** 2, np.full(SHAPE_POINT_COUNT if few else 0, fill)])
 
