@@ -182,7 +182,7 @@ def dies_at_requeue_unfinished(folder, moment, run):
         folder.server.reaches(job["id"], "succeeded")
 
 
-def dies_at_crashed(folder, moment, run):
+def dies_at_record_crash(folder, moment, run):
     (folder.path / "died").unlink(missing_ok=True)
     folder.arm(moment, "record_crash")
     job = folder.post(DIES_ONCE)

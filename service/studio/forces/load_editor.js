@@ -19,7 +19,7 @@ const EDITED_FIELDS = ["units", "gravity", "speed_rpm", "speed", "links", "point
 /** @typedef {import("../motion/linkage_motion.js").LinkageMotion} Mover */
 /** @typedef {Schemas["DesignForcesBlock"]} Block */
 /** A mass that is being entered: its number may still be missing. @typedef {Partial<Schemas["PointMass"]>} Mass */
-/** @typedef {Schemas["StatedLoad"]} Load */
+/** @typedef {Schemas["LoadSpec"]} Load */
 /** @typedef {{select: HTMLSelectElement, button: HTMLElement}} PlacedRow */
 
 let ids = 0;

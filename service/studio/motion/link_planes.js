@@ -66,7 +66,7 @@ export class LinkPlanes {
    * @param {Skeleton} skeleton
    * @param {Layout} layout
    * @param {Problem} problem
-   * @param {Schemas["StatedLayout"]} stated the requested layout
+   * @param {Schemas["LayoutSpec"]} stated the requested layout
    * @param {(input: number) => void} lead leads the motion to an input
    */
   constructor(view, skeleton, layout, problem, stated, lead) {

@@ -46,7 +46,7 @@ export class LinkageMotion {
    */
   constructor(frame, design, motion, problem, circuits, around = []) {
     this.frame = frame;
-    const stated = /** @type {Schemas["StatedLayout"] | null | undefined} */ (problem.layout);
+    const stated = /** @type {Schemas["LayoutSpec"] | null | undefined} */ (problem.layout);
     const layered = design.layout && stated;
     this.size = frame.availableSize(layered ? PLANES_HEIGHT : 0);
     this.motion = motion;

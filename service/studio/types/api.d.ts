@@ -613,10 +613,6 @@ export interface components {
             cost: number;
             yield: components["schemas"]["Yield"];
         };
-        AngleOfGears: {
-            driver: number;
-            driven: number;
-        };
         ArmLimits: {
             min: number;
             max: number;
@@ -634,9 +630,9 @@ export interface components {
             low: number;
             high: number;
             notes: string[];
-            input: components["schemas"]["Driven"];
-            carriers: components["schemas"]["Carried"][];
-            parts: components["schemas"]["ViewedPart"][];
+            input: components["schemas"]["InputView"];
+            carriers: components["schemas"]["CarrierView"][];
+            parts: components["schemas"]["PartView"][];
         };
         BalanceMetrics: {
             value: number;
@@ -868,6 +864,15 @@ export interface components {
                 number
             ][];
         };
+        BodySpec: {
+            mass?: number | null;
+            cg?: ([
+                number,
+                number
+            ] | components["schemas"]["PolarPoint"]) | null;
+            inertia?: number | null;
+            shape?: components["schemas"]["Shape"] | null;
+        };
         BurmesterBranch: {
             circle_points: [
                 number,
@@ -1038,25 +1043,11 @@ export interface components {
             peak_acceleration: number;
             peak_jerk: number;
         };
-        Carried: {
-            link: string;
-            joint: string | null;
-            pivot: [
-                number,
-                number
-            ];
-            angles: number[];
-            places: [
-                number,
-                number
-            ][];
-            frame: components["schemas"]["Standing"] | null;
-        };
         CarriedPower: {
             /** @enum {string} */
             method?: "lewis" | "agma";
             quality?: number;
-            factors?: components["schemas"]["StatedFactors"];
+            factors?: components["schemas"]["StrengthFactors"];
             allowable_bending?: [
                 number,
                 number
@@ -1068,6 +1059,37 @@ export interface components {
             max_face_width?: number;
             power_kw: number;
             speed_rpm: number;
+        };
+        CarrierPlane: {
+            origins: [
+                number,
+                number,
+                number
+            ][];
+            along: [
+                number,
+                number,
+                number
+            ][];
+            normals: [
+                number,
+                number,
+                number
+            ][];
+        };
+        CarrierView: {
+            link: string;
+            joint: string | null;
+            pivot: [
+                number,
+                number
+            ];
+            angles: number[];
+            places: [
+                number,
+                number
+            ][];
+            frame: components["schemas"]["CarrierPlane"] | null;
         };
         Chain: {
             links?: [
@@ -1125,6 +1147,11 @@ export interface components {
             largest_residual: number;
             closed_under_conjugation: boolean;
         };
+        ConnectingRod: {
+            mass: number;
+            cg: number;
+            inertia?: number | null;
+        };
         ConstantVelocity: {
             /**
              * @description discriminator enum property added by openapi-typescript
@@ -1175,7 +1202,7 @@ export interface components {
             radius?: number | null;
             mass?: number | null;
             holes?: components["schemas"]["Holes"] | null;
-            stock?: components["schemas"]["synthesis__kinds__balancing__stated_rotor__Stock"] | null;
+            stock?: components["schemas"]["synthesis__kinds__balancing__statement__rotor__Stock"] | null;
             removed?: boolean;
         };
         Counterweight: {
@@ -1218,9 +1245,18 @@ export interface components {
                 number
             ] | null;
         };
+        CouplerPointSpec: {
+            distance: number;
+            angle?: number;
+        };
         CouplerVector: {
             length?: number | null;
             angle?: number | null;
+        };
+        CrankThrow: {
+            mass: number;
+            cg: number;
+            inertia?: number | null;
         };
         CurvePlacement: {
             size: number;
@@ -1265,12 +1301,12 @@ export interface components {
             units?: "si" | "consistent";
             gravity?: components["schemas"]["Gravity"] | null;
             bodies?: {
-                [key: string]: components["schemas"]["StatedBody"];
+                [key: string]: components["schemas"]["BodySpec"];
             };
             point_masses?: components["schemas"]["PointMass"][];
-            loads?: components["schemas"]["StatedLoad"][];
-            springs?: components["schemas"]["StatedSpring"][];
-            friction?: components["schemas"]["StatedFriction"] | null;
+            loads?: components["schemas"]["LoadSpec"][];
+            springs?: components["schemas"]["SpringSpec"][];
+            friction?: components["schemas"]["FrictionSpec"] | null;
             moment_about?: [
                 number,
                 number
@@ -1343,16 +1379,6 @@ export interface components {
                 number
             ];
             radius: number;
-        };
-        Driven: {
-            /** @enum {string} */
-            quantity: "angle" | "place";
-            reference: number;
-            low: number;
-            high: number;
-            closed: boolean;
-            endless: boolean;
-            values: number[];
         };
         DrivenSlide: {
             slide: number;
@@ -1430,13 +1456,13 @@ export interface components {
             include_failed?: boolean;
             seed?: number;
             constraints?: components["schemas"]["Constraints"];
-            layout?: components["schemas"]["StatedLayout"] | null;
+            layout?: components["schemas"]["LayoutSpec"] | null;
             space?: components["schemas"]["Space"] | null;
             dynamics?: components["schemas"]["DesignDynamics"] | null;
             manufacture?: components["schemas"]["Manufacture"] | null;
             rank_by?: ("quality" | "accuracy" | "size" | "transmission_angle" | "planes" | "yield") | ("drive_torque" | "joint_force" | "shaking_force" | "shaking_moment" | "power" | "joint_force_index");
             dwell_angle?: number | null;
-            dwells?: components["schemas"]["StatedDwell"][] | null;
+            dwells?: components["schemas"]["DwellRequest"][] | null;
             output: components["schemas"]["RockerOutput"] | components["schemas"]["SliderOutput"];
             count?: number;
             /** @enum {string} */
@@ -1447,6 +1473,10 @@ export interface components {
                 number,
                 number
             ] | null;
+        };
+        DwellRequest: {
+            angle: number;
+            at: ("low" | "high") | number;
         };
         DwellResult: {
             designs: components["schemas"]["DwellDesign"][];
@@ -1480,19 +1510,19 @@ export interface components {
             units?: "si" | "consistent";
             gravity?: components["schemas"]["Gravity"] | null;
             bodies?: {
-                [key: string]: components["schemas"]["StatedBody"];
+                [key: string]: components["schemas"]["BodySpec"];
             };
             point_masses?: components["schemas"]["PointMass"][];
-            loads?: components["schemas"]["StatedLoad"][];
-            springs?: components["schemas"]["StatedSpring"][];
-            friction?: components["schemas"]["StatedFriction"] | null;
+            loads?: components["schemas"]["LoadSpec"][];
+            springs?: components["schemas"]["SpringSpec"][];
+            friction?: components["schemas"]["FrictionSpec"] | null;
             moment_about?: [
                 number,
                 number
             ] | null;
             drive?: "torque" | components["schemas"]["DrivenSlide"] | null;
             minimum_norm?: boolean;
-            flywheel?: components["schemas"]["StatedFlywheel"] | null;
+            flywheel?: components["schemas"]["FlywheelSpec"] | null;
             report?: ("joint_forces" | "drive" | "shaking" | "flywheel" | "joint_force_index" | "harmonics")[] | null;
         };
         EngineCourse: {
@@ -1579,8 +1609,8 @@ export interface components {
         };
         EngineMasses: {
             piston: number;
-            rod: components["schemas"]["StatedRod"];
-            crank?: components["schemas"]["StatedCrank"] | null;
+            rod: components["schemas"]["ConnectingRod"];
+            crank?: components["schemas"]["CrankThrow"] | null;
         };
         EngineMechanism: {
             /**
@@ -1689,9 +1719,6 @@ export interface components {
             followed: number;
             met: number;
         };
-        FastestRim: {
-            max: number;
-        };
         FieldError: {
             path: string;
             detail: string;
@@ -1723,8 +1750,15 @@ export interface components {
                 number
             ];
         };
-        Flattest: {
-            max: number;
+        FixedPivotsSpec: {
+            input: [
+                number,
+                number
+            ];
+            output: [
+                number,
+                number
+            ];
         };
         Fluctuation: {
             mean_torque: number;
@@ -1741,11 +1775,11 @@ export interface components {
             course: components["schemas"]["SpeedCurve"];
         };
         FlywheelLimits: {
-            radius?: components["schemas"]["Most"] | null;
+            radius?: components["schemas"]["MaxLength"] | null;
             thickness?: components["schemas"]["Thickness"] | null;
-            wall?: components["schemas"]["Least"] | null;
-            rim_speed?: components["schemas"]["FastestRim"] | null;
-            radius_to_thickness?: components["schemas"]["Flattest"] | null;
+            wall?: components["schemas"]["MinLength"] | null;
+            rim_speed?: components["schemas"]["MaxRimSpeed"] | null;
+            radius_to_thickness?: components["schemas"]["MaxSlenderness"] | null;
         };
         FlywheelMechanism: {
             /**
@@ -1781,7 +1815,7 @@ export interface components {
             seed?: number;
             /** @enum {string} */
             units?: "si" | "consistent";
-            torque?: components["schemas"]["StatedTorque"] | null;
+            torque?: components["schemas"]["TorqueTable"] | null;
             machine?: components["schemas"]["Machine"] | null;
             speed_rpm: number;
             /** @enum {string} */
@@ -1795,6 +1829,10 @@ export interface components {
             summary: string;
             nearest_miss?: components["schemas"]["NearestMiss_FlywheelDesign_"] | null;
             fluctuation: components["schemas"]["Fluctuation"] | null;
+        };
+        FlywheelSpec: {
+            coefficient: number;
+            existing_inertia?: number;
         };
         FollowerDynamics: {
             mass: number;
@@ -1815,7 +1853,7 @@ export interface components {
                 [key: string]: number;
             };
         };
-        ForceCourse: {
+        ForceCurve: {
             /** @enum {string} */
             by?: "input_angle" | "input_position";
             /** @enum {string} */
@@ -1910,6 +1948,14 @@ export interface components {
             reference_body_angle?: number | null;
             skeleton: components["schemas"]["Skeleton"];
         };
+        FrictionSpec: {
+            pins?: {
+                [key: string]: components["schemas"]["PinFriction"];
+            };
+            slides?: {
+                [key: string]: number;
+            };
+        };
         Front: {
             quantities: string[];
             designs: number[];
@@ -1941,7 +1987,7 @@ export interface components {
             structural_error: components["schemas"]["StructuralError"];
             layout?: components["schemas"]["Layout"] | null;
             forces?: components["schemas"]["DesignForces"] | null;
-            manufacture?: components["schemas"]["Manufactured"] | null;
+            manufacture?: components["schemas"]["ManufactureReport"] | null;
             exact?: components["schemas"]["ExactDesign"] | null;
         };
         FunctionMetrics: {
@@ -1986,7 +2032,7 @@ export interface components {
             include_failed?: boolean;
             seed?: number;
             constraints?: components["schemas"]["FunctionConstraints"];
-            layout?: components["schemas"]["StatedLayout"] | null;
+            layout?: components["schemas"]["LayoutSpec"] | null;
             space?: components["schemas"]["Space"] | null;
             dynamics?: components["schemas"]["DesignDynamics"] | null;
             manufacture?: components["schemas"]["Manufacture"] | null;
@@ -2066,6 +2112,18 @@ export interface components {
             interpolation?: "linear" | "periodic_cubic";
             phase?: number;
         };
+        GearAngles: {
+            driver: number;
+            driven: number;
+        };
+        GearLengths: {
+            driver: number;
+            driven: number;
+        };
+        GearNumbers: {
+            driver: number;
+            driven: number;
+        };
         GearPair: {
             links: [
                 string,
@@ -2076,6 +2134,13 @@ export interface components {
         GearPairTeeth: {
             driver: number;
             driven: number;
+        };
+        GearSpec: {
+            links: [
+                string,
+                string
+            ];
+            ratio: number;
         };
         GearTrainDesign: {
             mechanism: components["schemas"]["GearTrainMechanism"];
@@ -2119,7 +2184,7 @@ export interface components {
             /** @enum {string} */
             direction?: "any" | "same" | "opposite";
             max_stages?: number | null;
-            stages?: components["schemas"]["StatedStage"][] | null;
+            stages?: components["schemas"]["RequestedStage"][] | null;
             teeth?: components["schemas"]["TeethRange"] | components["schemas"]["TeethRange"][] | null;
             stock?: (number | components["schemas"]["StockedGear"])[] | null;
             max_stage_ratio?: number | null;
@@ -2172,7 +2237,7 @@ export interface components {
             /** @enum {string} */
             direction?: "any" | "same" | "opposite";
             max_stages?: number | null;
-            stages?: components["schemas"]["StatedStage"][] | null;
+            stages?: components["schemas"]["RequestedStage"][] | null;
             teeth?: components["schemas"]["TeethRange"] | components["schemas"]["TeethRange"][] | null;
             stock?: (number | components["schemas"]["StockedGear"])[] | null;
             max_stage_ratio?: number | null;
@@ -2467,6 +2532,16 @@ export interface components {
             place: number;
             scale: number;
         };
+        InputView: {
+            /** @enum {string} */
+            quantity: "angle" | "place";
+            reference: number;
+            low: number;
+            high: number;
+            closed: boolean;
+            endless: boolean;
+            values: number[];
+        };
         InvertedLinks: {
             ground: number;
             input: number;
@@ -2572,6 +2647,17 @@ export interface components {
             input_angle?: number | null;
             input_place?: number | null;
         };
+        LayoutSpec: {
+            link_width: number;
+            pin_diameter: number;
+            thickness: number;
+            gap?: number;
+            /** @enum {string} */
+            shafts?: "one_side" | "both_sides";
+            /** @enum {string} */
+            over?: "used" | "cycle";
+            max_planes?: number | null;
+        };
         LayshaftDesign: {
             mechanism: components["schemas"]["LayshaftMechanism"];
             verification: components["schemas"]["Verification"];
@@ -2630,9 +2716,6 @@ export interface components {
             nearest_miss?: components["schemas"]["NearestMiss_LayshaftDesign_"] | null;
             pareto: components["schemas"]["ParetoLayshaft"][];
         };
-        Least: {
-            min: number;
-        };
         LeftOut: {
             element: string;
             id: string | null;
@@ -2643,10 +2726,6 @@ export interface components {
         LengthLimits: {
             min?: number;
             max?: number | null;
-        };
-        LengthOfGears: {
-            driver: number;
-            driven: number;
         };
         LengthRange: {
             min: number;
@@ -2686,11 +2765,15 @@ export interface components {
             polygon?: ([
                 number,
                 number
-            ] | components["schemas"]["PolarPlace"])[] | null;
+            ] | components["schemas"]["PolarPoint"])[] | null;
             holes?: {
                 [key: string]: number;
             };
             parts?: components["schemas"]["Part"][];
+        };
+        LinkSpec: {
+            name: string;
+            joints: string[];
         };
         LinkageDesign: {
             mechanism: components["schemas"]["FourbarMechanism"] | components["schemas"]["SliderCrankMechanism"] | components["schemas"]["InvertedSliderCrankMechanism"] | components["schemas"]["GearedFivebarMechanism"] | components["schemas"]["SixbarMechanism"];
@@ -2699,7 +2782,7 @@ export interface components {
             metrics: components["schemas"]["LinkageMetrics"];
             layout?: components["schemas"]["Layout"] | null;
             forces?: components["schemas"]["DesignForces"] | null;
-            manufacture?: components["schemas"]["Manufactured"] | null;
+            manufacture?: components["schemas"]["ManufactureReport"] | null;
             exact?: components["schemas"]["ExactDesign"] | null;
         };
         LinkageMetrics: {
@@ -2732,6 +2815,34 @@ export interface components {
             rms_residual: number;
             yield?: components["schemas"]["Yield"] | null;
         };
+        LoadSpec: {
+            link?: string | null;
+            joint?: string | null;
+            point?: ([
+                number,
+                number
+            ] | components["schemas"]["PolarPoint"]) | null;
+            /** @enum {string} */
+            frame?: "global" | "link";
+            force?: components["schemas"]["ForceCurve"] | null;
+            torque?: components["schemas"]["TorqueCurve"] | null;
+        };
+        LoadedLinkage: {
+            /** @enum {string} */
+            units?: "si" | "consistent";
+            gravity?: components["schemas"]["Gravity"] | null;
+            bodies?: {
+                [key: string]: components["schemas"]["BodySpec"];
+            };
+            point_masses?: components["schemas"]["PointMass"][];
+            loads?: components["schemas"]["LoadSpec"][];
+            springs?: components["schemas"]["SpringSpec"][];
+            friction?: components["schemas"]["FrictionSpec"] | null;
+            moment_about?: [
+                number,
+                number
+            ] | null;
+        };
         LockingDisc: {
             angle: number[];
             outer_radius: number[];
@@ -2753,7 +2864,7 @@ export interface components {
             mechanism: {
                 [key: string]: unknown;
             };
-            dynamics: components["schemas"]["WeighedLinkage"];
+            dynamics: components["schemas"]["LoadedLinkage"];
         };
         Manufacture: {
             tolerances?: components["schemas"]["Tolerances"] | null;
@@ -2764,10 +2875,10 @@ export interface components {
             samples?: number;
             seed?: number | null;
             round?: components["schemas"]["Rounding"] | null;
-            stock?: components["schemas"]["synthesis__model__manufacture__Stock"] | null;
+            stock?: components["schemas"]["synthesis__model__manufacture__request__Stock"] | null;
             widest?: boolean;
         };
-        Manufactured: {
+        ManufactureReport: {
             dimensions?: {
                 [key: string]: number;
             } | null;
@@ -2783,6 +2894,15 @@ export interface components {
             /** @default [] */
             sensitivities: components["schemas"]["Sensitivity"][];
             remark?: string | null;
+        };
+        MaxLength: {
+            max: number;
+        };
+        MaxRimSpeed: {
+            max: number;
+        };
+        MaxSlenderness: {
+            max: number;
         };
         MeshContact: {
             gears: [
@@ -2805,21 +2925,21 @@ export interface components {
             undercut: boolean;
             suggested_shift?: components["schemas"]["SuggestedShift"] | null;
             working_pressure_angle?: number | null;
-            tip_diameter?: components["schemas"]["LengthOfGears"] | null;
+            tip_diameter?: components["schemas"]["GearLengths"] | null;
             tip_shortening?: number | null;
-            tip_thickness?: components["schemas"]["LengthOfGears"] | null;
-            specific_sliding?: components["schemas"]["OfGears"] | null;
+            tip_thickness?: components["schemas"]["GearLengths"] | null;
+            specific_sliding?: components["schemas"]["GearNumbers"] | null;
             backlash?: number | null;
             type?: ("external" | "internal" | "helical" | "bevel" | "worm") | null;
-            pitch_diameter?: components["schemas"]["LengthOfGears"] | null;
-            addendum?: components["schemas"]["OfGears"] | null;
+            pitch_diameter?: components["schemas"]["GearLengths"] | null;
+            addendum?: components["schemas"]["GearNumbers"] | null;
             ring_trimmed?: boolean | null;
-            helix_angle?: components["schemas"]["AngleOfGears"] | null;
+            helix_angle?: components["schemas"]["GearAngles"] | null;
             transverse_module?: number | null;
-            virtual_teeth?: components["schemas"]["OfGears"] | null;
+            virtual_teeth?: components["schemas"]["GearNumbers"] | null;
             overlap_ratio?: number | null;
             total_contact_ratio?: number | null;
-            cone_angle?: components["schemas"]["AngleOfGears"] | null;
+            cone_angle?: components["schemas"]["GearAngles"] | null;
             cone_distance?: number | null;
             lead?: number | null;
             lead_angle?: number | null;
@@ -2843,8 +2963,8 @@ export interface components {
                 number
             ][];
         };
-        Most: {
-            max: number;
+        MinLength: {
+            min: number;
         };
         MotionProblem: {
             /** @constant */
@@ -2855,7 +2975,7 @@ export interface components {
             include_failed?: boolean;
             seed?: number;
             constraints?: components["schemas"]["Constraints"];
-            layout?: components["schemas"]["StatedLayout"] | null;
+            layout?: components["schemas"]["LayoutSpec"] | null;
             space?: components["schemas"]["Space"] | null;
             dynamics?: components["schemas"]["DesignDynamics"] | null;
             manufacture?: components["schemas"]["Manufacture"] | null;
@@ -2999,10 +3119,6 @@ export interface components {
             design: components["schemas"]["RotorDesign"] | components["schemas"]["BalancedDesign"];
             gaps: components["schemas"]["Gap"][];
             reachable: components["schemas"]["Reachable"];
-        };
-        OfGears: {
-            driver: number;
-            driven: number;
         };
         Optimality: {
             criterion: string;
@@ -3170,7 +3286,7 @@ export interface components {
             include_failed?: boolean;
             seed?: number;
             constraints?: components["schemas"]["Constraints"];
-            layout?: components["schemas"]["StatedLayout"] | null;
+            layout?: components["schemas"]["LayoutSpec"] | null;
             space?: components["schemas"]["Space"] | null;
             dynamics?: components["schemas"]["DesignDynamics"] | null;
             manufacture?: components["schemas"]["Manufacture"] | null;
@@ -3224,7 +3340,7 @@ export interface components {
             at: [
                 number,
                 number
-            ] | components["schemas"]["PolarPlace"];
+            ] | components["schemas"]["PolarPoint"];
             length: number;
             width?: number | null;
             thickness?: number | null;
@@ -3233,6 +3349,23 @@ export interface components {
             /** @enum {string} */
             axis?: "normal" | "in_plane";
             density?: number | null;
+        };
+        PartView: {
+            name: string;
+            described: string;
+            sort: string;
+            material: string;
+            colour: string;
+            standard: string;
+            planes: [
+                number,
+                number
+            ];
+            lift: number;
+            carrier: number;
+            shapes: (components["schemas"]["PrismShape"] | components["schemas"]["TurnedShape"] | components["schemas"]["TwistedShape"] | components["schemas"]["MeshShape"])[];
+            item: string;
+            files: ("dxf" | "stl" | "step" | "3mf")[];
         };
         PathCognate: {
             /** @enum {string} */
@@ -3273,7 +3406,7 @@ export interface components {
             metrics: components["schemas"]["PathMetrics"];
             layout?: components["schemas"]["Layout"] | null;
             forces?: components["schemas"]["DesignForces"] | null;
-            manufacture?: components["schemas"]["Manufactured"] | null;
+            manufacture?: components["schemas"]["ManufactureReport"] | null;
             exact?: components["schemas"]["ExactDesign"] | null;
             placement?: components["schemas"]["CurvePlacement"] | null;
             /** @default [] */
@@ -3346,7 +3479,7 @@ export interface components {
             include_failed?: boolean;
             seed?: number;
             constraints?: components["schemas"]["PathConstraints"];
-            layout?: components["schemas"]["StatedLayout"] | null;
+            layout?: components["schemas"]["LayoutSpec"] | null;
             space?: components["schemas"]["Space"] | null;
             dynamics?: components["schemas"]["DesignDynamics"] | null;
             manufacture?: components["schemas"]["Manufacture"] | null;
@@ -3419,7 +3552,7 @@ export interface components {
             /** @enum {string} */
             method?: "lewis" | "agma";
             quality?: number;
-            factors?: components["schemas"]["StatedFactors"];
+            factors?: components["schemas"]["StrengthFactors"];
             allowable_bending?: [
                 number,
                 number
@@ -3577,7 +3710,7 @@ export interface components {
             joint: string;
             mass: number;
         };
-        PolarPlace: {
+        PolarPoint: {
             distance: number;
             angle?: number;
         };
@@ -3746,7 +3879,7 @@ export interface components {
             include_failed?: boolean;
             seed?: number;
             constraints?: components["schemas"]["Constraints"];
-            layout?: components["schemas"]["StatedLayout"] | null;
+            layout?: components["schemas"]["LayoutSpec"] | null;
             space?: components["schemas"]["Space"] | null;
             dynamics?: components["schemas"]["DesignDynamics"] | null;
             manufacture?: components["schemas"]["Manufacture"] | null;
@@ -3863,6 +3996,19 @@ export interface components {
                 number,
                 number
             ];
+        };
+        RequestedStage: {
+            /** @enum {string} */
+            type: "external" | "internal" | "helical" | "bevel" | "worm";
+            helix_angle?: number | null;
+            face_width?: number | null;
+            shaft_angle?: number | null;
+            diameter_quotient?: number | null;
+            hand?: ("right" | "left") | null;
+            friction?: number | null;
+            ring?: ("driver" | "driven") | null;
+            driver?: number | components["schemas"]["StageTeethRange"] | null;
+            driven?: number | components["schemas"]["StageTeethRange"] | null;
         };
         Rest: {
             index: number;
@@ -4007,7 +4153,7 @@ export interface components {
             polygon?: ([
                 number,
                 number
-            ] | components["schemas"]["PolarPlace"])[] | null;
+            ] | components["schemas"]["PolarPoint"])[] | null;
             holes?: {
                 [key: string]: number;
             };
@@ -4049,6 +4195,18 @@ export interface components {
             gears: components["schemas"]["GearPair"][];
             input_link: string;
         };
+        SkeletonSpec: {
+            joints: {
+                [key: string]: [
+                    number,
+                    number
+                ];
+            };
+            links: components["schemas"]["LinkSpec"][];
+            slides?: components["schemas"]["SlideSpec"][];
+            gears?: components["schemas"]["GearSpec"][];
+            input_link: string;
+        };
         Slide: {
             joint: string;
             link: string;
@@ -4057,6 +4215,15 @@ export interface components {
                 number
             ];
             angle: number;
+        };
+        SlideSpec: {
+            point: [
+                number,
+                number
+            ];
+            angle: number;
+            joint: string;
+            link: string;
         };
         SliderCrankLinks: {
             crank: number;
@@ -4094,11 +4261,11 @@ export interface components {
             point?: ([
                 number,
                 number
-            ] | components["schemas"]["PolarPlace"]) | null;
+            ] | components["schemas"]["PolarPoint"]) | null;
             within?: ([
                 number,
                 number
-            ] | components["schemas"]["PolarPlace"])[] | null;
+            ] | components["schemas"]["PolarPoint"])[] | null;
         };
         SoughtSpring: {
             ends?: [
@@ -4133,14 +4300,14 @@ export interface components {
         SourceLinkage: {
             /** @constant */
             type?: "fourbar";
-            fixed_pivots: components["schemas"]["StatedPivots"];
+            fixed_pivots: components["schemas"]["FixedPivotsSpec"];
             links: components["schemas"]["FourbarLengths"];
-            coupler_point: components["schemas"]["StatedCouplerPoint"];
+            coupler_point: components["schemas"]["CouplerPointSpec"];
             /** @enum {string} */
             assembly?: "open" | "crossed";
             reference_input_angle?: number | null;
             reference_body_angle?: number | null;
-            skeleton?: components["schemas"]["StatedSkeleton"] | null;
+            skeleton?: components["schemas"]["SkeletonSpec"] | null;
         };
         Space: {
             fixed_pivots?: components["schemas"]["FixedPivotZones"] | null;
@@ -4235,7 +4402,7 @@ export interface components {
             point: [
                 number,
                 number
-            ] | components["schemas"]["PolarPlace"];
+            ] | components["schemas"]["PolarPoint"];
         };
         SpringMetrics: {
             value: number;
@@ -4247,6 +4414,23 @@ export interface components {
             rms_drive: number;
             unbalanced_rms_drive: number;
             energy_variation?: number | null;
+        };
+        SpringSpec: {
+            ends?: [
+                components["schemas"]["SpringEnd"],
+                components["schemas"]["SpringEnd"]
+            ] | null;
+            rate?: number;
+            free_length?: number;
+            preload?: number;
+            one_sided?: ("pull" | "push") | false;
+            torsion?: number | null;
+            links?: [
+                string,
+                string
+            ] | null;
+            free_angle?: number;
+            damping?: number;
         };
         SprungDesign: {
             mechanism: components["schemas"]["SprungLinkage"];
@@ -4270,12 +4454,12 @@ export interface components {
             driver: number;
             driven: number;
             module: number;
-            shift?: components["schemas"]["OfGears"] | null;
+            shift?: components["schemas"]["GearNumbers"] | null;
             centre_distance?: number | null;
             face_width?: number | null;
             type?: ("external" | "internal" | "helical" | "bevel" | "worm") | null;
             helix_angle?: number | null;
-            addendum?: components["schemas"]["OfGears"] | null;
+            addendum?: components["schemas"]["GearNumbers"] | null;
             shaft_angle?: number | null;
             diameter_quotient?: number | null;
             hand?: ("right" | "left") | null;
@@ -4299,23 +4483,6 @@ export interface components {
             speed?: "any" | "constant";
             speed_tolerance?: number | null;
         };
-        Standing: {
-            origins: [
-                number,
-                number,
-                number
-            ][];
-            along: [
-                number,
-                number,
-                number
-            ][];
-            normals: [
-                number,
-                number,
-                number
-            ][];
-        };
         StartFourbar: {
             O2: [
                 number,
@@ -4337,171 +4504,6 @@ export interface components {
                 number,
                 number
             ];
-        };
-        StatedBody: {
-            mass?: number | null;
-            cg?: ([
-                number,
-                number
-            ] | components["schemas"]["PolarPlace"]) | null;
-            inertia?: number | null;
-            shape?: components["schemas"]["Shape"] | null;
-        };
-        StatedCouplerPoint: {
-            distance: number;
-            angle?: number;
-        };
-        StatedCrank: {
-            mass: number;
-            cg: number;
-            inertia?: number | null;
-        };
-        StatedDwell: {
-            angle: number;
-            at: ("low" | "high") | number;
-        };
-        StatedFactors: {
-            form?: [
-                number,
-                number
-            ] | null;
-            overload?: number;
-            dynamic?: number | null;
-            size?: [
-                number,
-                number
-            ] | null;
-            load_distribution?: number | null;
-            rim?: number;
-            bending_geometry?: [
-                number,
-                number
-            ] | null;
-            contact_geometry?: number | null;
-            elastic?: number | null;
-        };
-        StatedFlywheel: {
-            coefficient: number;
-            existing_inertia?: number;
-        };
-        StatedFriction: {
-            pins?: {
-                [key: string]: components["schemas"]["PinFriction"];
-            };
-            slides?: {
-                [key: string]: number;
-            };
-        };
-        StatedGear: {
-            links: [
-                string,
-                string
-            ];
-            ratio: number;
-        };
-        StatedLayout: {
-            link_width: number;
-            pin_diameter: number;
-            thickness: number;
-            gap?: number;
-            /** @enum {string} */
-            shafts?: "one_side" | "both_sides";
-            /** @enum {string} */
-            over?: "used" | "cycle";
-            max_planes?: number | null;
-        };
-        StatedLink: {
-            name: string;
-            joints: string[];
-        };
-        StatedLoad: {
-            link?: string | null;
-            joint?: string | null;
-            point?: ([
-                number,
-                number
-            ] | components["schemas"]["PolarPlace"]) | null;
-            /** @enum {string} */
-            frame?: "global" | "link";
-            force?: components["schemas"]["ForceCourse"] | null;
-            torque?: components["schemas"]["TorqueCourse"] | null;
-        };
-        StatedPivots: {
-            input: [
-                number,
-                number
-            ];
-            output: [
-                number,
-                number
-            ];
-        };
-        StatedRod: {
-            mass: number;
-            cg: number;
-            inertia?: number | null;
-        };
-        StatedSkeleton: {
-            joints: {
-                [key: string]: [
-                    number,
-                    number
-                ];
-            };
-            links: components["schemas"]["StatedLink"][];
-            slides?: components["schemas"]["StatedSlide"][];
-            gears?: components["schemas"]["StatedGear"][];
-            input_link: string;
-        };
-        StatedSlide: {
-            point: [
-                number,
-                number
-            ];
-            angle: number;
-            joint: string;
-            link: string;
-        };
-        StatedSpring: {
-            ends?: [
-                components["schemas"]["SpringEnd"],
-                components["schemas"]["SpringEnd"]
-            ] | null;
-            rate?: number;
-            free_length?: number;
-            preload?: number;
-            one_sided?: ("pull" | "push") | false;
-            torsion?: number | null;
-            links?: [
-                string,
-                string
-            ] | null;
-            free_angle?: number;
-            damping?: number;
-        };
-        StatedStage: {
-            /** @enum {string} */
-            type: "external" | "internal" | "helical" | "bevel" | "worm";
-            helix_angle?: number | null;
-            face_width?: number | null;
-            shaft_angle?: number | null;
-            diameter_quotient?: number | null;
-            hand?: ("right" | "left") | null;
-            friction?: number | null;
-            ring?: ("driver" | "driven") | null;
-            driver?: number | components["schemas"]["StageTeethRange"] | null;
-            driven?: number | components["schemas"]["StageTeethRange"] | null;
-        };
-        StatedTorque: {
-            table: [
-                number,
-                number
-            ][];
-            /** @enum {string} */
-            interpolation?: "linear" | "periodic_cubic";
-            turns?: number;
-            /** @enum {string} */
-            side?: "demand" | "supply";
         };
         /** @enum {string} */
         Status: "queued" | "running" | "succeeded" | "failed" | "cancelled";
@@ -4553,7 +4555,7 @@ export interface components {
             include_failed?: boolean;
             seed?: number;
             constraints?: components["schemas"]["Constraints"];
-            layout?: components["schemas"]["StatedLayout"] | null;
+            layout?: components["schemas"]["LayoutSpec"] | null;
             space?: components["schemas"]["Space"] | null;
             dynamics?: components["schemas"]["DesignDynamics"] | null;
             manufacture?: components["schemas"]["Manufacture"] | null;
@@ -4632,7 +4634,7 @@ export interface components {
             include_failed?: boolean;
             seed?: number;
             constraints?: components["schemas"]["Constraints"];
-            layout?: components["schemas"]["StatedLayout"] | null;
+            layout?: components["schemas"]["LayoutSpec"] | null;
             space?: components["schemas"]["Space"] | null;
             dynamics?: components["schemas"]["DesignDynamics"] | null;
             manufacture?: components["schemas"]["Manufacture"] | null;
@@ -4658,6 +4660,26 @@ export interface components {
             summary: string;
             nearest_miss?: components["schemas"]["NearestMiss_StraightLineDesign_"] | null;
             front?: components["schemas"]["Front"] | null;
+        };
+        StrengthFactors: {
+            form?: [
+                number,
+                number
+            ] | null;
+            overload?: number;
+            dynamic?: number | null;
+            size?: [
+                number,
+                number
+            ] | null;
+            load_distribution?: number | null;
+            rim?: number;
+            bending_geometry?: [
+                number,
+                number
+            ] | null;
+            contact_geometry?: number | null;
+            elastic?: number | null;
         };
         StressedGear: {
             form: number | null;
@@ -4737,7 +4759,7 @@ export interface components {
             min: number;
             max: number;
         };
-        TorqueCourse: {
+        TorqueCurve: {
             /** @enum {string} */
             by?: "input_angle" | "input_position";
             /** @enum {string} */
@@ -4754,6 +4776,17 @@ export interface components {
             at?: number | null;
             at_place?: number | null;
             max: number;
+        };
+        TorqueTable: {
+            table: [
+                number,
+                number
+            ][];
+            /** @enum {string} */
+            interpolation?: "linear" | "periodic_cubic";
+            turns?: number;
+            /** @enum {string} */
+            side?: "demand" | "supply";
         };
         TrainSeriesDesign: {
             mechanism: components["schemas"]["TrainSeriesMechanism"];
@@ -4901,39 +4934,6 @@ export interface components {
             passed: boolean;
             checks: components["schemas"]["Check"][];
         };
-        ViewedPart: {
-            name: string;
-            described: string;
-            sort: string;
-            material: string;
-            colour: string;
-            standard: string;
-            planes: [
-                number,
-                number
-            ];
-            lift: number;
-            carrier: number;
-            shapes: (components["schemas"]["PrismShape"] | components["schemas"]["TurnedShape"] | components["schemas"]["TwistedShape"] | components["schemas"]["MeshShape"])[];
-            item: string;
-            files: ("dxf" | "stl" | "step" | "3mf")[];
-        };
-        WeighedLinkage: {
-            /** @enum {string} */
-            units?: "si" | "consistent";
-            gravity?: components["schemas"]["Gravity"] | null;
-            bodies?: {
-                [key: string]: components["schemas"]["StatedBody"];
-            };
-            point_masses?: components["schemas"]["PointMass"][];
-            loads?: components["schemas"]["StatedLoad"][];
-            springs?: components["schemas"]["StatedSpring"][];
-            friction?: components["schemas"]["StatedFriction"] | null;
-            moment_about?: [
-                number,
-                number
-            ] | null;
-        };
         WorstCase: {
             assembles: boolean;
             max_error?: number | null;
@@ -4956,13 +4956,13 @@ export interface components {
             ][] | null;
             circle?: components["schemas"]["Circle"] | null;
         };
-        synthesis__kinds__balancing__stated_rotor__Stock: {
+        synthesis__kinds__balancing__statement__rotor__Stock: {
             angles: number | number[];
             radius: number;
             max_places?: number | null;
             masses: number[];
         };
-        synthesis__model__manufacture__Stock: {
+        synthesis__model__manufacture__request__Stock: {
             links: number[];
         };
         ArcContour: {
@@ -4988,11 +4988,11 @@ export interface components {
             follower: components["schemas"]["FollowerSeries"];
             play: (number | null)[];
             pressure_angle: (number | null)[];
-            forces: components["schemas"]["synthesis__analyses__cam__ForceSeries"] | null;
+            forces: components["schemas"]["synthesis__analyses__cams__cam__ForceSeries"] | null;
         };
         BarrelCamAnalysisRequest: {
             mechanism: components["schemas"]["GivenBarrelCam"];
-            motion?: components["schemas"]["Sweep"] | components["schemas"]["OnePosition"] | components["schemas"]["Run"];
+            motion?: components["schemas"]["Sweep"] | components["schemas"]["OnePosition"] | components["schemas"]["TimedRun"];
             load?: components["schemas"]["Load"] | null;
         };
         BearingLoad: {
@@ -5024,14 +5024,14 @@ export interface components {
             play: (number | null)[] | null;
             pressure_angle: (number | null)[];
             radius_of_curvature: (number | null)[];
-            forces: components["schemas"]["synthesis__analyses__cam__ForceSeries"] | null;
+            forces: components["schemas"]["synthesis__analyses__cams__cam__ForceSeries"] | null;
             response: components["schemas"]["ResponseSeries"] | null;
             cutter_path: components["schemas"]["CutterPath"] | null;
             profile: components["schemas"]["ProfileFacts"];
         };
         CamAnalysisRequest: {
             mechanism: components["schemas"]["GivenCam"];
-            motion?: components["schemas"]["Sweep"] | components["schemas"]["OnePosition"] | components["schemas"]["Run"];
+            motion?: components["schemas"]["Sweep"] | components["schemas"]["OnePosition"] | components["schemas"]["TimedRun"];
             load?: components["schemas"]["Load"] | null;
             train?: components["schemas"]["Train"] | null;
             cutter?: components["schemas"]["Cutter"] | null;
@@ -5051,7 +5051,7 @@ export interface components {
         };
         CamshaftAnalysisRequest: {
             mechanism: components["schemas"]["GivenCamshaft"];
-            motion?: components["schemas"]["Sweep"] | components["schemas"]["OnePosition"] | components["schemas"]["Run"];
+            motion?: components["schemas"]["Sweep"] | components["schemas"]["OnePosition"] | components["schemas"]["TimedRun"];
         };
         Centrodes: {
             fixed: components["schemas"]["Points"];
@@ -5080,7 +5080,7 @@ export interface components {
         };
         ContourCamAnalysisRequest: {
             mechanism: components["schemas"]["GivenContourCam"];
-            motion?: components["schemas"]["Sweep"] | components["schemas"]["OnePosition"] | components["schemas"]["Run"];
+            motion?: components["schemas"]["Sweep"] | components["schemas"]["OnePosition"] | components["schemas"]["TimedRun"];
         };
         ContourFollower: {
             position: number[];
@@ -5120,19 +5120,19 @@ export interface components {
             units?: "si" | "consistent";
             gravity?: components["schemas"]["Gravity"] | null;
             bodies?: {
-                [key: string]: components["schemas"]["StatedBody"];
+                [key: string]: components["schemas"]["BodySpec"];
             };
             point_masses?: components["schemas"]["PointMass"][];
-            loads?: components["schemas"]["StatedLoad"][];
-            springs?: components["schemas"]["StatedSpring"][];
-            friction?: components["schemas"]["StatedFriction"] | null;
+            loads?: components["schemas"]["LoadSpec"][];
+            springs?: components["schemas"]["SpringSpec"][];
+            friction?: components["schemas"]["FrictionSpec"] | null;
             moment_about?: [
                 number,
                 number
             ] | null;
             drive?: "torque" | components["schemas"]["DrivenSlide"] | null;
             minimum_norm?: boolean;
-            flywheel?: components["schemas"]["StatedFlywheel"] | null;
+            flywheel?: components["schemas"]["FlywheelSpec"] | null;
             report?: ("joint_forces" | "drive" | "shaking" | "flywheel" | "joint_force_index" | "harmonics")[] | null;
             links?: components["schemas"]["LinkShape"] | null;
             speed_rpm?: number | null;
@@ -5173,12 +5173,12 @@ export interface components {
             virtual_work_drive?: (number | null)[] | null;
             joints?: {
                 [key: string]: {
-                    [key: string]: components["schemas"]["synthesis__model__dynamics_answer__ForceSeries"];
+                    [key: string]: components["schemas"]["synthesis__model__dynamics__answer__ForceSeries"];
                 };
             } | null;
             slides?: components["schemas"]["SlideForces"][] | null;
             gears?: components["schemas"]["GearTorques"][] | null;
-            friction?: components["schemas"]["Rubbing"] | null;
+            friction?: components["schemas"]["FrictionLosses"] | null;
             shaking?: components["schemas"]["Shaking"] | null;
             extremes: components["schemas"]["Extremes"];
             power: components["schemas"]["Power"];
@@ -5212,7 +5212,7 @@ export interface components {
         };
         EngineAnalysisRequest: {
             mechanism: components["schemas"]["GivenEngine"];
-            motion?: components["schemas"]["Sweep"] | components["schemas"]["OnePosition"] | components["schemas"]["Run"];
+            motion?: components["schemas"]["Sweep"] | components["schemas"]["OnePosition"] | components["schemas"]["TimedRun"];
         };
         Exactness: {
             tolerances?: components["schemas"]["Tolerances"] | null;
@@ -5259,7 +5259,7 @@ export interface components {
         };
         FlywheelAnalysisRequest: {
             mechanism: components["schemas"]["GivenFlywheel"];
-            motion?: components["schemas"]["Sweep"] | components["schemas"]["OnePosition"] | components["schemas"]["Run"];
+            motion?: components["schemas"]["Sweep"] | components["schemas"]["OnePosition"] | components["schemas"]["TimedRun"];
             /** @enum {string} */
             length_unit?: "mm" | "cm" | "m" | "in";
             /** @enum {string} */
@@ -5281,6 +5281,14 @@ export interface components {
             right: components["schemas"]["GivenFourbar"];
             geared_fivebar: components["schemas"]["GivenGearedFivebar"];
             parallel_motion: components["schemas"]["GivenSkeleton"];
+        };
+        FrictionLosses: {
+            pins: {
+                [key: string]: {
+                    [key: string]: (number | null)[];
+                };
+            };
+            power: (number | null)[];
         };
         GearPairAnalysis: {
             ratio: number;
@@ -5313,7 +5321,7 @@ export interface components {
         };
         GearTrainAnalysisRequest: {
             mechanism: components["schemas"]["GivenGearTrain"];
-            motion?: components["schemas"]["Sweep"] | components["schemas"]["OnePosition"] | components["schemas"]["Run"];
+            motion?: components["schemas"]["Sweep"] | components["schemas"]["OnePosition"] | components["schemas"]["TimedRun"];
             /** @enum {string} */
             length_unit?: "mm" | "cm" | "m" | "in";
             input_torque?: number;
@@ -5332,7 +5340,7 @@ export interface components {
         };
         GearboxAnalysisRequest: {
             mechanism: components["schemas"]["GivenGearbox"];
-            motion?: components["schemas"]["Sweep"] | components["schemas"]["OnePosition"] | components["schemas"]["Run"];
+            motion?: components["schemas"]["Sweep"] | components["schemas"]["OnePosition"] | components["schemas"]["TimedRun"];
             engaged?: number[] | null;
         };
         GenevaAnalysis: {
@@ -5347,7 +5355,7 @@ export interface components {
         };
         GenevaAnalysisRequest: {
             mechanism: components["schemas"]["GivenGeneva"];
-            motion?: components["schemas"]["Sweep"] | components["schemas"]["OnePosition"] | components["schemas"]["Run"];
+            motion?: components["schemas"]["Sweep"] | components["schemas"]["OnePosition"] | components["schemas"]["TimedRun"];
         };
         GivenAddenda: {
             driver: number;
@@ -5483,10 +5491,10 @@ export interface components {
             type: "fourbar";
             reference_input_angle?: number | null;
             reference_body_angle?: number | null;
-            skeleton?: components["schemas"]["StatedSkeleton"] | null;
-            fixed_pivots: components["schemas"]["StatedPivots"];
+            skeleton?: components["schemas"]["SkeletonSpec"] | null;
+            fixed_pivots: components["schemas"]["FixedPivotsSpec"];
             links: components["schemas"]["FourbarLengths"];
-            coupler_point?: components["schemas"]["StatedCouplerPoint"];
+            coupler_point?: components["schemas"]["CouplerPointSpec"];
             /** @enum {string} */
             assembly?: "open" | "crossed";
         };
@@ -5543,12 +5551,12 @@ export interface components {
             type: "geared_fivebar";
             reference_input_angle?: number | null;
             reference_body_angle?: number | null;
-            skeleton?: components["schemas"]["StatedSkeleton"] | null;
-            fixed_pivots: components["schemas"]["StatedPivots"];
+            skeleton?: components["schemas"]["SkeletonSpec"] | null;
+            fixed_pivots: components["schemas"]["FixedPivotsSpec"];
             links: components["schemas"]["FivebarLengths"];
             gear_ratio: number;
             phase: number;
-            coupler_point?: components["schemas"]["StatedCouplerPoint"];
+            coupler_point?: components["schemas"]["CouplerPointSpec"];
             /** @enum {string} */
             assembly?: "open" | "crossed";
         };
@@ -5599,11 +5607,11 @@ export interface components {
             type: "inverted_slider_crank";
             reference_input_angle?: number | null;
             reference_body_angle?: number | null;
-            skeleton?: components["schemas"]["StatedSkeleton"] | null;
-            fixed_pivots: components["schemas"]["StatedPivots"];
+            skeleton?: components["schemas"]["SkeletonSpec"] | null;
+            fixed_pivots: components["schemas"]["FixedPivotsSpec"];
             links: components["schemas"]["InvertedLengths"];
             slide: components["schemas"]["OutputSlide"];
-            coupler_point?: components["schemas"]["StatedCouplerPoint"] | null;
+            coupler_point?: components["schemas"]["CouplerPointSpec"] | null;
             /** @enum {string} */
             assembly?: "open" | "crossed";
         };
@@ -5667,10 +5675,10 @@ export interface components {
             type: "crank_shaper" | "whitworth";
             reference_input_angle?: number | null;
             reference_body_angle?: number | null;
-            skeleton?: components["schemas"]["StatedSkeleton"] | null;
-            fixed_pivots: components["schemas"]["StatedPivots"];
+            skeleton?: components["schemas"]["SkeletonSpec"] | null;
+            fixed_pivots: components["schemas"]["FixedPivotsSpec"];
             links: components["schemas"]["QuickReturnLengths"];
-            slide: components["schemas"]["StatedLine"];
+            slide: components["schemas"]["LineSpec"];
             /** @enum {string} */
             assembly?: "open" | "crossed";
         };
@@ -5717,7 +5725,7 @@ export interface components {
         GivenSkeleton: {
             /** @enum {string} */
             type?: "skeleton" | "fourbar" | "slider_crank" | "inverted_slider_crank" | "crank_shaper" | "whitworth" | "geared_fivebar" | "watt_1" | "watt_2" | "stephenson_1" | "stephenson_2" | "stephenson_3" | "drag_link_rocker" | "drag_link_slider" | "davis" | "dwell_rocker" | "dwell_slider" | "dwell_slot" | "dwell_watt_rocker" | "dwell_watt_slider" | "dwell_stephenson_2" | "peaucellier" | "hart" | "scott_russell" | "pantograph";
-            skeleton: components["schemas"]["StatedSkeleton"];
+            skeleton: components["schemas"]["SkeletonSpec"];
             links?: {
                 [key: string]: number;
             };
@@ -5727,7 +5735,7 @@ export interface components {
                     number
                 ];
             };
-            coupler_point?: components["schemas"]["StatedCouplerPoint"] | null;
+            coupler_point?: components["schemas"]["CouplerPointSpec"] | null;
             reference_input_angle?: number | null;
             reference_body_angle?: number | null;
         };
@@ -5736,17 +5744,17 @@ export interface components {
             type: "slider_crank";
             reference_input_angle?: number | null;
             reference_body_angle?: number | null;
-            skeleton?: components["schemas"]["StatedSkeleton"] | null;
+            skeleton?: components["schemas"]["SkeletonSpec"] | null;
             fixed_pivot: [
                 number,
                 number
             ];
             links: components["schemas"]["SliderCrankLengths"];
-            slide: components["schemas"]["StatedLine"];
+            slide: components["schemas"]["LineSpec"];
             offset?: number | null;
             /** @enum {string} */
             assembly?: "open" | "crossed";
-            coupler_point?: components["schemas"]["StatedCouplerPoint"];
+            coupler_point?: components["schemas"]["CouplerPointSpec"];
             /** @enum {string} */
             driven_by?: "crank" | "slider";
         };
@@ -5780,7 +5788,7 @@ export interface components {
         GivenUniversalJoint: {
             /** @constant */
             type: "universal_joint";
-            joints: components["schemas"]["StatedJoint"][];
+            joints: components["schemas"]["JointSpec"][];
             inertia?: number | null;
             torque?: number;
         };
@@ -5825,6 +5833,10 @@ export interface components {
             greatest_acceleration_at: number[];
             torques: number[] | null;
         };
+        JointSpec: {
+            angle: number;
+            offset?: number;
+        };
         LayoutSizes: {
             link_width: number;
             pin_diameter: number;
@@ -5837,8 +5849,15 @@ export interface components {
         };
         LayshaftAnalysisRequest: {
             mechanism: components["schemas"]["GivenLayshaftGearbox"];
-            motion?: components["schemas"]["Sweep"] | components["schemas"]["OnePosition"] | components["schemas"]["Run"];
+            motion?: components["schemas"]["Sweep"] | components["schemas"]["OnePosition"] | components["schemas"]["TimedRun"];
             gear?: number | "reverse";
+        };
+        LineSpec: {
+            point: [
+                number,
+                number
+            ];
+            angle: number;
         };
         LinkPoint: {
             distance: number;
@@ -5883,7 +5902,7 @@ export interface components {
             notes: string[];
             fourbar: components["schemas"]["FourbarAnalysis"] | null;
             targets?: components["schemas"]["MetTarget"][] | null;
-            manufacture?: components["schemas"]["Manufactured"] | null;
+            manufacture?: components["schemas"]["ManufactureReport"] | null;
             yield?: components["schemas"]["Yield"] | null;
             layout?: components["schemas"]["Layout"] | null;
             skeleton?: components["schemas"]["Skeleton"] | null;
@@ -5891,13 +5910,13 @@ export interface components {
         };
         LinkageAnalysisRequest: {
             mechanism: components["schemas"]["GivenFourbar"] | components["schemas"]["GivenSliderCrank"] | components["schemas"]["GivenInvertedSliderCrank"] | components["schemas"]["GivenQuickReturn"] | components["schemas"]["GivenGearedFivebar"] | components["schemas"]["GivenSkeleton"];
-            motion?: components["schemas"]["Sweep"] | components["schemas"]["OnePosition"] | components["schemas"]["Run"];
+            motion?: components["schemas"]["Sweep"] | components["schemas"]["OnePosition"] | components["schemas"]["TimedRun"];
             include?: (("cognates" | "centrodes" | "curvature" | "coupler_curve") | "branches")[];
             points?: {
                 [key: string]: components["schemas"]["LinkPoint"];
             };
             layout?: components["schemas"]["LayoutSizes"] | null;
-            targets?: components["schemas"]["StatedTarget"][];
+            targets?: components["schemas"]["TargetSpec"][];
             manufacture?: components["schemas"]["Exactness"] | null;
             /** @enum {string} */
             length_unit?: "mm" | "cm" | "m" | "in";
@@ -5919,21 +5938,21 @@ export interface components {
             undercut: boolean;
             suggested_shift?: components["schemas"]["SuggestedShift"] | null;
             working_pressure_angle?: number | null;
-            tip_diameter?: components["schemas"]["LengthOfGears"] | null;
+            tip_diameter?: components["schemas"]["GearLengths"] | null;
             tip_shortening?: number | null;
-            tip_thickness?: components["schemas"]["LengthOfGears"] | null;
-            specific_sliding?: components["schemas"]["OfGears"] | null;
+            tip_thickness?: components["schemas"]["GearLengths"] | null;
+            specific_sliding?: components["schemas"]["GearNumbers"] | null;
             backlash?: number | null;
             type?: ("external" | "internal" | "helical" | "bevel" | "worm") | null;
-            pitch_diameter?: components["schemas"]["LengthOfGears"] | null;
-            addendum?: components["schemas"]["OfGears"] | null;
+            pitch_diameter?: components["schemas"]["GearLengths"] | null;
+            addendum?: components["schemas"]["GearNumbers"] | null;
             ring_trimmed?: boolean | null;
-            helix_angle?: components["schemas"]["AngleOfGears"] | null;
+            helix_angle?: components["schemas"]["GearAngles"] | null;
             transverse_module?: number | null;
-            virtual_teeth?: components["schemas"]["OfGears"] | null;
+            virtual_teeth?: components["schemas"]["GearNumbers"] | null;
             overlap_ratio?: number | null;
             total_contact_ratio?: number | null;
-            cone_angle?: components["schemas"]["AngleOfGears"] | null;
+            cone_angle?: components["schemas"]["GearAngles"] | null;
             cone_distance?: number | null;
             lead?: number | null;
             lead_angle?: number | null;
@@ -5946,8 +5965,8 @@ export interface components {
             pitch_line_velocity: number;
             tangential_force: number;
             radial_force: number;
-            radial_forces?: components["schemas"]["OfGears"] | null;
-            axial_force?: components["schemas"]["OfGears"] | null;
+            radial_forces?: components["schemas"]["GearNumbers"] | null;
+            axial_force?: components["schemas"]["GearNumbers"] | null;
             strength?: components["schemas"]["PairStrength"] | null;
         };
         LoadedPlanetaryMesh: {
@@ -6018,7 +6037,7 @@ export interface components {
             /** @enum {string} */
             method?: "lewis" | "agma";
             quality?: number;
-            factors?: components["schemas"]["StatedFactors"];
+            factors?: components["schemas"]["StrengthFactors"];
             allowable_bending?: [
                 number,
                 number
@@ -6051,7 +6070,7 @@ export interface components {
         };
         PlanetaryAnalysisRequest: {
             mechanism: components["schemas"]["GivenPlanetaryTrain"];
-            motion?: components["schemas"]["Sweep"] | components["schemas"]["OnePosition"] | components["schemas"]["Run"];
+            motion?: components["schemas"]["Sweep"] | components["schemas"]["OnePosition"] | components["schemas"]["TimedRun"];
             speeds?: {
                 [key: string]: number;
             } | null;
@@ -6103,7 +6122,7 @@ export interface components {
         };
         RatchetAnalysisRequest: {
             mechanism: components["schemas"]["GivenRatchet"];
-            motion?: components["schemas"]["Sweep"] | components["schemas"]["OnePosition"] | components["schemas"]["Run"];
+            motion?: components["schemas"]["Sweep"] | components["schemas"]["OnePosition"] | components["schemas"]["TimedRun"];
         };
         ResponseSeries: {
             natural_frequency: number;
@@ -6127,26 +6146,11 @@ export interface components {
         };
         RotorRequest: {
             mechanism: components["schemas"]["GivenRotor"];
-            motion?: components["schemas"]["Sweep"] | components["schemas"]["OnePosition"] | components["schemas"]["Run"];
+            motion?: components["schemas"]["Sweep"] | components["schemas"]["OnePosition"] | components["schemas"]["TimedRun"];
             /** @enum {string} */
             length_unit?: "mm" | "cm" | "m" | "in";
             /** @enum {string} */
             units?: "si" | "consistent";
-        };
-        Rubbing: {
-            pins: {
-                [key: string]: {
-                    [key: string]: (number | null)[];
-                };
-            };
-            power: (number | null)[];
-        };
-        Run: {
-            speed?: number | null;
-            speed_rpm?: number | null;
-            acceleration?: number;
-            time: components["schemas"]["TimeSpan"];
-            at?: number;
         };
         RunningGear: {
             teeth: number;
@@ -6191,7 +6195,7 @@ export interface components {
             speed_rpm?: number;
             /** @enum {string} */
             length_unit?: "mm" | "cm" | "m" | "in";
-            strength?: components["schemas"]["StatedStrength"] | null;
+            strength?: components["schemas"]["StrengthSpec"] | null;
             include?: "profiles"[];
         };
         Series: {
@@ -6222,7 +6226,7 @@ export interface components {
             phase?: number;
         };
         Shaking: {
-            force: components["schemas"]["synthesis__model__dynamics_answer__ForceSeries"];
+            force: components["schemas"]["synthesis__model__dynamics__answer__ForceSeries"];
             moment: (number | null)[];
             about: [
                 number,
@@ -6252,22 +6256,26 @@ export interface components {
             least_ratio?: number;
             greatest_ratio?: number | null;
         };
-        StatedJoint: {
-            angle: number;
-            offset?: number;
-        };
-        StatedLine: {
-            point: [
-                number,
-                number
-            ];
-            angle: number;
-        };
-        StatedStrength: {
+        StrengthMethod: {
             /** @enum {string} */
             method?: "lewis" | "agma";
             quality?: number;
-            factors?: components["schemas"]["StatedFactors"];
+            factors?: components["schemas"]["StrengthFactors"];
+            allowable_bending?: [
+                number,
+                number
+            ] | null;
+            allowable_contact?: [
+                number,
+                number
+            ] | null;
+            max_face_width?: number;
+        };
+        StrengthSpec: {
+            /** @enum {string} */
+            method?: "lewis" | "agma";
+            quality?: number;
+            factors?: components["schemas"]["StrengthFactors"];
             allowable_bending?: [
                 number,
                 number
@@ -6279,28 +6287,6 @@ export interface components {
             max_face_width?: number;
             power_kw: number;
         };
-        StatedTarget: {
-            x?: number | null;
-            y?: number | null;
-            angle?: number | null;
-            output?: number | null;
-            input_angle?: number | null;
-        };
-        StrengthMethod: {
-            /** @enum {string} */
-            method?: "lewis" | "agma";
-            quality?: number;
-            factors?: components["schemas"]["StatedFactors"];
-            allowable_bending?: [
-                number,
-                number
-            ] | null;
-            allowable_contact?: [
-                number,
-                number
-            ] | null;
-            max_face_width?: number;
-        };
         TangentContour: {
             base_radius: number;
             nose_radius: number;
@@ -6311,10 +6297,24 @@ export interface components {
              */
             shape: "tangent";
         };
+        TargetSpec: {
+            x?: number | null;
+            y?: number | null;
+            angle?: number | null;
+            output?: number | null;
+            input_angle?: number | null;
+        };
         TimeSpan: {
             start?: number;
             end: number;
             step: number;
+        };
+        TimedRun: {
+            speed?: number | null;
+            speed_rpm?: number | null;
+            acceleration?: number;
+            time: components["schemas"]["TimeSpan"];
+            at?: number;
         };
         ToothSpace: {
             x: number[];
@@ -6350,7 +6350,7 @@ export interface components {
         };
         TrainSeriesAnalysisRequest: {
             mechanism: components["schemas"]["GivenTrainSeries"];
-            motion?: components["schemas"]["Sweep"] | components["schemas"]["OnePosition"] | components["schemas"]["Run"];
+            motion?: components["schemas"]["Sweep"] | components["schemas"]["OnePosition"] | components["schemas"]["TimedRun"];
             /** @enum {string} */
             length_unit?: "mm" | "cm" | "m" | "in";
             input_torque?: number;
@@ -6415,7 +6415,7 @@ export interface components {
         };
         UniversalJointRequest: {
             mechanism: components["schemas"]["GivenUniversalJoint"];
-            motion?: components["schemas"]["Sweep"] | components["schemas"]["OnePosition"] | components["schemas"]["Run"];
+            motion?: components["schemas"]["Sweep"] | components["schemas"]["OnePosition"] | components["schemas"]["TimedRun"];
             limits?: components["schemas"]["SpeedLimits"] | null;
         };
         Wave: {
@@ -6426,12 +6426,12 @@ export interface components {
             speed_rpm?: number;
             mechanism: components["schemas"]["GivenWormSet"];
         };
-        synthesis__analyses__cam__ForceSeries: {
+        synthesis__analyses__cams__cam__ForceSeries: {
             along: (number | null)[];
             normal: (number | null)[];
             torque: (number | null)[];
         };
-        synthesis__model__dynamics_answer__ForceSeries: {
+        synthesis__model__dynamics__answer__ForceSeries: {
             x: (number | null)[];
             y: (number | null)[];
         };

@@ -50,7 +50,7 @@ def test_the_last_field_of_a_grid_varies_fastest():
 def test_a_field_is_set_and_nothing_else_changes():
     before = json.dumps(PROBLEM)
     varied = plan(["/positions/1/x", "/constraints/link_length/min", "/positions/0/a~1b~0"], [[7.0], [1], [None]])
-    assert varied.statement(0) == {
+    assert varied.build_statement(0) == {
         "kind": "motion",
         "positions": [{"x": 0.0, "a/b~": None}, {"x": 7.0}],
         "constraints": {"link_length": {"min": 1}},
@@ -62,7 +62,7 @@ def test_a_field_is_set_and_nothing_else_changes():
 @pytest.mark.parametrize("field", ["/positions/2/x", "/positions/-1/x", "/positions/01", "/positions/x", "/kind/x"])
 def test_a_pointer_to_nowhere_is_told(field):
     with pytest.raises(NoSuchPlace):
-        plan([field], [[1.0]]).statement(0)
+        plan([field], [[1.0]]).build_statement(0)
 
 
 def test_each_part_of_a_range_has_its_sample():

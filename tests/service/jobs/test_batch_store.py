@@ -62,7 +62,7 @@ def test_a_batch_is_dealt_into_shares_that_are_no_jobs_of_clients(store, single)
     shares = [Share.read(claim.problem) for claim in claims]
     assert {claim.batch for claim in claims} == {batch.id}
     assert [n for share in shares for n in range(share.first, share.end)] == list(range(100))
-    assert single.page(tenant="", limit=10) == []
+    assert single.list_page(tenant="", limit=10) == []
     assert single.get(claims[0].job_id) is None
     assert single.load_summaries([claims[0].job_id]) == {}
 
@@ -77,8 +77,8 @@ def test_a_slice_is_stored_whole_and_its_share_goes_on(store, single, engine):
     assert not store.store(batch, claim.job_id, claim.attempt, left, [ended(2)]), "the share is another's now"
     assert numbers(engine) == [0, 1]
     now = store.get(batch.id)
-    assert (now.status, now.succeeded, now.failed, now.done) == (Status.RUNNING, 1, 1, 2)
-    assert store.ended(batch, 0, 5) == {0, 1}
+    assert (now.status, now.succeeded, now.failed, now.ended_count) == (Status.RUNNING, 1, 1, 2)
+    assert store.find_stored(batch, 0, 5) == {0, 1}
     job = single.get(make_sample_id(batch.id, 0))
     assert (job.status, job.label, job.batch, job.cached) == (Status.SUCCEEDED, "many", batch.id, False)
     assert (job.problem, job.result) == ('{"kind": "motion", "seed": 0}', '{"of": 0}')
@@ -106,7 +106,7 @@ def test_batches_and_jobs_of_one_millisecond_have_their_own_samples(store, singl
     while (claim := single.take("m", [Cost.SHORT])) is not None:
         share = Share.read(claim.problem)
         [batch] = [batch for batch in made_at_once if batch.id == claim.batch]
-        assert store.ended(batch, share.first, share.end) == set()
+        assert store.find_stored(batch, share.first, share.end) == set()
         new = [ended(n) for n in range(share.first, share.end)]
         assert store.store(batch, claim.job_id, claim.attempt, None, new)
     for batch in made_at_once:
@@ -132,7 +132,7 @@ def test_a_batch_ends_with_its_last_sample(store, single, statuses, whole):
         new = ended(Share.read(claim.problem).first, Status.SUCCEEDED if status == "s" else Status.FAILED)
         assert store.store(batch, claim.job_id, claim.attempt, None, [new])
     now = store.get(batch.id)
-    assert (now.status, now.done) == (Status(whole), 2)
+    assert (now.status, now.ended_count) == (Status(whole), 2)
     assert now.finished_at is not None
     assert store.start_batch(batch.id) is None
 
@@ -271,9 +271,9 @@ def test_of_a_batch_whose_removal_breaks_off_nothing_is_seen(store, single, engi
         "others may write in between"
     )
     left = make_sample_id(batch.id, numbers(engine)[-1])
-    assert (store.get(batch.id), store.load_summaries([batch.id]), store.plan(batch)) == (None, {}, None)
+    assert (store.get(batch.id), store.load_summaries([batch.id]), store.load_plan(batch)) == (None, {}, None)
     assert (single.get(left), single.load_summaries([left])) == (None, {})
-    assert [found.id for found in store.page(tenant="", limit=9, before=None)] == [other.id]
+    assert [found.id for found in store.list_page(tenant="", limit=9, before=None)] == [other.id]
     assert store.delete_finished(datetime.now(UTC) + timedelta(seconds=1)) == 1, "the other one"
     assert not store.delete(batch.id)
     again = made(store, 2, repeatable=key)
@@ -336,7 +336,7 @@ def test_a_full_queue_takes_no_batch(store, single):
     for most in (1, 2):
         with pytest.raises(QueueFull):
             made(store, 2, max_queued=most)
-    assert store.page(tenant="", limit=9, before=None) == []
+    assert store.list_page(tenant="", limit=9, before=None) == []
     assert made(store, 2, max_queued=3) is not None
     assert made(store, 100, tenant="other", max_queued=MAX_SHARES) is not None
 
@@ -469,10 +469,10 @@ def test_answers_are_found_by_digest_and_are_ones_own(store, single, monkeypatch
     solved(store, single, now, [ended(7, digest="four"), same(8, 7)])
     wanted = ["one", "two", "three", "four", "five", "none"]
     results = {"one": "{1}", "two": "{2}", "three": '{"of": 0}'}
-    assert store.answers(now, wanted) == results | {"four": OwnAnswer(7, "[1, 2.5]")}
-    assert store.answers(earlier, ["three", "one"]) == {"one": "{1}", "three": OwnAnswer(0, "[1, 2.5]")}
-    assert store.answers(made(store, 1, tenant="b"), wanted) == {}
-    assert store.answers(now, []) == {}
+    assert store.find_answers(now, wanted) == results | {"four": OwnAnswer(7, "[1, 2.5]")}
+    assert store.find_answers(earlier, ["three", "one"]) == {"one": "{1}", "three": OwnAnswer(0, "[1, 2.5]")}
+    assert store.find_answers(made(store, 1, tenant="b"), wanted) == {}
+    assert store.find_answers(now, []) == {}
 
 
 def failed(number):
@@ -492,7 +492,7 @@ def test_of_many_equal_answers_one_is_read(store, single, engine, monkeypatch):
     with engine.connect() as connection:
         rows = connection.execute(_select_results("a", ["a", "b", "c"])).all()
     assert [(digest, result is None) for digest, result in rows] == [("a", False), ("b", False), ("c", True)]
-    found = store.answers(made(store, 1, tenant="a"), ["a", "b"])
+    found = store.find_answers(made(store, 1, tenant="a"), ["a", "b"])
     assert [int(found[digest][7:-1]) % 2 for digest in ("a", "b")] == [0, 1]
 
 
@@ -513,5 +513,5 @@ def test_what_is_the_same_as_another_has_its_answer(store, single, monkeypatch):
 def test_pages_of_batches(store):
     ids = [made(store, 1).id for _ in range(3)]
     made(store, 1, tenant="other")
-    assert [batch.id for batch in store.page(tenant="", limit=2, before=None)] == ids[:0:-1]
-    assert [batch.id for batch in store.page(tenant="", limit=2, before=ids[1])] == ids[:1]
+    assert [batch.id for batch in store.list_page(tenant="", limit=2, before=None)] == ids[:0:-1]
+    assert [batch.id for batch in store.list_page(tenant="", limit=2, before=ids[1])] == ids[:1]

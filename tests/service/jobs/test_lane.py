@@ -28,12 +28,12 @@ def write(errors, calls):
 
 def test_a_write_waits_for_a_store_that_is_out_of_reach(idle):
     calls = []
-    assert idle._stored(write([OperationalError("", {}, Exception())] * 2, calls), 1) == 1
+    assert idle._write_with_retries(write([OperationalError("", {}, Exception())] * 2, calls), 1) == 1
     assert calls == [1, 1, 1]
 
 
 def test_a_write_that_is_refused_is_not_tried_for_ever(idle):
     calls = []
     with pytest.raises(IntegrityError):
-        idle._stored(write([IntegrityError("", {}, Exception())] * 9, calls), 1)
+        idle._write_with_retries(write([IntegrityError("", {}, Exception())] * 9, calls), 1)
     assert calls == [1]

@@ -17,7 +17,7 @@ class Store:
         self.is_open = threading.Event()
         self.is_open.set()
 
-    def progress(self, *report):
+    def record_progress(self, *report):
         self.is_open.wait()
         if self.to_raise:
             raise self.to_raise.pop()

@@ -19,7 +19,7 @@ class Leases:
         self.back_at = back_at
         self.taken_at = None
 
-    def expired(self):
+    def find_expired(self):
         if time.monotonic() < self.back_at:
             raise OperationalError("SELECT", {}, Exception("connection refused"))
         return ["job"]

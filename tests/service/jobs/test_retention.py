@@ -46,7 +46,7 @@ def tidied(monkeypatch, stores, days):
             raise asyncio.CancelledError
 
     monkeypatch.setattr(retention.asyncio, "sleep", sleep)
-    finished = SimpleNamespace(removed=lambda: removals.append(1))
+    finished = SimpleNamespace(note_removal=lambda: removals.append(1))
     with pytest.raises(asyncio.CancelledError):
         asyncio.run(keep_tidy(stores.of("jobs"), stores.of("batches"), finished, days))
     return rounds[0], len(removals)

@@ -101,7 +101,7 @@ def test_an_older_attempt_is_refused(store, job, name):
     assert (first.attempt, second.attempt) == (1, 2)
     before = store.get(job.id)
     assert not ACTIONS[name](store, job.id, first.attempt)
-    assert not store.progress(job.id, first.attempt, 0.9, "stale")
+    assert not store.record_progress(job.id, first.attempt, 0.9, "stale")
     assert store.get(job.id) == before
     assert ACTIONS[name](store, job.id, second.attempt)
 
@@ -188,7 +188,7 @@ def test_running_jobs_are_queued_again_before_new_ones(store):
 
 def test_progress_is_kept_within_bounds(store, job):
     claimed = claim(store, job.id, "claim")
-    assert store.progress(job.id, claimed.attempt, 7.0, "x" * 1000)
+    assert store.record_progress(job.id, claimed.attempt, 7.0, "x" * 1000)
     assert store.get(job.id).progress_fraction == 1.0
     assert len(store.get(job.id).progress_message) == 200
 
@@ -196,10 +196,10 @@ def test_progress_is_kept_within_bounds(store, job):
 def test_pages_are_newest_first_and_filtered(store):
     ids = [store.create(tenant="", kind=kind, label=None, problem="{}").id for kind in ("motion", "cam", "motion")]
     claim(store, ids[0], "claim")
-    assert [j.id for j in store.page(tenant="", limit=10)] == ids[::-1]
-    assert [j.id for j in store.page(tenant="", limit=1, before=ids[2])] == [ids[1]]
-    assert [j.id for j in store.page(tenant="", limit=10, kind="motion")] == [ids[2], ids[0]]
-    assert [j.id for j in store.page(tenant="", limit=10, status=Status.RUNNING)] == [ids[0]]
+    assert [j.id for j in store.list_page(tenant="", limit=10)] == ids[::-1]
+    assert [j.id for j in store.list_page(tenant="", limit=1, before=ids[2])] == [ids[1]]
+    assert [j.id for j in store.list_page(tenant="", limit=10, kind="motion")] == [ids[2], ids[0]]
+    assert [j.id for j in store.list_page(tenant="", limit=10, status=Status.RUNNING)] == [ids[0]]
 
 
 def test_the_server_is_durable_and_the_workers_are_not(tmp_path):
@@ -260,7 +260,7 @@ def test_the_queue_has_an_end(engine, store):
         store.create_once(**ours, repeatable=Repeatable("k", "b"))
     claim(store, created[0].id, "claim")
     assert store.create(**ours).status == Status.QUEUED, "a running job is not in the queue"
-    assert store.unfinished() == {"queued": 3, "running": 1}
+    assert store.count_unfinished() == {"queued": 3, "running": 1}
 
 
 def test_many_who_come_at_once_do_not_overfill_the_queue(store):
@@ -280,7 +280,7 @@ def test_many_who_come_at_once_do_not_overfill_the_queue(store):
         thread.start()
     for thread in threads:
         thread.join()
-    assert (store.unfinished()["queued"], len(refused)) == (11, 29)
+    assert (store.count_unfinished()["queued"], len(refused)) == (11, 29)
 
 
 def test_old_finished_jobs_are_removed(engine, store):
@@ -296,7 +296,7 @@ def test_old_finished_jobs_are_removed(engine, store):
     assert store.delete_finished(cutoff - timedelta(hours=1), 10) == 0
     assert store.delete_finished(cutoff, 3) == 3
     assert store.delete_finished(cutoff, 3) == 1
-    assert [job.id for job in store.page(tenant="", limit=10)] == [late, ids[5], ids[4]]
+    assert [job.id for job in store.list_page(tenant="", limit=10)] == [late, ids[5], ids[4]]
 
 
 def test_a_downgrade_undoes_the_upgrade(tmp_path):
@@ -369,7 +369,7 @@ def test_who_does_not_know_whether_it_has_been_given_a_job_may_ask(store, job):
 def test_an_executor_does_nothing_to_an_attempt_of_another(engine, store, leases, job, name):
     claim(store, job.id, "first")
     overdue(engine, job.id)
-    assert leases.take_back(leases.expired()) == [(job.id, Status.QUEUED)]
+    assert leases.take_back(leases.find_expired()) == [(job.id, Status.QUEUED)]
     claim(store, job.id, "second")
     before = store.get(job.id)
     late = {
@@ -385,12 +385,12 @@ def test_only_abandoned_jobs_are_taken_back(engine, store, leases):
     ids = [store.create(tenant="", kind="motion", label=None, problem="{}").id for _ in range(4)]
     for job_id in ids[:3]:
         claim(store, job_id, f"claim of {job_id[-4:]}")
-    assert leases.take_back(leases.expired()) == []
+    assert leases.take_back(leases.find_expired()) == []
     overdue(engine, *ids)
     store.complete(ids[0], 1, "{}")
     assert leases.renew({f"claim of {ids[1][-4:]}": ids[1]}) == set()
-    assert leases.take_back(leases.expired()) == [(ids[2], Status.QUEUED)]
-    assert leases.take_back(leases.expired()) == []
+    assert leases.take_back(leases.find_expired()) == [(ids[2], Status.QUEUED)]
+    assert leases.take_back(leases.find_expired()) == []
     assert [store.get(job_id).status for job_id in ids] == ["succeeded", "running", "queued", "queued"]
 
 
@@ -398,10 +398,10 @@ def test_a_job_that_takes_its_hosts_with_it_is_given_up_in_the_end(engine, store
     for kill in range(MAX_KILLS):
         claim(store, job.id, f"claim {kill}")
         overdue(engine, job.id)
-        assert leases.take_back(leases.expired()) == [(job.id, Status.QUEUED)]
+        assert leases.take_back(leases.find_expired()) == [(job.id, Status.QUEUED)]
     claim(store, job.id, "last")
     overdue(engine, job.id)
-    assert leases.take_back(leases.expired()) == [(job.id, Status.FAILED)]
+    assert leases.take_back(leases.find_expired()) == [(job.id, Status.FAILED)]
     assert "/problems/worker-died" in store.get(job.id).error
 
 
@@ -434,16 +434,16 @@ def test_the_clock_of_the_store_is_the_time(engine):
 
 
 def test_hosts_are_there_as_long_as_they_say_so(engine, leases):
-    assert leases.workers() == 0
+    assert leases.count_workers() == 0
     leases.record_host("one", 2)
     leases.record_host("two", 3)
     leases.record_host("one", 1)
-    assert leases.workers() == 4
+    assert leases.count_workers() == 4
     with engine.begin() as connection:
         connection.execute(update(hosts).where(hosts.c.id == "two").values(seen_at=hosts.c.seen_at - 2 * LEASE_S))
-    assert leases.workers() == 1
+    assert leases.count_workers() == 1
     leases.remove_host("one")
-    assert leases.workers() == 0
+    assert leases.count_workers() == 0
 
 
 def made(store, tenant, cost=Cost.SHORT, count=1):

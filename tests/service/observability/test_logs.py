@@ -12,7 +12,7 @@ HOSTILE = "a\x1b[2Jb\nforged\r\x9b1mc\u202ed\u2028e\x00\x7f"
 SPELT = r"a\x1b[2Jb\nforged\r\x9b1mc\u202ed\u2028e\x00\x7f"
 BEGIN = f"""
 import logging, structlog
-from service import logs
+from service.observability import logs
 logs.configure("info", "text")
 log, hostile = structlog.get_logger("test"), {HOSTILE!r}
 """
