@@ -15,7 +15,9 @@ from tests.support.service.running import until
 
 ROOT = Path(__file__).parents[1]
 PROJECT = ("kinematics", "synthesis", "service", "mechsynth", "pyproject.toml", "README.md", "LICENSE")
-STARTS = "from synthesis.kinds.path.exact.continuation_starts import nine_point_start; print(len(nine_point_start().y))"
+STARTS = (
+    "from synthesis.kinds.path.exact.continuation_starts import load_nine_point_start as start; print(len(start().y))"
+)
 
 pytestmark = [pytest.mark.campaign, pytest.mark.timeout(900)]
 

@@ -21,7 +21,7 @@ from kinematics.cam.motion.segments import Segment
 def reverse_program(program: Program) -> Program:
     """Return the program of the second roller: s_max − s, which is 0 where the first is highest."""
     top = program.peaks[0].greatest
-    return Program([Segment(one.name, one.pieces.scaled(one.angle, -1.0, top)) for one in program.segments])
+    return Program([Segment(one.name, one.pieces.scale_to(one.angle, -1.0, top)) for one in program.segments])
 
 
 def compute_span(first: Roller, second: Roller, top: float) -> float:

@@ -95,7 +95,7 @@ def test_what_has_no_joints_has_the_rest_of_its_motion(train):
     assert (cycle.joints, cycle.links, cycle.slides) == ({}, {}, {})
     np.testing.assert_allclose(cycle.input_angle, np.linspace(0.0, 360.0, 13))
     assert cycle.answer["shafts"][1]["speed_ratio"] == pytest.approx(-3 / 7)  # the other way round
-    with pytest.raises(ValueError, match="one step"):
+    with pytest.raises(ValueError, match="steps must be at least 1"):
         train.designs[0].motion(0)
 
 

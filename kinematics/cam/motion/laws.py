@@ -79,7 +79,7 @@ class Law:
     def reversed(self, name: str) -> Law:
         """Return 1 − s(1 − u): the law whose fall is the mirror image of this one's rise."""
         mirrored = self.pieces.reversed()
-        return Law(name, mirrored.scaled(1.0, -1.0, 1.0))
+        return Law(name, mirrored.scale_to(1.0, -1.0, 1.0))
 
 
 MIN_JUMP = 1e-9
@@ -120,8 +120,8 @@ def build_sine_constant_cosine(name: str, p1: float, p2: float, p3: float) -> La
         s += v * rest
     half = join_pieces([build_harmonic_piece(*part) for part in parts])
     # Scale the half to a rise of 1/2; the second half is its point reflection.
-    first = half.scaled(0.5, 0.5 / s)
-    return Law(name, join_pieces([first, first.reversed().scaled(0.5, -1.0, 1.0)]))
+    first = half.scale_to(0.5, 0.5 / s)
+    return Law(name, join_pieces([first, first.reversed().scale_to(0.5, -1.0, 1.0)]))
 
 
 def build_polynomial_law(name: str, *coefficients: float) -> Law:
@@ -146,7 +146,7 @@ def _build_trapezoidal() -> Law:
         [s + flat * (v + 0.5 * flat * peak), v + flat * peak, 0.5 * peak, -jerk / 6.0],
     ]
     first = build_polynomial_pieces(np.cumsum([0.0, RAMP_LENGTH, flat, RAMP_LENGTH]), rows)
-    return Law("trapezoidal", join_pieces([first, first.reversed().scaled(0.5, -1.0, 1.0)]))
+    return Law("trapezoidal", join_pieces([first, first.reversed().scale_to(0.5, -1.0, 1.0)]))
 
 
 def _build_laws() -> dict[str, Law]:

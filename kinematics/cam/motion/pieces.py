@@ -90,7 +90,7 @@ class Pieces:
         amplitude = self.amplitude * self.frequency
         return Pieces(self.start, polynomial, amplitude, self.frequency, self.phase + 0.5 * math.pi)
 
-    def scaled(self, length: float, factor: float, constant: float = 0.0) -> Pieces:
+    def scale_to(self, length: float, factor: float, constant: float = 0.0) -> Pieces:
         """Return constant + factor·s, stretched to a length and shifted to begin at zero."""
         stretch = length / self.length
         polynomial = factor * self.polynomial / stretch ** np.arange(self.polynomial.shape[1])

@@ -61,7 +61,7 @@ def build_law_segment(law: Law, angle: float, start: float, end: float) -> Segme
     """
     return Segment(
         law.name,
-        law.pieces.scaled(_check_angle(angle), _check_finite("end", end) - start, _check_finite("start", start)),
+        law.pieces.scale_to(_check_angle(angle), _check_finite("end", end) - start, _check_finite("start", start)),
     )
 
 

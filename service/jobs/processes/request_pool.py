@@ -108,7 +108,7 @@ class RequestPool:
 
         Raises
         ------
-        Busy, GivenUp, Gone, Lost
+        Busy, GivenUp, ClientGone, ProcessLost
             And the exceptions of the function.
         """
         try:

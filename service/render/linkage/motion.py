@@ -104,7 +104,7 @@ def list_demands(problem: Any) -> list[Demand]:
 
 def get_target_curve(problem: Any) -> Complex | None:
     """Return the curve that is required as a whole, closed if it is; None for separate target points."""
-    if not getattr(problem, "matched", False):
+    if not getattr(problem, "is_matched", False):
         return None
     points = np.array([place.point for place in problem.points])
     return np.append(points, points[0]) if problem.closed else points

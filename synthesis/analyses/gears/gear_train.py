@@ -39,7 +39,7 @@ DISTANCE_TOLERANCE = 1e-6
 
 
 class GearTrainAnalysisRequest(DrivenRequest[GivenGearTrain]):
-    """A gear train, how its input turns, and what it carries."""
+    """A gear train, the motion of its input, and its load."""
 
     model_config = ConfigDict(
         title="Gear train: speeds and torques",

@@ -58,7 +58,9 @@ class LoadedMesh(MeshGeometry):
     approach: float = Field(description="Part of the contact path before the pitch point, with the driver driving.")
     recess: float
     clearance: float
-    efficiency: float | None = Field(description="Null if fewer than one pair of teeth is in contact.")
+    efficiency: float | None = Field(
+        description="Efficiency of the mesh; null if fewer than one pair of teeth is in contact."
+    )
     pitch_line_velocity: float = Field(
         description="Pitch line velocity at the first position, length units per second; for a worm that of its "
         "threads."

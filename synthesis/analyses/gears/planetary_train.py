@@ -126,7 +126,7 @@ class GivenPlanetaryTrain(Statement):
 
 
 class PlanetaryAnalysisRequest(DrivenRequest[GivenPlanetaryTrain]):
-    """A planetary train, the speeds that are known, and what it carries."""
+    """A planetary train, its known speeds, and its load."""
 
     model_config = ConfigDict(
         title="Planetary train: speeds and torques",
@@ -305,7 +305,7 @@ class TurningBody(Answer):
 
 
 class LoadedPlanetaryMesh(Answer):
-    """A mesh and what it carries; power is relative to its carrier, positive where the first gear drives."""
+    """A mesh and its load; power is relative to its carrier, positive if the first gear drives."""
 
     first: str
     second: str

@@ -84,7 +84,7 @@ class GivenGearPair(Statement):
 
     type: Literal["gear_pair"]
     teeth: tuple[ToothNumber, ToothNumber]
-    module: PositiveNumber = Field(default=1.0, description="Module; of helical teeth in the normal plane.")
+    module: PositiveNumber = Field(default=1.0, description="Module; for helical teeth in the normal plane.")
     shift: tuple[ShiftCoefficient, ShiftCoefficient] = Field(
         default=(0.0, 0.0), description="Profile shifts in modules, positive outwards, also for a ring."
     )
@@ -173,7 +173,7 @@ class RunningGear(Answer):
         description="Radius at which the involute ends; for an undercut gear where its fillet crosses the flank."
     )
     tooth_thickness: float = Field(description="Value on the pitch circle.")
-    tip_thickness: float | None = Field(description="Null if a ring's tips lie below its base circle.")
+    tip_thickness: float | None = Field(description="Tip thickness; null if a ring's tips lie below its base circle.")
     least_shift: float | None = Field(description="Profile shift below which the rack undercuts; null for a ring.")
     undercut: bool
     involute_left: float = Field(

@@ -43,7 +43,7 @@ def compute_unit_ratio(unit: GivenGearTrain | GivenPlanetaryTrain) -> Fraction:
 
 
 class TrainSeriesAnalysisRequest(DrivenRequest[GivenTrainSeries]):
-    """Trains in series, how their input turns, and what it carries."""
+    """Trains in series, the motion of their input, and their load."""
 
     model_config = ConfigDict(
         title="Trains in series: speeds and torques",

@@ -50,7 +50,7 @@ class GivenRotor(Statement):
 
 
 class RotorRequest(DrivenRequest[GivenRotor]):
-    """A rotor and how it turns."""
+    """A rotor and its motion."""
 
     model_config = ConfigDict(
         title="Rotor",

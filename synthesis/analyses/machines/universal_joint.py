@@ -49,7 +49,7 @@ class SpeedLimits(Statement):
 
 
 class GivenUniversalJoint(Statement):
-    """Universal joints in a row, from the input shaft on, and what the output shaft drives."""
+    """Universal joints in series, starting at the input shaft, and the load of the output shaft."""
 
     type: Literal["universal_joint"]
     joints: Annotated[list[JointSpec], Field(min_length=1, max_length=8)]

@@ -50,7 +50,7 @@ class SourceLinkage(Statement):
     )
     reference_body_angle: Degrees | None = Field(default=None, description=BODY_DESCRIPTION)
     skeleton: SkeletonSpec | None = Field(
-        default=None, description="In the first position; its joints must agree with the dimensions."
+        default=None, description="Skeleton in the first position; its joints must agree with the dimensions."
     )
 
     @model_validator(mode="before")

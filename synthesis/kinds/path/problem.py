@@ -91,7 +91,7 @@ class CouplerPointLimits(Statement):
 class PathConstraints(Constraints):
     """Constraints on a linkage, including limits specific to path generation."""
 
-    input_pivot_region: Region | None = Field(default=None, description="For the input's fixed pivot alone.")
+    input_pivot_region: Region | None = Field(default=None, description="Region of the input's fixed pivot.")
     coupler_point: CouplerPointLimits | None = None
 
 

@@ -124,7 +124,10 @@ class PlanetaryProblem(ProblemBase):
         default=None,
         min_length=1,
         max_length=20,
-        description="In place of `module`, with `strength`: each train gets the smallest that carries the power.",
+        description=(
+            "Modules to choose from, in place of `module`; only with `strength`. Each train gets the smallest that "
+            "carries the power."
+        ),
     )
     pressure_angle: CommonPressureAngle = Field(default=20.0, description="Pressure angle, degrees.")
     tolerance: Annotated[float, Field(strict=True, ge=0.0, lt=1.0)] | None = Field(

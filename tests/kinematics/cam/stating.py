@@ -37,7 +37,7 @@ NAMES = {
 
 def coefficient_segment(angle: float, coefficients: list[float]) -> Segment:
     """Σ c_k (θ/β)^k with Norton's coefficients, constant first."""
-    return Segment("polynomial", build_polynomial_pieces([0.0, 1.0], np.atleast_2d(coefficients)).scaled(angle, 1.0))
+    return Segment("polynomial", build_polynomial_pieces([0.0, 1.0], np.atleast_2d(coefficients)).scale_to(angle, 1.0))
 
 
 def segment_of(row: dict[str, Any]) -> Segment:

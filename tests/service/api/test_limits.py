@@ -9,7 +9,7 @@ from concurrent.futures import ThreadPoolExecutor
 import httpx
 import pytest
 
-from tests.support.service.limits import HALVES, WHOLE
+from tests.support.service.raw_requests import HALVES, WHOLE
 from tests.support.service.running import PROBLEM, REACHED_S, SCRIPTED, RunningServer, until
 from tests.support.service.scripted_server import BRIEF, GATED, INSTANT
 

@@ -32,13 +32,13 @@ SEEDS = ("0", "7", "12345")
 
 DIGESTS = """
 import hashlib, json, sys
-from service.render import exported, forms
+from service.render import export_design, list_forms
 from synthesis.registry import KINDS, parse_problem
 for statement, answer in json.load(sys.stdin):
     problem = parse_problem(statement)
     design = KINDS[problem.kind].result.model_validate(answer, strict=False).designs[0]
-    for form in forms(design.mechanism.type):
-        file = exported(design, problem, "A design", form)
+    for form in list_forms(design.mechanism.type):
+        file = export_design(design, problem, "A design", form)
         print(problem.kind, form, hashlib.sha256(file if isinstance(file, bytes) else file.encode()).hexdigest())
 """
 

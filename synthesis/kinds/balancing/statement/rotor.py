@@ -143,7 +143,7 @@ class Holes(_PlaceChoice):
 
 
 class Stock(_PlaceChoice):
-    """Weights in stock, one of which may be fixed at each of some angles."""
+    """Weights in stock; one may be fixed at each of the given angles."""
 
     masses: list[Annotated[PositiveNumber, MASS]] = Field(min_length=1, max_length=MAX_LEVELS)
 

@@ -1,4 +1,5 @@
-"""Code that several tests share: limits."""
+"""Requests as bytes: a whole one, and ones that break off. No module here may have the name of a package: a script of
+this folder would import it in its place."""
 
 import json
 
