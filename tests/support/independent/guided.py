@@ -36,7 +36,7 @@ EXACT = 5
 
 def span(drive: Drive, design: Any) -> Real:
     """How far the input has moved from the skeleton's configuration at each target."""
-    at = np.array([target.at for target in design.targets])
+    at = np.array([target.position for target in design.targets])
     if drive.slides_in:
         return at
     at = np.radians(at)

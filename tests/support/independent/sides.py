@@ -66,9 +66,9 @@ def _gaps(
 
 def _turned(drive: Drive, beside: Beside, target: Any, pivot: str, pin: str, rotation: float) -> float:
     """By how much a link's rotation from the first target to another differs from a stated one."""
-    first = beside.design.targets[0].at
+    first = beside.design.targets[0].position
     begun = (math.radians(first) - drive.reference + math.pi) % math.tau - math.pi
-    turn = begun + math.radians(target.at - first)
+    turn = begun + math.radians(target.position - first)
     z = drive.at(np.array([turn]))[0]
     now = complex(z[drive.names.index(pin)] - z[drive.names.index(pivot)])
     home = complex(drive.home[drive.names.index(pin)] - drive.home[drive.names.index(pivot)])

@@ -54,7 +54,7 @@ def compare_steering(beside: Beside, stated: dict[str, Any]) -> None:
         inner, outer = np.where(left + right > 0.0, left, -right), np.where(left + right > 0.0, right, -left)
         return np.asarray(outer - required(inner))
 
-    turned = np.array([t.at for t in design.targets])
+    turned = np.array([t.position for t in design.targets])
     turned = turned if davis else np.radians(turned) - drive.reference
     turned = turned if davis else turned - math.tau * round(float(turned[0]) / math.tau)
     # The bar or the left arm that is driven on until the inner wheel is at its lock.

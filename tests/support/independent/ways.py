@@ -124,7 +124,7 @@ def _range(metrics: Any, drive: Drive, whole: bool) -> tuple[float, float]:
 
 def _compare_targets(beside: Beside, path: dict[str, Any], drive: Drive, points: Complex, task: float) -> None:
     """The points of the path as P meets them."""
-    inputs = np.radians([target.at for target in beside.design.targets])
+    inputs = np.radians([target.position for target in beside.design.targets])
     first = (inputs[0] - drive.reference + math.pi) % math.tau - math.pi
     turns = inputs - inputs[0] + first
     if not drive.follow(float(turns.min()), float(turns.max())):
@@ -137,8 +137,8 @@ def _compare_targets(beside: Beside, path: dict[str, Any], drive: Drive, points:
     for k, target in enumerate(beside.design.targets):
         beside.add("targets.point_residual", target.point_residual, float(misses[k]), task)
         beside.add("targets.residual", target.residual, float(misses[k]) / task, 1.0)
-        off = math.remainder(target.at - float(stands[k]), 360.0)
-        beside.add("targets.input_angle", target.at, target.at - off, 360.0)
+        off = math.remainder(target.position - float(stands[k]), 360.0)
+        beside.add("targets.input_angle", target.position, target.position - off, 360.0)
     beside.metric("rms_residual", math.sqrt(float(np.mean((misses / task) ** 2))), 1.0)
     beside.check("reaches_targets", float(misses.max()) / task)
     compare_demands_of_path(beside, path, drive, task, turns[:1])
